@@ -26,7 +26,7 @@ fn off(run: &Run<Gauss<8>, OuterSolarSystem, 18>, expected: &Value) -> [f64; 2] 
 }
 
 #[test]
-fn the_outer_solar_system_is_where_other_programs_have_it() {
+fn the_outer_solar_system_agrees_with_other_programs() {
     let reference = file("outer_solar_system.json");
     let system = OuterSolarSystem::default();
     let start = State::at(&system, 0.0, OuterSolarSystem::POSITIONS, OuterSolarSystem::VELOCITIES);

@@ -40,7 +40,7 @@ fn plain(name: &'static str, coordinates: &[&'static str], parameters: &[&'stati
 }
 
 #[test]
-fn each_system_is_what_it_says() {
+fn each_system_has_its_metadata() {
     assert_eq!(of(&scenes::double_well()), plain("DoubleWell", &["q"], &["m"]));
     assert_eq!(of(&scenes::harmonic_oscillator()), plain("HarmonicOscillator", &["x"], &["m", "k"]));
     assert_eq!(of(&scenes::pendulum()), plain("Pendulum", &["θ"], &["m", "l", "g"]));

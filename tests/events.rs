@@ -236,7 +236,7 @@ fn a_state_at_rest_on_the_floor_is_a_typed_error_and_names_its_event() {
 }
 
 #[test]
-fn a_ball_at_the_floor_is_told_from_one_that_passes() {
+fn a_ball_at_the_floor_differs_from_one_that_passes() {
     // Moving down from 1e-17 at t = 0: a length of 1e-17 reaches the floor. Measured relative error 2.4e-15.
     for z in [1e-17, 1e-14, 1e-10] {
         for (name, mut run) in runs(Ball::default(), 0.0, [[z], [-1.0]], 0.5) {
@@ -413,7 +413,7 @@ fn functions_that_are_zero_over_a_stretch() {
 }
 
 #[test]
-fn what_only_touches_zero_is_no_event() {
+fn touching_zero_is_no_event() {
     for g in [
         (|x| (x - 1.0) * 1e3) as fn(f64) -> f64,
         |x| x - 1.0,
@@ -500,7 +500,7 @@ fn functions_that_jump() {
 }
 
 #[test]
-fn a_function_that_is_not_finite_is_a_typed_error_where_it_is_met() {
+fn a_nonfinite_event_function_is_a_typed_error_at_its_place() {
     let lost = |end: &Result<Option<Crossing<1>>, StepError>| {
         matches!(end, Err(StepError::NonFinite { quantity: "function of an event", .. }))
     };
@@ -614,7 +614,7 @@ fn an_event_is_the_last_length_before_the_change() {
 }
 
 #[test]
-fn roots_between_samples_are_met_beside_an_event_there() {
+fn roots_between_samples_are_found_next_to_an_event() {
     // A dip of width 0.01 in a constant function: the samples of a step of 0.5 miss it.
     let dip = |x: f64| (x - 0.505).abs().min(0.02) - 0.005;
     for (name, mut run) in runs(Ball { g: 0.0 }, 0.0, [[0.0], [1.0]], 1.0) {
@@ -659,7 +659,7 @@ fn functions(seed: &mut u64) -> Vec<Event<1>> {
 }
 
 #[test]
-fn searches_cut_at_random_seams_find_what_one_search_finds() {
+fn searches_with_random_boundaries_find_the_same_as_one_search() {
     let spring = Spring::default();
     let mut seed = 7;
     let mut seen = 0;
@@ -723,7 +723,7 @@ fn searches_cut_at_nodes_find_the_same_bits() {
 }
 
 #[test]
-fn one_by_one_all_methods_find_what_one_search_finds() {
+fn single_searches_of_all_methods_find_the_same_as_one_search() {
     let spring = Spring::default();
     let mut seed = 23;
     let mut seen = 0;

@@ -43,7 +43,7 @@ macro_rules! slopeless {
         })+
 
         #[test]
-        fn where_a_slope_is_lost_the_mass_matrix_is_not_blamed() {
+        fn a_nonfinite_slope_is_not_reported_as_a_singular_mass_matrix() {
             $(loses_its_slope($name::default());)+
         }
     };
@@ -84,7 +84,7 @@ lagrangian! {
 }
 
 #[test]
-fn a_step_density_that_is_lost_is_told() {
+fn a_lost_step_density_is_reported() {
     // The acceleration is finite, and its slope is not.
     let (zero, slow) = (SVector::from([0.0]), SVector::from([1.0]));
     let density = Kinked::default().step_density(0.0, &zero, &slow);
@@ -93,7 +93,7 @@ fn a_step_density_that_is_lost_is_told() {
 }
 
 #[test]
-fn what_is_below_an_ulp_is_not_lost() {
+fn increments_below_an_ulp_are_carried() {
     // An ulp of q is 16384: the particle stays for ten million steps, and then moves.
     let system = Free { m: 1.5 };
     let (q, v, h) = (1e20_f64, 1.0_f64, 0.01_f64);
@@ -211,7 +211,7 @@ lagrangian! {
 }
 
 #[test]
-fn where_the_forces_are_finite_and_the_energy_is_not_no_energy_is_told() {
+fn finite_forces_with_an_infinite_energy_give_no_energy() {
     let system = Walls::default();
     let beyond = State::at(&system, 0.0, [1.5], [0.0]).energy(&system);
     assert!(matches!(beyond, Err(StepError::NonFinite { quantity: "energy", expression: Some(_), .. })), "{beyond:?}");

@@ -244,7 +244,7 @@ fn every_form_steps_as_the_dense_matrix_does() {
 }
 
 #[test]
-fn pivots_that_are_lost_are_replaced() {
+fn lost_pivots_are_replaced() {
     for corner in [0.0, 1e-14, 1e-16, 1e-17, 1e-20, 1e-100, 1e-300] {
         let [fixed, preserving] = compare(Swapping { k: 1.2, corner }, 0.02, "Tridiagonal<4");
         // Measured: 1.1e-16 and 4.1e-13 at most, with twice as many iterations: the prediction does not pivot, so each

@@ -300,7 +300,7 @@ fn several_functions_in_one_step_come_in_their_order() {
 }
 
 #[test]
-fn a_run_that_stops_at_an_event_goes_on_from_it() {
+fn a_run_that_stops_at_an_event_continues_from_it() {
     let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
     let mut run = oscillator.at_state(start).integrate(Gauss::<6>, 0.3).expect("valid");
@@ -416,7 +416,7 @@ fn changed_parameters_are_those_of_a_new_run() {
 }
 
 #[test]
-fn of_the_last_step_is_said_what_the_new_parameters_make_of_it() {
+fn the_last_step_is_reported_with_the_new_parameters() {
     let system = Pushed { u: 0.3, ..Pushed::default() };
     let start = State::at(&system, 0.0, [0.4], [0.2]);
     let h = 0.1;
@@ -554,7 +554,7 @@ fn a_composition_restarts_bit_for_bit() {
 }
 
 #[test]
-fn the_motion_goes_on_after_a_step_that_failed() {
+fn the_motion_continues_after_a_failed_step() {
     // A step that is too long has no solution; the run may take a shorter one.
     let kepler = Kepler::default();
     let mut run = kepler.at_state(planet(0.6)).integrate(Gauss::<3>, 0.05).expect("valid");
@@ -604,8 +604,8 @@ fn met<M: Method<S, 1>, S: Lagrangian<1> + Copy>(
     }
     let together: Vec<f64> =
         run.clone().events(wanted, until).map(|crossing| crossing.expect("the run goes on").state.t).collect();
-    let apart = times.iter().zip(&together).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    ([times.len(), together.len()], apart)
+    let difference = times.iter().zip(&together).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    ([times.len(), together.len()], difference)
 }
 
 #[test]
@@ -692,7 +692,7 @@ fn far_from_zero_a_rounding_of_the_time_is_many_steps() {
 }
 
 #[test]
-fn a_bound_of_the_step_leads_beyond_no_time() {
+fn a_step_bound_never_passes_the_end_time() {
     let oscillator = HarmonicOscillator::default();
     let run = EnergyPreserving::from_midpoint(oscillator, 0.0, [1.0], [0.0], 0.001).expect("valid");
     let mut run = run.with_fallback(vi_core::Fallback::FixedSteps).with_step_bounds(0.1, 1.0).expect("valid");

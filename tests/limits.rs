@@ -281,9 +281,9 @@ fn a_fall_from_rest_is_the_closed_form() {
     }
     for result in ensemble.results() {
         let state = result.unwrap_or_else(|ended| panic!("{}", ended.error));
-        let apart = (state.q - alone.state().q).amax().max((state.p - alone.state().p).amax());
+        let error = (state.q - alone.state().q).amax().max((state.p - alone.state().p).amax());
         // Measured: 0; with fused multiply-add the rounding is smaller.
-        assert!(apart < 1e-13, "{apart:e}");
+        assert!(error < 1e-13, "{error:e}");
     }
 }
 
@@ -311,7 +311,7 @@ fn exponents_and_coefficients_that_are_parameters_are_tested_at_run_time() {
 }
 
 #[test]
-fn what_has_no_limit_is_a_typed_error() {
+fn products_without_a_limit_are_typed_errors() {
     let system = Towards::default();
     let start = State { t: 0.0, q: [0.0; 2].into(), p: [0.0; 2].into() };
     let fixed = system.at_state(start).integrate(FixedStep, 0.01).expect("a velocity").step();
@@ -320,8 +320,8 @@ fn what_has_no_limit_is_a_typed_error() {
     let gauss = system.at_state(start).integrate(Gauss::<4>, 0.01).expect("a velocity").step();
     assert!(gauss.is_err(), "{gauss:?}");
     // At a state nearby a step exists.
-    let beside = State { q: [1e-9, 0.0].into(), ..start };
-    assert!(system.at_state(beside).integrate(FixedStep, 1e-6).expect("a velocity").step().is_ok());
+    let nearby = State { q: [1e-9, 0.0].into(), ..start };
+    assert!(system.at_state(nearby).integrate(FixedStep, 1e-6).expect("a velocity").step().is_ok());
 }
 
 /// The last coordinate after 60 steps.

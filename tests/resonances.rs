@@ -63,7 +63,7 @@ fn a_third_of_a_turn_a_step_drives_the_motion_away() {
 }
 
 #[test]
-fn a_quarter_of_a_turn_a_step_drives_the_motion_away_where_its_forces_leave_it_unbounded() {
+fn a_quarter_period_per_step_is_unstable_for_unbounded_forces() {
     let a = 1.3;
     // From x = 0.1: the largest amplitude at the resonance and 3 % away from it, for b in units of a².
     let grown = |b: f64| {

@@ -204,7 +204,7 @@ fn few_steps_follow_an_eccentric_orbit() {
 }
 
 #[test]
-fn angular_momentum_and_energy_are_kept() {
+fn angular_momentum_and_energy_are_conserved() {
     let system = Kepler::default();
     let start = eccentric(&system);
     let spin = |state: &State<2>| state.q[0] * state.p[1] - state.q[1] * state.p[0];
@@ -325,7 +325,7 @@ fn the_path_of_a_step_is_its_polynomial() {
 }
 
 #[test]
-fn a_run_goes_on_with_other_parameters_and_from_other_states() {
+fn a_run_continues_with_other_parameters_and_from_other_states() {
     let system = Kepler::default();
     let mut run =
         system.at_state(eccentric(&system)).integrate(Gauss::<8>.in_transformed_time(), 0.5).expect("a valid start");
@@ -426,7 +426,7 @@ fn a_system_without_a_time_scale_is_refused() {
 }
 
 #[test]
-fn what_cannot_be_stepped_is_refused_with_its_numbers() {
+fn invalid_steps_are_rejected_with_their_numbers() {
     let system = Kepler::default();
     let start = eccentric(&system);
     for dtau in [0.0, f64::NAN, f64::INFINITY, 1e-310] {

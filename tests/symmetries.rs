@@ -75,7 +75,7 @@ mod one_step_is_symplectic_unless_damped {
 }
 
 #[test]
-fn damping_shrinks_areas_as_the_midpoint_rule_says() {
+fn damping_contracts_areas_as_the_midpoint_rule_predicts() {
     // m (v1 − v0) = −h (k x̄ + c v̄) in the variables (x, p): det M = (1 + a − b)/(1 + a + b) with a = h² k/(4 m), b = h c/(2 m).
     let Scene { system, q, v, .. } = damped_oscillator();
     let h = 0.4;

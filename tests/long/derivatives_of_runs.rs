@@ -468,9 +468,9 @@ fn separated<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run: &Run
     let mut growth = 0.0;
     for _ in 0..steps {
         let at = run.state();
-        let mut beside = run.clone();
-        beside.set_state(State { q: at.q + q, p: at.p + p, ..at }).expect("valid");
-        let reached = beside.step().expect("solvable");
+        let mut neighbour = run.clone();
+        neighbour.set_state(State { q: at.q + q, p: at.p + p, ..at }).expect("valid");
+        let reached = neighbour.step().expect("solvable");
         let state = run.step().expect("solvable");
         q = reached.q - state.q;
         p = reached.p - state.p;

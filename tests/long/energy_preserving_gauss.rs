@@ -118,7 +118,11 @@ mod one_stage_has_the_emitted_density {
 }
 
 /// The density that follows from a short step equals the density at its midpoint.
-fn told<const N: usize, const S: usize>(system: impl System<N>, (q, v): ([f64; N], [f64; N]), h: f64) -> f64 {
+fn density_of_short_step<const N: usize, const S: usize>(
+    system: impl System<N>,
+    (q, v): ([f64; N], [f64; N]),
+    h: f64,
+) -> f64 {
     let mut run = begin::<N, S, _>(system, (q, v), h);
     let before = run.state();
     run.step().expect("a step");
@@ -138,11 +142,13 @@ fn a_step_tells_its_density() {
     let well = (DoubleWell { m: 1.3 }, ([0.8], [0.1]));
     // Ratio of the deviations for half the step.
     let cases = [
-        told::<1, 1>(system, (q, v), 0.02) / told::<1, 1>(system, (q, v), 0.01),
-        told::<1, 2>(system, (q, v), 0.1) / told::<1, 2>(system, (q, v), 0.05),
-        told::<1, 3>(well.0, well.1, 0.1) / told::<1, 3>(well.0, well.1, 0.05),
-        told::<2, 1>(everything.0, everything.1, 0.02) / told::<2, 1>(everything.0, everything.1, 0.01),
-        told::<2, 2>(everything.0, everything.1, 0.1) / told::<2, 2>(everything.0, everything.1, 0.05),
+        density_of_short_step::<1, 1>(system, (q, v), 0.02) / density_of_short_step::<1, 1>(system, (q, v), 0.01),
+        density_of_short_step::<1, 2>(system, (q, v), 0.1) / density_of_short_step::<1, 2>(system, (q, v), 0.05),
+        density_of_short_step::<1, 3>(well.0, well.1, 0.1) / density_of_short_step::<1, 3>(well.0, well.1, 0.05),
+        density_of_short_step::<2, 1>(everything.0, everything.1, 0.02)
+            / density_of_short_step::<2, 1>(everything.0, everything.1, 0.01),
+        density_of_short_step::<2, 2>(everything.0, everything.1, 0.1)
+            / density_of_short_step::<2, 2>(everything.0, everything.1, 0.05),
     ];
     println!("{cases:?}");
     // Measured: 3.93 to 4.20.
@@ -264,7 +270,7 @@ fn by_the_formulas<const N: usize, const S: usize>(
 fn satisfies<const N: usize, const S: usize>(system: impl System<N>, start: ([f64; N], [f64; N]), h: f64, shift: f64) {
     let mut run = begin::<N, S, _>(system, start, h).with_shift(shift).expect("a shift");
     let mut worst = [0.0_f64; 3];
-    let mut kept = run.shifted_energy();
+    let mut preserved = run.shifted_energy();
     for _ in 0..200 {
         let before = run.state();
         let state = run.step().unwrap_or_else(|error| panic!("{}, {S} stages: {error}", name_of(&system)));
@@ -273,11 +279,11 @@ fn satisfies<const N: usize, const S: usize>(system: impl System<N>, start: ([f6
         let scale = state.p.dot(&state.velocity(&system).expect("a velocity")).abs() + first.abs();
         let off = [
             (end.q - state.q).amax() / end.q.amax() + (end.p - state.p).amax() / end.p.amax(),
-            (first - extra - kept).abs() / scale,
+            (first - extra - preserved).abs() / scale,
             (last - extra - run.shifted_energy()).abs() / scale,
         ];
         worst = core::array::from_fn(|k| worst[k].max(off[k]));
-        kept = run.shifted_energy();
+        preserved = run.shifted_energy();
     }
     println!(
         "{}, {S} stages, shift {shift}: nodes off by {:.1e}, energies by {:.1e} and {:.1e}",
@@ -339,7 +345,7 @@ fn energy_of_many<const N: usize, const S: usize>(
     count: u32,
 ) -> f64 {
     let mut run = begin::<N, S, _>(system, start, h);
-    let kept = run.discrete_energy().expect("an energy");
+    let preserved = run.discrete_energy().expect("an energy");
     let mut scale = 0.0_f64;
     let mut worst = 0.0_f64;
     for _ in 0..count {
@@ -349,7 +355,7 @@ fn energy_of_many<const N: usize, const S: usize>(
         let mut same = system.at_state(before).integrate(Gauss::<S>, run.h()).expect("a valid start");
         let state = same.step().expect("a step");
         scale = scale.max(size_of_energy(&system, &state));
-        worst = worst.max((same.discrete_energy().expect("an energy") - kept).abs());
+        worst = worst.max((same.discrete_energy().expect("an energy") - preserved).abs());
     }
     println!(
         "{}, {S} stages: energy off by {:.1e} of {scale:.2}, {:.1e} relative",
@@ -576,7 +582,7 @@ fn shifted<const N: usize, const S: usize, Y: System<N>>(
     assert!(!matches!(plain, StepError::NonFinite { .. }), "{name}: {plain}");
     let mut run = begin::<N, S, _>(system, start, h).with_shift_from(period).expect("a shift");
     let shift = run.shift();
-    let mut kept = run.shifted_energy();
+    let mut preserved = run.shifted_energy();
     let mut scale = 0.0_f64;
     let mut worst = 0.0_f64;
     let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
@@ -591,11 +597,11 @@ fn shifted<const N: usize, const S: usize, Y: System<N>>(
         let energy = same.discrete_energy().expect("an energy");
         // For a time-dependent system E' changes by the work of the integrator.
         if <Y as Lagrangian<N>>::AUTONOMOUS {
-            assert_eq!(run.shifted_energy().to_bits(), kept.to_bits());
+            assert_eq!(run.shifted_energy().to_bits(), preserved.to_bits());
         }
-        kept = run.shifted_energy();
+        preserved = run.shifted_energy();
         scale = scale.max(size_of_energy(&system, &state));
-        worst = worst.max((energy - power(S, run.h()) * shift - kept).abs());
+        worst = worst.max((energy - power(S, run.h()) * shift - preserved).abs());
         (shortest, longest) = (shortest.min(run.h()), longest.max(run.h()));
         swing = [swing[0].min(energy), swing[1].max(energy)];
         let total = state.energy(&system).expect("an energy");
@@ -606,7 +612,7 @@ fn shifted<const N: usize, const S: usize, Y: System<N>>(
     // H − E' = C_s h^2s (D_s + D_*) = constant/h.
     let total_band = power(S, run.h()) * (run.density() + shift) * run.h() * (1.0 / shortest - 1.0 / longest);
     println!(
-        "{name}, {S} stages, D_* = {shift:.4}: {count} steps of {shortest:.4} to {longest:.4}, E' kept to {:.1e}, E swings by {:.3e}, {band:.3e} expected, H by {:.3e}, {total_band:.3e} expected",
+        "{name}, {S} stages, D_* = {shift:.4}: {count} steps of {shortest:.4} to {longest:.4}, E' preserved to {:.1e}, E swings by {:.3e}, {band:.3e} expected, H by {:.3e}, {total_band:.3e} expected",
         worst / scale,
         swing[1] - swing[0],
         total_swing[1] - total_swing[0],
@@ -780,14 +786,14 @@ fn bounds_are_kept() {
 fn with_the_fallback_a_run_goes_on_and_its_energy_comes_back() {
     let system = Pendulum { m: 1.0, l: 1.0, g: 1.0 };
     let mut run = begin::<1, 2, _>(system, ([2.0], [0.0]), 0.05).with_fallback(Fallback::FixedSteps);
-    let kept = run.discrete_energy().expect("an energy");
+    let preserved = run.discrete_energy().expect("an energy");
     let start = run.state().energy(&system).expect("an energy");
     let (mut worst, mut worst_kept) = (0.0_f64, 0.0_f64);
     while run.state().t < 200.0 {
         let state = run.step().unwrap_or_else(|error| panic!("{error}"));
         worst = worst.max((state.energy(&system).expect("an energy") - start).abs());
         if run.step_kind() == StepKind::EnergyPreserving {
-            worst_kept = worst_kept.max((run.discrete_energy().expect("an energy") - kept).abs());
+            worst_kept = worst_kept.max((run.discrete_energy().expect("an energy") - preserved).abs());
         }
     }
     println!("H off by {worst:.1e}, E by {worst_kept:.1e}, {:?}", run.switches());
@@ -836,7 +842,7 @@ fn a_run_that_is_stored_goes_on_bit_for_bit() {
 fn states_at_times_are_those_of_the_motion_and_the_energy_stays() {
     let Scene { system, q, v, .. } = scenes::kepler();
     let mut run = begin::<2, 3, _>(system, (q, v), 0.03);
-    let kept = run.shifted_energy();
+    let preserved = run.shifted_energy();
     let mut worst = 0.0_f64;
     for k in 1..=20 {
         let t = 0.2 + 0.31 * f64::from(k);
@@ -847,7 +853,7 @@ fn states_at_times_are_those_of_the_motion_and_the_energy_stays() {
     }
     println!("states at times off by {worst:.1e}");
     // Measured: 3.4e-9.
-    assert!(worst < 1e-8 && run.shifted_energy().to_bits() == kept.to_bits(), "{worst:e}");
+    assert!(worst < 1e-8 && run.shifted_energy().to_bits() == preserved.to_bits(), "{worst:e}");
 }
 
 #[test]
@@ -868,11 +874,11 @@ fn a_run_goes_on_with_what_a_change_brings() {
     let state = run.state();
     run.set_state(State { p: state.p * 1.02, ..state }).expect("another state");
     assert!((excess(&run) - before).abs() < 1e-14);
-    let kept = run.discrete_energy().expect("an energy");
+    let preserved = run.discrete_energy().expect("an energy");
     for _ in 0..100 {
         run.step().expect("a step from another state");
     }
-    assert_eq!(run.discrete_energy().map(f64::to_bits), Some(kept.to_bits()));
+    assert_eq!(run.discrete_energy().map(f64::to_bits), Some(preserved.to_bits()));
 }
 
 #[test]

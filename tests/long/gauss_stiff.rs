@@ -79,8 +79,8 @@ fn mixed<const S: usize>(h: f64) {
         let before = run.state();
         let after = run.step().unwrap_or_else(|error| panic!("h = {h}, {S} stages: {error}"));
         // p = mixᵀ (m v).
-        let apart = |state: &State<5>| (mix * state.q, mix.transpose().try_inverse().expect("regular") * state.p);
-        let ((x, p), (x1, p1)) = (apart(&before), apart(&after));
+        let decoupled = |state: &State<5>| (mix * state.q, mix.transpose().try_inverse().expect("regular") * state.p);
+        let ((x, p), (x1, p1)) = (decoupled(&before), decoupled(&after));
         for i in 0..5 {
             let k = k * 3.0_f64.powi(i32::try_from(i).expect("a few"));
             let step = pade::<S>(vi_core::nalgebra::SMatrix::<f64, 2, 2>::new(0.0, 1.0 / m, -k, -c / m) * h);

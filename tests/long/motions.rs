@@ -426,10 +426,10 @@ fn the_variation_with_respect_to_a_power_is_finite_or_told() {
     let start = State::at(&Power::default(), 0.0, [0.0], [1.0]);
     let run = Power::default().at_state(start).integrate(Gauss::<4>, 0.1).expect("valid");
     let mut tangent = Tangent::new(run, vec![Variation::of_parameter::<Power>("n").expect("a parameter")]);
-    let mut told = None;
+    let mut reported = None;
     for _ in 0..30 {
         if let Err(error) = tangent.step() {
-            told = Some(error);
+            reported = Some(error);
             break;
         }
         let Variation { q, p, .. } = &tangent.variations()[0];
@@ -437,7 +437,7 @@ fn the_variation_with_respect_to_a_power_is_finite_or_told() {
     }
     // For negative x, x^n has a value but no derivative with respect to n.
     assert!(tangent.run().state().t > 2.0, "the motion comes back to x = 0");
-    assert!(matches!(told, Some(StepError::NonFinite { .. })), "{told:?}");
+    assert!(matches!(reported, Some(StepError::NonFinite { .. })), "{reported:?}");
 }
 
 lagrangian! {

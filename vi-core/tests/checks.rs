@@ -108,8 +108,8 @@ fn trips<const N: usize, S: Checked<N>>(system: S, place: &Place<N>, fault: Faul
     let failure = check(&Spoiled { system, fault }, place).expect_err("a fault that nothing sees");
     println!("{fault:?}: {failure}");
     assert!(matches!(failure, CheckFailure::Differs { .. }), "{fault:?}: {failure}");
-    let said = failure.to_string();
-    assert!(said.contains(report.check) && said.contains("instead of"), "{said}");
+    let message = failure.to_string();
+    assert!(message.contains(report.check) && message.contains("instead of"), "{message}");
 }
 
 #[test]
@@ -194,7 +194,7 @@ fn wrong_gauss_steps_are_seen() {
 }
 
 #[test]
-fn what_is_not_kept_is_seen() {
+fn checks_detect_quantities_that_are_not_conserved() {
     trips(SphericalPendulum::default(), &PENDULUM, Fault::MomentumGain, check::momenta);
     trips(SphericalPendulum::default(), &PENDULUM, Fault::Damping, check::symplecticity);
     trips(SphericalPendulum::default(), &PENDULUM, Fault::DirectedGain, check::reversibility);
@@ -225,7 +225,7 @@ lagrangian! {
 }
 
 #[test]
-fn what_proves_nothing_does_not_pass() {
+fn a_check_that_proves_nothing_does_not_pass() {
     let (pendulum, duffing) = (SphericalPendulum::default(), Duffing::default());
     let bottom = Place { t: 0.0, q: [0.0, 0.0].into(), v: [0.0, 0.0].into(), h: 0.02 };
     let still = "nothing moves";

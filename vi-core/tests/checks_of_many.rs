@@ -109,7 +109,7 @@ mod about_their_places {
 
 /// The energy of a slow particle is nearly all rest energy: the remainder has six digits.
 #[test]
-fn what_rounding_hides_is_said() {
+fn checks_report_rounding() {
     let Case { system, place, .. } = many::relativistic();
     let system = many::Relativistic { c: 1e5, ..system };
     for h in [1e-5, 1e-3, place.h] {

@@ -107,7 +107,7 @@ fn a_length_that_nothing_determines_is_an_error() {
 }
 
 #[test]
-fn a_state_without_room_for_a_step_has_none() {
+fn a_state_too_close_to_a_sign_change_has_no_step() {
     // H = E: the last node has the energy of the interval, and the step would have zero length.
     let system = UnitMass(DoubleWell);
     let state = State::at(&system, 0.0_f64, [0.74], [0.1]);
@@ -207,7 +207,7 @@ fn a_step_must_be_a_step() {
 }
 
 #[test]
-fn a_negative_step_leads_back() {
+fn a_negative_step_reverses_a_run() {
     let system = UnitMass(DoubleWell);
     let start = State::at(&system, 0.0_f64, [0.74], [0.1]);
     let there = system.at_state(start).integrate(FixedStep, 0.1).ok().and_then(|run| run.take(1000).last());

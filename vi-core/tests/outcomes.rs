@@ -95,7 +95,7 @@ lagrangian! {
 }
 
 #[test]
-fn a_value_that_is_lost_is_named() {
+fn a_lost_value_is_named() {
     let state = State::at(&Wire::default(), 0.0, [0.5], [1.0]);
     let mut fixed = Wire::default().at_state(state).integrate(FixedStep, 0.1).unwrap_or_else(|error| panic!("{error}"));
     let error = loop {
@@ -112,7 +112,7 @@ fn a_value_that_is_lost_is_named() {
 }
 
 #[test]
-fn an_error_ends_in_what_to_do() {
+fn an_error_ends_with_advice() {
     let no_step = StepError::NoForwardStep { t: 1.0, h: 0.5, excess: 2.0, density: -3.0 };
     let degenerate = StepError::DegenerateStep { t: 1.0, h: 0.5, density: 0.0 };
     let ratio = StepError::StepRatio { t: 1.0, previous: 0.5, found: 2.0 };

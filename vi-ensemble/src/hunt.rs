@@ -93,7 +93,7 @@ fn hunt_by<S: Batch<N> + Default, const N: usize>(instructions: Instructions, h:
 }
 
 #[test]
-fn lanes_are_solved_where_motions_change_suddenly() {
+fn lanes_satisfy_their_equations_in_sudden_motions() {
     hunt::<Wall, 1>(0.01, [0.6], [0.1]);
     hunt::<Wall, 1>(0.0317, [0.6], [0.1]);
     hunt::<HardCore, 1>(0.01, [0.6], [0.1]);

@@ -225,7 +225,7 @@ fn is_that_of_the_fixed_step<S: Batch<N>, const N: usize>(starts: &[Start<S, N>]
 }
 
 #[test]
-fn long_formulas_are_taken_apart() -> Result<(), StepError> {
+fn long_formulas_are_split() -> Result<(), StepError> {
     let chain = FpuChain::default();
     let first = |x| core::array::from_fn(|k| if k == 0 { x } else { 0.0 });
     let chains: Vec<_> = spread(3, 0.2, 1.0).map(|x| (chain, State::at(&chain, 0.0, first(x), [0.0; 16]))).collect();
@@ -364,7 +364,7 @@ fn more_steps_than_can_be_counted_are_counted_as_the_most() -> Result<(), StepEr
 }
 
 #[test]
-fn what_cannot_be_run_is_refused() {
+fn invalid_runs_are_rejected() {
     let well = DoubleWell::default();
     let start = State::at(&well, 0.0, [0.7], [0.0]);
     for (systems, states, h) in [(1, 1, 0.0), (1, 1, 1e-310), (1, 1, f64::NAN), (1, 2, 0.1), (2, 1, 0.1)] {
@@ -381,7 +381,7 @@ fn what_cannot_be_run_is_refused() {
 /// Runs of any integrator on threads equal single runs, bit for bit; a failed one ends with its error, and the others
 /// continue.
 #[test]
-fn runs_of_any_integrator_are_what_each_is_alone() {
+fn runs_of_any_integrator_equal_single_runs() {
     let planet = Kepler::default();
     // The last one falls into the sun.
     let speeds = [1.0, 1.1, 0.9, 1.3, 0.0];

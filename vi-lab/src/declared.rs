@@ -92,10 +92,10 @@ mod tests {
             let error = entry.system.begin(&by(method, None), &evaluations).err();
             assert_eq!(error, Some(StepError::NoRule { system: "Alone" }));
         }
-        let said = StepError::NoRule { system: "Alone" }.to_string();
+        let message = StepError::NoRule { system: "Alone" }.to_string();
         assert!(
-            said.contains("`Alone` takes no steps by a rule") && said.contains("add `discretize midpoint;`"),
-            "{said}"
+            message.contains("`Alone` takes no steps by a rule") && message.contains("add `discretize midpoint;`"),
+            "{message}"
         );
     }
 

@@ -19,7 +19,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_head_fills_its_room_for_any_number_of_rows() {
+    fn the_header_has_a_fixed_size_for_any_number_of_rows() {
         for rows in [0, 1000, u64::MAX] {
             let head = head(rows, 1024);
             assert_eq!(head.len(), HEADER_BYTES);

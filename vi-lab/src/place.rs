@@ -35,7 +35,7 @@ pub(crate) fn check_regular(path: &Path) -> Result<(), Failure> {
 }
 
 /// A path with an appended extension.
-pub(crate) fn beside(path: &Path, ending: &str) -> PathBuf {
+pub(crate) fn with_extension(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".");
     name.push(ending);
@@ -60,7 +60,7 @@ impl Temporary {
     pub(crate) fn create(place: &Path) -> io::Result<(Self, File)> {
         let mut number = 0;
         loop {
-            let path = beside(place, &format!("tmp-{}-{number}", process::id()));
+            let path = with_extension(place, &format!("tmp-{}-{number}", process::id()));
             match File::create_new(&path) {
                 Ok(file) => return Ok((Self { path, place: place.to_owned() }, file)),
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists && number < NAMES => number += 1,

@@ -81,7 +81,7 @@ fn path(path: &Path) -> &str {
 }
 
 #[test]
-fn exponents_of_chaos_and_of_a_swing() {
+fn exponents_of_chaos_and_of_an_oscillation() {
     let (status, text, errors) = lab(&["lyapunov", "double-well-duffing", "--set", "amplitude=0.5", "--steps", "5000"]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
     let last = rows(&text).pop().expect("a row");
@@ -302,9 +302,9 @@ fn wrong_input_is_one_line_and_status_2() {
             "there is no folder `no-such-folder` for the output `no-such-folder/x.csv`; create it first",
         ),
         (&["run", "none.toml", "--steps", "1"], "none.toml: No such file or directory (os error 2)"),
-        (&[], "no command is given; `vi-lab help` lists them"),
+        (&[], "no command given; `vi-lab help` lists the commands"),
         (&["run", "a/none.yml"], "there is no system `a/none.yml`; a scene file ends in .toml, a declaration in .rs"),
-        (&["fly"], "unrecognized subcommand 'fly'; `vi-lab help` shows what there is"),
+        (&["fly"], "unrecognized subcommand 'fly'; `vi-lab help` lists the commands"),
         (&["run", "kepler", "--stepz", "1"], "unexpected argument '--stepz' found; did you mean `--steps`?"),
         (
             &["run", "kepler", "--steps", "1", "--param", "mu=2"],
@@ -461,7 +461,7 @@ fn the_two_energies_have_columns_of_their_own() {
 }
 
 #[test]
-fn where_no_step_exists_the_advice_leads_on() {
+fn without_a_step_the_advice_continues_the_run() {
     let run = ["run", "double-well", "--q", "1.05", "--steps", "1000", "--every", "1000"];
     let advised = |options: &[&str]| {
         let (status, _, errors) = lab(&[run.as_slice(), &["--method", "energy"], options].concat());
@@ -496,7 +496,7 @@ fn where_no_step_exists_the_advice_leads_on() {
 }
 
 #[test]
-fn steps_too_short_to_have_a_length_are_told_a_longer_one() {
+fn steps_too_short_for_their_length_get_a_longer_one_as_advice() {
     let run = ["run", "double-well", "--method", "energy", "--stages", "3"];
     let (status, _, errors) = lab(&[run.as_slice(), &["--h", "0.01"]].concat());
     assert_eq!(status, Some(1), "{errors}");
@@ -707,7 +707,7 @@ fn output_that_nobody_reads_is_status_141() {
 
 #[cfg(unix)]
 #[test]
-fn a_run_of_days_says_so() {
+fn a_run_of_days_is_announced() {
     let mut child = start(&["run", "pendulum", "--steps", "1e14", "--every", "1e13"]);
     let mut diagnostic = String::new();
     BufReader::new(child.stderr.take().expect("messages")).read_line(&mut diagnostic).expect("a line");
@@ -808,7 +808,7 @@ fn the_map_of_a_system_is_a_page_with_its_files() {
 }
 
 #[test]
-fn every_method_is_compared_and_a_run_that_ends_says_why() {
+fn every_method_is_compared_and_early_ends_have_a_reason() {
     let out = temporary("work-precision");
     // A driven double well: its energy-preserving runs end, the others reach the end.
     let (status, output, errors) = lab(&["work-precision", "double-well-duffing", "--quick", "--out", path(&out)]);
@@ -838,7 +838,7 @@ fn every_method_is_compared_and_a_run_that_ends_says_why() {
 }
 
 #[test]
-fn where_nothing_can_be_compared_the_command_says_why() {
+fn without_a_comparison_the_command_reports_why() {
     let out = temporary("rest");
     let rest = ["work-precision", "pendulum", "--q", "0", "--v", "0", "--quick", "--out", path(&out)];
     let (status, output, errors) = lab(&rest);

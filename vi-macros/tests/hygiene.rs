@@ -205,7 +205,7 @@ mod attributes {
 }
 
 #[test]
-fn a_system_stands_in_a_function() {
+fn a_system_can_be_declared_in_a_function() {
     const x: f64 = 1.0;
     let y = x;
     ::vi_core::lagrangian! {

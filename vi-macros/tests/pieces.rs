@@ -121,7 +121,7 @@ where
 }
 
 #[test]
-fn the_pieces_compute_what_the_whole_does() {
+fn pieces_compute_the_same_as_the_whole() {
     let (whole, pieces) = (pendula::Pendula::default(), pendula::cut::Pendula::default());
     assert_eq!(bits(&whole), bits(&pieces));
     // Another parameter gives another result, so the compared values are not constant.
@@ -129,7 +129,7 @@ fn the_pieces_compute_what_the_whole_does() {
 }
 
 #[test]
-fn the_loops_compute_what_the_whole_does() {
+fn loops_compute_the_same_as_the_whole() {
     let (whole, loops) = (chain::Chain::default(), chain::cut::Chain::default());
     assert_eq!(bits(&whole), bits(&loops));
     assert_ne!(bits(&chain::Chain { k: 0.8, ..whole }), bits(&loops));

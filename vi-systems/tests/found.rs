@@ -71,7 +71,7 @@ fn check<S: FixedStepping<N> + Default, const N: usize>(file: &str) -> Findings 
 }
 
 #[test]
-fn findings_are_what_the_numbers_show() {
+fn findings_match_the_numbers() {
     use vi_systems as systems;
     check::<systems::ChargedParticle, 3>("charged_particle");
     check::<systems::DoubleWell, 1>("double_well");

@@ -100,7 +100,7 @@ pub fn find(name: &str) -> Result<Entry, Failure> {
         Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
         None if extension == Some("rs") => "use `explain` or `expand` for a Rust file".to_owned(),
         None if name.contains(['/', '\\', '.']) => "a scene file ends in .toml, a declaration in .rs".to_owned(),
-        None => format!("`{} list` names them all", program()),
+        None => format!("`{} list` shows all systems", program()),
     };
     Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
 }
@@ -170,7 +170,7 @@ mod tests {
             message("folder/xyz.yml").as_deref(),
             Some("there is no system `folder/xyz.yml`; a scene file ends in .toml, a declaration in .rs")
         );
-        let listed = format!("there is no system `xyz`; `{} list` names them all", program());
+        let listed = format!("there is no system `xyz`; `{} list` shows all systems", program());
         assert_eq!(message("xyz"), Some(listed));
     }
 }

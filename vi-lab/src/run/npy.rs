@@ -34,8 +34,8 @@ impl Npy {
             Self { path: path.to_owned(), file, columns: request.columns().len(), rows: 0, block: Vec::new() };
         npy.flush()?;
         let description = format!("{:#}\n", description(request));
-        let beside = place::beside(path, "json");
-        place::replace(&beside, &description).map_err(|error| Failure::file(&beside, error))?;
+        let json = place::with_extension(path, "json");
+        place::replace(&json, &description).map_err(|error| Failure::file(&json, error))?;
         Ok(npy)
     }
 

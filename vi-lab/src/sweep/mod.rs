@@ -29,7 +29,7 @@ mod shard;
 mod sink;
 mod study;
 
-use crate::place::{beside, sync_folder};
+use crate::place::{sync_folder, with_extension};
 use chunks::Chunks;
 use clap::Args;
 use shard::Shard;
@@ -77,7 +77,7 @@ pub(crate) fn sweep(arguments: &Arguments) -> Result<String, Failure> {
     let shard = Shard::of(shard.as_deref(), |name| env::var(name).ok())?;
     let study = Study::read(scene)?;
     Format::of(output)?;
-    let folder = beside(output, "part");
+    let folder = with_extension(output, "part");
     let chunks = Arc::new(Chunks::resume(&folder, study.description(), shard.is_none())?);
     let numbers = shard.unwrap_or(Shard::WHOLE).chunks(chunks.description.chunks());
     crew::work(study, &chunks, &numbers)?;

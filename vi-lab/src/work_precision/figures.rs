@@ -51,13 +51,13 @@ impl Findings {
     ) -> Chart {
         let mut series = Vec::new();
         for method in self.methods() {
-            let kept: Vec<Point> = self.kept(method).map(|(_, point)| point).collect();
-            let points: Vec<(f64, f64)> = kept.iter().filter_map(|point| Some((point.error, work(point)?))).collect();
+            let shown: Vec<Point> = self.shown(method).map(|(_, point)| point).collect();
+            let points: Vec<(f64, f64)> = shown.iter().filter_map(|point| Some((point.error, work(point)?))).collect();
             if points.is_empty() {
                 continue;
             }
             let line = Series::curve(method.name(), method.look(), points);
-            series.push(line.with_whiskers(kept.iter().filter_map(&whisker).collect()));
+            series.push(line.with_whiskers(shown.iter().filter_map(&whisker).collect()));
         }
         let (low, high) = extremes(series.iter().flat_map(|line| line.points.iter().map(|(_, y)| *y)));
         let floor = self.agreement.floor();
@@ -75,7 +75,7 @@ impl Findings {
                 || method.name().to_owned(),
                 |order| format!("{}: {order:.2}", method.name().replace("energy-preserving", "energy-pres.")),
             );
-            Series::curve(label, method.look(), self.kept(method).map(|(h, point)| (h, point.error)).collect())
+            Series::curve(label, method.look(), self.shown(method).map(|(h, point)| (h, point.error)).collect())
         });
         Chart {
             name: "order",
@@ -252,7 +252,7 @@ impl Findings {
     }
 
     /// The points in the figures.
-    fn kept(&self, method: Method) -> impl Iterator<Item = (f64, Point)> + '_ {
+    fn shown(&self, method: Method) -> impl Iterator<Item = (f64, Point)> + '_ {
         self.points(method).filter(|(_, point)| point.error <= LOST)
     }
 

@@ -10,7 +10,7 @@ use std::process::Command;
 #[test]
 fn control_characters_are_printed_as_escapes() {
     let folder = Folder::new("escapes", "");
-    let told = |arguments: &[&str]| {
+    let assert_rejected = |arguments: &[&str]| {
         let (status, output, errors) = lab(arguments);
         assert_eq!((status, output.as_str()), (Some(2), ""), "{errors:?}");
         let is_raw = errors.contains(|letter: char| letter.is_control() && letter != '\n');
@@ -22,10 +22,10 @@ fn control_characters_are_printed_as_escapes() {
         "system = \"kepler\"\n\"\\u009b2J\" = 1.0\n",
         "system = \"kepler\"\nmethod = \"\\u001b[2Jfixed\\r\"\n",
     ] {
-        told(&["run", &folder.file("scene.toml", text)]);
+        assert_rejected(&["run", &folder.file("scene.toml", text)]);
     }
     for command in ["run", "expand"] {
-        told(&[command, &folder.at("\u{1b}[31mno.toml")]);
+        assert_rejected(&[command, &folder.at("\u{1b}[31mno.toml")]);
     }
     // A mistake in a system shows its lines.
     let text = "lagrangian! { struct P { coord x; L = dot(x)^2 / 2 + y; /* \u{1b}[31m */ discretize midpoint; } }";
@@ -79,8 +79,8 @@ fn what_is_read_must_be_a_file() {
     fs::remove_file(lock).expect("the pipe goes");
     let heading = pipe("a.csv.part/sweep.json");
     let no_file = format!("{heading} is not a regular file; name a regular file");
-    for told in [sweep(), merge()] {
-        assert_eq!(told, refused(format!("{part} contains no chunks of a sweep: {no_file}")));
+    for assert_rejected in [sweep(), merge()] {
+        assert_eq!(assert_rejected, refused(format!("{part} contains no chunks of a sweep: {no_file}")));
     }
     fs::remove_file(heading).expect("the pipe goes");
     // After a shard without chunks the description exists.

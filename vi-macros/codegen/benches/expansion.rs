@@ -1,8 +1,8 @@
-//! What an expansion costs, over two families of systems: operations, seconds of the macro, seconds of rustc.
+//! Cost of an expansion, over two families of systems: operations, seconds of the macro, seconds of rustc.
 //!
 //! `cargo bench -p vi-codegen --bench expansion` prints the table of `docs/expansion.md`; with `--profile dev` the macro is
-//! not optimized, as cargo builds it unless told otherwise. Seconds of rustc are those of a program that runs both
-//! integrators of the system, less those of an empty one.
+//! not optimized, which is cargo's default. Seconds of rustc are those of a program that runs both integrators of the
+//! system, minus those of an empty one.
 
 #[path = "../tests/families/mod.rs"]
 mod families;

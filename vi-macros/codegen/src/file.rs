@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_written_where_it_is_asked_for() {
+    fn a_file_is_written_on_request() {
         let folder = env::temp_dir().join(format!("vi-expand-{}", std::process::id()));
         let inner = folder.join("of").join("its own");
         assert_eq!(expansion(SYSTEM, None), expansion(SYSTEM, Some(&inner)), "the expansion itself is the same");

@@ -68,8 +68,8 @@ fn a_matrix_is_as_regular_as_its_constants() {
     derived("L = dot(x)^2 - cos(1e-8) * dot(x)^2 + dot(y)^2;");
     let zero = "L = dot(x)^2 + sqrt(2) * sqrt(3) * dot(y)^2 - sqrt(6) * dot(y)^2;";
     let tokens = format!("struct System {{ coord x, y; {zero} discretize midpoint; }}").parse().expect("tokens");
-    let said = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).err().expect("an error");
-    assert!(said.to_string().contains("is singular for every state"), "{said}");
+    let message = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).err().expect("an error");
+    assert!(message.to_string().contains("is singular for every state"), "{message}");
 }
 
 #[test]

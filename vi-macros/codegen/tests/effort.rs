@@ -58,7 +58,7 @@ fn systems_of_many_coordinates_that_grow_fast_are_refused() {
 }
 
 #[test]
-fn what_is_large_and_simple_passes() {
+fn large_simple_systems_pass() {
     let of_constants =
         chain("1", 10_000, |i| format!("const c{i} = sin(c{}) + 1;", i - 1)).replace("let a0", "const c0");
     let said_of_constants = message(&format!("coord x; {of_constants} L = dot(x)^2 + c9999 * x;"));

@@ -62,7 +62,7 @@ const OSCILLATOR: &str = "param m = 1, k = 4.25; coord x; let v = dot(x);
     L = (m*v^2 - k*x^2)/2; force x = -v; discretize midpoint;";
 
 #[test]
-fn the_syntax_is_what_was_written() {
+fn the_syntax_equals_the_source() {
     let text = stage(tokens(OSCILLATOR), Stage::Syntax).expect("right");
     let wanted = "struct System {
     param m = 1;
@@ -120,7 +120,7 @@ fn the_stages_show_their_products() {
 }
 
 #[test]
-fn points_are_told_apart() {
+fn points_are_distinguished() {
     let system = tokens("coord q[2]; L = (dot(q[0])^2 + dot(q[1])^2)/2 - q[0]^2*q[1]^2; discretize trapezoidal;");
     let text = stage(system.clone(), Stage::Discrete).expect("right");
     for line in ["q[1]_at2 = q[1]_1", "(D2 L_d)_q[0] = h*L_q[0]_at1/2 - L_v_q[0]_at1/2 - L_v_q[0]_at2/2"] {

@@ -508,7 +508,7 @@ fn habits() {
 
 /// Features of other tools that this language lacks: the message reports that, or the replacement.
 #[test]
-fn what_is_not_supported_is_said() {
+fn unsupported_features_are_reported() {
     let delay = "`x` is a coordinate, not a function\nhelp: write `x` for its value at the time `t`, `x * (…)` for a product; delays";
     says("«x»(t - m)", delay);
     says("«x»(0)", delay);
@@ -586,7 +586,7 @@ fn what_is_not_supported_is_said() {
 
 /// Users' attempts, each with its single message and the correction.
 #[test]
-fn each_mistake_is_told_with_what_to_write() {
+fn each_mistake_has_its_correction() {
     let assert_help = |text: &str, wanted: &str| {
         let found = errors(&format!("struct System {{ {text} }}"));
         let messages: Vec<&str> = found.iter().map(|(_, message)| message.as_str()).collect();
@@ -659,7 +659,7 @@ fn each_mistake_is_told_with_what_to_write() {
 }
 
 #[test]
-fn a_missing_semicolon_is_told_where_it_belongs() {
+fn a_missing_semicolon_is_reported_at_its_place() {
     for (body, after) in [
         ("coord «x» L = dot(x)^2; discretize midpoint;", "x"),
         ("coord x; L = dot(x)^«2» discretize midpoint;", "2"),
@@ -1012,7 +1012,7 @@ fn several_mistakes_are_reported_at_once() {
 }
 
 #[test]
-fn every_unknown_name_of_an_expression_is_told() {
+fn every_unknown_name_of_an_expression_is_reported() {
     let text = "struct System { param mass = 1; coord x; L = mas * dot(y)^2 - k * hypot(x, l[m]) / mas + sum(i in 0..n, i * z); \
         force x = a + sin(b)^c - dot(d * x); discretize { Ld = h * L(e, q0, (q1 - u)/h); } check { x = y2 + w; h = 1; } }";
     let found = errors(text);
@@ -1028,7 +1028,7 @@ fn every_unknown_name_of_an_expression_is_told() {
 }
 
 #[test]
-fn what_builds_on_a_mistake_is_none() {
+fn uses_of_a_wrong_declaration_report_nothing() {
     let rest = "L = sum(i in 0..4, dot(q[i])^2 + e[i] * q[i]) + a * dot(q[0]); force q[0] = e; discretize midpoint;";
     case(
         &format!("const a = 1; coord q[4]; let e[i in 0..4] = q[«i» + 1]; {}", rest.replace("= e;", "= e[1];")),
@@ -1047,7 +1047,7 @@ fn what_builds_on_a_mistake_is_none() {
 }
 
 #[test]
-fn what_surrounds_a_system() {
+fn text_around_a_system() {
     let diagnostic = |text: &str| errors(text).into_iter().map(|(_, message)| message).collect::<Vec<_>>().join("; ");
     assert!(diagnostic("").starts_with("expected `struct Name { … }`"), "{}", diagnostic(""));
     assert!(diagnostic("enum A {}").starts_with("expected `struct Name { … }`"));

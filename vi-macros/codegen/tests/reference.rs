@@ -20,7 +20,7 @@ fn errors(body: &str) -> Vec<(usize, String, String)> {
 }
 
 #[test]
-fn every_shown_mistake_is_reported_where_its_comment_says() {
+fn every_shown_mistake_is_reported_at_its_comment() {
     let blocks: Vec<&str> = REFERENCE.split("```rust,compile_fail\n").skip(1).collect();
     assert!(blocks.len() >= 7, "{} blocks", blocks.len());
     for block in blocks {

@@ -1,4 +1,4 @@
-//! Of a system whose coordinates could not be read nothing is said but that.
+//! A system with unreadable coordinates reports only this mistake.
 use vi_core::{FixedStep, Starts};
 
 mod broken {

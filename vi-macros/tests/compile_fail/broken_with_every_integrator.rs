@@ -1,4 +1,4 @@
-//! Whatever is made of a broken system, its mistake alone is said.
+//! Every use of a broken system reports only its own mistake.
 
 use vi_core::derivatives::{Covector, Lyapunov, Objective, Tangent, Variation, gradient};
 use vi_core::lagrangian::Parameters;

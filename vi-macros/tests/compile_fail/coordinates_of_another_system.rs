@@ -1,4 +1,4 @@
-//! As many numbers as the system has coordinates, in whatever form.
+//! As many numbers as coordinates, in every form.
 
 use vi_core::{lagrangian, EnergyPreserving, State, SVector};
 

@@ -17,7 +17,7 @@ fn main() {
     slots(kepler);
 }
 
-/// As an ensemble asks.
+/// The bound of an ensemble.
 fn many<const N: usize>(_: impl vi_core::stepping::Batch<N>) {}
 
 fn slots<const N: usize>(_: impl vi_core::DiscreteLagrangian<N>) {}

@@ -10,7 +10,7 @@ mod parquet;
 use super::chunks::Description;
 use super::schema::{ColumnKind, Schema};
 use crate::npy;
-use crate::place::{self, Temporary, beside};
+use crate::place::{self, Temporary, with_extension};
 use serde_json::{Map, Value, json};
 use std::fs::File;
 use std::io::{self, BufWriter, Seek as _, Write as _};
@@ -142,7 +142,7 @@ impl<'a> Target<'a> {
                     let mut file = file.into_inner()?;
                     file.rewind()?;
                     file.write_all(&npy::head(rows, schema.columns.len()))?;
-                    place::replace(&beside(&path, "json"), &legend(description, schema))?;
+                    place::replace(&with_extension(&path, "json"), &legend(description, schema))?;
                     file
                 }
                 #[cfg(feature = "parquet")]

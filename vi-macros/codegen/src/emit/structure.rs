@@ -274,12 +274,13 @@ fn dimension(system: &System) -> Option<Literal> {
 
 /// The length of the field of an array of parameters; 1 if it is unknown.
 fn field_length(system: &System, parameter: &syntax::Parameter) -> Option<usize> {
-    let told = plain_length(system, parameter.length.as_ref()?).filter(|length| (1..=PARAMETERS).contains(length));
+    let known_length =
+        plain_length(system, parameter.length.as_ref()?).filter(|length| (1..=PARAMETERS).contains(length));
     let values = match &parameter.default {
         syntax::Default::Each(values) => values.len(),
         syntax::Default::Same(_) => 1,
     };
-    Some(told.unwrap_or(values))
+    Some(known_length.unwrap_or(values))
 }
 
 /// A length that is a literal, or a constant defined by one.

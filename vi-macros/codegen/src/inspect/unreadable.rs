@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn brackets_are_told_where_they_stand() {
+    fn unmatched_brackets_are_reported_at_their_place() {
         assert_message("a {\n  (b + c;\n}", 3, 1, "`}` closes the `(` of 2:3\nhelp: write `)` before it");
         assert_message("a)", 1, 2, "`)` has no opening bracket");
         assert_message("a {\n  b[1];\n", 1, 3, "`{` is not closed");

@@ -73,14 +73,14 @@ impl<'a> Context<'a> {
             self.errors.at(span, &Message::NotConstant { name });
             return None;
         }
-        let said = match self.pool.constant(value) {
+        let message = match self.pool.constant(value) {
             Ok(number) => return Some(number),
             Err(_) if self.is_too_large() => return None,
             Err(NoConstant::Undefined | NoConstant::TooLarge) => Message::NotFinite { name },
             Err(NoConstant::TooSmall) => Message::NumberRange,
             Err(NoConstant::Undecided) => Message::Undecided,
         };
-        self.errors.at(span, &said);
+        self.errors.at(span, &message);
         None
     }
 }

@@ -233,7 +233,7 @@ impl Scope {
 
     fn name(&self, pool: &mut Pool<Symbol>, name: &Ident) -> Result<Value> {
         let text = name.to_string();
-        let said = match self.meaning(&text) {
+        let message = match self.meaning(&text) {
             Some(Meaning::Number(value)) => return Ok(Value::Number(*value)),
             Some(Meaning::Wrong) => return Ok(Value::Number(pool.one())),
             Some(Meaning::Pi) => return Ok(Value::Number(pool.pi())),
@@ -252,7 +252,7 @@ impl Scope {
             }
             None => self.unknown(pool, text),
         };
-        Err(error(name.span(), &said))
+        Err(error(name.span(), &message))
     }
 
     /// An entry of an array.

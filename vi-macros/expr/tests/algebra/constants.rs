@@ -61,7 +61,7 @@ fn a_number_between_two_is_rounded_to_the_even_one() {
 }
 
 #[test]
-fn what_is_no_number_says_why() {
+fn constants_without_a_number_report_why() {
     for (text, why) in [
         ("ln(1 - sqrt(2))", NoConstant::Undefined),
         ("ln(sqrt(2)*sqrt(3) - sqrt(6))", NoConstant::Undefined),

@@ -80,7 +80,7 @@ fn inverses_are_inverse_in_their_range_only() {
 }
 
 #[test]
-fn slopes_at_zero_are_not_lost() {
+fn slopes_at_zero_are_defined() {
     for text in [
         "x^2",
         "pow(x, 3)",

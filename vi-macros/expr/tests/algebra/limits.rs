@@ -164,7 +164,7 @@ fn wide_sums_and_products() {
 }
 
 #[test]
-fn what_has_no_value_is_not_a_number() {
+fn undefined_expressions_are_nan() {
     let mut pool = Pool::new();
     let undefined = pool.undefined();
     assert!(pool.is_undefined(undefined) && !pool.is_zero(undefined) && pool.as_number(undefined).is_none());
@@ -263,7 +263,7 @@ fn long_numbers_are_work() {
 
 /// Numbers that differ in their last digits only are found as fast as short ones.
 #[test]
-fn many_long_numbers_are_told_apart() {
+fn many_long_numbers_are_distinguished() {
     let mut pool = Pool::new();
     let x = pool.symbol("x".to_owned());
     let long = ratio(2, 1).pow(100);

@@ -14,7 +14,7 @@ fn rounded(text: &str) -> Rounded {
 }
 
 #[test]
-fn what_is_zero_but_for_rounding_is_within_its_error() {
+fn a_zero_up_to_rounding_is_within_its_error() {
     for text in [
         "sin(x)^2 + cos(x)^2 - 1",
         "cosh(y)^2 - sinh(y)^2 - 1",
@@ -38,7 +38,7 @@ fn what_is_zero_but_for_rounding_is_within_its_error() {
 }
 
 #[test]
-fn what_is_small_is_known_as_well_as_what_is_large() {
+fn small_numbers_are_as_accurate_as_large_ones() {
     for (text, wanted) in [
         ("x/1000000000000000000000000000000", 0.7e-30),
         ("exp(-30/x)", (-30.0_f64 / 0.7).exp()),
@@ -53,7 +53,7 @@ fn what_is_small_is_known_as_well_as_what_is_large() {
 }
 
 #[test]
-fn what_no_number_holds_is_lost() {
+fn values_beyond_the_range_of_numbers_are_lost() {
     for text in ["exp(-1000*y)", "exp(1000*y)", "x^10000", "x^-10000", "ln(x - y)", "sqrt(x - y)", "1/0", "acos(2*y)"] {
         let Rounded { value, error } = rounded(text);
         assert!(value.is_nan() && error.is_nan(), "{text} = {value:e} ± {error:e}");

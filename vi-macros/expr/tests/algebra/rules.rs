@@ -247,7 +247,7 @@ fn text() {
 /// `(b - a)` and `(a - b)` are different factors: only function arguments get a canonical sign, so that velocities keep
 /// the written sign. Expansion cancels them.
 #[test]
-fn the_sign_of_a_factor_is_kept() {
+fn the_sign_of_a_factor_is_preserved() {
     let mut pool = Pool::new();
     let expr = read(&mut pool, "x*(a - b) + x*(b - a)");
     assert!(!pool.is_zero(expr));
