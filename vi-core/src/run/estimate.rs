@@ -72,7 +72,13 @@ fn measured<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     memory: &M::Memory,
     [before, after]: [&Node<N, T>; 2],
 ) -> Measured<N> {
-    compared(run, memory, [before, after]).unwrap_or_else(|_| Measured::unknown())
+    let fresh = || {
+        // Stages of a long step can guess a half step so badly that its iteration diverges.
+        let mut node = *before;
+        let memory = run.method.begin(&run.system, &mut node, run.h)?;
+        compared(run, &memory, [before, after])
+    };
+    compared(run, memory, [before, after]).or_else(|_| fresh()).unwrap_or_else(|_| Measured::unknown())
 }
 
 /// # Errors
@@ -227,6 +233,11 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             let change = (increment - self.increment[i]) * self.weights[i];
             self.increment[i] = increment;
             indicator += change * change;
+        }
+        if M::FINDS_LENGTH {
+            // A damped motion has longer and longer steps: their errors grow while its momenta decay.
+            let h = duration(&self.last, node);
+            indicator *= h * h * h * h;
         }
         if let Some(stretch) = &mut self.stretch {
             stretch.way += (node.q - self.last.q).map(T::abs);
@@ -484,8 +495,8 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
 
 /// A tolerance in place of a step length: `start.integrate(method, Tolerance(1e-9))`.
 ///
-/// The run then has the constant step for which the largest relative error of a step over the first stretch is the tolerance: at least 0.4 of it, if a length
-/// is that fine. The stretch lasts until the coordinates have turned back twice or more, and 4096 steps at most. A symplectic method keeps its step: a motion that
+/// The run then has the constant step for which the largest relative error of a step over the first stretch is the tolerance: at least 0.4 of it, if
+/// such steps exist. If steps stop existing before the tolerance is reached, the run has half of the longest length that exists. The stretch lasts until the coordinates have turned back twice or more, and 4096 steps at most. A symplectic method keeps its step: a motion that
 /// becomes faster later exceeds the tolerance, which [`Run::monitored`] reports. The global error is larger: about the tolerance times the number of steps, or more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance(pub f64);
@@ -495,7 +506,7 @@ pub trait Length<T: Scalar> {
     /// The length of the steps of a run from a start by a method.
     ///
     /// # Errors
-    /// [`StepError::Tolerance`] if no length has the tolerance, [`StepError::InvalidInput`] for one that is not between 0 and 1; the error of the shortest steps tried.
+    /// [`StepError::Tolerance`] if no length has the tolerance, [`StepError::InvalidInput`] for one below a rounding (2.2e-16 in `f64`) or not below 1; the error of the shortest steps tried.
     fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
         self,
         start: &Start<S, N, T>,
@@ -533,12 +544,9 @@ impl<T: Scalar> Length<T> for Tolerance {
         method: &M,
     ) -> Result<T, StepError> {
         let Self(tolerance) = self;
-        if !(tolerance > 0.0 && tolerance < 1.0) {
-            return Err(StepError::InvalidInput {
-                input: "the tolerance",
-                allowed: "between 0 and 1",
-                value: tolerance,
-            });
+        if !(tolerance >= T::EPSILON && tolerance < 1.0) {
+            let allowed = "between a rounding of its numbers and 1";
+            return Err(StepError::InvalidInput { input: "the tolerance", allowed, value: tolerance });
         }
         let guess = guess(start)?;
         let mut h = guess;
@@ -547,6 +555,8 @@ impl<T: Scalar> Length<T> for Tolerance {
         let mut least = f64::INFINITY;
         let mut stalled = 0;
         let mut failure = None;
+        // Whether steps of the length `high` do not exist, so that no length has an error near the tolerance.
+        let mut is_edge = false;
         for _ in 0..TRIALS {
             let outcome = over_stretch(start, method, T::real(h));
             let estimate = match outcome {
@@ -562,7 +572,9 @@ impl<T: Scalar> Length<T> for Tolerance {
                     return Ok(T::real(h));
                 }
             } else {
-                high = high.min(h);
+                if h < high {
+                    (high, is_edge) = (h, estimate.is_infinite());
+                }
                 // Where rounding ends the error of every method.
                 let is_rounding = estimate < T::EPSILON.sqrt() && estimate > 0.7 * least;
                 stalled = if is_rounding { stalled + 1 } else { 0 };
@@ -580,7 +592,7 @@ impl<T: Scalar> Length<T> for Tolerance {
             h = if next > low && next < high { next } else { bisected(low, high) };
         }
         if low > 0.0 {
-            return Ok(T::real(low));
+            return Ok(T::real(if is_edge { 0.5 * low } else { low }));
         }
         match failure {
             Some(error) if least.is_infinite() => Err(error),
