@@ -129,7 +129,7 @@ fn in_transformed_time() {
     assert_eq!((counts.near, counts.low), (counts.steps, 0), "{counts:?}");
 }
 
-/// Kepler's problem from rest at the apocentre, nearly: the run that loses its orbit and ends well.
+/// Kepler's problem with a pericentre of 0.06: steps of 0.1 lose the orbit without an error.
 fn falling() -> Start<Kepler, 2> {
     Kepler::default().at(0.0, [0.4, 0.0], [0.0, 0.8])
 }
@@ -209,13 +209,6 @@ where
     for _ in 0..1000 {
         run.step().expect("a step");
     }
-    println!(
-        "{} {:?}, {tolerance:e}: h = {:e}, {:e}",
-        S::NAME,
-        run.run().method(),
-        run.run().h(),
-        run.largest().estimate
-    );
     run.largest().estimate
 }
 

@@ -224,7 +224,7 @@ const POOR: f64 = 1e-3;
 /// What the largest error of a step says of a run.
 fn accuracy(found: &ErrorEstimate, coordinates: &[&str]) -> String {
     let ErrorEstimate { estimate, t, coordinate } = *found;
-    let at = format!("at t = {}", short(t));
+    let at = format!("at t = {}", about(t));
     if estimate.is_infinite() {
         return format!("warning: the step {at} is too long for its error to be measured; take shorter ones with --h");
     }
