@@ -3,7 +3,6 @@
 //! The true error is that against sixteen steps of `Gauss::<8>` from the same node.
 
 use crate::support::scenes::{self, Scene, each_system};
-use core::fmt::Debug;
 use vi_core::collocation::Collocation;
 use vi_core::run::{Length, LocalError, Monitored};
 use vi_core::stepping::{Convertible, EnergyStepping};
@@ -260,10 +259,9 @@ fn a_length_is_a_number_or_a_tolerance_of_any_precision() {
 
 #[test]
 fn beyond_a_limit_the_run_ends_with_a_typed_error() {
-    fn ends<M: Method<S, N>, S: vi_core::Lagrangian<N> + Copy, const N: usize>(mut run: Monitored<M, S, N>) -> StepError
-    where
-        M: Debug,
-    {
+    fn ends<M: Method<S, N>, S: vi_core::Lagrangian<N> + Copy, const N: usize>(
+        mut run: Monitored<M, S, N>,
+    ) -> StepError {
         let error = loop {
             if let Err(error) = run.step() {
                 break error;
