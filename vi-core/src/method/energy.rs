@@ -54,6 +54,10 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
 
     const FINDS_LENGTH: bool = true;
 
+    fn order(&self) -> u32 {
+        2
+    }
+
     fn rule(&self) -> Option<&'static str> {
         S::RULE
     }

@@ -424,6 +424,11 @@ where
 
     const FINDS_LENGTH: bool = true;
 
+    #[allow(clippy::cast_possible_truncation)] // 16 stages at most
+    fn order(&self) -> u32 {
+        2 * STAGES as u32
+    }
+
     fn check_length(&self, h: f64) -> Result<(), StepError> {
         check_forward("the step h", h)?;
         if power::<STAGES>(h).is_normal() {

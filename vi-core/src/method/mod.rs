@@ -114,6 +114,9 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         None
     }
 
+    /// The order p: the error of a step is O(h^(p+1)).
+    fn order(&self) -> u32;
+
     /// Checks the length that a run is given.
     ///
     /// # Errors

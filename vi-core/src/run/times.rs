@@ -80,7 +80,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     }
 
     /// Takes one step toward the time `t`, which ends there if the next one would end beyond. Returns whether it did.
-    fn approach(&mut self, t: f64) -> Result<bool, StepError> {
+    pub(super) fn approach(&mut self, t: f64) -> Result<bool, StepError> {
         let left = self.time_to(t);
         if left == 0.0 {
             self.set_time(t);

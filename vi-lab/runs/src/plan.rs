@@ -4,7 +4,9 @@
 
 use clap::ValueEnum;
 use serde::Deserialize;
-use vi_core::Composition;
+use vi_core::lagrangian::Lagrangian;
+use vi_core::run::Length;
+use vi_core::{Composition, Start as Begun, StepError, Tolerance};
 
 /// Which integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
@@ -100,6 +102,8 @@ pub struct Plan {
     pub dtau: Option<f64>,
     /// The step, or the first one.
     pub h: f64,
+    /// The largest error of a step over the first oscillations, which determines the step in place of `h`.
+    pub tolerance: Option<f64>,
     /// Initial time.
     pub t: f64,
     /// Initial coordinates.
@@ -112,7 +116,14 @@ impl Plan {
     /// A run by steps of the length h from a point, by what is usual of the method.
     #[must_use]
     pub fn new(method: Method, h: f64, PhasePoint { t, q, v }: PhasePoint) -> Self {
-        Self { method, start: Start::Midpoint, stages: None, shift: None, fallback: false, dtau: None, h, t, q, v }
+        let (start, shift, tolerance) = (Start::Midpoint, None, None);
+        Self { method, start, stages: None, shift, fallback: false, dtau: None, h, tolerance, t, q, v }
+    }
+
+    /// What determines the length of a step.
+    #[must_use]
+    pub fn length(&self) -> StepLength {
+        self.tolerance.map_or(StepLength::Given(self.h), StepLength::Found)
     }
 
     /// The stages of energy-preserving steps by [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); none where
@@ -120,6 +131,28 @@ impl Plan {
     #[must_use]
     pub fn energy_stages(&self) -> Option<usize> {
         self.stages.or(self.shift.map(|_| 1)).filter(|_| self.method == Method::Energy)
+    }
+}
+
+/// What determines the length of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepLength {
+    /// This length.
+    Given(f64),
+    /// The tolerance of the error of a step.
+    Found(f64),
+}
+
+impl Length<f64> for StepLength {
+    fn length<M: vi_core::Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+        self,
+        start: &Begun<S, N>,
+        method: &M,
+    ) -> Result<f64, StepError> {
+        match self {
+            Self::Given(h) => Ok(h),
+            Self::Found(tolerance) => Tolerance(tolerance).length(start, method),
+        }
     }
 }
 

@@ -32,10 +32,11 @@ use shift::Wanted;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use vi_core::StepError;
+use vi_core::run::ErrorEstimate;
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::interrupt::{Interrupt, Signal};
-use vi_report::numbers::short;
+use vi_report::numbers::{about, short};
 use vi_report::progress::Progress;
 use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift, Start};
 use vi_runs::simulation::{Row, Simulation};
@@ -118,6 +119,9 @@ pub(crate) struct Arguments {
     /// Step, or first step [default: the system's; four and eight times that with --method energy --stages 2 and 3]
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
     pub(crate) h: Option<f64>,
+    /// Finds the step: the largest error of a step over the first oscillations, relative to the excursion of each coordinate
+    #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with_all = ["h", "dtau"])]
+    pub(crate) tolerance: Option<f64>,
     /// Number of steps, such as 1e6 [default: 1000]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) steps: Option<u64>,
@@ -196,6 +200,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Input(format!("the first node, at t = {}, lies beyond --until", short(simulation.t()))));
     }
     let mut sinks = sinks(&request)?;
+    simulation.monitor();
     let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
     let mut course = Course::new(&request, extent, &mut sinks);
     let outcome = course.follow(simulation.as_mut(), &|| interrupt.signal());
@@ -203,11 +208,33 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         // Standard error may be closed; the rows are whole.
         let _ = writeln!(io::stderr(), "{note}");
     }
+    if let Some(found) = simulation.largest_error().filter(|_| outcome.is_ok()) {
+        let _ = writeln!(io::stderr(), "{}", accuracy(&found, &request.system.coordinates()));
+    }
     // Whatever ended the run, and where one of the outputs failed too, each gets what can still be written.
     sinks.iter_mut().fold(outcome, |outcome, sink| match (outcome, sink.finish()) {
         (Err(first), Err(second)) => Err(Failure::both(first, second)),
         (outcome, finished) => outcome.and(finished),
     })
+}
+
+/// The error of a step from which on a run is hardly an approximation.
+const POOR: f64 = 1e-3;
+
+/// What the largest error of a step says of a run.
+fn accuracy(found: &ErrorEstimate, coordinates: &[&str]) -> String {
+    let ErrorEstimate { estimate, t, coordinate } = *found;
+    let at = format!("at t = {}", about(t));
+    if estimate.is_infinite() {
+        return format!("warning: the step {at} is too long for its error to be measured; take shorter ones with --h");
+    }
+    let name = coordinates.get(coordinate).copied().unwrap_or_default();
+    let found = format!("the largest error of a step is {} of the excursion of {name}, {at}", about(estimate));
+    if estimate < POOR {
+        format!("note: {found}")
+    } else {
+        format!("warning: {found}; take shorter steps with --h, or --tolerance 1e-9")
+    }
 }
 
 /// The sinks that the request names.

@@ -6,6 +6,7 @@ use super::shift::Wanted;
 use crate::place;
 use crate::sweep::items::Items;
 use crate::sweep::scene::Sweep;
+use core::cell::Cell;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -231,6 +232,9 @@ impl Request {
         if let Some(dtau) = options.dtau {
             scale_time(system.as_ref(), &mut plan, dtau)?;
         }
+        if let Some(tolerance) = arguments.tolerance {
+            plan.h = found_step(system.as_ref(), &plan, tolerance)?;
+        }
         let length = match (arguments.steps, arguments.until) {
             (None, None) => length(scene.steps, scene.until, &plan)?,
             (steps, until) => length(steps, until, &plan)?,
@@ -295,7 +299,7 @@ impl Options {
             stages: arguments.stages.or(scene.stages),
             shift: arguments.shift.or(scene.shift),
             fallback: arguments.fallback || scene.fallback.unwrap_or(false),
-            dtau: arguments.dtau.or(dtau),
+            dtau: arguments.dtau.or(dtau).filter(|_| arguments.tolerance.is_none()),
         }
     }
 
@@ -370,6 +374,14 @@ fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Fai
     // Where g is no scale the run says so.
     plan.h = if g > 0.0 && g.is_finite() { g * dtau } else { dtau };
     Ok(())
+}
+
+/// The step whose error is the tolerance.
+fn found_step(system: &dyn System, plan: &Plan, tolerance: f64) -> Result<f64, Failure> {
+    let plan = Plan { tolerance: Some(tolerance), ..plan.clone() };
+    let evaluations = Cell::new(0);
+    let begun = system.begin(&plan, &evaluations).map_err(|error| Failure::start(error, &plan))?;
+    Ok(begun.h())
 }
 
 /// The shift that is wanted: `auto` is measured over the run, or its first part.
