@@ -22,7 +22,7 @@ use crate::stepping::EnergyStepping;
 use crate::vector::VelocityStep;
 use nalgebra::SVector;
 
-/// Roundings within which H − E counts as zero.
+/// Roundings within which φ counts as zero.
 const NOISE: f64 = 16.0;
 
 /// A point of the curve `(v(h), h)`, and φ there.
@@ -97,13 +97,12 @@ pub(crate) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         return Err(StepError::NonFinite { t, quantity: "energy or step density", expression: None });
     }
     let floor = T::EPSILON * (energy.to_f64().abs() + node.energy.to_f64().abs());
-    let is_known = excess.abs() > NOISE * floor;
     let none = StepError::NoForwardStep { t, h, excess, density };
-    if is_known && excess * density < 0.0 {
-        return Err(none);
+    if excess.abs() <= NOISE * floor {
+        return Err(if density == 0.0 { StepError::DegenerateStep { t, h, density } } else { none });
     }
-    if !is_known && density == 0.0 {
-        return Err(StepError::DegenerateStep { t, h, density });
+    if excess * density < 0.0 {
+        return Err(none);
     }
     let search = Search {
         solve: &|h, beside| Point::at(system, node, T::real(h), beside.map_or(v, |point: &Point<N, T>| point.v)),
@@ -113,8 +112,8 @@ pub(crate) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         predicted: h,
         last: h,
         ratio: RATIO,
-        // Below its rounding only the sign of H − E matters, which is that of D.
-        excess: if is_known { excess } else { 0.125 * h * h * density },
+        excess,
+        noise: NOISE,
         slope: 2.0,
         order: 2.0,
     };

@@ -264,6 +264,7 @@ where
             last,
             ratio: RATIO,
             excess,
+            noise: 0.0,
             slope: course.slope,
             order: EnergyPreservingGauss::<K>::ORDER,
         };

@@ -54,8 +54,10 @@ pub(crate) struct Search<'a, T> {
     pub(crate) last: f64,
     /// The largest factor between this step and the last one.
     pub(crate) ratio: f64,
-    /// The residual of a step of no length is its negative.
+    /// The residual of a step of no length.
     pub(crate) excess: f64,
+    /// Roundings of a residual that do not count as a change of its sign.
+    pub(crate) noise: f64,
     /// Slope of `ln (1 + φ)` over `ln h`, and what it is to leading order.
     pub(crate) slope: f64,
     pub(crate) order: f64,
@@ -104,9 +106,10 @@ impl<T: Trial> Search<'_, T> {
         is_root.then_some((best, slope))
     }
 
-    /// φ of a trial.
+    /// φ of a trial, below zero as long as its residual may be rounding.
     fn height(&self, trial: &T) -> f64 {
-        -trial.residual() / self.excess
+        let height = -trial.residual() / self.excess;
+        if trial.roundings() <= self.noise { height.min(-f64::MIN_POSITIVE) } else { height }
     }
 
     /// The step of the smallest length; `None` if φ stays below zero up to the square of [`Search::ratio`], which is wide enough to tell a step beyond that factor from
