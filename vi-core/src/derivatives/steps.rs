@@ -304,7 +304,7 @@ where
     /// [`Fallback::FixedSteps`] the run may leap from one energy to another: it has no derivative, and this is [`StepError::NoDerivative`].
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { system, memory, .. } = run;
-        if memory.fallback != Fallback::Stop {
+        if memory.control.fallback != Fallback::Stop {
             let because = "with a fallback the energy of the run may leap; take `Fallback::Stop`";
             return Err(StepError::NoDerivative { t: before.t, because });
         }

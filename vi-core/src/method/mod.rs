@@ -20,10 +20,10 @@ pub mod energy;
 pub mod energy_gauss;
 pub mod fixed;
 pub mod gauss;
-mod length;
+pub(crate) mod length;
 pub mod transformed;
 
-pub use bounds::{Fallback, Switches};
+pub use bounds::{Control, Controlled, Fallback, Switches};
 pub use composition::Composition;
 pub use energy::EnergyPreserving;
 pub use energy_gauss::EnergyPreservingGauss;
