@@ -219,7 +219,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The error of a step from which on a run is hardly an approximation.
-const POOR: f64 = 1e-3;
+pub(crate) const POOR: f64 = 1e-3;
 
 /// What the largest error of a step says of a run.
 fn accuracy(found: &ErrorEstimate, coordinates: &[&str]) -> String {

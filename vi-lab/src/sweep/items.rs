@@ -169,7 +169,7 @@ mod tests {
             ),
             (
                 "over = [{ name = \"x\", values = [1] }]\nkeep = [\"energies\"]",
-                "unknown variant `energies`, expected one of `ending`, `end`",
+                "unknown variant `energies`, expected one of `ending`, `accuracy`, `end`",
             ),
             ("colour = 1", "unknown field `colour`, expected one of `over`, `samples`, `seed`, `keep`, `section`"),
         ] {

@@ -30,6 +30,7 @@ mod study;
 
 use crate::place::{beside, sync_folder};
 use chunks::Chunks;
+use merge::Tally;
 use clap::Args;
 use shard::Shard;
 use sink::Format;
@@ -45,7 +46,8 @@ use vi_report::failure::Failure;
 Scene: the entries of a run, and a table [sweep]: `over`, the quantities that differ from run to run; `samples` and `seed`, if some are random; `keep`; `section`. \
 docs/cluster.md has all of them.
 
-Columns: item, the number of the run; the quantities of `over`; with keep = [\"ending\"] ending and steps; \"end\" the last node as end_t, end_ coordinates and momenta, end_H, end_E, \
+Columns: item, the number of the run; the quantities of `over`; with keep = [\"ending\"] ending and steps; \"accuracy\" step_error, \
+the largest error of a step relative to the motion of its coordinate; \"end\" the last node as end_t, end_ coordinates and momenta, end_H, end_E, \
 end_h; \"extremes\" min_ and max_ of the coordinates and of H over all nodes; \"energy\" error_H and error_E, the largest distances of H and E from their first values. \
 \"series\" writes FILE.series.csv with every Nth node of each run (`every` of the scene), `section` FILE.section.csv with its crossings; both begin with the item. `vi-lab run \
 SCENE --item K` is one of the runs alone.
@@ -82,9 +84,14 @@ pub(crate) fn sweep(arguments: &Arguments) -> Result<String, Failure> {
     if shard.is_some() {
         sync_folder(&folder);
         let runs = chunks.description.runs(&numbers);
-        let mut numbers = numbers;
-        let failed = numbers.try_fold(0, |sum, number| Ok(sum + chunks.read(number, &mut |_, _| Ok(()))?))?;
-        return Ok(merge::summary(&folder, runs.end - runs.start, failed));
+        let mut tally = Tally::of(&chunks.description, runs.end - runs.start);
+        for number in numbers {
+            tally.failed += chunks.read(number, &mut |table, row| {
+                tally.inaccurate.count(table, row);
+                Ok(())
+            })?;
+        }
+        return Ok(tally.summary(&folder));
     }
     let summary = merge::write(&chunks, slice::from_ref(&*chunks), output)?;
     // The chunks go when the tables are on the disk.

@@ -9,7 +9,7 @@
 //! ]
 //! samples = 100                                                # runs for each point of the grid, where something is random
 //! seed = 1
-//! keep = ["ending", "end", "extremes", "energy", "series"]     # without it, the first two
+//! keep = ["ending", "accuracy", "end", "extremes", "energy", "series"]     # without it, the first three
 //! section = { coordinate = "y", at = 0.0, direction = "rising" }   # or { period = 6.28 }
 //! ```
 
@@ -71,6 +71,8 @@ pub(crate) enum Spacing {
 pub(crate) enum Keep {
     /// How it ended, and after how many steps.
     Ending,
+    /// The largest error of a step.
+    Accuracy,
     /// The last node.
     End,
     /// Smallest and largest values of the coordinates and of H.
@@ -101,5 +103,5 @@ pub(crate) enum Passing {
 }
 
 fn default_keep() -> Vec<Keep> {
-    vec![Keep::Ending, Keep::End]
+    vec![Keep::Ending, Keep::Accuracy, Keep::End]
 }

@@ -120,6 +120,9 @@ impl Study {
         if self.kept.has(Keep::Ending) {
             runs.extend([outcome.ending.number(), outcome.steps as f64]);
         }
+        if self.kept.has(Keep::Accuracy) {
+            runs.push(outcome.step_error);
+        }
         if self.kept.has(Keep::End) {
             runs.extend(outcome.end(self.request.columns().len()));
         }
@@ -139,6 +142,7 @@ impl Study {
         let mut plan = plan.clone();
         self.items.set(item, system.as_mut(), &mut plan);
         let is_watched = self.kept.has(Keep::Extremes) || self.kept.has(Keep::Energy);
-        Member { system, plan, length: *length, every: *every, is_watched }
+        let is_measured = self.kept.has(Keep::Accuracy);
+        Member { system, plan, length: *length, every: *every, is_watched, is_measured }
     }
 }
