@@ -16,7 +16,8 @@
 //!
 //! A monitor measures every step at first. Then it divides the run into windows, each an eighth of the steps so far and [`WINDOW`] steps at most, and measures one
 //! step of each: the one with the largest indicator `|Δ²p_i|/|p_i − p_i(start)|`, the change of the momentum increments. So it finds peaks that are shorter than a window.
-//! A measurement takes the time of about two steps (eight in transformed time): 3 % of the steps of a run of 5000, 1.1 % of a long one. The indicator takes 1 to 3 ns a step.
+//! A measurement takes the time of about two steps (eight in transformed time): 3 % of the steps of a run of 5000, 1.1 % of a long one. The indicator takes about 60
+//! instructions a step of one coordinate, 90 of two. A run without a monitor pays nothing.
 
 use super::{Run, Start};
 use crate::error::StepError;
