@@ -37,6 +37,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::{env, fs, slice};
 use study::Study;
+use vi_report::catalogue::Catalogue;
 use vi_report::failure::Failure;
 
 /// The command line of `vi-lab sweep`.
@@ -70,10 +71,10 @@ pub(crate) struct Arguments {
 ///
 /// # Errors
 /// [`Failure::Input`] for wrong input, [`Failure::File`] if a file cannot be read or written, [`Failure::Interrupted`] after a signal.
-pub(crate) fn sweep(arguments: &Arguments) -> Result<String, Failure> {
+pub(crate) fn sweep(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let Arguments { scene, output, shard } = arguments;
     let shard = Shard::of(shard.as_deref(), |name| env::var(name).ok())?;
-    let study = Study::read(scene)?;
+    let study = Study::read(scene, catalogue)?;
     Format::of(output)?;
     let folder = beside(output, "part");
     let chunks = Arc::new(Chunks::resume(&folder, study.description(), shard.is_none())?);

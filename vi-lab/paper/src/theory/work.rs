@@ -7,13 +7,12 @@ use super::super::book::Book;
 use super::super::unexpected;
 use core::cell::Cell;
 use core::f64::consts::TAU;
-use vi_core::{Called, Gauss, Starts, State, StepError};
+use vi_core::{Called, Gauss, Starts, StepError};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
 use vi_runs::plan::{Method, PhasePoint, Plan, Shift};
-use vi_runs::ready;
-use vi_runs::system::System;
+use vi_runs::system::{System, erased};
 use vi_systems::Kepler;
 
 /// Periods of a run; the error is that of the last.
@@ -94,7 +93,7 @@ struct Orbit {
 
 impl Orbit {
     fn new(eccentricity: f64) -> Self {
-        Self { eccentricity, erased: ready::kepler().system }
+        Self { eccentricity, erased: erased::<Kepler, 2>() }
     }
 
     /// Where it starts, and how fast.

@@ -15,8 +15,8 @@ use vi_report::chart::Look;
 use vi_report::failure::Failure;
 use vi_report::progress::Progress;
 use vi_runs::plan::{ENERGY_STAGES, Method, PhasePoint, Plan};
-use vi_runs::ready;
-use vi_runs::system::System;
+use vi_runs::system::{System, erased};
+use vi_systems::Pendulum;
 
 /// How energy-preserving steps of 1, 2 and 3 stages are drawn.
 const LOOKS: [Look; ENERGY_STAGES.len()] = [Look::ENERGY.dotted(), Look::ENERGY.dashed(), Look::ENERGY.line()];
@@ -33,9 +33,9 @@ pub(super) fn chapter(book: &mut Book, progress: &mut Progress) -> Result<(), Fa
     work::section(book)
 }
 
-/// A pendulum, its type erased: the command has its integrators anyway.
+/// A pendulum, its type erased.
 fn pendulum() -> Box<dyn System> {
-    ready::pendulum().system
+    erased::<Pendulum, 1>()
 }
 
 /// A run from rest at an angle by steps of the length h.
