@@ -197,7 +197,7 @@ const FITTED: f64 = 2.9;
 mod tests {
     use super::*;
     use crate::ready;
-    use vi_core::{Gauss, Run, StepError};
+    use vi_core::StepError;
 
     fn quick(name: &str, q: &[f64]) -> Findings {
         let entry = ready().find(name).expect("the system");
