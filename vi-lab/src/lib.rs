@@ -14,10 +14,11 @@
 //! | `sweep` | `vi-lab sweep`, `vi-lab merge`: many runs of one scene, on all cores and many machines |
 //! | `lyapunov` | `vi-lab lyapunov`: how fast neighbouring motions part |
 //! | `expand`, `explain` | what a system becomes, stage by stage; its mathematics |
-//! | `npy`, `place` | the head of an array file; which files can be read and written |
+//! | `npy`, `place`, `entries` | the head of an array file; which files can be read and written; entries of scenes |
 //! | `vi_report` | what all of them show and say; the systems by name |
 //! | `vi_ready` | the ready systems |
 
+mod entries;
 mod expand;
 mod explain;
 mod lyapunov;

@@ -360,16 +360,19 @@ pub fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVe
     }
 }
 
+/// A number of a run.
+type Of<M, S, const N: usize, T> = fn(&Run<M, S, N>) -> T;
+
 /// A run by a method, with what its rows need.
 struct Simulated<'a, M: vi_core::Method<S, N>, S, const N: usize> {
     run: Run<M, S, N>,
     /// Time and H where the method keeps H best.
-    sampled_energy: fn(&Run<M, S, N>) -> Result<(f64, f64), StepError>,
+    sampled_energy: Of<M, S, N, Result<(f64, f64), StepError>>,
     evaluations: &'a Cell<u64>,
     /// The evaluations of the last step, where its system does not count them.
-    uncounted: Option<fn(&Run<M, S, N>) -> u64>,
+    uncounted: Option<Of<M, S, N, u64>>,
     /// What steps with a shift keep.
-    shifted: Option<fn(&Run<M, S, N>) -> ShiftedEnergy>,
+    shifted: Option<Of<M, S, N, ShiftedEnergy>>,
     /// Length of the last step, if it was shorter than those of the run.
     shortened: Option<f64>,
 }
