@@ -4,7 +4,8 @@
 
 use clap::ValueEnum;
 use core::fmt;
-use serde::de::{self, Deserialize, Deserializer, Unexpected, Visitor};
+use core::marker::PhantomData;
+use serde::de::{self, Deserializer, EnumAccess, Error as _, Expected, Unexpected, VariantAccess as _, Visitor};
 use vi_report::input::{COUNT, whole};
 
 /// The count of an entry of a scene, `1000` or `1e6`.
@@ -39,15 +40,28 @@ impl Visitor<'_> for Count {
 /// # Errors
 /// The names that there are, at the place of the entry.
 pub(crate) fn choice<'de, D: Deserializer<'de>, T: ValueEnum>(entry: D) -> Result<Option<T>, D::Error> {
-    let name = String::deserialize(entry)?;
-    let unknown = |_| {
+    entry.deserialize_enum("", &[], Choice(PhantomData)).map(Some)
+}
+
+/// Reads a choice.
+struct Choice<T>(PhantomData<T>);
+
+impl<'de, T: ValueEnum> Visitor<'de> for Choice<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values = T::value_variants().iter().filter_map(ValueEnum::to_possible_value);
         let names: Vec<String> = values.map(|value| format!("`{}`", value.get_name())).collect();
-        let expected = match names.as_slice() {
-            [one, other] => format!("{one} or {other}"),
-            names => format!("one of {}", names.join(", ")),
-        };
-        de::Error::custom(format!("unknown variant `{name}`, expected {expected}"))
-    };
-    T::from_str(&name, false).map(Some).map_err(unknown)
+        match names.as_slice() {
+            [one, other] => write!(f, "{one} or {other}"),
+            names => write!(f, "one of {}", names.join(", ")),
+        }
+    }
+
+    fn visit_enum<A: EnumAccess<'de>>(self, entry: A) -> Result<T, A::Error> {
+        let (name, variant) = entry.variant::<String>()?;
+        variant.unit_variant()?;
+        let unknown = |_| A::Error::custom(format!("unknown variant `{name}`, expected {}", &self as &dyn Expected));
+        T::from_str(&name, false).map_err(unknown)
+    }
 }
