@@ -90,7 +90,7 @@ fn gradient_and_rate<const N: usize>(
 
 /// Momentum, energy, acceleration, step density at one state.
 fn check_continuous<const N: usize>(
-    system: &impl Lagrangian<N>,
+    system: &impl EnergyStepping<N>,
     dual: &impl Lagrangian<N, D>,
     second: &impl Lagrangian<N, DD>,
     (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>),

@@ -1,7 +1,7 @@
 //! States and parameters at the ends of what numbers can tell: each gives a step, or an error that names what is wrong.
 
 use vi_core::collocation::Collocation;
-use vi_core::stepping::{Convertible, FixedStepping};
+use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
     EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Lagrangian, Run, SVector, Starts, State,
     StepError, lagrangian, run::Checkpoint,
@@ -60,7 +60,7 @@ slopeless! {
 /// Asserts that whatever is asked at the origin is not finite there: no shorter step helps.
 fn loses_its_slope<S, const N: usize>(system: S)
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N> + core::fmt::Debug,
+    S: Collocation<N> + Convertible<N> + EnergyStepping<N> + core::fmt::Debug,
 {
     let zero = SVector::zeros();
     let start = State { t: 0.0, q: zero, p: zero };

@@ -2,17 +2,14 @@
 
 use crate::support;
 use core::any::type_name;
-use vi_core::lagrangian::Flow;
 use vi_core::linear::Matrix;
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::stepping::{
-    EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping, MomentumDerivatives,
-    MomentumEquation, MomentumResidual, Rounding,
+    EnergyStepping, ExtendedDerivatives, ExtendedSystem, FixedStepping, MomentumDerivatives, MomentumEquation,
 };
 use vi_core::{
-    DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, Lagrangian, Run, SVector, Starts, State, StepError,
-    lagrangian,
+    DiscreteLagrangian, EnergyPreserving, FixedStep, Lagrangian, SVector, Starts, State, StepError, forward, lagrangian,
 };
 use vi_systems::FpuChain;
 
@@ -106,77 +103,11 @@ lagrangian! {
 struct Dense<S>(S);
 
 impl<const N: usize, S: Lagrangian<N>> Lagrangian<N> for Dense<S> {
-    const NAME: &'static str = S::NAME;
-    const COORDINATES: [&'static str; N] = S::COORDINATES;
-    const AUTONOMOUS: bool = S::AUTONOMOUS;
-    const FORCED: bool = S::FORCED;
-    const CYCLIC: [bool; N] = S::CYCLIC;
-
-    fn lagrangian(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
-        self.0.lagrangian(t, q, v)
-    }
-
-    fn energy(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
-        self.0.energy(t, q, v)
-    }
-
-    fn momentum(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
-        self.0.momentum(t, q, v)
-    }
-
-    fn force(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
-        self.0.force(t, q, v)
-    }
-
-    fn acceleration(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<SVector<f64, N>, StepError> {
-        self.0.acceleration(t, q, v)
-    }
-
-    fn flow(&self, t: f64, q: &SVector<f64, N>, p: &SVector<f64, N>) -> Result<Flow<N>, StepError> {
-        self.0.flow(t, q, p)
-    }
-
-    fn step_density(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<f64, StepError> {
-        self.0.step_density(t, q, v)
-    }
+    forward! { [N f64 S] self => &self.0; [] lagrangian_constants lagrangian energy momentum force acceleration flow }
 }
 
 impl<const N: usize, S: DiscreteLagrangian<N>> DiscreteLagrangian<N> for Dense<S> {
-    fn ld(&self, interval: &Interval<N>) -> f64 {
-        self.0.ld(interval)
-    }
-
-    fn d1_ld(&self, interval: &Interval<N>) -> f64 {
-        self.0.d1_ld(interval)
-    }
-
-    fn d2_ld(&self, interval: &Interval<N>) -> SVector<f64, N> {
-        self.0.d2_ld(interval)
-    }
-
-    fn d3_ld(&self, interval: &Interval<N>) -> f64 {
-        self.0.d3_ld(interval)
-    }
-
-    fn d4_ld(&self, interval: &Interval<N>) -> SVector<f64, N> {
-        self.0.d4_ld(interval)
-    }
-
-    fn fd_minus(&self, interval: &Interval<N>) -> SVector<f64, N> {
-        self.0.fd_minus(interval)
-    }
-
-    fn fd_plus(&self, interval: &Interval<N>) -> SVector<f64, N> {
-        self.0.fd_plus(interval)
-    }
-
-    fn gd_minus(&self, interval: &Interval<N>) -> f64 {
-        self.0.gd_minus(interval)
-    }
-
-    fn gd_plus(&self, interval: &Interval<N>) -> f64 {
-        self.0.gd_plus(interval)
-    }
+    forward! { [N f64 S] self => &self.0; [] slots }
 }
 
 /// The momentum equation with its Jacobian's zeros.
@@ -203,35 +134,22 @@ impl<const N: usize, S: FixedStepping<N>> FixedStepping<N> for Dense<S> {
     type Jacobian = SMatrix<f64, N, N>;
     type StepMatrix = SMatrix<f64, N, N>;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
+    forward! { [N f64 S] self => &self.0; [] momentum_residual momentum_rounding discrete_energy }
 
     fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N> {
         dense(self.0.momentum_equation(node, h, v))
     }
 
-    fn momentum_residual(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumResidual<N> {
-        self.0.momentum_residual(node, h, v)
-    }
-
     fn momentum_derivatives(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> DenseDerivatives<N> {
         dense_derivatives(self.0.momentum_derivatives(node, h, v))
-    }
-
-    fn momentum_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> SVector<f64, N> {
-        self.0.momentum_rounding(node, h, v)
-    }
-
-    fn discrete_energy(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> f64 {
-        self.0.discrete_energy(node, h, v)
     }
 }
 
 impl<const N: usize, S: EnergyStepping<N>> EnergyStepping<N> for Dense<S> {
+    forward! { [N f64 S] self => &self.0; [] step_density extended_residual extended_rounding }
+
     fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N> {
         dense_in_both(self.0.extended_system(node, h, v))
-    }
-
-    fn extended_residual(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedResidual<N> {
-        self.0.extended_residual(node, h, v)
     }
 
     fn extended_derivatives(
@@ -252,10 +170,6 @@ impl<const N: usize, S: EnergyStepping<N>> EnergyStepping<N> for Dense<S> {
             energy_increment_dv: derivatives.energy_increment_dv,
             energy_increment_dh: derivatives.energy_increment_dh,
         }
-    }
-
-    fn extended_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
-        self.0.extended_rounding(node, h, v)
     }
 }
 

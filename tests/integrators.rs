@@ -1,7 +1,7 @@
 //! What all integrators share: states at times and on grids, events, inputs, other states; against closed forms and runs that begin anew.
 
 use core::f64::consts::{PI, TAU};
-use vi_core::run::{Crossing, DenseOutput, Direction, Event};
+use vi_core::run::{Crossing, DenseOutput, Event, Met};
 use vi_core::{
     Composition, EnergyPreserving, FixedStep, Gauss, Lagrangian, Method, Run, SVector, Starts, State, StepError,
     lagrangian,
@@ -120,7 +120,7 @@ fn times_behind_or_beyond_all_are_typed_errors() {
         assert_eq!((input, value.to_bits()), ("the time to propagate to", t.to_bits()));
         let asked = run.states_at([t]).next();
         assert!(matches!(asked, Some(Err(StepError::InvalidInput { .. }))), "{asked:?}");
-        assert!(matches!(run.next_event(&[], t), Err(StepError::InvalidInput { .. })));
+        assert!(matches!(run.next_event(Vec::new(), t), Err(StepError::InvalidInput { .. })));
         assert_eq!(run.state(), start, "the run stays");
     }
     for h in [0.0, f64::NAN, 1e-320] {
@@ -208,12 +208,11 @@ fn paths_have_their_order_and_end_at_the_nodes() {
 
 /// Zeros of the angle of a pendulum from 2 rad, rising.
 fn rising<M: Method<S, 1>, S: Lagrangian<1> + Copy>(mut run: Run<M, S, 1>, end: f64) -> Vec<f64> {
-    let upward = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
-    let events = [Event::new(&upward, Direction::Rising)];
+    let events = Event::rising(|s| s.q[0]);
     let found: Vec<_> = run.events(&events, end).map(|crossing| crossing.expect("solvable")).collect();
     assert_eq!(run.t().to_bits(), end.to_bits(), "the run ends where it is told to");
     for crossing in &found {
-        assert!(crossing.is_rising && crossing.v[0] > 0.0 && crossing.event == 0);
+        assert!(crossing.events == [Met { event: 0, is_rising: true }] && crossing.v[0] > 0.0);
         // 5.6e-17.
         assert!(crossing.state.q[0].abs() < 1e-15, "{}", crossing.state.q[0]);
     }
@@ -261,28 +260,26 @@ fn two_events_in_a_step_and_one_that_only_touches() {
     let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
     let run = || oscillator.at_state(start).integrate(Gauss::<10>, 0.5).expect("valid");
-    let levels = |level: f64, direction: Direction| -> Vec<f64> {
-        let above = move |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0] - level;
-        let events = [Event::new(&above, direction)];
-        run().events(&events, 13.0).map(|crossing| crossing.expect("solvable").state.t).collect()
+    let times = |event: Event<1>| -> Vec<f64> {
+        run().events(event, 13.0).map(|crossing| crossing.expect("solvable").state.t).collect()
     };
     for level in [0.0_f64, 0.9, 0.999, 1.0 - 1e-6, 1.0 - 1e-10] {
         let angle = level.acos();
         let expected = [angle, TAU - angle, TAU + angle, 2.0 * TAU - angle, 2.0 * TAU + angle];
         let expected: Vec<f64> = expected.into_iter().filter(|t| *t < 13.0).collect();
-        let found = levels(level, Direction::Both);
+        let found = times(Event::crossing(move |s| s.q[0] - level));
         assert_eq!(found.len(), expected.len(), "{level}: {found:?}");
         for (t, exact) in found.iter().zip(&expected) {
             // Where the level is nearly touched, a rounding of x is many of t: 1.8e-15 at 0.9, 7.2e-15 at 0.999, 1.7e-13, 2.2e-11.
             assert!((t - exact).abs() < 6e-16 / (1.0 - level * level).sqrt() + 2e-15, "{level}: {t} {exact}");
         }
-        let rising = levels(level, Direction::Rising);
-        let falling = levels(level, Direction::Falling);
+        let rising = times(Event::rising(move |s| s.q[0] - level));
+        let falling = times(Event::falling(move |s| s.q[0] - level));
         assert_eq!(rising.len() + falling.len(), found.len());
         assert!(rising.iter().zip(&falling).all(|(up, down)| down < up), "it falls first");
     }
     // What is not reached, or only touched, is no event.
-    assert!(levels(1.0 + 1e-9, Direction::Both).is_empty());
+    assert!(times(Event::crossing(|s| s.q[0] - (1.0 + 1e-9))).is_empty());
 }
 
 #[test]
@@ -290,12 +287,10 @@ fn several_functions_in_one_step_come_in_their_order() {
     let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
     let mut run = oscillator.at_state(start).integrate(Gauss::<10>, 2.0).expect("valid");
-    let clock = |t: f64, _: &SVector<f64, 1>, _: &SVector<f64, 1>| t - 1.3;
-    let place = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
-    let speed = |_: f64, _: &SVector<f64, 1>, v: &SVector<f64, 1>| v[0] + 0.5;
-    let events = [&clock as &dyn Fn(_, &_, &_) -> f64, &place, &speed].map(|g| Event::new(g, Direction::Both));
+    let events = [Event::crossing(|s| s.t - 1.3), Event::crossing(|s| s.q[0]), Event::crossing(|s| s.v[0] + 0.5)];
     let found: Vec<_> = run.events(&events, 4.0).map(|crossing| crossing.expect("solvable")).collect();
-    let order: Vec<usize> = found.iter().map(|crossing| crossing.event).collect();
+    assert!(found.iter().all(|crossing| crossing.events.len() == 1));
+    let order: Vec<usize> = found.iter().map(|crossing| crossing.events[0].event).collect();
     assert_eq!(order, [2, 0, 1, 2]);
     for (crossing, exact) in found.iter().zip([PI / 6.0, 1.3, PI / 2.0, 5.0 * PI / 6.0]) {
         assert!((crossing.state.t - exact).abs() < 1e-14, "{crossing:?}");
@@ -307,8 +302,7 @@ fn a_run_that_stops_at_an_event_goes_on_from_it() {
     let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
     let mut run = oscillator.at_state(start).integrate(Gauss::<6>, 0.3).expect("valid");
-    let place = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
-    let events = [Event::new(&place, Direction::Both)];
+    let events = [Event::crossing(|s| s.q[0])];
     for half in 0..200 {
         let crossing = run.next_event(&events, 1e4).expect("solvable").expect("there is one");
         assert_eq!(crossing.state, run.state());
@@ -323,7 +317,7 @@ fn a_run_that_stops_at_an_event_goes_on_from_it() {
     let start = State::at(&oscillator, 0.0, [0.0], [1.0]);
     let mut run = oscillator.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     let first = run.next_event(&events, 10.0).expect("solvable").expect("there is one");
-    assert!((first.state.t - PI).abs() < 0.01 && !first.is_rising, "{first:?}");
+    assert!((first.state.t - PI).abs() < 0.01 && first.direction(0) == Some(false), "{first:?}");
 }
 
 #[test]
@@ -331,9 +325,7 @@ fn an_event_function_that_is_not_finite_is_a_typed_error() {
     let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
     let mut run = oscillator.at_state(start).integrate(FixedStep, 0.1).expect("valid");
-    let logarithm = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0].ln();
-    let events = [Event::new(&logarithm, Direction::Both)];
-    let mut found = run.events(&events, 10.0);
+    let mut found = run.events(Event::crossing(|s| s.q[0].ln()), 10.0);
     let failure = found.next();
     assert!(matches!(failure, Some(Err(StepError::NonFinite { quantity: "function of an event", .. }))), "{failure:?}");
     assert_eq!(found.next(), None);
@@ -346,8 +338,7 @@ fn a_section_of_henon_and_heiles() {
     let (y, p_y) = (0.1_f64, 0.0_f64);
     let p_x = (2.0_f64 * (1.0 / 12.0) - p_y * p_y - y * y + 2.0 * y * y * y / 3.0).sqrt();
     let start = State::at(&system, 0.0, [0.0, y], [p_x, p_y]);
-    let x = |_: f64, q: &SVector<f64, 2>, _: &SVector<f64, 2>| q[0];
-    let events = [Event::new(&x, Direction::Rising)];
+    let events = Event::rising(|s| s.q[0]);
     let section = |h: f64| -> Vec<State<2>> {
         let mut run = system.at_state(start).integrate(Gauss::<8>, h).expect("valid");
         run.events(&events, 300.0).map(|crossing| crossing.expect("solvable").state).collect()
@@ -367,8 +358,8 @@ fn a_section_of_henon_and_heiles() {
 }
 
 /// Goes on to the next impact, turns the momentum round, and returns the time.
-fn bounce<M: Method<S, 1>, S: Lagrangian<1> + Copy>(run: &mut Run<M, S, 1>, hits: &[Event<'_, 1>]) -> f64 {
-    let hit = run.next_event(hits, 100.0).expect("solvable").expect("it falls");
+fn bounce<M: Method<S, 1>, S: Lagrangian<1> + Copy>(run: &mut Run<M, S, 1>) -> f64 {
+    let hit = run.until_falling(|s| s.q[0], 100.0).expect("solvable").expect("it falls");
     run.set_state(State { p: -hit.state.p, ..hit.state }).expect("valid");
     hit.state.t
 }
@@ -376,12 +367,10 @@ fn bounce<M: Method<S, 1>, S: Lagrangian<1> + Copy>(run: &mut Run<M, S, 1>, hits
 #[test]
 fn a_ball_bounces() {
     let ball = Ball::default();
-    let floor = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
-    let hits = [Event::new(&floor, Direction::Falling)];
     let mut run = ball.at(0.0, [1.3], [0.0]).integrate(FixedStep, 0.037).expect("valid");
     let fall = (2.0_f64 * 1.3 / 9.81).sqrt();
     for count in 0..20 {
-        let t = bounce(&mut run, &hits);
+        let t = bounce(&mut run);
         let exact = (2.0 * f64::from(count) + 1.0) * fall;
         // The midpoint rule is exact under constant forces: 3.6e-15.
         assert!((t - exact).abs() < 1e-14, "{count}: {t} {exact}");
@@ -580,13 +569,11 @@ fn many_events_of_a_step_come_in_their_order_and_each_once() {
     let free = Ball { g: 0.0 };
     let start = State::at(&free, 0.0, [0.0], [1.0]);
     let levels: Vec<f64> = (0..300).map(|k| 0.013 + 0.0031 * f64::from((k * 77) % 300)).collect();
-    let above = |level: f64| move |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0] - level;
-    let functions: Vec<_> = levels.iter().map(|level| above(*level)).collect();
-    let events: Vec<_> = functions.iter().map(|g| Event::new(g, Direction::Rising)).collect();
+    let events: Vec<_> = levels.iter().map(|&level| Event::rising(move |s| s.q[0] - level)).collect();
     let reached = |crossings: &mut dyn Iterator<Item = Result<Crossing<1>, StepError>>| -> Vec<(usize, f64)> {
         crossings
             .map(|crossing| crossing.expect("solvable"))
-            .map(|crossing| (crossing.event, crossing.state.t))
+            .flat_map(|crossing| crossing.events.into_iter().map(move |met| (met.event, crossing.state.t)))
             .collect()
     };
     for h in [0.3, 1.0] {
@@ -604,7 +591,7 @@ fn many_events_of_a_step_come_in_their_order_and_each_once() {
 /// Times of the events of a function, met one by one and in one search; largest |g| there.
 fn met<M: Method<S, 1>, S: Lagrangian<1> + Copy>(
     run: &Run<M, S, 1>,
-    wanted: &[Event<'_, 1>],
+    wanted: &Event<1>,
     until: f64,
 ) -> ([usize; 2], f64) {
     let mut one_by_one = run.clone();
@@ -621,26 +608,24 @@ fn met<M: Method<S, 1>, S: Lagrangian<1> + Copy>(
 
 #[test]
 fn functions_that_are_flat_steep_or_jump_are_met_once() {
-    let functions: [&dyn Fn(f64) -> f64; 7] = [
-        &|x| x,
-        &|x| x.powi(3),
-        &|x| x.powi(5),
-        &|x| x.abs().sqrt().copysign(x),
-        &|x| (1e6 * x).atan(),
-        &|x| 1.0_f64.copysign(x),
-        &|x| 1e-320 * x,
+    let functions: [fn(f64) -> f64; 7] = [
+        |x| x,
+        |x| x.powi(3),
+        |x| x.powi(5),
+        |x| x.abs().sqrt().copysign(x),
+        |x| (1e6 * x).atan(),
+        |x| 1.0_f64.copysign(x),
+        |x| 1e-320 * x,
     ];
     let oscillator = HarmonicOscillator::default();
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
     let omega = (oscillator.energy(0.0, &start.q, &SVector::zeros()) * 2.0).sqrt();
     let until = 10.0 / omega;
     for g in functions {
-        let of_position = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| g(q[0]);
-        let of_velocity = |_: f64, _: &SVector<f64, 1>, v: &SVector<f64, 1>| g(v[0]);
-        for wanted in [Event::new(&of_position, Direction::Both), Event::new(&of_velocity, Direction::Both)] {
+        for wanted in [Event::crossing(move |s| g(s.q[0])), Event::crossing(move |s| g(s.v[0]))] {
             let found = [
-                met(&oscillator.at_state(start).integrate(FixedStep, 0.1 / omega).expect("valid"), &[wanted], until),
-                met(&oscillator.at_state(start).integrate(Gauss::<4>, 0.3 / omega).expect("valid"), &[wanted], until),
+                met(&oscillator.at_state(start).integrate(FixedStep, 0.1 / omega).expect("valid"), &wanted, until),
+                met(&oscillator.at_state(start).integrate(Gauss::<4>, 0.3 / omega).expect("valid"), &wanted, until),
             ];
             assert_eq!(found[1].0, [3, 3]);
             assert_eq!(found[0].0, [3, 3]);
@@ -656,8 +641,7 @@ fn an_event_at_the_end_of_a_search_is_met_once() {
     let mut seen = 0;
     for n in [7.0, 10.0, 13.0, 16.0, 32.0, 33.0, 100.0] {
         for h in [1.0 / n, 1.01 / n, 0.77 / n] {
-            let of_time = |t: f64, _: &SVector<f64, 1>, _: &SVector<f64, 1>| t - 1.0;
-            let wanted = [Event::new(&of_time, Direction::Both)];
+            let wanted = Event::crossing(|s| s.t - 1.0);
             let mut run = body.at(0.0, [0.3], [0.2]).integrate(Gauss::<3>, h).expect("valid");
             let mut count = 0;
             for until in [1.0, 2.0] {
@@ -675,7 +659,7 @@ fn an_event_at_the_end_of_a_search_is_met_once() {
 }
 
 /// The position after an eighth, the length of the step to the next event, and the velocity there.
-fn later<M: Method<S, 1>, S: Lagrangian<1> + Copy>(mut run: Run<M, S, 1>, wanted: &[Event<'_, 1>]) -> [f64; 3] {
+fn later<M: Method<S, 1>, S: Lagrangian<1> + Copy>(mut run: Run<M, S, 1>, wanted: &Event<1>) -> [f64; 3] {
     let start = run.state();
     let state = run.clone().until(start.t + 0.125).expect("the run goes on");
     let crossing = run.next_event(wanted, start.t + 10.0).expect("the run goes on").expect("one");
@@ -693,8 +677,7 @@ fn far_from_zero_a_rounding_of_the_time_is_many_steps() {
     let h = 1e-3;
     let near = State::at(&oscillator, 0.0, [1.0], [0.0]);
     let far = State { t: 1e15, ..near };
-    let position = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
-    let wanted = [Event::new(&position, Direction::Both)];
+    let wanted = Event::crossing(|s| s.q[0]);
     let fixed =
         [near, far].map(|state| later(oscillator.at_state(state).integrate(FixedStep, h).expect("valid"), &wanted));
     let gauss =

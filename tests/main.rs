@@ -7,6 +7,7 @@ mod checks;
 mod composition;
 mod declarations;
 mod derivatives;
+mod events;
 mod extremes;
 mod flow;
 mod forms;

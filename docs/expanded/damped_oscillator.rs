@@ -1,3 +1,12 @@
+// `DampedOscillator`: L = m*dot(x)^2/2 - k*x^2/2
+//
+// Operations of the functions for
+//     30  every method: lagrangian 7, energy 7, momentum 1, force 2, acceleration 4, non_finite 9
+//     10  Gauss, EnergyPreservingGauss: point 5, point_derivatives 2, power 3
+//     77  FixedStep, Composition, Ensemble by the rule `midpoint`: momentum_equation 19, momentum_residual 32, momentum_derivatives 11, discrete_energy 15
+//    149  EnergyPreserving by the rule `midpoint`: step_density 7, extended_system 40, extended_residual 65, extended_derivatives 37
+//     60  DiscreteLagrangian by the rule `midpoint`: ld 10, d1_ld 9, d2_ld 8, d3_ld 10, d4_ld 7, fd_minus 4, fd_plus 4, gd_minus 4, gd_plus 4
+
 /// Damped harmonic oscillator, m a + c v + k x = 0.
 ///
 /// With ω = √(k/m) and ζ = c/(2 √(k m)), the energy-preserving step grows as h ≈ h0 e^{ζ ω t} and ends after about
@@ -30,7 +39,6 @@ pub struct DampedOscillator<T = ::core::primitive::f64> {
     pub c: T,
 }
 
-/// Every name that is bound below is one of a function first: a binding may shadow that, and no constant from around.
 #[allow(
     clippy::all,
     clippy::pedantic,
@@ -41,22 +49,6 @@ pub struct DampedOscillator<T = ::core::primitive::f64> {
     unused_variables
 )]
 const _: () = {
-    use ::core::convert::{identity as name, identity as index, identity as t};
-    use ::core::convert::{identity as q, identity as v, identity as x_dot};
-    use ::core::convert::{identity as x, identity as real, identity as time};
-    use ::core::convert::{identity as mass, identity as applied, identity as x_ddot};
-    use ::core::convert::{identity as p, identity as at_rest, identity as velocity};
-    use ::core::convert::{identity as force, identity as power, identity as values};
-    use ::core::convert::{identity as value, identity as text, identity as interval};
-    use ::core::convert::{identity as h, identity as x0, identity as x1};
-    use ::core::convert::{identity as x_mid, identity as node, identity as x0_low};
-    use ::core::convert::{identity as p0_x, identity as p0_x_low, identity as s1};
-    use ::core::convert::{identity as s2, identity as energy0, identity as energy0_low};
-    use ::core::convert::{identity as s3, identity as s4, identity as s5};
-    use ::core::convert::{identity as s6, identity as s7, identity as s8};
-    use ::core::convert::{identity as s9, identity as systems, identity as rows};
-    use ::core::primitive::{bool, f64, str, usize};
-
     impl ::core::default::Default for DampedOscillator<f64> {
         fn default() -> Self {
             Self { m: 1.0, k: 4.0, c: 0.04 }
@@ -177,26 +169,6 @@ const _: () = {
                 -(self.c * x_dot + self.k * x),
             ]);
             ::vi_core::support::acceleration(time, &mass, &applied)
-        }
-
-        /// `D = (-c*dot(x) - k*x)*dot(dot(x)) + k*dot(x)^2`
-        ///
-        /// 7 operations.
-        #[inline]
-        fn step_density(
-            &self,
-            t: T,
-            q: &::vi_core::SVector<T, 1>,
-            v: &::vi_core::SVector<T, 1>,
-        ) -> ::core::result::Result<T, ::vi_core::StepError> {
-            let time = t;
-            let [x_ddot]: [T; 1] = self.acceleration(t, q, v)?.into();
-            let [x_dot]: [T; 1] = (*v).into();
-            let [x]: [T; 1] = (*q).into();
-            ::vi_core::support::step_density(
-                time,
-                self.k * (x_dot * x_dot) - (self.c * x_dot + self.k * x) * x_ddot,
-            )
         }
 
         #[inline]
@@ -616,6 +588,27 @@ const _: () = {
 
     impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<1, T>
     for DampedOscillator<T> {
+        /// `D = (-c*dot(x) - k*x)*dot(dot(x)) + k*dot(x)^2`
+        ///
+        /// 7 operations.
+        #[inline]
+        fn step_density(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let time = t;
+            let [x_ddot]: [T; 1] = ::vi_core::Lagrangian::acceleration(self, t, q, v)?
+                .into();
+            let [x_dot]: [T; 1] = (*v).into();
+            let [x]: [T; 1] = (*q).into();
+            ::vi_core::support::step_density(
+                time,
+                self.k * (x_dot * x_dot) - (self.c * x_dot + self.k * x) * x_ddot,
+            )
+        }
+
         /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
         ///
         /// 40 operations.
@@ -805,6 +798,26 @@ const _: () = {
             }
         }
     }
+
+    /// Every name that is bound above is one of a function first: a binding may shadow that, and no constant from around.
+    use ::core::primitive::{bool, f64, str, usize};
+    use ::core::convert::{identity as name, identity as index, identity as t};
+    use ::core::convert::{identity as q, identity as v, identity as x_dot};
+    use ::core::convert::{identity as x, identity as real, identity as time};
+    use ::core::convert::{identity as mass, identity as applied, identity as p};
+    use ::core::convert::{identity as at_rest, identity as velocity, identity as force};
+    use ::core::convert::{identity as power, identity as values, identity as value};
+    use ::core::convert::{identity as text, identity as interval, identity as h};
+    use ::core::convert::{identity as x0, identity as x1, identity as x_mid};
+    use ::core::convert::{identity as node, identity as x0_low, identity as p0_x};
+    use ::core::convert::{identity as p0_x_low, identity as s1, identity as s2};
+    use ::core::convert::{
+        identity as x_ddot, identity as energy0, identity as energy0_low,
+    };
+
+    use ::core::convert::{identity as s3, identity as s4, identity as s5};
+    use ::core::convert::{identity as s6, identity as s7, identity as s8};
+    use ::core::convert::{identity as s9, identity as systems, identity as rows};
 };
 
 /// Checks of [`DampedOscillator`](super::DampedOscillator) at the place that it names.

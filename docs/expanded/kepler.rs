@@ -1,3 +1,13 @@
+// `Kepler`: L = dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)
+//
+// Operations of the functions for
+//     52  every method: lagrangian 13, energy 13, momentum 0, force 0, acceleration 13, non_finite 13
+//     34  Gauss, EnergyPreservingGauss: point 13, point_derivatives 21, power 0
+//     29  Gauss in transformed time: scaled_point 29
+//    168  FixedStep, Composition, Ensemble by the rule `midpoint`: momentum_equation 46, momentum_residual 44, momentum_derivatives 58, discrete_energy 20
+//    357  EnergyPreserving by the rule `midpoint`: step_density 39, extended_system 107, extended_residual 96, extended_derivatives 115
+//     92  DiscreteLagrangian by the rule `midpoint`: ld 18, d1_ld 17, d2_ld 21, d3_ld 17, d4_ld 19, fd_minus 0, fd_plus 0, gd_minus 0, gd_plus 0
+
 /// Plane Kepler problem, a = −μ r/|r|³.
 ///
 /// Conserved: energy, angular momentum x v_y − y v_x. Started at the pericentre of an orbit of eccentricity e, the
@@ -24,7 +34,6 @@ pub struct Kepler<T = ::core::primitive::f64> {
     pub mu: T,
 }
 
-/// Every name that is bound below is one of a function first: a binding may shadow that, and no constant from around.
 #[allow(
     clippy::all,
     clippy::pedantic,
@@ -35,34 +44,6 @@ pub struct Kepler<T = ::core::primitive::f64> {
     unused_variables
 )]
 const _: () = {
-    use ::core::convert::{identity as name, identity as index, identity as t};
-    use ::core::convert::{identity as q, identity as v, identity as x_dot};
-    use ::core::convert::{identity as y_dot, identity as x, identity as y};
-    use ::core::convert::{identity as real, identity as s1, identity as time};
-    use ::core::convert::{identity as s2, identity as s3, identity as mass};
-    use ::core::convert::{identity as applied, identity as x_ddot, identity as y_ddot};
-    use ::core::convert::{identity as s4, identity as s5, identity as s6};
-    use ::core::convert::{identity as s7, identity as s8, identity as s9};
-    use ::core::convert::{identity as s10, identity as s11, identity as s12};
-    use ::core::convert::{identity as p, identity as at_rest, identity as velocity};
-    use ::core::convert::{identity as force, identity as power, identity as values};
-    use ::core::convert::{identity as value, identity as text, identity as interval};
-    use ::core::convert::{identity as h, identity as x0, identity as y0};
-    use ::core::convert::{identity as x1, identity as y1, identity as x_mid};
-    use ::core::convert::{identity as y_mid, identity as node, identity as x0_low};
-    use ::core::convert::{identity as y0_low, identity as p0_x, identity as p0_y};
-    use ::core::convert::{identity as p0_x_low, identity as p0_y_low, identity as s13};
-    use ::core::convert::{identity as s14, identity as s15, identity as s16};
-    use ::core::convert::{identity as s17, identity as s18, identity as s19};
-    use ::core::convert::{identity as s20, identity as energy0, identity as energy0_low};
-    use ::core::convert::{identity as s21, identity as s22, identity as s23};
-    use ::core::convert::{identity as s24, identity as s25, identity as s26};
-    use ::core::convert::{identity as s27, identity as s28, identity as s29};
-    use ::core::convert::{identity as s30, identity as s31, identity as s32};
-    use ::core::convert::{identity as s33, identity as s34, identity as systems};
-    use ::core::convert::identity as rows;
-    use ::core::primitive::{bool, f64, str, usize};
-
     impl ::core::default::Default for Kepler<f64> {
         fn default() -> Self {
             Self { mu: 1.0 }
@@ -190,42 +171,6 @@ const _: () = {
                 -(self.mu * y * s3),
             ]);
             ::vi_core::support::acceleration(time, &mass, &applied)
-        }
-
-        /// `D = -mu*x*dot(dot(x))/(x^2 + y^2)^(3/2) - dot(x)*(dot(x)*(3*mu*x^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)) + 3*mu*x*y*dot(y)/(x^2 + y^2)^(5/2)) - mu*y*dot(dot(y))/(x^2 + y^2)^(3/2) - dot(y)*(3*mu*x*y*dot(x)/(x^2 + y^2)^(5/2) + dot(y)*(3*mu*y^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)))`
-        ///
-        /// 39 operations.
-        #[inline]
-        fn step_density(
-            &self,
-            t: T,
-            q: &::vi_core::SVector<T, 2>,
-            v: &::vi_core::SVector<T, 2>,
-        ) -> ::core::result::Result<T, ::vi_core::StepError> {
-            let time = t;
-            let [x_ddot, y_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
-            let [x_dot, y_dot]: [T; 2] = (*v).into();
-            let [x, y]: [T; 2] = (*q).into();
-            let real = T::real;
-            let s1 = x * x;
-            let s2 = y * y;
-            let s3 = s1 + s2;
-            let s4 = s3.recip();
-            let s5 = s4 * s4;
-            let s6 = s3.sqrt();
-            let s7 = s5 * s6;
-            let s8 = s5 * s4 * s6;
-            let s9 = self.mu * x;
-            let s10 = s9 * y * s8;
-            let s11 = s9 * s7 * x_ddot
-                + x_dot
-                    * (self.mu * x_dot * (s1 * s8 * real(3.0) - s7)
-                        + s10 * y_dot * real(3.0));
-            let s12 = s11 + self.mu * y * s7 * y_ddot
-                + y_dot
-                    * (s10 * x_dot * real(3.0)
-                        + self.mu * y_dot * (s2 * s8 * real(3.0) - s7));
-            ::vi_core::support::step_density(time, -s12)
         }
 
         #[inline]
@@ -797,6 +742,48 @@ const _: () = {
 
     impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T>
     for Kepler<T> {
+        /// `D = -mu*x*dot(dot(x))/(x^2 + y^2)^(3/2) - dot(x)*(dot(x)*(3*mu*x^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)) + 3*mu*x*y*dot(y)/(x^2 + y^2)^(5/2)) - mu*y*dot(dot(y))/(x^2 + y^2)^(3/2) - dot(y)*(3*mu*x*y*dot(x)/(x^2 + y^2)^(5/2) + dot(y)*(3*mu*y^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)))`
+        ///
+        /// 39 operations.
+        #[inline]
+        fn step_density(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let time = t;
+            let [x_ddot, y_ddot]: [T; 2] = ::vi_core::Lagrangian::acceleration(
+                    self,
+                    t,
+                    q,
+                    v,
+                )?
+                .into();
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let [x, y]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = x * x;
+            let s2 = y * y;
+            let s3 = s1 + s2;
+            let s4 = s3.recip();
+            let s5 = s4 * s4;
+            let s6 = s3.sqrt();
+            let s7 = s5 * s6;
+            let s8 = s5 * s4 * s6;
+            let s9 = self.mu * x;
+            let s10 = s9 * y * s8;
+            let s11 = s9 * s7 * x_ddot
+                + x_dot
+                    * (self.mu * x_dot * (s1 * s8 * real(3.0) - s7)
+                        + s10 * y_dot * real(3.0));
+            let s12 = s11 + self.mu * y * s7 * y_ddot
+                + y_dot
+                    * (s10 * x_dot * real(3.0)
+                        + self.mu * y_dot * (s2 * s8 * real(3.0) - s7));
+            ::vi_core::support::step_density(time, -s12)
+        }
+
         /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
         ///
         /// 107 operations.
@@ -1039,6 +1026,38 @@ const _: () = {
             Kepler { mu: rows.mu[index] }
         }
     }
+
+    /// Every name that is bound above is one of a function first: a binding may shadow that, and no constant from around.
+    use ::core::primitive::{bool, f64, str, usize};
+    use ::core::convert::{identity as name, identity as index, identity as t};
+    use ::core::convert::{identity as q, identity as v, identity as x_dot};
+    use ::core::convert::{identity as y_dot, identity as x, identity as y};
+    use ::core::convert::{identity as real, identity as s1, identity as time};
+    use ::core::convert::{identity as s2, identity as s3, identity as mass};
+    use ::core::convert::{identity as applied, identity as p, identity as at_rest};
+    use ::core::convert::{identity as velocity, identity as force, identity as power};
+    use ::core::convert::{identity as values, identity as value, identity as text};
+    use ::core::convert::{identity as s4, identity as s5, identity as s6};
+    use ::core::convert::{identity as s7, identity as s8, identity as s9};
+    use ::core::convert::{identity as interval, identity as h, identity as x0};
+    use ::core::convert::{identity as y0, identity as x1, identity as y1};
+    use ::core::convert::{identity as x_mid, identity as y_mid, identity as node};
+    use ::core::convert::{identity as x0_low, identity as y0_low, identity as p0_x};
+    use ::core::convert::{identity as p0_y, identity as p0_x_low, identity as p0_y_low};
+    use ::core::convert::{identity as s10, identity as s11, identity as s12};
+    use ::core::convert::{identity as s13, identity as s14, identity as s15};
+    use ::core::convert::{identity as s16, identity as s17, identity as s18};
+    use ::core::convert::{identity as s19, identity as s20, identity as x_ddot};
+    use ::core::convert::{
+        identity as y_ddot, identity as energy0, identity as energy0_low,
+    };
+
+    use ::core::convert::{identity as s21, identity as s22, identity as s23};
+    use ::core::convert::{identity as s24, identity as s25, identity as s26};
+    use ::core::convert::{identity as s27, identity as s28, identity as s29};
+    use ::core::convert::{identity as s30, identity as s31, identity as s32};
+    use ::core::convert::{identity as s33, identity as s34, identity as systems};
+    use ::core::convert::identity as rows;
 };
 
 /// Checks of [`Kepler`](super::Kepler) at the place that it names.

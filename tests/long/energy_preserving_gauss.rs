@@ -9,6 +9,7 @@ use core::f64::consts::{FRAC_PI_2, TAU};
 use vi_core::gauss::step_density;
 use vi_core::real::Rounded;
 use vi_core::state::StepKind;
+use vi_core::stepping::EnergyStepping;
 use vi_core::{
     EnergyPreserving, EnergyPreservingGauss, Fallback, Gauss, Lagrangian, Run, SVector, Starts, State, StepError,
     run::Checkpoint,
@@ -102,7 +103,7 @@ fn step_densities_of_one_degree_of_freedom_have_a_closed_form() {
 }
 
 /// With one stage it is the density that is emitted.
-fn emitted<const N: usize>(Scene { system, q, v, .. }: Scene<impl System<N>, N>) {
+fn emitted<const N: usize>(Scene { system, q, v, .. }: Scene<impl System<N> + EnergyStepping<N>, N>) {
     let state = State::at(&system, 0.2, q, v);
     let found = step_density::<_, N, 1>(&system, &state).expect("a density");
     let exact = system.step_density(0.2, &q.into(), &v.into()).expect("a density");

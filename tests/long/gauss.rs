@@ -8,7 +8,7 @@ use crate::support::scenes::{self, Scene};
 use serde_json::Value;
 use vi_core::collocation::Collocation;
 use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{FixedStep, Gauss, Lagrangian, Run, Starts, State, StepError, gauss, lagrangian, run::Checkpoint};
+use vi_core::{FixedStep, Gauss, Lagrangian, Run, Starts, State, StepError, lagrangian, run::Checkpoint};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, Pendulum, SphericalPendulum,
 };

@@ -7,7 +7,7 @@ use crate::support::scenes::{self, Scene};
 use core::ops::RangeInclusive;
 use serde_json::Value;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, Starts, State, Step};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, Starts, State};
 use vi_systems::{DampedOscillator, DoubleWell, Kepler};
 
 const MILLION: u32 = 1_000_000;

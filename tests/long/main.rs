@@ -3,6 +3,7 @@
 mod derivatives_at_the_edge;
 mod derivatives_of_runs;
 mod energy_preserving_gauss;
+mod events;
 mod failures;
 mod gauss;
 mod gauss_scales;

@@ -7,10 +7,10 @@
 
 use core::ops::{Deref, DerefMut};
 
-/// A system whose functions are calls: `Gauss::<_, 2, 3>::new(Called(system), …)` is built sooner, and steps in plain numbers, not in
+/// A system whose functions are calls: `Called(system).at(t, q, v).integrate(Gauss::<3>, h)` is built sooner, and steps in plain numbers, not in
 /// vector instructions. Its states are those of the system but for rounding.
 ///
-/// It stands for a system whose time scale is not known when a generic function is compiled, too: `ScaledGauss::new` asks
+/// It stands for a system whose time scale is not known when a generic function is compiled, too: `in_transformed_time` asks
 /// [`Collocation::SCALES_TIME`](crate::collocation::Collocation::SCALES_TIME) instead.
 #[derive(Clone, Copy, Debug)]
 pub struct Called<S>(pub S);

@@ -19,7 +19,7 @@ use nalgebra::SVector;
 
 /// The equations of motion in first order; see the [module](self).
 ///
-/// A system is small and `Copy`. Cold paths get a copy, so that the hot loop stays in registers.
+/// Systems are small and `Copy`. Cold paths get a copy, so that the hot loop stays in registers.
 pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// The form of M, by its zero pattern.
     type Mass: Matrix<N, T>;
@@ -38,7 +38,7 @@ pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix>;
     /// What the motion gains of energy by time: `f·v − L_t`.
     fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
-    /// All that a step in scaled time takes at a point, from one evaluation; g = 1 for a system without a time scale.
+    /// All that a step in transformed time takes at a point, from one evaluation; g = 1 for a system without a time scale.
     #[inline(always)]
     fn scaled_point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> ScaledPoint<N, T, Self::Mass> {
         ScaledPoint {
@@ -95,7 +95,7 @@ pub struct ScaledPoint<const N: usize, T, M> {
     pub energy: T,
     /// `f·v − L_t`.
     pub power: T,
-    /// g, time by scaled time.
+    /// g, dt/dτ.
     pub g: T,
     /// `∂g/∂q`.
     pub g_dq: SVector<T, N>,

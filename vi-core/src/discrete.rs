@@ -16,6 +16,10 @@ use crate::state::Interval;
 use nalgebra::SVector;
 
 /// The discrete Lagrangian of the rule R, its slot derivatives, discrete forces and powers.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no discrete Lagrangian of the rule `{R}`",
+    note = "add `discretize midpoint;` to `{Self}`; `Own` is the first rule of that clause"
+)]
 pub trait DiscreteLagrangian<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T> {
     /// Discrete Lagrangian `L_d(t0, q0, t1, q1)`.
     fn ld(&self, interval: &Interval<N, T>) -> T;

@@ -113,8 +113,13 @@ pub enum StepError {
         /// Its value there.
         g: f64,
     },
-    /// Steps in scaled time were asked of a system without a time scale.
+    /// Steps in transformed time were asked of a system without a time scale.
     NoTimeScale {
+        /// Name of the system.
+        system: &'static str,
+    },
+    /// Steps by a rule were asked of a system without one.
+    NoRule {
         /// Name of the system.
         system: &'static str,
     },
@@ -138,6 +143,17 @@ pub enum StepError {
         quantity: &'static str,
         /// The part of L or f that is not finite there, where the system says so.
         expression: Option<&'static str>,
+    },
+    /// The search for an event of one direction begins at its zero, and the motion leads through it again at that instant: a ball that has come to rest.
+    CannotLeave {
+        /// Time at which the search begins.
+        t: f64,
+        /// The index of the event among those that were asked for.
+        event: usize,
+        /// The function of the event there.
+        value: f64,
+        /// Length of time after which it has passed zero again.
+        within: f64,
     },
     /// A step has no derivative, or not the one that was asked for.
     NoDerivative {
@@ -235,6 +251,7 @@ impl fmt::Display for Reason<'_> {
                 write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, where it must be positive and finite")
             }
             StepError::NoTimeScale { system } => write!(f, "`{system}` has no time scale"),
+            StepError::NoRule { system } => write!(f, "`{system}` takes no steps by a rule"),
             StepError::Ambiguous { t } => write!(f, "two velocities have the momenta at t = {t:.9}"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
             StepError::NonFinite { t, quantity, expression: None } => {
@@ -243,6 +260,10 @@ impl fmt::Display for Reason<'_> {
             StepError::NonFinite { t, quantity, expression: Some(expression) } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
             }
+            StepError::CannotLeave { t, event, value, within } => write!(
+                f,
+                "the motion cannot leave the zero of event {event} at t = {t:.9}: its function is {value:.3e} there and has passed zero again within {within:.3e}"
+            ),
             StepError::NoDerivative { t, because } => {
                 write!(f, "the step from t = {t:.9} cannot be differentiated: {because}")
             }
@@ -286,14 +307,11 @@ impl fmt::Display for StepError {
                 "; allow {found:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`"
             ),
             Self::NotConverged { h, .. } if *h == 0.0 => {
-                f.write_str("; start from momenta of `State::at`, or take shorter steps")
+                f.write_str("; start from the momenta of a velocity, `system.at(t, q, v)`, or take shorter steps")
             }
-            Self::NotConverged { h, .. } => write!(
-                f,
-                "; take steps shorter than {:.3e}, or with `EnergyPreserving` go on by `with_fallback(Fallback::FixedSteps)`",
-                h.abs()
-            ),
-            Self::StagesUnsettled { h, .. } => write!(f, "; take steps shorter than {:.3e}", h.abs()),
+            Self::NotConverged { h, .. } | Self::StagesUnsettled { h, .. } => {
+                write!(f, "; take steps shorter than {:.3e}", h.abs())
+            }
             Self::TimeScale { g, .. } if *g > 0.0 && g.is_finite() => {
                 f.write_str("; take shorter steps, end the run before, or write a `time_scale` that does not nearly vanish there")
             }
@@ -303,6 +321,9 @@ impl fmt::Display for StepError {
             Self::NoTimeScale { .. } => {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or take `Gauss`")
             }
+            Self::NoRule { .. } => {
+                f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`")
+            }
             Self::Ambiguous { .. } => f.write_str("; L is not defined at rest and has a branch on each side of it: take one that is defined on one side alone"),
             Self::UnknownParameter { parameters, .. } if !parameters.is_empty() => {
                 write!(f, "; its parameters are `{}`", parameters.join("`, `"))
@@ -311,6 +332,10 @@ impl fmt::Display for StepError {
                 f.write_str("; restart the system that it was taken of, by its rule")
             }
             Self::OtherSystem { .. } => f.write_str("; restart with the parameters that it was taken with"),
+            Self::CannotLeave { event, .. } => write!(
+                f,
+                "; set the velocity toward it to zero and change the system so that it stays, or search without event {event}"
+            ),
             Self::Singular { .. }
             | Self::NonFinite { .. }
             | Self::NoDerivative { .. }

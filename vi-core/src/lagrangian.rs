@@ -36,12 +36,6 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     /// # Errors
     /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NonFinite`] where a derivative of L or f is not finite.
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError>;
-    /// Step density `D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)`, derivatives along the motion.
-    /// An energy-preserving step exists, for small h, while D keeps its sign.
-    ///
-    /// # Errors
-    /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NonFinite`] where a derivative of L or f is not finite.
-    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError>;
     /// The flow at `(t, q, p)`: the velocity that belongs to p, and the rates of change of p and E. Where L is quadratic in the
     /// velocities v follows from p by the mass matrix; else by Newton's iteration, from rest.
     ///

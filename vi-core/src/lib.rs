@@ -35,11 +35,13 @@
 //! | [`run`] | what all methods share: steps, states at times, events, changes, checkpoints |
 //! | `momentum`, [`energy_preserving`], [`gauss`] | the equations of a step, and their solution |
 //! | [`derivatives`] | sensitivities to initial conditions and parameters, gradients, Lyapunov exponents |
+//! | `solve` | solvers that do not depend on a method: a bracket of a root |
 //! | [`condition`] | condition numbers of the equations that a step solves |
 //! | [`error`] | every way in which a step can fail, with its numbers |
 //! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
 //! | `predictor` | the guess of a step, by a polynomial through the last ones |
 //! | `called` | a system whose functions are not inlined, for cold code |
+//! | `forward` | the functions of a system, forwarded by a wrapper |
 //! | `compensated` | sums that keep what rounding takes from them |
 //!
 //! Nothing here panics, allocates in a step (but for the room that the first stiff Gauss step makes), or prints.
@@ -59,6 +61,7 @@ pub mod discrete;
 pub mod energy_preserving;
 pub mod error;
 mod explained;
+mod forward;
 pub mod gauss;
 pub mod lagrangian;
 mod legendre;
@@ -71,6 +74,7 @@ mod predictor;
 pub mod real;
 pub mod rules;
 pub mod run;
+mod solve;
 pub mod state;
 pub mod stepping;
 #[doc(hidden)]
@@ -81,7 +85,6 @@ pub use called::Called;
 pub use discrete::DiscreteLagrangian;
 pub use error::StepError;
 pub use lagrangian::Lagrangian;
-pub use method::composition::Scheme;
 pub use method::{
     Composition, Connected, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
     Method,
@@ -96,7 +99,7 @@ pub use vi_macros::lagrangian;
 pub mod prelude {
     pub use crate::error::StepError;
     pub use crate::method::{Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method};
-    pub use crate::run::{Crossing, Event, Run, Solution, Start, Starts as _};
+    pub use crate::run::{Crossing, Event, Moment, Run, Solution, Start, Starts as _};
     pub use crate::state::State;
     pub use vi_macros::lagrangian;
 }

@@ -38,7 +38,7 @@ impl Rule for Trapezoidal {
 ///
 /// ```
 /// use vi_core::rules::{By, Trapezoidal};
-/// use vi_core::{FixedStep, State, lagrangian};
+/// use vi_core::prelude::*;
 ///
 /// lagrangian! {
 ///     struct Pendulum {
@@ -49,9 +49,9 @@ impl Rule for Trapezoidal {
 /// }
 ///
 /// let pendulum = Pendulum::default();
-/// let start = State::at(&pendulum, 0.0, [0.5], [0.0]);
-/// let by_midpoint = FixedStep::new(&pendulum, start, 0.1)?.step()?;
-/// let by_trapezoidal = FixedStep::new(By::new(&pendulum, Trapezoidal), start, 0.1)?.step()?;
+/// let start = pendulum.at(0.0, [0.5], [0.0]);
+/// let by_midpoint = start.integrate(FixedStep, 0.1)?.step()?;
+/// let by_trapezoidal = By::new(&pendulum, Trapezoidal).at_state(start.state).integrate(FixedStep, 0.1)?.step()?;
 /// assert_ne!(by_midpoint, by_trapezoidal);
 /// # Ok::<(), vi_core::StepError>(())
 /// ```

@@ -6,6 +6,7 @@
 
 use crate::collocation::Collocation;
 use crate::discrete::DiscreteLagrangian;
+use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::linear::Matrix;
 use crate::newton::FLOOR;
@@ -16,11 +17,11 @@ use nalgebra::{SMatrix, SVector};
 
 /// The momentum equation of a step by the rule R, its length given.
 ///
-/// A system is a few numbers, or a reference to them, and copied: what is lent to the rare paths of a step is a copy, so that
-/// the numbers of the common path stay in registers.
+/// Systems are small and `Copy`. Cold paths get a copy, so that the hot loop stays in registers.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` takes no steps by the rule `{R}`",
-    note = "a system takes steps by the rules that it is declared with, as `discretize midpoint, trapezoidal;`"
+    message = "`{Self}` takes no fixed steps by the rule `{R}`",
+    note = "add `discretize midpoint;` to `{Self}`; `Own` is the first rule of that clause, and `discretize midpoint, trapezoidal;` adds another",
+    note = "`Gauss` and `EnergyPreservingGauss` need no rule"
 )]
 pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T> + Copy {
     /// The form of A, by its zero pattern.
@@ -61,12 +62,18 @@ pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T
 /// Implemented for rules whose steps have a density D that keeps its sign: the length of a step follows from `h² D/8 = H − E`. That of
 /// the trapezoidal rule is `|V_q|² − 2 v·V_qq v`, which changes its sign in every swing of an oscillator.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` has no energy-preserving step",
-    label = "the rule that this system is discretized with gives no length of a step",
-    note = "an energy-preserving step needs a rule with a step density, as `discretize midpoint;`",
-    note = "fixed steps exist with every rule: use `FixedStep` or `Composition`"
+    message = "`{Self}` has no energy-preserving step of order 2 by the rule `{R}`",
+    label = "no rule of this system gives a step its length",
+    note = "add `discretize midpoint;` to `{Self}`, or `midpoint` to its `discretize`: the midpoint rule has a step density",
+    note = "`EnergyPreservingGauss` needs no rule; `FixedStep` and `Composition` take any"
 )]
 pub trait EnergyStepping<const N: usize, T: Real = f64, R = Own>: FixedStepping<N, T, R> {
+    /// Step density `D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)`, derivatives along the motion.
+    /// An energy-preserving step exists, for small h, while D keeps its sign.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NonFinite`] where a derivative of L or f is not finite.
+    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError>;
     /// Momentum and energy equation at the trial `(v, h)`.
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, Self::Jacobian>;
     /// The residuals of both, and what momentum and energy gain over the step.
@@ -95,8 +102,9 @@ pub trait Convertible<const N: usize> {
 
 /// A system that takes steps by the rule R in every kind of number, as a generated one does by the rules of its `discretize`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` takes no steps by the rule `{R}`",
-    note = "a system takes steps by the rules that it is declared with, as `discretize midpoint, trapezoidal;`"
+    message = "`{Self}` takes no fixed steps by the rule `{R}`",
+    note = "add `discretize midpoint;` to `{Self}`; `Own` is the first rule of that clause, and `discretize midpoint, trapezoidal;` adds another",
+    note = "`Gauss` and `EnergyPreservingGauss` need no rule"
 )]
 pub trait Discretized<const N: usize, R = Own>:
     FixedStepping<N, f64, R> + DiscreteLagrangian<N, f64, R> + Convertible<N>
@@ -109,6 +117,10 @@ pub trait Discretized<const N: usize, R = Own>:
 }
 
 /// A system of which many can be integrated at once, each with its own parameters.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be integrated in an ensemble",
+    note = "add `discretize midpoint;` to `{Self}`: an ensemble takes fixed steps"
+)]
 pub trait Batch<const N: usize>: Discretized<N> + Send + Sync {
     /// The parameters of W systems, side by side.
     type Rows<const W: usize>: Clone + core::fmt::Debug + Send + Sync;

@@ -19,7 +19,7 @@ use nalgebra::SVector;
 /// before.
 ///
 /// # Errors
-/// Those of [`FixedStep::step`](crate::FixedStep::step).
+/// Those of [`FixedStep::step`](crate::Run::step).
 #[cold]
 pub fn step_alone<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,

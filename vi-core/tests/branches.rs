@@ -37,6 +37,7 @@ fn branch(state: State<1>, h: f64) -> Option<f64> {
 /// States of no pattern: 20 steps from each of 60 starts.
 macro_rules! each_step {
     ($h:expr, $method:expr, $see:expr) => {{
+        #[allow(unused_mut)] // some of them count
         let mut see = $see;
         each_state(|start| {
             let run = SYSTEM.at_state(start).integrate($method, $h);

@@ -63,6 +63,27 @@ lagrangian! {
     }
 }
 
+// Without a rule: the checks of the motion and of Gauss steps.
+lagrangian! {
+    struct CentralForce {
+        param m = 1.3, k = 0.8;
+        coord r, φ;
+        L = m * (dot(r)^2 + r^2 * dot(φ)^2) / 2 + k / r;
+        check { r = 1.2, dot(r) = 0.1, dot(φ) = 0.7; h = 0.05; }
+    }
+}
+
+lagrangian! {
+    struct DampedRow {
+        param c = 0.1;
+        coord q[5];
+        L = sum(i in 0..5, dot(q[i])^2) / 2 + sum(i in 0..5, cos(q[i])) * sin(t) - sum(i in 0..4, (q[i] - q[i + 1])^4);
+        force q[i in 0..5] = -c * dot(q[i]);
+        discretize gauss;
+        check { q[0] = 0.5, q[1] = 0.2, dot(q[3]) = 0.3, q[4] = 1; h = 0.05; }
+    }
+}
+
 const PENDULUM: Place<2> = Place {
     t: 0.2,
     q: vi_core::SVector::<f64, 2>::new(1.0, 0.3),
@@ -94,14 +115,13 @@ fn trips<const N: usize, S: Checked<N>>(system: S, place: &Place<N>, fault: Faul
 #[test]
 fn wrong_derivatives_are_seen() {
     let faults =
-        [Fault::Momentum, Fault::Energy, Fault::Acceleration, Fault::StepDensity, Fault::Rounding, Fault::Jacobian];
+        [Fault::Momentum, Fault::Energy, Fault::Acceleration, Fault::PointMomentum, Fault::PointForce, Fault::Power];
     for fault in faults {
         trips(SphericalPendulum::default(), &PENDULUM, fault, check::derivatives);
         trips(Duffing::default(), &DUFFING, fault, check::derivatives);
     }
     // That of the last coordinate of the spherical pendulum is zero: it is cyclic.
     trips(Duffing::default(), &DUFFING, Fault::PointDerivatives, check::derivatives);
-    trips(Duffing::default(), &DUFFING, Fault::MomentumDerivatives, check::derivatives);
 }
 
 #[test]
@@ -117,16 +137,27 @@ fn wrong_slots_are_seen() {
 
 #[test]
 fn wrong_steps_are_seen() {
-    for fault in [Fault::Damping, Fault::MomentumGain, Fault::DirectedGain, Fault::DiscreteEnergy] {
+    let faults = [
+        Fault::Damping,
+        Fault::MomentumGain,
+        Fault::DirectedGain,
+        Fault::DiscreteEnergy,
+        Fault::Rounding,
+        Fault::Jacobian,
+    ];
+    for fault in faults {
         trips(SphericalPendulum::default(), &PENDULUM, fault, check::steps);
         trips(Duffing::default(), &DUFFING, fault, check::steps);
     }
     trips(Duffing::default(), &DUFFING, Fault::Residual, check::steps);
+    // That of the last coordinate of the spherical pendulum is zero: it is cyclic.
+    trips(Duffing::default(), &DUFFING, Fault::MomentumDerivatives, check::steps);
 }
 
 #[test]
 fn wrong_energy_equations_are_seen() {
     let faults = [
+        Fault::StepDensity,
         Fault::Jacobian,
         Fault::ResidualDh,
         Fault::ExtendedDerivatives,
@@ -150,6 +181,16 @@ fn a_wrong_order_is_seen() {
     trips(SphericalPendulum::default(), &PENDULUM, Fault::DirectedGain, second_order);
     trips(Duffing::default(), &DUFFING, Fault::Residual, second_order);
     trips(Duffing::default(), &DUFFING, Fault::Acceleration, second_order);
+}
+
+#[test]
+fn wrong_gauss_steps_are_seen() {
+    for fault in [Fault::PointForce, Fault::Acceleration] {
+        trips(SphericalPendulum::default(), &PENDULUM, fault, check::gauss_order);
+        trips(Duffing::default(), &DUFFING, fault, check::gauss_order);
+    }
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::PointForce, check::gauss_momenta);
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::PointForce, check::gauss_symplecticity);
 }
 
 #[test]
@@ -195,7 +236,12 @@ fn what_proves_nothing_does_not_pass() {
     for check in everywhere {
         refused(check(&particle, &rest), still);
     }
+    refused(check::gauss_symplecticity(&particle, &rest), still);
+    refused(check::gauss_momenta(&particle, &rest), "`x` stands still");
+    refused(check::gauss_momenta(&duffing, &DUFFING), "no coordinate is cyclic");
+    refused(check::gauss_symplecticity(&duffing, &DUFFING), "a force does not keep");
     refused(check::order(&particle, &free, 2), "steps of any rule are exact");
+    refused(check::gauss_order(&particle, &free), "steps of any rule are exact");
     refused(check::step_law(&particle, &free), "the step density is zero");
     refused(check::momenta(&particle, &rest), "`x` stands still");
     refused(check::momenta(&pendulum, &Place { v: [0.2, 0.0].into(), ..PENDULUM }), "choose a velocity `dot(φ)`");

@@ -22,16 +22,19 @@ type Seen<S, const N: usize> = (Check<S, N>, Vec<Fault>);
 
 /// The checks that apply to fixed steps.
 fn of_fixed_steps<const N: usize, S: Checked<N>>() -> Vec<Seen<S, N>> {
-    use Fault::{Acceleration, DiscreteEnergy, Gain, Jacobian, Ld, Loss, Momentum, Rounding};
-    let of_derivatives = vec![Momentum, Fault::Energy, Acceleration, Jacobian, Rounding];
-    let each: [(bool, Check<S, N>, Vec<Fault>); 7] = [
+    use Fault::{Acceleration, DiscreteEnergy, Gain, Jacobian, Ld, Loss, Momentum, PointMomentum, Rounding};
+    let of_derivatives = vec![Momentum, Fault::Energy, Acceleration, PointMomentum];
+    let each: [(bool, Check<S, N>, Vec<Fault>); 10] = [
         (true, check::derivatives, of_derivatives),
         (true, check::slots, vec![Ld, Fault::D1, Fault::D2, Fault::D4]),
-        (true, check::steps, vec![Gain, Loss, DiscreteEnergy]),
+        (true, check::steps, vec![Gain, Loss, DiscreteEnergy, Jacobian, Rounding]),
         (true, second_order, vec![Gain, Loss, Acceleration]),
         (S::CYCLIC.contains(&true), check::momenta, vec![Loss]),
         (!S::FORCED, check::symplecticity, vec![Loss]),
         (true, check::reversibility, vec![Gain, Loss]),
+        (true, check::gauss_order, vec![Acceleration]),
+        (S::CYCLIC.contains(&true), check::gauss_momenta, vec![]),
+        (!S::FORCED, check::gauss_symplecticity, vec![]),
     ];
     each.into_iter().filter(|(applies, ..)| *applies).map(|(_, check, faults)| (check, faults)).collect()
 }

@@ -3,7 +3,7 @@
 use crate::systems::{DampedOscillator, ForcedDuffing, Kepler, PumpedPendulum, Steppable, UnitMass};
 use vi_core::node::Node;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, State};
+use vi_core::{DiscreteLagrangian, Interval, SVector, State};
 
 /// Largest difference between the derivatives of `system` and central differences, and between its equations and the slot
 /// derivatives, at one point.

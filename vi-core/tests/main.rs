@@ -7,6 +7,7 @@ mod checks_of_many;
 mod equations;
 mod failures;
 mod fallback;
+mod gauss_alone;
 mod long_runs;
 mod many;
 mod outcomes;

@@ -24,9 +24,8 @@
 //! without fused multiply-add it differs by rounding.
 //!
 //! Where the momentum equation has one root only, a trajectory agrees with [`vi_core::FixedStep`] and with steps converged
-//! each by itself, to a few roundings, which the motion may enlarge. Where it has several (see
-//! [`Branch`](vi_core::fixed_step::Branch)), the root taken depends on the guess, and an ensemble guesses otherwise: there
-//! it need not agree.
+//! each by itself, to a few roundings, which the motion may enlarge. Where it has several, the root taken depends on the guess, and
+//! an ensemble guesses otherwise: there it need not agree.
 
 // A call inside a loop over trajectories keeps it from becoming vector instructions.
 #![allow(clippy::inline_always)]

@@ -18,6 +18,8 @@
 //! | `vi_report` | what all of them show and say; the systems by name |
 //! | `vi_ready` | the ready systems |
 
+#[doc(hidden)]
+pub mod declared;
 mod entries;
 mod expand;
 mod explain;
@@ -82,7 +84,7 @@ enum Action {
 /// }
 /// ```
 ///
-/// A system needs `Default`, which every parameter with a value gives it, and a rule with a step density. `q`, `v` and `h` are where a run starts that
+/// A system needs `Default`, which every parameter with a value gives it. One without a rule has Gauss steps alone. `q`, `v` and `h` are where a run starts that
 /// is not told otherwise: coordinates, velocities, a step.
 #[macro_export]
 macro_rules! main {
@@ -90,10 +92,14 @@ macro_rules! main {
         sources: [$($source:literal),* $(,)?],
         systems: [$($system:ident { about: $about:expr, q: $q:expr, v: $v:expr, h: $h:expr $(,)? }),+ $(,)?] $(,)?
     ) => {
+        #[allow(clippy::needless_borrow, reason = "for a system with a rule both references are needed")]
         fn main() -> ::std::process::ExitCode {
             $crate::main_with($crate::Systems {
                 sources: &[$(include_str!($source)),*],
-                entries: || vec![$($crate::Entry::new::<$system, _>($about, $q, $v, $h)),+],
+                entries: || {
+                    use $crate::declared::{Declared, WithRule as _, WithoutRule as _};
+                    vec![$((&&Declared::<$system>::new()).entry($about, $q, $v, $h)),+]
+                },
             })
         }
     };

@@ -5,16 +5,16 @@
 //! files, so that tools can show how a system is declared.
 //!
 //! ```
-//! use vi_core::{FixedStep, Starts, State};
+//! use vi_core::prelude::*;
 //! use vi_systems::Kepler;
 //!
 //! let planet = Kepler::default();
-//! let start = State::at(&planet, 0.0, [0.4, 0.0], [0.0, 2.0]);
-//! let energy = start.energy(&planet)?;
-//! for state in planet.at_state(start).integrate(FixedStep, 0.005)?.take(1000) {
+//! let start = planet.at(0.0, [0.4, 0.0], [0.0, 2.0]);
+//! let energy = start.state.energy(&planet)?;
+//! for state in start.integrate(FixedStep, 0.005)?.take(1000) {
 //!     assert!((state?.energy(&planet)? - energy).abs() < 1e-3);
 //! }
-//! # Ok::<(), vi_core::StepError>(())
+//! # Ok::<(), StepError>(())
 //! ```
 
 mod charged_particle;

@@ -1,12 +1,11 @@
 //! Every generated derivative against dual numbers.
 //!
 //! ```text
-//! p = ∂L/∂v      E = v·p − L      d/dt ∂L/∂v = L_q + f      D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)
-//! A = ∂r/∂v      ∂r/∂q0      ∂(p1 − p0)/∂q0      ∂(p1 − p0)/∂v
+//! p = ∂L/∂v      E = v·p − L      d/dt ∂L/∂v = L_q + f      dE/dt = f·v − L_t
 //! ∂L_v/∂q        ∂L_v/∂v = M      ∂(L_q + f)/∂q      ∂(L_q + f)/∂v
 //! ```
 //!
-//! Left: what the system says. Right: L, and the residual r and the increment p1 − p0 of a step, differentiated operation by operation.
+//! Left: what the system says. Right: L, and what the system evaluates at a point, differentiated operation by operation.
 //! Rounding: both sides are evaluated in numbers that carry the bound of theirs (`bounded`), and may differ by the sum of
 //! the two bounds. h is that of the samples, a part of the system's own time scale: the place's h does not enter.
 
@@ -14,14 +13,12 @@ use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
-use super::subject::{Checked, Place};
+use super::subject::{MotionChecked, Place};
 use crate::collocation::Collocation;
 use crate::lagrangian::Lagrangian;
 use crate::linear::Matrix;
-use crate::node::Node;
 use crate::real::dual::Dual;
 use crate::real::dual::{along, lift, slopes, unit};
-use crate::stepping::FixedStepping;
 use nalgebra::{SMatrix, SVector};
 use std::array;
 
@@ -29,18 +26,17 @@ use std::array;
 pub(super) type First = Dual<Bounded>;
 type Second = Dual<First>;
 
-/// Momentum, energy, acceleration, step density, and how the equations at a point and those of a fixed step change, against dual numbers.
+/// Momentum, energy, acceleration, the equations at a point and how they change, against dual numbers.
 ///
 /// # Errors
-/// The first number that differs; [`CheckFailure::Vacuous`] where momentum, energy, the mass matrix or the Jacobian is zero throughout.
-pub fn derivatives<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
+/// The first number that differs; [`CheckFailure::Vacuous`] if momentum, energy or the mass matrix is zero throughout.
+pub fn derivatives<const N: usize, S: MotionChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "derivatives");
     for sample in samples(system, place, &check)? {
         continuous(&sample, &mut check)?;
         point(&sample, &mut check)?;
-        step(&sample, &mut check)?;
     }
-    check.finish(&["momentum", "energy", "mass", "jacobian"])
+    check.finish(&["momentum", "energy", "mass"])
 }
 
 /// `∂L/∂q`, its rate and that of `∂L/∂t` along the motion (1, v, a), by second-order dual numbers.
@@ -63,12 +59,12 @@ fn gradient_and_rates<const N: usize>(
     (each.map(|entry| entry.value), slopes(&each), derivative(one, &SVector::zeros()).slope)
 }
 
-fn continuous<const N: usize, S: Checked<N>>(
+fn continuous<const N: usize, S: MotionChecked<N>>(
     sample: &Sample<S, N>,
     check: &mut Comparison,
 ) -> Result<(), CheckFailure> {
     let Sample { system, t, q, v, .. } = sample;
-    let (bounded, dual, second) = (system.steps::<Bounded>(), system.steps::<First>(), system.steps::<Second>());
+    let (bounded, dual, second) = (system.convert::<Bounded>(), system.convert::<First>(), system.convert::<Second>());
     let (time, place, velocity) = (Bounded::exact(*t), exact(q), exact(v));
     let momentum =
         SVector::from_fn(|i, _| dual.lagrangian(Dual::fixed(time), &lift(&place), &along(&velocity, &unit(i))).slope);
@@ -81,13 +77,34 @@ fn continuous<const N: usize, S: Checked<N>>(
     let bound = bounded.acceleration(time, &place, &velocity).map_err(|error| check.step(error))?;
     let a = vector_of(&a, &bound);
     let rate = slopes(&dual.momentum(Dual::variable(time), &along(&place, &velocity), &along(&velocity, &a)));
-    let (gradient, gradient_rate, time_rate) = gradient_and_rates(&second, *t, [&place, &velocity, &a]);
+    let (gradient, _, _) = gradient_and_rates(&second, *t, [&place, &velocity, &a]);
     let applied = gradient + bounded.force(time, &place, &velocity);
     check.vector("rate of the momentum", &rate, &applied)?;
-    let density = a.dot(&applied) - velocity.dot(&gradient_rate) - time_rate;
-    let found = system.step_density(*t, q, v).map_err(|error| check.step(error))?;
-    let bound = bounded.step_density(time, &place, &velocity).map_err(|error| check.step(error))?;
-    check.number("step density", bound.of(found), density)
+    // What Gauss steps evaluate at a point says the same.
+    let (point, bounds) = (system.point(*t, q, v), bounded.point(time, &place, &velocity));
+    check.vector("momentum at a point", &vector_of(&point.momentum, &bounds.momentum), &momentum)?;
+    check.vector("force at a point", &vector_of(&point.force, &bounds.force), &applied)?;
+    let by_v = array::from_fn(|j| dual.momentum(Dual::fixed(time), &lift(&place), &along(&velocity, &unit(j))));
+    matrix(check, "mass at a point", (&point.mass, &bounds.mass), &columns(&by_v, |momentum| *momentum))?;
+    let power = bounded.force(time, &place, &velocity).dot(&velocity)
+        - dual.lagrangian(Dual::variable(time), &lift(&place), &lift(&velocity)).slope;
+    check.number("power", bounded.power(time, &place, &velocity).of(system.power(*t, q, v)), power)
+}
+
+/// The step density D, from L and the acceleration.
+pub(super) fn density<const N: usize, S: MotionChecked<N>>(
+    sample: &Sample<S, N>,
+    check: &Comparison,
+) -> Result<Bounded, CheckFailure> {
+    let Sample { system, t, q, v, .. } = sample;
+    let (bounded, second) = (system.convert::<Bounded>(), system.convert::<Second>());
+    let (time, place, velocity) = (Bounded::exact(*t), exact(q), exact(v));
+    let a = system.acceleration(*t, q, v).map_err(|error| check.step(error))?;
+    let bound = bounded.acceleration(time, &place, &velocity).map_err(|error| check.step(error))?;
+    let a = vector_of(&a, &bound);
+    let (gradient, gradient_rate, time_rate) = gradient_and_rates(&second, *t, [&place, &velocity, &a]);
+    let applied = gradient + bounded.force(time, &place, &velocity);
+    Ok(a.dot(&applied) - velocity.dot(&gradient_rate) - time_rate)
 }
 
 /// How fast each entry of a vector changes in each direction: a column a direction.
@@ -112,11 +129,14 @@ pub(super) fn matrix<const N: usize>(
     })
 }
 
-fn point<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
+fn point<const N: usize, S: MotionChecked<N>>(
+    sample: &Sample<S, N>,
+    check: &mut Comparison,
+) -> Result<(), CheckFailure> {
     let Sample { system, t, q, v, .. } = sample;
-    let (bounded, dual) = (system.steps::<Bounded>(), system.steps::<First>());
+    let (bounded, dual) = (system.convert::<Bounded>(), system.convert::<First>());
     let (time, place, velocity) = (Bounded::exact(*t), exact(q), exact(v));
-    let found = system.steps::<f64>().point_derivatives(*t, q, v);
+    let found = system.convert::<f64>().point_derivatives(*t, q, v);
     let again = bounded.point_derivatives(time, &place, &velocity);
     let at = |q: &SVector<First, N>, v: &SVector<First, N>| dual.point(Dual::fixed(time), q, v);
     let by_q = array::from_fn(|j| at(&along(&place, &unit(j)), &lift(&velocity)));
@@ -127,35 +147,6 @@ fn point<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Compa
     matrix(check, "mass", (&found.mass, &again.mass), &mass)?;
     matrix(check, "force_dq", (&found.force_dq, &again.force_dq), &force_dq)?;
     matrix(check, "force_dv", (&found.force_dv, &again.force_dv), &force_dv)
-}
-
-fn step<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
-    let Sample { system, v, h, .. } = sample;
-    let (node, bounded, dual) = (sample.node(), system.steps::<Bounded>(), system.steps::<First>());
-    let known = node.map(Bounded::exact);
-    let lifted = known.map(Dual::fixed);
-    let (step, velocity) = (Bounded::exact(*h), exact(v));
-    let after = |q: SVector<First, N>, v: &SVector<First, N>| {
-        dual.momentum_residual(&Node { q, ..lifted }, Dual::fixed(step), v)
-    };
-    let by_q = array::from_fn(|j| after(along(&known.q, &unit(j)), &lift(&velocity)));
-    let by_v = array::from_fn(|j| after(lifted.q, &along(&velocity, &unit(j))));
-    let [residual_dq, residual_dv] = [&by_q, &by_v].map(|by| columns(by, |row| row.residual));
-    let [increment_dq, increment_dv] = [&by_q, &by_v].map(|by| columns(by, |row| row.increment));
-
-    let equation = system.momentum_equation(&node, *h, v);
-    let again = bounded.momentum_equation(&known, step, &velocity);
-    matrix(check, "jacobian", (&equation.jacobian, &again.jacobian), &residual_dv)?;
-    let rounding = system.momentum_rounding(&node, *h, v);
-    let mut rows = equation.residual.iter().zip(rounding.iter());
-    rows.try_for_each(|(residual, rounding)| enough(*residual, *rounding, check))?;
-
-    let found = system.momentum_derivatives(&node, *h, v);
-    let again = bounded.momentum_derivatives(&known, step, &velocity);
-    matrix(check, "residual_dq", (&found.residual_dq, &again.residual_dq), &residual_dq)?;
-    matrix(check, "residual_dv", (&found.residual_dv, &again.residual_dv), &residual_dv)?;
-    matrix(check, "increment_dq", (&found.increment_dq, &again.increment_dq), &increment_dq)?;
-    matrix(check, "increment_dv", (&found.increment_dv, &again.increment_dv), &increment_dv)
 }
 
 /// A row is a sum that loses at least half an ulp of itself.

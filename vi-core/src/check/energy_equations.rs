@@ -10,9 +10,9 @@
 
 use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
-use super::derivatives::{First, columns, enough, matrix};
+use super::derivatives::{First, columns, density, enough, matrix};
 use super::report::{CheckFailure, Report};
-use super::sample::{Sample, samples};
+use super::sample::{Sample, step_samples};
 use super::steps::ends;
 use super::subject::{EnergyChecked, Place};
 use crate::discrete::DiscreteLagrangian;
@@ -22,7 +22,7 @@ use crate::stepping::{EnergyStepping, ExtendedResidual, FixedStepping};
 use nalgebra::SVector;
 use std::array;
 
-/// The energy row of a step and its increments against the slots, its derivatives against dual numbers, its momentum rows against
+/// The step density against dual numbers, the energy row of a step and its increments against the slots, its derivatives against dual numbers, its momentum rows against
 /// those of a fixed step.
 ///
 /// # Errors
@@ -32,11 +32,25 @@ pub fn energy_equations<const N: usize, S: EnergyChecked<N>>(
     place: &Place<N>,
 ) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "energy equations");
-    for sample in samples(system, place, &check)? {
+    for sample in step_samples(system, place, &check)? {
         rows(&sample, &mut check)?;
         derivatives(&sample, &mut check)?;
+        step_density(&sample, &mut check)?;
     }
     check.finish(&["energy residual", "momentum rows"])
+}
+
+/// The step density against that of L and the acceleration.
+fn step_density<const N: usize, S: EnergyChecked<N>>(
+    sample: &Sample<S, N>,
+    check: &mut Comparison,
+) -> Result<(), CheckFailure> {
+    let Sample { system, t, q, v, .. } = sample;
+    let (found, bounded) = (system.step_density(*t, q, v), system.steps::<Bounded>());
+    let bound = bounded.step_density(Bounded::exact(*t), &exact(q), &exact(v));
+    let [found, bound] = [found.map(Bounded::exact), bound].map(|number| number.map_err(|error| check.step(error)));
+    let wanted = density(sample, check)?;
+    check.number("step density", bound?.of(found?.value), wanted)
 }
 
 fn rows<const N: usize, S: EnergyChecked<N>>(

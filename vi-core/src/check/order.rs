@@ -19,10 +19,11 @@ use super::ladder::{Law, Measured};
 use super::motion::Motion;
 use super::report::{CheckFailure, Report};
 use super::sample::Course;
-use super::subject::{Checked, Place, STEPS};
+use super::subject::{Checked, MotionChecked, Place, STEPS};
 use crate::error::StepError;
-use crate::method::FixedStep;
-use crate::run::Starts;
+use crate::lagrangian::Lagrangian;
+use crate::method::{FixedStep, Method};
+use crate::run::{Run, Starts};
 use crate::state::State;
 use nalgebra::SVector;
 
@@ -39,7 +40,18 @@ const BOUND: f64 = 4.0;
 /// where nothing accelerates; a step that is not taken.
 pub fn order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, order: u32) -> Result<Report, CheckFailure> {
     let check = Comparison::new(S::NAME, "order");
-    let course = Course::from(system, place, &check)?;
+    judged(&check, system, place, order, |start, h| system.at_state(start).integrate(FixedStep, h))
+}
+
+/// The same for the runs that `begin` makes from a state with a step.
+pub(super) fn judged<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
+    check: &Comparison,
+    system: &S,
+    place: &Place<N>,
+    order: u32,
+    begin: impl Fn(State<N>, f64) -> Result<Run<M, Y, N>, StepError>,
+) -> Result<Report, CheckFailure> {
+    let course = Course::from(system, place, check)?;
     if !course.accelerates() {
         return Err(check.vacuous("nothing accelerates, and steps of any rule are exact; choose another place"));
     }
@@ -52,13 +64,13 @@ pub fn order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, order:
         Ok([path?, other?])
     };
     let measure = |[path, other]: &[Path<N>; 2], halvings: u32| {
-        let errors = [path.errors(system, halvings), other.errors(system, halvings)];
+        let errors = [path.errors(system, halvings, &begin), other.errors(system, halvings, &begin)];
         let [errors, again] = errors.map(|errors| errors.map_err(|error| check.step(error)));
         Ok(measured(&path.size(), &errors?, &again?))
     };
     let quantities = S::COORDINATES.map(|name| format!("the error of `{name}`")).to_vec();
     let law = Law { name: "the order", quantities, slope: f64::from(order), every: false };
-    law.judge(&check, [place.h, course.h], paths, measure)
+    law.judge(check, [place.h, course.h], paths, measure)
 }
 
 /// The error of each coordinate, and its rounding, from the errors along two runs.
@@ -95,7 +107,7 @@ struct Path<const N: usize> {
 
 impl<const N: usize> Path<N> {
     /// The motion over [`STEPS`] steps h, each followed in so many parts.
-    fn from<S: Checked<N>>(system: &S, start: Motion<N>, h: f64, parts: u32) -> Result<Self, StepError> {
+    fn from<S: MotionChecked<N>>(system: &S, start: Motion<N>, h: f64, parts: u32) -> Result<Self, StepError> {
         let mut states = vec![start];
         let mut now = start;
         for index in 1..=STEPS * parts {
@@ -113,12 +125,17 @@ impl<const N: usize> Path<N> {
         self.states.iter().fold(SVector::zeros(), |largest, state| largest.sup(&size(state)))
     }
 
-    /// What fixed steps of the length h, so many times halved, are off by along the motion.
-    fn errors<S: Checked<N>>(&self, system: &S, halvings: u32) -> Result<Vec<SVector<f64, N>>, StepError> {
+    /// What steps of the length h, so many times halved, are off by along the motion.
+    fn errors<S: MotionChecked<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
+        &self,
+        system: &S,
+        halvings: u32,
+        begin: impl Fn(State<N>, f64) -> Result<Run<M, Y, N>, StepError>,
+    ) -> Result<Vec<SVector<f64, N>>, StepError> {
         let parts = 1_u32 << halvings;
         let Some((first, others)) = self.states.split_first() else { return Ok(vec![]) };
         let start = State::at(system, first.t, first.q, first.v);
-        let mut run = system.at_state(start).integrate(FixedStep, self.h / f64::from(parts))?;
+        let mut run = begin(start, self.h / f64::from(parts))?;
         let error = |state: &Motion<N>| {
             let mut reached = run.step()?;
             for _ in 1..parts {

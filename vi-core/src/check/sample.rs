@@ -8,7 +8,7 @@
 use super::comparison::Comparison;
 use super::motion::Motion;
 use super::report::CheckFailure;
-use super::subject::{Checked, Place, STEPS};
+use super::subject::{Checked, MotionChecked, Place, STEPS};
 use crate::error::StepError;
 use crate::linear::Matrix;
 use crate::node::Node;
@@ -57,7 +57,11 @@ impl<const N: usize> Course<N> {
     ///
     /// # Errors
     /// A motion that cannot be followed over the place's own steps; [`CheckFailure::Vacuous`] where nothing moves.
-    pub(super) fn from<S: Checked<N>>(system: &S, place: &Place<N>, check: &Comparison) -> Result<Self, CheckFailure> {
+    pub(super) fn from<S: MotionChecked<N>>(
+        system: &S,
+        place: &Place<N>,
+        check: &Comparison,
+    ) -> Result<Self, CheckFailure> {
         let resolution = f64::EPSILON * place.t.abs();
         if place.h < LOST * resolution {
             let why = format!("t = {:.0e} is rounded by {resolution:.0e}", place.t);
@@ -81,7 +85,12 @@ impl<const N: usize> Course<N> {
     }
 
     /// The motion over [`STEPS`] steps h, given up where it takes more trial steps from one state to the next.
-    pub(super) fn over<S: Checked<N>>(system: &S, place: &Place<N>, h: f64, trials: u32) -> Result<Self, StepError> {
+    pub(super) fn over<S: MotionChecked<N>>(
+        system: &S,
+        place: &Place<N>,
+        h: f64,
+        trials: u32,
+    ) -> Result<Self, StepError> {
         let mut now = Motion { t: place.t, q: place.q, v: place.v };
         let mut states = vec![now];
         for index in 1..SAMPLES {
@@ -93,7 +102,7 @@ impl<const N: usize> Course<N> {
     }
 
     /// Whether a coordinate has gone through a good part of a turn, were its acceleration `−ω² q` but for a constant.
-    fn has_turned<S: Checked<N>>(&self, system: &S) -> Result<bool, StepError> {
+    fn has_turned<S: MotionChecked<N>>(&self, system: &S) -> Result<bool, StepError> {
         let accelerations = self.states.iter().map(|state| system.acceleration(state.t, &state.q, &state.v));
         let accelerations: Vec<_> = accelerations.collect::<Result<_, _>>()?;
         let (acceleration, distance) = (range(accelerations.into_iter()), self.range(|state| state.q));
@@ -113,10 +122,9 @@ impl<const N: usize> Course<N> {
 
     /// Distances for each coordinate and velocity, none zero: how far they move, or, where they hardly do, as far as makes
     /// a part of the same kinetic energy.
-    fn extent<S: Checked<N>>(&self, system: &S) -> [SVector<f64, N>; 2] {
+    fn extent<S: MotionChecked<N>>(&self, system: &S) -> [SVector<f64, N>; 2] {
         let Some(first) = self.states.first() else { return [SVector::zeros(); 2] };
-        let node = Node::new(State::at(system, first.t, first.q, first.v), 0.0);
-        let mass = system.momentum_equation(&node, 0.0, &first.v).jacobian.dense();
+        let mass = system.point(first.t, &first.q, &first.v).mass.dense();
         let weights = SVector::<f64, N>::from_fn(|row, _| match mass[(row, row)].abs().sqrt() {
             weight if weight > 0.0 => weight,
             _ => mass.row(row).amax().sqrt(),
@@ -131,8 +139,8 @@ impl<const N: usize> Course<N> {
         [positive(q, q), positive(v, speeds(first))]
     }
 
-    /// The samples about this motion.
-    pub(super) fn samples<S: Checked<N>>(&self, system: &S) -> Vec<Sample<S, N>> {
+    /// The samples about this motion, each where the system is defined.
+    fn samples<S: MotionChecked<N>>(&self, system: &S, is_defined: fn(&Sample<S, N>) -> bool) -> Vec<Sample<S, N>> {
         let extent = self.extent(system);
         let mut draw = Sequence(7);
         let sample = |state: &Motion<N>| {
@@ -141,7 +149,7 @@ impl<const N: usize> Course<N> {
             for _ in 0..RETREATS {
                 draw = drawn;
                 let sample = beside(system, state, self.h, &extent, part, &mut draw);
-                if sample.has_values() {
+                if is_defined(&sample) {
                     return sample;
                 }
                 part /= 2.0;
@@ -156,12 +164,24 @@ impl<const N: usize> Course<N> {
 ///
 /// # Errors
 /// Those of [`Course::from`].
-pub(super) fn samples<const N: usize, S: Checked<N>>(
+pub(super) fn samples<const N: usize, S: MotionChecked<N>>(
     system: &S,
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    Ok(Course::from(system, place, check)?.samples(system))
+    Ok(Course::from(system, place, check)?.samples(system, Sample::has_values))
+}
+
+/// The same samples, where a step from each has values too.
+///
+/// # Errors
+/// Those of [`Course::from`].
+pub(super) fn step_samples<const N: usize, S: Checked<N>>(
+    system: &S,
+    place: &Place<N>,
+    check: &Comparison,
+) -> Result<Vec<Sample<S, N>>, CheckFailure> {
+    Ok(Course::from(system, place, check)?.samples(system, Sample::has_step))
 }
 
 /// The largest distances from the first of these vectors, entry by entry.
@@ -171,7 +191,7 @@ fn range<const N: usize>(mut vectors: impl Iterator<Item = SVector<f64, N>>) -> 
 }
 
 /// The sample beside a state: part 1 of the way is as far as it may be, part 0 is the state itself.
-fn beside<const N: usize, S: Checked<N>>(
+fn beside<const N: usize, S: MotionChecked<N>>(
     system: &S,
     state: &Motion<N>,
     h: f64,
@@ -190,7 +210,7 @@ fn beside<const N: usize, S: Checked<N>>(
     Sample { system: varied, t: state.t, q, v, h }
 }
 
-impl<S: Checked<N>, const N: usize> Sample<S, N> {
+impl<S: MotionChecked<N>, const N: usize> Sample<S, N> {
     /// The interval that begins here, with the velocity of the sample.
     pub(super) fn interval(&self) -> Interval<N> {
         Interval { t0: self.t, q0: self.q, t1: self.t + self.h, q1: self.q + self.v * self.h }
@@ -209,15 +229,24 @@ impl<S: Checked<N>, const N: usize> Sample<S, N> {
         Node::new(State { t: *t, q: *q, p }, system.energy(*t, q, &(v * 0.5)))
     }
 
-    /// Whether the system is defined here and over the step: an exponent, say, may allow no other value.
+    /// Whether the motion is defined here: an exponent, say, may allow no other value.
     fn has_values(&self) -> bool {
-        let Self { system, t, q, v, h } = self;
+        let Self { system, t, q, v, .. } = self;
         let Ok(acceleration) = system.acceleration(*t, q, v) else { return false };
-        let (node, interval) = (self.node(), self.interval());
-        let equation = system.momentum_equation(&node, *h, v);
-        let sums = [acceleration, system.force(*t, q, v), equation.residual].map(|vector| vector.sum());
-        let numbers = [system.lagrangian(*t, q, v), system.ld(&interval), system.discrete_energy(&node, *h, v)];
+        let sums = [acceleration, system.force(*t, q, v)].map(|vector| vector.sum());
+        let numbers = [system.lagrangian(*t, q, v)];
         sums.iter().chain(&numbers).all(|number| number.is_finite())
+    }
+}
+
+impl<S: Checked<N>, const N: usize> Sample<S, N> {
+    /// Whether the motion is defined here, and the step from here.
+    fn has_step(&self) -> bool {
+        let Self { system, v, h, .. } = self;
+        let (node, interval) = (self.node(), self.interval());
+        let residual = system.momentum_equation(&node, *h, v).residual.sum();
+        let numbers = [residual, system.ld(&interval), system.discrete_energy(&node, *h, v)];
+        self.has_values() && numbers.iter().all(|number| number.is_finite())
     }
 }
 

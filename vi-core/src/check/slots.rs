@@ -12,7 +12,7 @@ use super::bounded::{Bounded, vector_of};
 use super::comparison::Comparison;
 use super::derivatives::First;
 use super::report::{CheckFailure, Report};
-use super::sample::{Sample, samples};
+use super::sample::{Sample, step_samples};
 use super::subject::{Checked, Place};
 use crate::discrete::DiscreteLagrangian;
 use crate::lagrangian::Lagrangian;
@@ -36,7 +36,7 @@ const FALL: f64 = 0.3;
 /// throughout.
 pub fn slots<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "slots");
-    for sample in samples(system, place, &check)? {
+    for sample in step_samples(system, place, &check)? {
         by_slot(&sample, &mut check)?;
         limits(&sample, &mut check)?;
     }

@@ -19,9 +19,9 @@ use super::report::{CheckFailure, Report};
 use super::sample::Course;
 use super::subject::{EnergyChecked, Place, STEPS};
 use crate::error::StepError;
-use crate::lagrangian::Lagrangian;
 use crate::method::EnergyPreserving;
 use crate::node::Node;
+use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
 /// Slope of what falls with h².

@@ -12,17 +12,20 @@
 
 use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
+use super::derivatives::{First, columns, enough, matrix};
 use super::report::{CheckFailure, Report};
-use super::sample::{Sample, samples};
+use super::sample::{Sample, step_samples};
 use super::slots::between;
 use super::subject::{Checked, Place};
 use crate::discrete::DiscreteLagrangian;
 use crate::method::FixedStep;
 use crate::node::Node;
+use crate::real::dual::{Dual, along, lift, unit};
 use crate::run::Starts;
 use crate::state::{Interval, State};
 use crate::stepping::FixedStepping;
 use nalgebra::SVector;
+use std::array;
 
 /// Steps that are taken.
 const TAKEN: u32 = 8;
@@ -36,8 +39,9 @@ pub(super) const SOLVED: f64 = 16.0;
 /// throughout.
 pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "steps");
-    for sample in samples(system, place, &check)? {
+    for sample in step_samples(system, place, &check)? {
         equations(&sample, &mut check)?;
+        derivatives(&sample, &mut check)?;
     }
     let start = State::at(system, place.t, place.q, place.v);
     let mut run = system.at_state(start).integrate(FixedStep, place.h).map_err(|error| check.step(error))?;
@@ -54,7 +58,7 @@ pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
         let energy = system.steps::<Bounded>().discrete_energy(&known, Bounded::exact(place.h), &exact(&v));
         check.number("E1", energy.of(run.discrete_energy().unwrap_or(f64::NAN)), slots.energy_after)?;
     }
-    check.finish(&["p1", "E1", "residual", "discrete energy", "p1 - p0"])
+    check.finish(&["p1", "E1", "residual", "discrete energy", "p1 - p0", "jacobian"])
 }
 
 fn equations<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
@@ -73,6 +77,39 @@ fn equations<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut C
     check.vector("p1 - p0", &vector_of(&measured.increment, &again.increment), &wanted)?;
     let energy = bounded.discrete_energy(&known, step, &velocity).of(system.discrete_energy(&node, *h, v));
     check.number("discrete energy", energy, -bounded.d3_ld(&interval) - bounded.gd_plus(&interval))
+}
+
+/// How residual and increment change, against dual numbers.
+fn derivatives<const N: usize, S: Checked<N>>(
+    sample: &Sample<S, N>,
+    check: &mut Comparison,
+) -> Result<(), CheckFailure> {
+    let Sample { system, v, h, .. } = sample;
+    let (node, bounded, dual) = (sample.node(), system.steps::<Bounded>(), system.steps::<First>());
+    let known = node.map(Bounded::exact);
+    let lifted = known.map(Dual::fixed);
+    let (step, velocity) = (Bounded::exact(*h), exact(v));
+    let after = |q: SVector<First, N>, v: &SVector<First, N>| {
+        dual.momentum_residual(&Node { q, ..lifted }, Dual::fixed(step), v)
+    };
+    let by_q = array::from_fn(|j| after(along(&known.q, &unit(j)), &lift(&velocity)));
+    let by_v = array::from_fn(|j| after(lifted.q, &along(&velocity, &unit(j))));
+    let [residual_dq, residual_dv] = [&by_q, &by_v].map(|by| columns(by, |row| row.residual));
+    let [increment_dq, increment_dv] = [&by_q, &by_v].map(|by| columns(by, |row| row.increment));
+
+    let equation = system.momentum_equation(&node, *h, v);
+    let again = bounded.momentum_equation(&known, step, &velocity);
+    matrix(check, "jacobian", (&equation.jacobian, &again.jacobian), &residual_dv)?;
+    let rounding = system.momentum_rounding(&node, *h, v);
+    let mut rows = equation.residual.iter().zip(rounding.iter());
+    rows.try_for_each(|(residual, rounding)| enough(*residual, *rounding, check))?;
+
+    let found = system.momentum_derivatives(&node, *h, v);
+    let again = bounded.momentum_derivatives(&known, step, &velocity);
+    matrix(check, "residual_dq", (&found.residual_dq, &again.residual_dq), &residual_dq)?;
+    matrix(check, "residual_dv", (&found.residual_dv, &again.residual_dv), &residual_dv)?;
+    matrix(check, "increment_dq", (&found.increment_dq, &again.increment_dq), &increment_dq)?;
+    matrix(check, "increment_dv", (&found.increment_dv, &again.increment_dv), &increment_dv)
 }
 
 /// The interval of the step `(v, h)` from a node.

@@ -1,9 +1,10 @@
 //! What is checked: a system in any kind of number, and a place where it is well behaved.
 
 use super::bounded::Bounded;
+use crate::collocation::Collocation;
 use crate::lagrangian::Parameters;
 use crate::real::dual::Dual;
-use crate::stepping::{Discretized, EnergyStepping};
+use crate::stepping::{Convertible, Discretized, EnergyStepping};
 use nalgebra::SVector;
 
 /// Steps of the place's length over which the motion from there is followed.
@@ -24,15 +25,20 @@ pub struct Place<const N: usize> {
     pub h: f64,
 }
 
-/// A system that can be checked, as every generated one can.
-pub trait Checked<const N: usize>: Discretized<N> + Parameters {}
+/// A system whose motion can be checked, as that of every generated one can.
+pub trait MotionChecked<const N: usize>: Collocation<N> + Convertible<N> + Parameters {}
 
-impl<const N: usize, S: Discretized<N> + Parameters> Checked<N> for S {}
+impl<const N: usize, S: Collocation<N> + Convertible<N> + Parameters> MotionChecked<N> for S {}
+
+/// A system whose fixed steps can be checked, as those of every generated one with a rule can.
+pub trait Checked<const N: usize>: MotionChecked<N> + Discretized<N> {}
+
+impl<const N: usize, S: MotionChecked<N> + Discretized<N>> Checked<N> for S {}
 
 /// Such a system with energy-preserving steps. Rust 1.89 takes one bound on `Steps` for each number, not two in one.
 pub trait EnergyChecked<const N: usize>:
     EnergyStepping<N>
-    + Parameters
+    + MotionChecked<N>
     + Discretized<N, Steps<Bounded>: EnergyStepping<N, Bounded>>
     + Discretized<N, Steps<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
 {
@@ -40,7 +46,7 @@ pub trait EnergyChecked<const N: usize>:
 
 impl<const N: usize, S> EnergyChecked<N> for S where
     S: EnergyStepping<N>
-        + Parameters
+        + MotionChecked<N>
         + Discretized<N, Steps<Bounded>: EnergyStepping<N, Bounded>>
         + Discretized<N, Steps<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
 {

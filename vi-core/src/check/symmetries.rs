@@ -14,13 +14,15 @@ use super::bounded::{Bounded, exact};
 use super::comparison::Comparison;
 use super::derivatives::First;
 use super::report::{CheckFailure, Report};
-use super::sample::{Sample, samples};
-use super::subject::{Checked, Place, STEPS};
-use crate::method::FixedStep;
+use super::sample::{Sample, step_samples};
+use super::subject::{Checked, MotionChecked, Place, STEPS};
+use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::method::{FixedStep, Method};
 use crate::node::Node;
 use crate::real::dual::Dual;
 use crate::real::dual::{along, lift, slopes, unit};
-use crate::run::Starts;
+use crate::run::{Run, Starts};
 use crate::state::State;
 use crate::stepping::FixedStepping;
 use nalgebra::SVector;
@@ -32,12 +34,33 @@ use nalgebra::SVector;
 /// [`CheckFailure::Vacuous`] where such a momentum is zero or its coordinate stands still.
 pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "momenta");
+    kept(&mut check, system, place, |start, h| system.at_state(start).integrate(FixedStep, h))?;
+    // What a momentum of moderate size would round away.
+    for Sample { system, t, q, v, h } in step_samples(system, place, &check)? {
+        let gain = system.momentum_residual(&Node::new(State::at(&system, t, q, v), 0.0), h, &v).increment;
+        for index in (0..N).filter(|index| S::CYCLIC[*index]) {
+            check.number(S::COORDINATES[index], Bounded::exact(gain[index]), Bounded::exact(0.0))?;
+        }
+    }
+    check.finish(&[])
+}
+
+/// Momenta of cyclic coordinates keep every bit over the run that `begin` makes from a state with a step.
+///
+/// # Errors
+/// Those of [`momenta`].
+pub(super) fn kept<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
+    check: &mut Comparison,
+    system: &S,
+    place: &Place<N>,
+    begin: impl Fn(State<N>, f64) -> Result<Run<M, Y, N>, StepError>,
+) -> Result<(), CheckFailure> {
     if !S::CYCLIC.contains(&true) {
         return Err(check.not_applicable("no coordinate is cyclic"));
     }
     let cyclic = || (0..N).filter(|index| S::CYCLIC[*index]);
     let start = State::at(system, place.t, place.q, place.v);
-    let mut run = system.at_state(start).integrate(FixedStep, place.h).map_err(|error| check.step(error))?;
+    let mut run = begin(start, place.h).map_err(|error| check.step(error))?;
     for _ in 0..STEPS {
         let state = run.step().map_err(|error| check.step(error))?;
         for index in cyclic() {
@@ -54,14 +77,7 @@ pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> R
             return Err(check.vacuous(why));
         }
     }
-    // What a momentum of moderate size would round away.
-    for Sample { system, t, q, v, h } in samples(system, place, &check)? {
-        let gain = system.momentum_residual(&Node::new(State::at(&system, t, q, v), 0.0), h, &v).increment;
-        for index in cyclic() {
-            check.number(S::COORDINATES[index], Bounded::exact(gain[index]), Bounded::exact(0.0))?;
-        }
-    }
-    check.finish(&[])
+    Ok(())
 }
 
 /// The fixed step −h leads back the way that the fixed step h led. For rules that are symmetric in the two ends of the
@@ -71,7 +87,7 @@ pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> R
 /// A number that differs; [`CheckFailure::Vacuous`] where nothing moves, or no momentum changes.
 pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "reversibility");
-    for sample in samples(system, place, &check)? {
+    for sample in step_samples(system, place, &check)? {
         let system = sample.system.steps::<Bounded>();
         let (h, v) = (Bounded::exact(sample.h), exact(&sample.v));
         let start = bare(&sample).map(Bounded::exact);
@@ -95,19 +111,27 @@ pub fn symplecticity<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>
     if S::FORCED {
         return Err(check.not_applicable("a force does not keep the symplectic form"));
     }
-    for sample in samples(system, place, &check)? {
-        let columns: Vec<_> = (0..2 * N).map(|column| Column::of(&sample, column)).collect();
-        for (index, one) in columns.iter().enumerate() {
-            for other in columns.iter().skip(index + 1) {
-                check.number(
-                    "area of two columns",
-                    area(&one.after, &other.after),
-                    area(&one.before, &other.before),
-                )?;
-            }
+    for sample in step_samples(system, place, &check)? {
+        keeps_area(&mut check, |column| Column::at(column, &sample.q, &sample.v, |q, v| ends(&sample, q, v)))?;
+    }
+    check.finish(&[AREA])
+}
+
+/// What [`keeps_area`] compares.
+pub(super) const AREA: &str = "area of two columns";
+
+/// The symplectic form of each two columns is the same before and after a step.
+pub(super) fn keeps_area<const N: usize>(
+    check: &mut Comparison,
+    column: impl Fn(usize) -> Column<N>,
+) -> Result<(), CheckFailure> {
+    let columns: Vec<_> = (0..2 * N).map(column).collect();
+    for (index, one) in columns.iter().enumerate() {
+        for other in columns.iter().skip(index + 1) {
+            check.number(AREA, area(&one.after, &other.after), area(&one.before, &other.before))?;
         }
     }
-    check.finish(&["area of two columns"])
+    Ok(())
 }
 
 /// The place of a sample, without a momentum: its momentum equation says which one it would need.
@@ -119,25 +143,40 @@ fn bare<const N: usize, S: Checked<N>>(sample: &Sample<S, N>) -> Node<N> {
 type Change<const N: usize> = (SVector<Bounded, N>, SVector<Bounded, N>);
 
 /// What one entry of (q0, v) changes before the step and after it.
-struct Column<const N: usize> {
+pub(super) struct Column<const N: usize> {
     before: Change<N>,
     after: Change<N>,
 }
 
 impl<const N: usize> Column<N> {
-    fn of<S: Checked<N>>(sample: &Sample<S, N>, column: usize) -> Self {
-        let system = sample.system.steps::<First>();
-        let h = Dual::fixed(Bounded::exact(sample.h));
-        let still = bare(sample).map(|number| Dual::fixed(Bounded::exact(number)));
-        let (q, v) = (exact(&sample.q), exact(&sample.v));
+    /// The column of this index, of a step from the coordinates q with the velocity v; `step` gives its displacement and the momenta at both ends.
+    pub(super) fn at(
+        column: usize,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        step: impl Fn(&SVector<First, N>, &SVector<First, N>) -> [SVector<First, N>; 3],
+    ) -> Self {
+        let (q, v) = (exact(q), exact(v));
         let direction = unit(column % N);
         let (q, v) = if column < N { (along(&q, &direction), lift(&v)) } else { (lift(&q), along(&v, &direction)) };
-        let place = Node { q, ..still };
-        let start = Node { p: system.momentum_equation(&place, h, &v).residual, ..place };
-        let gain = system.momentum_residual(&start, h, &v).increment;
-        let way = v.map(|v| v * h);
-        Self { before: (slopes(&q), slopes(&start.p)), after: (slopes(&(q + way)), slopes(&(start.p + gain))) }
+        let [way, start, end] = step(&q, &v);
+        Self { before: (slopes(&q), slopes(&start)), after: (slopes(&(q + way)), slopes(&end)) }
     }
+}
+
+/// The displacement of a fixed step of the sample from q with the velocity v, and the momenta at both ends.
+fn ends<const N: usize, S: Checked<N>>(
+    sample: &Sample<S, N>,
+    q: &SVector<First, N>,
+    v: &SVector<First, N>,
+) -> [SVector<First, N>; 3] {
+    let system = sample.system.steps::<First>();
+    let h = Dual::fixed(Bounded::exact(sample.h));
+    let still = bare(sample).map(|number| Dual::fixed(Bounded::exact(number)));
+    let place = Node { q: *q, ..still };
+    let start = Node { p: system.momentum_equation(&place, h, v).residual, ..place };
+    let gain = system.momentum_residual(&start, h, v).increment;
+    [v.map(|v| v * h), start.p, start.p + gain]
 }
 
 /// The symplectic form of two changes.

@@ -273,7 +273,7 @@ fn nested<const N: usize>(one: &Node<N, Varied<1>>, other: &Node<N, Varied<1>>) 
     }
 }
 
-impl<S, const N: usize, const K: usize> Differentiable<S, N> for Composition<K>
+impl<S, const N: usize> Differentiable<S, N> for Composition
 where
     S: Discretized<N>,
 {

@@ -35,7 +35,7 @@ pub struct Variation<const N: usize> {
     pub q: SVector<f64, N>,
     /// Of the momenta.
     pub p: SVector<f64, N>,
-    /// Of the energy that an energy-preserving run keeps; of no meaning to others. [`crate::Integrator::set_parameters`] changes it by that of `H_new − H_old`.
+    /// Of the energy that an energy-preserving run keeps; of no meaning to others. [`crate::Run::set_parameters`] changes it by that of `H_new − H_old`.
     pub energy: f64,
     /// Of the parameters, in the order of [`Lagrangian::PARAMETERS`]; those beyond the end do not change. The same all along a run.
     pub parameters: Vec<f64>,

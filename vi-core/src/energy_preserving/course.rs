@@ -4,7 +4,7 @@
 //! length, if the user allows it ([`Fallback`]). Nothing changes on the way.
 
 use super::bracket;
-use super::equations::{self, Elimination, EnergyStep, NoStep};
+use super::equations::{self, Elimination, EnergyStep, Measured, NoStep};
 use super::guess;
 use super::interval::Last;
 use super::predicted::{Predicted, Prediction};
@@ -38,9 +38,21 @@ pub struct Lengths<const N: usize, T = f64> {
     /// The fixed steps under way.
     pub(crate) phase: Option<Phase<T>>,
     pub(crate) switches: Switches<T>,
+    /// How the last step was found. Written on the cold path alone: after a step of another kind no guess is of the highest order.
+    pub(crate) kind: StepKind<T>,
 }
 
-impl<const N: usize, T: Scalar> Memory for Lengths<N, T> {}
+impl<const N: usize, T: Scalar> Memory for Lengths<N, T> {
+    fn stored(&self) -> Self {
+        let mut stored = *self;
+        // The change of v only extrapolates it: if it has overflowed, the guess does without.
+        if !stored.last.change.iter().all(|entry| entry.is_finite()) {
+            stored.last.change = SVector::zeros();
+        }
+        stored.last.measured = Measured::of(stored.last.measured.roundings());
+        stored
+    }
+}
 
 /// A run after a step.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +66,7 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
     pub(crate) fn new(last: Last<N, T>) -> Self {
         let prediction = Prediction::new(last.v, last.h);
         let (bounds, fallback, switches) = (None, Fallback::Stop, Switches::default());
-        Self { last, prediction, bounds, fallback, phase: None, switches }
+        Self { last, prediction, bounds, fallback, phase: None, switches, kind: StepKind::EnergyPreserving }
     }
 
     /// Whether the next step is the common one, from guesses of the highest order.
@@ -113,7 +125,8 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
             let mut after = After { node: *node, lengths: *self };
             after.node = node.advanced::<S>(predicted.step.h, &predicted.step.v, &predicted.increment);
             after.node.check_finite(node.t)?;
-            after.lengths.last = self.last.followed(&predicted.step, StepKind::EnergyPreserving);
+            after.lengths.last = self.last.followed(&predicted.step);
+            after.lengths.kind = StepKind::EnergyPreserving;
             after.lengths.prediction.push(&predicted);
             return Ok(after);
         }
@@ -138,7 +151,7 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
         let increment: Increment<N, T> = system.extended_residual(start, step.h, &step.v).increment;
         let node = start.advanced::<S>(step.h, &step.v, &increment);
         node.check_finite(start.t)?;
-        let mut lengths = Self { last: self.last.followed(&step, kind), ..*self };
+        let mut lengths = Self { last: self.last.followed(&step), kind, ..*self };
         match kind {
             // A given length predicts none.
             StepKind::FixedStep => lengths.prediction = Prediction::new(step.v, step.h),
@@ -268,7 +281,7 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
         if !gap.is_finite() {
             return Err(StepError::NonFinite { t, quantity: "energy", expression: None });
         }
-        let found = EnergyStep { v, h, density, iterations, residual };
+        let found = EnergyStep { v, h, density, iterations, measured: Measured::of(residual) };
         let mut after = self.after(system, start, found, StepKind::FixedStep)?;
         let density_next = after.lengths.last.density_next();
         after.lengths.phase = Some(Phase { density_next, gap, ..phase });

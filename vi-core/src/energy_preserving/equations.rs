@@ -32,7 +32,42 @@ pub(crate) struct EnergyStep<const N: usize, T> {
     pub(crate) h: T,
     pub(crate) density: T,
     pub(crate) iterations: u32,
-    pub(crate) residual: f64,
+    pub(crate) measured: Measured<N, T>,
+}
+
+/// What a step leaves of its equations, and the scales of its rows: compared only when someone asks (measured: a tenth of a step of the double well).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: crate::real::Real + serde::Serialize",
+        deserialize = "T: crate::real::Real + serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) struct Measured<const N: usize, T> {
+    pub(crate) rows: SVector<T, N>,
+    pub(crate) scales: SVector<T, N>,
+    pub(crate) energy: T,
+    pub(crate) energy_scale: T,
+}
+
+impl<const N: usize, T: Scalar> Measured<N, T> {
+    /// A residual that is known in roundings.
+    pub(crate) fn of(roundings: f64) -> Self {
+        let rows = SVector::zeros();
+        Self {
+            rows,
+            scales: SVector::repeat(T::one()),
+            energy: T::real(roundings * T::EPSILON),
+            energy_scale: T::one(),
+        }
+    }
+
+    /// The largest residual in roundings.
+    pub(crate) fn roundings(&self) -> f64 {
+        worse(worst(&self.rows, &self.scales), roundings(self.energy, self.energy_scale))
+    }
 }
 
 /// Why there is no step here.
@@ -220,5 +255,5 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         return Err(NoStep::Degenerate { h, density });
     }
     let [momentum, energy] = extended.roundings(&root.at, &root.at);
-    Ok(EnergyStep { v, h, density, iterations: root.iterations, residual: worse(momentum, energy) })
+    Ok(EnergyStep { v, h, density, iterations: root.iterations, measured: Measured::of(worse(momentum, energy)) })
 }

@@ -1,8 +1,7 @@
 //! The interval that the next step follows.
 
-use super::equations::EnergyStep;
+use super::equations::{EnergyStep, Measured};
 use crate::real::Scalar;
-use crate::state::StepKind;
 use nalgebra::SVector;
 
 /// The interval that the next step follows.
@@ -30,9 +29,8 @@ pub(crate) struct Last<const N: usize, T> {
     pub(crate) is_step: bool,
     /// Newton iterations that found it.
     pub(crate) iterations: u32,
-    /// Its largest residual, in roundings.
-    pub(crate) residual: f64,
-    pub(crate) kind: StepKind<T>,
+    /// What it left of its equations.
+    pub(crate) measured: Measured<N, T>,
 }
 
 impl<const N: usize, T: Scalar> Last<N, T> {
@@ -47,17 +45,16 @@ impl<const N: usize, T: Scalar> Last<N, T> {
             change,
             is_step: false,
             iterations: 0,
-            residual: 0.0,
-            kind: StepKind::EnergyPreserving,
+            measured: Measured::of(0.0),
         }
     }
 
     /// The interval of the next step.
     #[inline(always)]
-    pub(crate) fn followed(&self, step: &EnergyStep<N, T>, kind: StepKind<T>) -> Self {
-        let EnergyStep { v, h, density, iterations, residual } = *step;
+    pub(crate) fn followed(&self, step: &EnergyStep<N, T>) -> Self {
+        let EnergyStep { v, h, density, iterations, measured } = *step;
         let (previous, density_before, change) = (self.h, self.density, v - self.v);
-        Self { v, h, previous, density, density_before, change, is_step: true, iterations, residual, kind }
+        Self { v, h, previous, density, density_before, change, is_step: true, iterations, measured }
     }
 
     /// Change of v with time, between the middles of the last two intervals.

@@ -14,15 +14,15 @@
 //! is `4 ε E/(h² D)` of h.
 //! AFTER A STEP both residuals were measured at the (v, h) that was taken.
 
-use super::equations::{Elimination, EnergyStep, energy_residual};
+use super::equations::{Elimination, EnergyStep, Measured, energy_residual};
 use super::interval::Last;
 use crate::method::bounds::RATIO;
-use crate::newton::{FLOOR, are_at_floor, roundings, worst};
+use crate::newton::{FLOOR, are_at_floor};
 use crate::node::Node;
 use crate::predictor::Predictor;
 use crate::real::Scalar;
 use crate::stepping::{EnergyStepping, ExtendedResidual, Increment};
-use crate::vector::{Vector, VelocityStep, length_squared, worse};
+use crate::vector::{Vector, VelocityStep, length_squared};
 use nalgebra::SVector;
 
 /// Newton steps that may follow a guess.
@@ -135,7 +135,7 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
                 continue;
             }
             let at = system.extended_residual(node, trial.h, &trial.v);
-            let Some((remainder, residual)) = self.measured(node, &trial, &at) else {
+            let Some((remainder, measured)) = self.measured(node, &trial, &at) else {
                 continue;
             };
             let VelocityStep { v, h } = trial;
@@ -143,21 +143,20 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
             let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
             // At the smallest root D has the sign that it had: past a change of sign lies another root.
             let forward = density * last.density > T::zero() && !elimination.is_degenerate();
-            let step = EnergyStep { v, h, density, iterations, residual };
+            let step = EnergyStep { v, h, density, iterations, measured };
             return (in_range && forward).then_some(Predicted { step, increment: at.increment, remainder });
         }
         None
     }
 
-    /// What is left of the momentum rows with what was carried to them, and the largest residual in roundings, where every row is
-    /// at the floor.
+    /// What is left of the momentum rows with what was carried to them, and all residuals with their scales, if every row is at the floor.
     #[inline(always)]
     fn measured(
         &self,
         node: &Node<N, T>,
         trial: &VelocityStep<N, T>,
         at: &ExtendedResidual<N, T>,
-    ) -> Option<(SVector<T, N>, f64)> {
+    ) -> Option<(SVector<T, N>, Measured<N, T>)> {
         let remainder = at.residual + self.remainder;
         let is_at_floor = |rows: &SVector<T, N>, energy: T| {
             let rounding = energy * T::real(T::EPSILON);
@@ -179,7 +178,8 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
                 return None;
             }
         }
-        Some((remainder, worse(worst(&at.residual, &rows), roundings(at.energy_residual, energy))))
+        let measured = Measured { rows: at.residual, scales: rows, energy: at.energy_residual, energy_scale: energy };
+        Some((remainder, measured))
     }
 }
 

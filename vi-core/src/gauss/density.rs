@@ -8,7 +8,7 @@
 //! ```
 //!
 //! H the energy as a function of (t, q, p). The motion, and H along π, are computed as power series in τ, from the functions of a point
-//! that the steps use: D_s owes nothing to the steps. For s = 1 it is [`Lagrangian::step_density`](crate::Lagrangian::step_density).
+//! that the steps use: D_s owes nothing to the steps. For s = 1 it is `step_density` of the generated rule.
 //! `docs/theory.md` derives it.
 
 use crate::collocation::Collocation;

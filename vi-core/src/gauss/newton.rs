@@ -7,7 +7,7 @@
 //! δQ_i = h Σ_j a_ij δV_j        M δV_i + C δQ_i − h Σ_j a_ij (K δQ_j + B δV_j) = missing_i
 //! ```
 //!
-//! At each eigenvalue λ of A ([`modes`](super::modes)) these are N equations, by a matrix that is inverted once for a linearization,
+//! At each eigenvalue λ of A (`modes`) these are N equations, by a matrix that is inverted once for a linearization,
 //!
 //! ```text
 //! (M + h λ (C − B) − h² λ² K) δV = missing

@@ -1,6 +1,6 @@
 //! The solution of a step.
 //!
-//! In: a [`Start`]: a node, a length, and what the stages are guessed from. Out: a [`Step`], its stages solved by fixed-point iteration in vectors, by the instructions of
+//! In: a `Start`: a node, a length, and what the stages are guessed from. Out: a [`Step`], its stages solved by fixed-point iteration in vectors, by the instructions of
 //! the processor. If that does not solve it: the same in plain numbers, or Newton's iteration. Nothing changes. A [`Step`] was measured to leave rounding of the equations.
 
 use super::general::{General, equations};

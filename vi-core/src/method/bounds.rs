@@ -14,7 +14,7 @@
 //! Without force, fixed steps keep `E + h² D/12` to order h⁴. They leave at (h_f, D_0) and return at about the same, so
 //! that E is back; an interval with D instead of D_0 is off by `h_f² (D_0 − D)/12`, and then
 //! `H − E = h_f² (D/24 + D_0/12)` has the sign of D: the step with the energy of before exists.
-//! Near D = 0 each step is longer than the last by a growing factor; the fixed steps begin when it exceeds [`GROWTH`],
+//! Near D = 0 each step is longer than the last by a growing factor; the fixed steps begin when it exceeds `GROWTH`,
 //! about half a step before the zero, so that h_f is not the length of a last leap.
 //! AFTER A SWITCH q, p and t go on without a jump.
 

@@ -19,7 +19,7 @@ use super::{Memory, Method, Problem, Report};
 use crate::branch::Branch;
 use crate::called::Called;
 use crate::error::StepError;
-use crate::momentum::steps::{Corrector, Solved, Steps};
+use crate::momentum::steps::{Corrector, Steps};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
 use crate::run::{Hermite, Run};
@@ -27,9 +27,9 @@ use crate::state::State;
 use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
-/// A symmetric composition.
+/// A symmetric composition of fixed steps. See the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scheme {
+pub struct Composition {
     /// Its name.
     pub name: &'static str,
     /// Its order, of a symmetric rule of order 2.
@@ -38,7 +38,7 @@ pub struct Scheme {
     pub weights: &'static [f64],
 }
 
-impl Scheme {
+impl Composition {
     /// Triple jump of order 4 (Yoshida; Suzuki): the fewest substeps, the largest errors.
     pub const TRIPLE_JUMP_4: Self = Self {
         name: "triple jump 4",
@@ -99,47 +99,6 @@ impl Scheme {
     };
     /// All of them, by order and number of substeps.
     pub const ALL: [Self; 4] = [Self::TRIPLE_JUMP_4, Self::SUZUKI_4, Self::KAHAN_LI_6, Self::KAHAN_LI_8];
-}
-
-/// A symmetric composition of K fixed steps. See the [module](self).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Composition<const K: usize> {
-    /// The weights `γ_i`, whose sum is 1.
-    pub weights: [f64; K],
-}
-
-impl Composition<3> {
-    /// [`Scheme::TRIPLE_JUMP_4`].
-    pub const TRIPLE_JUMP_4: Self = Self::of(Scheme::TRIPLE_JUMP_4);
-}
-
-impl Composition<5> {
-    /// [`Scheme::SUZUKI_4`].
-    pub const SUZUKI_4: Self = Self::of(Scheme::SUZUKI_4);
-}
-
-impl Composition<9> {
-    /// [`Scheme::KAHAN_LI_6`].
-    pub const KAHAN_LI_6: Self = Self::of(Scheme::KAHAN_LI_6);
-}
-
-impl Composition<17> {
-    /// [`Scheme::KAHAN_LI_8`].
-    pub const KAHAN_LI_8: Self = Self::of(Scheme::KAHAN_LI_8);
-}
-
-impl<const K: usize> Composition<K> {
-    /// The composition with the weights of a scheme of K substeps.
-    const fn of(scheme: Scheme) -> Self {
-        assert!(scheme.weights.len() == K, "a composition has as many weights as its scheme");
-        let mut weights = [0.0; K];
-        let mut i = 0;
-        while i < K {
-            weights[i] = scheme.weights[i];
-            i += 1;
-        }
-        Self { weights }
-    }
 
     /// Lengths of the substeps of a step of the length h.
     fn lengths<T: Real>(&self, h: T) -> impl Iterator<Item = T> + '_ {
@@ -158,22 +117,24 @@ pub struct Substeps<const N: usize, T = f64>(pub(crate) Vec<Steps<N, T>>);
 
 impl<const N: usize, T: Scalar> Memory for Substeps<N, T> {}
 
-/// A step that was found: the node at its end, and its substeps.
+/// A step that was found.
 #[derive(Clone, Debug)]
-pub struct Found<const N: usize, const K: usize, T = f64> {
+pub struct Found<const N: usize, T = f64> {
     after: Node<N, T>,
-    substeps: [Option<Solved<N, T>>; K],
+    /// The substeps after it.
+    substeps: Vec<Steps<N, T>>,
 }
 
-impl<S, const N: usize, const K: usize, T> Method<S, N, T> for Composition<K>
+impl<S, const N: usize, T> Method<S, N, T> for Composition
 where
     S: FixedStepping<N, T>,
     T: Scalar,
 {
     type Prepared = Vec<Corrector<S::Jacobian, N, T>>;
     type Memory = Substeps<N, T>;
-    type Cache = ();
-    type Step = Found<N, K, T>;
+    /// The substeps before the last step: the next one is written there.
+    type Cache = Vec<Steps<N, T>>;
+    type Step = Found<N, T>;
     type Left = StepError;
     type DenseOutput = Hermite<N, T>;
 
@@ -193,21 +154,19 @@ where
     fn attempt(
         &self,
         at: Problem<'_, S, Self::Prepared, N, T>,
-        Substeps(substeps): &Substeps<N, T>,
+        memory: &Substeps<N, T>,
+        cache: &mut Self::Cache,
     ) -> Result<Self::Step, StepError> {
         let Problem { system, prepared, node, .. } = at;
         let mut after = *node;
-        let mut found = [const { None }; K];
+        let mut substeps = core::mem::take(cache);
+        substeps.clone_from(&memory.0);
         let mut last = None;
-        for ((substep, corrector), found) in substeps.iter().zip(prepared).zip(&mut found) {
-            let first;
-            let substep = match last {
-                Some(v) if substep.is_new() => {
-                    first = followed(substep, v);
-                    &first
-                }
-                _ => substep,
-            };
+        for (substep, corrector) in substeps.iter_mut().zip(prepared) {
+            // Before the first step the velocities of the substeps are not known: each follows the one before.
+            if let Some(v) = last.filter(|_| substep.is_new()) {
+                *substep = Steps::new(substep.h, v);
+            }
             let h = substep.h;
             let solved = match substep.corrected(system, &after, corrector, substep.guess()) {
                 Some(solved) => solved,
@@ -217,32 +176,31 @@ where
             };
             after.advance(h, &solved.v, &solved.increment);
             after.check_finite(node.t)?;
+            substep.push(&solved);
             last = Some(solved.v);
-            *found = Some(solved);
         }
-        Ok(Found { after, substeps: found })
+        Ok(Found { after, substeps })
     }
 
     fn recover(
         &self,
         _at: Problem<'_, S, Self::Prepared, N, T>,
         _memory: &Substeps<N, T>,
-        (): &mut (),
+        _cache: &mut Self::Cache,
         left: StepError,
     ) -> Result<Self::Step, StepError> {
         Err(left)
     }
 
-    fn take(&self, _h: T, node: &mut Node<N, T>, memory: &mut Substeps<N, T>, step: &Self::Step) {
+    fn take(
+        &self,
+        _h: T,
+        (node, memory): (&mut Node<N, T>, &mut Substeps<N, T>),
+        cache: &mut Self::Cache,
+        step: Self::Step,
+    ) {
         *node = step.after;
-        let mut last = None;
-        for (substep, solved) in memory.0.iter_mut().zip(step.substeps.iter().flatten()) {
-            if let Some(v) = last.filter(|_| substep.is_new()) {
-                *substep = followed(substep, v);
-            }
-            substep.push(solved);
-            last = Some(solved.v);
-        }
+        *cache = core::mem::replace(&mut memory.0, step.substeps);
     }
 
     fn with_length(
@@ -296,12 +254,7 @@ where
     }
 }
 
-/// A substep of the first step: its velocity is guessed from the substep before, since there is no step before.
-fn followed<const N: usize, T: Scalar>(substep: &Steps<N, T>, v: SVector<T, N>) -> Steps<N, T> {
-    Steps::new(substep.h, v)
-}
-
-impl<S, const N: usize, const K: usize, T> Run<Composition<K>, S, N, T>
+impl<S, const N: usize, T> Run<Composition, S, N, T>
 where
     S: FixedStepping<N, T>,
     T: Scalar,

@@ -24,7 +24,7 @@ use crate::error::StepError;
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::run::{Hermite, Run};
-use crate::state::{Numbers, State, Step, StepKind};
+use crate::state::{Numbers, State, Step};
 use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
@@ -69,7 +69,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     #[inline(always)]
-    fn attempt(&self, at: Problem<'_, S, (), N, T>, memory: &Lengths<N, T>) -> Result<Found<N, T>, ()> {
+    fn attempt(&self, at: Problem<'_, S, (), N, T>, memory: &Lengths<N, T>, (): &mut ()) -> Result<Found<N, T>, ()> {
         let Problem { system, node, .. } = at;
         if memory.is_common()
             && let Some(predicted) = memory.predicted(system, node, memory.prediction.guess_highest())
@@ -92,12 +92,12 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     #[inline(always)]
-    fn take(&self, _h: T, node: &mut Node<N, T>, memory: &mut Lengths<N, T>, step: &Found<N, T>) {
-        match step {
+    fn take(&self, _h: T, (node, memory): (&mut Node<N, T>, &mut Lengths<N, T>), (): &mut (), step: Found<N, T>) {
+        match &step {
             Found::Predicted(predicted) => {
                 let step = &predicted.step;
                 *node = node.advanced::<S>(step.h, &step.v, &predicted.increment);
-                memory.last = memory.last.followed(step, StepKind::EnergyPreserving);
+                memory.last = memory.last.followed(step);
                 memory.prediction.push_common(predicted);
             }
             Found::After(after) => (*node, *memory) = (after.node, after.lengths),
@@ -174,7 +174,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     fn report(&self, memory: &Lengths<N, T>) -> Report {
-        Report { residual: memory.last.residual, iterations: memory.last.iterations }
+        Report { residual: memory.last.measured.roundings(), iterations: memory.last.iterations }
     }
 
     fn discrete_energy(&self, _system: &S, node: &Node<N, T>, _h: T, memory: &Lengths<N, T>) -> Option<T> {
@@ -337,7 +337,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S
     /// The last step: its interval, and how it was found. Before the first step the interval from which the run starts.
     pub fn last_step(&self) -> Step<N, T> {
         let Self { node, memory, .. } = self;
-        let Last { v, h, density, iterations, residual, kind, .. } = memory.last;
+        let Last { v, h, density, iterations, measured, .. } = memory.last;
         let (t_mid, q_mid) = node.midpoint(-h, &v);
         Step {
             t: node.t,
@@ -349,8 +349,8 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S
             density,
             density_next: memory.last.density_next(),
             iterations,
-            residual: T::real(residual),
-            kind,
+            residual: T::real(measured.roundings()),
+            kind: memory.kind,
         }
     }
 

@@ -16,7 +16,7 @@
 //! ```
 //!
 //! The unknown is ln h: `ln[(H − E0(h))/(H − E)]` is nearly a line of slope 2s in it, and the last step backwards, which solves the equations too, does not exist. A step
-//! is one [`Search`] over the solution of Gauss steps of any length.
+//! is one `Search` over the solution of Gauss steps of any length.
 //!
 //! If no step exists, a run with [`Fallback::FixedSteps`] takes fixed Gauss steps of the last length until an energy-preserving one exists again. E stays, with the work
 //! done, and fixed steps end when the step law `h |D|^(1/(2s+1)) = C` asks for their length or a shorter one: with D_0 the density at which they began,
@@ -419,7 +419,7 @@ where
     type Memory = Lengths<N, STAGES>;
     type Cache = Cache<N, STAGES>;
     type Step = Found<N, STAGES>;
-    type Left = ();
+    type Left = StepError;
     type DenseOutput = Motion<N, STAGES>;
 
     const FINDS_LENGTH: bool = true;
@@ -449,9 +449,19 @@ where
         Ok(memory)
     }
 
-    /// Every step is a search: there is no hot path.
-    fn attempt(&self, _at: Problem<'_, S, Instructions, N>, _memory: &Self::Memory) -> Result<Self::Step, ()> {
-        Err(())
+    /// Every step is a search, compiled once.
+    #[inline(never)]
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
+    ) -> Result<Self::Step, StepError> {
+        let here = Here::of(at, memory);
+        match memory.course.phase {
+            Some(phase) => here.next_in_phase(phase, cache),
+            None => here.next(StepKind::EnergyPreserving, cache),
+        }
     }
 
     fn recover(
@@ -459,23 +469,26 @@ where
         at: Problem<'_, S, Instructions, N>,
         memory: &Self::Memory,
         cache: &mut Self::Cache,
-        (): (),
+        left: StepError,
     ) -> Result<Self::Step, StepError> {
-        let here = Here::of(at, memory);
         let course = &memory.course;
-        if let Some(phase) = course.phase {
-            return here.next_in_phase(phase, cache);
+        if course.phase.is_some() {
+            return Err(left);
         }
-        here.next(StepKind::EnergyPreserving, cache).or_else(|failure| {
-            let density = course.told_density::<STAGES>();
-            let phase = Phase::instead_of(failure, course.fallback, course.bounds.as_ref(), course.h(), density)?;
-            let mut found = here.fixed(phase, cache)?;
-            found.course.switches.count += 1;
-            Ok(found)
-        })
+        let density = course.told_density::<STAGES>();
+        let phase = Phase::instead_of(left, course.fallback, course.bounds.as_ref(), course.h(), density)?;
+        let mut found = Here::of(at, memory).fixed(phase, cache)?;
+        found.course.switches.count += 1;
+        Ok(found)
     }
 
-    fn take(&self, _h: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Self::Step) {
+    fn take(
+        &self,
+        _h: f64,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        _cache: &mut Self::Cache,
+        step: Self::Step,
+    ) {
         memory.stages.take(node, &step.step);
         node.add_energy(step.gain);
         memory.course = step.course;

@@ -98,7 +98,12 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     }
 
     #[inline(always)]
-    fn attempt(&self, at: Problem<'_, S, Self::Prepared, N, T>, memory: &Velocities<N, T>) -> Result<Found<N, T>, ()> {
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Self::Prepared, N, T>,
+        memory: &Velocities<N, T>,
+        (): &mut (),
+    ) -> Result<Found<N, T>, ()> {
         let Problem { system, prepared, node, h } = at;
         if memory.steps.is_common::<S>()
             && let Some(solved) = memory.steps.common(system, node, prepared)
@@ -126,8 +131,8 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     }
 
     #[inline(always)]
-    fn take(&self, h: T, node: &mut Node<N, T>, memory: &mut Velocities<N, T>, step: &Found<N, T>) {
-        take(h, node, memory, step);
+    fn take(&self, h: T, (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>), (): &mut (), step: Found<N, T>) {
+        take(h, node, memory, &step);
     }
 
     fn with_length(
@@ -193,7 +198,12 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         FixedStep.begin(system, node, h)
     }
 
-    fn attempt(&self, _at: Problem<'_, S, (), N, T>, _memory: &Velocities<N, T>) -> Result<Found<N, T>, ()> {
+    fn attempt(
+        &self,
+        _at: Problem<'_, S, (), N, T>,
+        _memory: &Velocities<N, T>,
+        (): &mut (),
+    ) -> Result<Found<N, T>, ()> {
         Err(())
     }
 
@@ -207,8 +217,8 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         found(at, memory, None, Branch::Connected)
     }
 
-    fn take(&self, h: T, node: &mut Node<N, T>, memory: &mut Velocities<N, T>, step: &Found<N, T>) {
-        take(h, node, memory, step);
+    fn take(&self, h: T, (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>), (): &mut (), step: Found<N, T>) {
+        take(h, node, memory, &step);
     }
 
     fn with_length(

@@ -185,6 +185,7 @@ where
         &self,
         at: Problem<'_, S, Instructions, N>,
         memory: &Self::Memory,
+        _cache: &mut Self::Cache,
     ) -> Result<Step<N, STAGES>, Self::Left> {
         if !memory.pause.is_over() {
             return Err(None);
@@ -197,9 +198,9 @@ where
         &self,
         system: &S,
         prepared: &Instructions,
-        node: &mut Node<N>,
         _h: f64,
-        memory: &mut Self::Memory,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        _cache: &mut Self::Cache,
     ) -> Result<(), Self::Left> {
         if !memory.pause.is_over() {
             return Err(None);
@@ -229,8 +230,14 @@ where
         memory.start(at.node).with_care(at.system, *at.prepared, (left.as_ref(), last), cache)
     }
 
-    fn take(&self, _h: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Step<N, STAGES>) {
-        memory.take(node, step);
+    fn take(
+        &self,
+        _h: f64,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        _cache: &mut Self::Cache,
+        step: Step<N, STAGES>,
+    ) {
+        memory.take(node, &step);
     }
 
     fn with_length(

@@ -68,6 +68,12 @@ pub trait Memory: Clone + Debug {
     fn apart(&self) -> Self {
         self.clone()
     }
+
+    /// What a checkpoint stores: finite numbers alone, so that a text format without infinities can hold it.
+    #[must_use]
+    fn stored(&self) -> Self {
+        self.clone()
+    }
 }
 
 /// How well the last step was solved, and by how much work.
@@ -133,6 +139,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         &self,
         at: Problem<'_, S, Self::Prepared, N, T>,
         memory: &Self::Memory,
+        cache: &mut Self::Cache,
     ) -> Result<Self::Step, Self::Left>;
 
     /// The cold path to a step.
@@ -157,7 +164,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         memory: &Self::Memory,
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, StepError> {
-        self.attempt(at, memory).or_else(|left| self.recover(at, memory, cache, left))
+        self.attempt(at, memory, cache).or_else(|left| self.recover(at, memory, cache, left))
     }
 
     /// [`Method::attempt`], and [`Method::take`] if it found a step.
@@ -171,17 +178,17 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         &self,
         system: &S,
         prepared: &Self::Prepared,
-        node: &mut Node<N, T>,
         h: T,
-        memory: &mut Self::Memory,
+        (node, memory): (&mut Node<N, T>, &mut Self::Memory),
+        cache: &mut Self::Cache,
     ) -> Result<(), Self::Left> {
-        let step = self.attempt(Problem { system, prepared, node, h }, memory)?;
-        self.take(h, node, memory, &step);
+        let step = self.attempt(Problem { system, prepared, node, h }, memory, cache)?;
+        self.take(h, (node, memory), cache, step);
         Ok(())
     }
 
     /// Moves to the end of a step. Cannot fail: [`Method::solve`] has checked what can.
-    fn take(&self, h: T, node: &mut Node<N, T>, memory: &mut Self::Memory, step: &Self::Step);
+    fn take(&self, h: T, run: (&mut Node<N, T>, &mut Self::Memory), cache: &mut Self::Cache, step: Self::Step);
 
     /// The node and the memory after one step of the length h in time. Further steps have the length `next` of the run.
     ///
@@ -197,8 +204,9 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         let (mut node, mut memory) = (*node, self.with_length(system, memory, node, h)?);
         let prepared = self.prepare(system, h);
         let at = Problem { system, prepared: &prepared, node: &node, h };
-        let step = self.solve(at, &memory, &mut Self::Cache::default())?;
-        self.take(h, &mut node, &mut memory, &step);
+        let cache = &mut Self::Cache::default();
+        let step = self.solve(at, &memory, cache)?;
+        self.take(h, (&mut node, &mut memory), cache, step);
         let memory = self.with_length(system, &memory, &node, next)?;
         Ok((node, memory))
     }

@@ -78,7 +78,12 @@ where
     }
 
     #[inline(always)]
-    fn attempt(&self, at: Problem<'_, S, Instructions, N>, memory: &Self::Memory) -> Result<Self::Step, Self::Left> {
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+        _cache: &mut Self::Cache,
+    ) -> Result<Self::Step, Self::Left> {
         let Problem { system, prepared, node, h } = at;
         if !memory.pause.is_over() {
             return Err(None);
@@ -98,7 +103,13 @@ where
     }
 
     #[inline(always)]
-    fn take(&self, _dtau: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Self::Step) {
+    fn take(
+        &self,
+        _dtau: f64,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        _cache: &mut Self::Cache,
+        step: Self::Step,
+    ) {
         (*node, *memory) = (step.node, step.rates);
     }
 

@@ -126,7 +126,7 @@ pub(crate) struct Solved<const N: usize, T> {
     feature = "serde",
     serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
 )]
-pub(crate) struct Steps<const N: usize, T> {
+pub struct Steps<const N: usize, T> {
     pub(crate) h: T,
     predictor: Predictor<N, T>,
     remainder: SVector<T, N>,

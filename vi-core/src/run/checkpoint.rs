@@ -7,7 +7,7 @@
 use super::Run;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
-use crate::method::Method;
+use crate::method::{Memory as _, Method};
 use crate::node::Node;
 use crate::real::Scalar;
 
@@ -55,7 +55,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             system: S::NAME.to_owned(),
             rule: self.method.rule().map(str::to_owned),
             parameters: named.map(|(index, name)| ((*name).to_owned(), self.system.parameter(index))).collect(),
-            run: Stored { node: self.node, h: self.h, memory: self.memory.clone() },
+            run: Stored { node: self.node, h: self.h, memory: self.memory.stored() },
         }
     }
 

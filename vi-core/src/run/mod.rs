@@ -8,8 +8,9 @@
 //! | `dense_output` | the motion between the two nodes of a step, as polynomials |
 //! | `times` | states at given times |
 //! | `solution` | states with times and energies, as CSV |
-//! | `events` | states at which functions of the motion vanish |
-//! | `sign_changes` | where a function changes its sign over a step |
+//! | `events` | states at which functions of the motion change their sign |
+//! | `search` | the search of one step for them |
+//! | `side` | the side of zero on which a function is at a node |
 //! | `checkpoint` | everything that a run carries, to be stored and resumed bit for bit |
 //!
 //! A STATE AT A TIME t is reached by a last step that is exactly as long as is left. It is as accurate as a node, of the full order of the method. States at several
@@ -18,13 +19,14 @@
 mod checkpoint;
 mod dense_output;
 mod events;
-mod sign_changes;
+mod search;
+mod side;
 mod solution;
 mod times;
 
 pub use checkpoint::{Checkpoint, Stored};
 pub use dense_output::{DenseOutput, Hermite};
-pub use events::{Crossing, Direction, Event, Events, Function};
+pub use events::{Crossing, Crossings, Event, Events, Met, Moment};
 pub use solution::Solution;
 pub use times::Grid;
 
@@ -103,8 +105,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// Why there is no step. The run holds the last good state, and a further call returns the same error.
     #[inline(always)]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
-        let Self { method, system, prepared, node, h, memory, .. } = self;
-        if let Err(left) = method.advance(system, prepared, node, *h, memory) {
+        let Self { method, system, prepared, node, h, memory, cache, .. } = self;
+        if let Err(left) = method.advance(system, prepared, *h, (node, memory), cache) {
             // Values, not references: the address of one field that leaves this function keeps the whole run in memory (double well: 29 ns a step instead of 23).
             let problem = (self.method.clone(), self.system, self.prepared.clone(), self.h);
             let before = (node.map(black_box), memory.apart(), core::mem::take(&mut self.cache), self.failure);
@@ -259,7 +261,7 @@ fn cold_step<M: Method<S, N, T>, S, const N: usize, T: Scalar>(
     let at = Problem { system: &system, prepared: &prepared, node: &node, h };
     match method.recover(at, &memory, &mut cache, left) {
         Ok(step) => {
-            method.take(h, &mut node, &mut memory, &step);
+            method.take(h, (&mut node, &mut memory), &mut cache, step);
             (node, memory, cache, None)
         }
         Err(failure) => (node, memory, cache, Some(failure)),

@@ -10,7 +10,7 @@ use crate::method::Method;
 use crate::state::State;
 
 /// Part of a step by which the last one may be longer.
-const LONGER: f64 = 1e-6;
+pub(super) const LONGER: f64 = 1e-6;
 
 impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     /// Takes steps up to the time t. The last one ends there: then `state().t` is t.

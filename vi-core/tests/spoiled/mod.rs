@@ -2,7 +2,7 @@
 //! part of the faults.
 
 use vi_core::collocation::{Collocation, Point, PointDerivatives};
-use vi_core::lagrangian::{Flow, Parameters};
+use vi_core::lagrangian::Parameters;
 use vi_core::linear::Matrix;
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
@@ -11,7 +11,7 @@ use vi_core::stepping::{
     Convertible, Discretized, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping,
     Increment, MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
 };
-use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError};
+use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError, forward};
 
 /// The damping of [`Fault::Damping`].
 const DAMPING: f64 = 0.01;
@@ -55,6 +55,12 @@ pub(crate) enum Fault {
     Rounding,
     /// The last entry of the Jacobian is a part in a million too large.
     Jacobian,
+    /// The first momentum at a point is a part in a thousand too large.
+    PointMomentum,
+    /// A damping that nobody declared stands in the force at a point.
+    PointForce,
+    /// The power is too large.
+    Power,
     /// The last entry of how L_q + f changes with q is a part in a million too large.
     PointDerivatives,
     /// The last entry of how p1 − p0 changes with v is a part in a million too large.
@@ -116,20 +122,8 @@ impl<const N: usize, S: Discretized<N>> Discretized<N> for Spoiled<S> {
 }
 
 impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<S> {
-    const NAME: &'static str = S::NAME;
-    const COORDINATES: [&'static str; N] = S::COORDINATES;
-    const AUTONOMOUS: bool = S::AUTONOMOUS;
-    const FORCED: bool = S::FORCED;
-    const CYCLIC: [bool; N] = S::CYCLIC;
-    const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
+    forward! { [N T S] self => &self.system; [] lagrangian_constants lagrangian force flow }
 
-    fn parameter(&self, index: usize) -> T {
-        self.system.parameter(index)
-    }
-
-    fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
-        self.system.lagrangian(t, q, v)
-    }
     fn energy(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
         let lagrangian = self.lagrangian(t, q, v);
         self.unless(Fault::Energy, self.system.energy(t, q, v), |energy| energy + lagrangian + lagrangian)
@@ -139,20 +133,9 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<
             SVector::from_fn(|i, _| if i == 0 { -p[i] } else { p[i] })
         })
     }
-    fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
-        self.system.force(t, q, v)
-    }
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
         let right = self.system.acceleration(t, q, v)?;
         Ok(self.unless(Fault::Acceleration, right, |a| a * T::real(1.001)))
-    }
-    fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
-        self.system.flow(t, q, p)
-    }
-    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
-        let right = self.system.step_density(t, q, v)?;
-        let right = self.unless(Fault::StepDensity, right, |density| density - q[0] * v[0] * v[0]);
-        Ok(self.unless(Fault::Density, right, |density| density * T::real(1.001)))
     }
 }
 
@@ -163,7 +146,13 @@ impl<const N: usize, T: Real, S: Collocation<N, T>> Collocation<N, T> for Spoile
     const SEPARABLE: bool = S::SEPARABLE;
 
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, S::Mass> {
-        self.system.point(t, q, v)
+        let Point { mut momentum, mut force, mass } = self.system.point(t, q, v);
+        match self.fault {
+            Fault::PointMomentum => momentum[0] *= T::real(1.001),
+            Fault::PointForce => force -= v * T::real(DAMPING),
+            _ => {}
+        }
+        Point { momentum, force, mass }
     }
     fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<SMatrix<T, N, N>> {
         let PointDerivatives { momentum_dq, mass, force_dq, force_dv } = self.system.point_derivatives(t, q, v);
@@ -174,7 +163,7 @@ impl<const N: usize, T: Real, S: Collocation<N, T>> Collocation<N, T> for Spoile
         PointDerivatives { momentum_dq, mass, force_dq, force_dv }
     }
     fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
-        self.system.power(t, q, v)
+        self.unless(Fault::Power, self.system.power(t, q, v), |power| power + T::real(1e-6))
     }
 }
 
@@ -318,6 +307,12 @@ impl<const N: usize, T: Real, S: FixedStepping<N, T>> FixedStepping<N, T> for Sp
 }
 
 impl<const N: usize, T: Real, S: EnergyStepping<N, T>> EnergyStepping<N, T> for Spoiled<S> {
+    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
+        let right = self.system.step_density(t, q, v)?;
+        let right = self.unless(Fault::StepDensity, right, |density| density - q[0] * v[0] * v[0]);
+        Ok(self.unless(Fault::Density, right, |density| density * T::real(1.001)))
+    }
+
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T> {
         let right = self.system.extended_system(node, h, v);
         let mut found = ExtendedSystem {

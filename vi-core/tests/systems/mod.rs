@@ -222,13 +222,6 @@ impl<const N: usize, T: Real, P: Potential<N, T>> Lagrangian<N, T> for UnitMass<
         let fields = self.0.fields(t, q, p);
         Ok(Flow { v: *p, force: fields.force - fields.gradient, power: fields.potential_t + fields.force.dot(p) })
     }
-
-    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
-        let fields = self.0.fields(t, q, v);
-        let a = fields.force - fields.gradient;
-        let along = v.dot(&fields.gradient_t);
-        Ok(a.dot(&a) + v.dot(&(fields.hessian * v)) + along + along + fields.potential_tt)
-    }
 }
 
 /// Middle of an interval: `(h, t̄, q̄, v)`.
@@ -335,6 +328,13 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> FixedS
 }
 
 impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> EnergyStepping<N, T> for UnitMass<P> {
+    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
+        let fields = self.0.fields(t, q, v);
+        let a = fields.force - fields.gradient;
+        let along = v.dot(&fields.gradient_t);
+        Ok(a.dot(&a) + v.dot(&(fields.hessian * v)) + along + along + fields.potential_tt)
+    }
+
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T> {
         let momentum = self.momentum_equation(node, h, v);
         let (t, q) = node.midpoint(h, v);

@@ -119,6 +119,20 @@ impl Catalogue {
     }
 }
 
+/// Refuses an entry without a rule for a page that compares steps by one.
+///
+/// # Errors
+/// [`Failure::Input`] if the system has no rule.
+pub fn with_rule(entry: Entry, page: &str) -> Result<Entry, Failure> {
+    if entry.system.has_rule() {
+        return Ok(entry);
+    }
+    let name = entry.system.name();
+    Err(Failure::Input(format!(
+        "{page} compares steps by a rule, and {name} has none: add `discretize midpoint;` to it"
+    )))
+}
+
 fn list(values: &[f64]) -> String {
     shortened(values.iter().map(f64::to_string).collect())
 }

@@ -2,6 +2,7 @@
 //!
 //! In: the type of a system, and its start. Out: an [`Entry`], the type erased: there the compiler meets all that is generic over systems.
 
+use crate::kind::{ByRule, GaussAlone};
 use crate::system::{self, System};
 use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
@@ -28,6 +29,15 @@ impl Entry {
     where
         S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
     {
-        Self { system: system::erased::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
+        Self { system: system::erased::<S, ByRule, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
+    }
+
+    /// The same of a system without a rule, which has Gauss steps alone.
+    #[must_use]
+    pub fn with_gauss_alone<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
+    where
+        S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
+    {
+        Self { system: system::erased::<S, GaussAlone, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
     }
 }

@@ -18,6 +18,7 @@
 pub mod counting;
 pub mod entry;
 pub mod exponents;
+pub mod kind;
 pub mod plan;
 pub mod raw;
 pub mod rival;

@@ -3,7 +3,7 @@
 //! In: what a command line or a scene asks for. Out: a [`Plan`].
 
 use clap::ValueEnum;
-use vi_core::Scheme;
+use vi_core::Composition;
 
 /// Which integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -36,11 +36,11 @@ pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 impl Method {
     /// The scheme of a composition.
     #[must_use]
-    pub fn scheme(self) -> Option<Scheme> {
+    pub fn scheme(self) -> Option<Composition> {
         match self {
-            Self::Suzuki4 => Some(Scheme::SUZUKI_4),
-            Self::KahanLi6 => Some(Scheme::KAHAN_LI_6),
-            Self::KahanLi8 => Some(Scheme::KAHAN_LI_8),
+            Self::Suzuki4 => Some(Composition::SUZUKI_4),
+            Self::KahanLi6 => Some(Composition::KAHAN_LI_6),
+            Self::KahanLi8 => Some(Composition::KAHAN_LI_8),
             Self::Fixed | Self::Gauss | Self::Energy => None,
         }
     }
@@ -90,7 +90,7 @@ pub struct Plan {
     pub shift: Option<Shift>,
     /// Whether fixed steps are taken where there is no energy-preserving one.
     pub fallback: bool,
-    /// The step of Gauss steps in scaled time.
+    /// The step of Gauss steps in transformed time.
     pub dtau: Option<f64>,
     /// The step, or the first one.
     pub h: f64,

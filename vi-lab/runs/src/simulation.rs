@@ -7,15 +7,16 @@
 //! off by rounding.
 
 use crate::counting::Counting;
+use crate::kind::Kind;
 use crate::plan::{Method, Plan, Shift, Start, USUAL_STAGES};
 use crate::start;
 use core::cell::Cell;
 use vi_core::collocation::Collocation;
-use vi_core::run::{Crossing, Direction, Event};
+use vi_core::run::{Crossing, Event, Moment};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
-    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
-    Lagrangian, Run, SVector, Starts, State, StepError,
+    Called, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime, Lagrangian, Run,
+    SVector, Starts, State, StepError,
 };
 
 /// A node, its energies, and the length of the step that led to it.
@@ -57,6 +58,17 @@ impl Row {
     }
 }
 
+/// In which direction a coordinate passes a value, in the direction of the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+    /// Either.
+    Both,
+}
+
 /// A surface that a motion crosses again and again: a Poincaré section.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Section {
@@ -92,11 +104,14 @@ impl Section {
         }
     }
 
-    /// In which direction the function passes zero.
-    fn direction(&self) -> Direction {
+    /// The event that the function passes zero in the direction of the section.
+    fn event<const N: usize>(&self) -> Event<N> {
+        let section = self.clone();
+        let g = move |moment: &Moment<N>| section.value(moment.t, moment.q.as_slice());
         match self {
-            Self::Coordinate { direction, .. } => *direction,
-            Self::Period { .. } => Direction::Both,
+            Self::Coordinate { direction: Direction::Rising, .. } => Event::rising(g),
+            Self::Coordinate { direction: Direction::Falling, .. } => Event::falling(g),
+            Self::Coordinate { direction: Direction::Both, .. } | Self::Period { .. } => Event::crossing(g),
         }
     }
 }
@@ -203,29 +218,21 @@ pub struct ShiftedEnergy {
 /// # Errors
 /// What the integrators say of the initial state; [`StepError::InvalidInput`] where the numbers of coordinates or
 /// velocities are not those of the system, and for stages that are not built in: 4 and 8 of Gauss steps, 1 to 3 of energy-preserving ones.
-pub fn begin<'a, S, const N: usize>(
+pub fn begin<'a, S, K: Kind<S, N>, const N: usize>(
     system: S,
     plan: &Plan,
     evaluations: &'a Cell<u64>,
 ) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     let t = plan.t;
     let q = vector(&plan.q, "number of coordinates")?;
     let v = vector(&plan.v, "number of velocities")?;
     let state = State::at(&system, t, q, v);
-    let counting = Counting::new(system, evaluations);
     match plan.method {
-        Method::Fixed => Ok(Simulated::boxed(counting.at_state(state).integrate(FixedStep, plan.h)?, evaluations)),
-        Method::Suzuki4 => {
-            Ok(Simulated::boxed(counting.at_state(state).integrate(Composition::SUZUKI_4, plan.h)?, evaluations))
-        }
-        Method::KahanLi6 => {
-            Ok(Simulated::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_6, plan.h)?, evaluations))
-        }
-        Method::KahanLi8 => {
-            Ok(Simulated::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_8, plan.h)?, evaluations))
+        Method::Fixed | Method::Suzuki4 | Method::KahanLi6 | Method::KahanLi8 => {
+            K::begin(system, plan, (q, v), evaluations)
         }
         Method::Gauss => match (plan.stages.unwrap_or(USUAL_STAGES), plan.dtau) {
             (4, None) => gauss::<S, N, 4>(system, state, plan.h, evaluations),
@@ -235,12 +242,36 @@ where
             (other, _) => Err(wrong_stages("4 or 8", other)),
         },
         Method::Energy => match plan.energy_stages() {
-            None => one_stage(system, plan, (q, v), evaluations),
+            None => K::begin(system, plan, (q, v), evaluations),
             Some(1) => energy::<S, N, 1>(system, state, plan, evaluations),
             Some(2) => energy::<S, N, 2>(system, state, plan, evaluations),
             Some(3) => energy::<S, N, 3>(system, state, plan, evaluations),
             Some(other) => Err(wrong_stages("1, 2 or 3", other)),
         },
+    }
+}
+
+/// Starts a run by the rule of a system.
+///
+/// # Errors
+/// What the integrators say of the initial state.
+pub(crate) fn by_rule<'a, S, const N: usize>(
+    system: S,
+    plan: &Plan,
+    (q, v): (SVector<f64, N>, SVector<f64, N>),
+    evaluations: &'a Cell<u64>,
+) -> Result<Box<dyn Simulation + 'a>, StepError>
+where
+    S: EnergyStepping<N> + 'a,
+{
+    let state = State::at(&system, plan.t, q, v);
+    let counting = Counting::new(system, evaluations);
+    match plan.method.scheme() {
+        Some(scheme) => Ok(Simulated::boxed(counting.at_state(state).integrate(scheme, plan.h)?, evaluations)),
+        None if plan.method == Method::Fixed => {
+            Ok(Simulated::boxed(counting.at_state(state).integrate(FixedStep, plan.h)?, evaluations))
+        }
+        None => one_stage(system, plan, (q, v), evaluations),
     }
 }
 
@@ -291,7 +322,7 @@ fn energy<'a, S, const N: usize, const STAGES: usize>(
     evaluations: &'a Cell<u64>,
 ) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     let integrator = Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.h)?;
     let integrator = match plan.shift {
@@ -309,7 +340,7 @@ where
     Ok(Box::new(Simulated { uncounted: Some(count), shifted, ..run }))
 }
 
-/// Starts a run by Gauss steps of so many stages in scaled time.
+/// Starts a run by Gauss steps of so many stages in transformed time.
 fn scaled<'a, S, const N: usize, const STAGES: usize>(
     system: S,
     state: State<N>,
@@ -317,7 +348,7 @@ fn scaled<'a, S, const N: usize, const STAGES: usize>(
     evaluations: &'a Cell<u64>,
 ) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     // Else they would be built for every system.
     if !S::SCALES_TIME {
@@ -339,7 +370,7 @@ fn gauss<'a, S, const N: usize, const STAGES: usize>(
     evaluations: &'a Cell<u64>,
 ) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     let run = Simulated::new(system.at_state(state).integrate(Gauss::<STAGES>, h)?, evaluations);
     let count = |run: &Run<Gauss<STAGES>, S, N>| u64::from(run.iterations()) * STAGES as u64;
@@ -360,19 +391,19 @@ pub fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVe
     }
 }
 
-/// A number of a run.
-type Of<M, S, const N: usize, T> = fn(&Run<M, S, N>) -> T;
+/// A number that is read of a run.
+type Reading<M, S, const N: usize, R> = fn(&Run<M, S, N>) -> R;
 
 /// A run by a method, with what its rows need.
 struct Simulated<'a, M: vi_core::Method<S, N>, S, const N: usize> {
     run: Run<M, S, N>,
     /// Time and H where the method keeps H best.
-    sampled_energy: Of<M, S, N, Result<(f64, f64), StepError>>,
+    sampled_energy: Reading<M, S, N, Result<(f64, f64), StepError>>,
     evaluations: &'a Cell<u64>,
     /// The evaluations of the last step, where its system does not count them.
-    uncounted: Option<Of<M, S, N, u64>>,
+    uncounted: Option<Reading<M, S, N, u64>>,
     /// What steps with a shift keep.
-    shifted: Option<Of<M, S, N, ShiftedEnergy>>,
+    shifted: Option<Reading<M, S, N, ShiftedEnergy>>,
     /// Length of the last step, if it was shorter than those of the run.
     shortened: Option<f64>,
 }
@@ -468,9 +499,7 @@ impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: u
 
     fn cross(&mut self, section: &Section, end: f64, take: &mut dyn FnMut(Row)) -> Result<(), StepError> {
         let system = *self.run.system();
-        let value = |t: f64, q: &SVector<f64, N>, _: &SVector<f64, N>| section.value(t, q.as_slice());
-        let wanted = [Event::new(&value, section.direction())];
-        for crossing in self.run.events(&wanted, end) {
+        for crossing in self.run.events(section.event(), end) {
             let Crossing { state, length, .. } = crossing?;
             take(Row {
                 t: state.t,

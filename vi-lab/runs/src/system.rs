@@ -5,15 +5,17 @@
 //! once for each system, however many charts use them.
 
 use crate::exponents::{self, Exponents};
+use crate::kind::Kind;
 use crate::plan::{ENERGY_STAGES, PhasePoint, Plan};
 use crate::rival::{self, Ended};
 use crate::simulation::{self, Simulation, vector};
 use core::cell::Cell;
+use core::marker::PhantomData;
 use vi_core::check::Motion;
 use vi_core::collocation::Collocation;
 use vi_core::gauss::step_density;
 use vi_core::lagrangian::Parameters;
-use vi_core::stepping::{Convertible, EnergyStepping};
+use vi_core::stepping::Convertible;
 use vi_core::{Called, SVector, State, StepError};
 
 /// A system with its parameters.
@@ -28,9 +30,11 @@ pub trait System: Send + Sync {
     fn set(&mut self, name: &str, value: f64) -> bool;
     /// A system of the same type with the same parameters.
     fn copy(&self) -> Box<dyn System>;
+    /// Whether the system has a rule, and with it fixed and energy-preserving steps of order 2.
+    fn has_rule(&self) -> bool;
     /// Whether the energy of a motion is constant: L and f are free of the time, and there is no force.
     fn conserves_energy(&self) -> bool;
-    /// Step density D at t = 0; none where it has no value.
+    /// Step density D at t = 0; none where it has no value, or the system no rule.
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
     /// Step densities of 1, 2 and 3 stages at a node, its time, coordinates and momenta given; none where one has no value.
     fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()];
@@ -76,21 +80,21 @@ pub trait System: Send + Sync {
     ) -> Result<PhasePoint, Ended>;
 }
 
-/// A system of a known type.
-struct Typed<S, const N: usize>(S);
+/// A system of a known type, of the kind K.
+struct Typed<S, K, const N: usize>(S, PhantomData<K>);
 
 /// The system `S` with its default parameters.
 #[must_use]
-pub fn erased<S, const N: usize>() -> Box<dyn System>
+pub fn erased<S, K: Kind<S, N>, const N: usize>() -> Box<dyn System>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
+    S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
 {
-    Box::new(Typed::<S, N>(S::default()))
+    Box::new(Typed::<S, K, N>(S::default(), PhantomData))
 }
 
-impl<S, const N: usize> System for Typed<S, N>
+impl<S, K: Kind<S, N>, const N: usize> System for Typed<S, K, N>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Clone + Send + Sync + 'static,
+    S: Collocation<N> + Convertible<N> + Parameters + Send + Sync + 'static,
 {
     fn name(&self) -> &'static str {
         S::NAME
@@ -110,7 +114,11 @@ where
     }
 
     fn copy(&self) -> Box<dyn System> {
-        Box::new(Self(self.0))
+        Box::new(Self(self.0, PhantomData))
+    }
+
+    fn has_rule(&self) -> bool {
+        K::HAS_RULE
     }
 
     fn conserves_energy(&self) -> bool {
@@ -119,8 +127,8 @@ where
 
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64> {
         let sized = q.len() == N && v.len() == N;
-        let density = || self.0.step_density(0.0, &SVector::from_column_slice(q), &SVector::from_column_slice(v)).ok();
-        sized.then(density).flatten().filter(|density| density.is_finite())
+        let density = || K::step_density(&self.0, &SVector::from_column_slice(q), &SVector::from_column_slice(v));
+        sized.then(density).flatten()
     }
 
     fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()] {
@@ -155,7 +163,7 @@ where
     }
 
     fn begin<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>) -> Result<Box<dyn Simulation + 'a>, StepError> {
-        simulation::begin(self.0, plan, evaluations)
+        simulation::begin::<S, K, N>(self.0, plan, evaluations)
     }
 
     fn lyapunov(&self, plan: &Plan, count: usize) -> Result<Box<dyn Exponents>, StepError> {

@@ -113,7 +113,7 @@ pub(crate) struct Arguments {
     /// Takes fixed steps where --method energy has no others
     #[arg(long)]
     pub(crate) fallback: bool,
-    /// Step of --method gauss in scaled time, for systems with a `time_scale`
+    /// Step of --method gauss in transformed time, for systems with a `time_scale`
     #[arg(long, value_name = "DTAU", allow_hyphen_values = true, value_parser = number, conflicts_with = "h")]
     pub(crate) dtau: Option<f64>,
     /// Step, or first step [default: the system's; four and eight times that with --method energy --stages 2 and 3]

@@ -210,9 +210,11 @@ impl Request {
             q: arguments.q.clone().or(scene.q.clone()).unwrap_or(entry.q),
             v: arguments.v.clone().or(scene.v.clone()).unwrap_or(entry.v),
         };
-        let method = arguments.method.or(scene.method).unwrap_or(Method::Fixed);
+        let usual = if system.has_rule() { Method::Fixed } else { Method::Gauss };
+        let method = arguments.method.or(scene.method).unwrap_or(usual);
         let options = Options::of(arguments, &scene);
         options.check(method)?;
+        check_rule(system.as_ref(), method, &options)?;
         let stages = options.stages.map(|wanted| stages(method, wanted)).transpose()?;
         let usual = entry.h * usual_length(method, stages);
         let h = arguments.h.or(scene.h).unwrap_or(usual);
@@ -254,6 +256,23 @@ impl Request {
     }
 }
 
+/// Refuses steps by a rule for a system without one.
+fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<(), Failure> {
+    let needs_none = match method {
+        Method::Gauss => true,
+        Method::Energy => options.stages.is_some() || options.shift.is_some(),
+        _ => false,
+    };
+    if needs_none || system.has_rule() {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{} has no rule for --method {}: add `discretize midpoint;` to it, or take --method gauss, or --method energy with --stages 2",
+        system.name(),
+        method.name()
+    )))
+}
+
 /// What belongs to some methods only.
 #[derive(Clone, Copy, Debug)]
 struct Options {
@@ -269,7 +288,7 @@ impl Options {
     fn of(arguments: &Arguments, scene: &Scene) -> Self {
         let other = Scene::default();
         let scene = if arguments.method.is_none() { scene } else { &other };
-        // A step in time on the command line replaces one in scaled time.
+        // A step in time on the command line replaces one in transformed time.
         let dtau = scene.dtau.filter(|_| arguments.h.is_none());
         Self {
             start: arguments.start.or(scene.start),
@@ -298,7 +317,7 @@ impl Options {
                     .to_owned()
             }
             () if dtau.is_some() && !is_gauss => {
-                "only Gauss steps have a step in scaled time, --dtau; add --method gauss, or leave it out".to_owned()
+                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or leave it out".to_owned()
             }
             () if start.is_some() && (stages.is_some() || shift.is_some()) => {
                 "steps with --stages or --shift start from the initial state; leave --start out".to_owned()
@@ -333,7 +352,7 @@ fn usual_length(method: Method, stages: Option<usize>) -> f64 {
     }
 }
 
-/// Makes the steps of a plan those of one length in scaled time, of which the first is as long as g says.
+/// Makes the steps of a plan those of one length in transformed time, of which the first is as long as g says.
 fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Failure> {
     let Plan { t, q, v, .. } = plan.clone();
     let Some(g) = system.time_scale(&PhasePoint { t, q, v }) else {
@@ -344,7 +363,7 @@ fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Fai
     };
     if !dtau.is_finite() || dtau == 0.0 {
         return Err(Failure::Input(format!(
-            "the step in scaled time (--dtau) must be finite and not zero, not {dtau}"
+            "the step in transformed time (--dtau) must be finite and not zero, not {dtau}"
         )));
     }
     plan.dtau = Some(dtau);
@@ -524,7 +543,7 @@ mod tests {
             ),
             (
                 with(|a| a.dtau = Some(0.1)),
-                "only Gauss steps have a step in scaled time, --dtau; add --method gauss, or leave it out",
+                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or leave it out",
             ),
             (
                 with(|a| (a.method, a.dtau) = (Some(Method::Gauss), Some(0.1))),
@@ -565,7 +584,7 @@ mod tests {
         let plan = plan_of(&scaled(0.5));
         // g = r^(3/2) at r = 0.4.
         assert!((plan.h - 0.5 * 0.4_f64.powf(1.5)).abs() < 1e-15 && plan.dtau == Some(0.5), "{plan:?}");
-        assert_eq!(message(&scaled(0.0)), "the step in scaled time (--dtau) must be finite and not zero, not 0");
+        assert_eq!(message(&scaled(0.0)), "the step in transformed time (--dtau) must be finite and not zero, not 0");
     }
 
     #[test]
@@ -587,5 +606,27 @@ mod tests {
         assert_eq!((request.every, request.output), (1, Output::Standard));
         assert_eq!((request.plan.h, request.plan.method), (0.01, Method::Fixed));
         assert_eq!(request.length, Length::Steps(10));
+    }
+
+    vi_core::lagrangian! {
+        struct Alone {
+            coord x;
+            L = dot(x)^2 / 2 - x^4 / 4;
+        }
+    }
+
+    #[test]
+    fn a_system_without_a_rule_gets_the_names_of_its_methods() {
+        let system = vi_runs::entry::Entry::with_gauss_alone::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
+        let of = |method, stages| {
+            let arguments = Arguments { method: Some(method), stages, ..arguments("kepler") };
+            check_rule(system.as_ref(), method, &Options::of(&arguments, &Scene::default()))
+        };
+        assert!(of(Method::Gauss, None).is_ok() && of(Method::Energy, Some(2)).is_ok());
+        for method in [Method::Fixed, Method::Suzuki4, Method::Energy] {
+            let said = of(method, None).expect_err("no rule").to_string();
+            let wanted = format!("Alone has no rule for --method {}: add `discretize midpoint;` to it", method.name());
+            assert!(said.contains(&wanted), "{said}");
+        }
     }
 }

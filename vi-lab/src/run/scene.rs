@@ -7,7 +7,7 @@
 //! stages = 2                        # of Gauss steps, and of energy-preserving ones
 //! shift = "auto"                    # of energy-preserving steps, or a number
 //! fallback = true                   # of energy-preserving steps: fixed ones where there is none
-//! h = 0.01                          # or dtau = 0.5, of Gauss steps in scaled time
+//! h = 0.01                          # or dtau = 0.5, of Gauss steps in transformed time
 //! steps = 1000                      # or until = 10.0
 //! every = 10
 //! t = 0.0
@@ -50,7 +50,7 @@ pub(super) struct Scene {
     pub(super) shift: Option<Wanted>,
     /// Whether fixed steps are taken where there is no energy-preserving one.
     pub(super) fallback: Option<bool>,
-    /// Step in scaled time.
+    /// Step in transformed time.
     pub(super) dtau: Option<f64>,
     /// Step.
     pub(super) h: Option<f64>,
@@ -110,7 +110,9 @@ impl Scene {
             return Err("give either `h` or `dtau`, not both".to_owned());
         }
         if scene.dtau.is_some() && scene.sweep.as_ref().is_some_and(|sweep| sweep.is_over("h")) {
-            return Err("the sweep goes over `h`, which steps in scaled time do not have; leave out `dtau`".to_owned());
+            return Err(
+                "the sweep goes over `h`, which steps in transformed time do not have; leave out `dtau`".to_owned()
+            );
         }
         if scene.steps.is_some() && scene.until.is_some() {
             return Err("give either `steps` or `until`, not both".to_owned());
@@ -175,7 +177,7 @@ mod tests {
             ("system = \"kepler\"\nh = 1.0\ndtau = 2.0\n", "give either `h` or `dtau`, not both"),
             (
                 "system = \"kepler\"\ndtau = 2.0\n[sweep]\nover = [{ name = \"h\", values = [0.1] }]\n",
-                "the sweep goes over `h`, which steps in scaled time do not have; leave out `dtau`",
+                "the sweep goes over `h`, which steps in transformed time do not have; leave out `dtau`",
             ),
             (
                 "system = \"kepler\"\nshift = \"much\"\n",

@@ -5,11 +5,10 @@
 use super::ending::Ending;
 use super::scene::{Cut, Keep, Passing, Sweep};
 use super::schema::{Column, Schema};
-use vi_core::run::Direction;
 use vi_report::failure::Failure;
 use vi_report::numbers::short;
 use vi_runs::plan::Plan;
-use vi_runs::simulation::{Row, Section};
+use vi_runs::simulation::{Direction, Row, Section};
 
 /// Steps of a period at least, so that no crossing is missed.
 pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;

@@ -27,7 +27,7 @@ use clap::Args;
 use method::Method;
 use std::path::PathBuf;
 use study::Findings;
-use vi_report::catalogue::{Catalogue, kebab};
+use vi_report::catalogue::{Catalogue, kebab, with_rule};
 use vi_report::failure::Failure;
 use vi_report::html::escape;
 use vi_report::input::number;
@@ -66,7 +66,7 @@ pub(crate) struct Arguments {
 /// cannot be written.
 pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let machine = Machine::here();
-    let entry = entry(arguments, catalogue)?;
+    let entry = with_rule(entry(arguments, catalogue)?, "work-precision")?;
     let name = kebab(entry.system.name());
     let told = arguments.rival.as_deref().map(|file| elsewhere::runs(file, &name)).transpose()?;
     let page = Page::new(&format!("What an error costs: {name}"), entry.about);

@@ -11,7 +11,7 @@
 
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Ending, LASTING, Limit, UNBOUNDED};
-use vi_core::{Composition, Scheme, Starts, State};
+use vi_core::{Composition, Starts, State};
 use vi_report::chart::{Axis, Chart, Class, Look, Series, boundary};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
@@ -29,7 +29,7 @@ const WIDEST: f64 = 6.0;
 /// What the map of a scheme shows. The instability is a band beside a pole; the map shows the widest band.
 #[derive(Clone, Copy)]
 struct Band {
-    scheme: Scheme,
+    scheme: Composition,
     /// Stem of the file names.
     name: &'static str,
     /// The least `c h`.
@@ -41,10 +41,10 @@ struct Band {
 }
 
 const BANDS: [Band; 4] = [
-    Band { scheme: Scheme::TRIPLE_JUMP_4, name: "composed-triple", least: 1.1, largest: 1.4, fastest: 0.6 },
-    Band { scheme: Scheme::SUZUKI_4, name: "composed-suzuki", least: 3.0, largest: 3.2, fastest: 0.6 },
-    Band { scheme: Scheme::KAHAN_LI_6, name: "composed-kl6", least: 2.5, largest: 4.0, fastest: 2.0 },
-    Band { scheme: Scheme::KAHAN_LI_8, name: "composed-kl8", least: 4.5, largest: 7.0, fastest: 3.0 },
+    Band { scheme: Composition::TRIPLE_JUMP_4, name: "composed-triple", least: 1.1, largest: 1.4, fastest: 0.6 },
+    Band { scheme: Composition::SUZUKI_4, name: "composed-suzuki", least: 3.0, largest: 3.2, fastest: 0.6 },
+    Band { scheme: Composition::KAHAN_LI_6, name: "composed-kl6", least: 2.5, largest: 4.0, fastest: 2.0 },
+    Band { scheme: Composition::KAHAN_LI_8, name: "composed-kl8", least: 4.5, largest: 7.0, fastest: 3.0 },
 ];
 
 /// The section: the factor of a whole step, the largest stable steps, and a map for each scheme.
@@ -58,7 +58,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     factors(atlas)?;
     let head = ["scheme", "order", "c h from the product", "c h of runs"];
     let mut table = Table::new("composed-limits", head);
-    for scheme in Scheme::ALL {
+    for scheme in Composition::ALL {
         let theory = limit(|ch| factor(scheme, -ch, 0.0) <= 1.0);
         let runs = limit(|ch| slows_down(scheme, ch));
         table.row([scheme.name.to_owned(), scheme.order.to_string(), format!("{theory:.4}"), format!("{runs:.4}")]);
@@ -81,7 +81,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
 fn factors(atlas: &mut Atlas) -> Result<(), Failure> {
     // Each scheme has the look that it has in work-precision charts, where there is no triple jump.
     let [suzuki, six, eight, jump] = Look::OTHERS;
-    let looks = Scheme::ALL.into_iter().zip([jump, suzuki, six, eight]);
+    let looks = Composition::ALL.into_iter().zip([jump, suzuki, six, eight]);
     let places = |count: u32| (1..=count).map(move |i| WIDEST * f64::from(i) / f64::from(count));
     let mut series = vec![Series::line("limit: 1", Look::EXACT, vec![(0.0, 1.0), (WIDEST, 1.0)])];
     for (scheme, look) in looks {
@@ -126,7 +126,7 @@ fn map(atlas: &mut Atlas, band: Band) -> Result<(), Failure> {
 }
 
 /// `|R(z)|`, `z` by its real and its imaginary part.
-fn factor(scheme: Scheme, re: f64, im: f64) -> f64 {
+fn factor(scheme: Composition, re: f64, im: f64) -> f64 {
     // |1 + γz/2| / |1 − γz/2|
     let of = |weight: &f64| {
         let re = weight * re / 2.0;
@@ -137,7 +137,7 @@ fn factor(scheme: Scheme, re: f64, im: f64) -> f64 {
 }
 
 /// The larger of `|R(z)|` over the two modes of an oscillator, `z² + (c h) z + (h ω)² = 0`.
-fn radius(scheme: Scheme, ch: f64, h_omega: f64) -> f64 {
+fn radius(scheme: Composition, ch: f64, h_omega: f64) -> f64 {
     let discriminant = ch * ch / 4.0 - h_omega * h_omega;
     if discriminant < 0.0 {
         factor(scheme, -ch / 2.0, (-discriminant).sqrt())
@@ -159,56 +159,31 @@ fn limit(stable: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// Evaluates an expression for the composition of a scheme, whose number of substeps is part of its type.
-macro_rules! composed {
-    ($scheme:expr, $method:ident => $value:expr) => {
-        match $scheme.weights.len() {
-            3 => {
-                let $method = Composition::TRIPLE_JUMP_4;
-                $value
-            }
-            5 => {
-                let $method = Composition::SUZUKI_4;
-                $value
-            }
-            9 => {
-                let $method = Composition::KAHAN_LI_6;
-                $value
-            }
-            _ => {
-                let $method = Composition::KAHAN_LI_8;
-                $value
-            }
-        }
-    };
-}
-
 /// The factor of the speed over one step of `a = −c v`; none where the step fails.
-fn after_one_step(scheme: Scheme, ch: f64) -> Option<f64> {
+fn after_one_step(scheme: Composition, ch: f64) -> Option<f64> {
     let system = DampedOscillator { m: 1.0, k: 0.0, c: ch };
     let start = State::at(&system, 0.0, [0.0], [1.0]);
-    let end = composed!(scheme, method => system.at_state(start).integrate(method, 1.0).ok()?.step().ok()?);
-    Some(end.p.x.abs())
+    Some(system.at_state(start).integrate(scheme, 1.0).ok()?.step().ok()?.p.x.abs())
 }
 
 /// Whether one step of `a = −c v` does not make the speed larger.
-fn slows_down(scheme: Scheme, ch: f64) -> bool {
+fn slows_down(scheme: Composition, ch: f64) -> bool {
     after_one_step(scheme, ch).is_some_and(|factor| factor <= 1.0)
 }
 
 /// How a run of the oscillator with the whole step 1 ends.
-fn class(scheme: Scheme, ch: f64, h_omega: f64) -> Class {
+fn class(scheme: Composition, ch: f64, h_omega: f64) -> Class {
     let system = DampedOscillator { m: 1.0, k: h_omega * h_omega, c: ch };
     let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND };
     let state = State::at(&system, 0.0, [1.0], [0.0]);
-    let measure = |state: State<1>| {
+    let course = system.at_state(state).integrate(scheme, 1.0).map(|mut run| {
         // Displacement and momentum both: at an extreme one of them vanishes.
-        let size = state.q.x.hypot(state.p.x);
-        (if size < REST { f64::INFINITY } else { state.t }, size)
-    };
-    let start = system.at_state(state);
-    let course = composed!(scheme, method => {
-        start.integrate(method, 1.0).map(|mut run| Course::of(limit, || run.step().map(measure)))
+        Course::of(limit, || {
+            run.step().map(|state| {
+                let size = state.q.x.hypot(state.p.x);
+                (if size < REST { f64::INFINITY } else { state.t }, size)
+            })
+        })
     });
     match course.map_or_else(Ending::Failing, |course| course.ending) {
         Ending::Lasting => DECAYS,
@@ -225,7 +200,7 @@ mod tests {
 
     #[test]
     fn the_product_and_the_runs_have_the_documented_limits() {
-        for (scheme, documented) in Scheme::ALL.into_iter().zip([1.13, 3.02, 2.73, 3.30]) {
+        for (scheme, documented) in Composition::ALL.into_iter().zip([1.13, 3.02, 2.73, 3.30]) {
             let theory = limit(|ch| factor(scheme, -ch, 0.0) <= 1.0);
             let runs = limit(|ch| slows_down(scheme, ch));
             // The documentation of the compositions has two decimals.
@@ -237,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_whole_step_is_the_product() {
-        for scheme in Scheme::ALL {
+        for scheme in Composition::ALL {
             for ch in [0.1, 0.5, 1.0, 2.0, 3.5] {
                 let run = after_one_step(scheme, ch).expect("a step");
                 let product = factor(scheme, -ch, 0.0);

@@ -34,7 +34,7 @@ mod trial;
 use atlas::Atlas;
 use clap::Args;
 use std::path::PathBuf;
-use vi_report::catalogue::{Catalogue, kebab};
+use vi_report::catalogue::{Catalogue, kebab, with_rule};
 use vi_report::failure::Failure;
 use vi_report::machine::Machine;
 use vi_report::page::{Page, Report};
@@ -76,6 +76,7 @@ pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Fai
     }
     let report = match entry {
         Some(entry) => {
+            let entry = with_rule(entry, "stability")?;
             let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
             let title = format!("Where runs of the system {} end", kebab(entry.system.name()));
             let report = Report::new(&arguments.out, Page::new(&title, entry.about))?;

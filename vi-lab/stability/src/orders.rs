@@ -63,11 +63,12 @@ mod tests {
     use super::super::atlas::tests::strays;
     use super::super::ending::LASTING;
     use super::*;
+    use vi_runs::kind::ByRule;
     use vi_runs::system::erased;
     use vi_systems::Pendulum;
 
     fn cells(stages: usize, shift: Option<Shift>) -> (Grid, Vec<Class>) {
-        let system = erased::<Pendulum, 1>();
+        let system = erased::<Pendulum, ByRule, 1>();
         let axes = Axes { x: Axis::linear("a").over(0.2, 3.0), y: Axis::log10("h").over(0.03, 0.06) };
         let grid = Grid::new(axes, 20);
         let cells = grid.cells(&|angle, h| class(system.as_ref(), stages, shift, (angle, h)), |_| ());

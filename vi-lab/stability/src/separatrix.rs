@@ -77,7 +77,6 @@ mod tests {
     use super::super::atlas::tests::strays;
     use super::super::ending::LASTING;
     use super::*;
-    use vi_core::Lagrangian as _;
 
     #[test]
     fn what_runs_is_inside_the_separatrix() {

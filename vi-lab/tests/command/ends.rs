@@ -63,7 +63,7 @@ fn the_last_row_is_the_end_whatever_every_says() {
     let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     // 0.9 is three steps, with what rounding takes from them.
     assert!(times.len() == 3 && (times[1] - 0.9).abs() < 2e-16 && times[2].to_bits() == 1.0_f64.to_bits(), "{times:?}");
-    // Steps in scaled time.
+    // Steps in transformed time.
     let run = ["run", "kepler", "--method", "gauss", "--dtau", "0.3", "--until", "1"];
     let (status, csv, errors) = lab(&run);
     assert_eq!((status, errors.as_str()), (Some(0), ""));

@@ -3,7 +3,7 @@
 //! In: the tokens of a `lagrangian!`. Out: its expansion, and a line that makes cargo build again when the variable
 //! changes. A system with mistakes is not written; a file that cannot be written is a compile error with the reason.
 
-use crate::pretty;
+use crate::{Derivations, pretty};
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::env;
@@ -22,7 +22,7 @@ fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
         Ok(derivations) => {
             let items = crate::items(&derivations);
             let name = derivations.own.model.name.to_string();
-            let written = folder.map_or(Ok(()), |folder| write(&name, items.clone(), folder));
+            let written = folder.map_or(Ok(()), |folder| write(&name, &derivations, folder));
             (items, written.err().map(|reason| quote!(::core::compile_error! { #reason })))
         }
         Err(errors) => (errors, None),
@@ -34,8 +34,8 @@ fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
     }
 }
 
-fn write(name: &str, items: TokenStream, folder: &Path) -> Result<(), String> {
-    let text = pretty::text(items).map_err(|error| error.to_string())?;
+fn write(name: &str, derivations: &Derivations, folder: &Path) -> Result<(), String> {
+    let text = crate::text(derivations).map_err(|error| error.to_string())?;
     match pretty::write(folder, name, &text) {
         Ok(_) => Ok(()),
         Err(error) => Err(format!(
@@ -63,6 +63,10 @@ mod tests {
         let inner = folder.join("of").join("its own");
         assert_eq!(expansion(SYSTEM, None), expansion(SYSTEM, Some(&inner)), "the expansion itself is the same");
         let written = fs::read_to_string(inner.join("free_particle.rs")).expect("the file");
+        assert!(
+            written.starts_with("// `FreeParticle`: L = dot(x)^2/2\n//\n// Operations of the functions for\n"),
+            "{written}"
+        );
         assert!(written.contains("::vi_core::stepping::FixedStepping<1, T>"));
         // A system with mistakes says so, and is not written.
         assert!(expansion("struct Wrong { coord x; }", Some(&inner)).contains("compile_error"));

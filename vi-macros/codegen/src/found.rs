@@ -47,6 +47,15 @@ pub struct Findings {
     pub force_of_position: bool,
     /// Where the mass matrix has entries other than zero.
     pub mass: Pattern,
+    /// Where the derivatives of L_v and L_q + f by q and v have entries other than zero, all together.
+    pub point_derivatives: Pattern,
+    /// What is special about the steps by the rule of the system, if it has one.
+    pub steps: Option<StepFindings>,
+}
+
+/// What is special about the steps by a rule.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StepFindings {
     /// No `abs`, `sign` or `atan2` in the momentum row: it has no kink and no jump, and Newton's iteration is quadratic.
     pub smooth: bool,
     /// On what the Jacobian A depends.
@@ -55,8 +64,6 @@ pub struct Findings {
     pub pattern: Pattern,
     /// A is its own transpose.
     pub symmetric: bool,
-    /// Where the derivatives of L_v and L_q + f by q and v have entries other than zero, all together.
-    pub point_derivatives: Pattern,
     /// Where the derivatives of the momentum row by q, and of p1 − p0 by q and v, have entries other than zero, all together.
     pub step_derivatives: Pattern,
     /// The momentum row and what the momenta gain are linear in what changes from step to step, their coefficients free of it.
@@ -81,7 +88,6 @@ pub enum Dependence {
 pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Findings {
     let cyclic = system.continuous.cyclic.iter().enumerate().filter(|(_, cyclic)| **cyclic).map(|(index, _)| index);
     let matrix = |id: FunctionId, output: Output| program.function(id).map(|of| (of, of.results.matrix(output)));
-    let jacobian = matrix(FunctionId::MomentumEquation, Output::Jacobian);
     let mass = matrix(FunctionId::Acceleration, Output::Mass);
     let momentum = program.function(FunctionId::Momentum);
     let velocities =
@@ -101,14 +107,22 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         constant_mass,
         force_of_position: constant_mass && system.continuous.momentum_is_mass_times_velocity && !rate_moves,
         mass: mass.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
-        smooth: jacobian.is_some_and(|(function, _)| smooth(function)),
-        jacobian: jacobian.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),
-        pattern: jacobian.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
-        symmetric: jacobian.is_some_and(|(_, rows)| symmetric(rows)),
         point_derivatives: filled_together(
             program.function(FunctionId::PointDerivatives),
             &[Output::Mass, Output::MomentumDq, Output::ForceDq, Output::ForceDv],
         ),
+        steps: program.function(FunctionId::MomentumEquation).map(|equation| steps(equation, program)),
+    }
+}
+
+/// Finds out about the steps with this momentum equation.
+fn steps(equation: &Function, program: &Program) -> StepFindings {
+    let jacobian = equation.results.matrix(Output::Jacobian);
+    StepFindings {
+        smooth: smooth(equation),
+        jacobian: dependence(equation, jacobian),
+        pattern: filled(equation, jacobian),
+        symmetric: symmetric(jacobian),
         step_derivatives: filled_together(
             program.function(FunctionId::MomentumDerivatives),
             &[Output::ResidualDq, Output::MomentumIncrementDq, Output::MomentumIncrementDv],
@@ -203,17 +217,33 @@ fn list(name: &dyn Fn(usize) -> String, indices: &[usize]) -> String {
     indices.iter().map(|index| name(*index)).collect::<Vec<_>>().join(", ")
 }
 
-impl Findings {
+impl StepFindings {
     /// The momentum row is linear with a matrix that is the same in every step of one length: it is inverted once per run.
     #[must_use]
     pub fn constant_jacobian(&self) -> bool {
         self.smooth && self.jacobian <= Dependence::Step
     }
 
+    /// How A is solved, for a system of so many coordinates.
+    fn solved(&self, size: usize) -> &'static str {
+        match &self.pattern {
+            Pattern::Scalar | Pattern::Diagonal => "by division",
+            _ if size <= CLOSED => "in closed form",
+            Pattern::Tridiagonal => "by elimination from both ends",
+            Pattern::Banded(_) => "by elimination inside the band",
+            Pattern::Blocks(_) => "block by block",
+            Pattern::Dense if self.symmetric => "by `L D Lᵀ`",
+            Pattern::Dense => "by elimination with pivoting",
+        }
+    }
+}
+
+impl Findings {
     /// What a step adds to q and p is a constant matrix times (q, p) but for a constant, computed once per run.
     #[must_use]
     pub fn closed_form(&self) -> bool {
-        self.constant_jacobian() && self.affine && self.autonomous && self.size <= CLOSED
+        let is_linear = self.steps.as_ref().is_some_and(|steps| steps.constant_jacobian() && steps.affine);
+        is_linear && self.autonomous && self.size <= CLOSED
     }
 
     /// The findings in words, one line each, formulas between backticks; `name` names a coordinate.
@@ -242,13 +272,14 @@ impl Findings {
         lines
     }
 
-    /// Those of the findings that depend on the rule.
+    /// Those of the findings that depend on the rule; none without one.
     #[must_use]
     pub fn of_steps(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
+        let Some(steps) = &self.steps else { return Vec::new() };
         let mut lines = vec![format!(
             "The step's equation in `v` is {}",
-            match self.jacobian {
-                _ if !self.smooth =>
+            match steps.jacobian {
+                _ if !steps.smooth =>
                     "not smooth: it has a kink or a jump, across which Newton's iteration may have to be damped",
                 _ if self.closed_form() => "linear, and the whole step one constant matrix, computed once per run",
                 Dependence::Parameters =>
@@ -260,27 +291,14 @@ impl Findings {
                     "nonlinear: its Jacobian `A` depends on `v`, and Newton's iteration gives the step",
             }
         )];
-        if self.pattern != Pattern::Scalar {
-            let symmetry = if self.symmetric { "symmetric" } else { "not symmetric" };
+        if steps.pattern != Pattern::Scalar {
+            let symmetry = if steps.symmetric { "symmetric" } else { "not symmetric" };
             lines.push(format!(
                 "`A` is {}, {symmetry}; solved {}",
-                self.pattern.text(&|indices| list(name, indices)),
-                self.solved()
+                steps.pattern.text(&|indices| list(name, indices)),
+                steps.solved(self.size)
             ));
         }
         lines
-    }
-
-    /// How A is solved.
-    fn solved(&self) -> &'static str {
-        match &self.pattern {
-            Pattern::Scalar | Pattern::Diagonal => "by division",
-            _ if self.size <= CLOSED => "in closed form",
-            Pattern::Tridiagonal => "by elimination from both ends",
-            Pattern::Banded(_) => "by elimination inside the band",
-            Pattern::Blocks(_) => "block by block",
-            Pattern::Dense if self.symmetric => "by `L D Lᵀ`",
-            Pattern::Dense => "by elimination with pivoting",
-        }
     }
 }

@@ -152,7 +152,9 @@ impl Habit {
             }
             Self::FunctionInName { function, argument, .. } => format!("write `{function}({argument})`"),
             Self::ProductInName { product, .. } => format!("write `{product}` for a product"),
-            Self::RuleWithArguments => format!("write `discretize {};`; {GAUSS}", rules::RULES[0].name),
+            Self::RuleWithArguments => {
+                format!("write `discretize {};` or `discretize {};`; {GAUSS}", rules::GAUSS, rules::RULES[0].name)
+            }
             Self::RuleWithSign => format!("write `discretize {};`", rules::RULES[0].name),
             Self::MissingOperator { left, right, is_number: true } => suffix(right)
                 .unwrap_or_else(|| format!("write `{left} * {right}` for a product; units are not written")),
@@ -362,7 +364,7 @@ const NAMES: [(&[&str], &str); 9] = [
 
 /// Rules.
 const OF_RULES: [(&[&str], &str); 2] = [
-    (&["gauss", "Gauss", "gauss_legendre", "legendre", "collocation", "galerkin", "order", "stages"], GAUSS),
+    (&["Gauss", "gauss_legendre", "legendre", "collocation", "galerkin", "order", "stages"], GAUSS),
     (
         &["verlet", "Verlet", "leapfrog", "stoermer_verlet", "stormer_verlet", "velocity_verlet"],
         "write `trapezoidal`, which is Störmer–Verlet where `L` is `v·Mv/2 - V(t, q)`",
@@ -370,11 +372,11 @@ const OF_RULES: [(&[&str], &str); 2] = [
 ];
 
 /// Where the order is chosen.
-pub(crate) const GAUSS: &str = "every system has Gauss steps without a clause: `Gauss::<_, N, S>::new` takes them with S stages for N coordinates, of \
-    order 2 S";
+pub(crate) const GAUSS: &str =
+    "every system has Gauss steps without a clause: `integrate(Gauss::<S>, h)` takes them with S stages, of order 2 S";
 
 /// Where a step and a start are given.
-pub(crate) const RUN: &str = "a step and a start belong to a run: `FixedStep::new(system, State::at(&system, t, q, v), h)`; those of checks stand in \
+pub(crate) const RUN: &str = "a step and an initial state belong to a run: `system.at(t, q, v).integrate(FixedStep, h)`; those of checks belong in \
     `check { x = 1; h = 0.01; }`";
 
 /// Greek letters by their words.

@@ -16,6 +16,7 @@ pub mod emit;
 pub mod file;
 pub mod found;
 mod habits;
+mod header;
 #[cfg(feature = "inspect")]
 pub mod inspect;
 mod limits;
@@ -73,8 +74,16 @@ fn derive_by(system: &syntax::System, place: usize) -> syn::Result<Derived> {
     Ok(Derived { pool, model, system, program, findings })
 }
 
+/// The expansion of a system as the text of a file.
+///
+/// # Errors
+/// Tokens that are no items of Rust: a mistake of this compiler.
+pub fn text(derivations: &Derivations) -> syn::Result<String> {
+    Ok(header::header(derivations) + &pretty::text(items(derivations))?)
+}
+
 /// The items of a system.
 #[must_use]
 pub fn items(derivations: &Derivations) -> TokenStream {
-    emit::items(derivations, emit::LIMIT)
+    emit::items(derivations)
 }

@@ -4,7 +4,7 @@
 //! A stage collects its errors in [`Errors`] and reports them all before the next stage starts.
 
 use crate::habits::{self, Habit};
-use crate::rules::{self, RULES};
+use crate::rules;
 use proc_macro2::Span;
 use std::collections::BTreeSet;
 use vi_expr::TooLarge;
@@ -163,8 +163,6 @@ pub enum Message {
     MissingLagrangian,
     /// A second line `L = …;`.
     SecondLagrangian,
-    /// No line `discretize …;`.
-    MissingRule,
     /// A second line `discretize …;`.
     SecondRule,
     /// A second `check { … }`.
@@ -355,7 +353,6 @@ impl Message {
             Self::UnusedSlot { name } => format!("`Ld` does not depend on `{name}`"),
             Self::MissingLagrangian => "the system has no Lagrangian".to_owned(),
             Self::SecondLagrangian => "a second `L`".to_owned(),
-            Self::MissingRule => "the system is not discretized".to_owned(),
             Self::SecondRule => "a second `discretize`".to_owned(),
             Self::SecondCheck => "a second `check`".to_owned(),
             Self::MissingStep => "the check has no step".to_owned(),
@@ -451,7 +448,6 @@ impl Message {
             Self::UnusedSlot { .. } => "a discrete Lagrangian depends on both ends of its interval".to_owned(),
             Self::MissingLagrangian => "write `L = …;`, kinetic minus potential energy".to_owned(),
             Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),
-            Self::MissingRule => format!("write `discretize {};`", RULES[0].name),
             Self::SecondRule => "write `discretize` once; it may list several rules by their names".to_owned(),
             Self::SecondCheck => "write `check` once".to_owned(),
             Self::MissingStep => "end it with the step, as in `h = 0.01;`".to_owned(),

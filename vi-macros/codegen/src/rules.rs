@@ -49,6 +49,9 @@ pub const RULES: [NamedRule; 2] = [
     },
 ];
 
+/// The name in a list for the functions of Gauss steps, which every system has: it adds no rule.
+pub const GAUSS: &str = "gauss";
+
 /// The order that a rule is expected to have which is none of the table, and is not said to be symmetric.
 pub const LEAST_ORDER: u32 = 1;
 
@@ -58,12 +61,12 @@ pub fn named(name: &str) -> Option<&'static NamedRule> {
     RULES.iter().find(|rule| rule.name == name)
 }
 
-/// The names of all rules.
+/// The names that `discretize` takes.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    RULES.iter().map(|rule| rule.name)
+    [GAUSS].into_iter().chain(RULES.iter().map(|rule| rule.name))
 }
 
-/// The names of all rules, separated by commas.
+/// The names that `discretize` takes, separated by commas.
 pub(crate) fn list() -> String {
     names().collect::<Vec<_>>().join(", ")
 }

@@ -28,7 +28,7 @@ fn emitted(text: &str) -> (String, Forms) {
         form.replace("::vi_core::linear::", "").replace("::vi_core::", "")
     };
     let (jacobian, mass) = (between("typeJacobian=", ";"), between("letmass:", "="));
-    let findings = derivations.own.findings;
+    let findings = derivations.own.findings.steps.expect("a rule");
     let found = Forms { pattern: findings.pattern, symmetric: findings.symmetric, jacobian, mass };
     (rust, found)
 }

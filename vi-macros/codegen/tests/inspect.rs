@@ -22,13 +22,15 @@ fn words(body: &str) -> Vec<String> {
 #[test]
 fn an_oscillator_is_linear() {
     let found = findings("param k = 1; coord x; L = dot(x)^2/2 - k*x^2/2; force x = -dot(x); discretize midpoint;");
-    assert!(found.autonomous && found.forced && found.separable && found.constant_mass && found.symmetric);
-    assert_eq!((found.jacobian, found.pattern, found.cyclic), (Dependence::Step, Pattern::Scalar, vec![]));
+    assert!(found.autonomous && found.forced && found.separable && found.constant_mass);
+    let steps = found.steps.expect("a rule");
+    assert!(steps.symmetric);
+    assert_eq!((steps.jacobian, steps.pattern, found.cyclic), (Dependence::Step, Pattern::Scalar, vec![]));
 }
 
 #[test]
 fn what_the_jacobian_depends_on() {
-    let of = |body: &str| findings(body).jacobian;
+    let of = |body: &str| findings(body).steps.expect("a rule").jacobian;
     // A = L_vv + …: by hand, 1; 1 + h²/4; 1 + (h²/4) cos of the time; of x_mid, which takes v.
     assert_eq!(of("coord x; L = dot(x)^2/2; discretize midpoint;"), Dependence::Parameters);
     assert_eq!(of("coord x; L = dot(x)^2/2 - x^2/2; discretize midpoint;"), Dependence::Step);

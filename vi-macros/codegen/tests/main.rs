@@ -10,6 +10,7 @@ mod mass;
 mod messages;
 mod operations;
 mod reference;
+mod requests;
 mod rules;
 mod scope;
 mod vanishing;

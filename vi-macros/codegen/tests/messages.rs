@@ -263,13 +263,17 @@ fn constants() {
 fn clauses() {
     case("coord x; discretize midpoint;", "the system has no Lagrangian");
     case("L = 1; discretize midpoint;", "the system has no coordinates");
-    case("coord x; L = dot(x)^2;", "the system is not discretized\nhelp: write `discretize midpoint;`");
     case("coord x; L = dot(x)^2; «L» = dot(x)^2; discretize midpoint;", "a second `L`");
     case(
         "coord x; L = dot(x)^2; discretize midpoint; discretize «midpoint»;",
         "a second `discretize`\nhelp: write `discretize` once; it",
     );
     case("coord x; L = dot(x)^2; discretize «midpont»;", "unknown rule `midpont`\nhelp: did you mean `midpoint`?");
+    case("coord x; L = dot(x)^2; discretize «gaus»;", "unknown rule `gaus`\nhelp: did you mean `gauss`?");
+    case(
+        "coord x; L = dot(x)^2; discretize gauss, midpoint, «gauss»;",
+        "the rule `gauss` is listed twice\nhelp: list each",
+    );
     case("coord x; L = dot(x)^2; discretize midpoint, «trapzoidal»;", "unknown rule `trapzoidal`\nhelp: did you mean");
     case(
         "coord x; L = dot(x)^2; discretize midpoint, «midpoint»;",
@@ -286,19 +290,19 @@ fn clauses() {
     );
     case("coord x; L = dot(x)^2; discretize midpoint, «,»;", "expected a name");
     case("coord x; L = dot(x)^2; discretize midpoint «trapezoidal»;", "expected `,` or `;`");
-    let gauss = "every system has Gauss steps without a clause: `Gauss::<_, N, S>::new` takes them with S stages for N coordinates, of order 2 S";
-    for rule in ["gauss", "gauss_legendre", "collocation"] {
+    let gauss = "every system has Gauss steps without a clause: `integrate(Gauss::<S>, h)` takes them with S stages, of order 2 S";
+    for rule in ["Gauss", "gauss_legendre", "collocation"] {
         case(&format!("coord x; L = dot(x)^2; discretize «{rule}»;"), &format!("unknown rule `{rule}`\nhelp: {gauss}"));
     }
     case(
         "coord x; L = dot(x)^2; discretize «simpson»;",
-        &format!("unknown rule `simpson`\nhelp: the rules are midpoint, trapezoidal; {gauss}"),
+        &format!("unknown rule `simpson`\nhelp: the rules are gauss, midpoint, trapezoidal; {gauss}"),
     );
     case("coord x; L = dot(x)^2; discretize «verlet»;", "unknown rule `verlet`\nhelp: write `trapezoidal`, which is");
     for arguments in ["gauss«(»4)", "order «=» 4", "gauss «4»", "Gauss«<»4>", "midpoint«(»h)"] {
         case(
             &format!("coord x; L = dot(x)^2; discretize {arguments};"),
-            &format!("a rule is a name alone\nhelp: write `discretize midpoint;`; {gauss}"),
+            &format!("a rule is a name alone\nhelp: write `discretize gauss;` or `discretize midpoint;`; {gauss}"),
         );
     }
     for sign in ["=", ":"] {
@@ -314,7 +318,7 @@ fn clauses() {
         let word = clause.split(' ').next().unwrap_or_default();
         case(
             &format!("{REST} {};", clause.replacen(word, &format!("«{word}»"), 1)),
-            &format!("unknown clause `{word}`\nhelp: a step and a start belong to a run: `FixedStep::new(system, "),
+            &format!("unknown clause `{word}`\nhelp: a step and an initial state belong to a run: `system.at(t, q, v)"),
         );
     }
     case("coord x; L = dot(x)^2; force «y» = 1; discretize midpoint;", "a force on `y`, which is not a coordinate");
@@ -389,8 +393,8 @@ fn other_definitions() {
     clause("«#» the mass", "`#` begins no comment\nhelp: write `// …`");
     clause("force x «+»= 1;", "a force is written once\nhelp: write `force x = …;`, all forces on `x` added up");
     clause("force dot«(»x) = 1;", "a force on no coordinate\nhelp: write the coordinate that it acts on");
-    clause("coord z; «z» = 1;", "unknown clause `z`\nhelp: a step and a start belong to a run");
-    clause("coord z; «z»(0) = 1;", "unknown clause `z`\nhelp: a step and a start belong to a run");
+    clause("coord z; «z» = 1;", "unknown clause `z`\nhelp: a step and an initial state belong to a run");
+    clause("coord z; «z»(0) = 1;", "unknown clause `z`\nhelp: a step and an initial state belong to a run");
     clause("«l» = 1;", "unknown clause `l`\nhelp: write `L = …;` for the Lagrangian, `let l = …;` to name a part");
 }
 
@@ -615,13 +619,13 @@ fn each_mistake_is_told_with_what_to_write() {
         ("constraint x^2 = 1;", "choose coordinates that satisfy them"),
         ("T = dot(x)^2 / 2;", "`let T = …;`"),
         ("let a = 1", "every clause ends with `;`"),
-        ("order = 4;", "`Gauss::<_, N, S>::new`"),
+        ("order = 4;", "`integrate(Gauss::<S>, h)`"),
         ("h = 0.01;", "`system.at(t, q, v).integrate(FixedStep, h)`"),
     ] {
         told(&format!("{written} {REST}"), wanted);
     }
-    for rule in ["gauss", "gauss(4)", "order = 4", "rk4"] {
-        told(&format!("coord x; L = dot(x)^2 / 2; discretize {rule};"), "`Gauss::<_, N, S>::new`");
+    for rule in ["Gauss", "gauss(4)", "order = 4", "rk4"] {
+        told(&format!("coord x; L = dot(x)^2 / 2; discretize {rule};"), "`integrate(Gauss::<S>, h)`");
     }
 }
 

@@ -1,4 +1,4 @@
-use vi_core::{lagrangian, FixedStep, Starts, State};
+use vi_core::{lagrangian, FixedStep, Starts};
 
 lagrangian! {
     pub struct Broken {

@@ -1,4 +1,4 @@
-//! The stages of a step in scaled time.
+//! The stages of a step in transformed time.
 //!
 //! In: the equations of motion, `dt = g dτ` and H at the stages. Out: velocities, times, energies, and what they change by,
 //!

@@ -1,6 +1,6 @@
-//! The motion over a step in scaled time: its collocation polynomials.
+//! The motion over a step in transformed time: its collocation polynomials.
 //!
-//! In: what time, positions and momenta change by at the stages. Out: q and p at any time of the step. With θ the part of the step in scaled
+//! In: what time, positions and momenta change by at the stages. Out: q and p at any time of the step. With θ the part of the step in transformed
 //! time and x = 2θ − 1, all three are polynomials of θ,
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! What the stages of a step in scaled time leave of their equations, in roundings by running error analysis.
+//! What the stages of a step in transformed time leave of their equations, in roundings by running error analysis.
 //!
 //! In: a system in numbers that carry a bound of their rounding, and stages, each number the nearest to the one that is meant. Out:
 //! the largest row over its bound,

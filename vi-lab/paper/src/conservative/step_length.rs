@@ -3,7 +3,8 @@
 use super::super::book::{Book, Verdict};
 use super::super::unexpected;
 use super::runs::Pair;
-use vi_core::{Lagrangian, SVector};
+use vi_core::SVector;
+use vi_core::stepping::EnergyStepping;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::page::math::{frac, id, num, op, row, sub, sup};

@@ -22,38 +22,58 @@ use crate::model::Model;
 use crate::rules::NamedRule;
 use crate::symbol::{Field, Symbol, Variable};
 
-/// A discretized system.
+/// A system as far as its functions need it: the motion, and the steps if it has a rule.
 pub struct DiscreteSystem {
-    /// The rule of the table that the system's rule is, written out or not.
-    pub rule: Option<&'static NamedRule>,
     /// The continuous functions: momentum, mass matrix, …
     pub continuous: Continuous,
     /// How the continuous equations change with coordinates and velocities.
     pub point_derivatives: PointDerivatives,
     /// Partial derivatives of L and f, as far as they were asked for.
     pub fields: Fields,
+    /// What the rule of the system gives; `None` for a system that has Gauss steps alone.
+    pub by_rule: Option<ByRule>,
+}
+
+/// A system discretized by a rule.
+pub struct ByRule {
+    /// The rule of the table that the system's rule is, written out or not.
+    pub rule: Option<&'static NamedRule>,
     /// L_d, its slot derivatives, discrete forces and powers.
     pub slots: Slots,
     /// The equations of a step in the unknowns `(v, h)`.
     pub equations: Equations,
 }
 
-impl DiscreteSystem {
+impl ByRule {
     /// Whether energy-preserving steps exist: the rule has a step density, or nothing is known of it.
     #[must_use]
     pub fn has_energy_steps(&self) -> bool {
         self.rule.is_none_or(|rule| rule.step_density)
+    }
+}
+
+impl DiscreteSystem {
+    /// The number of points at which the rule evaluates L and f; 1 without a rule.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.by_rule.as_ref().map_or(1, |of| of.slots.points.len())
+    }
+
+    /// Whether energy-preserving steps of order 2 exist.
+    #[must_use]
+    pub fn has_energy_steps(&self) -> bool {
+        self.by_rule.as_ref().is_some_and(ByRule::has_energy_steps)
     }
 
     /// A symbol as the user wrote it, and where it is evaluated: `L_v_x`, `x_mid`; `L_v_x_at2` where the rule has
     /// several points.
     #[must_use]
     pub fn spell(&self, model: &Model, symbol: &Symbol) -> String {
-        let at = |point: usize| if self.slots.points.len() == 1 { String::new() } else { format!("_at{}", point + 1) };
+        let at = |point: usize| if self.points() == 1 { String::new() } else { format!("_at{}", point + 1) };
         match symbol {
             Symbol::Field(Field { point, .. }) => model.spell(symbol) + &at(*point),
             Symbol::AtPoint(point, variable) => {
-                let place = if self.slots.points.len() == 1 { "_mid".to_owned() } else { at(*point) };
+                let place = if self.points() == 1 { "_mid".to_owned() } else { at(*point) };
                 match variable {
                     Variable::Velocity(index) => format!("{}_dot{place}", model.coordinates[*index].text()),
                     _ => model.spell(&Symbol::Continuous(*variable)) + &place,

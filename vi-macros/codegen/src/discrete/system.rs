@@ -7,7 +7,7 @@ use super::fields::Fields;
 use super::forces::discrete_forces;
 use super::interval::in_step;
 use super::slots::Slots;
-use super::{DiscreteSystem, continuous, slots, step};
+use super::{ByRule, DiscreteSystem, continuous, slots, step};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Rule, rule};
@@ -19,7 +19,7 @@ use vi_expr::{Expr, Pool, TooLarge};
 /// Characters of an expression that a message shows.
 const CHARACTERS: usize = 100;
 
-/// Discretizes a model by its rule.
+/// Derives the motion of a model, and its steps by its rule.
 ///
 /// # Errors
 /// A rule whose L_d leaves an end of the interval out, at that line; a system that grows too large, at its name.
@@ -28,15 +28,25 @@ pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> 
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
     let continuous = continuous::continuous(pool, &mut fields, model).map_err(too_large)?;
     every_derivative_exists(pool, &fields, &continuous, model)?;
-    let rule = known_rule(pool, model)?;
-    let slots = slots::slots(pool, &mut fields, model, &model.rule).map_err(too_large)?;
-    bounded(pool).map_err(too_large)?;
-    every_slot_acts(pool, model, &slots)?;
-    let equations = step::equations(pool, &mut fields, &slots).map_err(too_large)?;
+    let by_rule = match &model.rule {
+        Some(rule) => Some(by_rule(pool, &mut fields, model, rule)?),
+        None => None,
+    };
     let point_derivatives = continuous::point_derivatives(pool, &mut fields, model.dimension()).map_err(too_large)?;
     bounded(pool).map_err(too_large)?;
     every_derivative_exists(pool, &fields, &continuous, model)?;
-    Ok(DiscreteSystem { rule, continuous, point_derivatives, fields, slots, equations })
+    Ok(DiscreteSystem { continuous, point_derivatives, fields, by_rule })
+}
+
+/// Discretizes a model by a rule.
+fn by_rule(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model, rule: &Rule) -> Result<ByRule> {
+    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
+    let known = known_rule(pool, model, rule)?;
+    let slots = slots::slots(pool, fields, model, rule).map_err(too_large)?;
+    bounded(pool).map_err(too_large)?;
+    every_slot_acts(pool, rule, &slots)?;
+    let equations = step::equations(pool, fields, &slots).map_err(too_large)?;
+    Ok(ByRule { rule: known, slots, equations })
 }
 
 /// A derivative that has no value for any state, as that of `0^x`, is told with the smallest expression that has none.
@@ -70,27 +80,31 @@ fn undefined_time_scale(pool: &Pool<Symbol>, continuous: &Continuous) -> Option<
     slopes.find(|(_, slope)| pool.is_undefined(*slope)).map(|(by, _)| (*g, by))
 }
 
-/// The rule of the table that the system's rule is: by its name, or written out.
-fn known_rule(pool: &mut Pool<Symbol>, model: &Model) -> Result<Option<&'static NamedRule>> {
-    if model.rule.named.is_some() {
-        return Ok(model.rule.named);
+/// The rule of the table that a rule of the system is: by its name, or written out.
+fn known_rule(pool: &mut Pool<Symbol>, model: &Model, ours: &Rule) -> Result<Option<&'static NamedRule>> {
+    if ours.named.is_some() {
+        return Ok(ours.named);
     }
     for known in &RULES {
         let resolved = rule::named(pool, known, model.dimension(), model.forced)?;
-        if says_the_same(pool, model, &resolved).unwrap_or(false) {
+        if says_the_same(pool, model, [&resolved, ours]).unwrap_or(false) {
             return Ok(Some(known));
         }
     }
     Ok(None)
 }
 
-/// Whether a rule is the system's: its L_d, and its forces once they are multiplied out.
-fn says_the_same(pool: &mut Pool<Symbol>, model: &Model, rule: &Rule) -> core::result::Result<bool, TooLarge> {
-    if rule.ld != model.rule.ld || rule.points != model.rule.points {
+/// Whether two rules are the same: their L_d, and their forces once they are multiplied out.
+fn says_the_same(
+    pool: &mut Pool<Symbol>,
+    model: &Model,
+    [theirs, ours]: [&Rule; 2],
+) -> core::result::Result<bool, TooLarge> {
+    if theirs.ld != ours.ld || theirs.points != ours.points {
         return Ok(false);
     }
-    let theirs = discrete_forces(pool, model, rule)?;
-    let ours = discrete_forces(pool, model, &model.rule)?;
+    let theirs = discrete_forces(pool, model, theirs)?;
+    let ours = discrete_forces(pool, model, ours)?;
     for (theirs, ours) in theirs.expressions().zip(ours.expressions()) {
         if in_step(pool, theirs)? != in_step(pool, ours)? {
             return Ok(false);
@@ -100,12 +114,12 @@ fn says_the_same(pool: &mut Pool<Symbol>, model: &Model, rule: &Rule) -> core::r
 }
 
 /// A discrete Lagrangian that leaves an end of its interval out has no equations of a step.
-fn every_slot_acts(pool: &Pool<Symbol>, model: &Model, slots: &Slots) -> Result<()> {
+fn every_slot_acts(pool: &Pool<Symbol>, rule: &Rule, slots: &Slots) -> Result<()> {
     let none = |derivatives: &[Expr]| derivatives.iter().all(|derivative| pool.is_zero(*derivative));
     let each: [(&'static str, &[Expr]); 4] =
         [("t0", &[slots.d1_ld]), ("q0", &slots.d2_ld), ("t1", &[slots.d3_ld]), ("q1", &slots.d4_ld)];
     match each.into_iter().find(|(_, derivatives)| none(derivatives)) {
-        Some((name, _)) => Err(error(model.rule.span, &Message::UnusedSlot { name })),
+        Some((name, _)) => Err(error(rule.span, &Message::UnusedSlot { name })),
         None => Ok(()),
     }
 }

@@ -343,7 +343,8 @@ pub(super) fn part(body: &Body, symbol: &Symbol, value: &TokenStream) -> TokenSt
 pub(super) fn state_parts(body: &Body, model: &Model) -> TokenStream {
     let velocity = |index| Symbol::Continuous(Variable::Velocity(index));
     let coordinate = |index| Symbol::Continuous(Variable::Coordinate(index));
-    let acceleration = parts(body, model, Symbol::Acceleration, &quote!(self.acceleration(t, q, v)?));
+    let acceleration =
+        parts(body, model, Symbol::Acceleration, &quote!(::vi_core::Lagrangian::acceleration(self, t, q, v)?));
     let velocities = parts(body, model, velocity, &quote!((*v)));
     let coordinates = parts(body, model, coordinate, &quote!((*q)));
     quote!(#acceleration #velocities #coordinates)

@@ -1,10 +1,11 @@
 //! The checks of a system: one test for each that applies.
 //!
 //! Which apply is known here: whether there is a force, which coordinates are cyclic, and what the table says of the rule. A rule that
-//! is not in it is expected to be of order 1, and nothing else. A system with several rules has the tests once for each of them.
+//! is not in it is expected to be of order 1, and nothing else. A system with several rules has the tests once for each of them; one
+//! without a rule has those of its motion and of its Gauss steps.
 
-use super::Source;
 use super::formula::number;
+use super::{Source, Steps};
 use crate::pretty::snake_case;
 use crate::rules::LEAST_ORDER;
 use proc_macro2::{Literal, TokenStream};
@@ -16,7 +17,12 @@ use syn::Attribute;
 /// ```text
 /// #[cfg(test)] mod kepler_checks { fn place() -> Place<2> {…} #[test] fn derivatives() {…} … mod trapezoidal { … } }
 /// ```
-pub(super) fn tests(source: &Source, further: &[Source], conditions: &[&Attribute]) -> Option<TokenStream> {
+pub(super) fn tests(
+    source: &Source,
+    steps: Option<&Steps>,
+    further: &[Steps],
+    conditions: &[&Attribute],
+) -> Option<TokenStream> {
     let state = source.model.check_state.as_ref()?;
     let (name, dimension) = (&source.model.name, source.dimension());
     let module = format_ident!("{}_checks", snake_case(&name.to_string()));
@@ -36,10 +42,11 @@ pub(super) fn tests(source: &Source, further: &[Source], conditions: &[&Attribut
         };
         (Some(system), quote!(system()), quote!(super::system()))
     };
-    let tests = tests_by_rule(source, &own, &quote!(place()));
-    let by_further = further.iter().map(|source| {
-        let rule = format_ident!("{}", source.model.rule.title());
-        let tests = tests_by_rule(source, &of_further, &quote!(super::place()));
+    let applying = steps.map_or_else(|| of_motion(source), of_steps);
+    let tests = tests_of(applying, &own, &quote!(place()));
+    let by_further = further.iter().map(|steps| {
+        let rule = format_ident!("{}", steps.rule.title());
+        let tests = tests_of(of_steps(steps), &steps.by_rule(of_further.clone()), &quote!(super::place()));
         quote!(mod #rule { #(#tests)* })
     });
     Some(quote! {
@@ -65,10 +72,12 @@ fn set(source: &Source, index: usize, value: f64) -> Option<TokenStream> {
     Some(quote!(system.#place = #value;))
 }
 
-/// One test for each check that applies to the steps by the rule.
-fn tests_by_rule(source: &Source, system: &TokenStream, place: &TokenStream) -> Vec<TokenStream> {
-    let system = source.by_rule(system.clone());
-    let test = |(check, order): (&str, TokenStream)| {
+/// A check by its name, with the further argument that the order takes.
+type Check = (&'static str, TokenStream);
+
+/// One test for each check.
+fn tests_of(checks: Vec<Check>, system: &TokenStream, place: &TokenStream) -> Vec<TokenStream> {
+    let test = |(check, order): Check| {
         let check = format_ident!("{check}");
         quote! {
             #[::core::prelude::v1::test]
@@ -80,13 +89,24 @@ fn tests_by_rule(source: &Source, system: &TokenStream, place: &TokenStream) -> 
             }
         }
     };
-    checks(source).into_iter().map(test).collect()
+    checks.into_iter().map(test).collect()
 }
 
-/// The checks that apply, with the further argument that the order takes.
-fn checks(source: &Source) -> Vec<(&'static str, TokenStream)> {
-    let forced = source.model.forced;
-    let rule = source.system.rule;
+/// The checks that apply to the motion of a system and to its Gauss steps.
+fn of_motion(source: &Source) -> Vec<Check> {
+    let each = [
+        ("derivatives", true),
+        ("gauss_order", true),
+        ("gauss_momenta", source.system.continuous.cyclic.contains(&true)),
+        ("gauss_symplecticity", !source.model.forced),
+    ];
+    each.into_iter().filter(|(_, applies)| *applies).map(|(check, _)| (check, TokenStream::new())).collect()
+}
+
+/// The checks that apply to the motion of a system and to its steps by a rule.
+fn of_steps(steps: &Steps) -> Vec<Check> {
+    let forced = steps.model.forced;
+    let rule = steps.discrete.rule;
     let symmetric = rule.is_some_and(|rule| rule.symmetric);
     let step_density = rule.is_some_and(|rule| rule.step_density);
     let order = Literal::u32_unsuffixed(rule.map_or(LEAST_ORDER, |rule| rule.order));
@@ -94,9 +114,9 @@ fn checks(source: &Source) -> Vec<(&'static str, TokenStream)> {
         ("derivatives", true, TokenStream::new()),
         ("slots", true, TokenStream::new()),
         ("steps", true, TokenStream::new()),
-        ("energy_equations", source.system.has_energy_steps(), TokenStream::new()),
+        ("energy_equations", steps.discrete.has_energy_steps(), TokenStream::new()),
         ("order", true, quote!(, #order)),
-        ("momenta", source.system.continuous.cyclic.contains(&true), TokenStream::new()),
+        ("momenta", steps.system.continuous.cyclic.contains(&true), TokenStream::new()),
         ("symplecticity", !forced, TokenStream::new()),
         ("reversibility", symmetric, TokenStream::new()),
         ("energy", step_density, TokenStream::new()),

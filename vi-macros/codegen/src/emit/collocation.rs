@@ -111,7 +111,7 @@ fn point_of(source: &Source, body: &Body) -> (TokenStream, TokenStream) {
     (form, quote!(::vi_core::collocation::Point { momentum: #momentum, force: #force, mass: #mass }))
 }
 
-/// The function of all that a step in scaled time takes at a point.
+/// The function of all that a step in transformed time takes at a point.
 fn scaled_point(source: &Source, scale: &TimeScale) -> TokenStream {
     let dimension = source.dimension();
     let formula = format!("The point, its energy, its power, and\n\n{}", source.formula("g", scale.g));

@@ -1,8 +1,8 @@
 //! `impl DiscreteLagrangian`: L_d, its slot derivatives, discrete forces and powers.
 
-use super::Source;
 use super::body::{Body, VelocityFrom, part, parts};
 use super::lagrangian::vector_of;
+use super::{Source, Steps};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
@@ -10,8 +10,8 @@ use quote::{format_ident, quote};
 use vi_expr::Expr;
 
 /// The implementation of `DiscreteLagrangian` by the rule.
-pub(super) fn item(source: &Source) -> TokenStream {
-    let (name, dimension, of) = (&source.model.name, source.dimension(), &source.system.slots);
+pub(super) fn item(source: &Steps) -> TokenStream {
+    let (name, dimension, of) = (&source.model.name, source.dimension(), &source.discrete.slots);
     let rule = source.rule_argument();
     let functions = [
         number(source, FunctionId::Ld, of.ld),

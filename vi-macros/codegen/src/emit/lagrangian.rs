@@ -28,7 +28,6 @@ pub(super) fn item(source: &Source) -> TokenStream {
         vector(source, FunctionId::Momentum, &source.formulas("p", &of.momentum)),
         vector(source, FunctionId::Force, &source.formulas("f", &of.force)),
         acceleration(source),
-        step_density(source, of.step_density),
         flow(source),
         non_finite(source),
     ];
@@ -86,7 +85,7 @@ impl Source<'_> {
         velocity: VelocityFrom,
     ) -> Option<(Body, TokenStream)> {
         let function = self.function(id)?;
-        let printed = body(self.model, function, self.system.slots.points.len(), velocity, self.limit);
+        let printed = body(self.model, function, self.system.points(), velocity, self.limit);
         let count = function.operation_count();
         let noun = if count == 1 { "operation" } else { "operations" };
         let lines = format!("{formula}\n\n{count} {noun}.");
@@ -172,9 +171,10 @@ fn acceleration(source: &Source) -> TokenStream {
     }
 }
 
-fn step_density(source: &Source, density: Expr) -> TokenStream {
+/// The function of the step density.
+pub(super) fn step_density(source: &Source) -> TokenStream {
     let dimension = source.dimension();
-    let formula = source.formula("D", density);
+    let formula = source.formula("D", source.system.continuous.step_density);
     let Some((body, documentation)) = source.documented(FunctionId::StepDensity, &formula, VelocityFrom::Argument)
     else {
         return TokenStream::new();

@@ -22,11 +22,12 @@ mod stepping;
 mod structure;
 
 use crate::derived::{Derivations, Derived};
-use crate::discrete::DiscreteSystem;
-use crate::found::Findings;
-use crate::model::Model;
+use crate::discrete::{ByRule, DiscreteSystem};
+use crate::found::{Findings, StepFindings};
+use crate::model::{Model, Rule};
 use crate::program::{Function, FunctionId, Program};
 use crate::symbol::Symbol;
+use core::ops::Deref;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 use vi_expr::Pool;
@@ -45,36 +46,62 @@ struct Source<'a> {
     limit: usize,
 }
 
-/// Operations that one function holds at most; a longer one is emitted in pieces.
-pub const LIMIT: usize = 800;
+/// A system by its rule: everything that its steps are printed from.
+struct Steps<'a> {
+    source: &'a Source<'a>,
+    rule: &'a Rule,
+    discrete: &'a ByRule,
+    findings: &'a StepFindings,
+}
 
-/// The items of a system, in fixed order, in functions of at most `limit` operations, which is [`LIMIT`] but in tests.
+impl<'a> Deref for Steps<'a> {
+    type Target = Source<'a>;
+
+    fn deref(&self) -> &Source<'a> {
+        self.source
+    }
+}
+
+/// Operations that one function holds at most; a longer one is emitted in pieces.
+const LIMIT: usize = 800;
+
+/// The attribute `#[vi_limit(50)]` of the struct, which the tests of pieces write: another limit than [`LIMIT`].
+pub(crate) fn limit(attribute: &syn::Attribute) -> Option<usize> {
+    let written: syn::LitInt = attribute.path().is_ident("vi_limit").then(|| attribute.parse_args().ok())??;
+    written.base10_parse().ok()
+}
+
+/// The items of a system, in fixed order.
 #[must_use]
-pub fn items(derivations: &Derivations, limit: usize) -> TokenStream {
+pub fn items(derivations: &Derivations) -> TokenStream {
+    let limit = derivations.own.model.attributes.iter().find_map(limit).unwrap_or(LIMIT);
     let source = Source::of(&derivations.own, None, limit);
-    let marked = derivations.further.iter().filter_map(|derived| Some((derived, derived.model.rule.named?)));
+    let named = |derived: &Derived| derived.model.rule.as_ref().and_then(|rule| rule.named);
+    let marked = derivations.further.iter().filter_map(|derived| Some((derived, named(derived)?)));
     let further = marked.map(|(derived, rule)| Source::of(derived, Some(format_ident!("{}", rule.marker)), limit));
     let further: Vec<Source> = further.collect();
+    let own = source.steps();
+    let further: Vec<Steps> = further.iter().filter_map(Source::steps).collect();
     let structure = structure::structure(&source, &further);
     let parameters = structure::parameters(&source);
     let lagrangian = lagrangian::item(&source);
     let collocation = collocation::item(&source);
     let convertible = structure::convertible(&source);
-    let own = by_rule(&source);
-    let batch = structure::batch(&source);
+    let batch = own.as_ref().map(|_| structure::batch(&source));
+    let by_own = own.as_ref().map(by_rule);
     let by_further = further.iter().map(by_rule);
-    let implementations = quote!(#parameters #lagrangian #collocation #convertible #own #batch #(#by_further)*);
+    let implementations = quote!(#parameters #lagrangian #collocation #convertible #by_own #batch #(#by_further)*);
     let conditions: Vec<_> = conditions(&source.model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
-    let tests = check::tests(&source, &further, &conditions);
+    let tests = check::tests(&source, own.as_ref(), &further, &conditions);
     quote! { #structure #scope #tests }
 }
 
 /// What is implemented once for each rule.
-fn by_rule(source: &Source) -> TokenStream {
-    let discrete = discrete::item(source);
-    let stepping = stepping::item(source);
-    let discretized = structure::discretized(source);
+fn by_rule(steps: &Steps) -> TokenStream {
+    let discrete = discrete::item(steps);
+    let stepping = stepping::item(steps);
+    let discretized = structure::discretized(steps);
     quote!(#discrete #stepping #discretized)
 }
 
@@ -87,6 +114,12 @@ impl<'a> Source<'a> {
     fn of(derived: &'a Derived, marker: Option<Ident>, limit: usize) -> Self {
         let Derived { pool, model, system, program, findings } = derived;
         Self { pool, model, system, program, findings, marker, limit }
+    }
+
+    /// The steps by the rule, if there is one.
+    fn steps(&self) -> Option<Steps<'_>> {
+        let (rule, discrete) = (self.model.rule.as_ref()?, self.system.by_rule.as_ref()?);
+        Some(Steps { source: self, rule, discrete, findings: self.findings.steps.as_ref()? })
     }
 
     /// The rule as the last argument of a trait, whose default is the system's own: `, ::vi_core::rules::Trapezoidal`.

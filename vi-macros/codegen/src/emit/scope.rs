@@ -2,7 +2,8 @@
 //!
 //! In: the implementations. Out: they, in a block of items. Where the struct is declared there may be a `const x`, a `static x`
 //! or a `struct x;`, and in their scope `let x = …` is a pattern that compares and no binding. So each name that is bound is
-//! first one of a function, which a binding may shadow; and types that have no path are taken from `::core::primitive`.
+//! first one of a function, which a binding may shadow; and types that have no path are taken from `::core::primitive`. The list
+//! is the end of the block, so that a reader meets the functions first.
 
 use proc_macro2::{Delimiter, Ident, Spacing, TokenStream, TokenTree};
 use quote::quote;
@@ -18,14 +19,14 @@ pub(super) fn scope(attributes: &[&syn::Attribute], implementations: &TokenStrea
     let names: Vec<Ident> = names.into_iter().collect();
     let lines = names.chunks(TOGETHER).map(|names| quote!(use ::core::convert::{#(identity as #names),*};));
     quote! {
-        /// Every name that is bound below is one of a function first: a binding may shadow that, and no constant from around.
         #(#attributes)*
         #[allow(clippy::all, clippy::pedantic, deprecated, non_snake_case, unused_imports, unused_parens, unused_variables)]
         const _: () = {
-            #(#lines)*
-            use ::core::primitive::{bool, f64, str, usize};
-
             #implementations
+
+            /// Every name that is bound above is one of a function first: a binding may shadow that, and no constant from around.
+            use ::core::primitive::{bool, f64, str, usize};
+            #(#lines)*
         };
     }
 }

@@ -1,9 +1,9 @@
 //! `impl FixedStepping` and, for rules with a step density, `impl EnergyStepping`: the equations of one step in the unknowns (v, h).
 
-use super::Source;
+use super::Steps;
 use super::body::{Body, VelocityFrom, part, parts};
 use super::entries::Entry;
-use super::lagrangian::vector_of;
+use super::lagrangian::{step_density, vector_of};
 use super::matrix::matrix;
 use crate::model::Model;
 use crate::program::{Function, FunctionId, Output, Results};
@@ -15,13 +15,13 @@ use quote::{ToTokens, format_ident, quote};
 const INLINED: usize = 250;
 
 /// The implementations of `FixedStepping` and `EnergyStepping` by the rule.
-pub(super) fn item(source: &Source) -> TokenStream {
+pub(super) fn item(source: &Steps) -> TokenStream {
     let fixed = fixed(source);
-    let energy = source.system.has_energy_steps().then(|| energy(source));
+    let energy = source.discrete.has_energy_steps().then(|| energy(source));
     quote!(#fixed #energy)
 }
 
-fn fixed(source: &Source) -> TokenStream {
+fn fixed(source: &Steps) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     let rule = source.rule_argument();
     let rounded = rounded(source);
@@ -29,7 +29,7 @@ fn fixed(source: &Source) -> TokenStream {
     let (form, equation) = momentum_equation(source);
     let (derivatives_form, derivatives) = momentum_derivatives(source);
     let functions = [equation, momentum_residual(source), derivatives, discrete_energy(source)].into_iter().flatten();
-    let closed = source.findings.closed_form().then(|| {
+    let closed = source.source.findings.closed_form().then(|| {
         quote!(
             const CLOSED_FORM: bool = true;
         )
@@ -65,18 +65,20 @@ fn fixed(source: &Source) -> TokenStream {
 }
 
 /// The system by the rule, in numbers that carry a bound of their rounding.
-fn rounded(source: &Source) -> TokenStream {
+fn rounded(source: &Steps) -> TokenStream {
     source.by_rule(quote!(self.convert::<::vi_core::real::Rounded>()))
 }
 
-fn energy(source: &Source) -> TokenStream {
+fn energy(source: &Steps) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     let rule = source.rule_argument();
     let rounded = rounded(source);
+    let density = step_density(source);
     let functions =
         [extended_system(source), extended_residual(source), extended_derivatives(source)].into_iter().flatten();
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#dimension, T #rule> for #name<T> {
+            #density
             #(#functions)*
 
             /// What the rounding of both residuals is measured in, by running error analysis.
@@ -115,7 +117,7 @@ fn node_parts(body: &Body, model: &Model) -> TokenStream {
 }
 
 /// The momentum row as `MomentumEquation` holds it, and the form of A.
-fn momentum_fields(source: &Source, results: &Results<Entry>) -> (TokenStream, TokenStream) {
+fn momentum_fields(source: &Steps, results: &Results<Entry>) -> (TokenStream, TokenStream) {
     let residual = vector_of(results.vector(Output::Residual));
     let rows = results.matrix(Output::Jacobian);
     let (form, jacobian) = matrix(&source.findings.pattern, source.findings.symmetric, rows);
@@ -123,19 +125,19 @@ fn momentum_fields(source: &Source, results: &Results<Entry>) -> (TokenStream, T
 }
 
 /// How many operations a function has.
-fn operations(source: &Source, id: FunctionId) -> usize {
+fn operations(source: &Steps, id: FunctionId) -> usize {
     source.function(id).map_or(0, Function::operation_count)
 }
 
 /// A call that is not inlined spills the run's state out of registers, and keeps a loop over trajectories from becoming vector
 /// instructions: functions are inlined whatever the compiler thinks of it, but for those that are in pieces.
-fn attribute(source: &Source, id: FunctionId) -> TokenStream {
+fn attribute(source: &Steps, id: FunctionId) -> TokenStream {
     if operations(source, id) <= source.limit { quote!(#[inline(always)]) } else { quote!(#[inline(never)]) }
 }
 
 /// A function of a step: of the node, the step and the velocity.
 fn method(
-    source: &Source,
+    source: &Steps,
     id: FunctionId,
     formula: &str,
     output: &TokenStream,
@@ -160,9 +162,9 @@ fn method(
     })
 }
 
-fn momentum_equation(source: &Source) -> (TokenStream, Option<TokenStream>) {
+fn momentum_equation(source: &Steps) -> (TokenStream, Option<TokenStream>) {
     let dimension = source.dimension();
-    let formula = source.formulas("residual", &source.system.equations.residual);
+    let formula = source.formulas("residual", &source.discrete.equations.residual);
     let output = quote!(::vi_core::stepping::MomentumEquation<#dimension, T, Self::Jacobian>);
     let mut form = TokenStream::new();
     let function = method(source, FunctionId::MomentumEquation, &formula, &output, |results| {
@@ -173,9 +175,9 @@ fn momentum_equation(source: &Source) -> (TokenStream, Option<TokenStream>) {
     (form, function)
 }
 
-fn momentum_residual(source: &Source) -> Option<TokenStream> {
+fn momentum_residual(source: &Steps) -> Option<TokenStream> {
     let dimension = source.dimension();
-    let of = &source.system.equations;
+    let of = &source.discrete.equations;
     let increments = source.named_formulas(&of.momentum_increment, |name| format!("p1_{name} − p0_{name}"));
     let formula = format!("The residual, its rounding scale, and\n\n{increments}");
     let output = quote!(::vi_core::stepping::MomentumResidual<#dimension, T>);
@@ -190,7 +192,7 @@ fn momentum_residual(source: &Source) -> Option<TokenStream> {
 }
 
 /// The derivatives of the momentum row and of p1 − p0 as `MomentumDerivatives` holds them, and the form of all but A.
-fn momentum_derivatives_of(source: &Source, results: &Results<Entry>) -> (TokenStream, TokenStream) {
+fn momentum_derivatives_of(source: &Steps, results: &Results<Entry>) -> (TokenStream, TokenStream) {
     let (_, residual_dv) =
         matrix(&source.findings.pattern, source.findings.symmetric, results.matrix(Output::Jacobian));
     let of = |output| matrix(&source.findings.step_derivatives, false, results.matrix(output));
@@ -207,7 +209,7 @@ fn momentum_derivatives_of(source: &Source, results: &Results<Entry>) -> (TokenS
     (form, derivatives)
 }
 
-fn momentum_derivatives(source: &Source) -> (TokenStream, Option<TokenStream>) {
+fn momentum_derivatives(source: &Steps) -> (TokenStream, Option<TokenStream>) {
     let formula = "How the residual and `p1 − p0` change with the coordinates of the node and with v.";
     let output = quote!(::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix>);
     let mut form = TokenStream::new();
@@ -219,7 +221,7 @@ fn momentum_derivatives(source: &Source) -> (TokenStream, Option<TokenStream>) {
     (form, function)
 }
 
-fn extended_derivatives(source: &Source) -> Option<TokenStream> {
+fn extended_derivatives(source: &Steps) -> Option<TokenStream> {
     let dimension = source.dimension();
     let formula = "How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.";
     let output = quote!(::vi_core::stepping::ExtendedDerivatives<#dimension, T, Self::Jacobian, Self::StepMatrix>);
@@ -249,16 +251,16 @@ fn extended_derivatives(source: &Source) -> Option<TokenStream> {
     })
 }
 
-fn discrete_energy(source: &Source) -> Option<TokenStream> {
-    let formula = source.formula("E1", source.system.equations.discrete_energy);
+fn discrete_energy(source: &Steps) -> Option<TokenStream> {
+    let formula = source.formula("E1", source.discrete.equations.discrete_energy);
     method(source, FunctionId::DiscreteEnergy, &formula, &quote!(T), |results| {
         results.number(Output::Value).to_token_stream()
     })
 }
 
-fn extended_system(source: &Source) -> Option<TokenStream> {
+fn extended_system(source: &Steps) -> Option<TokenStream> {
     let dimension = source.dimension();
-    let formula = source.formula("energy_residual", source.system.equations.energy_residual);
+    let formula = source.formula("energy_residual", source.discrete.equations.energy_residual);
     let output = quote!(::vi_core::stepping::ExtendedSystem<#dimension, T, Self::Jacobian>);
     method(source, FunctionId::ExtendedSystem, &formula, &output, |results| {
         let (_, momentum) = momentum_fields(source, results);
@@ -278,9 +280,9 @@ fn extended_system(source: &Source) -> Option<TokenStream> {
     })
 }
 
-fn extended_residual(source: &Source) -> Option<TokenStream> {
+fn extended_residual(source: &Steps) -> Option<TokenStream> {
     let dimension = source.dimension();
-    let of = &source.system.equations;
+    let of = &source.discrete.equations;
     let formula =
         format!("Both residuals, their rounding scales, and\n\n{}", source.formula("E1 − E0", of.energy_increment));
     let output = quote!(::vi_core::stepping::ExtendedResidual<#dimension, T>);

@@ -1,10 +1,10 @@
 //! The struct of a system: its parameters as public fields, their defaults, their names.
 
 use super::formula::number;
-use super::{Source, conditions};
+use super::{Source, Steps, conditions, limit};
 use crate::limits::PARAMETERS;
 use crate::model::Parameter;
-use crate::rules::RULES;
+use crate::rules::{GAUSS, RULES};
 use crate::syntax::{self, Discretization, Expression, Kind, System};
 use num_traits::ToPrimitive;
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -13,9 +13,10 @@ use std::collections::BTreeMap;
 use syn::Attribute;
 
 /// The struct, whose documentation says what was found of it by its own rule and by further ones.
-pub(super) fn structure(source: &Source, further: &[Source]) -> TokenStream {
+pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
     let model = source.model;
-    let (name, visibility, attributes) = (&model.name, &model.visibility, &model.attributes);
+    let (name, visibility) = (&model.name, &model.visibility);
+    let attributes = model.attributes.iter().filter(|attribute| limit(attribute).is_none());
     let fields = model.fields().filter_map(|field| {
         let Parameter { name, attributes, index, .. } = field.first()?;
         let pause = pause(attributes);
@@ -171,7 +172,10 @@ pub(super) fn batch(source: &Source) -> TokenStream {
 /// What the generator found out, as the end of the struct's documentation.
 fn found(source: &Source) -> TokenStream {
     let model = source.model;
-    let rule = format!(" Discretized by the rule `{}`. What the generator found:", model.rule.title());
+    let rule = match &model.rule {
+        Some(rule) => format!(" Discretized by the rule `{}`. What the generator found:", rule.title()),
+        None => " Takes Gauss steps. What the generator found:".to_owned(),
+    };
     let findings = source.findings.lines(&|index| format!("`{}`", model.coordinates[index].text()));
     let findings = findings.into_iter().map(|line| format!(" * {line}"));
     let pause = pause(&model.attributes);
@@ -179,10 +183,10 @@ fn found(source: &Source) -> TokenStream {
 }
 
 /// What was found of the steps by a further rule.
-fn found_further(source: &Source) -> Option<TokenStream> {
+fn found_further(source: &Steps) -> Option<TokenStream> {
     let marker = source.marker.as_ref()?;
-    let rule = format!(" By the rule `{}`, as `By::new(system, {marker})`:", source.model.rule.title());
-    let findings = source.findings.of_steps(&|index| format!("`{}`", source.model.coordinates[index].text()));
+    let rule = format!(" By the rule `{}`, as `By::new(system, {marker})`:", source.rule.title());
+    let findings = source.source.findings.of_steps(&|index| format!("`{}`", source.model.coordinates[index].text()));
     let findings = findings.into_iter().map(|line| format!(" * {line}"));
     Some(quote!(#[doc = ""] #[doc = #rule] #[doc = ""] #(#[doc = #findings])*))
 }
@@ -290,14 +294,14 @@ fn plain_length(system: &System, length: &Expression) -> Option<usize> {
 /// The rules of a system, each as the last argument of a trait: first its own, by default, then the further ones of its list; all that
 /// there are if the list cannot be read, or has other names.
 fn rules(system: &System) -> Vec<Option<TokenStream>> {
-    let names = match system.discretizations.first() {
+    let names: Vec<&Ident> = match system.discretizations.first() {
         Some(Discretization::Written(_)) => return vec![None],
-        Some(Discretization::Named(names)) => names.as_slice(),
-        None => &[],
+        Some(Discretization::Named(names)) => names.iter().filter(|name| *name != GAUSS).collect(),
+        None => Vec::new(),
     };
-    let is_known = |name: &Ident| RULES.iter().any(|rule| name == rule.name);
+    let is_known = |name: &&Ident| RULES.iter().any(|rule| *name == rule.name);
     let is_read = !names.is_empty() && names.iter().all(is_known);
-    let further = RULES.iter().filter(|rule| !is_read || names.iter().skip(1).any(|name| name == rule.name));
+    let further = RULES.iter().filter(|rule| !is_read || names.iter().skip(1).any(|name| *name == rule.name));
     let argument = further.map(|rule| {
         let marker = format_ident!("{}", rule.marker);
         Some(quote!(, ::vi_core::rules::#marker))
@@ -346,7 +350,7 @@ fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
     let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
     let vector = quote!(::vi_core::SVector<T, #n>);
     let or_error = |what: TokenStream| quote!(::core::result::Result<#what, ::vi_core::StepError>);
-    let (or_vector, or_number) = (or_error(vector.clone()), or_error(quote!(T)));
+    let or_vector = or_error(vector.clone());
     let or_flow = or_error(quote!(::vi_core::lagrangian::Flow<#n, T>));
     quote! {
         impl<#generic T: ::vi_core::real::Real> ::vi_core::Lagrangian<#n, T> for #name<T> {
@@ -360,7 +364,6 @@ fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
             fn momentum(#at) -> #vector #none
             fn force(#at) -> #vector #none
             fn acceleration(#at) -> #or_vector #none
-            fn step_density(#at) -> #or_number #none
             fn flow(#at) -> #or_flow #none
         }
         impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#n, T> for #name<T> {
@@ -382,6 +385,7 @@ fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
 fn stub_steps(name: &Ident, Size { generic, n }: &Size, rule: Option<&TokenStream>) -> TokenStream {
     let none = quote!({ loop {} });
     let over = quote!(&self, _: &::vi_core::Interval<#n, T>);
+    let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
     let from = quote!(&self, _: &::vi_core::node::Node<#n, T>, _: T, _: &::vi_core::SVector<T, #n>);
     let vector = quote!(::vi_core::SVector<T, #n>);
     quote! {
@@ -407,6 +411,7 @@ fn stub_steps(name: &Ident, Size { generic, n }: &Size, rule: Option<&TokenStrea
             fn discrete_energy(#from) -> T #none
         }
         impl<#generic T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#n, T #rule> for #name<T> {
+            fn step_density(#at) -> ::core::result::Result<T, ::vi_core::StepError> #none
             fn extended_system(#from) -> ::vi_core::stepping::ExtendedSystem<#n, T> #none
             fn extended_residual(#from) -> ::vi_core::stepping::ExtendedResidual<#n, T> #none
             fn extended_derivatives(#from) -> ::vi_core::stepping::ExtendedDerivatives<#n, T, Self::Jacobian, Self::StepMatrix> #none

@@ -5,20 +5,30 @@
 use super::explanation::{Line, Section};
 use super::name;
 use crate::Derived;
-use crate::model::Point;
+use crate::discrete::{Equations, Slots};
+use crate::model::{DiscreteForces, Point};
 use crate::symbol::Symbol;
 
 /// Points, slots, equations of a step.
 pub(super) fn sections(derived: &Derived) -> Vec<Section> {
-    let slots = &derived.system.slots;
-    let points = slots.points.iter().enumerate().flat_map(|(index, point)| at(derived, index, point)).collect();
+    let Some(of) = &derived.system.by_rule else {
+        let lines = vec![Line::words("None: the system is declared without a rule and takes Gauss steps")];
+        return vec![Section { title: "Discrete Lagrangian", lines }];
+    };
+    let points = of.slots.points.iter().enumerate().flat_map(|(index, point)| at(derived, index, point)).collect();
     vec![
         Section { title: "Where L and f are evaluated", lines: points },
-        Section { title: "Discrete Lagrangian and its slot derivatives", lines: derivatives(derived) },
-        forces(derived),
-        Section { title: "Equations of a step in v and h: residual and its derivatives", lines: residual(derived) },
-        Section { title: "Energy row, combined with the residual, and its derivatives over h", lines: energy(derived) },
-        Section { title: "What a step adds to momentum and energy", lines: increments(derived) },
+        Section { title: "Discrete Lagrangian and its slot derivatives", lines: derivatives(derived, &of.slots) },
+        forces(derived, &of.slots.forces),
+        Section {
+            title: "Equations of a step in v and h: residual and its derivatives",
+            lines: residual(derived, &of.equations),
+        },
+        Section {
+            title: "Energy row, combined with the residual, and its derivatives over h",
+            lines: energy(derived, &of.equations),
+        },
+        Section { title: "What a step adds to momentum and energy", lines: increments(derived, &of.equations) },
     ]
 }
 
@@ -34,8 +44,7 @@ fn at(derived: &Derived, index: usize, point: &Point) -> Vec<Line> {
         .collect()
 }
 
-fn derivatives(derived: &Derived) -> Vec<Line> {
-    let of = &derived.system.slots;
+fn derivatives(derived: &Derived, of: &Slots) -> Vec<Line> {
     let mut lines =
         vec![Line::equation(derived, ("L_d", "L_d"), of.ld), Line::equation(derived, ("D1 L_d", "D_1 L_d"), of.d1_ld)];
     lines.extend(Line::equations(derived, ("(D2 L_d)", "(D_2 L_d)"), &of.d2_ld));
@@ -44,8 +53,7 @@ fn derivatives(derived: &Derived) -> Vec<Line> {
     lines
 }
 
-fn forces(derived: &Derived) -> Section {
-    let of = &derived.system.slots.forces;
+fn forces(derived: &Derived, of: &DiscreteForces) -> Section {
     let title = "Discrete forces and powers";
     if !derived.model.forced {
         return Section { title, lines: vec![Line::words("None: no force acts")] };
@@ -57,24 +65,21 @@ fn forces(derived: &Derived) -> Section {
     Section { title, lines }
 }
 
-fn residual(derived: &Derived) -> Vec<Line> {
-    let of = &derived.system.equations;
+fn residual(derived: &Derived, of: &Equations) -> Vec<Line> {
     let mut lines = Line::equations(derived, ("r", "r"), &of.residual);
     lines.extend(Line::matrix(derived, ("A", "A"), &of.residual_dv));
     lines.extend(Line::equations(derived, ("(∂r/∂h)", "(\\partial r/\\partial h)"), &of.residual_dh));
     lines
 }
 
-fn energy(derived: &Derived) -> Vec<Line> {
-    let of = &derived.system.equations;
+fn energy(derived: &Derived, of: &Equations) -> Vec<Line> {
     let mut lines = vec![Line::equation(derived, ("c", "c"), of.energy_residual)];
     lines.extend(Line::equations(derived, ("(c_v)", "(c_v)"), &of.energy_dv));
     lines.push(Line::equation(derived, ("c_h", "c_{h}"), of.energy_dh));
     lines
 }
 
-fn increments(derived: &Derived) -> Vec<Line> {
-    let of = &derived.system.equations;
+fn increments(derived: &Derived, of: &Equations) -> Vec<Line> {
     let mut lines = Line::equations(derived, ("(p1 − p0)", "(p_1 - p_0)"), &of.momentum_increment);
     lines.push(Line::equation(derived, ("E1 − E0", "E_1 - E_0"), of.energy_increment));
     lines

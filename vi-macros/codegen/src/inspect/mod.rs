@@ -30,7 +30,7 @@ mod unreadable;
 pub use explanation::{Explanation, Line, Section};
 
 use crate::syntax::parse;
-use crate::{Derivations, Derived, derive, items, pretty};
+use crate::{Derivations, Derived, derive, text};
 use proc_macro2::TokenStream;
 use syn::Result;
 
@@ -60,7 +60,7 @@ pub fn stage(tokens: TokenStream, stage: Stage) -> Result<String> {
         Stage::Model => Ok(explanation(&derive(&system)?, &[model::sections], &[]).text()),
         Stage::Discrete => Ok(explanation(&derive(&system)?, &[discrete::sections], &[discrete::sections]).text()),
         Stage::Program => Ok(program::text(&derive(&system)?)),
-        Stage::Rust => pretty::text(items(&derive(&system)?)),
+        Stage::Rust => text(&derive(&system)?),
     }
 }
 

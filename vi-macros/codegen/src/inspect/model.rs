@@ -6,12 +6,17 @@ use super::explanation::{Line, Section};
 use super::name;
 use crate::Derived;
 use crate::discrete::TimeScale;
-use crate::model::Coordinate;
+use crate::model::{Coordinate, Model, Rule};
 
 /// The head of what is told of a system by a further rule.
 pub(super) fn further_rule(derived: &Derived) -> Section {
-    let rule = Line::words(format!("rule {}", derived.model.rule.title()));
+    let rule = Line::words(format!("rule {}", title(&derived.model)));
     Section { title: "The same system by a further rule", lines: vec![rule] }
+}
+
+/// The rule of a system by its name.
+pub(super) fn title(model: &Model) -> &'static str {
+    model.rule.as_ref().map_or("none", Rule::title)
 }
 
 /// Names, L and f.
@@ -30,7 +35,7 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
             latex: format!("Parameter `{symbol}`, by default `{}`", parameter.default_text()),
         });
     }
-    lines.push(Line::words(format!("rule {}", model.rule.title())));
+    lines.push(Line::words(format!("rule {}", title(model))));
     let of = &derived.system.continuous;
     let mut functions = vec![Line::equation(derived, ("L", "L"), of.lagrangian)];
     if model.forced {
@@ -38,11 +43,12 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     }
     functions.extend(Line::equations(derived, ("p", "p"), &of.momentum));
     functions.push(Line::equation(derived, ("E", "E"), of.energy));
-    functions.push(Line::equation(derived, ("D", "D"), of.step_density));
-    let mut sections = vec![
-        Section { title: "System", lines },
-        Section { title: "Lagrangian L, force f, momentum p, energy E, step density D", lines: functions },
-    ];
+    let mut title = "Lagrangian L, force f, momentum p, energy E";
+    if derived.system.by_rule.is_some() {
+        functions.push(Line::equation(derived, ("D", "D"), of.step_density));
+        title = "Lagrangian L, force f, momentum p, energy E, step density D";
+    }
+    let mut sections = vec![Section { title: "System", lines }, Section { title, lines: functions }];
     if let Some(TimeScale { g, g_dq, g_dt }) = &of.time_scale {
         let mut lines = vec![Line::equation(derived, ("g", "g"), *g)];
         lines.extend(Line::equations(derived, ("(∂g/∂q)", "(\\partial g/\\partial q)"), g_dq));

@@ -165,11 +165,7 @@ fn named(derived: &Derived, symbol: &Symbol) -> Name {
         }
         Symbol::AtPoint(point, variable) => {
             let name = named(derived, &Symbol::Continuous(*variable));
-            if derived.system.slots.points.len() == 1 {
-                name.under("bar")
-            } else {
-                name.with(format!("({})", point + 1))
-            }
+            if derived.system.points() == 1 { name.under("bar") } else { name.with(format!("({})", point + 1)) }
         }
         Symbol::Field(field) => self::field(derived, field),
     }
@@ -192,7 +188,7 @@ fn field(derived: &Derived, Field { quantity, derivatives, point }: &Field) -> N
     if !by.is_empty() {
         indices.push(by);
     }
-    let several = derived.system.slots.points.len() > 1;
+    let several = derived.system.points() > 1;
     let letter = if several { format!("{{{letter}^{{({})}}}}", point + 1) } else { letter.to_owned() };
     Name { letter, indices }
 }

@@ -4,6 +4,7 @@
 //! further rule, those of the functions that depend on it. Inputs and numbers stand where they are used; an operation that is an
 //! argument of the rule says so.
 
+use super::model;
 use crate::program::{Function, Operation, OperationId};
 use crate::{Derivations, Derived};
 use std::collections::BTreeMap;
@@ -12,7 +13,7 @@ use std::collections::BTreeMap;
 pub(super) fn text(Derivations { own, further }: &Derivations) -> String {
     let mut functions: Vec<String> = own.program.functions().map(|of| function(own, of)).collect();
     for derived in further {
-        functions.push(format!("by the rule {}\n", derived.model.rule.title()));
+        functions.push(format!("by the rule {}\n", model::title(&derived.model)));
         functions.extend(derived.program.by_rule().map(|of| function(derived, of)));
     }
     functions.join("\n")

@@ -43,7 +43,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     }
     let Context { pool, errors, .. } = context;
     errors.finish(())?;
-    let (Some(lagrangian), Some(rule)) = (lagrangian, rule) else {
+    let Some(lagrangian) = lagrangian else {
         return Err(error(system.name.span(), &Message::MissingLagrangian));
     };
     let lagrangian_span = system.lagrangians[0].name.span();

@@ -50,8 +50,8 @@ pub struct Model {
     pub forced: bool,
     /// g(t, q) of the time transformation dt = g dτ, where one is declared.
     pub time_scale: Option<Expr>,
-    /// How L becomes L_d.
-    pub rule: Rule,
+    /// How L becomes L_d; `None` for a system that has Gauss steps alone.
+    pub rule: Option<Rule>,
     /// The state at which the system is checked, if it says so.
     pub check_state: Option<CheckState>,
 }

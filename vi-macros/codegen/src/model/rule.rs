@@ -72,7 +72,7 @@ const LD: &str = "Ld";
 /// The lines that say what a force does.
 const FORCES: [&str; 4] = ["fd_minus", "fd_plus", "gd_minus", "gd_plus"];
 
-/// The rule of this place among those of the clause `discretize`; a second clause is a mistake.
+/// The rule of this place among those of the clause `discretize`, if there is one; a second clause is a mistake.
 pub(super) fn rule(
     context: &mut Context,
     written: &System,
@@ -80,10 +80,7 @@ pub(super) fn rule(
     dimension: usize,
     forced: bool,
 ) -> Option<Rule> {
-    let Some((first, others)) = written.discretizations.split_first() else {
-        context.errors.at(written.name.span(), &Message::MissingRule);
-        return None;
-    };
+    let (first, others) = written.discretizations.split_first()?;
     for other in others {
         let span = match other {
             Discretization::Named(names) => names.first().map_or(written.name.span(), Ident::span),
@@ -104,16 +101,17 @@ pub(super) fn rule(
     context.report(resolved)
 }
 
-/// The rules of a list of names: each one of the table, and there once.
+/// The rules of a list of names: each name is `gauss` or one of the table, and there once.
 fn of_names(context: &mut Context, names: &[Ident]) -> Vec<&'static NamedRule> {
     let mut rules: Vec<&'static NamedRule> = Vec::with_capacity(names.len());
-    for written in names {
+    for (place, written) in names.iter().enumerate() {
         let name = written.to_string();
         match rules::named(&name) {
-            Some(rule) if rules.contains(&rule) => {
+            _ if names[..place].contains(written) => {
                 context.errors.at(written.span(), &Message::RepeatedRule { name });
             }
             Some(rule) => rules.push(rule),
+            None if name == rules::GAUSS => {}
             None => {
                 let near = nearest(&name, rules::names());
                 context.errors.at(written.span(), &Message::UnknownRule { name, near });

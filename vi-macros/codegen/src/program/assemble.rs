@@ -8,7 +8,7 @@ use super::results::{FunctionId, Output, Results};
 use super::rounding_scale::rounding_scale;
 use super::verify::{self, Expressions};
 use super::{Function, Program, vanishing};
-use crate::discrete::{Continuous, DiscreteSystem, Fields, TimeScale};
+use crate::discrete::{ByRule, Continuous, DiscreteSystem, Fields, Slots, TimeScale};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Point};
@@ -25,15 +25,19 @@ use vi_expr::{Expr, Node, Pool, TooLarge};
 pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) -> Result<Program> {
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
     let continuous = continuous(&mut Assembly::new(pool, system, &[]), system).map_err(too_large)?;
-    let slots = slots(&mut Assembly::new(pool, system, &system.slots.points), system).map_err(too_large)?;
-    let step = step(&mut Assembly::new(pool, system, &system.equations.points), system).map_err(too_large)?;
+    let (mut of_slots, mut of_steps) = (Vec::new(), Vec::new());
+    if let Some(rule) = &system.by_rule {
+        let ByRule { slots, equations, .. } = rule;
+        of_slots = self::slots(&mut Assembly::new(pool, system, &slots.points), slots).map_err(too_large)?;
+        of_steps = step(&mut Assembly::new(pool, system, &equations.points), rule).map_err(too_large)?;
+    }
     let check = |(function, expressions): (Function, Expressions)| {
         verify::has_finite_constants(&function, &model.name)?;
         // Only builds with debug assertions do so: it is no work of the system's.
         pool.uncounted(|pool| verify::agrees(pool, &function, &expressions, &model.name)).map(|()| function)
     };
     let all = |list: Vec<_>| list.into_iter().map(check).collect::<Result<Vec<_>>>();
-    Ok(Program { continuous: all(continuous)?, slots: all(slots)?, step: all(step)? })
+    Ok(Program { continuous: all(continuous)?, slots: all(of_slots)?, step: all(of_steps)? })
 }
 
 /// Work that an operation takes until it is emitted.
@@ -162,9 +166,11 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         assembly.function(FunctionId::Point, vec![momentum.clone(), applied_force.clone(), mass.clone()])?,
         assembly.function(FunctionId::PointDerivatives, point_derivatives)?,
         assembly.function(FunctionId::Power, number(of.power))?,
-        assembly.function(FunctionId::StepDensity, number(of.step_density))?,
-        assembly.function(FunctionId::NonFinite, vector(&of.watched))?,
     ];
+    if system.has_energy_steps() {
+        functions.push(assembly.function(FunctionId::StepDensity, number(of.step_density))?);
+    }
+    functions.push(assembly.function(FunctionId::NonFinite, vector(&of.watched))?);
     if let Some(TimeScale { g, g_dq, g_dt }) = &of.time_scale {
         let quantities = vec![
             momentum,
@@ -191,8 +197,7 @@ fn vector(value: &[Expr]) -> Vec<(Output, Vec<Vec<Expr>>)> {
     vec![(Output::Value, vec![value.to_vec()])]
 }
 
-fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
-    let of = &system.slots;
+fn slots(assembly: &mut Assembly, of: &Slots) -> Assembled {
     let functions: [(FunctionId, &[Expr]); 9] = [
         (FunctionId::Ld, &[of.ld]),
         (FunctionId::D1Ld, &[of.d1_ld]),
@@ -213,8 +218,8 @@ fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         .collect()
 }
 
-fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
-    let of = &system.equations;
+fn step(assembly: &mut Assembly, rule: &ByRule) -> Assembled {
+    let of = &rule.equations;
     let residual = assembly.open_all(&of.residual);
     let energy_residual = assembly.open_all(&[of.energy_residual]);
     let momentum_increment = assembly.open_all(&of.momentum_increment);
@@ -266,13 +271,16 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         momentum_increment,
         (Output::EnergyIncrement, vec![energy_increment]),
     ];
-    Ok(vec![
+    let mut functions = vec![
         assembly.function(FunctionId::MomentumEquation, equation)?,
         assembly.function(FunctionId::MomentumResidual, measured)?,
         assembly.function(FunctionId::MomentumDerivatives, momentum_derivatives)?,
         assembly.function(FunctionId::DiscreteEnergy, vector(&discrete_energy))?,
-        assembly.function(FunctionId::ExtendedSystem, extended)?,
-        assembly.function(FunctionId::ExtendedResidual, both_measured)?,
-        assembly.function(FunctionId::ExtendedDerivatives, extended_derivatives)?,
-    ])
+    ];
+    if rule.has_energy_steps() {
+        functions.push(assembly.function(FunctionId::ExtendedSystem, extended)?);
+        functions.push(assembly.function(FunctionId::ExtendedResidual, both_measured)?);
+        functions.push(assembly.function(FunctionId::ExtendedDerivatives, extended_derivatives)?);
+    }
+    Ok(functions)
 }

@@ -7,6 +7,7 @@ mod expression;
 pub mod parse;
 mod unfitting;
 
+use crate::rules::GAUSS;
 pub use expression::{Expression, Kind, Operator, Range};
 use proc_macro2::{Ident, Span};
 
@@ -45,12 +46,13 @@ pub struct System {
 }
 
 impl System {
-    /// How many rules the system is declared with: those of a list, or one.
+    /// The number of rules that the system is declared with: those of a list, one that is written out, or none.
     #[must_use]
     pub fn rules(&self) -> usize {
         match self.discretizations.first() {
-            Some(Discretization::Named(names)) => names.len(),
-            Some(Discretization::Written(_)) | None => 1,
+            Some(Discretization::Named(names)) => names.iter().filter(|name| *name != GAUSS).count(),
+            Some(Discretization::Written(_)) => 1,
+            None => 0,
         }
     }
 }
@@ -105,7 +107,7 @@ pub struct Coordinate {
 
 /// How L becomes L_d.
 pub enum Discretization {
-    /// `discretize midpoint, trapezoidal;`: one rule or more, the system's own first.
+    /// `discretize midpoint, trapezoidal;`: rules, the system's own first, and `gauss`, which is none.
     Named(Vec<Ident>),
     /// `discretize { Ld = …; … }`
     Written(Rule),

@@ -1,0 +1,147 @@
+//! The functions of the traits of a system, each forwarded to another value: the one table of their signatures beside the traits.
+//!
+//! In an implementation for a wrapper of a system `S`, with `N` coordinates, in the numbers `T`, by the rule `R` of S, which is its own if none is given:
+//!
+//! ```text
+//! forward! { [N T S R] self => &self.system; [#[inline]] lagrangian energy momentum }
+//! ```
+//!
+//! writes these functions with these attributes. `lagrangian_constants`, `collocation_types` and `stepping_types` are the types and constants of a trait.
+
+/// Writes functions that call those of another system; see the source of this module.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! forward {
+    ([$n:tt $t:tt $s:tt] $($rest:tt)*) => { $crate::forward! { [$n $t $s $crate::rules::Own] $($rest)* } };
+    ($of:tt $this:ident => $to:expr; $at:tt $($name:ident)+) => { $($crate::forward! { @$name $of ($this) ($to) $at })+ };
+
+    // The shapes: a function of (t, q, v), of an interval, of a node with a step and a velocity.
+    (@state [$n:tt $t:tt $s:tt $r:ty] $trait:path, $name:ident -> $out:ty, ($this:ident) ($to:expr) [$($at:tt)*]) => {
+        $($at)*
+        fn $name(&$this, t: $t, q: &$crate::SVector<$t, $n>, v: &$crate::SVector<$t, $n>) -> $out {
+            <$s as $trait>::$name($to, t, q, v)
+        }
+    };
+    (@interval [$n:tt $t:tt $s:tt $r:ty] $name:ident -> $out:ty, ($this:ident) ($to:expr) [$($at:tt)*]) => {
+        $($at)*
+        fn $name(&$this, interval: &$crate::Interval<$n, $t>) -> $out {
+            <$s as $crate::DiscreteLagrangian<$n, $t, $r>>::$name($to, interval)
+        }
+    };
+    (@node [$n:tt $t:tt $s:tt $r:ty] $trait:path, $name:ident -> $out:ty, ($this:ident) ($to:expr) [$($at:tt)*]) => {
+        $($at)*
+        fn $name(&$this, node: &$crate::node::Node<$n, $t>, h: $t, v: &$crate::SVector<$t, $n>) -> $out {
+            <$s as $trait>::$name($to, node, h, v)
+        }
+    };
+
+    // The continuous system.
+    (@lagrangian_constants [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
+        const NAME: &'static str = <$s as $crate::Lagrangian<$n, $t>>::NAME;
+        const COORDINATES: [&'static str; $n] = <$s as $crate::Lagrangian<$n, $t>>::COORDINATES;
+        const AUTONOMOUS: bool = <$s as $crate::Lagrangian<$n, $t>>::AUTONOMOUS;
+        const FORCED: bool = <$s as $crate::Lagrangian<$n, $t>>::FORCED;
+        const CYCLIC: [bool; $n] = <$s as $crate::Lagrangian<$n, $t>>::CYCLIC;
+        const PARAMETERS: &'static [&'static str] = <$s as $crate::Lagrangian<$n, $t>>::PARAMETERS;
+
+        fn parameter(&$this, index: usize) -> $t {
+            <$s as $crate::Lagrangian<$n, $t>>::parameter($to, index)
+        }
+    };
+    (@lagrangian [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, lagrangian -> $t, $($rest)* }
+    };
+    (@energy [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, energy -> $t, $($rest)* }
+    };
+    (@momentum [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, momentum -> $crate::SVector<$t, $n>, $($rest)* }
+    };
+    (@force [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, force -> $crate::SVector<$t, $n>, $($rest)* }
+    };
+    (@acceleration [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, acceleration -> Result<$crate::SVector<$t, $n>, $crate::StepError>, $($rest)* }
+    };
+    (@flow [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, flow -> Result<$crate::lagrangian::Flow<$n, $t>, $crate::StepError>, $($rest)* }
+    };
+    (@non_finite [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, non_finite -> Option<&'static str>, $($rest)* }
+    };
+
+    // The equations of motion at a point.
+    (@collocation_types [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        type Mass = <$s as $crate::collocation::Collocation<$n, $t>>::Mass;
+        type PointMatrix = <$s as $crate::collocation::Collocation<$n, $t>>::PointMatrix;
+        const CONSTANT_MASS: bool = <$s as $crate::collocation::Collocation<$n, $t>>::CONSTANT_MASS;
+        const SEPARABLE: bool = <$s as $crate::collocation::Collocation<$n, $t>>::SEPARABLE;
+        const SCALES_TIME: bool = <$s as $crate::collocation::Collocation<$n, $t>>::SCALES_TIME;
+    };
+    (@point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, point -> $crate::collocation::Point<$n, $t, Self::Mass>, $($rest)* }
+    };
+    (@point_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, point_derivatives -> $crate::collocation::PointDerivatives<Self::PointMatrix>, $($rest)* }
+    };
+    (@power [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, power -> $t, $($rest)* }
+    };
+    (@scaled_point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, scaled_point -> $crate::collocation::ScaledPoint<$n, $t, Self::Mass>, $($rest)* }
+    };
+
+    // The slots of the discrete system, all nine.
+    (@slots [$n:tt $t:tt $s:tt $r:ty] $this:tt $to:tt $at:tt) => {
+        $crate::forward! { @interval [$n $t $s $r] ld -> $t, $this $to $at }
+        $crate::forward! { @interval [$n $t $s $r] d1_ld -> $t, $this $to $at }
+        $crate::forward! { @interval [$n $t $s $r] d2_ld -> $crate::SVector<$t, $n>, $this $to $at }
+        $crate::forward! { @interval [$n $t $s $r] d3_ld -> $t, $this $to $at }
+        $crate::forward! { @interval [$n $t $s $r] d4_ld -> $crate::SVector<$t, $n>, $this $to $at }
+        $crate::forward! { @interval [$n $t $s $r] fd_minus -> $crate::SVector<$t, $n>, $this $to $at }
+        $crate::forward! { @interval [$n $t $s $r] fd_plus -> $crate::SVector<$t, $n>, $this $to $at }
+        $crate::forward! { @interval [$n $t $s $r] gd_minus -> $t, $this $to $at }
+        $crate::forward! { @interval [$n $t $s $r] gd_plus -> $t, $this $to $at }
+    };
+
+    // The equations of a step, its length given.
+    (@stepping_types [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        type Jacobian = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::Jacobian;
+        type StepMatrix = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::StepMatrix;
+        const CONSTANT_JACOBIAN: bool = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::CONSTANT_JACOBIAN;
+        const CLOSED_FORM: bool = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::CLOSED_FORM;
+        const INLINED: bool = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::INLINED;
+    };
+    (@momentum_equation [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, momentum_equation -> $crate::stepping::MomentumEquation<$n, $t, Self::Jacobian>, $($rest)* }
+    };
+    (@momentum_residual [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, momentum_residual -> $crate::stepping::MomentumResidual<$n, $t>, $($rest)* }
+    };
+    (@momentum_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, momentum_derivatives -> $crate::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix>, $($rest)* }
+    };
+    (@momentum_rounding [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, momentum_rounding -> $crate::SVector<$t, $n>, $($rest)* }
+    };
+    (@discrete_energy [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, discrete_energy -> $t, $($rest)* }
+    };
+
+    // The equations of a step whose length is an unknown.
+    (@step_density [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, step_density -> Result<$t, $crate::StepError>, $($rest)* }
+    };
+    (@extended_system [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @node [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, extended_system -> $crate::stepping::ExtendedSystem<$n, $t, Self::Jacobian>, $($rest)* }
+    };
+    (@extended_residual [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @node [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, extended_residual -> $crate::stepping::ExtendedResidual<$n, $t>, $($rest)* }
+    };
+    (@extended_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @node [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, extended_derivatives -> $crate::stepping::ExtendedDerivatives<$n, $t, Self::Jacobian, Self::StepMatrix>, $($rest)* }
+    };
+    (@extended_rounding [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @node [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, extended_rounding -> $crate::stepping::Rounding<$n, $t>, $($rest)* }
+    };
+}

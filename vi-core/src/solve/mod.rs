@@ -1,0 +1,3 @@
+//! Solvers that do not depend on a method.
+
+pub(crate) mod bracket;

@@ -1,0 +1,111 @@
+//! The entry of a system that `vi_lab::main!` lists, with a rule or without one.
+//!
+//! In: a type. Out: its [`Entry`]. The call `(&&Declared::<S>::new()).entry(…)` takes [`WithRule`] if the system has a rule with a step density, else
+//! [`WithoutRule`], one reference deeper: the type is known where the macro is expanded.
+
+use crate::Entry;
+use core::marker::PhantomData;
+use vi_core::collocation::Collocation;
+use vi_core::lagrangian::Parameters;
+use vi_core::stepping::{Convertible, EnergyStepping};
+
+/// A system that a program declares.
+#[derive(Debug)]
+pub struct Declared<S>(PhantomData<S>);
+
+impl<S> Declared<S> {
+    /// This system.
+    #[must_use]
+    #[allow(clippy::new_without_default, reason = "the macro alone calls it")]
+    pub const fn new() -> Self {
+        Self(PhantomData)
+    }
+}
+
+/// A system with a rule.
+pub trait WithRule<const N: usize> {
+    /// What it is, its initial coordinates and velocities, a step.
+    fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry;
+}
+
+/// A system without a rule.
+pub trait WithoutRule<const N: usize> {
+    /// What it is, its initial coordinates and velocities, a step.
+    fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry;
+}
+
+impl<S, const N: usize> WithRule<N> for &Declared<S>
+where
+    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
+{
+    fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
+        Entry::new::<S, N>(about, q, v, h)
+    }
+}
+
+impl<S, const N: usize> WithoutRule<N> for Declared<S>
+where
+    S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
+{
+    fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
+        Entry::with_gauss_alone::<S, N>(about, q, v, h)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::needless_borrow, reason = "the calls are those of the macro")]
+mod tests {
+    use super::{Declared, WithRule as _, WithoutRule as _};
+    use core::cell::Cell;
+    use vi_core::{StepError, lagrangian};
+    use vi_runs::plan::{Method, PhasePoint, Plan};
+
+    lagrangian! {
+        struct Alone {
+            coord x, y;
+            L = (dot(x)^2 + dot(y)^2) / 2 - x^4 * y^2 - y^4;
+        }
+    }
+
+    lagrangian! {
+        struct Ruled {
+            coord x;
+            L = dot(x)^2 / 2 - x^4 / 4;
+            discretize midpoint;
+        }
+    }
+
+    #[test]
+    fn a_system_without_a_rule_runs_by_gauss_steps() {
+        let entry = (&&Declared::<Alone>::new()).entry("two springs", [1.0, 0.2], [0.0, 0.0], 0.01);
+        assert!(!entry.system.has_rule() && entry.system.step_density(&entry.q, &entry.v).is_none());
+        let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
+        let by = |method, stages| Plan { stages, ..Plan::new(method, entry.h, start.clone()) };
+        let evaluations = Cell::new(0);
+        for (method, stages) in [(Method::Gauss, Some(4)), (Method::Energy, Some(2))] {
+            let mut run = entry.system.begin(&by(method, stages), &evaluations).expect("a start");
+            run.advance_by(10).expect("steps");
+            assert!(run.t() > 0.05 && run.q()[0] < 1.0, "{}", run.t());
+        }
+        for method in [Method::Fixed, Method::KahanLi8, Method::Energy] {
+            let error = entry.system.begin(&by(method, None), &evaluations).err();
+            assert_eq!(error, Some(StepError::NoRule { system: "Alone" }));
+        }
+        let said = StepError::NoRule { system: "Alone" }.to_string();
+        assert!(
+            said.contains("`Alone` takes no steps by a rule") && said.contains("add `discretize midpoint;`"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn a_system_with_a_rule_keeps_it() {
+        let entry = (&&Declared::<Ruled>::new()).entry("a spring", [1.0], [0.0], 0.01);
+        assert!(entry.system.has_rule() && entry.system.step_density(&entry.q, &entry.v).is_some());
+        let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
+        let evaluations = Cell::new(0);
+        let mut run = entry.system.begin(&Plan::new(Method::Fixed, entry.h, start), &evaluations).expect("a start");
+        run.advance_by(10).expect("steps");
+        assert!(evaluations.get() > 10);
+    }
+}

@@ -1,0 +1,97 @@
+//! The opening of an expansion as a file: L, and the functions with their operations, method by method.
+//!
+//! In: a system by each of its rules. Out: lines of comments. What the generator found follows in the documentation of the struct.
+
+use crate::program::{Function, FunctionId};
+use crate::{Derivations, Derived};
+
+/// Characters of L that are shown.
+const CHARACTERS: usize = 400;
+
+/// The methods of all systems, and the functions that they call.
+const OF_MOTION: [(&str, &[FunctionId]); 3] = [
+    (
+        "every method",
+        &[
+            FunctionId::Lagrangian,
+            FunctionId::Energy,
+            FunctionId::Momentum,
+            FunctionId::Force,
+            FunctionId::Acceleration,
+            FunctionId::NonFinite,
+        ],
+    ),
+    ("Gauss, EnergyPreservingGauss", &[FunctionId::Point, FunctionId::PointDerivatives, FunctionId::Power]),
+    ("Gauss in transformed time", &[FunctionId::ScaledPoint]),
+];
+
+/// The methods of a rule, and the functions that they call.
+const OF_RULE: [(&str, &[FunctionId]); 3] = [
+    (
+        "FixedStep, Composition, Ensemble",
+        &[
+            FunctionId::MomentumEquation,
+            FunctionId::MomentumResidual,
+            FunctionId::MomentumDerivatives,
+            FunctionId::DiscreteEnergy,
+        ],
+    ),
+    (
+        "EnergyPreserving",
+        &[
+            FunctionId::StepDensity,
+            FunctionId::ExtendedSystem,
+            FunctionId::ExtendedResidual,
+            FunctionId::ExtendedDerivatives,
+        ],
+    ),
+    (
+        "DiscreteLagrangian",
+        &[
+            FunctionId::Ld,
+            FunctionId::D1Ld,
+            FunctionId::D2Ld,
+            FunctionId::D3Ld,
+            FunctionId::D4Ld,
+            FunctionId::FdMinus,
+            FunctionId::FdPlus,
+            FunctionId::GdMinus,
+            FunctionId::GdPlus,
+        ],
+    ),
+];
+
+/// The opening of the expansion of a system.
+pub(crate) fn header(derivations: &Derivations) -> String {
+    let own = &derivations.own;
+    let lagrangian =
+        own.pool.render_within(CHARACTERS, own.system.continuous.lagrangian, &|symbol| own.model.spell(symbol));
+    let mut lines = vec![
+        format!("`{}`: L = {lagrangian}", own.model.name),
+        String::new(),
+        "Operations of the functions for".to_owned(),
+    ];
+    lines.extend(OF_MOTION.iter().filter_map(|of| counted(own, "", *of)));
+    for derived in derivations.all() {
+        let Some(rule) = &derived.model.rule else { continue };
+        let by = format!(" by the rule `{}`", rule.title());
+        lines.extend(OF_RULE.iter().filter_map(|of| counted(derived, &by, *of)));
+    }
+    if own.system.by_rule.is_none() {
+        lines.push(
+            "     0  FixedStep, Composition, Ensemble, EnergyPreserving: write `discretize midpoint;` for them"
+                .to_owned(),
+        );
+    }
+    let comment = |line: String| if line.is_empty() { "//\n".to_owned() } else { format!("// {line}\n") };
+    lines.into_iter().map(comment).chain(["\n".to_owned()]).collect()
+}
+
+/// The operations of these functions, all together and one by one; none if the system has none of them.
+fn counted(derived: &Derived, by: &str, (methods, ids): (&str, &[FunctionId])) -> Option<String> {
+    let functions: Vec<&Function> = ids.iter().filter_map(|id| derived.program.function(*id)).collect();
+    let all: usize = functions.iter().map(|function| function.operation_count()).sum();
+    let each = functions.iter().map(|function| format!("{} {}", function.id.name(), function.operation_count()));
+    let each = each.collect::<Vec<_>>().join(", ");
+    (!functions.is_empty()).then(|| format!("{all:6}  {methods}{by}: {each}"))
+}

@@ -1,0 +1,89 @@
+//! A system gets the functions that its clause `discretize` asks for.
+
+use vi_codegen::program::FunctionId;
+use vi_codegen::syntax::parse;
+use vi_codegen::{Derivations, derive, items, text};
+
+/// A force, a time scale, a cyclic coordinate and a check: everything that may be emitted.
+const BODY: &str =
+    "param m = 1.5, c = 0.1; coord r, φ; L = m * (dot(r)^2 + r^2 * dot(φ)^2) / 2 + sin(t) / r; force r = -c * dot(r);
+    time_scale = r^(3/2); check { r = 1, dot(φ) = 1; h = 0.05; }";
+
+fn derived(discretize: &str) -> Derivations {
+    let system = format!("struct System {{ {BODY} {discretize} }}").parse().expect("tokens");
+    derive(&parse::system(system).expect("a system")).unwrap_or_else(|error| panic!("{discretize}: {error}"))
+}
+
+fn emitted(discretize: &str) -> String {
+    items(&derived(discretize)).to_string()
+}
+
+#[test]
+fn without_a_rule_the_functions_of_gauss_steps_are_emitted() {
+    let gauss = emitted("");
+    for what in ["Lagrangian", "Collocation", "TimeScale", "Convertible", "Parameters", "gauss_order", "gauss_momenta"]
+    {
+        assert!(gauss.contains(what), "{what}");
+    }
+    for what in ["FixedStepping", "EnergyStepping", "DiscreteLagrangian", "Discretized", "Batch", "step_density", "ld"]
+    {
+        assert!(!gauss.split(' ').any(|word| word == what), "{what}");
+    }
+    // A force does not keep the symplectic form.
+    assert!(!gauss.contains("gauss_symplecticity"));
+    assert_eq!(gauss, emitted("discretize gauss;"));
+}
+
+#[test]
+fn a_rule_implies_gauss() {
+    for rule in ["midpoint", "trapezoidal", "midpoint, trapezoidal"] {
+        let alone = emitted(&format!("discretize {rule};"));
+        assert_eq!(alone, emitted(&format!("discretize gauss, {rule};")));
+        assert_eq!(alone, emitted(&format!("discretize {rule}, gauss;")));
+    }
+    assert!(emitted("discretize { Ld = h * L(t0, q0, (q1 - q0)/h); }").contains("FixedStepping"));
+    assert!(emitted("discretize midpoint;").contains("step_density"));
+    assert!(!emitted("discretize trapezoidal;").contains("step_density"));
+}
+
+#[test]
+fn a_rule_does_not_change_the_functions_of_the_motion() {
+    let (alone, by_rule) = (derived(""), derived("discretize midpoint;"));
+    assert!(alone.own.program.by_rule().next().is_none());
+    let mut seen = 0;
+    for function in &alone.own.program.continuous {
+        let with_rule = by_rule.own.program.function(function.id).expect("the same function");
+        assert_eq!(function.operation_count(), with_rule.operation_count(), "{}", function.id.name());
+        seen += usize::from(function.operation_count() > 0);
+    }
+    assert!(seen > 8, "{seen}");
+    assert!(by_rule.own.program.function(FunctionId::StepDensity).is_some());
+}
+
+#[test]
+fn the_text_of_a_file_opens_with_what_each_method_costs() {
+    let gauss = text(&derived("")).expect("Rust");
+    let lines: Vec<&str> = gauss.lines().collect();
+    assert!(lines[0].starts_with("// `System`: L = "), "{}", lines[0]);
+    assert_eq!(lines[2], "// Operations of the functions for");
+    let counted = |text: &str, of: &str| -> usize {
+        let line = text.lines().find(|line| line.contains(of)).unwrap_or_else(|| panic!("{of}: {text}"));
+        let (all, each) = line.split_once(':').expect("methods and functions");
+        let sum = each.split(", ").map(|each| each.rsplit(' ').next().and_then(|count| count.parse::<usize>().ok()));
+        let sum: usize = sum.map(|count| count.expect("a number")).sum();
+        assert_eq!(all.split_whitespace().nth(1).and_then(|count| count.parse().ok()), Some(sum), "{line}");
+        sum
+    };
+    assert!(counted(&gauss, "Gauss, EnergyPreservingGauss") > 10);
+    assert!(counted(&gauss, "Gauss in transformed time") > 10);
+    assert!(
+        gauss.contains("//      0  FixedStep, Composition, Ensemble, EnergyPreserving: write `discretize midpoint;`")
+    );
+    let both = text(&derived("discretize midpoint, trapezoidal;")).expect("Rust");
+    assert!(counted(&both, "EnergyPreserving by the rule `midpoint`") > 10);
+    assert!(counted(&both, "Ensemble by the rule `trapezoidal`") > 10);
+    assert!(!both.contains("EnergyPreserving by the rule `trapezoidal`") && !both.contains("//      0"));
+    // The names of the scope come last.
+    let place = |what: &str| both.find(what).expect("a part");
+    assert!(place("impl ::core::default::Default") < place("use ::core::convert"));
+}
