@@ -29,8 +29,7 @@ impl<'a, S> Counting<'a, S> {
 
 impl<S: Lagrangian<N>, const N: usize> Lagrangian<N> for Counting<'_, S> {
     forward! { [N f64 S] self => &self.system; [] lagrangian_constants lagrangian energy momentum force flow non_finite }
-    // Not inlined: optimized, LLVM 22 (rustc 1.95) crashes on the acceleration of `FpuChain` inside the start of an energy-preserving run.
-    forward! { [N f64 S] self => self.counted(); [#[inline(never)]] acceleration }
+    forward! { [N f64 S] self => self.counted(); [] acceleration }
 }
 
 impl<S: DiscreteLagrangian<N>, const N: usize> DiscreteLagrangian<N> for Counting<'_, S> {
