@@ -1,4 +1,4 @@
-//! What the command `vi-lab` shows and says, and the systems that it knows by name.
+//! What the commands `vi-lab` and `paper` show and say, and the systems that they know by name.
 //!
 //! In: numbers and words of a subcommand. Out: figures, tables and pages as files; progress, and failures with their exit statuses, for a
 //! terminal. No loop over steps stands here, so that nothing of it has to be optimized: it is compiled in seconds.
@@ -7,7 +7,7 @@
 //! |---|---|
 //! | [`chart`], [`table`], [`html`], [`page`] | figures, tables, and the page that holds them |
 //! | [`input`], [`numbers`] | numbers as users write them, and as pages and messages do |
-//! | [`progress`], [`machine`], [`interrupt`], [`failure`] | bars, versions, signals, errors |
+//! | [`progress`], [`machine`], [`interrupt`], [`failure`], [`terminal`] | bars, versions, signals, errors, how a program ends |
 //! | [`catalogue`], [`quantity`] | the systems by name; what differs from run to run |
 
 pub mod catalogue;
@@ -22,3 +22,4 @@ pub mod page;
 pub mod progress;
 pub mod quantity;
 pub mod table;
+pub mod terminal;

@@ -3,28 +3,23 @@
 //! In: what a command line or a scene asks for. Out: a [`Plan`].
 
 use clap::ValueEnum;
-use serde::Deserialize;
 use vi_core::lagrangian::Lagrangian;
 use vi_core::run::Length;
 use vi_core::{Composition, Start as Begun, StepError, Tolerance};
 
 /// Which integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Method {
     /// The variational integrator with a given step
     Fixed,
     /// Five fixed steps composed to order 4, by Suzuki
     #[value(name = "suzuki-4")]
-    #[serde(rename = "suzuki-4")]
     Suzuki4,
     /// Nine fixed steps composed to order 6, by Kahan and Li
     #[value(name = "kahan-li-6")]
-    #[serde(rename = "kahan-li-6")]
     KahanLi6,
     /// Seventeen fixed steps composed to order 8, by Kahan and Li
     #[value(name = "kahan-li-8")]
-    #[serde(rename = "kahan-li-8")]
     KahanLi8,
     /// Collocation at Gauss points, of twice the order of its --stages
     Gauss,
@@ -67,8 +62,7 @@ impl Method {
 }
 
 /// How the energy-preserving integrator gets its first interval.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Start {
     /// The initial state is the middle of the first interval
     Midpoint,

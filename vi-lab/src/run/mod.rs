@@ -33,6 +33,7 @@ use std::io::{self, Write as _};
 use std::path::PathBuf;
 use vi_core::StepError;
 use vi_core::run::ErrorEstimate;
+use vi_report::catalogue::Catalogue;
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::interrupt::{Interrupt, Signal};
@@ -166,8 +167,8 @@ trait Sink {
 ///
 /// # Errors
 /// Wrong input.
-pub(crate) fn start(arguments: &Arguments) -> Result<(Box<dyn System>, Plan), Failure> {
-    let request = Request::of(arguments)?;
+pub(crate) fn start(arguments: &Arguments, catalogue: &Catalogue) -> Result<(Box<dyn System>, Plan), Failure> {
+    let request = Request::of(arguments, catalogue)?;
     Ok((request.system, request.plan))
 }
 
@@ -184,8 +185,8 @@ pub(crate) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<
 ///
 /// # Errors
 /// Wrong input, a failed step, a file that cannot be written, a signal.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut request = Request::of(arguments)?;
+pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let mut request = Request::of(arguments, catalogue)?;
     resolution::check_times(&request.plan, request.length)?;
     let extent = Extent::of(&request)?;
     let evaluations = Cell::new(0);
@@ -426,7 +427,7 @@ mod tests {
     fn followed(every: u64, fourth: Result<(), StepError>, signal: &dyn Fn() -> Option<Signal>) -> (Failure, Vec<f64>) {
         let target = Some("double-well".to_owned());
         let arguments = Arguments { target, steps: Some(9), every: Some(every), ..Arguments::default() };
-        let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
+        let request = Request::of(&arguments, &crate::ready()).unwrap_or_else(|failure| panic!("{failure}"));
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
         let kept = Kept::default();
         let mut sinks: [Box<dyn Sink>; 1] = [Box::new(kept.clone())];
@@ -453,7 +454,7 @@ mod tests {
     #[test]
     fn rows_without_an_energy_are_told() {
         let arguments = Arguments { target: Some("double-well".to_owned()), steps: Some(3), ..Arguments::default() };
-        let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
+        let request = Request::of(&arguments, &crate::ready()).unwrap_or_else(|failure| panic!("{failure}"));
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
         let note = |lost| {
             let mut course = Course::new(&request, extent, &mut []);

@@ -30,14 +30,15 @@ mod study;
 
 use crate::place::{beside, sync_folder};
 use chunks::Chunks;
-use merge::Tally;
 use clap::Args;
+use merge::Tally;
 use shard::Shard;
 use sink::Format;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::{env, fs, slice};
 use study::Study;
+use vi_report::catalogue::Catalogue;
 use vi_report::failure::Failure;
 
 /// The command line of `vi-lab sweep`.
@@ -72,10 +73,10 @@ pub(crate) struct Arguments {
 ///
 /// # Errors
 /// [`Failure::Input`] for wrong input, [`Failure::File`] if a file cannot be read or written, [`Failure::Interrupted`] after a signal.
-pub(crate) fn sweep(arguments: &Arguments) -> Result<String, Failure> {
+pub(crate) fn sweep(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let Arguments { scene, output, shard } = arguments;
     let shard = Shard::of(shard.as_deref(), |name| env::var(name).ok())?;
-    let study = Study::read(scene)?;
+    let study = Study::read(scene, catalogue)?;
     Format::of(output)?;
     let folder = beside(output, "part");
     let chunks = Arc::new(Chunks::resume(&folder, study.description(), shard.is_none())?);

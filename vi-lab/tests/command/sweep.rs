@@ -704,7 +704,8 @@ fn runs_whose_steps_are_too_long_are_counted() {
             "system = \"kepler\"\nmethod = \"gauss\"\nh = {h}\nuntil = 6.0\n[sweep]\nover = [{{ name = \"v_y\", values = [0.8, 0.9, 2.0] }}]\n"
         )
     };
-    for (h, warning) in [("0.1", "; warning: 2 have a step with an error above 0.001, see `step_error`"), ("0.01", "")] {
+    for (h, warning) in [("0.1", "; warning: 2 have a step with an error above 0.001, see `step_error`"), ("0.01", "")]
+    {
         let folder = Folder::new(&format!("accuracy-{h}"), &scene(h));
         let (status, summary, errors) = lab(&["sweep", &folder.scene(), "-o", &folder.at("runs.csv")]);
         assert_eq!(status, Some(0), "{errors}");

@@ -1,52 +1,14 @@
 //! The ready systems, each with a place to start from.
 //!
-//! In: the systems of `vi_systems`. Out: a list of [`Entry`], their types erased: here, once for each of them, the compiler meets all that is
-//! generic over systems.
+//! In: the systems of `vi_systems`. Out: a list of [`Entry`], their types erased. Every integrator is compiled here for each of them, which takes
+//! longer than the rest of the command: only `vi-lab` depends on this crate.
 
-use crate::kind::{ByRule, GaussAlone};
-use crate::system::{self, System};
-use vi_core::collocation::Collocation;
-use vi_core::lagrangian::Parameters;
-use vi_core::stepping::{Convertible, EnergyStepping};
+use vi_runs::entry::Entry;
 use vi_systems::{
     ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
     HarmonicOscillator, HenonHeiles, Kepler, NPendulum, OuterSolarSystem, ParametricPendulum, Pendulum, RotatingHoop,
     SphericalPendulum, ThreeBody,
 };
-
-/// A system with a place to start from.
-pub struct Entry {
-    /// The system, with the default parameters.
-    pub system: Box<dyn System>,
-    /// What it is.
-    pub about: &'static str,
-    /// Default initial coordinates.
-    pub q: Vec<f64>,
-    /// Default initial velocities.
-    pub v: Vec<f64>,
-    /// Default step.
-    pub h: f64,
-}
-
-impl Entry {
-    /// A system with a place to start from: what it is, its initial coordinates and velocities, a step.
-    #[must_use]
-    pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
-    where
-        S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
-    {
-        Self { system: system::erased::<S, ByRule, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
-    }
-
-    /// The same of a system without a rule, which has Gauss steps alone.
-    #[must_use]
-    pub fn with_gauss_alone<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
-    where
-        S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
-    {
-        Self { system: system::erased::<S, GaussAlone, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
-    }
-}
 
 /// sin(π (i + 1)/17), to three digits: the lowest mode of 16 masses between walls.
 const LOWEST_MODE: [f64; 16] =
@@ -65,18 +27,6 @@ const EIGHT_V: [f64; 6] = [
     -0.864_731_460_921_02,
 ];
 
-/// A planet about a fixed sun.
-#[must_use]
-pub fn kepler() -> Entry {
-    Entry::new::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005)
-}
-
-/// A mass on a rod.
-#[must_use]
-pub fn pendulum() -> Entry {
-    Entry::new::<Pendulum, 1>("mass on a rod", [1.0], [0.0], 0.01)
-}
-
 /// The ready systems, in the order in which they are listed.
 #[must_use]
 pub fn systems() -> Vec<Entry> {
@@ -85,8 +35,8 @@ pub fn systems() -> Vec<Entry> {
     vec![
         Entry::new::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
         Entry::new::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
-        pendulum(),
-        kepler(),
+        Entry::new::<Pendulum, 1>("mass on a rod", [1.0], rest, 0.01),
+        Entry::new::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
         Entry::new::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
         Entry::new::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),
         Entry::new::<HardDuffing, 1>("driven oscillator with a stiffening spring", [1.0], rest, 0.01),
