@@ -203,7 +203,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Search<'_, S, N, T> {
         let (mut after, [gap, density_next]) = self.fixed(h)?;
         let control = &mut after.lengths.control;
         control.kind = StepKind::FixedStep;
-        control.phase = control.phase.map(|phase| Phase { gap, density_next, ..phase });
+        control.phase = control.phase.map(|phase| Phase { density_next, gap, ..phase });
         after.lengths.resume_after(&self.lengths.last);
         Ok(after)
     }

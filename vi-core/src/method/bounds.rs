@@ -263,7 +263,7 @@ pub(crate) trait Alternating<T: Scalar> {
         let (mut found, [gap, density_next]) = self.fixed(phase.h)?;
         let control = Self::control_of(&mut found);
         control.kind = StepKind::FixedStep;
-        control.phase = Some(Phase { gap, density_next, ..phase });
+        control.phase = Some(Phase { density_next, gap, ..phase });
         control.switches.fixed_steps += 1;
         Ok(found)
     }
