@@ -1,7 +1,7 @@
 //! How a step is found from the steps before it.
 //!
 //! In: a node, and what is remembered of the steps before ([`Lengths`]). Out: the node and the memory after the next step: predicted; else searched; else of a given
-//! length, if the user allows it ([`Fallback`]). Nothing changes on the way.
+//! length, if the user allows it (`Fallback`). Nothing changes on the way.
 
 use super::bracket;
 use super::equations::{self, Elimination, EnergyStep, Measured, NoStep};

@@ -18,7 +18,7 @@
 //! The unknown is ln h: `ln[(H − E0(h))/(H − E)]` is nearly a line of slope 2s in it, and the last step backwards, which solves the equations too, does not exist. A step
 //! is one `Search` over the solution of Gauss steps of any length.
 //!
-//! If no step exists, a run with [`Fallback::FixedSteps`] takes fixed Gauss steps of the last length until an energy-preserving one exists again. E stays, with the work
+//! If no step exists, a run with `Fallback::FixedSteps` takes fixed Gauss steps of the last length until an energy-preserving one exists again. E stays, with the work
 //! done, and fixed steps end when the step law `h |D|^(1/(2s+1)) = C` asks for their length or a shorter one: with D_0 the density at which they began,
 //!
 //! ```text
