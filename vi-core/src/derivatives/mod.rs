@@ -15,7 +15,7 @@
 //! |---|---|
 //! | `variation` | directions, and the dual numbers that they are |
 //! | `steps` | variations of one step, for each method |
-//! | `tangent` | variations along a run |
+//! | `tangent` | tangent vectors along a run, to times, events and across changes |
 //! | `adjoint` | the gradient of what a run ends in, by one sweep backwards |
 //! | `lyapunov` | Lyapunov exponents |
 

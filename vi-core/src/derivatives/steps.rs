@@ -30,7 +30,7 @@ pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> 
     /// As there.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError>;
 
-    /// Turns variations of the node of a run into those after [`Run::step_of`] of the length `length`. Here `h` of a variation is that of this length, in time.
+    /// Turns tangent vectors at the node of a run into those after [`Run::step_of`] by `length`. Here `h` of a vector is the change of this length, in time.
     ///
     /// # Errors
     /// Those of [`Run::step_of`] and of [`Run::vary`].
@@ -42,8 +42,8 @@ pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> 
         Self::vary(&aside, node, variations)
     }
 
-    /// Sets the energies of variations of the state at which a run was started by [`Start::integrate`](crate::Start::integrate): how the energy that it keeps follows
-    /// from the state and the parameters.
+    /// Sets `energy` of tangent vectors at the start of a run by [`Start::integrate`](crate::Start::integrate): the energy that the run keeps follows from the state and
+    /// the parameters.
     ///
     /// # Errors
     /// As [`Run::vary`].
@@ -52,14 +52,14 @@ pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> 
     }
 }
 
-/// Which numbers of an energy-preserving step follow from the others.
+/// The unknown beside the momentum equations of an energy-preserving step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sought {
     /// The length, from the energy that is kept.
     Length,
-    /// Neither: the length is given, and the step does not look at the energy.
+    /// None: the length is given, and the energy equation is left out.
     Neither,
-    /// The energy that is kept, from the length of the first step; the node stays.
+    /// The energy to keep, from the length of the first step. The node stays.
     Energy,
 }
 
@@ -184,7 +184,7 @@ fn solved<A: Matrix<N, f64>, const N: usize>(
     if x.iter().all(|entry| entry.is_finite()) { Some(x) } else { linear::solve(matrix, rhs) }
 }
 
-/// Turns variations of a node into those of the node after the momentum step `(v, h)`, whose length is the given part of that of a whole step.
+/// Turns tangent vectors at a node into those after the momentum step `(v, h)`. Its length is `part` times that of a whole step.
 fn vary<S, const N: usize>(
     system: &S,
     node: &Node<N>,
@@ -366,7 +366,7 @@ where
     }
 }
 
-/// Turns variations of a node into those of the node after the step `(v, h)`.
+/// Turns tangent vectors at a node into those after the energy-preserving step `(v, h)`.
 fn vary_extended<S, const N: usize>(
     system: &S,
     before: &Node<N>,
@@ -419,9 +419,8 @@ where
             variation.q += of_v * h + v * of_h;
             variation.p += momentum_gain + increment_dv.multiply(&of_v) + increment_dh * of_h;
             if !S::AUTONOMOUS || S::FORCED {
-                variation.energy += energy_gain
-                    + derivatives.energy_increment_dv.dot(&of_v)
-                    + derivatives.energy_increment_dh * of_h;
+                variation.energy +=
+                    energy_gain + derivatives.energy_increment_dv.dot(&of_v) + derivatives.energy_increment_dh * of_h;
             }
         }
     }

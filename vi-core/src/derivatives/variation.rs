@@ -38,7 +38,7 @@ pub struct Variation<const N: usize> {
     pub p: SVector<f64, N>,
     /// Of the energy that an energy-preserving run keeps; of no meaning to others. [`crate::Run::set_parameters`] changes it by that of `H_new − H_old`.
     pub energy: f64,
-    /// Of the length of a step that the run is given: h, or Δτ in transformed time. A method that finds its lengths ignores it. The same all along a run.
+    /// Of the length of a step: h, or Δτ in transformed time. A method that finds its lengths ignores it. Constant along a run.
     pub h: f64,
     /// Of the parameters, in the order of [`Lagrangian::PARAMETERS`]; those beyond the end do not change. The same all along a run.
     pub parameters: Vec<f64>,
@@ -72,7 +72,7 @@ impl<const N: usize> Variation<N> {
         Self { h: 1.0, ..Self::zero() }
     }
 
-    /// Adds `factor` times what another one says of a node.
+    /// Adds a multiple of another one, at the same node.
     pub(crate) fn add(&mut self, other: &Self, factor: f64) {
         self.t += other.t * factor;
         self.q += other.q * factor;
@@ -109,7 +109,7 @@ impl<const N: usize> Variation<N> {
     /// The direction of a parameter of the system S, by its name.
     ///
     /// Time, coordinates, momenta and the energy that is kept stay. Where the start is given by other numbers, velocities or the step of `from_midpoint`, what they
-    /// change by with the parameter belongs into `p` and `energy` of the variation.
+    /// change by with the parameter belongs into `p` and `energy` of the variation. [`Tangent::from_start`](super::Tangent::from_start) sets `energy`.
     ///
     /// # Errors
     /// [`StepError::UnknownParameter`] for a name that no parameter of S has.

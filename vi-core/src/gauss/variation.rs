@@ -7,13 +7,12 @@
 //! C_i δQ_i + M_i δV_i + m_i = δp0 + h Σ_j a_ij δF_j        δQ_i = δq0 + h Σ_j a_ij δV_j        δF_j = K_j δQ_j + B_j δV_j + f_j
 //! ```
 //!
-//! S N equations with the same matrix for all directions; with the length of the step vary, besides, T_i, Q_i and the momenta at fixed velocities and forces.
-//!  It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
+//! S N equations with the same matrix for all directions. The length h of the step may vary too: then T_i, Q_i and the momenta change at fixed V_j and F_j. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
 
+use super::density::power;
 use super::general::equations;
 use super::points::Rare;
 use super::solve::WIDE;
-use super::density::power;
 use super::stages::{AtStages, LOOPED, Stages, gathered, maximum, product, scaled, set, stage, sum, times, weights};
 use super::sweep::Equations;
 use super::tableau::Tableau;
@@ -56,13 +55,13 @@ where
 {
     const KEEPS_ENERGY: bool = true;
 
-    /// As [`EnergyPreserving`](crate::EnergyPreserving), with a shift that does not vary.
+    /// As for [`EnergyPreserving`](crate::EnergyPreserving). The shift does not vary.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Lengths { stages: last, course } = &run.memory;
         check_fallback(course.fallback, before.t)?;
-        // The energy may have been that of the parameters before.
-        let is_start = Node { energy: 0.0, energy_low: 0.0, ..last.before }
-            == Node { energy: 0.0, energy_low: 0.0, ..*before };
+        // The energy differs if `set_parameters` came between `before` and the step.
+        let is_start =
+            Node { energy: 0.0, energy_low: 0.0, ..last.before } == Node { energy: 0.0, energy_low: 0.0, ..*before };
         if !last.has_step(&run.node) || !is_start || course.kind != StepKind::EnergyPreserving {
             return Err(not_last(before.t));
         }
@@ -81,10 +80,9 @@ where
     }
 }
 
-/// Turns variations of a node into those of the node after an energy-preserving step, or one of a given length, from the stages of the step.
+/// Turns tangent vectors at a node into those after an energy-preserving step, or one of a given length, from its stages.
 ///
-/// The equations of the stages are bordered by the column of h and the row of the energy: the step varies as it does with h fixed, and along h by so much that the
-/// energy is kept.
+/// The energy equation and the unknown h border the equations of the stages. These are solved at fixed h and for the direction of h; one scalar equation gives δh.
 fn vary_length<S, const N: usize, const STAGES: usize>(
     system: &S,
     step: (&Node<N>, f64, &Stages<N, STAGES>),
@@ -127,7 +125,7 @@ where
     Variation::check_finite(variations, before.t)
 }
 
-/// What the energies of a step change by.
+/// Derivatives of the energies of a step.
 #[derive(Clone, Copy, Debug)]
 struct VariedEnergies {
     /// E0.
@@ -136,7 +134,7 @@ struct VariedEnergies {
     work: f64,
 }
 
-/// What the energies of the step of length h change by in the directions of `variations`, which change the velocities of its stages so.
+/// Derivatives of the energies of the step of length h along `variations` of its node, with the derivatives of the velocities of its stages.
 fn varied_energies<S, const N: usize, const STAGES: usize>(
     system: &S,
     at: &Solution<N, STAGES>,
@@ -178,8 +176,8 @@ where
     (0..variations.len()).map(of).collect()
 }
 
-/// Turns variations of a node into those of the node after the Gauss step of a length from the stages. `then` gets, of some directions at a time, the variations before
-/// the step, and what the velocities of the stages change by.
+/// Turns tangent vectors at a node into those after the Gauss step of length h with these stages. Calls `then` for each few directions, with the tangent vectors before
+/// the step and the derivatives of the velocities of its stages.
 fn vary<S, const N: usize, const STAGES: usize>(
     system: &S,
     (before, h, stages): (&Node<N>, f64, &Stages<N, STAGES>),
@@ -228,7 +226,7 @@ struct Solution<const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> Solution<N, S> {
-    /// What the positions change by with the length of the step, velocities fixed: `Σ_j a_ij V_j`.
+    /// Derivative of the positions with respect to the length of the step at fixed velocities: `Σ_j a_ij V_j`.
     fn moved(&self) -> Stages<N, S> {
         integrals::<N, S, false>(&self.velocities, &weights(1.0))
     }
@@ -320,11 +318,11 @@ fn put<D: Matrix<N, T>, T: AtStages<S>, const N: usize, const S: usize>(
     }
 }
 
-/// What the equations change by with the time, the length of the step and the parameters.
+/// Derivatives of the equations with respect to the time, the length of the step and the parameters.
 struct Explicit<const N: usize, const S: usize> {
-    /// `L_v` and `L_q + f` at fixed positions and velocities, in each direction.
+    /// Those of `L_v` and `L_q + f` at fixed positions and velocities, along each direction.
     slopes: [[Stages<N, S>; 2]; TOGETHER],
-    /// Positions and momenta at the stages, with the length, at fixed velocities and forces.
+    /// Those of positions and momenta at the stages with respect to the length, at fixed velocities and forces.
     moved: [Stages<N, S>; 2],
     /// The same at the end.
     moved_end: [SVector<f64, N>; 2],
