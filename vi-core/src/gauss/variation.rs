@@ -45,7 +45,7 @@ where
         if !memory.has_step(node) || start != before {
             return Err(not_last(before.t));
         }
-        vary(system, (before, *h, &stages.data.0), variations, |_, _, _| {})
+        vary(system, (before, *h, &stages.data.0), variations, None)
     }
 }
 
@@ -97,9 +97,7 @@ where
     let mut all: Vec<_> = variations.iter().map(|variation| Variation { h: 0.0, ..variation.clone() }).collect();
     all.push(Variation::of_length());
     let mut energies = Vec::with_capacity(all.len());
-    vary(system, step, &mut all, |at, from, velocities| {
-        energies.extend(varied_energies(system, at, h, from, velocities));
-    })?;
+    vary(system, step, &mut all, Some(&mut energies))?;
     let (Some(along_h), Some(energy_along_h)) = (all.pop(), energies.pop()) else { return Ok(()) };
     #[allow(clippy::cast_precision_loss)] // at most three stages
     let power_slope = 2.0 * STAGES as f64 * power::<STAGES>(h) / h;
@@ -176,13 +174,12 @@ where
     (0..variations.len()).map(of).collect()
 }
 
-/// Turns tangent vectors at a node into those after the Gauss step of length h with these stages. Calls `then` for each few directions, with the tangent vectors before
-/// the step and the derivatives of the velocities of its stages.
+/// Turns tangent vectors at a node into those after the Gauss step of length h with these stages, and adds the derivatives of its energies if they are wanted.
 fn vary<S, const N: usize, const STAGES: usize>(
     system: &S,
     (before, h, stages): (&Node<N>, f64, &Stages<N, STAGES>),
     variations: &mut [Variation<N>],
-    mut then: impl FnMut(&Solution<N, STAGES>, &[Variation<N>], &[Stages<N, STAGES>]),
+    mut energies: Option<&mut Vec<VariedEnergies>>,
 ) -> Result<(), StepError>
 where
     S: Collocation<N> + Convertible<N>,
@@ -206,14 +203,16 @@ where
     }
     for variations in variations.chunks_mut(TOGETHER) {
         let explicit = explicit(system, &at, variations, before.t)?;
-        let from = variations.to_vec();
+        let from = if energies.is_some() { variations.to_vec() } else { Vec::new() };
         let are_found = instructions.run(Vary { derivatives, equations, h, explicit, variations });
         if !are_found {
             // What is singular, and what was not finite before.
             Variation::check_finite(variations, before.t)?;
             return Err(if are_finite(derivatives) { singular(before.t) } else { not_finite(before.t) });
         }
-        then(&at, &from, &equations[N * STAGES..]);
+        if let Some(energies) = &mut energies {
+            energies.extend(varied_energies(system, &at, h, &from, &equations[N * STAGES..]));
+        }
     }
     Variation::check_finite(variations, before.t)
 }
