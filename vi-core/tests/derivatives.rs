@@ -132,6 +132,8 @@ struct Case<M: Differentiable<S, 2>, S: Lagrangian<2> + Copy> {
     system: S,
     h: f64,
     option: fn(Run<M, S, 2>) -> Run<M, S, 2>,
+    /// Whether h is that of every step, and not only a guess.
+    is_given_length: bool,
     /// Distance of the nearest states that are compared.
     distance: f64,
 }
@@ -142,8 +144,7 @@ where
     M: Differentiable<S, 2>,
     S: Convertible<2> + Parameters + Collocation<2>,
 {
-    // A method that keeps an energy by its length has no length that is given.
-    let directions = directions::<S>(!M::KEEPS_ENERGY || M::DEPENDS_ON_TIME && S::AUTONOMOUS);
+    let directions = directions::<S>(case.is_given_length);
     let start = moved(case, &Variation::zero(), 0.0);
     let mut plain = start.clone();
     let mut tangent = Tangent::from_start(start, directions.clone()).expect("regular");
@@ -197,23 +198,32 @@ fn derivatives_of_every_method_are_those_of_differences() {
         assert!(errors.iter().all(|error| *error <= bound), "{:?}: {errors:?}", case.method);
     }
     fn case<M: Differentiable<S, 2>, S: Lagrangian<2> + Copy>(method: M, system: S, h: f64) -> Case<M, S> {
-        Case { method, system, h, option: |run| run, distance: 5e-4 }
+        Case { method, system, h, option: |run| run, is_given_length: true, distance: 5e-4 }
+    }
+    /// The distance is larger if the length of a step is known to fewer digits.
+    fn kept<M: Differentiable<S, 2>, S: Lagrangian<2> + Copy>(
+        method: M,
+        system: S,
+        h: f64,
+        distance: f64,
+    ) -> Case<M, S> {
+        Case { is_given_length: false, distance, ..case(method, system, h) }
     }
     let (driven, free) = (Driven::default(), Free::default());
     // At most 6.7e-12: roundings over the distance.
-    all(&case(FixedStep, driven, 0.1), 1e-11);
-    all(&case(FixedStep.connected(), driven, 0.1), 1e-11);
-    all(&case(Composition::SUZUKI_4, driven, 0.2), 1e-11);
-    all(&case(Gauss::<3>, driven, 0.25), 1e-11);
-    all(&case(Gauss::<4>.in_transformed_time(), driven, 0.4), 1e-11);
-    all(&case(Gauss::<4>.in_transformed_time(), free, 0.4), 1e-11);
+    all(&case(FixedStep, driven, 0.1), 2e-11);
+    all(&case(FixedStep.connected(), driven, 0.1), 2e-11);
+    all(&case(Composition::SUZUKI_4, driven, 0.2), 2e-11);
+    all(&case(Gauss::<3>, driven, 0.25), 2e-11);
+    all(&case(Gauss::<4>.in_transformed_time(), driven, 0.4), 2e-11);
+    all(&case(Gauss::<4>.in_transformed_time(), free, 0.4), 2e-11);
     // A length is known to the rounding of the energy over its derivative, which is of order h^(2s−1). At most 9.0e-10.
-    all(&case(EnergyPreserving, driven, 0.1), 1e-9);
-    all(&case(EnergyPreservingGauss::<1>, driven, 0.1), 1e-9);
-    all(&Case { distance: 4e-3, ..case(EnergyPreservingGauss::<2>, driven, 0.4) }, 1e-9);
-    all(&Case { distance: 4e-3, ..case(EnergyPreservingGauss::<2>, free, 0.35) }, 1e-9);
+    all(&kept(EnergyPreserving, driven, 0.1, 5e-4), 2e-9);
+    all(&kept(EnergyPreservingGauss::<1>, driven, 0.1, 5e-4), 2e-9);
+    all(&kept(EnergyPreservingGauss::<2>, driven, 0.4, 4e-3), 2e-9);
+    all(&kept(EnergyPreservingGauss::<2>, free, 0.35, 4e-3), 2e-9);
     let option = |run: Run<_, _, 2>| run.with_shift(300.0).expect("finite");
-    all(&Case { distance: 4e-3, option, ..case(EnergyPreservingGauss::<3>, free, 0.7) }, 1e-8);
+    all(&Case { option, ..kept(EnergyPreservingGauss::<3>, free, 0.7, 4e-3) }, 2e-9);
 }
 
 /// How far a map is from a symplectic one by the form of pairs (i, i + n), relative to its square.
@@ -250,7 +260,8 @@ fn maps_of_steps_that_find_their_length_are_symplectic() {
     assert!(transformed.amax() > 2.0 && kept.amax() > 2.0);
     let [transformed, kept] = [transformed, kept].map(|map| defect(&map));
     println!("{transformed:.1e} {kept:.1e}");
-    assert!(transformed <= 1e-15 && kept <= 1e-15, "{transformed:e} {kept:e}");
+    // 3.4e-17 and 2.1e-17.
+    assert!(transformed <= 2e-16 && kept <= 2e-16, "{transformed:e} {kept:e}");
 }
 
 /// Squares of times, coordinates and momenta at the nodes, c an input of each step.
@@ -322,7 +333,7 @@ fn the_adjoint_agrees_with_tangents() {
     ];
     println!("{}", errors.map(|error| format!("{error:.1e}")).join(" "));
     // The energies that a length follows from are differences: 4.9e-16, 1.6e-16, 4.6e-16, 1.4e-14, 5.6e-11.
-    let bounds = [1e-15, 1e-15, 1e-15, 4e-14, 1e-10];
+    let bounds = [2e-15, 2e-15, 2e-15, 4e-14, 2e-10];
     assert!(errors.iter().zip(bounds).all(|(error, bound)| *error <= bound), "{errors:?}");
 }
 
@@ -399,6 +410,6 @@ fn exponents_in_transformed_time_are_those_in_time() {
     }
     let rate = (growth[1][0] - growth[0][0]) / (growth[1][1] - growth[0][1]);
     println!("{:.1e}", rate - 1.5);
-    // √k, of the direction (x, p) that leaves.
-    assert!((rate - 1.5).abs() <= 1e-9, "{rate}");
+    // √k, of the direction (x, p) that leaves: to 2.2e-16.
+    assert!((rate - 1.5).abs() <= 1e-15, "{rate}");
 }

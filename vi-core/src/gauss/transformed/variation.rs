@@ -207,14 +207,13 @@ impl<const N: usize, const S: usize> Linearized<N, S> {
         Some(stages)
     }
 
-    /// Derivatives of the functions of each stage with respect to the parameters, along each direction.
+    /// Derivatives of the functions of each stage with respect to the parameters, a matrix for each direction.
     fn explicit<Y: Convertible<N> + Lagrangian<N>>(
         &self,
         system: &Y,
         variations: &[Variation<N>],
-    ) -> Vec<Vec<DVector<f64>>> {
-        let zeros = vec![DVector::zeros(Self::FUNCTIONS); S];
-        let mut explicit = vec![zeros; variations.len()];
+    ) -> Vec<DMatrix<f64>> {
+        let mut explicit = vec![DMatrix::zeros(Self::FUNCTIONS, S); variations.len()];
         if variations.iter().all(|variation| variation.parameters.iter().all(|slope| *slope == 0.0)) {
             return explicit;
         }
@@ -224,7 +223,7 @@ impl<const N: usize, const S: usize> Linearized<N, S> {
             let at = (Dual::fixed(self.time[i]), q, v, Dual::fixed(self.energy[i]));
             for (row, value) in functions(&varied, at).iter().enumerate() {
                 for (direction, explicit) in explicit.iter_mut().enumerate() {
-                    explicit[i][row] = value.slope.0[direction];
+                    explicit[(row, i)] = value.slope.0[direction];
                 }
             }
         }
@@ -276,12 +275,13 @@ impl<const N: usize, const S: usize> Linearized<N, S> {
         &self,
         of_stages: &DVector<f64>,
         variation: &Variation<N>,
-        explicit: &[DVector<f64>],
-    ) -> (DVector<f64>, Vec<DVector<f64>>) {
+        explicit: &DMatrix<f64>,
+    ) -> (DVector<f64>, DMatrix<f64>) {
         let [rate, g, energy_rate] = places::<N>();
         let first = const { &Tableau::<S>::VALUES.first };
         let [weights, along] = [self.dtau, variation.h].map(weights::<S>);
-        let mut changes = Vec::with_capacity(S);
+        let mut changes = explicit.clone();
+        let mut arguments = DVector::zeros(Self::FUNCTIONS);
         for i in 0..S {
             let (mut of_t, mut of_q, mut of_energy) = (variation.t, variation.q, variation.energy);
             for j in 0..S {
@@ -293,8 +293,11 @@ impl<const N: usize, const S: usize> Linearized<N, S> {
                 of_energy += a * of_rate[0] + a_dtau * self.energy_rate[j];
             }
             let [of_v, ..] = parts::<N>(of_stages, i);
-            let arguments = [&[of_t], of_q.as_slice(), of_v, &[of_energy]].concat();
-            changes.push(&self.derivatives[i] * DVector::from_vec(arguments) + &explicit[i]);
+            arguments[0] = of_t;
+            arguments.rows_mut(1, N).copy_from(&of_q);
+            arguments.rows_mut(1 + N, N).copy_from_slice(of_v);
+            arguments[1 + 2 * N] = of_energy;
+            changes.column_mut(i).gemv(1.0, &self.derivatives[i], &arguments, 1.0);
         }
         let mut residual = DVector::zeros(of_stages.len());
         for i in 0..S {
@@ -302,19 +305,19 @@ impl<const N: usize, const S: usize> Linearized<N, S> {
             for k in 0..N {
                 let mut momentum = variation.p[k];
                 for j in 0..S {
-                    momentum += weights[j] * first[j][i] * changes[j][rate + k];
+                    momentum += weights[j] * first[j][i] * changes[(rate + k, j)];
                     momentum += along[j] * first[j][i] * self.momentum_rate[j][k];
                 }
-                residual[at + k] = changes[i][k] - momentum;
+                residual[at + k] = changes[(k, i)] - momentum;
             }
-            residual[at + N] = of_stages[at + N] - changes[i][g];
-            residual[at + N + 1] = of_stages[at + N + 1] - changes[i][energy_rate];
+            residual[at + N] = of_stages[at + N] - changes[(g, i)];
+            residual[at + N + 1] = of_stages[at + N + 1] - changes[(energy_rate, i)];
         }
         (residual, changes)
     }
 
     /// Moves a tangent vector to the end of the step.
-    fn move_to_end(&self, variation: &mut Variation<N>, of_stages: &DVector<f64>, changes: &[DVector<f64>]) {
+    fn move_to_end(&self, variation: &mut Variation<N>, of_stages: &DVector<f64>, changes: &DMatrix<f64>) {
         let [rate, ..] = places::<N>();
         let [weights, along] = [self.dtau, variation.h].map(weights::<S>);
         for j in 0..S {
@@ -323,7 +326,7 @@ impl<const N: usize, const S: usize> Linearized<N, S> {
             variation.q += (SVector::from_column_slice(of_v) * self.g[j] + self.velocity[j] * of_g[0]) * weights[j];
             variation.q += self.velocity[j] * (along[j] * self.g[j]);
             variation.p +=
-                SVector::from_fn(|k, _| changes[j][rate + k]) * weights[j] + self.momentum_rate[j] * along[j];
+                SVector::from_fn(|k, _| changes[(rate + k, j)]) * weights[j] + self.momentum_rate[j] * along[j];
             variation.energy += weights[j] * of_rate[0] + along[j] * self.energy_rate[j];
         }
     }
