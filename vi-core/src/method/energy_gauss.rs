@@ -63,8 +63,8 @@ pub struct EnergyPreservingGauss<const STAGES: usize>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lengths<const N: usize, const S: usize> {
-    stages: LastStages<N, S>,
-    course: Course,
+    pub(crate) stages: LastStages<N, S>,
+    pub(crate) course: Course,
 }
 
 impl<const N: usize, const S: usize> Memory for Lengths<N, S> {}
@@ -661,6 +661,16 @@ where
         }
         let input = "the duration over which the step density is measured";
         Err(StepError::InvalidInput { input, allowed: "one over which fixed steps hold the energy", value: duration })
+    }
+
+    /// The stages of a step of the length h from here, whose energy does not matter.
+    ///
+    /// # Errors
+    /// Those of a Gauss step; [`StepError::NonFinite`] if its energy is not finite.
+    pub(crate) fn stages_of(&self, h: f64) -> Result<Stages<N, STAGES>, StepError> {
+        let Self { system, prepared, node, memory, .. } = self;
+        let at = Problem { system, prepared, node, h };
+        Ok(Here::of(at, memory).tried(h, None, &mut None)?.step.stages)
     }
 
     /// What fixed steps of the length h meet over `duration` from here; `None` if their energy does not hold.
