@@ -7,6 +7,7 @@ mod checks;
 mod composition;
 mod declarations;
 mod derivatives;
+mod estimates;
 mod events;
 mod extremes;
 mod flow;

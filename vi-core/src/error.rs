@@ -180,6 +180,15 @@ pub enum StepError {
         /// Its value in the system that was to be restarted; not a number where the systems differ.
         given: f64,
     },
+    /// The error of a step exceeds what was asked for, relative to the excursion of a coordinate.
+    Tolerance {
+        /// Time at which the step begins.
+        t: f64,
+        /// Its relative error; infinite if its half steps have no solution.
+        estimate: f64,
+        /// The largest that is allowed.
+        tolerance: f64,
+    },
     /// The caller gave a number with which no step can be taken.
     InvalidInput {
         /// Which input.
@@ -276,6 +285,10 @@ impl fmt::Display for Reason<'_> {
             StepError::OtherSystem { system, parameter: Some(parameter), stored, given } => {
                 write!(f, "the checkpoint of `{system}` was taken with `{parameter}` = {stored:e}, not {given:e}")
             }
+            StepError::Tolerance { t, estimate, tolerance } => write!(
+                f,
+                "the step from t = {t:.9} has a relative error of {estimate:.1e}, more than the {tolerance:.1e} allowed"
+            ),
             StepError::InvalidInput { input, allowed, value } => write!(f, "{input} must be {allowed}, not {value:?}"),
         }
     }
@@ -336,6 +349,7 @@ impl fmt::Display for StepError {
                 f,
                 "; set the velocity toward it to zero and change the system so that it stays, or search without event {event}"
             ),
+            Self::Tolerance { .. } => f.write_str("; take shorter steps, a method of higher order, or allow a larger error"),
             Self::Singular { .. }
             | Self::NonFinite { .. }
             | Self::NoDerivative { .. }

@@ -91,7 +91,7 @@ pub use method::{
 };
 pub use nalgebra;
 pub use nalgebra::SVector;
-pub use run::{Run, Start, Starts};
+pub use run::{Run, Start, Starts, Tolerance};
 pub use state::{Interval, State, Step};
 pub use vi_macros::lagrangian;
 
@@ -99,7 +99,7 @@ pub use vi_macros::lagrangian;
 pub mod prelude {
     pub use crate::error::StepError;
     pub use crate::method::{Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method};
-    pub use crate::run::{Crossing, Event, Moment, Run, Solution, Start, Starts as _};
+    pub use crate::run::{Crossing, Event, Moment, Monitored, Run, Solution, Start, Starts as _, Tolerance};
     pub use crate::state::State;
     pub use vi_macros::lagrangian;
 }

@@ -4,11 +4,12 @@
 //! equations of a step, findings and operation counts, or the equations of a Gauss step, as text or as a LaTeX
 //! document. The predefined systems are read from the sources of the library.
 
-use super::{catalogue, expand};
+use super::expand;
 use clap::{Args, ValueEnum};
 use proc_macro2::TokenStream;
 use std::path::Path;
 use vi_codegen::inspect::{self, source};
+use vi_report::catalogue::Catalogue;
 use vi_report::failure::Failure;
 
 /// The command line of `vi-lab explain`.
@@ -49,7 +50,7 @@ impl Arguments {
 }
 
 /// Explains a system.
-pub(crate) fn explain(arguments: &Arguments) -> Result<String, Failure> {
+pub(crate) fn explain(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let Arguments { system, latex, .. } = arguments;
     let show = |explanation: inspect::Explanation| if *latex { explanation.latex() } else { explanation.text() };
     let explained = |tokens| arguments.explained(tokens);
@@ -57,16 +58,17 @@ pub(crate) fn explain(arguments: &Arguments) -> Result<String, Failure> {
     if let Some(file) = file {
         return expand::each(file, |tokens| explained(tokens).map(show));
     }
-    let entry = catalogue::named(system.as_deref())?;
-    ready(entry.system.name(), explained).map(show)
+    let entry = catalogue.named(system.as_deref())?;
+    ready(catalogue, entry.system.name(), explained).map(show)
 }
 
 /// The mathematics of a predefined system.
 fn ready(
+    catalogue: &Catalogue,
     name: &str,
     explained: impl Fn(TokenStream) -> syn::Result<inspect::Explanation>,
 ) -> Result<inspect::Explanation, Failure> {
-    let mut declared = catalogue::sources().filter_map(|text| source::declarations(text).ok()).flatten();
+    let mut declared = catalogue.sources().filter_map(|text| source::declarations(text).ok()).flatten();
     let found = declared.find_map(|tokens| {
         // The name comes first in a declaration, so that no other system needs to be derived.
         let system = vi_codegen::syntax::parse::system(tokens.clone()).ok()?;
@@ -85,9 +87,10 @@ mod tests {
 
     #[test]
     fn every_system_of_the_catalogue_is_explained() {
-        for entry in catalogue::entries() {
+        let catalogue = crate::ready();
+        for entry in catalogue.entries() {
             let name = entry.system.name();
-            let explanation = ready(name, inspect::explain).unwrap_or_else(|failure| panic!("{failure}"));
+            let explanation = ready(&catalogue, name, inspect::explain).unwrap_or_else(|failure| panic!("{failure}"));
             assert_eq!(explanation.title, name);
         }
     }

@@ -8,16 +8,19 @@
 //! |---|---|
 //! | `new` | `vi-lab new`: a project with this command for your own systems |
 //! | `run` | `vi-lab run`: rows as CSV or NPY |
-//! | `vi_studies` | `vi-lab paper`: figures, tables and the page; `vi-lab stability`: where methods fail, as maps |
+//! | `vi_paper` | `vi-lab paper`: figures, tables and the page |
+//! | `vi_stability` | `vi-lab stability`: where methods fail, as maps |
 //! | `work_precision` | `vi-lab work-precision`: error against time, for every method |
 //! | `sweep` | `vi-lab sweep`, `vi-lab merge`: many runs of one scene, on all cores and many machines |
 //! | `lyapunov` | `vi-lab lyapunov`: Lyapunov exponents |
 //! | `expand`, `explain` | the products of the compiler; the mathematics of a system |
-//! | `npy`, `place` | the header of an array file; checks of files to read and write |
+//! | `npy`, `place`, `entries` | the header of an array file; checks of files to read and write; entries of scenes |
 //! | `vi_report` | output shared by all subcommands; the systems by name |
+//! | `vi_ready` | the predefined systems |
 
 #[doc(hidden)]
 pub mod declared;
+mod entries;
 mod expand;
 mod explain;
 mod lyapunov;
@@ -29,15 +32,12 @@ mod sweep;
 mod work_precision;
 
 use clap::{Parser, Subcommand};
-use std::io::{self, Write as _};
-use std::path::PathBuf;
 use std::process::ExitCode;
-use vi_report::catalogue;
-pub use vi_report::catalogue::Own;
+use vi_report::catalogue::Catalogue;
+pub use vi_report::catalogue::Systems;
 use vi_report::failure::Failure;
-use vi_report::machine::visible;
-pub use vi_runs::ready::Entry;
-use vi_studies::{paper, stability};
+use vi_report::terminal::{end, print};
+pub use vi_runs::entry::Entry;
 
 /// Variational integrators: simulate a system, or reproduce the paper.
 #[derive(Debug, Parser)]
@@ -50,18 +50,11 @@ struct Command {
 #[derive(Debug, Subcommand)]
 enum Action {
     /// Compute every figure and table of the paper's numerical study, next to the published numbers
-    Paper {
-        /// Folder for the page, its figures (SVG) and their data (CSV)
-        #[arg(long, value_name = "DIR", default_value = "paper")]
-        out: PathBuf,
-        /// Number of steps of the long runs
-        #[arg(long, value_name = "N", default_value_t = paper::STEPS, value_parser = paper::steps)]
-        steps: u32,
-    },
+    Paper(vi_paper::Study),
     /// Simulate one system, and write its states
     Run(run::Arguments),
     /// Map where methods fail: the complete page, or the map of one system
-    Stability(stability::Arguments),
+    Stability(vi_stability::Arguments),
     /// Chart error against time, evaluations and step for every method on one system
     WorkPrecision(work_precision::Arguments),
     /// Estimate the largest Lyapunov exponents of a system along one run
@@ -102,7 +95,7 @@ macro_rules! main {
     ) => {
         #[allow(clippy::needless_borrow, reason = "for a system with a rule both references are needed")]
         fn main() -> ::std::process::ExitCode {
-            $crate::main_with($crate::Own {
+            $crate::main_with($crate::Systems {
                 sources: &[$(include_str!($source)),*],
                 entries: || {
                     use $crate::declared::{Declared, WithRule as _, WithoutRule as _};
@@ -113,61 +106,46 @@ macro_rules! main {
     };
 }
 
+/// The predefined systems, without those of a program.
+pub(crate) fn ready() -> Catalogue {
+    Catalogue::new(Systems { sources: &vi_systems::SOURCES, entries: vi_ready::systems })
+}
+
 /// Runs the command line of this process, including the systems of the program.
 #[must_use]
-pub fn main_with(own: Own) -> ExitCode {
-    own.declare();
-    main()
+pub fn main_with(own: Systems) -> ExitCode {
+    command(&ready().with_own(own))
 }
 
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    let outcome = match Command::try_parse() {
-        Ok(Command { action }) => act(action),
+    command(&ready())
+}
+
+fn command(catalogue: &Catalogue) -> ExitCode {
+    end(match Command::try_parse() {
+        Ok(Command { action }) => act(action, catalogue),
         Err(error) if !error.use_stderr() => {
             // The user asked for help or for the version.
             error.print().map_err(Failure::standard_output)
         }
         Err(error) => Err(Failure::usage(&error)),
-    };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure @ Failure::Unread) => ExitCode::from(failure.exit_status()),
-        Err(Failure::System { shown, wrong }) => {
-            // Prints the correct systems first. Mistakes are reported even if standard output is closed.
-            let _ = if shown.is_empty() { Ok(()) } else { print(&shown) };
-            let _ = write!(io::stderr(), "{}", visible(&wrong));
-            ExitCode::FAILURE
-        }
-        Err(failure) => {
-            // Standard error may be closed; the exit status reports the failure.
-            let _ = writeln!(io::stderr(), "error: {}", visible(&failure.to_string()));
-            ExitCode::from(failure.exit_status())
-        }
-    }
+    })
 }
 
-fn act(action: Action) -> Result<(), Failure> {
+fn act(action: Action, catalogue: &Catalogue) -> Result<(), Failure> {
     match action {
-        Action::Paper { out, steps } => {
-            let summary = paper::write(&out, paper::Study { steps })?;
-            print(&summary)
-        }
-        Action::Run(arguments) => run::run(&arguments),
-        Action::Stability(arguments) => print(&stability::write(&arguments)?),
-        Action::WorkPrecision(arguments) => print(&work_precision::write(&arguments)?),
-        Action::Lyapunov(arguments) => lyapunov::write(&arguments, print),
-        Action::Sweep(arguments) => print(&sweep::sweep(&arguments)?),
+        Action::Paper(study) => print(&vi_paper::write(&study)?),
+        Action::Run(arguments) => run::run(&arguments, catalogue),
+        Action::Stability(arguments) => print(&vi_stability::write(&arguments, catalogue)?),
+        Action::WorkPrecision(arguments) => print(&work_precision::write(&arguments, catalogue)?),
+        Action::Lyapunov(arguments) => lyapunov::write(&arguments, catalogue),
+        Action::Sweep(arguments) => print(&sweep::sweep(&arguments, catalogue)?),
         Action::Merge(arguments) => print(&sweep::merge::merge(&arguments)?),
         Action::Expand(arguments) => print(&expand::expand(&arguments)?),
-        Action::Explain(arguments) => print(explain::explain(&arguments)?.trim_end()),
+        Action::Explain(arguments) => print(explain::explain(&arguments, catalogue)?.trim_end()),
         Action::New(arguments) => print(&new::write(&arguments)?),
-        Action::List => print(&catalogue::table().text()),
+        Action::List => print(&catalogue.table().text()),
     }
-}
-
-/// Prints a text and a line end to standard output, with control characters escaped.
-fn print(text: &str) -> Result<(), Failure> {
-    writeln!(io::stdout(), "{}", visible(text)).map_err(Failure::standard_output)
 }

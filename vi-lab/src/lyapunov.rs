@@ -6,10 +6,11 @@
 
 use crate::run;
 use clap::Args;
-use vi_report::catalogue::kebab;
+use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::numbers::short;
+use vi_report::terminal::print;
 use vi_runs::plan::Method;
 
 /// The command line of `vi-lab lyapunov`.
@@ -51,7 +52,7 @@ const LONGER: f64 = 5.0;
 ///
 /// # Errors
 /// Wrong input; a failed step, after printing the estimates so far.
-pub(crate) fn write(arguments: &Arguments, print: impl Fn(&str) -> Result<(), Failure>) -> Result<(), Failure> {
+pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let Arguments { target, count, h, steps, set, q, v } = arguments;
     let wanted = run::Arguments {
         target: target.clone(),
@@ -63,7 +64,7 @@ pub(crate) fn write(arguments: &Arguments, print: impl Fn(&str) -> Result<(), Fa
         steps: Some(*steps),
         ..run::Arguments::default()
     };
-    let (system, mut plan) = run::start(&wanted)?;
+    let (system, mut plan) = run::start(&wanted, catalogue)?;
     if h.is_none() {
         // Gauss steps are longer than steps of order 2.
         plan.h *= LONGER;

@@ -13,12 +13,16 @@ use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
-/// Runs the command, and returns exit status, standard output and standard error.
+/// Runs the command, and returns exit status, standard output, and standard error without the error of steps.
 fn lab(arguments: &[&str]) -> (Option<i32>, String, String) {
     let Output { status, stdout, stderr } =
         Command::new(env!("CARGO_BIN_EXE_vi-lab")).args(arguments).output().expect("the command runs");
     let text = |bytes| String::from_utf8(bytes).expect("text");
-    (status.code(), text(stdout), text(stderr))
+    let is_other = |line: &&str| {
+        !line.contains("the largest error of a step is") && !line.contains("for its error to be measured")
+    };
+    let errors = text(stderr).split_inclusive('\n').filter(is_other).collect();
+    (status.code(), text(stdout), errors)
 }
 
 /// A file of this test in the temporary folder.

@@ -14,12 +14,10 @@
 //! the time where steps depend on them, and one for each parameter that is asked for.
 
 use super::steps::Differentiable;
-use super::variation::{TOGETHER, Variation};
+use super::variation::{Variation, changes_of_energy};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
-use crate::node::Node;
-use crate::real::Dual;
 use crate::run::Run;
 use crate::state::State;
 use crate::stepping::Convertible;
@@ -113,7 +111,7 @@ where
     if M::KEEPS_ENERGY {
         directions.push(Variation { energy: 1.0, ..Variation::zero() });
     }
-    let is_autonomous = S::AUTONOMOUS;
+    let is_autonomous = !M::DEPENDS_ON_TIME;
     if !is_autonomous {
         directions.push(Variation { t: 1.0, ..Variation::zero() });
     }
@@ -217,27 +215,6 @@ fn have_equal_parameters<S: Lagrangian<N>, const N: usize>(one: &S, other: &S) -
     (0..S::PARAMETERS.len()).all(|index| one.parameter(index).to_bits() == other.parameter(index).to_bits())
 }
 
-/// What H at a state changes by in each direction: `v·δp − δL`, v fixed.
-fn changes_of_energy<S, const N: usize>(
-    system: &S,
-    state: &State<N>,
-    directions: &[Variation<N>],
-) -> Result<Vec<f64>, StepError>
-where
-    S: Lagrangian<N> + Convertible<N>,
-{
-    let v = state.velocity(system)?;
-    let node = Node::new(*state, 0.0);
-    let mut changes = Vec::with_capacity(directions.len());
-    for directions in directions.chunks(TOGETHER) {
-        let node = Variation::node::<TOGETHER>(directions, &node);
-        let varied = Variation::system(directions, system).lagrangian(node.t, &node.q, &v.map(Dual::fixed));
-        let of_lagrangian = varied.slope.0.into_iter();
-        changes.extend(directions.iter().zip(of_lagrangian).map(|(direction, slope)| v.dot(&direction.p) - slope));
-    }
-    Ok(changes)
-}
-
 /// What a number changes by in all directions, sorted: the covector at the start of a step, and the changes by the parameters of the step.
 fn sorted<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
     changes: &[f64],
@@ -247,6 +224,6 @@ fn sorted<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
     let q = SVector::from_fn(|_, _| next());
     let p = SVector::from_fn(|_, _| next());
     let energy = if M::KEEPS_ENERGY { next() } else { 0.0 };
-    let t = if S::AUTONOMOUS { 0.0 } else { next() };
+    let t = if M::DEPENDS_ON_TIME { next() } else { 0.0 };
     (Covector { t, q, p, energy }, changes.collect())
 }

@@ -15,7 +15,7 @@
 //! |---|---|
 //! | `variation` | directions, and the dual numbers that they are |
 //! | `steps` | variations of one step, for each method |
-//! | `tangent` | variations along a run |
+//! | `tangent` | tangent vectors along a run, to times, events and across changes |
 //! | `adjoint` | the gradient of what a run ends in, by one sweep backwards |
 //! | `lyapunov` | Lyapunov exponents |
 
@@ -28,7 +28,7 @@ mod variation;
 pub use adjoint::{Covector, Gradient, Objective, gradient};
 pub use lyapunov::Lyapunov;
 pub use steps::Differentiable;
-pub(crate) use steps::{not_last, singular};
+pub(crate) use steps::{Sought, check_fallback, not_last, singular};
 pub use tangent::Tangent;
 pub use variation::Variation;
-pub(crate) use variation::{TOGETHER, Varied, not_finite};
+pub(crate) use variation::{TOGETHER, Varied, changes_of_energy, more_parameters, not_finite};

@@ -21,12 +21,55 @@ use nalgebra::{SMatrix, SVector};
 pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> {
     /// Whether the energy that the run keeps is a variable beside coordinates and momenta.
     const KEEPS_ENERGY: bool = false;
+    /// Whether a step depends on the time at which it begins.
+    const DEPENDS_ON_TIME: bool = !S::AUTONOMOUS;
 
     /// [`Run::vary`].
     ///
     /// # Errors
     /// As there.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError>;
+
+    /// Turns tangent vectors at the node of a run into those after [`Run::step_of`] by `length`. Here `h` of a vector is the change of this length, in time.
+    ///
+    /// # Errors
+    /// Those of [`Run::step_of`] and of [`Run::vary`].
+    fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let Run { method, system, node, memory, .. } = run;
+        let memory = method.with_length(system, memory, node, length)?;
+        let mut aside = Run::resumed(method.clone(), *system, (*node, length, memory));
+        aside.step()?;
+        Self::vary(&aside, node, variations)
+    }
+
+    /// Sets `energy` of tangent vectors at the start of a run by [`Start::integrate`](crate::Start::integrate): the energy that the run keeps follows from the state and
+    /// the parameters.
+    ///
+    /// # Errors
+    /// As [`Run::vary`].
+    fn vary_start(_run: &Run<Self, S, N>, _variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        Ok(())
+    }
+}
+
+/// The unknown beside the momentum equations of an energy-preserving step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sought {
+    /// The length, from the energy that is kept.
+    Length,
+    /// None: the length is given, and the energy equation is left out.
+    Neither,
+    /// The energy to keep, from the length of the first step. The node stays.
+    Energy,
+}
+
+/// Checks that a run takes energy-preserving steps alone.
+///
+/// # Errors
+/// [`StepError::NoDerivative`] of the step from the time `t`.
+pub(crate) fn check_fallback(fallback: Fallback, t: f64) -> Result<(), StepError> {
+    let because = "with a fallback the energy of the run may leap; take `Fallback::Stop`";
+    if fallback == Fallback::Stop { Ok(()) } else { Err(StepError::NoDerivative { t, because }) }
 }
 
 impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
@@ -141,11 +184,11 @@ fn solved<A: Matrix<N, f64>, const N: usize>(
     if x.iter().all(|entry| entry.is_finite()) { Some(x) } else { linear::solve(matrix, rhs) }
 }
 
-/// Turns variations of a node into those of the node after the momentum step `(v, h)`.
+/// Turns tangent vectors at a node into those after the momentum step `(v, h)`. Its length is `part` times that of a whole step.
 fn vary<S, const N: usize>(
     system: &S,
     node: &Node<N>,
-    h: f64,
+    [h, part]: [f64; 2],
     v: &SVector<f64, N>,
     variations: &mut [Variation<N>],
 ) -> Result<(), StepError>
@@ -159,7 +202,8 @@ where
     for variations in variations.chunks_mut(TOGETHER) {
         let explicit = Variation::varying_steps(variations, system, node.t)?.map(|varied| {
             let node = Variation::in_time(variations, node);
-            varied.momentum_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
+            let h = Variation::number(variations, h, |variation| part * variation.h);
+            varied.momentum_residual(&node, h, &v.map(Dual::fixed))
         });
         for (direction, variation) in variations.iter_mut().enumerate() {
             let mut residual = residual_dq.multiply(&variation.q) - variation.p;
@@ -170,7 +214,9 @@ where
             }
             let of_v =
                 -solved(residual_dv, &inverse, &residual).ok_or_else(|| unsolved(residual_dv, &residual, node.t))?;
-            variation.q += of_v * h;
+            let of_h = part * variation.h;
+            variation.t += of_h;
+            variation.q += of_v * h + v * of_h;
             variation.p += increment + increment_dv.multiply(&of_v);
         }
     }
@@ -204,7 +250,7 @@ fn vary_fixed<M: Method<S, N>, S: Discretized<N>, const N: usize>(
     variations: &mut [Variation<N>],
 ) -> Result<(), StepError> {
     check_last(before, (run.h, &v), &run.node, has_its_parameters)?;
-    vary(&run.system, before, run.h, &v, variations)
+    vary(&run.system, before, [run.h, 1.0], &v, variations)
 }
 
 impl<S, const N: usize> Run<FixedStep, S, N>
@@ -285,7 +331,7 @@ where
         let mut node = *before;
         for substep in &memory.0 {
             let (h, v) = (substep.h, substep.v());
-            vary(system, &node, h, &v, variations)?;
+            vary(system, &node, [h, h / run.h], &v, variations)?;
             let increment = system.momentum_residual(&node, h, &v).increment;
             node.advance(h, &v, &increment);
         }
@@ -303,54 +349,80 @@ where
     /// The energy that the run keeps is a variable of its own, beside q and p, and the length of the step varies. With
     /// [`Fallback::FixedSteps`] the run may leap from one energy to another: it has no derivative, and this is [`StepError::NoDerivative`].
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let Run { system, memory, .. } = run;
-        if memory.fallback != Fallback::Stop {
-            let because = "with a fallback the energy of the run may leap; take `Fallback::Stop`";
-            return Err(StepError::NoDerivative { t: before.t, because });
-        }
-        let Last { h, v, is_step, .. } = memory.last;
+        check_fallback(run.memory.control.fallback, before.t)?;
+        let Last { h, v, is_step, .. } = run.memory.last;
         check_last(before, (h, &v), &run.node, is_step)?;
-        let derivatives = system.extended_derivatives(before, h, &v);
-        let ExtendedDerivatives { momentum, residual_dh, increment_dh, energy_dq, energy_dv, energy_dh, .. } =
-            &derivatives;
-        let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = momentum;
-        let inverse = residual_dv.inverse();
-        let along_h =
-            solved(residual_dv, &inverse, residual_dh).ok_or_else(|| unsolved(residual_dv, residual_dh, before.t))?;
-        let schur = energy_dh - energy_dv.dot(&along_h);
-        for variations in variations.chunks_mut(TOGETHER) {
-            let explicit = Variation::varying_steps(variations, system, before.t)?.map(|varied| {
-                let node = Variation::in_time(variations, before);
-                varied.extended_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
-            });
-            for (direction, variation) in variations.iter_mut().enumerate() {
-                let mut residual = residual_dq.multiply(&variation.q) - variation.p;
-                let mut energy = energy_dq.dot(&variation.q) + v.dot(&variation.p) - variation.energy;
-                let mut momentum_gain = increment_dq.multiply(&variation.q);
-                let mut energy_gain = derivatives.energy_increment_dq.dot(&variation.q);
-                if let Some(explicit) = &explicit {
-                    residual += slope_along(direction, &explicit.residual);
-                    energy += explicit.energy_residual.slope.0[direction];
-                    momentum_gain += slope_along(direction, &explicit.increment.momentum);
-                    energy_gain += explicit.increment.energy.slope.0[direction];
+        vary_extended(&run.system, before, (h, &v), Sought::Length, variations)
+    }
+
+    fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let (_, after) = run.method.step_of(&run.system, (&run.node, &run.memory), [length, run.h])?;
+        vary_extended(&run.system, &run.node, (length, &after.last.v), Sought::Neither, variations)
+    }
+
+    fn vary_start(run: &Run<Self, S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let Last { h, v, .. } = run.memory.last;
+        vary_extended(&run.system, &run.node, (h, &v), Sought::Energy, variations)
+    }
+}
+
+/// Turns tangent vectors at a node into those after the energy-preserving step `(v, h)`.
+fn vary_extended<S, const N: usize>(
+    system: &S,
+    before: &Node<N>,
+    (h, v): (f64, &SVector<f64, N>),
+    sought: Sought,
+    variations: &mut [Variation<N>],
+) -> Result<(), StepError>
+where
+    S: EnergyStepping<N> + Discretized<N>,
+    S::Steps<Varied>: EnergyStepping<N, Varied>,
+{
+    let derivatives = system.extended_derivatives(before, h, v);
+    let ExtendedDerivatives { momentum, residual_dh, increment_dh, energy_dq, energy_dv, energy_dh, .. } = &derivatives;
+    let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = momentum;
+    let inverse = residual_dv.inverse();
+    let along_h =
+        solved(residual_dv, &inverse, residual_dh).ok_or_else(|| unsolved(residual_dv, residual_dh, before.t))?;
+    let schur = energy_dh - energy_dv.dot(&along_h);
+    for variations in variations.chunks_mut(TOGETHER) {
+        let explicit = Variation::varying_steps(variations, system, before.t)?.map(|varied| {
+            let node = Variation::in_time(variations, before);
+            varied.extended_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
+        });
+        for (direction, variation) in variations.iter_mut().enumerate() {
+            let mut residual = residual_dq.multiply(&variation.q) - variation.p;
+            let mut energy = energy_dq.dot(&variation.q) + v.dot(&variation.p);
+            let mut momentum_gain = increment_dq.multiply(&variation.q);
+            let mut energy_gain = derivatives.energy_increment_dq.dot(&variation.q);
+            if let Some(explicit) = &explicit {
+                residual += slope_along(direction, &explicit.residual);
+                energy += explicit.energy_residual.slope.0[direction];
+                momentum_gain += slope_along(direction, &explicit.increment.momentum);
+                energy_gain += explicit.increment.energy.slope.0[direction];
+            }
+            let of_residual =
+                solved(residual_dv, &inverse, &residual).ok_or_else(|| unsolved(residual_dv, &residual, before.t))?;
+            let of_h = match sought {
+                Sought::Length => (energy_dv.dot(&of_residual) - (energy - variation.energy) / h) / schur,
+                Sought::Neither => variation.h,
+                Sought::Energy => {
+                    variation.energy = energy - energy_dv.dot(&of_residual) * h;
+                    continue;
                 }
-                let of_residual = solved(residual_dv, &inverse, &residual)
-                    .ok_or_else(|| unsolved(residual_dv, &residual, before.t))?;
-                let of_h = (energy_dv.dot(&of_residual) - energy / h) / schur;
-                if !of_h.is_finite() {
-                    return Err(singular(before.t));
-                }
-                let of_v = -of_residual - along_h * of_h;
-                variation.t += of_h;
-                variation.q += of_v * h + v * of_h;
-                variation.p += momentum_gain + increment_dv.multiply(&of_v) + increment_dh * of_h;
-                if !S::AUTONOMOUS || S::FORCED {
-                    variation.energy += energy_gain
-                        + derivatives.energy_increment_dv.dot(&of_v)
-                        + derivatives.energy_increment_dh * of_h;
-                }
+            };
+            if !of_h.is_finite() {
+                return Err(singular(before.t));
+            }
+            let of_v = -of_residual - along_h * of_h;
+            variation.t += of_h;
+            variation.q += of_v * h + v * of_h;
+            variation.p += momentum_gain + increment_dv.multiply(&of_v) + increment_dh * of_h;
+            if !S::AUTONOMOUS || S::FORCED {
+                variation.energy +=
+                    energy_gain + derivatives.energy_increment_dv.dot(&of_v) + derivatives.energy_increment_dh * of_h;
             }
         }
-        Variation::check_finite(variations, before.t)
     }
+    Variation::check_finite(variations, before.t)
 }

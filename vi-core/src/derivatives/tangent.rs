@@ -1,15 +1,28 @@
-//! Variations along a run.
+//! Tangent vectors along a run.
 //!
-//! In: a run, variations of its node. Out: step after step, with the variations of the node reached. Directions share what is evaluated, so that more of them
-//! cost little (`docs/benchmarks.md`); those of a chaotic motion grow, and it is for the caller to make them shorter again ([`Tangent::variations_mut`]).
+//! In: a run, tangent vectors at its node ([`Variation`]). Out: the tangent vectors after each step, at a time, at an event, and after a change of the parameters or the
+//! state. Directions share their evaluations, so that more of them cost little (`docs/benchmarks.md`). Tangent vectors of a chaotic motion grow: rescale them by
+//! [`Tangent::variations_mut`].
+//!
+//! The length ℓ of a step that ends at a time or at an event follows from a condition g = 0 at its end z(ℓ):
+//!
+//! ```text
+//! δz = δz|ℓ + ∂z/∂ℓ δℓ        δℓ = −(∂g·δz|ℓ)/(∂g·∂z/∂ℓ)
+//! ```
+//!
+//! ∂z/∂ℓ is the derivative of the step, not of the motion: the two differ by the order of the method.
 
 use super::steps::Differentiable;
-use super::variation::Variation;
+use super::variation::{Variation, changes_of_energy, not_finite};
+use crate::collocation::Collocation;
 use crate::error::StepError;
-use crate::lagrangian::Lagrangian;
+use crate::lagrangian::{Flow, Lagrangian, Parameters};
+use crate::linear;
 use crate::method::Method;
-use crate::run::Run;
+use crate::real::Dual;
+use crate::run::{Crossing, Event, Moment, Run};
 use crate::state::State;
+use crate::stepping::Convertible;
 
 /// A run, and how its node varies in some directions.
 #[derive(Clone, Debug)]
@@ -26,19 +39,47 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
         Self { run, variations, failure: None }
     }
 
+    /// A run before its first step, started by [`Start::integrate`](crate::Start::integrate), and tangent vectors of its initial state and parameters. The energy that
+    /// the run keeps follows from these: the function sets `energy` of each vector.
+    ///
+    /// # Errors
+    /// As [`Run::vary`].
+    pub fn from_start(run: Run<M, S, N>, mut variations: Vec<Variation<N>>) -> Result<Self, StepError> {
+        M::vary_start(&run, &mut variations)?;
+        Ok(Self::new(run, variations))
+    }
+
     /// Takes a step, and returns the state reached.
     ///
     /// # Errors
     /// That of the step, after which the run and its variations are those before; or of [`Run::vary`], after which the variations have no meaning. The same
     /// error again after an error.
     pub fn step(&mut self) -> Result<State<N>, StepError> {
-        if let Some(failure) = self.failure {
-            return Err(failure);
-        }
-        let before = *self.run.node();
-        let outcome = self.run.step();
-        let varied = outcome.and_then(|state| self.run.vary(&before, &mut self.variations).map(|()| state));
-        varied.inspect_err(|failure| self.failure = Some(*failure))
+        self.latched(|tangent| {
+            let before = *tangent.run.node();
+            let state = tangent.run.step()?;
+            tangent.run.vary(&before, &mut tangent.variations).map(|()| state)
+        })
+    }
+
+    /// Takes a step of the length h in time, as [`Run::step_of`] does, and returns the state reached. This length does not vary.
+    ///
+    /// # Errors
+    /// Those of [`Run::step_of`] and of [`Run::vary`]. The same error again after an error.
+    pub fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
+        self.latched(|tangent| {
+            let mut after = tangent.run.clone();
+            after.step_of(h)?;
+            tangent.end_at(h, after, |_, _| Ok(0.0))
+        })
+    }
+
+    /// Takes steps up to the time t, as [`Run::until`] does, and returns the state there. The tangent vectors are at this fixed time: their `t` is zero.
+    ///
+    /// # Errors
+    /// Those of [`Run::until`] and of [`Run::vary`]. The same error again after an error.
+    pub fn until(&mut self, t: f64) -> Result<State<N>, StepError> {
+        self.latched(|tangent| tangent.end_at_time(t))
     }
 
     /// The run.
@@ -56,4 +97,206 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
     pub fn variations_mut(&mut self) -> &mut [Variation<N>] {
         &mut self.variations
     }
+
+    /// Runs a function unless one failed before, and keeps its failure.
+    fn latched<R>(&mut self, take: impl FnOnce(&mut Self) -> Result<R, StepError>) -> Result<R, StepError> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        take(self).inspect_err(|failure| self.failure = Some(*failure))
+    }
+
+    /// [`Tangent::until`].
+    fn end_at_time(&mut self, t: f64) -> Result<State<N>, StepError> {
+        self.run.check_ahead(t)?;
+        loop {
+            let mut after = self.run.clone();
+            if after.approach(t)? {
+                let left = self.run.time_to(t);
+                let state = self.end_at(left, after, |varied, _| Ok(-varied.t))?;
+                self.variations.iter_mut().for_each(|variation| variation.t = 0.0);
+                return Ok(state);
+            }
+            let before = core::mem::replace(&mut self.run, after);
+            self.run.vary(before.node(), &mut self.variations)?;
+        }
+    }
+
+    /// Moves to the run `after` by a step of this length. `of_length` returns the change of the length, from the tangent vector at fixed length and the derivative with
+    /// respect to the length.
+    fn end_at(
+        &mut self,
+        length: f64,
+        after: Run<M, S, N>,
+        of_length: impl Fn(&Variation<N>, &Variation<N>) -> Result<f64, StepError>,
+    ) -> Result<State<N>, StepError> {
+        let run = &self.run;
+        let mut all: Vec<_> = self.variations.iter().map(|of| Variation { h: 0.0, ..of.clone() }).collect();
+        let along = if length.is_normal() {
+            all.push(Variation::of_length());
+            M::vary_step_of(run, length, &mut all)?;
+            all.pop().unwrap_or_else(Variation::zero)
+        } else {
+            // No step is left: the state moves along the motion.
+            let State { t, q, p } = run.state();
+            let Flow { v, force, power } = run.system().flow(t, &q, &p)?;
+            Variation { t: 1.0, q: v, p: force, energy: power, ..Variation::zero() }
+        };
+        for (own, varied) in self.variations.iter_mut().zip(&mut all) {
+            let change = of_length(varied, &along)?;
+            if change != 0.0 {
+                varied.add(&along, change);
+            }
+            varied.h = own.h;
+        }
+        Variation::check_finite(&all, run.t())?;
+        self.variations = all;
+        self.run = after;
+        Ok(self.run.state())
+    }
+}
+
+impl<M, S, const N: usize> Tangent<M, S, N>
+where
+    M: Differentiable<S, N>,
+    S: Convertible<N> + Collocation<N>,
+{
+    /// Takes steps up to the event, as [`Run::until_event`] does, or to the time `end` if there is none before. The tangent vectors are at the event: their `t` is the
+    /// derivative of its time. The event needs a derivative: [`Event::smooth_rising`], [`Event::smooth_falling`], [`Event::smooth_crossing`].
+    ///
+    /// # Errors
+    /// Those of [`Run::until_event`] and of [`Run::vary`]; [`StepError::NoDerivative`] for an event without a derivative, or with a derivative along the motion that is
+    /// zero or not finite. The same error again after an error.
+    pub fn until_event(&mut self, event: &Event<N>, end: f64) -> Result<Option<Crossing<N>>, StepError> {
+        self.latched(|tangent| tangent.end_at_event(event, end))
+    }
+
+    /// Changes parameters, as [`Run::set_parameters`] does. The function in dual numbers changes their slopes too: a parameter that it sets to `Dual::fixed(2.0)` does not
+    /// vary any more.
+    ///
+    /// The energy that a run keeps gains `H_new − H_old`, and its derivative the derivative of that.
+    ///
+    /// # Errors
+    /// Those of [`Run::set_parameters`]; [`StepError::NonFinite`] if a derivative is not finite. The same error again after an error.
+    pub fn set_parameters(&mut self, change: impl Fn(&mut S::In<Dual<f64>>)) -> Result<(), StepError>
+    where
+        S: Parameters,
+    {
+        self.latched(|tangent| {
+            let state = tangent.run.state();
+            let before = changes_of_energy(tangent.run.system(), &state, &tangent.variations)?;
+            let plain = Variation::zero();
+            let numbers = |variation: &Variation<N>, run: &Run<M, S, N>| {
+                let mut system = varied(run.system(), variation);
+                change(&mut system);
+                let named = S::PARAMETERS.iter().map(|name| system.parameter_mut(name).copied());
+                named.map(|number| number.unwrap_or(Dual::fixed(0.0))).collect::<Vec<_>>()
+            };
+            let values = numbers(&plain, &tangent.run);
+            let slopes: Vec<Vec<_>> =
+                tangent.variations.iter().map(|variation| numbers(variation, &tangent.run)).collect();
+            tangent.run.set_parameters(|system| {
+                for (name, value) in S::PARAMETERS.iter().zip(&values) {
+                    if let Some(parameter) = system.parameter_mut(name) {
+                        *parameter = value.value;
+                    }
+                }
+            })?;
+            for (variation, slopes) in tangent.variations.iter_mut().zip(slopes) {
+                variation.parameters = slopes.into_iter().map(|number| number.slope).collect();
+            }
+            let after = changes_of_energy(tangent.run.system(), &state, &tangent.variations)?;
+            tangent.gain_energy(&before, &after)
+        })
+    }
+
+    /// Maps the state, as [`Run::set_state`] does: an impact, or another frame. The map takes the system and the state in dual numbers.
+    ///
+    /// The energy that a run keeps gains `H(after) − H(before)`, and its derivative the derivative of that.
+    ///
+    /// # Errors
+    /// Those of [`Run::set_state`]; [`StepError::NonFinite`] if a derivative is not finite. The same error again after an error.
+    pub fn set_state(
+        &mut self,
+        map: impl Fn(&S::In<Dual<f64>>, State<N, Dual<f64>>) -> State<N, Dual<f64>>,
+    ) -> Result<(), StepError> {
+        self.latched(|tangent| {
+            let State { t, q, p } = tangent.run.state();
+            let before = changes_of_energy(tangent.run.system(), &tangent.run.state(), &tangent.variations)?;
+            let mapped = |variation: &Variation<N>, run: &Run<M, S, N>| {
+                let along = |value: f64, slope: f64| Dual { value, slope };
+                let (q, p) = (q.zip_map(&variation.q, along), p.zip_map(&variation.p, along));
+                map(&varied(run.system(), variation), State { t: along(t, variation.t), q, p })
+            };
+            let State { t, q, p } = mapped(&Variation::zero(), &tangent.run);
+            let varied: Vec<_> = tangent.variations.iter().map(|variation| mapped(variation, &tangent.run)).collect();
+            let value = |number: Dual<f64>| number.value;
+            tangent.run.set_state(State { t: t.value, q: q.map(value), p: p.map(value) })?;
+            for (variation, State { t, q, p }) in tangent.variations.iter_mut().zip(varied) {
+                let slope = |number: Dual<f64>| number.slope;
+                (variation.t, variation.q, variation.p) = (t.slope, q.map(slope), p.map(slope));
+            }
+            let after = changes_of_energy(tangent.run.system(), &tangent.run.state(), &tangent.variations)?;
+            tangent.gain_energy(&before, &after)
+        })
+    }
+
+    /// Adds the change of the derivatives of H to those of the energy that the run keeps.
+    fn gain_energy(&mut self, before: &[f64], after: &[f64]) -> Result<(), StepError> {
+        if M::KEEPS_ENERGY {
+            for (variation, (before, after)) in self.variations.iter_mut().zip(before.iter().zip(after)) {
+                variation.energy += after - before;
+            }
+        }
+        Variation::check_finite(&self.variations, self.run.t())
+    }
+
+    /// [`Tangent::until_event`].
+    fn end_at_event(&mut self, event: &Event<N>, end: f64) -> Result<Option<Crossing<N>>, StepError> {
+        if !event.has_derivative() {
+            let because =
+                "the event has no derivative; make it by `Event::smooth_rising` from a function of dual numbers";
+            return Err(StepError::NoDerivative { t: self.run.t(), because });
+        }
+        let mut after = self.run.clone();
+        let Some(crossing) = after.next_event(event, end)? else {
+            return self.end_at_time(end).map(|_| None);
+        };
+        let Crossing { state: State { t, q, .. }, v, length, .. } = crossing;
+        // The search takes the same steps up to the node before the event.
+        let missed = 4.0 * f64::EPSILON * t.abs();
+        while self.run.time_to(t).abs() > length.abs() + missed {
+            let before = *self.run.node();
+            self.run.step()?;
+            self.run.vary(&before, &mut self.variations)?;
+        }
+        let system = *self.run.system();
+        let matrix = system.point(t, &q, &v).mass;
+        let slope = |variation: &Variation<N>| {
+            let along = |value: f64, slope: f64| Dual { value, slope };
+            let (t, q) = (along(t, variation.t), q.zip_map(&variation.q, along));
+            // L_v(t, q, v) = p
+            let momentum = varied(&system, variation).point(t, &q, &v.map(Dual::fixed)).momentum;
+            let of_v = linear::solve(&matrix, &(variation.p - momentum.map(|entry| entry.slope)));
+            let of_v = of_v.ok_or(StepError::Singular { t: t.value, matrix: "mass matrix" })?;
+            event.slope(&Moment { t, q, v: v.zip_map(&of_v, along) }).ok_or(not_finite(t.value))
+        };
+        self.end_at(length, after, |varied, along| {
+            let change = -slope(varied)? / slope(along)?;
+            let because = "the function of the event has no finite derivative along the motion, or one of zero";
+            if change.is_finite() { Ok(change) } else { Err(StepError::NoDerivative { t, because }) }
+        })?;
+        Ok(Some(crossing))
+    }
+}
+
+/// A system, its parameters varied in one direction.
+fn varied<S: Convertible<N> + Lagrangian<N>, const N: usize>(system: &S, variation: &Variation<N>) -> S::In<Dual<f64>> {
+    let mut varied = system.convert::<Dual<f64>>();
+    for (name, slope) in S::PARAMETERS.iter().zip(&variation.parameters) {
+        if let Some(parameter) = varied.parameter_mut(name) {
+            parameter.slope = *slope;
+        }
+    }
+    varied
 }

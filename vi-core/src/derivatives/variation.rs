@@ -6,6 +6,7 @@ use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::node::Node;
 use crate::real::{Dual, Slopes};
+use crate::state::State;
 use crate::stepping::{Convertible, Discretized};
 use nalgebra::SVector;
 
@@ -37,6 +38,8 @@ pub struct Variation<const N: usize> {
     pub p: SVector<f64, N>,
     /// Of the energy that an energy-preserving run keeps; of no meaning to others. [`crate::Run::set_parameters`] changes it by that of `H_new − H_old`.
     pub energy: f64,
+    /// Of the length of a step: h, or Δτ in transformed time. A method that finds its lengths ignores it. Constant along a run.
+    pub h: f64,
     /// Of the parameters, in the order of [`Lagrangian::PARAMETERS`]; those beyond the end do not change. The same all along a run.
     pub parameters: Vec<f64>,
 }
@@ -45,7 +48,7 @@ impl<const N: usize> Variation<N> {
     /// No change.
     #[must_use]
     pub fn zero() -> Self {
-        Self { t: 0.0, q: SVector::zeros(), p: SVector::zeros(), energy: 0.0, parameters: Vec::new() }
+        Self { t: 0.0, q: SVector::zeros(), p: SVector::zeros(), energy: 0.0, h: 0.0, parameters: Vec::new() }
     }
 
     /// The direction of a coordinate, by its index from 0.
@@ -62,6 +65,19 @@ impl<const N: usize> Variation<N> {
     /// [`StepError::InvalidInput`] for an index that no momentum has.
     pub fn of_momentum(index: usize) -> Result<Self, StepError> {
         Self::of_entry(index, "the index of a momentum", |variation| &mut variation.p)
+    }
+
+    /// The direction of the length of a step.
+    pub(crate) fn of_length() -> Self {
+        Self { h: 1.0, ..Self::zero() }
+    }
+
+    /// Adds a multiple of another one, at the same node.
+    pub(crate) fn add(&mut self, other: &Self, factor: f64) {
+        self.t += other.t * factor;
+        self.q += other.q * factor;
+        self.p += other.p * factor;
+        self.energy += other.energy * factor;
     }
 
     /// The direction of one entry of a vector.
@@ -93,7 +109,7 @@ impl<const N: usize> Variation<N> {
     /// The direction of a parameter of the system S, by its name.
     ///
     /// Time, coordinates, momenta and the energy that is kept stay. Where the start is given by other numbers, velocities or the step of `from_midpoint`, what they
-    /// change by with the parameter belongs into `p` and `energy` of the variation.
+    /// change by with the parameter belongs into `p` and `energy` of the variation. [`Tangent::from_start`](super::Tangent::from_start) sets `energy`.
     ///
     /// # Errors
     /// [`StepError::UnknownParameter`] for a name that no parameter of S has.
@@ -121,7 +137,7 @@ impl<const N: usize> Variation<N> {
         Dual { value, slope: Slopes(slopes) }
     }
 
-    /// The system, its parameters varied in each of the directions; none where neither they nor the time vary in any.
+    /// The system, its parameters varied in each of the directions; none where neither they, the time, nor the length of a step vary in any.
     ///
     /// # Errors
     /// [`StepError::NoDerivative`] of the step from the time `t` where a direction has more parameters than the system.
@@ -145,12 +161,13 @@ impl<const N: usize> Variation<N> {
         Ok(Self::are_explicit::<S>(variations, t)?.then(|| Self::steps(variations, system)))
     }
 
-    /// Whether the time of a system that depends on it, or a parameter, varies in any direction.
+    /// Whether the time of a system that depends on it, the length of a step, or a parameter varies in any direction.
     fn are_explicit<S: Lagrangian<N>>(variations: &[Self], t: f64) -> Result<bool, StepError> {
         if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
             return Err(more_parameters(t));
         }
-        let is_explicit = |of: &Self| !S::AUTONOMOUS && of.t != 0.0 || of.parameters.iter().any(|slope| *slope != 0.0);
+        let is_in_time = |of: &Self| !S::AUTONOMOUS && of.t != 0.0 || of.h != 0.0;
+        let is_explicit = |of: &Self| is_in_time(of) || of.parameters.iter().any(|slope| *slope != 0.0);
         Ok(variations.iter().any(is_explicit))
     }
 
@@ -202,4 +219,25 @@ impl<const N: usize> Variation<N> {
         }
         varied
     }
+}
+
+/// What H at a state changes by in each direction: `v·δp − δL`, v fixed.
+pub(crate) fn changes_of_energy<S, const N: usize>(
+    system: &S,
+    state: &State<N>,
+    directions: &[Variation<N>],
+) -> Result<Vec<f64>, StepError>
+where
+    S: Lagrangian<N> + Convertible<N>,
+{
+    let v = state.velocity(system)?;
+    let node = Node::new(*state, 0.0);
+    let mut changes = Vec::with_capacity(directions.len());
+    for directions in directions.chunks(TOGETHER) {
+        let node = Variation::node::<TOGETHER>(directions, &node);
+        let varied = Variation::system(directions, system).lagrangian(node.t, &node.q, &v.map(Dual::fixed));
+        let of_lagrangian = varied.slope.0.into_iter();
+        changes.extend(directions.iter().zip(of_lagrangian).map(|(direction, slope)| v.dot(&direction.p) - slope));
+    }
+    Ok(changes)
 }

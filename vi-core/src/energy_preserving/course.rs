@@ -1,7 +1,7 @@
 //! How a step is found from the steps before it.
 //!
 //! In: a node, and what is remembered of the steps before ([`Lengths`]). Out: the node and the memory after the next step: predicted; else searched; else of a given
-//! length, if the user allows it ([`Fallback`]). Nothing changes on the way.
+//! length, if the user allows it (`Fallback`). Nothing changes on the way.
 
 use super::bracket;
 use super::equations::{self, Elimination, EnergyStep, Measured, NoStep};
@@ -10,7 +10,7 @@ use super::interval::Last;
 use super::predicted::{Predicted, Prediction};
 use crate::error::StepError;
 use crate::method::Memory;
-use crate::method::bounds::{Fallback, GROWTH, Phase, RATIO, StepBounds, Switches, check_forward};
+use crate::method::bounds::{Alternating, Control, Controlled, Phase, RATIO, check_forward};
 use crate::momentum::continuation::{self, Reached};
 use crate::momentum::newton;
 use crate::node::Node;
@@ -33,13 +33,18 @@ use nalgebra::SVector;
 pub struct Lengths<const N: usize, T = f64> {
     pub(crate) last: Last<N, T>,
     pub(crate) prediction: Prediction<N, T>,
-    pub(crate) bounds: Option<StepBounds<T>>,
-    pub(crate) fallback: Fallback,
-    /// The fixed steps under way.
-    pub(crate) phase: Option<Phase<T>>,
-    pub(crate) switches: Switches<T>,
-    /// How the last step was found. Written on the cold path alone: after a step of another kind no guess is of the highest order.
-    pub(crate) kind: StepKind<T>,
+    /// Written on the cold path alone: after a step of another kind no guess is of the highest order.
+    pub(crate) control: Control<T>,
+}
+
+impl<const N: usize, T: Scalar> Controlled<T> for Lengths<N, T> {
+    fn control(&self) -> &Control<T> {
+        &self.control
+    }
+
+    fn control_mut(&mut self) -> &mut Control<T> {
+        &mut self.control
+    }
 }
 
 impl<const N: usize, T: Scalar> Memory for Lengths<N, T> {
@@ -64,15 +69,13 @@ pub struct After<const N: usize, T = f64> {
 impl<const N: usize, T: Scalar> Lengths<N, T> {
     /// After the interval `last`, without fallback and bounds.
     pub(crate) fn new(last: Last<N, T>) -> Self {
-        let prediction = Prediction::new(last.v, last.h);
-        let (bounds, fallback, switches) = (None, Fallback::Stop, Switches::default());
-        Self { last, prediction, bounds, fallback, phase: None, switches, kind: StepKind::EnergyPreserving }
+        Self { last, prediction: Prediction::new(last.v, last.h), control: Control::new() }
     }
 
     /// Whether the next step is the common one, from guesses of the highest order.
     #[inline(always)]
     pub(crate) fn is_common(&self) -> bool {
-        self.phase.is_none() && self.prediction.is_highest()
+        self.control.phase.is_none() && self.prediction.is_highest()
     }
 
     /// Whether a step can follow: a file may hold anything.
@@ -80,17 +83,19 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
     /// # Errors
     /// [`StepError::NonFinite`], [`StepError::InvalidInput`].
     pub(crate) fn check(&self, t: T) -> Result<(), StepError> {
-        let Self { last, prediction, bounds, phase, switches, .. } = self;
-        let numbers = [last.density, last.density_before, last.previous, switches.energy_change, switches.energy_cost];
+        let Self { last, prediction, control } = self;
+        let numbers = [last.density, last.density_before, last.previous];
         let mut numbers = numbers.iter().chain(last.v.iter()).chain(last.change.iter());
         if !numbers.all(|number| number.is_finite()) || !prediction.is_finite() {
             return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last interval", expression: None });
         }
         check_forward("the last step h", last.h)?;
-        if let Some(bounds) = bounds {
-            bounds.check()?;
-        }
-        phase.as_ref().map_or(Ok(()), Phase::check)
+        control.check(t.to_f64())
+    }
+
+    /// Discrete energy of the last step, which ended at the node.
+    pub(crate) fn discrete_energy(&self, node: &Node<N, T>) -> T {
+        self.control.phase.as_ref().map_or(node.energy, |phase| node.energy + (node.energy_low + phase.gap))
     }
 
     /// The next step from a trial, if it has not to be searched.
@@ -103,66 +108,117 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
     ) -> Option<Predicted<N, T>> {
         let predicted = self.prediction.step(system, node, &self.last, trial)?;
         let h = predicted.step.h;
-        let allowed = self.bounds.as_ref().is_none_or(|bounds| bounds.admit(h)) && !self.runs_away(h);
+        let Control { bounds, .. } = &self.control;
+        let allowed = bounds.as_ref().is_none_or(|bounds| bounds.admit(h)) && !self.control.runs_away(self.last.h, h);
         allowed.then_some(predicted)
     }
 
-    /// The next step, if it is not the common one.
-    ///
-    /// # Errors
-    /// Why there is no step.
-    pub(crate) fn next<S: EnergyStepping<N, T>>(
-        &self,
-        system: &S,
-        node: &Node<N, T>,
-    ) -> Result<After<N, T>, StepError> {
-        if let Some(phase) = self.phase {
-            return self.next_in_phase(system, node, phase);
-        }
-        if !self.is_common()
-            && let Some(predicted) = self.predicted(system, node, self.prediction.guess())
-        {
-            let mut after = After { node: *node, lengths: *self };
+    /// Lets the next step follow the velocity at hand as if the last one had the length and the density of `interval`.
+    pub(crate) fn resume_after(&mut self, interval: &Last<N, T>) {
+        let v = self.last.v;
+        self.last = Last { v, previous: interval.h, change: SVector::zeros(), is_step: false, ..*interval };
+        self.prediction = Prediction::new(v, interval.h);
+    }
+}
+
+/// A search for the step that follows, if it is not the common one.
+pub(crate) struct Search<'a, S, const N: usize, T> {
+    pub(crate) system: &'a S,
+    pub(crate) node: &'a Node<N, T>,
+    pub(crate) lengths: &'a Lengths<N, T>,
+}
+
+impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Search<'_, S, N, T> {
+    const POWER: f64 = 3.0;
+    type Found = After<N, T>;
+
+    fn control(&self) -> &Control<T> {
+        &self.lengths.control
+    }
+
+    fn t(&self) -> T {
+        self.node.t
+    }
+
+    fn last(&self) -> [T; 2] {
+        let Last { h, density, .. } = self.lengths.last;
+        [h, density]
+    }
+
+    fn preserving(&self, gap: T) -> Result<(After<N, T>, T), StepError> {
+        let Self { system, lengths, .. } = *self;
+        let mut node = *self.node;
+        node.add_energy(gap);
+        let has_guess = lengths.control.phase.is_none() && !lengths.is_common();
+        if has_guess && let Some(predicted) = lengths.predicted(system, &node, lengths.prediction.guess()) {
+            let mut after = After { node, lengths: *lengths };
             after.node = node.advanced::<S>(predicted.step.h, &predicted.step.v, &predicted.increment);
             after.node.check_finite(node.t)?;
-            after.lengths.last = self.last.followed(&predicted.step);
-            after.lengths.kind = StepKind::EnergyPreserving;
+            after.lengths.last = lengths.last.followed(&predicted.step);
             after.lengths.prediction.push(&predicted);
-            return Ok(after);
+            return Ok((after, predicted.step.h));
         }
-        match self.next_step(system, node) {
-            Ok(step) if self.runs_away(step.h) => {
-                let (t, previous, found) = (node.t.to_f64(), self.last.h.to_f64(), step.h.to_f64());
-                self.fall_back(system, node, StepError::StepRatio { t, previous, found })
-            }
-            Ok(step) => self.after(system, node, step, StepKind::EnergyPreserving),
-            Err(failure) => self.fall_back(system, node, failure),
+        let step = self.solved(&node)?;
+        let mut after = self.after(&node, &step)?;
+        after.lengths.prediction.restart(&step);
+        Ok((after, step.h))
+    }
+
+    fn fixed(&self, h: T) -> Result<(After<N, T>, [T; 2]), StepError> {
+        let Self { system, node, lengths: Lengths { last, .. } } = *self;
+        let guess = last.v + last.slope() * ((last.h + h) * T::real(0.5));
+        let Reached { v, iterations } = continuation::nearest(system, node, h, guess, last.v)?;
+        let equations = system.extended_system(node, h, &v);
+        let t = node.t.to_f64();
+        let singular = StepError::Singular { t, matrix: "derivative of the momentum equation" };
+        let infinite = StepError::NonFinite { t, quantity: "step density", expression: None };
+        let density = Elimination::finite(&equations).ok_or(singular)?.density().ok_or(infinite)?;
+        // Of the equation that was solved: next to the smallest numbers the rows of both differ in what underflows.
+        let residual = newton::residual(system, node, h, &v);
+        // The energy row e = c + v·r is what the kept energy lacks of the discrete energy of this interval.
+        let gap = equations.energy_residual + v.dot(&equations.momentum.residual);
+        // Forces may be finite where L is not: there is no energy to continue with.
+        if !gap.is_finite() {
+            return Err(StepError::NonFinite { t, quantity: "energy", expression: None });
         }
+        let step = EnergyStep { v, h, density, iterations, measured: Measured::of(residual) };
+        let mut after = self.after(node, &step)?;
+        // A given length predicts none.
+        after.lengths.prediction = Prediction::new(v, h);
+        let density_next = after.lengths.last.density_next();
+        Ok((after, [gap, density_next]))
+    }
+
+    fn control_of(found: &mut After<N, T>) -> &mut Control<T> {
+        &mut found.lengths.control
+    }
+}
+
+impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Search<'_, S, N, T> {
+    /// One fixed step of the length h, after which the run continues as it was: with its energy, its length, its fallback.
+    ///
+    /// # Errors
+    /// Those of a fixed step.
+    pub(crate) fn step_of(&self, h: T) -> Result<After<N, T>, StepError> {
+        let (mut after, [gap, density_next]) = self.fixed(h)?;
+        let control = &mut after.lengths.control;
+        control.kind = StepKind::FixedStep;
+        control.phase = control.phase.map(|phase| Phase { density_next, gap, ..phase });
+        after.lengths.resume_after(&self.lengths.last);
+        Ok(after)
     }
 
     /// The run after a step from `start`.
-    fn after<S: EnergyStepping<N, T>>(
-        &self,
-        system: &S,
-        start: &Node<N, T>,
-        step: EnergyStep<N, T>,
-        kind: StepKind<T>,
-    ) -> Result<After<N, T>, StepError> {
-        let increment: Increment<N, T> = system.extended_residual(start, step.h, &step.v).increment;
+    fn after(&self, start: &Node<N, T>, step: &EnergyStep<N, T>) -> Result<After<N, T>, StepError> {
+        let increment: Increment<N, T> = self.system.extended_residual(start, step.h, &step.v).increment;
         let node = start.advanced::<S>(step.h, &step.v, &increment);
         node.check_finite(start.t)?;
-        let mut lengths = Self { last: self.last.followed(&step), kind, ..*self };
-        match kind {
-            // A given length predicts none.
-            StepKind::FixedStep => lengths.prediction = Prediction::new(step.v, step.h),
-            _ => lengths.prediction.restart(&step),
-        }
-        Ok(After { node, lengths })
+        Ok(After { node, lengths: Lengths { last: self.lengths.last.followed(step), ..*self.lengths } })
     }
 
     /// The forward step from `node`, within the bounds.
-    fn next_step<S: EnergyStepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Result<EnergyStep<N, T>, StepError> {
-        let last = &self.last;
+    fn solved(&self, node: &Node<N, T>) -> Result<EnergyStep<N, T>, StepError> {
+        let Self { system, lengths: Lengths { last, control, .. }, .. } = *self;
         let ratio = T::real(RATIO);
         let range = (last.h / ratio, last.h * ratio);
         // At the smallest root D has the sign that it had: past a change of sign lies another root.
@@ -175,117 +231,6 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
             }
             _ => bracket::smallest_root(system, node, last)?,
         };
-        match &self.bounds {
-            Some(bounds) if !bounds.admit(step.h) => Err(bounds.refusal(node.t, step.h)),
-            _ => Ok(step),
-        }
-    }
-
-    /// Whether a step is so much longer than the last that D is about to vanish, and the user wants no such step.
-    #[inline]
-    fn runs_away(&self, h: T) -> bool {
-        self.fallback == Fallback::FixedSteps && h > self.last.h * T::real(GROWTH)
-    }
-
-    /// The first fixed step, if the user allows it; else the failure.
-    #[cold]
-    fn fall_back<S: EnergyStepping<N, T>>(
-        &self,
-        system: &S,
-        node: &Node<N, T>,
-        failure: StepError,
-    ) -> Result<After<N, T>, StepError> {
-        let Last { h, density, .. } = self.last;
-        let phase = Phase::instead_of(failure, self.fallback, self.bounds.as_ref(), h, density)?;
-        let mut after = self.fixed_step(system, node, phase)?;
-        after.lengths.switches.count += 1;
-        Ok(after)
-    }
-
-    /// One fixed step of the length h, after which the run continues as it was: with its energy, its length, its fallback.
-    ///
-    /// # Errors
-    /// Those of a fixed step.
-    pub(crate) fn step_of<S: EnergyStepping<N, T>>(
-        &self,
-        system: &S,
-        node: &Node<N, T>,
-        h: T,
-    ) -> Result<After<N, T>, StepError> {
-        let Last { h: last, density, .. } = self.last;
-        let phase =
-            Phase { h, shorter: false, law_h: last, law_density: density, density_next: density, gap: T::zero() };
-        let After { node, mut lengths } = self.fixed_step(system, node, phase)?;
-        let taken = lengths.phase.unwrap_or(phase);
-        lengths.phase = self.phase.map(|fixed| Phase { gap: taken.gap, density_next: taken.density_next, ..fixed });
-        lengths.switches = self.switches;
-        lengths.resume_after(&self.last);
-        Ok(After { node, lengths })
-    }
-
-    /// Lets the next step follow the velocity at hand as if the last one had the length and the density of `interval`.
-    pub(crate) fn resume_after(&mut self, interval: &Last<N, T>) {
-        let v = self.last.v;
-        self.last = Last { v, previous: interval.h, change: SVector::zeros(), is_step: false, ..*interval };
-        self.prediction = Prediction::new(v, interval.h);
-    }
-
-    /// A step after a fixed one: energy-preserving again if one exists, else fixed.
-    #[cold]
-    fn next_in_phase<S: EnergyStepping<N, T>>(
-        &self,
-        system: &S,
-        node: &Node<N, T>,
-        phase: Phase<T>,
-    ) -> Result<After<N, T>, StepError> {
-        if !phase.is_over(3.0) {
-            return self.fixed_step(system, node, phase);
-        }
-        let mut seeded = *node;
-        seeded.add_energy(phase.gap);
-        let reseeded = StepKind::Reseeded { energy_change: phase.gap };
-        for (start, kind) in [(node, StepKind::EnergyPreserving), (&seeded, reseeded)] {
-            if let Ok(found) = self.next_step(system, start) {
-                let mut after = self.after(system, start, found, kind)?;
-                after.lengths.switches.returns += 1;
-                after.lengths.phase = None;
-                if kind != StepKind::EnergyPreserving {
-                    after.lengths.switches.reseed(phase.gap);
-                }
-                return Ok(after);
-            }
-        }
-        self.fixed_step(system, node, phase)
-    }
-
-    /// One fixed step of the phase.
-    fn fixed_step<S: EnergyStepping<N, T>>(
-        &self,
-        system: &S,
-        start: &Node<N, T>,
-        phase: Phase<T>,
-    ) -> Result<After<N, T>, StepError> {
-        let (last, h) = (&self.last, phase.h);
-        let guess = last.v + last.slope() * ((last.h + h) * T::real(0.5));
-        let Reached { v, iterations } = continuation::nearest(system, start, h, guess, last.v)?;
-        let equations = system.extended_system(start, h, &v);
-        let t = start.t.to_f64();
-        let singular = StepError::Singular { t, matrix: "derivative of the momentum equation" };
-        let infinite = StepError::NonFinite { t, quantity: "step density", expression: None };
-        let density = Elimination::finite(&equations).ok_or(singular)?.density().ok_or(infinite)?;
-        // Of the equation that was solved: next to the smallest numbers the rows of both differ in what underflows.
-        let residual = newton::residual(system, start, h, &v);
-        // The energy row e = c + v·r is what the kept energy lacks of the discrete energy of this interval.
-        let gap = equations.energy_residual + v.dot(&equations.momentum.residual);
-        // Forces may be finite where L is not: there is no energy to continue with.
-        if !gap.is_finite() {
-            return Err(StepError::NonFinite { t, quantity: "energy", expression: None });
-        }
-        let found = EnergyStep { v, h, density, iterations, measured: Measured::of(residual) };
-        let mut after = self.after(system, start, found, StepKind::FixedStep)?;
-        let density_next = after.lengths.last.density_next();
-        after.lengths.phase = Some(Phase { density_next, gap, ..phase });
-        after.lengths.switches.fixed_steps += 1;
-        Ok(after)
+        control.check_bounds(node.t, step.h).map(|()| step)
     }
 }

@@ -2,8 +2,7 @@
 
 use super::density::power;
 use crate::error::StepError;
-use crate::method::bounds::{Fallback, Phase, StepBounds, Switches, check_forward};
-use crate::state::StepKind;
+use crate::method::bounds::{Control, check_forward};
 
 /// What a run remembers beside its node and its stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,14 +29,9 @@ pub(crate) struct Course {
     pub(crate) shift: f64,
     /// What the last step leaves of its energy, in roundings.
     pub(crate) residual: f64,
-    pub(crate) kind: StepKind,
     /// Fixed-point iterations of the last step, over all lengths that were tried.
     pub(crate) iterations: u32,
-    pub(crate) bounds: Option<StepBounds<f64>>,
-    pub(crate) fallback: Fallback,
-    /// The fixed steps under way.
-    pub(crate) phase: Option<Phase<f64>>,
-    pub(crate) switches: Switches,
+    pub(crate) control: Control,
 }
 
 impl Course {
@@ -55,12 +49,8 @@ impl Course {
             largest: 0.0,
             shift: 0.0,
             residual: 0.0,
-            kind: StepKind::EnergyPreserving,
             iterations: 0,
-            bounds: None,
-            fallback: Fallback::Stop,
-            phase: None,
-            switches: Switches::default(),
+            control: Control::new(),
         }
     }
 
@@ -121,19 +111,15 @@ impl Course {
 
     /// Whether a step can follow: what a file says may be anything.
     pub(crate) fn check(&self, t: f64) -> Result<(), StepError> {
-        let Self { slope, excess, size, largest_size, densities, largest, shift, residual, switches, .. } = *self;
+        let Self { slope, excess, size, largest_size, densities, largest, shift, residual, .. } = *self;
         let [last, before] = densities.unwrap_or_default();
         let numbers = [slope, excess, size, largest_size, last, before, largest, shift, residual];
         let products = self.products;
-        let costs = [switches.energy_change, switches.energy_cost];
-        if !numbers.iter().chain(&products).chain(&costs).all(|number| number.is_finite()) {
+        if !numbers.iter().chain(&products).all(|number| number.is_finite()) {
             return Err(StepError::NonFinite { t, quantity: "last interval", expression: None });
         }
         check_forward("the last step h", self.h)?;
         check_forward("the slope of the energy over the length", slope)?;
-        if let Some(bounds) = &self.bounds {
-            bounds.check()?;
-        }
-        self.phase.as_ref().map_or(Ok(()), Phase::check)
+        self.control.check(t)
     }
 }

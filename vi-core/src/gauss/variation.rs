@@ -7,27 +7,32 @@
 //! C_i δQ_i + M_i δV_i + m_i = δp0 + h Σ_j a_ij δF_j        δQ_i = δq0 + h Σ_j a_ij δV_j        δF_j = K_j δQ_j + B_j δV_j + f_j
 //! ```
 //!
-//! S N equations with the same matrix for all directions. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
+//! S N equations with the same matrix for all directions. The length h of the step may vary too: then T_i, Q_i and the momenta change at fixed V_j and F_j. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
 
+use super::density::power;
 use super::general::equations;
 use super::points::Rare;
 use super::solve::WIDE;
-use super::stages::{AtStages, LOOPED, Stages, gathered, maximum, product, scaled, stage, sum, times, weights};
+use super::stages::{AtStages, LOOPED, Stages, gathered, maximum, product, scaled, set, stage, sum, times, weights};
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::{Collocation, PointDerivatives};
-use crate::derivatives::{Differentiable, TOGETHER, Variation, Varied, not_finite, not_last, singular};
+use crate::derivatives::{
+    Differentiable, Sought, TOGETHER, Variation, Varied, check_fallback, not_finite, not_last, singular,
+};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::linear::{Matrix, row_by_row};
-use crate::method::Gauss;
+use crate::method::energy_gauss::Lengths;
 use crate::method::gauss::LastStages;
+use crate::method::{EnergyPreservingGauss, Gauss};
 use crate::node::Node;
-use crate::real::{Dual, Lane, Lanes};
+use crate::real::{Dual, Lane, Lanes, Real};
 use crate::run::Run;
+use crate::state::StepKind;
 use crate::stepping::Convertible;
 use nalgebra::SVector;
-use vi_dispatch::Loop;
+use vi_dispatch::{Instructions, Loop};
 
 impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for Gauss<STAGES>
 where
@@ -35,38 +40,181 @@ where
 {
     /// Allocates: the equations of all stages are one matrix.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let Run { system, prepared: instructions, node, memory, .. } = run;
+        let Run { system, node, memory, .. } = run;
         let LastStages { h, stages, before: start, .. } = memory;
         if !memory.has_step(node) || start != before {
             return Err(not_last(before.t));
         }
-        let rare = Rare::of(system);
-        let equations = equations(&rare, before, *h, stages.data.0);
-        let at = Solution {
-            times: times::<N, STAGES, false>(before, *h),
-            positions: equations.start(),
-            velocities: equations.velocity(),
-        };
-        // Not arrays: those of long systems are too large for the stack of a thread.
-        let mut rows = vec![[[0.0; STAGES]; N]; 4 * N + N * STAGES + TOGETHER];
-        let (derivatives, equations) = rows.split_at_mut(4 * N);
-        let derivatives = derivatives.as_chunks_mut::<N>().0;
-        let are_found = S::SIDE_BY_SIDE && instructions.run(Differentiate { system, at: &at, derivatives });
-        if !are_found || !are_finite(derivatives) {
-            // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
-            differentiate_plainly(&rare, &at, derivatives);
+        vary(system, (before, *h, &stages.data.0), variations, None)
+    }
+}
+
+impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for EnergyPreservingGauss<STAGES>
+where
+    S: Collocation<N> + Convertible<N>,
+{
+    const KEEPS_ENERGY: bool = true;
+
+    /// As for [`EnergyPreserving`](crate::EnergyPreserving). The shift does not vary.
+    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let Lengths { stages: last, course } = &run.memory;
+        check_fallback(course.control.fallback, before.t)?;
+        // The energy differs if `set_parameters` came between `before` and the step.
+        let is_start =
+            Node { energy: 0.0, energy_low: 0.0, ..last.before } == Node { energy: 0.0, energy_low: 0.0, ..*before };
+        if !last.has_step(&run.node) || !is_start || course.control.kind != StepKind::EnergyPreserving {
+            return Err(not_last(before.t));
         }
-        for variations in variations.chunks_mut(TOGETHER) {
-            let explicit = explicit(system, &at, variations, before.t)?;
-            let are_found = instructions.run(Vary { derivatives, equations, h: *h, explicit, variations });
-            if !are_found {
-                // What is singular, and what was not finite before.
-                Variation::check_finite(variations, before.t)?;
-                return Err(if are_finite(derivatives) { singular(before.t) } else { not_finite(before.t) });
+        vary_length(&run.system, (before, last.h, &last.stages.data.0), course.shift, Sought::Length, variations)
+    }
+
+    fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let stages = run.stages_of(length)?;
+        vary_length(&run.system, (&run.node, length, &stages), run.shift(), Sought::Neither, variations)
+    }
+
+    fn vary_start(run: &Run<Self, S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let h = run.h();
+        let stages = run.stages_of(h)?;
+        vary_length(&run.system, (&run.node, h, &stages), run.shift(), Sought::Energy, variations)
+    }
+}
+
+/// Turns tangent vectors at a node into those after an energy-preserving step, or one of a given length, from its stages.
+///
+/// The energy equation and the unknown h border the equations of the stages. These are solved at fixed h and for the direction of h; one scalar equation gives δh.
+fn vary_length<S, const N: usize, const STAGES: usize>(
+    system: &S,
+    step: (&Node<N>, f64, &Stages<N, STAGES>),
+    shift: f64,
+    sought: Sought,
+    variations: &mut [Variation<N>],
+) -> Result<(), StepError>
+where
+    S: Collocation<N> + Convertible<N>,
+{
+    let (before, h, _) = step;
+    let mut all: Vec<_> = variations.iter().map(|variation| Variation { h: 0.0, ..variation.clone() }).collect();
+    all.push(Variation::of_length());
+    let mut energies = Vec::with_capacity(all.len());
+    vary(system, step, &mut all, Some(&mut energies))?;
+    let (Some(along_h), Some(energy_along_h)) = (all.pop(), energies.pop()) else { return Ok(()) };
+    #[allow(clippy::cast_precision_loss)] // at most three stages
+    let power_slope = 2.0 * STAGES as f64 * power::<STAGES>(h) / h;
+    let schur = energy_along_h.start - power_slope * shift;
+    for ((own, varied), energy) in variations.iter_mut().zip(&all).zip(&energies) {
+        let of_h = match sought {
+            Sought::Length => (own.energy - energy.start) / schur,
+            Sought::Neither => own.h,
+            Sought::Energy => {
+                own.energy = energy.start;
+                continue;
+            }
+        };
+        if !of_h.is_finite() {
+            return Err(singular(before.t));
+        }
+        (own.t, own.q, own.p) = (varied.t, varied.q, varied.p);
+        own.add(&along_h, of_h);
+        if !S::AUTONOMOUS || S::FORCED {
+            own.energy += energy.work + energy_along_h.work * of_h;
+        }
+    }
+    Variation::check_finite(variations, before.t)
+}
+
+/// Derivatives of the energies of a step.
+#[derive(Clone, Copy, Debug)]
+struct VariedEnergies {
+    /// E0.
+    start: f64,
+    /// `E1 − E0`.
+    work: f64,
+}
+
+/// Derivatives of the energies of the step of length h along `variations` of its node, with the derivatives of the velocities of its stages.
+fn varied_energies<S, const N: usize, const STAGES: usize>(
+    system: &S,
+    at: &Solution<N, STAGES>,
+    h: f64,
+    variations: &[Variation<N>],
+    velocities: &[Stages<N, STAGES>],
+) -> Vec<VariedEnergies>
+where
+    S: Collocation<N> + Convertible<N>,
+{
+    let Tableau { b, c, .. } = const { &Tableau::<STAGES>::VALUES };
+    let varied = Variation::system::<S, TOGETHER>(variations, system);
+    let weights = weights::<STAGES>(h);
+    let positions: Vec<_> = velocities.iter().map(|of| integrals::<N, STAGES, false>(of, &weights)).collect();
+    let moved = at.moved();
+    let mut start = Varied::fixed(0.0);
+    let mut work = start;
+    let of_h: Varied = Variation::number(variations, h, |variation| variation.h);
+    for i in 0..STAGES {
+        let t = Variation::number(variations, at.times[i], |variation| variation.t + c[i] * variation.h);
+        let mut q = stage::<N, STAGES, f64>(&at.positions, i).map(Varied::fixed);
+        let mut v = stage::<N, STAGES, f64>(&at.velocities, i).map(Varied::fixed);
+        for (direction, variation) in variations.iter().enumerate() {
+            for k in 0..N {
+                let along_h = moved[k][i] * variation.h;
+                q[k].slope.0[direction] = variation.q[k] + along_h + positions[direction][k][i];
+                v[k].slope.0[direction] = velocities[direction][k][i];
             }
         }
-        Variation::check_finite(variations, before.t)
+        let energy = varied.energy(t, &q, &v);
+        start += Dual::real(b[i]) * Dual { value: 0.0, ..energy };
+        if !S::AUTONOMOUS || S::FORCED {
+            let gain = Varied::real(b[i]) * of_h * varied.power(t, &q, &v);
+            start -= gain * Dual::real(1.0 - c[i]);
+            work += gain;
+        }
     }
+    let of = |direction| VariedEnergies { start: start.slope.0[direction], work: work.slope.0[direction] };
+    (0..variations.len()).map(of).collect()
+}
+
+/// Turns tangent vectors at a node into those after the Gauss step of length h with these stages, and adds the derivatives of its energies if they are wanted.
+fn vary<S, const N: usize, const STAGES: usize>(
+    system: &S,
+    (before, h, stages): (&Node<N>, f64, &Stages<N, STAGES>),
+    variations: &mut [Variation<N>],
+    mut energies: Option<&mut Vec<VariedEnergies>>,
+) -> Result<(), StepError>
+where
+    S: Collocation<N> + Convertible<N>,
+{
+    let instructions = Instructions::detected();
+    let rare = Rare::of(system);
+    let equations = equations(&rare, before, h, *stages);
+    let at = Solution {
+        times: times::<N, STAGES, false>(before, h),
+        positions: equations.start(),
+        velocities: equations.velocity(),
+    };
+    // Not arrays: those of long systems are too large for the stack of a thread.
+    let mut rows = vec![[[0.0; STAGES]; N]; 4 * N + N * STAGES + TOGETHER];
+    let (derivatives, equations) = rows.split_at_mut(4 * N);
+    let derivatives = derivatives.as_chunks_mut::<N>().0;
+    let are_found = S::SIDE_BY_SIDE && instructions.run(Differentiate { system, at: &at, derivatives });
+    if !are_found || !are_finite(derivatives) {
+        // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
+        differentiate_plainly(&rare, &at, derivatives);
+    }
+    for variations in variations.chunks_mut(TOGETHER) {
+        let explicit = explicit(system, &at, variations, before.t)?;
+        let from = if energies.is_some() { variations.to_vec() } else { Vec::new() };
+        let are_found = instructions.run(Vary { derivatives, equations, h, explicit, variations });
+        if !are_found {
+            // What is singular, and what was not finite before.
+            Variation::check_finite(variations, before.t)?;
+            return Err(if are_finite(derivatives) { singular(before.t) } else { not_finite(before.t) });
+        }
+        if let Some(energies) = &mut energies {
+            energies.extend(varied_energies(system, &at, h, &from, &equations[N * STAGES..]));
+        }
+    }
+    Variation::check_finite(variations, before.t)
 }
 
 /// The stages of a solved step.
@@ -74,6 +222,13 @@ struct Solution<const N: usize, const S: usize> {
     times: [f64; S],
     positions: Stages<N, S>,
     velocities: Stages<N, S>,
+}
+
+impl<const N: usize, const S: usize> Solution<N, S> {
+    /// Derivative of the positions with respect to the length of the step at fixed velocities: `Σ_j a_ij V_j`.
+    fn moved(&self) -> Stages<N, S> {
+        integrals::<N, S, false>(&self.velocities, &weights(1.0))
+    }
 }
 
 /// How L_v and F change at the stages: C, M, K and B. Entry (k, l) is the derivative of component k by coordinate or velocity l, a row of stages.
@@ -162,8 +317,15 @@ fn put<D: Matrix<N, T>, T: AtStages<S>, const N: usize, const S: usize>(
     }
 }
 
-/// What `L_v` and `L_q + f` change by with the time and the parameters, in each direction.
-type Explicit<const N: usize, const S: usize> = [[Stages<N, S>; 2]; TOGETHER];
+/// Derivatives of the equations with respect to the time, the length of the step and the parameters.
+struct Explicit<const N: usize, const S: usize> {
+    /// Those of `L_v` and `L_q + f` at fixed positions and velocities, along each direction.
+    slopes: [[Stages<N, S>; 2]; TOGETHER],
+    /// Those of positions and momenta at the stages with respect to the length, at fixed velocities and forces.
+    moved: [Stages<N, S>; 2],
+    /// The same at the end.
+    moved_end: [SVector<f64, N>; 2],
+}
 
 /// Those at the stages; none where neither varies in any direction.
 ///
@@ -176,19 +338,26 @@ fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize, const STAGES: usi
     t: f64,
 ) -> Result<Option<Explicit<N, STAGES>>, StepError> {
     let Some(varied) = Variation::varying_system(variations, system, t)? else { return Ok(None) };
-    let mut explicit = [[[[0.0; STAGES]; N]; 2]; TOGETHER];
+    let c = const { &Tableau::<STAGES>::VALUES.c };
+    let zeros = [[0.0; STAGES]; N];
+    let mut slopes = [[zeros; 2]; TOGETHER];
+    let mut force = zeros;
     for i in 0..STAGES {
-        let t: Varied = Variation::number(variations, at.times[i], |variation| variation.t);
+        let t: Varied = Variation::number(variations, at.times[i], |variation| variation.t + c[i] * variation.h);
         let [q, v] = [&at.positions, &at.velocities].map(|of| stage::<N, STAGES, f64>(of, i).map(Dual::fixed));
         let point = varied.point(t, &q, &v);
-        for (direction, changes) in explicit.iter_mut().enumerate() {
+        set(&mut force, i, &point.force.map(|force| force.value));
+        for (direction, changes) in slopes.iter_mut().enumerate() {
             for k in 0..N {
                 changes[0][k][i] = point.momentum[k].slope.0[direction];
                 changes[1][k][i] = point.force[k].slope.0[direction];
             }
         }
     }
-    Ok(Some(explicit))
+    let part = weights(1.0);
+    let moved = [at.moved(), integrals::<N, STAGES, false>(&force, &part)];
+    let moved_end = [&at.velocities, &force].map(|of| SVector::from_fn(|k, _| sum(&scaled(&part, &of[k]))));
+    Ok(Some(Explicit { slopes, moved, moved_end }))
 }
 
 /// Turns variations of the node at which a step began into those of the node reached; false, and anything in them, where the equations do not determine them.
@@ -218,9 +387,18 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
         // What forces change by where the velocities of the stages do not.
         let mut forces = [[[0.0; S]; N]; TOGETHER];
         for (direction, variation) in variations.iter().enumerate() {
-            let [mut momentum, mut force] = explicit.as_ref().map_or([[[0.0; S]; N]; 2], |of| of[direction]);
-            add_products::<N, S, FUSED>(&mut momentum, momentum_dq, &constant(&variation.q));
-            add_products::<N, S, FUSED>(&mut force, force_dq, &constant(&variation.q));
+            let [mut momentum, mut force] = explicit.as_ref().map_or([[[0.0; S]; N]; 2], |of| of.slopes[direction]);
+            let mut position = constant(&variation.q);
+            if let Some(Explicit { moved: [position_dh, momentum_dh], .. }) = &explicit {
+                for k in 0..N {
+                    for i in 0..S {
+                        position[k][i] += position_dh[k][i] * variation.h;
+                        momentum[k][i] -= momentum_dh[k][i] * variation.h;
+                    }
+                }
+            }
+            add_products::<N, S, FUSED>(&mut momentum, momentum_dq, &position);
+            add_products::<N, S, FUSED>(&mut force, force_dq, &position);
             right[direction] = missing::<N, S, FUSED>(&variation.p, &momentum, &force, &weights);
             forces[direction] = force;
         }
@@ -233,6 +411,11 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
             for k in 0..N {
                 variation.q[k] += sum(&scaled(&weights, &velocities[k]));
                 variation.p[k] += sum(&scaled(&weights, &force[k]));
+            }
+            if let Some(Explicit { moved_end: [position_dh, momentum_dh], .. }) = &explicit {
+                variation.t += variation.h;
+                variation.q += position_dh * variation.h;
+                variation.p += momentum_dh * variation.h;
             }
         }
         are_finite

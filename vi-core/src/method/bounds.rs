@@ -18,9 +18,12 @@
 //! about half a step before the zero, so that h_f is not the length of a last leap.
 //! AFTER A SWITCH q, p and t go on without a jump.
 
+use super::{Memory, Method};
 use crate::error::StepError;
-use crate::node::Node;
+use crate::lagrangian::Lagrangian;
 use crate::real::Scalar;
+use crate::run::Run;
+use crate::state::StepKind;
 
 /// A step may be longer or shorter than the last one by this factor at most.
 pub(crate) const RATIO: f64 = 3.0;
@@ -117,10 +120,198 @@ impl<T: Scalar> StepBounds<T> {
     }
 }
 
-/// The longest that the step after one of the length `last` can be, by the factor that is allowed or as a fixed step of the bound.
-pub(crate) fn longest<T: Scalar>(bounds: Option<&StepBounds<T>>, last: T) -> T {
-    let shortest = bounds.map_or(T::zero(), |bounds| bounds.h_min);
-    shortest.max(last * T::real(RATIO))
+/// What a run whose steps find their length does if no such step exists, and how often it did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Control<T = f64> {
+    pub(crate) bounds: Option<StepBounds<T>>,
+    pub(crate) fallback: Fallback,
+    /// The fixed steps under way.
+    pub(crate) phase: Option<Phase<T>>,
+    pub(crate) switches: Switches<T>,
+    /// How the last step was found.
+    pub(crate) kind: StepKind<T>,
+}
+
+impl<T: Scalar> Control<T> {
+    /// No bounds, no fallback.
+    pub(crate) fn new() -> Self {
+        let (fallback, kind) = (Fallback::Stop, StepKind::EnergyPreserving);
+        Self { bounds: None, fallback, phase: None, switches: Switches::default(), kind }
+    }
+
+    /// The error if a step of the length `found` is beyond the bounds.
+    #[inline]
+    pub(crate) fn check_bounds(&self, t: T, found: T) -> Result<(), StepError> {
+        match &self.bounds {
+            Some(bounds) if !bounds.admit(found) => Err(bounds.refusal(t, found)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a step is so much longer than the last one that D is about to vanish, and the user wants no such step.
+    #[inline]
+    pub(crate) fn runs_away(&self, last: T, found: T) -> bool {
+        self.fallback == Fallback::FixedSteps && found > last * T::real(GROWTH)
+    }
+
+    /// The longest that the step after one of the length `last` can be, by the factor that is allowed or as a fixed step of the bound.
+    pub(crate) fn longest(&self, last: T) -> T {
+        let shortest = self.bounds.as_ref().map_or(T::zero(), |bounds| bounds.h_min);
+        shortest.max(last * T::real(RATIO))
+    }
+
+    /// Discrete energy of the last step, less the energy that the node carries.
+    pub(crate) fn gap(&self) -> T {
+        self.phase.as_ref().map_or(T::zero(), |phase| phase.gap)
+    }
+
+    /// Whether a step can follow: a file may hold anything.
+    ///
+    /// # Errors
+    /// [`StepError::NonFinite`], [`StepError::InvalidInput`].
+    pub(crate) fn check(&self, t: f64) -> Result<(), StepError> {
+        let Switches { energy_change, energy_cost, .. } = self.switches;
+        if !(energy_change.is_finite() && energy_cost.is_finite()) {
+            return Err(StepError::NonFinite { t, quantity: "energy of the switches", expression: None });
+        }
+        self.bounds.as_ref().map_or(Ok(()), StepBounds::check)?;
+        self.phase.as_ref().map_or(Ok(()), Phase::check)
+    }
+}
+
+/// The memory of a method that finds the length of its steps.
+pub trait Controlled<T>: Memory {
+    /// Its options and counters.
+    fn control(&self) -> &Control<T>;
+    /// The same, to be changed.
+    fn control_mut(&mut self) -> &mut Control<T>;
+}
+
+/// A run at a node, by a method that finds the length of its steps.
+pub(crate) trait Alternating<T: Scalar> {
+    /// The step law is `h |D|^(1/POWER) = constant`.
+    const POWER: f64;
+    /// A step.
+    type Found;
+
+    fn control(&self) -> &Control<T>;
+    /// Time of the node.
+    fn t(&self) -> T;
+    /// Length of the last step, and D there.
+    fn last(&self) -> [T; 2];
+    /// The energy-preserving step within the bounds, of the energy that the node carries and `gap`, and its length.
+    fn preserving(&self, gap: T) -> Result<(Self::Found, T), StepError>;
+    /// The step of a given length; the discrete energy there less that of the node; and D in the middle of the step after it, extrapolated.
+    fn fixed(&self, h: T) -> Result<(Self::Found, [T; 2]), StepError>;
+    fn control_of(found: &mut Self::Found) -> &mut Control<T>;
+
+    /// The next step: energy-preserving, or fixed if there is none and the user allows it.
+    ///
+    /// # Errors
+    /// Why there is neither.
+    fn next(&self) -> Result<Self::Found, StepError> {
+        if let Some(phase) = self.control().phase {
+            return self.next_in(phase);
+        }
+        let [previous, density] = self.last();
+        let preserving = self.preserving(T::zero()).and_then(|(found, h)| {
+            if !self.control().runs_away(previous, h) {
+                return Ok(found);
+            }
+            let (t, previous, found) = (self.t().to_f64(), previous.to_f64(), h.to_f64());
+            Err(StepError::StepRatio { t, previous, found })
+        });
+        let failure = match preserving {
+            Ok(mut found) => {
+                Self::control_of(&mut found).kind = StepKind::EnergyPreserving;
+                return Ok(found);
+            }
+            Err(failure) => failure,
+        };
+        let Control { fallback, bounds, .. } = self.control();
+        let phase = Phase::instead_of(failure, *fallback, bounds.as_ref(), previous, density)?;
+        let mut found = self.fixed_in(phase)?;
+        Self::control_of(&mut found).switches.count += 1;
+        Ok(found)
+    }
+
+    /// The step after a fixed one: energy-preserving if one exists, by the energy of before or, else, by that of the last step; else fixed.
+    #[cold]
+    fn next_in(&self, phase: Phase<T>) -> Result<Self::Found, StepError> {
+        if !phase.is_over(Self::POWER) {
+            return self.fixed_in(phase);
+        }
+        let reseeded = StepKind::Reseeded { energy_change: phase.gap };
+        for (gap, kind) in [(T::zero(), StepKind::EnergyPreserving), (phase.gap, reseeded)] {
+            if let Ok((mut found, _)) = self.preserving(gap) {
+                let control = Self::control_of(&mut found);
+                control.kind = kind;
+                control.phase = None;
+                control.switches.returns += 1;
+                if kind == reseeded {
+                    control.switches.reseed(gap);
+                }
+                return Ok(found);
+            }
+        }
+        self.fixed_in(phase)
+    }
+
+    /// A fixed step of a phase.
+    fn fixed_in(&self, phase: Phase<T>) -> Result<Self::Found, StepError> {
+        let (mut found, [gap, density_next]) = self.fixed(phase.h)?;
+        let control = Self::control_of(&mut found);
+        control.kind = StepKind::FixedStep;
+        control.phase = Some(Phase { density_next, gap, ..phase });
+        control.switches.fixed_steps += 1;
+        Ok(found)
+    }
+}
+
+impl<M, S, const N: usize, T: Scalar> Run<M, S, N, T>
+where
+    M: Method<S, N, T, Memory: Controlled<T>>,
+    S: Lagrangian<N, T> + Copy,
+{
+    /// What to do if no energy-preserving step exists; [`Fallback::Stop`] is the default. An error of the last step is forgotten.
+    ///
+    /// With [`Fallback::FixedSteps`] the errors [`StepError::NoForwardStep`], [`StepError::NoForwardGaussStep`], [`StepError::DegenerateStep`],
+    /// [`StepError::StepRatio`], [`StepError::StepBounds`], [`StepError::NotConverged`] and [`StepError::StagesUnsettled`] do not end the run. It continues with fixed
+    /// steps while D has lost its sign or the step law asks for longer ones. Then it keeps the energy that it had before, or, if no step has that energy, the discrete
+    /// energy of the last fixed step. A step longer than the last by more than a factor of 1.5 is not taken either: D is about to vanish. [`Run::step_kind`] says how
+    /// the last step was found, and [`Run::switches`] what the switches cost.
+    #[must_use]
+    pub fn with_fallback(mut self, fallback: Fallback) -> Self {
+        self.memory.control_mut().fallback = fallback;
+        self.failure = None;
+        self
+    }
+
+    /// Refuses steps shorter than `h_min` or longer than `h_max`, in units of time, with [`StepError::StepBounds`], or, with the fallback, replaces them by fixed steps
+    /// of the bound. `h_min = 0` bounds from above alone. An error of the last step is forgotten.
+    ///
+    /// The first step differs from the given one by a factor of 3 at most: bounds that leave no such step end the run at once.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] unless `0 ≤ h_min ≤ h_max`, with `h_max` positive and finite.
+    pub fn with_step_bounds(mut self, h_min: T, h_max: T) -> Result<Self, StepError> {
+        let bounds = StepBounds { h_min, h_max };
+        bounds.check()?;
+        self.memory.control_mut().bounds = Some(bounds);
+        self.failure = None;
+        Ok(self)
+    }
+
+    /// How the last step was found.
+    pub fn step_kind(&self) -> StepKind<T> {
+        self.memory.control().kind
+    }
+
+    /// How often the run has switched to fixed steps and back, and what that cost.
+    pub fn switches(&self) -> Switches<T> {
+        self.memory.control().switches
+    }
 }
 
 /// Fixed steps under way.
@@ -181,11 +372,6 @@ impl<T: Scalar> Phase<T> {
             }
             None => Ok(()),
         }
-    }
-
-    /// Discrete energy of the node that the last fixed step reached.
-    pub(crate) fn energy<const N: usize>(&self, node: &Node<N, T>) -> T {
-        node.energy + (node.energy_low + self.gap)
     }
 
     /// Whether the step law asks for the fixed length in the next interval, or one beyond on the side of the

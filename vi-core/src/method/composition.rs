@@ -138,6 +138,10 @@ where
     type Left = StepError;
     type DenseOutput = Hermite<N, T>;
 
+    fn order(&self) -> u32 {
+        self.order
+    }
+
     fn rule(&self) -> Option<&'static str> {
         S::RULE
     }

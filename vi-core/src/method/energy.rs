@@ -12,11 +12,11 @@
 //!
 //! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
 
-use super::bounds::{Fallback, StepBounds, Switches, check_forward, longest};
+use super::bounds::{Alternating, check_forward};
 use super::{Method, Problem, Report};
 use crate::called::Called;
 use crate::condition::Condition;
-use crate::energy_preserving::course::{After, Lengths};
+use crate::energy_preserving::course::{After, Lengths, Search};
 use crate::energy_preserving::interval::Last;
 use crate::energy_preserving::predicted::Predicted;
 use crate::energy_preserving::start;
@@ -54,6 +54,10 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
 
     const FINDS_LENGTH: bool = true;
 
+    fn order(&self) -> u32 {
+        2
+    }
+
     fn rule(&self) -> Option<&'static str> {
         S::RULE
     }
@@ -87,7 +91,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         (): &mut (),
         (): (),
     ) -> Result<Found<N, T>, StepError> {
-        let after = memory.next(&Called(*at.system), at.node);
+        let after = Search { system: &Called(*at.system), node: at.node, lengths: memory }.next();
         after.map(Found::After).map_err(|failure| explained(failure, at.system, at.node, memory))
     }
 
@@ -111,7 +115,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         [h, _]: [T; 2],
     ) -> Result<(Node<N, T>, Lengths<N, T>), StepError> {
         check_forward("the step h", h)?;
-        let after = memory.step_of(&Called(*system), node, h);
+        let after = Search { system: &Called(*system), node, lengths: memory }.step_of(h);
         after.map(|After { node, lengths }| (node, lengths)).map_err(|failure| explained(failure, system, node, memory))
     }
 
@@ -170,7 +174,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     fn longest(&self, _h: T, memory: &Lengths<N, T>) -> T {
-        longest(memory.bounds.as_ref(), memory.last.h)
+        memory.control.longest(memory.last.h)
     }
 
     fn report(&self, memory: &Lengths<N, T>) -> Report {
@@ -178,7 +182,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     fn discrete_energy(&self, _system: &S, node: &Node<N, T>, _h: T, memory: &Lengths<N, T>) -> Option<T> {
-        Some(memory.phase.as_ref().map_or(node.energy, |phase| phase.energy(node)))
+        Some(memory.discrete_energy(node))
     }
 
     fn check(&self, memory: &Lengths<N, T>, _h: T, t: T) -> Result<(), StepError> {
@@ -278,39 +282,6 @@ fn after<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
 }
 
 impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S, N, T> {
-    /// What to do if no energy-preserving step exists; [`Fallback::Stop`] is the default. An error of the last step is forgotten.
-    ///
-    /// With [`Fallback::FixedSteps`] the errors [`StepError::NoForwardStep`], [`StepError::DegenerateStep`], [`StepError::StepRatio`], [`StepError::StepBounds`] and
-    /// [`StepError::NotConverged`] do not end the run. It continues with fixed steps while D has lost its sign or the step law asks for longer ones. Then it keeps the
-    /// energy that it had before, or, if no step has that energy, the discrete energy of the last fixed interval. A step longer than the last by more than a factor of
-    /// 1.5 is not taken either: D is about to vanish. [`Run::last_step`] says how each step was found, and [`Run::switches`] what the switches cost.
-    #[must_use]
-    pub fn with_fallback(mut self, fallback: Fallback) -> Self {
-        self.memory.fallback = fallback;
-        self.failure = None;
-        self
-    }
-
-    /// Refuses steps shorter than `h_min` or longer than `h_max`, in units of time, with [`StepError::StepBounds`], or, with the fallback, replaces them by fixed steps
-    /// of the bound. `h_min = 0` bounds from above alone. An error of the last step is forgotten.
-    ///
-    /// The first step follows an interval of its own length and differs from it by a factor of 3 at most: bounds that leave no such step end the run at once.
-    ///
-    /// # Errors
-    /// [`StepError::InvalidInput`] unless `0 ≤ h_min ≤ h_max`, with `h_max` positive and finite.
-    pub fn with_step_bounds(mut self, h_min: T, h_max: T) -> Result<Self, StepError> {
-        let bounds = StepBounds { h_min, h_max };
-        bounds.check()?;
-        self.memory.bounds = Some(bounds);
-        self.failure = None;
-        Ok(self)
-    }
-
-    /// How often the run has switched to fixed steps and back, and what that cost.
-    pub fn switches(&self) -> Switches<T> {
-        self.memory.switches
-    }
-
     /// Velocity `(q1 − q0)/h` of the last interval, without its cancellation.
     pub fn v(&self) -> SVector<T, N> {
         self.memory.last.v
@@ -343,14 +314,14 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S
             t: node.t,
             q: node.q,
             p: node.p,
-            energy: memory.phase.as_ref().map_or(node.energy, |phase| phase.energy(node)),
+            energy: memory.discrete_energy(node),
             h,
             midpoint: (t_mid, q_mid, v),
             density,
             density_next: memory.last.density_next(),
             iterations,
             residual: T::real(measured.roundings()),
-            kind: memory.kind,
+            kind: memory.control.kind,
         }
     }
 

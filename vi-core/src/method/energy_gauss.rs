@@ -18,7 +18,7 @@
 //! The unknown is ln h: `ln[(H − E0(h))/(H − E)]` is nearly a line of slope 2s in it, and the last step backwards, which solves the equations too, does not exist. A step
 //! is one `Search` over the solution of Gauss steps of any length.
 //!
-//! If no step exists, a run with [`Fallback::FixedSteps`] takes fixed Gauss steps of the last length until an energy-preserving one exists again. E stays, with the work
+//! If no step exists, a run with `Fallback::FixedSteps` takes fixed Gauss steps of the last length until an energy-preserving one exists again. E stays, with the work
 //! done, and fixed steps end when the step law `h |D|^(1/(2s+1)) = C` asks for their length or a shorter one: with D_0 the density at which they began,
 //!
 //! ```text
@@ -30,7 +30,7 @@
 //!
 //! AFTER A STEP its stages and its energy were measured at the numbers that were taken, and are at the rounding floor. Theory and measurements: `docs/theory.md`.
 
-use super::bounds::{Fallback, GROWTH, Phase, RATIO, StepBounds, Switches, check_forward, longest};
+use super::bounds::{Alternating, Control, Controlled, Phase, RATIO, check_forward};
 use super::gauss::{Gauss, LastStages, Motion};
 use super::length::{Search, Trial};
 use super::{Memory, Method, Problem, Report};
@@ -47,7 +47,7 @@ use crate::lagrangian::Lagrangian;
 use crate::newton::{FLOOR, roundings};
 use crate::node::Node;
 use crate::run::{Run, Starts};
-use crate::state::{State, StepKind};
+use crate::state::State;
 use crate::stepping::Convertible;
 use core::cell::{Cell, RefCell};
 use nalgebra::{ArrayStorage, SMatrix};
@@ -63,11 +63,21 @@ pub struct EnergyPreservingGauss<const STAGES: usize>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lengths<const N: usize, const S: usize> {
-    stages: LastStages<N, S>,
-    course: Course,
+    pub(crate) stages: LastStages<N, S>,
+    pub(crate) course: Course,
 }
 
 impl<const N: usize, const S: usize> Memory for Lengths<N, S> {}
+
+impl<const N: usize, const S: usize> Controlled<f64> for Lengths<N, S> {
+    fn control(&self) -> &Control {
+        &self.course.control
+    }
+
+    fn control_mut(&mut self) -> &mut Control {
+        &mut self.course.control
+    }
+}
 
 /// A step of some length, its stages solved.
 #[derive(Clone, Copy, Debug)]
@@ -254,6 +264,7 @@ where
             last,
             ratio: RATIO,
             excess,
+            noise: 0.0,
             slope: course.slope,
             order: EnergyPreservingGauss::<K>::ORDER,
         };
@@ -265,14 +276,12 @@ where
         if h > last * RATIO || last > h * RATIO {
             return Err(StepError::StepRatio { t, previous: last, found: h });
         }
-        match &course.bounds {
-            Some(bounds) if !bounds.admit(h) => Err(bounds.refusal(t, h)),
-            _ => Ok((step, slope, iterations.get())),
-        }
+        course.control.check_bounds(t, h)?;
+        Ok((step, slope, iterations.get()))
     }
 
     /// What follows from a step: the energies at its end.
-    fn after(&self, trial: &Tried<N, K>, kind: StepKind) -> Result<Found<N, K>, StepError> {
+    fn after(&self, trial: &Tried<N, K>) -> Result<Found<N, K>, StepError> {
         let Self { system, node, .. } = *self;
         let mut course = *self.course;
         let step = trial.step;
@@ -284,74 +293,69 @@ where
         let measured = measured(system, &after)?;
         // The mean of `H − E0` at the start and of `H − E1` at the end.
         let mean = 0.5 * (course.excess + measured[0]) - trial.residual;
-        course.residual = match kind {
-            StepKind::FixedStep => 0.0,
-            _ if trial.roundings() <= FLOOR => trial.roundings(),
-            _ => roundings(trial.residual, self.rounding_of(trial)),
-        };
         course.push(step.h, mean / power::<K>(step.h));
-        if kind == StepKind::FixedStep {
-            course.forget_lengths();
-        }
         course.set_excess(measured);
-        course.kind = kind;
         Ok(Found { step, gain, course })
     }
+}
 
-    /// The energy-preserving step.
-    fn next(&self, kind: StepKind, cache: &mut Cache<N, K>) -> Result<Found<N, K>, StepError> {
-        let (trial, slope, iterations) = self.found(cache)?;
-        // So much longer than the last that D is about to vanish: the user wants no such step.
-        let previous = self.course.h();
-        let runs_away = self.course.fallback == Fallback::FixedSteps && trial.h() > previous * GROWTH;
-        if runs_away && self.course.phase.is_none() {
-            return Err(StepError::StepRatio { t: self.node.t, previous, found: trial.h() });
-        }
-        let mut found = self.after(&trial, kind)?;
-        (found.course.slope, found.course.iterations) = (slope, iterations);
-        Ok(found)
+/// The search for the next step, with the buffers for stiff steps.
+struct Searching<'a, S, const N: usize, const K: usize> {
+    here: Here<'a, S, N, K>,
+    cache: RefCell<&'a mut Cache<N, K>>,
+}
+
+impl<S, const N: usize, const K: usize> Alternating<f64> for Searching<'_, S, N, K>
+where
+    S: Collocation<N> + Convertible<N>,
+{
+    const POWER: f64 = EnergyPreservingGauss::<K>::ORDER + 1.0;
+    type Found = Found<N, K>;
+
+    fn control(&self) -> &Control {
+        &self.here.course.control
     }
 
-    /// A fixed step of a phase.
-    fn fixed(&self, phase: Phase<f64>, cache: &mut Cache<N, K>) -> Result<Found<N, K>, StepError> {
-        let trial = self.tried(phase.h, None, cache)?;
-        let last = self.course.told_density::<K>();
-        let mut found = self.after(&trial, StepKind::FixedStep)?;
+    fn t(&self) -> f64 {
+        self.here.node.t
+    }
+
+    fn last(&self) -> [f64; 2] {
+        [self.here.course.h(), self.here.course.told_density::<K>()]
+    }
+
+    fn preserving(&self, gap: f64) -> Result<(Found<N, K>, f64), StepError> {
+        let (mut node, mut course) = (*self.here.node, *self.here.course);
+        if gap != 0.0 {
+            node.add_energy(gap);
+            course.set_excess(measured(self.here.system, &node)?);
+        }
+        let here = Here { node: &node, course: &course, ..self.here };
+        let (trial, slope, iterations) = here.found(&mut self.cache.borrow_mut())?;
+        let mut found = here.after(&trial)?;
+        found.gain += gap;
+        found.course.residual = match trial.roundings() {
+            few if few <= FLOOR => few,
+            _ => roundings(trial.residual, here.rounding_of(&trial)),
+        };
+        (found.course.slope, found.course.iterations) = (slope, iterations);
+        Ok((found, trial.h()))
+    }
+
+    fn fixed(&self, h: f64) -> Result<(Found<N, K>, [f64; 2]), StepError> {
+        let trial = self.here.tried(h, None, &mut self.cache.borrow_mut())?;
+        let last = self.here.course.told_density::<K>();
+        let mut found = self.here.after(&trial)?;
+        found.course.residual = 0.0;
+        found.course.forget_lengths();
+        found.course.iterations = trial.step.convergence.sweeps;
         let density = found.course.told_density::<K>();
         // The next interval has the same length.
-        found.course.phase = Some(Phase { gap: trial.residual, density_next: density + (density - last), ..phase });
-        found.course.switches.fixed_steps += 1;
-        found.course.iterations = trial.step.convergence.sweeps;
-        Ok(found)
+        Ok((found, [trial.residual, density + (density - last)]))
     }
 
-    /// A step after a fixed one: energy-preserving again if one exists, by the energy of before or, else, by that of the last step; else fixed.
-    #[cold]
-    fn next_in_phase(&self, phase: Phase<f64>, cache: &mut Cache<N, K>) -> Result<Found<N, K>, StepError> {
-        if !phase.is_over(EnergyPreservingGauss::<K>::ORDER + 1.0) {
-            return self.fixed(phase, cache);
-        }
-        if let Ok(mut found) = self.next(StepKind::EnergyPreserving, cache) {
-            found.course.switches.returns += 1;
-            found.course.phase = None;
-            return Ok(found);
-        }
-        let mut node = *self.node;
-        node.add_energy(phase.gap);
-        let mut course = *self.course;
-        if let Ok(measured) = measured(self.system, &node) {
-            course.set_excess(measured);
-            let Self { system, instructions, stages, .. } = *self;
-            let seeded = Here { system, instructions, node: &node, stages, course: &course };
-            if let Ok(mut found) = seeded.next(StepKind::Reseeded { energy_change: phase.gap }, cache) {
-                found.gain += phase.gap;
-                found.course.switches.returns += 1;
-                found.course.switches.reseed(phase.gap);
-                found.course.phase = None;
-                return Ok(found);
-            }
-        }
-        self.fixed(phase, cache)
+    fn control_of(found: &mut Found<N, K>) -> &mut Control {
+        &mut found.course.control
     }
 }
 
@@ -424,6 +428,11 @@ where
 
     const FINDS_LENGTH: bool = true;
 
+    #[allow(clippy::cast_possible_truncation)] // 16 stages at most
+    fn order(&self) -> u32 {
+        2 * STAGES as u32
+    }
+
     fn check_length(&self, h: f64) -> Result<(), StepError> {
         check_forward("the step h", h)?;
         if power::<STAGES>(h).is_normal() {
@@ -457,29 +466,17 @@ where
         memory: &Self::Memory,
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, StepError> {
-        let here = Here::of(at, memory);
-        match memory.course.phase {
-            Some(phase) => here.next_in_phase(phase, cache),
-            None => here.next(StepKind::EnergyPreserving, cache),
-        }
+        Searching { here: Here::of(at, memory), cache: RefCell::new(cache) }.next()
     }
 
     fn recover(
         &self,
-        at: Problem<'_, S, Instructions, N>,
-        memory: &Self::Memory,
-        cache: &mut Self::Cache,
+        _at: Problem<'_, S, Instructions, N>,
+        _memory: &Self::Memory,
+        _cache: &mut Self::Cache,
         left: StepError,
     ) -> Result<Self::Step, StepError> {
-        let course = &memory.course;
-        if course.phase.is_some() {
-            return Err(left);
-        }
-        let density = course.told_density::<STAGES>();
-        let phase = Phase::instead_of(left, course.fallback, course.bounds.as_ref(), course.h(), density)?;
-        let mut found = Here::of(at, memory).fixed(phase, cache)?;
-        found.course.switches.count += 1;
-        Ok(found)
+        Err(left)
     }
 
     fn take(
@@ -509,7 +506,7 @@ where
         after.check_finite(node.t)?;
         let mut course = memory.course;
         course.set_excess(measured(system, &after)?);
-        course.phase = course.phase.map(|phase| Phase { gap: residual, ..phase });
+        course.control.phase = course.control.phase.map(|phase| Phase { gap: residual, ..phase });
         let stages = LastStages::constant(system, &after, course.h())?;
         Ok((after, Lengths { stages, course }))
     }
@@ -573,7 +570,7 @@ where
     }
 
     fn longest(&self, _h: f64, memory: &Self::Memory) -> f64 {
-        longest(memory.course.bounds.as_ref(), memory.course.h())
+        memory.course.control.longest(memory.course.h())
     }
 
     fn report(&self, memory: &Self::Memory) -> Report {
@@ -583,8 +580,7 @@ where
 
     fn discrete_energy(&self, _system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {
         let course = &memory.course;
-        let gap = course.phase.map_or(0.0, |phase| phase.gap);
-        Some(node.energy + gap + power::<STAGES>(course.h()) * course.shift)
+        Some(node.energy + course.control.gap() + power::<STAGES>(course.h()) * course.shift)
     }
 
     fn check(&self, memory: &Self::Memory, _h: f64, t: f64) -> Result<(), StepError> {
@@ -620,32 +616,6 @@ impl<S, const N: usize, const STAGES: usize> Run<EnergyPreservingGauss<STAGES>, 
 where
     S: Collocation<N> + Convertible<N>,
 {
-    /// What to do if no energy-preserving step exists; [`Fallback::Stop`] is the default. An error of the last step is forgotten.
-    ///
-    /// With [`Fallback::FixedSteps`] the errors [`StepError::NoForwardGaussStep`], [`StepError::DegenerateStep`], [`StepError::StepRatio`], [`StepError::StepBounds`],
-    /// [`StepError::NotConverged`] and [`StepError::StagesUnsettled`] do not end the run. It continues with fixed steps while D_s has lost its sign or the step law asks
-    /// for longer ones. A step longer than the last by more than a factor of 1.5 is not taken either: D_s is about to vanish. [`Run::step_kind`] says how the last step
-    /// was found, and [`Run::switches`] what the switches cost.
-    #[must_use]
-    pub fn with_fallback(mut self, fallback: Fallback) -> Self {
-        self.memory.course.fallback = fallback;
-        self.failure = None;
-        self
-    }
-
-    /// Refuses steps shorter than `h_min` or longer than `h_max`, in units of time, with [`StepError::StepBounds`], or, with the fallback, replaces them by fixed steps
-    /// of the bound. `h_min = 0` bounds from above alone. An error of the last step is forgotten.
-    ///
-    /// # Errors
-    /// [`StepError::InvalidInput`] unless `0 ≤ h_min ≤ h_max`, with `h_max` positive and finite.
-    pub fn with_step_bounds(mut self, h_min: f64, h_max: f64) -> Result<Self, StepError> {
-        let bounds = StepBounds { h_min, h_max };
-        bounds.check()?;
-        self.memory.course.bounds = Some(bounds);
-        self.failure = None;
-        Ok(self)
-    }
-
     /// Adds `shift`, in the units of the step density, to the step density of every step: a step exists while `D_s + shift` keeps its sign. The run keeps
     /// E' = E − C_s h^2s D_*, [`Run::shifted_energy`], to rounding; momenta and the order stay. With zero it is a run without a shift. The larger the shift, the closer
     /// to fixed steps. An error of the last step is forgotten.
@@ -691,6 +661,16 @@ where
         }
         let input = "the duration over which the step density is measured";
         Err(StepError::InvalidInput { input, allowed: "one over which fixed steps hold the energy", value: duration })
+    }
+
+    /// The stages of a step of the length h from here, whose energy does not matter.
+    ///
+    /// # Errors
+    /// Those of a Gauss step; [`StepError::NonFinite`] if its energy is not finite.
+    pub(crate) fn stages_of(&self, h: f64) -> Result<Stages<N, STAGES>, StepError> {
+        let Self { system, prepared, node, memory, .. } = self;
+        let at = Problem { system, prepared, node, h };
+        Ok(Here::of(at, memory).tried(h, None, &mut None)?.step.stages)
     }
 
     /// What fixed steps of the length h meet over `duration` from here; `None` if their energy does not hold.
@@ -741,16 +721,6 @@ where
     /// Step density D_s of the last step, without the shift, by its energy: the mean of `H − E` at both ends over `C_s h^2s`. Before the first step, of its start.
     pub fn density(&self) -> f64 {
         self.memory.course.told_density::<STAGES>() - self.memory.course.shift
-    }
-
-    /// How the last step was found.
-    pub fn step_kind(&self) -> StepKind {
-        self.memory.course.kind
-    }
-
-    /// How often the run has switched to fixed steps and back, and what that cost.
-    pub fn switches(&self) -> Switches {
-        self.memory.course.switches
     }
 }
 

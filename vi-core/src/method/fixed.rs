@@ -85,6 +85,10 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
+    fn order(&self) -> u32 {
+        2
+    }
+
     fn rule(&self) -> Option<&'static str> {
         S::RULE
     }
@@ -187,6 +191,10 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
     type Step = Found<N, T>;
     type Left = ();
     type DenseOutput = Hermite<N, T>;
+
+    fn order(&self) -> u32 {
+        2
+    }
 
     fn rule(&self) -> Option<&'static str> {
         S::RULE

@@ -173,6 +173,11 @@ where
     type Left = Option<Solved<N, STAGES>>;
     type DenseOutput = Motion<N, STAGES>;
 
+    #[allow(clippy::cast_possible_truncation)] // 16 stages at most
+    fn order(&self) -> u32 {
+        2 * STAGES as u32
+    }
+
     fn prepare(&self, _system: &S, _h: f64) -> Instructions {
         Instructions::detected()
     }

@@ -27,7 +27,7 @@ const BISECTIONS: u32 = 60;
 const SECTIONS: u32 = 40;
 
 /// A step of some length.
-pub(super) trait Trial: Clone {
+pub(crate) trait Trial: Clone {
     /// Its length.
     fn h(&self) -> f64;
     /// By how much the length is missed.
@@ -41,29 +41,31 @@ pub(super) trait Trial: Clone {
 }
 
 /// Solves the step of a length, guessed by that of another length.
-pub(super) type Solve<'a, T> = &'a dyn Fn(f64, Option<&T>) -> Result<T, StepError>;
+pub(crate) type Solve<'a, T> = &'a dyn Fn(f64, Option<&T>) -> Result<T, StepError>;
 
 /// A search for a length.
-pub(super) struct Search<'a, T> {
+pub(crate) struct Search<'a, T> {
     /// The step of length h, guessed by that of another length; by the last one where there is none.
-    pub(super) solve: Solve<'a, T>,
+    pub(crate) solve: Solve<'a, T>,
     /// Whether the residual of a trial is what its arithmetic loses; an error if such a residual tells no length.
-    pub(super) is_rounding: &'a dyn Fn(&T) -> Result<bool, StepError>,
-    pub(super) t: f64,
-    pub(super) predicted: f64,
-    pub(super) last: f64,
+    pub(crate) is_rounding: &'a dyn Fn(&T) -> Result<bool, StepError>,
+    pub(crate) t: f64,
+    pub(crate) predicted: f64,
+    pub(crate) last: f64,
     /// The largest factor between this step and the last one.
-    pub(super) ratio: f64,
-    /// The residual of a step of no length is its negative.
-    pub(super) excess: f64,
+    pub(crate) ratio: f64,
+    /// The residual of a step of no length.
+    pub(crate) excess: f64,
+    /// Roundings of a residual that do not count as a change of its sign.
+    pub(crate) noise: f64,
     /// Slope of `ln (1 + φ)` over `ln h`, and what it is to leading order.
-    pub(super) slope: f64,
-    pub(super) order: f64,
+    pub(crate) slope: f64,
+    pub(crate) order: f64,
 }
 
 impl<T: Trial> Search<'_, T> {
     /// The step by secants, and the slope there; none where they do not lead to one.
-    pub(super) fn root(&self) -> Option<(T, f64)> {
+    pub(crate) fn root(&self) -> Option<(T, f64)> {
         let mut h = self.predicted;
         let mut best = (self.solve)(h, None).ok()?;
         let mut last = best.residual();
@@ -104,9 +106,10 @@ impl<T: Trial> Search<'_, T> {
         is_root.then_some((best, slope))
     }
 
-    /// φ of a trial.
+    /// φ of a trial, below zero as long as its residual may be rounding.
     fn height(&self, trial: &T) -> f64 {
-        -trial.residual() / self.excess
+        let height = -trial.residual() / self.excess;
+        if trial.roundings() <= self.noise { height.min(-f64::MIN_POSITIVE) } else { height }
     }
 
     /// The step of the smallest length; `None` if φ stays below zero up to the square of [`Search::ratio`], which is wide enough to tell a step beyond that factor from
@@ -115,7 +118,7 @@ impl<T: Trial> Search<'_, T> {
     /// # Errors
     /// [`StepError::StepRatio`], [`StepError::NotConverged`]; that of a length within the factor which has no solution.
     #[cold]
-    pub(super) fn smallest(&self) -> Result<Option<T>, StepError> {
+    pub(crate) fn smallest(&self) -> Result<Option<T>, StepError> {
         let reach = self.ratio * self.ratio;
         let factor = (reach * reach).powf(1.0 / f64::from(POINTS));
         let mut h = self.last / reach;

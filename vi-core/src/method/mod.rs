@@ -20,10 +20,10 @@ pub mod energy;
 pub mod energy_gauss;
 pub mod fixed;
 pub mod gauss;
-mod length;
+pub(crate) mod length;
 pub mod transformed;
 
-pub use bounds::{Fallback, Switches};
+pub use bounds::{Control, Controlled, Fallback, Switches};
 pub use composition::Composition;
 pub use energy::EnergyPreserving;
 pub use energy_gauss::EnergyPreservingGauss;
@@ -113,6 +113,9 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
     fn rule(&self) -> Option<&'static str> {
         None
     }
+
+    /// The order p: the error of a step is O(h^(p+1)).
+    fn order(&self) -> u32;
 
     /// Checks the length that a run is given.
     ///

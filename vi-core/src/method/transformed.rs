@@ -57,6 +57,11 @@ where
     // Nothing bounds how g changes from one step to the next.
     const FINDS_LENGTH: bool = true;
 
+    #[allow(clippy::cast_possible_truncation)] // 16 stages at most
+    fn order(&self) -> u32 {
+        2 * STAGES as u32
+    }
+
     fn check_length(&self, dtau: f64) -> Result<(), StepError> {
         if !S::SCALES_TIME {
             return Err(StepError::NoTimeScale { system: S::NAME });

@@ -19,19 +19,20 @@ use super::side::{Node, ROUNDING, Side};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
+use crate::real::Dual;
 use crate::state::State;
 use core::fmt;
 use nalgebra::SVector;
 
 /// Where a motion is: the argument of functions of events.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment<const N: usize> {
+pub struct Moment<const N: usize, T = f64> {
     /// Time.
-    pub t: f64,
+    pub t: T,
     /// Coordinates.
-    pub q: SVector<f64, N>,
+    pub q: SVector<T, N>,
     /// Velocities.
-    pub v: SVector<f64, N>,
+    pub v: SVector<T, N>,
 }
 
 /// In which direction a function passes zero.
@@ -43,30 +44,77 @@ enum Direction {
 }
 
 /// A function of the motion, and the direction in which it passes zero. The function has to be the same for the same arguments.
+///
+/// A function in dual numbers gives the event a derivative: `Event::smooth_rising(|m| m.q[1] - Dual::fixed(0.2))`.
 pub struct Event<const N: usize> {
-    g: Box<dyn Fn(&Moment<N>) -> f64>,
+    g: Function<N>,
     direction: Direction,
+}
+
+/// A function of an event in some numbers.
+type In<const N: usize, T> = Box<dyn Fn(&Moment<N, T>) -> T>;
+
+/// The function of an event.
+enum Function<const N: usize> {
+    /// In plain numbers.
+    Plain(In<N, f64>),
+    /// In dual numbers.
+    Dual(In<N, Dual<f64>>),
 }
 
 impl<const N: usize> Event<N> {
     /// Where `g` goes from below zero to zero or above.
     pub fn rising(g: impl Fn(&Moment<N>) -> f64 + 'static) -> Self {
-        Self { g: Box::new(g), direction: Direction::Rising }
+        Self { g: Function::Plain(Box::new(g)), direction: Direction::Rising }
     }
 
     /// Where `g` goes from zero or above to below.
     pub fn falling(g: impl Fn(&Moment<N>) -> f64 + 'static) -> Self {
-        Self { g: Box::new(g), direction: Direction::Falling }
+        Self { g: Function::Plain(Box::new(g)), direction: Direction::Falling }
     }
 
     /// Where `g` rises or falls.
     pub fn crossing(g: impl Fn(&Moment<N>) -> f64 + 'static) -> Self {
-        Self { g: Box::new(g), direction: Direction::Both }
+        Self { g: Function::Plain(Box::new(g)), direction: Direction::Both }
+    }
+
+    /// [`Event::rising`] with a derivative, for [`Tangent::until_event`](crate::derivatives::Tangent::until_event).
+    pub fn smooth_rising(g: impl Fn(&Moment<N, Dual<f64>>) -> Dual<f64> + 'static) -> Self {
+        Self { g: Function::Dual(Box::new(g)), direction: Direction::Rising }
+    }
+
+    /// [`Event::falling`] with a derivative.
+    pub fn smooth_falling(g: impl Fn(&Moment<N, Dual<f64>>) -> Dual<f64> + 'static) -> Self {
+        Self { g: Function::Dual(Box::new(g)), direction: Direction::Falling }
+    }
+
+    /// [`Event::crossing`] with a derivative.
+    pub fn smooth_crossing(g: impl Fn(&Moment<N, Dual<f64>>) -> Dual<f64> + 'static) -> Self {
+        Self { g: Function::Dual(Box::new(g)), direction: Direction::Both }
     }
 
     /// The function.
     pub(super) fn at(&self, moment: &Moment<N>) -> f64 {
-        (self.g)(moment)
+        match &self.g {
+            Function::Plain(g) => g(moment),
+            Function::Dual(g) => {
+                let Moment { t, q, v } = moment;
+                g(&Moment { t: Dual::fixed(*t), q: q.map(Dual::fixed), v: v.map(Dual::fixed) }).value
+            }
+        }
+    }
+
+    /// Whether the function is in dual numbers.
+    pub(crate) fn has_derivative(&self) -> bool {
+        matches!(self.g, Function::Dual(_))
+    }
+
+    /// How fast the function changes with a moment that does; `None` if it is not in dual numbers.
+    pub(crate) fn slope(&self, moment: &Moment<N, Dual<f64>>) -> Option<f64> {
+        match &self.g {
+            Function::Plain(_) => None,
+            Function::Dual(g) => Some(g(moment).slope),
+        }
     }
 
     /// The function, if it is finite.

@@ -11,6 +11,7 @@
 //! | `events` | states at which functions of the motion change their sign |
 //! | `search` | the search of one step for them |
 //! | `side` | the side of zero on which a function is at a node |
+//! | `estimate` | the error of a step, measured; a step length from a tolerance |
 //! | `checkpoint` | everything that a run carries, to be stored and resumed bit for bit |
 //!
 //! A STATE AT A TIME t is reached by a last step that is exactly as long as is left. It is as accurate as a node, of the full order of the method. States at several
@@ -18,6 +19,7 @@
 
 mod checkpoint;
 mod dense_output;
+mod estimate;
 mod events;
 mod search;
 mod side;
@@ -26,6 +28,7 @@ mod times;
 
 pub use checkpoint::{Checkpoint, Stored};
 pub use dense_output::{DenseOutput, Hermite};
+pub use estimate::{ErrorEstimate, ErrorMonitor, Length, LocalError, Monitored, Tolerance};
 pub use events::{Crossing, Crossings, Event, Events, Met, Moment};
 pub use solution::Solution;
 pub use times::Grid;
@@ -64,12 +67,15 @@ pub trait Starts<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
 impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Real> Starts<N, T> for S {}
 
 impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Start<S, N, T> {
-    /// A run from here by a method with the step h, in units of time. A negative h goes backwards in time. A method that finds its own lengths begins with about h.
+    /// A run from here by a method with the step h, in units of time, or with the step that has a [`Tolerance`]. A negative h goes backwards in time. A method that
+    /// finds its own lengths begins with about h.
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, [`StepError::NonFinite`] for such a state, [`StepError::Singular`] or
-    /// [`StepError::NotConverged`] if no velocity belongs to its momenta; those of the method.
-    pub fn integrate<M: Method<S, N, T>>(self, method: M, h: T) -> Result<Run<M, S, N, T>, StepError> {
+    /// [`StepError::NotConverged`] if no velocity belongs to its momenta; those of the method;
+    /// [`StepError::Tolerance`] if no step has the tolerance.
+    pub fn integrate<M: Method<S, N, T>>(self, method: M, h: impl Length<T>) -> Result<Run<M, S, N, T>, StepError> {
+        let h = h.length(&self, &method)?;
         let Self { system, state } = self;
         method.check_length(h)?;
         let mut node = Node::new(state, T::zero());

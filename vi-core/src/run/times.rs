@@ -71,7 +71,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] if it cannot.
-    pub(super) fn check_ahead(&self, t: f64) -> Result<(), StepError> {
+    pub(crate) fn check_ahead(&self, t: f64) -> Result<(), StepError> {
         if t.is_finite() && self.time_to(t) * self.h().signum() >= 0.0 {
             return Ok(());
         }
@@ -80,7 +80,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     }
 
     /// Takes one step toward the time `t`, which ends there if the next one would end beyond. Returns whether it did.
-    fn approach(&mut self, t: f64) -> Result<bool, StepError> {
+    pub(crate) fn approach(&mut self, t: f64) -> Result<bool, StepError> {
         let left = self.time_to(t);
         if left == 0.0 {
             self.set_time(t);

@@ -1,69 +1,120 @@
 //! The named systems of the command, each with an initial state: those of the program (`vi_lab::main!`), then the
 //! predefined ones.
 //!
-//! In: a name, in any spelling of case and hyphens. Out: an [`Entry`], or an error with the nearest name.
+//! In: lists of systems; a name, in any spelling of case and hyphens. Out: an [`Entry`], or an error with the nearest name.
 
 use crate::failure::Failure;
 use crate::machine::program;
 use crate::table::Table;
 use std::path::Path;
-use std::sync::OnceLock;
-use vi_runs::ready::{self, Entry};
+use vi_runs::entry::Entry;
 
-/// The systems of the program, set once before the command line is read.
-static OWN: OnceLock<Own> = OnceLock::new();
-
-/// The systems of a program; `vi_lab::main!` builds it.
-#[derive(Clone, Copy)]
-pub struct Own {
-    /// The text of the files that declare the systems.
+/// Systems that a program knows.
+#[derive(Clone, Copy, Debug)]
+pub struct Systems {
+    /// The text of the files that declare them.
     pub sources: &'static [&'static str],
     /// The systems.
     pub entries: fn() -> Vec<Entry>,
 }
 
-impl Own {
-    /// Registers these systems for the command.
-    pub fn declare(self) {
-        // A second registration in one process has no effect.
-        let _ = OWN.set(self);
+/// The systems of a program of one's own, if it has some, and the ready ones.
+#[derive(Clone, Copy, Debug)]
+pub struct Catalogue {
+    own: Option<Systems>,
+    ready: Systems,
+}
+
+impl Catalogue {
+    /// The catalogue of a program without systems of its own.
+    #[must_use]
+    pub fn new(ready: Systems) -> Self {
+        Self { own: None, ready }
     }
-}
 
-/// The text of the files that declare the systems.
-pub fn sources() -> impl Iterator<Item = &'static str> {
-    let own = OWN.get().map_or(&[][..], |own| own.sources);
-    own.iter().copied().chain(vi_systems::SOURCES)
-}
+    /// The same, with systems of one's own.
+    #[must_use]
+    pub fn with_own(self, own: Systems) -> Self {
+        Self { own: Some(own), ..self }
+    }
 
-/// All systems in the order of the list; a system of the program hides a predefined one of the same name.
-pub fn entries() -> Vec<Entry> {
-    let mut all = OWN.get().map_or_else(Vec::new, |own| (own.entries)());
-    let own: Vec<&str> = all.iter().map(|entry| entry.system.name()).collect();
-    let others: Vec<Entry> = ready::systems().into_iter().filter(|entry| !own.contains(&entry.system.name())).collect();
-    all.extend(others);
-    all
-}
+    /// The text of the files that declare the systems.
+    pub fn sources(&self) -> impl Iterator<Item = &'static str> + use<> {
+        let own = self.own.map_or(&[][..], |own| own.sources);
+        own.iter().chain(self.ready.sources).copied()
+    }
 
-/// The first system of the program: the default of every command.
-///
-/// # Errors
-/// [`Failure::Input`] if the program has none.
-pub fn first_own() -> Result<Entry, Failure> {
-    own().ok_or_else(|| Failure::Input(format!("name a system of `{} list`", program())))
-}
+    /// All systems in the order of the list; a system of the program hides a predefined one of the same name.
+    #[must_use]
+    pub fn entries(&self) -> Vec<Entry> {
+        let mut all = self.own.map_or_else(Vec::new, |own| (own.entries)());
+        let own: Vec<&str> = all.iter().map(|entry| entry.system.name()).collect();
+        let ready = (self.ready.entries)();
+        let others: Vec<Entry> = ready.into_iter().filter(|entry| !own.contains(&entry.system.name())).collect();
+        all.extend(others);
+        all
+    }
 
-/// The first system of the program, if there is one.
-pub fn own() -> Option<Entry> {
-    OWN.get().and_then(|own| (own.entries)().into_iter().next())
-}
+    /// The first system of the program, if there is one.
+    #[must_use]
+    pub fn own(&self) -> Option<Entry> {
+        self.own.and_then(|own| (own.entries)().into_iter().next())
+    }
 
-/// The entry with this name, or the first one of the program.
-///
-/// # Errors
-/// As [`find`] and [`first_own`].
-pub fn named(name: Option<&str>) -> Result<Entry, Failure> {
-    name.map_or_else(first_own, find)
+    /// The first system of the program: the default of every command.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the program has none.
+    pub fn first_own(&self) -> Result<Entry, Failure> {
+        self.own().ok_or_else(|| Failure::Input(format!("name a system of `{} list`", program())))
+    }
+
+    /// The entry with this name, or the first one of the program.
+    ///
+    /// # Errors
+    /// As [`Self::find`] and [`Self::first_own`].
+    pub fn named(&self, name: Option<&str>) -> Result<Entry, Failure> {
+        name.map_or_else(|| self.first_own(), |name| self.find(name))
+    }
+
+    /// The entry with this name.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] with the nearest name if there is none.
+    pub fn find(&self, name: &str) -> Result<Entry, Failure> {
+        let wanted = plain(name);
+        let mut entries = self.entries();
+        if let Some(index) = entries.iter().position(|entry| plain(entry.system.name()) == wanted) {
+            return Ok(entries.swap_remove(index));
+        }
+        let near = entries
+            .iter()
+            .map(|entry| (strsim::jaro_winkler(&plain(entry.system.name()), &wanted), entry))
+            .filter(|(likeness, _)| *likeness > 0.75)
+            .max_by(|(one, _), (other, _)| one.total_cmp(other));
+        let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
+        let hint = match near {
+            Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
+            None if extension == Some("rs") => "use `explain` or `expand` for a Rust file".to_owned(),
+            None if name.contains(['/', '\\', '.']) => "a scene file ends in .toml, a declaration in .rs".to_owned(),
+            None => format!("`{} list` shows all systems", program()),
+        };
+        Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
+    }
+
+    /// The catalogue as a table.
+    #[must_use]
+    pub fn table(&self) -> Table {
+        let mut table = Table::new("systems", ["system", "what it is", "parameters", "starts at", "h"]);
+        for Entry { system, about, q, v, h } in self.entries() {
+            let parameters: Vec<String> =
+                system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
+            let coordinates = shortened(system.coordinates().iter().map(ToString::to_string).collect());
+            let start = format!("({coordinates}) = ({}), v = ({})", list(&q), list(&v));
+            table.row([kebab(system.name()), about.to_owned(), parameters.join(", "), start, h.to_string()]);
+        }
+        table
+    }
 }
 
 /// Rejects an entry without a rule for a page that compares steps by a rule.
@@ -78,44 +129,6 @@ pub fn with_rule(entry: Entry, page: &str) -> Result<Entry, Failure> {
     Err(Failure::Input(format!(
         "{page} compares steps by a rule, and {name} has none: add `discretize midpoint;` to it"
     )))
-}
-
-/// The entry with this name.
-///
-/// # Errors
-/// [`Failure::Input`] with the nearest name if there is none.
-pub fn find(name: &str) -> Result<Entry, Failure> {
-    let wanted = plain(name);
-    let mut entries = entries();
-    if let Some(index) = entries.iter().position(|entry| plain(entry.system.name()) == wanted) {
-        return Ok(entries.swap_remove(index));
-    }
-    let near = entries
-        .iter()
-        .map(|entry| (strsim::jaro_winkler(&plain(entry.system.name()), &wanted), entry))
-        .filter(|(likeness, _)| *likeness > 0.75)
-        .max_by(|(one, _), (other, _)| one.total_cmp(other));
-    let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
-    let hint = match near {
-        Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
-        None if extension == Some("rs") => "use `explain` or `expand` for a Rust file".to_owned(),
-        None if name.contains(['/', '\\', '.']) => "a scene file ends in .toml, a declaration in .rs".to_owned(),
-        None => format!("`{} list` shows all systems", program()),
-    };
-    Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
-}
-
-/// The catalogue as a table.
-pub fn table() -> Table {
-    let mut table = Table::new("systems", ["system", "what it is", "parameters", "starts at", "h"]);
-    for Entry { system, about, q, v, h } in entries() {
-        let parameters: Vec<String> =
-            system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
-        let coordinates = shortened(system.coordinates().iter().map(ToString::to_string).collect());
-        let start = format!("({coordinates}) = ({}), v = ({})", list(&q), list(&v));
-        table.row([kebab(system.name()), about.to_owned(), parameters.join(", "), start, h.to_string()]);
-    }
-    table
 }
 
 fn list(values: &[f64]) -> String {
@@ -151,17 +164,28 @@ fn plain(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vi_systems::{DoubleWell, Kepler};
+
+    fn catalogue() -> Catalogue {
+        let entries = || {
+            vec![
+                Entry::new::<DoubleWell, 1>("well", [0.74], [0.0], 0.01),
+                Entry::new::<Kepler, 2>("planet", [0.4, 0.0], [0.0, 2.0], 0.005),
+            ]
+        };
+        Catalogue::new(Systems { sources: &[], entries })
+    }
 
     #[test]
     fn names_are_found_in_any_spelling() {
         for name in ["double-well", "DoubleWell", "double_well", "DOUBLEWELL"] {
-            assert!(find(name).is_ok_and(|entry| entry.system.name() == "DoubleWell"), "{name}");
+            assert!(catalogue().find(name).is_ok_and(|entry| entry.system.name() == "DoubleWell"), "{name}");
         }
     }
 
     #[test]
     fn a_near_name_is_offered() {
-        let message = |name: &str| find(name).err().map(|failure| failure.to_string());
+        let message = |name: &str| catalogue().find(name).err().map(|failure| failure.to_string());
         assert_eq!(
             message("double-wel").as_deref(),
             Some("there is no system `double-wel`; did you mean `double-well`?")

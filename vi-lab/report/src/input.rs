@@ -1,10 +1,6 @@
-//! Numbers on the command line and in scenes.
+//! Numbers on the command line.
 //!
-//! In: text, or a TOML value. Out: the number, or one line with the allowed values.
-
-use core::fmt;
-use serde::Deserializer;
-use serde::de::{self, Unexpected, Visitor};
+//! In: text. Out: the number, or one line with the allowed values.
 
 /// A number of steps or rows: `1000`, or `1e6` if it is a whole number.
 ///
@@ -17,10 +13,11 @@ pub fn count(text: &str) -> Result<u64, String> {
 }
 
 /// The allowed values.
-const COUNT: &str = "a whole number from 0 to 1.8e19, such as 1000 or 1e6";
+pub const COUNT: &str = "a whole number from 0 to 1.8e19, such as 1000 or 1e6";
 
 /// A number with a decimal point or an exponent as a count; `None` if it is not a whole number.
-fn whole(value: f64) -> Option<u64> {
+#[must_use]
+pub fn whole(value: f64) -> Option<u64> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // whole, and below 2^64
     (value.fract() == 0.0 && (1.0..18_446_744_073_709_551_616.0).contains(&value)).then_some(value as u64)
 }
@@ -34,33 +31,6 @@ pub fn number(text: &str) -> Result<f64, String> {
         let hint = if text.contains('\u{2212}') { "; write the minus sign as a hyphen `-`" } else { "" };
         format!("write a number such as 0.5 or 1e-3{hint}")
     })
-}
-
-/// The count in an entry of a scene, `1000` or `1e6`.
-///
-/// # Errors
-/// As [`count`], at the position of the entry.
-pub fn count_of_scene<'de, D: Deserializer<'de>>(entry: D) -> Result<Option<u64>, D::Error> {
-    entry.deserialize_any(Count).map(Some)
-}
-
-/// Parser of a count.
-struct Count;
-
-impl Visitor<'_> for Count {
-    type Value = u64;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(COUNT)
-    }
-
-    fn visit_i64<E: de::Error>(self, value: i64) -> Result<u64, E> {
-        u64::try_from(value).map_err(|_| E::invalid_value(Unexpected::Signed(value), &self))
-    }
-
-    fn visit_f64<E: de::Error>(self, value: f64) -> Result<u64, E> {
-        whole(value).ok_or_else(|| E::invalid_value(Unexpected::Float(value), &self))
-    }
 }
 
 #[cfg(test)]

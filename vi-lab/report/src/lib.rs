@@ -1,4 +1,4 @@
-//! The output of the command `vi-lab`, and its systems by name.
+//! The output of the commands `vi-lab` and `paper`, and their systems by name.
 //!
 //! In: numbers and text of a subcommand. Out: figures, tables and pages as files; progress, and failures with exit
 //! statuses, for a terminal. This crate has no loop over steps, needs no optimization and compiles in seconds.
@@ -7,7 +7,7 @@
 //! |---|---|
 //! | [`chart`], [`table`], [`html`], [`page`] | figures, tables, and their page |
 //! | [`input`], [`numbers`] | numbers in input, pages and messages |
-//! | [`progress`], [`machine`], [`interrupt`], [`failure`] | bars, versions, signals, errors |
+//! | [`progress`], [`machine`], [`interrupt`], [`failure`], [`terminal`] | bars, versions, signals, errors, the exit of a program |
 //! | [`catalogue`], [`quantity`] | the systems by name; the quantities that vary from run to run |
 
 pub mod catalogue;
@@ -22,3 +22,4 @@ pub mod page;
 pub mod progress;
 pub mod quantity;
 pub mod table;
+pub mod terminal;

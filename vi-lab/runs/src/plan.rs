@@ -3,26 +3,23 @@
 //! In: the request of a command line or a scene. Out: a [`Plan`].
 
 use clap::ValueEnum;
-use serde::Deserialize;
-use vi_core::Composition;
+use vi_core::lagrangian::Lagrangian;
+use vi_core::run::Length;
+use vi_core::{Composition, Start as Begun, StepError, Tolerance};
 
 /// The integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Method {
     /// The variational integrator with a given step
     Fixed,
     /// Five fixed steps composed to order 4, by Suzuki
     #[value(name = "suzuki-4")]
-    #[serde(rename = "suzuki-4")]
     Suzuki4,
     /// Nine fixed steps composed to order 6, by Kahan and Li
     #[value(name = "kahan-li-6")]
-    #[serde(rename = "kahan-li-6")]
     KahanLi6,
     /// Seventeen fixed steps composed to order 8, by Kahan and Li
     #[value(name = "kahan-li-8")]
-    #[serde(rename = "kahan-li-8")]
     KahanLi8,
     /// Gauss collocation, of order 2S for --stages S
     Gauss,
@@ -66,8 +63,7 @@ impl Method {
 }
 
 /// The first interval of the energy-preserving integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Start {
     /// The initial state is the midpoint of the first interval
     Midpoint,
@@ -101,6 +97,8 @@ pub struct Plan {
     pub dtau: Option<f64>,
     /// The step, or the first one.
     pub h: f64,
+    /// The largest error of a step over the first oscillations, which determines the step in place of `h`.
+    pub tolerance: Option<f64>,
     /// Initial time.
     pub t: f64,
     /// Initial coordinates.
@@ -113,7 +111,14 @@ impl Plan {
     /// A run with steps of length h from a point, with the defaults of the method.
     #[must_use]
     pub fn new(method: Method, h: f64, PhasePoint { t, q, v }: PhasePoint) -> Self {
-        Self { method, start: Start::Midpoint, stages: None, shift: None, fallback: false, dtau: None, h, t, q, v }
+        let (start, shift, tolerance) = (Start::Midpoint, None, None);
+        Self { method, start, stages: None, shift, fallback: false, dtau: None, h, tolerance, t, q, v }
+    }
+
+    /// What determines the length of a step.
+    #[must_use]
+    pub fn length(&self) -> StepLength {
+        self.tolerance.map_or(StepLength::Given(self.h), StepLength::Found)
     }
 
     /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); `None` for
@@ -121,6 +126,28 @@ impl Plan {
     #[must_use]
     pub fn energy_stages(&self) -> Option<usize> {
         self.stages.or(self.shift.map(|_| 1)).filter(|_| self.method == Method::Energy)
+    }
+}
+
+/// The length of a step, or what it follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepLength {
+    /// This length.
+    Given(f64),
+    /// The tolerance of the error of a step.
+    Found(f64),
+}
+
+impl Length<f64> for StepLength {
+    fn length<M: vi_core::Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+        self,
+        start: &Begun<S, N>,
+        method: &M,
+    ) -> Result<f64, StepError> {
+        match self {
+            Self::Given(h) => Ok(h),
+            Self::Found(tolerance) => Tolerance(tolerance).length(start, method),
+        }
     }
 }
 

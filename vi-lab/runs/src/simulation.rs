@@ -8,11 +8,11 @@
 
 use crate::counting::Counting;
 use crate::kind::SystemKind;
-use crate::plan::{DEFAULT_STAGES, Method, Plan, Shift, Start};
+use crate::plan::{DEFAULT_STAGES, Method, Plan, Shift, Start, StepLength};
 use crate::start;
 use core::cell::Cell;
 use vi_core::collocation::Collocation;
-use vi_core::run::{Crossing, Event, Moment};
+use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor, Event, Length as _, Moment};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
     Called, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime, Lagrangian, Run,
@@ -156,6 +156,13 @@ pub trait Simulation {
     /// The error of the failed step.
     fn cross(&mut self, section: &Section, end: f64, take: &mut dyn FnMut(Row)) -> Result<(), StepError>;
 
+    /// Measures errors of the steps from here on. It costs a few per cent of their time and changes no bit of them.
+    fn monitor(&mut self) {}
+    /// The largest error of a step since [`Simulation::monitor`], relative to the excursion of its coordinate.
+    fn largest_error(&self) -> Option<ErrorEstimate> {
+        None
+    }
+
     /// Time and H at which H is most accurate: at the node; for energy-preserving steps at the midpoint of the last
     /// one, since H deviates by h²D/8 at their nodes.
     ///
@@ -236,8 +243,8 @@ where
             K::begin(system, plan, (q, v), evaluations)
         }
         Method::Gauss => match (plan.stages.unwrap_or(DEFAULT_STAGES), plan.dtau) {
-            (4, None) => gauss::<S, N, 4>(system, state, plan.h, evaluations),
-            (8, None) => gauss::<S, N, 8>(system, state, plan.h, evaluations),
+            (4, None) => gauss::<S, N, 4>(system, state, plan.length(), evaluations),
+            (8, None) => gauss::<S, N, 8>(system, state, plan.length(), evaluations),
             (4, Some(dtau)) => scaled::<S, N, 4>(system, state, dtau, evaluations),
             (8, Some(dtau)) => scaled::<S, N, 8>(system, state, dtau, evaluations),
             (other, _) => Err(wrong_stages("4 or 8", other)),
@@ -268,9 +275,9 @@ where
     let state = State::at(&system, plan.t, q, v);
     let counting = Counting::new(system, evaluations);
     match plan.method.scheme() {
-        Some(scheme) => Ok(Simulated::boxed(counting.at_state(state).integrate(scheme, plan.h)?, evaluations)),
+        Some(scheme) => Ok(Simulated::boxed(counting.at_state(state).integrate(scheme, plan.length())?, evaluations)),
         None if plan.method == Method::Fixed => {
-            Ok(Simulated::boxed(counting.at_state(state).integrate(FixedStep, plan.h)?, evaluations))
+            Ok(Simulated::boxed(counting.at_state(state).integrate(FixedStep, plan.length())?, evaluations))
         }
         None => one_stage(system, plan, (q, v), evaluations),
     }
@@ -286,8 +293,9 @@ fn one_stage<'a, S, const N: usize>(
 where
     S: EnergyStepping<N> + 'a,
 {
-    let Plan { t, h, .. } = *plan;
+    let Plan { t, .. } = *plan;
     let counting = Counting::new(system, evaluations);
+    let h = plan.length().length(&counting.at_state(State::at(&system, t, q, v)), &EnergyPreserving)?;
     let integrator = match plan.start {
         Start::Midpoint => EnergyPreserving::from_midpoint(counting, t, q, v, h)?,
         Start::Points => {
@@ -325,7 +333,7 @@ fn energy<'a, S, const N: usize, const STAGES: usize>(
 where
     S: Collocation<N> + Convertible<N> + 'a,
 {
-    let integrator = Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.h)?;
+    let integrator = Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.length())?;
     let integrator = match plan.shift {
         None => integrator,
         Some(Shift::Of(shift)) => integrator.with_shift(shift)?,
@@ -367,7 +375,7 @@ where
 fn gauss<'a, S, const N: usize, const STAGES: usize>(
     system: S,
     state: State<N>,
-    h: f64,
+    h: StepLength,
     evaluations: &'a Cell<u64>,
 ) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
@@ -407,6 +415,7 @@ struct Simulated<'a, M: vi_core::Method<S, N>, S, const N: usize> {
     shifted: Option<Reading<M, S, N, ShiftedEnergy>>,
     /// Length of the last step, if it was shortened.
     shortened: Option<f64>,
+    monitor: Option<Box<ErrorMonitor<M, S, N>>>,
 }
 
 /// Relative deviation below which a length counts as the step of the run.
@@ -416,12 +425,22 @@ impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: u
     /// A run whose system counts its evaluations, and whose H is most accurate at the nodes.
     fn new(run: Run<M, S, N>, evaluations: &'a Cell<u64>) -> Self {
         let at_the_node = |run: &Run<M, S, N>| Ok((run.t(), run.energy()?));
-        Self { run, sampled_energy: at_the_node, evaluations, uncounted: None, shifted: None, shortened: None }
+        let sampled_energy = at_the_node;
+        Self { run, sampled_energy, evaluations, uncounted: None, shifted: None, shortened: None, monitor: None }
     }
 
     /// The same, type-erased.
     fn boxed(run: Run<M, S, N>, evaluations: &'a Cell<u64>) -> Box<dyn Simulation + 'a> {
         Box::new(Self::new(run, evaluations))
+    }
+
+    /// Shows the last step to the monitor, whose evaluations are not those of the run.
+    fn watch(&mut self) {
+        if let Some(monitor) = &mut self.monitor {
+            let before = self.evaluations.get();
+            monitor.watch(&self.run);
+            self.evaluations.set(before);
+        }
     }
 
     /// Adds the evaluations of the last step of a run.
@@ -464,6 +483,17 @@ impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: u
         self.shifted.map(|of| of(&self.run))
     }
 
+    fn monitor(&mut self) {
+        self.monitor = Some(Box::new(ErrorMonitor::new(&self.run)));
+    }
+
+    fn largest_error(&self) -> Option<ErrorEstimate> {
+        let before = self.evaluations.get();
+        let found = self.monitor.as_ref().map(|monitor| monitor.largest(&self.run));
+        self.evaluations.set(before);
+        found
+    }
+
     fn sampled_energy(&self) -> Result<(f64, f64), StepError> {
         (self.sampled_energy)(&self.run)
     }
@@ -472,6 +502,7 @@ impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: u
         self.run.single_step()?;
         self.count(&self.run);
         self.shortened = None;
+        self.watch();
         Ok(())
     }
 
@@ -485,10 +516,12 @@ impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: u
             let Some(ahead) = ahead.filter(|ahead| !is_beyond(ahead.time_to(end))) else {
                 self.run.end_at(end)?;
                 self.shortened = Some(left);
+                self.watch();
                 return Ok(());
             };
             self.run = ahead;
             self.count(&self.run);
+            self.watch();
         } else {
             self.advance()?;
         }

@@ -33,10 +33,12 @@ use shift::Wanted;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use vi_core::StepError;
+use vi_core::run::ErrorEstimate;
+use vi_report::catalogue::Catalogue;
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::interrupt::{Interrupt, Signal};
-use vi_report::numbers::short;
+use vi_report::numbers::{about, short};
 use vi_report::progress::Progress;
 use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift, Start};
 use vi_runs::simulation::{Row, Simulation};
@@ -121,6 +123,9 @@ pub(crate) struct Arguments {
     /// 3]
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
     pub(crate) h: Option<f64>,
+    /// Finds the step: the largest error of a step over the first oscillations, relative to the excursion of each coordinate
+    #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with_all = ["h", "dtau"])]
+    pub(crate) tolerance: Option<f64>,
     /// Number of steps, such as 1e6 [default: 1000]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) steps: Option<u64>,
@@ -165,8 +170,8 @@ trait Sink {
 ///
 /// # Errors
 /// Wrong input.
-pub(crate) fn start(arguments: &Arguments) -> Result<(Box<dyn System>, Plan), Failure> {
-    let request = Request::of(arguments)?;
+pub(crate) fn start(arguments: &Arguments, catalogue: &Catalogue) -> Result<(Box<dyn System>, Plan), Failure> {
+    let request = Request::of(arguments, catalogue)?;
     Ok((request.system, request.plan))
 }
 
@@ -183,8 +188,8 @@ pub(crate) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<
 ///
 /// # Errors
 /// Wrong input, a failed step, a failed file, a signal.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut request = Request::of(arguments)?;
+pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let mut request = Request::of(arguments, catalogue)?;
     resolution::check_times(&request.plan, request.length)?;
     let extent = Extent::of(&request)?;
     let evaluations = Cell::new(0);
@@ -199,6 +204,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Input(format!("the first node, at t = {}, is after --until", short(simulation.t()))));
     }
     let mut sinks = sinks(&request)?;
+    simulation.monitor();
     let interrupt = Interrupt::install().map_err(|error| Failure::file("signals", error))?;
     let mut course = RunLoop::new(&request, extent, &mut sinks);
     let outcome = course.follow(simulation.as_mut(), &|| interrupt.signal());
@@ -206,11 +212,33 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         // Standard error may be closed; the rows are complete.
         let _ = writeln!(io::stderr(), "{note}");
     }
+    if let Some(found) = simulation.largest_error().filter(|_| outcome.is_ok()) {
+        let _ = writeln!(io::stderr(), "{}", accuracy(&found, &request.system.coordinates()));
+    }
     // After any end, and if one output failed, each sink writes what it can.
     sinks.iter_mut().fold(outcome, |outcome, sink| match (outcome, sink.finish()) {
         (Err(first), Err(second)) => Err(Failure::both(first, second)),
         (outcome, finished) => outcome.and(finished),
     })
+}
+
+/// Above this error of a step, a run is a poor approximation.
+pub(crate) const POOR: f64 = 1e-3;
+
+/// A line about the largest error of a step.
+fn accuracy(found: &ErrorEstimate, coordinates: &[&str]) -> String {
+    let ErrorEstimate { estimate, t, coordinate } = *found;
+    let at = format!("at t = {}", about(t));
+    if estimate.is_infinite() {
+        return format!("warning: the step {at} is too long for its error to be measured; take shorter ones with --h");
+    }
+    let name = coordinates.get(coordinate).copied().unwrap_or_default();
+    let found = format!("the largest error of a step is {} of the excursion of {name}, {at}", about(estimate));
+    if estimate < POOR {
+        format!("note: {found}")
+    } else {
+        format!("warning: {found}; take shorter steps with --h, or --tolerance 1e-9")
+    }
 }
 
 /// The sinks of the request.
@@ -401,7 +429,7 @@ mod tests {
     fn followed(every: u64, fourth: Result<(), StepError>, signal: &dyn Fn() -> Option<Signal>) -> (Failure, Vec<f64>) {
         let target = Some("double-well".to_owned());
         let arguments = Arguments { target, steps: Some(9), every: Some(every), ..Arguments::default() };
-        let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
+        let request = Request::of(&arguments, &crate::ready()).unwrap_or_else(|failure| panic!("{failure}"));
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
         let kept = StoredRows::default();
         let mut sinks: [Box<dyn Sink>; 1] = [Box::new(kept.clone())];
@@ -428,7 +456,7 @@ mod tests {
     #[test]
     fn rows_without_an_energy_are_told() {
         let arguments = Arguments { target: Some("double-well".to_owned()), steps: Some(3), ..Arguments::default() };
-        let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
+        let request = Request::of(&arguments, &crate::ready()).unwrap_or_else(|failure| panic!("{failure}"));
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
         let note = |lost| {
             let mut course = RunLoop::new(&request, extent, &mut []);

@@ -6,11 +6,12 @@ use super::shift::Wanted;
 use crate::place;
 use crate::sweep::items::Items;
 use crate::sweep::scene::Sweep;
+use core::cell::Cell;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use vi_core::StepError;
-use vi_report::catalogue;
+use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::Failure;
 use vi_report::input::number;
 use vi_report::numbers::short;
@@ -162,8 +163,8 @@ impl Request {
     ///
     /// # Errors
     /// [`Failure::Input`] for the first wrong input.
-    pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
-        match (Self::read(arguments)?, arguments.item) {
+    pub(super) fn of(arguments: &Arguments, catalogue: &Catalogue) -> Result<Self, Failure> {
+        match (Self::read(arguments, catalogue)?, arguments.item) {
             ((request, None), None) | ((request, Some(_)), Some(_)) => Ok(request),
             ((_, None), Some(_)) => Err(Failure::Input("only a scene with [sweep] has an --item".to_owned())),
             ((_, Some(_)), None) => Err(Failure::Input(
@@ -176,9 +177,9 @@ impl Request {
     ///
     /// # Errors
     /// [`Failure::Input`] for the first wrong input, or if the scene has no sweep.
-    pub(crate) fn with_sweep(scene: &str) -> Result<(Self, Sweep), Failure> {
+    pub(crate) fn with_sweep(scene: &str, catalogue: &Catalogue) -> Result<(Self, Sweep), Failure> {
         let arguments = Arguments { target: Some(scene.to_owned()), ..Arguments::default() };
-        let (request, sweep) = Self::read(&arguments)?;
+        let (request, sweep) = Self::read(&arguments, catalogue)?;
         let none = || {
             Failure::Input(format!("{scene} is not a scene file with a table [sweep]; docs/cluster.md has an example"))
         };
@@ -186,15 +187,15 @@ impl Request {
     }
 
     /// The run of the arguments, and the sweep of the scene.
-    fn read(arguments: &Arguments) -> Result<(Self, Option<Sweep>), Failure> {
+    fn read(arguments: &Arguments, catalogue: &Catalogue) -> Result<(Self, Option<Sweep>), Failure> {
         let target = match &arguments.target {
             Some(target) => target.clone(),
-            None => catalogue::first_own()?.system.name().to_owned(),
+            None => catalogue.first_own()?.system.name().to_owned(),
         };
         let extension = Path::new(&target).extension();
         let is_scene = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
         let scene = if is_scene { Scene::read(&target)? } else { Scene::of_system(&target) };
-        let entry = catalogue::find(&scene.system)?;
+        let entry = catalogue.find(&scene.system)?;
         let mut system = entry.system;
         for (name, value) in &scene.parameters {
             set(system.as_mut(), name, *value)?;
@@ -234,6 +235,9 @@ impl Request {
         check_initial(system.as_ref(), &plan)?;
         if let Some(dtau) = options.dtau {
             scale_time(system.as_ref(), &mut plan, dtau)?;
+        }
+        if let Some(tolerance) = arguments.tolerance {
+            plan.h = found_step(system.as_ref(), &plan, tolerance)?;
         }
         let length = match (arguments.steps, arguments.until) {
             (None, None) => length(scene.steps, scene.until, &plan)?,
@@ -299,7 +303,7 @@ impl Options {
             stages: arguments.stages.or(scene.stages),
             shift: arguments.shift.or(scene.shift),
             fallback: arguments.fallback || scene.fallback.unwrap_or(false),
-            dtau: arguments.dtau.or(dtau),
+            dtau: arguments.dtau.or(dtau).filter(|_| arguments.tolerance.is_none()),
         }
     }
 
@@ -362,7 +366,7 @@ fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Fai
     let Some(g) = system.time_scale(&PhasePoint { t, q, v }) else {
         return Err(Failure::Input(format!(
             "{} has no time scale; use steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
-            catalogue::kebab(system.name())
+            kebab(system.name())
         )));
     };
     if !dtau.is_finite() || dtau == 0.0 {
@@ -374,6 +378,14 @@ fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Fai
     // A run reports an invalid g.
     plan.h = if g > 0.0 && g.is_finite() { g * dtau } else { dtau };
     Ok(())
+}
+
+/// The step whose error is the tolerance.
+fn found_step(system: &dyn System, plan: &Plan, tolerance: f64) -> Result<f64, Failure> {
+    let plan = Plan { tolerance: Some(tolerance), ..plan.clone() };
+    let evaluations = Cell::new(0);
+    let begun = system.begin(&plan, &evaluations).map_err(|error| Failure::start(error, &plan))?;
+    Ok(begun.h())
 }
 
 /// The requested shift: `auto` is measured over the run, or its first part.
@@ -396,7 +408,7 @@ fn set(system: &mut dyn System, name: &str, value: f64) -> Result<(), Failure> {
     }
     let names: Vec<String> = system.parameters().iter().map(|(name, _)| format!("`{name}`")).collect();
     let known = if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
-    Err(Failure::Input(format!("{} has no parameter `{name}`; {known}", catalogue::kebab(system.name()))))
+    Err(Failure::Input(format!("{} has no parameter `{name}`; {known}", kebab(system.name()))))
 }
 
 /// The parts of `NAME=VALUE`.
@@ -439,7 +451,7 @@ fn check_initial(system: &dyn System, plan: &Plan) -> Result<(), Failure> {
         if values.len() != coordinates.len() {
             return Err(Failure::Input(format!(
                 "{} has the coordinates {}: give as many {what}, not {}",
-                catalogue::kebab(system.name()),
+                kebab(system.name()),
                 coordinates.join(", "),
                 values.len()
             )));
@@ -494,11 +506,11 @@ mod tests {
     }
 
     fn message(arguments: &Arguments) -> String {
-        Request::of(arguments).err().map_or_else(String::new, |failure| failure.to_string())
+        Request::of(arguments, &crate::ready()).err().map_or_else(String::new, |failure| failure.to_string())
     }
 
     fn plan_of(arguments: &Arguments) -> Plan {
-        Request::of(arguments).map_or_else(|failure| panic!("{failure}"), |request| request.plan)
+        Request::of(arguments, &crate::ready()).map_or_else(|failure| panic!("{failure}"), |request| request.plan)
     }
 
     #[test]
@@ -604,7 +616,8 @@ mod tests {
 
     #[test]
     fn defaults_come_from_the_catalogue() {
-        let request = Request::of(&arguments("double-well")).unwrap_or_else(|failure| panic!("{failure}"));
+        let request =
+            Request::of(&arguments("double-well"), &crate::ready()).unwrap_or_else(|failure| panic!("{failure}"));
         assert_eq!(request.columns(), ["t", "q", "p_q", "H", "E", "h"]);
         assert_eq!((request.every, request.output), (1, Output::Standard));
         assert_eq!((request.plan.h, request.plan.method), (0.01, Method::Fixed));
@@ -620,7 +633,7 @@ mod tests {
 
     #[test]
     fn a_system_without_a_rule_gets_the_names_of_its_methods() {
-        let system = vi_runs::ready::Entry::with_gauss_only::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
+        let system = vi_runs::entry::Entry::with_gauss_only::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
         let of = |method, stages| {
             let arguments = Arguments { method: Some(method), stages, ..arguments("kepler") };
             check_rule(system.as_ref(), method, &Options::of(&arguments, &Scene::default()))

@@ -20,13 +20,13 @@
 //! A table `[sweep]` makes it many runs: see `sweep/scene.rs`.
 
 use super::shift::{self, Wanted};
+use crate::entries::{choice, count};
 use crate::place;
 use crate::sweep::scene::Sweep;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use vi_report::failure::Failure;
-use vi_report::input::count_of_scene;
 use vi_runs::plan::{Method, Start};
 
 /// The entries of a scene file.
@@ -37,11 +37,13 @@ pub(super) struct Scene {
     #[serde(default)]
     pub(super) system: String,
     /// Integrator.
+    #[serde(default, deserialize_with = "choice")]
     pub(super) method: Option<Method>,
     /// First interval of the energy-preserving integrator.
+    #[serde(default, deserialize_with = "choice")]
     pub(super) start: Option<Start>,
     /// Stages of a Gauss step, or of an energy-preserving one.
-    #[serde(default, deserialize_with = "count_of_scene")]
+    #[serde(default, deserialize_with = "count")]
     pub(super) stages: Option<u64>,
     /// Shift of energy-preserving steps.
     #[serde(default, deserialize_with = "shift::of_scene")]
@@ -53,12 +55,12 @@ pub(super) struct Scene {
     /// Step.
     pub(super) h: Option<f64>,
     /// Number of steps.
-    #[serde(default, deserialize_with = "count_of_scene")]
+    #[serde(default, deserialize_with = "count")]
     pub(super) steps: Option<u64>,
     /// End of the run.
     pub(super) until: Option<f64>,
     /// Interval between written nodes.
-    #[serde(default, deserialize_with = "count_of_scene")]
+    #[serde(default, deserialize_with = "count")]
     pub(super) every: Option<u64>,
     /// Initial time.
     pub(super) t: Option<f64>,

@@ -180,10 +180,10 @@ impl fmt::Display for Axis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vi_report::catalogue;
+    use crate::ready;
 
     fn axis(over: Over) -> Result<Axis, String> {
-        let entry = catalogue::find("kepler").unwrap_or_else(|failure| panic!("{failure}"));
+        let entry = ready().find("kepler").unwrap_or_else(|failure| panic!("{failure}"));
         let over = Over { name: "x".to_owned(), ..over };
         Axis::of(&over, 2, entry.system.as_ref()).map_err(|failure| failure.to_string())
     }

@@ -101,11 +101,11 @@ impl Items {
 mod tests {
     use super::super::random::uniform;
     use super::*;
-    use vi_report::catalogue;
+    use crate::ready;
 
     fn items(text: &str) -> Result<Items, String> {
         let sweep: Sweep = toml::from_str(text).map_err(|error| error.message().to_owned())?;
-        let entry = catalogue::find("kepler").unwrap_or_else(|failure| panic!("{failure}"));
+        let entry = ready().find("kepler").unwrap_or_else(|failure| panic!("{failure}"));
         Items::of(&sweep, entry.system.as_ref()).map_err(|failure| failure.to_string())
     }
 
@@ -171,7 +171,7 @@ mod tests {
             ),
             (
                 "over = [{ name = \"x\", values = [1] }]\nkeep = [\"energies\"]",
-                "unknown variant `energies`, expected one of `ending`, `end`",
+                "unknown variant `energies`, expected one of `ending`, `accuracy`, `end`",
             ),
             ("colour = 1", "unknown field `colour`, expected one of `over`, `samples`, `seed`, `keep`, `section`"),
         ] {

@@ -13,6 +13,9 @@ use vi_runs::simulation::{Direction, Row, Section};
 /// Minimum number of steps in a period, so that no crossing is missed.
 pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;
 
+/// The column with the largest error of a step.
+pub(super) const STEP_ERROR: &str = "step_error";
+
 /// The results kept.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Kept {
@@ -46,6 +49,9 @@ impl Kept {
         let mut runs: Vec<Column> = core::iter::once(item()).chain(swept.map(Column::number)).collect();
         if self.has(Keep::Ending) {
             runs.extend([Column::words("ending", &Ending::WORDS), Column::count("steps")]);
+        }
+        if self.has(Keep::Accuracy) {
+            runs.push(Column::number(STEP_ERROR));
         }
         let rows = Row::columns(coordinates, self.is_shifted);
         if self.has(Keep::End) {

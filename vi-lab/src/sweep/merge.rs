@@ -2,8 +2,10 @@
 //!
 //! The rows are in the order of the runs. So the tables have the same bytes for any division of the sweep.
 
-use super::chunks::Chunks;
+use super::chunks::{Chunks, Description};
+use super::keep::STEP_ERROR;
 use super::sink::{Format, Target};
+use crate::run::POOR;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use vi_report::failure::Failure;
@@ -58,22 +60,65 @@ pub(super) fn write(first: &Chunks, folders: &[Chunks], output: &Path) -> Result
     for schema in &description.schemas {
         targets.push(Target::create(output, description, schema)?);
     }
-    let mut failed = 0;
+    let mut tally = Tally::of(description, description.items);
     for number in 0..chunks {
-        failed += source(&number).unwrap_or(first).read(number, &mut |table, row| targets[table].write(row))?;
+        let chunk = source(&number).unwrap_or(first);
+        tally.failed += chunk.read(number, &mut |table, row| {
+            tally.inaccurate.count(table, row);
+            targets[table].write(row)
+        })?;
     }
     // All or none: no table is replaced before all are on disk.
     let files = targets.into_iter().map(Target::finish).collect::<Result<Vec<_>, _>>()?;
     for (path, file) in files {
         file.finish().map_err(|error| Failure::file(path, error))?;
     }
-    Ok(summary(output, description.items, failed))
+    Ok(tally.summary(output))
 }
 
-/// The last line of output.
-pub(super) fn summary(path: &Path, runs: u64, failed: u64) -> String {
-    let ended =
-        if failed == 0 { "all reached their end".to_owned() } else { format!("{failed} did not reach their end") };
-    let runs = if runs == 1 { "1 run".to_owned() } else { format!("{runs} runs") };
-    format!("{}: {runs}, {ended}", path.display())
+/// The numbers of runs, of failed runs and of inaccurate runs.
+pub(super) struct Tally {
+    runs: u64,
+    /// Those that did not reach their end.
+    pub(super) failed: u64,
+    pub(super) inaccurate: Inaccurate,
+}
+
+/// Runs with a step whose error exceeds [`POOR`].
+pub(super) struct Inaccurate {
+    /// The column with the largest error of a step.
+    column: Option<usize>,
+    runs: u64,
+}
+
+impl Inaccurate {
+    /// Counts the row of a run.
+    pub(super) fn count(&mut self, table: usize, row: &[f64]) {
+        let error = self.column.filter(|_| table == 0).and_then(|column| row.get(column));
+        self.runs += u64::from(error.is_some_and(|error| *error > POOR));
+    }
+}
+
+impl Tally {
+    /// No failed runs yet, of this number.
+    pub(super) fn of(description: &Description, runs: u64) -> Self {
+        let columns = description.schemas.first().map(|schema| &schema.columns);
+        let column = columns.and_then(|columns| columns.iter().position(|column| column.name == STEP_ERROR));
+        Self { runs, failed: 0, inaccurate: Inaccurate { column, runs: 0 } }
+    }
+
+    /// The last line of output.
+    pub(super) fn summary(&self, path: &Path) -> String {
+        let Self { runs, failed, inaccurate, .. } = self;
+        let ended = match failed {
+            0 => "all reached their end".to_owned(),
+            _ => format!("{failed} did not reach their end"),
+        };
+        let warning = match inaccurate.runs {
+            0 => String::new(),
+            poor => format!("; warning: {poor} have a step with an error above {POOR}, see `{STEP_ERROR}`"),
+        };
+        let runs = if *runs == 1 { "1 run".to_owned() } else { format!("{runs} runs") };
+        format!("{}: {runs}, {ended}{warning}", path.display())
+    }
 }

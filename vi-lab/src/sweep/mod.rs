@@ -32,12 +32,14 @@ mod study;
 use crate::place::{sync_folder, with_extension};
 use chunks::Chunks;
 use clap::Args;
+use merge::Tally;
 use shard::Shard;
 use sink::Format;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::{env, fs, slice};
 use study::Study;
+use vi_report::catalogue::Catalogue;
 use vi_report::failure::Failure;
 
 /// The command line of `vi-lab sweep`.
@@ -46,7 +48,8 @@ use vi_report::failure::Failure;
 Scene: the entries of a run, and a table [sweep]: `over`, the quantities that vary from run to run; `samples` and `seed` for random ones; `keep`; `section`. \
 docs/cluster.md describes them.
 
-Columns: item, the number of the run; the quantities of `over`; with keep = [\"ending\"] ending and steps; \"end\" the last node as end_t, end_ coordinates and momenta, end_H, end_E, \
+Columns: item, the number of the run; the quantities of `over`; with keep = [\"ending\"] ending and steps; \"accuracy\" step_error, \
+the largest error of a step relative to the motion of its coordinate; \"end\" the last node as end_t, end_ coordinates and momenta, end_H, end_E, \
 end_h; \"extremes\" min_ and max_ of the coordinates and of H over all nodes; \"energy\" error_H and error_E, the largest deviations of H and E from their first values. \
 \"series\" writes FILE.series.csv with every Nth node of each run (`every` of the scene), `section` FILE.section.csv with its crossings; both begin with the item. `vi-lab run \
 SCENE --item K` computes run K only.
@@ -72,10 +75,10 @@ pub(crate) struct Arguments {
 ///
 /// # Errors
 /// [`Failure::Input`] for wrong input, [`Failure::File`] if a file cannot be read or written, [`Failure::Interrupted`] after a signal.
-pub(crate) fn sweep(arguments: &Arguments) -> Result<String, Failure> {
+pub(crate) fn sweep(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let Arguments { scene, output, shard } = arguments;
     let shard = Shard::of(shard.as_deref(), |name| env::var(name).ok())?;
-    let study = Study::read(scene)?;
+    let study = Study::read(scene, catalogue)?;
     Format::of(output)?;
     let folder = with_extension(output, "part");
     let chunks = Arc::new(Chunks::resume(&folder, study.description(), shard.is_none())?);
@@ -84,9 +87,14 @@ pub(crate) fn sweep(arguments: &Arguments) -> Result<String, Failure> {
     if shard.is_some() {
         sync_folder(&folder);
         let runs = chunks.description.runs(&numbers);
-        let mut numbers = numbers;
-        let failed = numbers.try_fold(0, |sum, number| Ok(sum + chunks.read(number, &mut |_, _| Ok(()))?))?;
-        return Ok(merge::summary(&folder, runs.end - runs.start, failed));
+        let mut tally = Tally::of(&chunks.description, runs.end - runs.start);
+        for number in numbers {
+            tally.failed += chunks.read(number, &mut |table, row| {
+                tally.inaccurate.count(table, row);
+                Ok(())
+            })?;
+        }
+        return Ok(tally.summary(&folder));
     }
     let summary = merge::write(&chunks, slice::from_ref(&*chunks), output)?;
     // Chunks are removed after the tables are on disk.

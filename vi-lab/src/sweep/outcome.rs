@@ -21,6 +21,8 @@ pub(super) struct Member {
     pub(super) every: u64,
     /// Whether the ranges of coordinates and energies are kept.
     pub(super) is_watched: bool,
+    /// Whether the errors of its steps are measured.
+    pub(super) is_measured: bool,
 }
 
 /// The result of a run.
@@ -31,6 +33,8 @@ pub(super) struct Outcome {
     last: Option<Row>,
     /// The ranges of each coordinate, of H and of E; `None` without values.
     ranges: Vec<Option<Range>>,
+    /// The largest error of a step, relative to the excursion of its coordinate; NaN if it was not measured.
+    pub(super) step_error: f64,
 }
 
 /// First, smallest and largest value of a quantity: NaN once one of its values is NaN.
@@ -54,11 +58,14 @@ fn extreme(of: f64, value: f64, choose: impl Fn(f64, f64) -> f64) -> f64 {
 }
 
 impl Outcome {
+    /// Of a run that did not start.
+    const NONE: Self =
+        Self { ending: Ending::WRONG_INPUT, steps: 0, last: None, ranges: Vec::new(), step_error: f64::NAN };
+
     /// Computes a run. Shows its first node, every `every`-th, and the last.
     pub(super) fn of(member: &Member, show: &mut dyn FnMut(&dyn Simulation)) -> Self {
         let Member { system, plan, length, .. } = member;
-        let mut outcome =
-            Self { ending: Ending::WRONG_INPUT, steps: 0, last: None, ranges: vec![None; plan.q.len() + 2] };
+        let mut outcome = Self { ranges: vec![None; plan.q.len() + 2], ..Self::NONE };
         if run::check(system.as_ref(), plan, *length).is_err() {
             return outcome;
         }
@@ -66,8 +73,12 @@ impl Outcome {
         match system.begin(plan, &evaluations) {
             Ok(simulation) if length.is_before(simulation.as_ref()) => {}
             Ok(mut simulation) => {
+                if member.is_measured {
+                    simulation.monitor();
+                }
                 outcome.ending = outcome.follow(member, simulation.as_mut(), show);
                 outcome.last = Some(simulation.row());
+                outcome.step_error = simulation.largest_error().map_or(f64::NAN, |largest| largest.estimate);
             }
             Err(error) => outcome.ending = Ending::of(error),
         }
@@ -168,7 +179,7 @@ mod tests {
     #[test]
     fn a_value_that_is_lost_is_not_left_out() {
         let mut range = None;
-        let mut outcome = Outcome { ending: Ending::REACHED, steps: 0, last: None, ranges: vec![None; 3] };
+        let mut outcome = Outcome { ranges: vec![None; 3], ..Outcome::NONE };
         assert!(outcome.errors().chain(outcome.extremes()).all(f64::is_nan));
         for value in [2.0, 5.0, -1.5, 3.0] {
             Range::push(&mut range, value);

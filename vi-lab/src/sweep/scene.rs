@@ -9,12 +9,12 @@
 //! ]
 //! samples = 100                                                # runs for each point of the grid, where something is random
 //! seed = 1
-//! keep = ["ending", "end", "extremes", "energy", "series"]     # without it, the first two
+//! keep = ["ending", "accuracy", "end", "extremes", "energy", "series"]     # without it, the first three
 //! section = { coordinate = "y", at = 0.0, direction = "rising" }   # or { period = 6.28 }
 //! ```
 
+use crate::entries::count;
 use serde::Deserialize;
-use vi_report::input::count_of_scene;
 
 /// The entries of the table.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -22,7 +22,7 @@ use vi_report::input::count_of_scene;
 pub(crate) struct Sweep {
     pub(super) over: Vec<Over>,
     /// Runs for each point of the grid.
-    #[serde(default, deserialize_with = "count_of_scene")]
+    #[serde(default, deserialize_with = "count")]
     pub(super) samples: Option<u64>,
     #[serde(default)]
     pub(super) seed: u64,
@@ -46,7 +46,7 @@ pub(crate) struct Over {
     pub(super) values: Option<Vec<f64>>,
     pub(super) from: Option<f64>,
     pub(super) to: Option<f64>,
-    #[serde(default, deserialize_with = "count_of_scene")]
+    #[serde(default, deserialize_with = "count")]
     pub(super) count: Option<u64>,
     pub(super) spacing: Option<Spacing>,
     /// Lowest and highest value.
@@ -71,6 +71,8 @@ pub(crate) enum Spacing {
 pub(crate) enum Keep {
     /// The kind of end, and the number of steps.
     Ending,
+    /// The largest error of a step.
+    Accuracy,
     /// The last node.
     End,
     /// Smallest and largest values of the coordinates and of H.
@@ -101,5 +103,5 @@ pub(crate) enum Passing {
 }
 
 fn default_keep() -> Vec<Keep> {
-    vec![Keep::Ending, Keep::End]
+    vec![Keep::Ending, Keep::Accuracy, Keep::End]
 }

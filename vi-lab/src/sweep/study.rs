@@ -7,7 +7,7 @@ use super::keep::Kept;
 use super::outcome::{Member, Outcome};
 use super::scene::Keep;
 use crate::run::{Length, Request, method};
-use vi_report::catalogue;
+use vi_report::catalogue::Catalogue;
 use vi_report::failure::Failure;
 use vi_report::machine::VERSION;
 use vi_report::numbers::{about, assigned, short};
@@ -26,6 +26,8 @@ pub(super) struct Study {
     request: Request,
     items: Items,
     kept: Kept,
+    /// Fingerprint of the declarations of all systems.
+    sources: u64,
 }
 
 impl Study {
@@ -33,12 +35,13 @@ impl Study {
     ///
     /// # Errors
     /// [`Failure::Input`] for the first wrong entry.
-    pub(super) fn read(scene: &str) -> Result<Self, Failure> {
-        let (request, sweep) = Request::with_sweep(scene)?;
+    pub(super) fn read(scene: &str, catalogue: &Catalogue) -> Result<Self, Failure> {
+        let (request, sweep) = Request::with_sweep(scene, catalogue)?;
         let items = Items::of(&sweep, request.system.as_ref())?;
         let coordinates = request.system.coordinates();
         let kept = Kept::of(&sweep, &coordinates, &request.plan)?;
-        let study = Self { request, items, kept };
+        let sources = fingerprint(&catalogue.sources().collect::<Vec<_>>());
+        let study = Self { request, items, kept, sources };
         study.check_series()?;
         Ok(study)
     }
@@ -72,11 +75,10 @@ impl Study {
             Length::Steps(steps) => format!("{steps} steps"),
             Length::Until(end) => format!("until t = {}", short(*end)),
         };
-        let sources = fingerprint(&catalogue::sources().collect::<Vec<_>>());
         let facts = [
             ("vi-lab", VERSION.to_owned()),
             ("system", system.name().to_owned()),
-            ("sources", format!("{sources:016x}")),
+            ("sources", format!("{:016x}", self.sources)),
             ("parameters", assigned(&system.parameters())),
             ("method", method::in_words(plan)),
             ("step", format!("h = {}", short(plan.h))),
@@ -120,6 +122,9 @@ impl Study {
         if self.kept.has(Keep::Ending) {
             runs.extend([outcome.ending.number(), outcome.steps as f64]);
         }
+        if self.kept.has(Keep::Accuracy) {
+            runs.push(outcome.step_error);
+        }
         if self.kept.has(Keep::End) {
             runs.extend(outcome.end(self.request.columns().len()));
         }
@@ -139,6 +144,7 @@ impl Study {
         let mut plan = plan.clone();
         self.items.set(item, system.as_mut(), &mut plan);
         let is_watched = self.kept.has(Keep::Extremes) || self.kept.has(Keep::Energy);
-        Member { system, plan, length: *length, every: *every, is_watched }
+        let is_measured = self.kept.has(Keep::Accuracy);
+        Member { system, plan, length: *length, every: *every, is_watched, is_measured }
     }
 }

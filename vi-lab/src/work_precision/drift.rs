@@ -160,12 +160,12 @@ fn run_rival(task: &Task<'_>, evaluations: &Cell<u64>, watch: &mut MaximumError<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vi_report::catalogue;
+    use crate::ready;
 
     #[test]
     fn kepler_drifts_with_the_rival_and_not_with_fixed_steps() {
         let start = PhasePoint { t: 0.0, q: vec![0.4, 0.0], v: vec![0.0, 2.0] };
-        let system = catalogue::find("kepler").expect("the system").system;
+        let system = ready().find("kepler").expect("the system").system;
         let found = all(system.as_ref(), &start, 0.005, 600.0, None, &mut Progress::new(8)).expect("an energy");
         for drift in &found {
             let (t, error) = drift.last().expect("points");

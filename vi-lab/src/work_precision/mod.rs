@@ -27,7 +27,7 @@ use clap::Args;
 use method::Method;
 use std::path::PathBuf;
 use study::Findings;
-use vi_report::catalogue;
+use vi_report::catalogue::{Catalogue, kebab, with_rule};
 use vi_report::failure::Failure;
 use vi_report::html::escape;
 use vi_report::input::number;
@@ -35,7 +35,7 @@ use vi_report::machine::Machine;
 use vi_report::numbers::scientific;
 use vi_report::page::{Page, Report};
 use vi_report::progress::Progress;
-use vi_runs::ready::Entry;
+use vi_runs::entry::Entry;
 
 /// `vi-lab work-precision SYSTEM`.
 #[derive(Debug, Args)]
@@ -64,10 +64,10 @@ pub(crate) struct Arguments {
 /// # Errors
 /// [`Failure::Input`] for an unknown system, a motion that cannot be computed, or if no method can be compared.
 /// [`Failure::File`] if a file cannot be written.
-pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
+pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let machine = Machine::here();
-    let entry = catalogue::with_rule(entry(arguments)?, "work-precision")?;
-    let name = catalogue::kebab(entry.system.name());
+    let entry = with_rule(entry(arguments, catalogue)?, "work-precision")?;
+    let name = kebab(entry.system.name());
     let external = arguments.rival.as_deref().map(|file| elsewhere::runs(file, &name)).transpose()?;
     let page = Page::new(&format!("Error against work: {name}"), entry.about);
     let mut report = Report::new(&arguments.out, page)?;
@@ -98,9 +98,9 @@ pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
     }
 }
 
-/// The entry of the system with the requested initial state.
-fn entry(arguments: &Arguments) -> Result<Entry, Failure> {
-    let entry = catalogue::named(arguments.system.as_deref())?;
+/// The entry of the system, with the requested initial state.
+fn entry(arguments: &Arguments, catalogue: &Catalogue) -> Result<Entry, Failure> {
+    let entry = catalogue.named(arguments.system.as_deref())?;
     let q = arguments.q.clone().unwrap_or(entry.q);
     let v = arguments.v.clone().unwrap_or(entry.v);
     for (what, values) in [("coordinates (--q)", &q), ("velocities (--v)", &v)] {

@@ -115,12 +115,12 @@ fn distance(one: &[f64], other: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vi_report::catalogue;
+    use crate::ready;
 
     #[test]
     fn the_reference_is_the_closed_form() {
         let start = PhasePoint { t: 0.0, q: vec![1.0], v: vec![0.0] };
-        let system = catalogue::find("damped-oscillator").expect("the system").system;
+        let system = ready().find("damped-oscillator").expect("the system").system;
         let reference = Reference::new(system.as_ref(), &start, 40.0).expect("a motion");
         let agreement = reference.agreement(0.02).expect("runs");
         let decay = 0.02_f64;
@@ -132,7 +132,7 @@ mod tests {
         assert!(error < 4e-14 && error < agreement.floor(), "{error:e}, {agreement:?}");
 
         let start = PhasePoint { t: 0.0, q: vec![0.4, 0.0], v: vec![0.0, 2.0] };
-        let system = catalogue::find("kepler").expect("the system").system;
+        let system = ready().find("kepler").expect("the system").system;
         let reference = Reference::new(system.as_ref(), &start, 20.0).expect("a motion");
         let agreement = reference.agreement(0.01).expect("runs");
         // a = 1, e = 0.6: M = E − e sin E, x = cos E − e, y = √(1 − e²) sin E.

@@ -9,8 +9,8 @@ use super::reference::{Agreement, Reference};
 use core::cell::Cell;
 use vi_report::numbers::{median, order};
 use vi_report::progress::Progress;
+use vi_runs::entry::Entry;
 use vi_runs::plan::PhasePoint;
-use vi_runs::ready::Entry;
 use vi_runs::rival::Ended;
 use vi_runs::system::System;
 
@@ -204,11 +204,11 @@ const FITTED: f64 = 2.9;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ready;
     use vi_core::StepError;
-    use vi_report::catalogue;
 
     fn quick(name: &str, q: &[f64]) -> Findings {
-        let entry = catalogue::find(name).expect("the system");
+        let entry = ready().find(name).expect("the system");
         let entry = Entry { q: q.to_vec(), v: vec![0.0; q.len()], ..entry };
         findings(&entry, true, &mut Progress::new(length(&entry, true))).unwrap_or_else(|error| panic!("{error}"))
     }

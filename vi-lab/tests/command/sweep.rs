@@ -624,7 +624,7 @@ fn values_that_no_run_can_have_are_recorded() {
         text.lines().filter(|line| !line.starts_with('#')).skip(1).filter_map(|line| line.split(',').nth(3)).collect();
     let wrong = "wrong input";
     assert_eq!((endings[0], &endings[2..]), ("reached its end", [wrong; 6].as_slice()), "{text}");
-    assert!(text.contains("\n7,1e-300,0.0,wrong input,0,,,,,,,,\n"), "{text}");
+    assert!(text.contains("\n7,1e-300,0.0,wrong input,0,,,,,,,,,\n"), "{text}");
 }
 
 /// Submits the shards of a sweep to a server and a worker of HyperQueue, and waits for them.
@@ -694,5 +694,31 @@ fn parquet_holds_the_rows_of_csv() {
         }
         let csv = folder.text(&format!("a{table}.csv"));
         assert_eq!(lines, csv.lines().filter(|line| !line.starts_with('#')).collect::<Vec<_>>(), "{table}");
+    }
+}
+
+/// Steps that are too long reach the end of their run all the same: the summary says so.
+#[test]
+fn runs_whose_steps_are_too_long_are_counted() {
+    let scene = |h: &str| {
+        format!(
+            "system = \"kepler\"\nmethod = \"gauss\"\nh = {h}\nuntil = 6.0\n[sweep]\nover = [{{ name = \"v_y\", values = [0.8, 0.9, 2.0] }}]\n"
+        )
+    };
+    for (h, warning) in [("0.1", "; warning: 2 have a step with an error above 0.001, see `step_error`"), ("0.01", "")]
+    {
+        let folder = Folder::new(&format!("accuracy-{h}"), &scene(h));
+        let (status, summary, errors) = lab(&["sweep", &folder.scene(), "-o", &folder.at("runs.csv")]);
+        assert_eq!(status, Some(0), "{errors}");
+        assert!(summary.trim_end().ends_with(&format!("3 runs, all reached their end{warning}")), "{summary}");
+        let text = folder.text("runs.csv");
+        assert!(text.contains("\nitem,v_y,ending,steps,step_error,end_t,"), "{text}");
+        let errors: Vec<f64> = text
+            .lines()
+            .filter(|line| line.contains("reached its end"))
+            .map(|line| line.split(',').nth(4).and_then(|entry| entry.parse().ok()).expect("a number"))
+            .collect();
+        println!("h = {h}: {errors:?}");
+        assert!(errors.len() == 3 && errors.iter().all(|error| *error > 0.0), "{text}");
     }
 }

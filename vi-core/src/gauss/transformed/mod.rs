@@ -6,11 +6,13 @@
 //! | `rates` | what is remembered of the last step, from which the next one is guessed |
 //! | `path` | the motion between the nodes of a step |
 //! | `rounding` | whether stages that stall are solved, by running error analysis |
+//! | `variation` | how a solved step varies |
 
 mod equations;
 mod path;
 mod rates;
 mod rounding;
+mod variation;
 
 use super::newton::{Linearization, Newton};
 use super::points::Rare;

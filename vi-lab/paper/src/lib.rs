@@ -1,4 +1,4 @@
-//! `vi-lab paper`: the numerical study of the paper (section 5), run again.
+//! The commands `paper` and `vi-lab paper`: the numerical study of the paper (section 5), run again.
 //!
 //! In: how long the long runs are, and a folder. Out: in the folder a page `index.html`, and for every figure and table
 //! an SVG and a CSV file; as text, what each claim of the paper became. Every number of the page is computed in the run,
@@ -11,11 +11,11 @@ mod conservative;
 mod errata;
 mod forced;
 mod law;
-pub(super) mod raw;
 mod theory;
 
 use book::Book;
-use std::path::Path;
+use clap::Parser;
+use std::path::PathBuf;
 use vi_core::StepError;
 use vi_report::failure::Failure;
 use vi_report::input::count;
@@ -23,33 +23,38 @@ use vi_report::machine::Machine;
 use vi_report::progress::Progress;
 
 /// Steps of the long runs.
-pub const STEPS: u32 = 1_000_000;
+const STEPS: u32 = 1_000_000;
 /// Fewer show nothing.
 const SHORTEST: u32 = 1000;
+
+/// Makes every figure and table of the paper's numerical study, with this project's numbers beside the paper's
+#[derive(Clone, Debug, Parser)]
+#[command(name = "paper", version, max_term_width = 100)]
+pub struct Study {
+    /// Folder for the page, its figures (SVG) and their data (CSV)
+    #[arg(long, value_name = "DIR", default_value = "paper")]
+    out: PathBuf,
+    /// Length of the long runs
+    #[arg(long, value_name = "N", default_value_t = STEPS, value_parser = steps)]
+    steps: u32,
+}
 
 /// The number of steps that a user writes.
 ///
 /// # Errors
 /// What is allowed, where the text is no such number.
-pub fn steps(text: &str) -> Result<u32, String> {
+fn steps(text: &str) -> Result<u32, String> {
     let steps = u32::try_from(count(text)?).ok().filter(|steps| *steps >= SHORTEST);
     steps.ok_or_else(|| format!("the study needs {SHORTEST} to {} steps", u32::MAX))
 }
 
-/// How large the study is.
-#[derive(Clone, Copy, Debug)]
-pub struct Study {
-    /// Steps of the long runs.
-    pub steps: u32,
-}
-
-/// Makes the page and its files in `out`, and returns the summary.
+/// Makes the page and its files, and returns the summary.
 ///
 /// # Errors
 /// [`Failure::File`] where a file cannot be written, [`Failure::Step`] where a step fails that must not.
-pub fn write(out: &Path, study: Study) -> Result<String, Failure> {
+pub fn write(study: &Study) -> Result<String, Failure> {
     let machine = Machine::here();
-    let mut book = Book::new(out)?;
+    let mut book = Book::new(&study.out)?;
     {
         // Two long runs of each of the four cases make almost all of the work.
         let mut progress = Progress::new(8 * u64::from(study.steps));
@@ -70,7 +75,7 @@ fn unexpected(what: &str) -> impl Fn(StepError) -> Failure {
     move |error| Failure::Step { error: Box::new(error), before: before.clone(), advice: None }
 }
 
-fn introduction(book: &mut Book, study: Study) {
+fn introduction(book: &mut Book, study: &Study) {
     book.prose(
         "The paper derives variational integrators for forced Lagrangian systems in which time is a discrete variable of \
          its own: one step solves the momentum equation and the energy equation together, and so finds its own length. \
@@ -94,7 +99,8 @@ mod tests {
     #[test]
     fn a_small_study_makes_every_file_and_reproduces_every_claim() {
         let folder = std::env::temp_dir().join(format!("vi-lab-paper-{}", std::process::id()));
-        let summary = write(&folder, Study { steps: 3000 }).unwrap_or_else(|failure| panic!("{failure}"));
+        let study = Study { out: folder.clone(), steps: 3000 };
+        let summary = write(&study).unwrap_or_else(|failure| panic!("{failure}"));
         assert!(!summary.contains("not reproduced"), "{summary}");
         let page = fs::read_to_string(folder.join("index.html")).expect("the page");
         let files: Vec<String> =

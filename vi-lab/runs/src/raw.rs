@@ -12,7 +12,7 @@ use vi_core::{DiscreteLagrangian, EnergyPreserving, Interval, Run, SVector, Stat
 
 /// What the equations are solved for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Unknowns {
+pub enum Unknowns {
     /// `(q1, t1)`, as the paper does.
     Points,
     /// `(v, h)`, for the midpoint rule and systems free of t.
@@ -21,29 +21,24 @@ pub(crate) enum Unknowns {
 
 /// A node with the discrete energy recomputed from it, and the interval that led to it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RawNode {
+pub struct RawNode {
     /// Time, coordinate, momentum.
-    pub(crate) state: State<1>,
+    pub state: State<1>,
     /// Discrete energy.
-    pub(crate) energy: f64,
+    pub energy: f64,
     h: f64,
     v: f64,
 }
 
 impl RawNode {
     /// The node that an integrator starts from.
-    pub(crate) fn first<S: EnergyStepping<1> + DiscreteLagrangian<1>>(
-        integrator: &Run<EnergyPreserving, S, 1>,
-    ) -> Self {
+    #[must_use]
+    pub fn first<S: EnergyStepping<1> + DiscreteLagrangian<1>>(integrator: &Run<EnergyPreserving, S, 1>) -> Self {
         Self { state: integrator.state(), energy: integrator.node().energy, h: integrator.h(), v: integrator.v().x }
     }
 
     /// The next node; none where there is no step, or the iteration leaves the numbers.
-    pub(crate) fn next<S: EnergyStepping<1> + DiscreteLagrangian<1>>(
-        &self,
-        system: &S,
-        unknowns: Unknowns,
-    ) -> Option<Self> {
+    pub fn next<S: EnergyStepping<1> + DiscreteLagrangian<1>>(&self, system: &S, unknowns: Unknowns) -> Option<Self> {
         let guess = EnergyPreserving::from_state(system, self.state, self.energy, self.h, [self.v])
             .ok()?
             .detailed_step()

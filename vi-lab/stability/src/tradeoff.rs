@@ -4,11 +4,11 @@
 //! `(q1 − q0)/(t1 − t0)` cancel; in `(v, h)`, rows as they stand; and scaled, with the sums compensated and E carried.
 
 use super::atlas::Atlas;
-use crate::paper::raw::{RawNode, Unknowns};
 use rayon::prelude::*;
 use vi_core::{EnergyPreserving, Lagrangian, SVector, StepError};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
+use vi_runs::raw::{RawNode, Unknowns};
 use vi_runs::start::second_point;
 use vi_systems::DoubleWell;
 

@@ -2,11 +2,10 @@
 
 use core::cell::Cell;
 use vi_runs::plan::{Method, PhasePoint, Plan};
-use vi_runs::ready;
 
 #[test]
 fn every_entry_starts_and_keeps_its_parameters() {
-    for mut entry in ready::systems() {
+    for mut entry in vi_ready::systems() {
         let size = entry.system.coordinates().len();
         let name = entry.system.name();
         assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");

@@ -1,7 +1,6 @@
 //! The initial step: what it does to energy and trajectory, and what the paper's way to solve the equations adds.
 
 use super::super::book::{Book, Verdict};
-use super::super::raw::{RawNode, Unknowns};
 use super::super::{Study, unexpected};
 use super::runs::Case;
 use vi_core::{FixedStep, Lagrangian, SVector, Starts, StepError};
@@ -9,6 +8,7 @@ use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, order, scientific};
 use vi_report::table::Table;
+use vi_runs::raw::{RawNode, Unknowns};
 use vi_runs::start::motion;
 use vi_systems::DoubleWell;
 
@@ -41,7 +41,7 @@ struct Ladder {
 }
 
 /// The section: a ladder of initial steps for both amplitudes.
-pub(super) fn section(book: &mut Book, study: Study) -> Result<(), Failure> {
+pub(super) fn section(book: &mut Book, study: &Study) -> Result<(), Failure> {
     book.section("The initial step");
     book.prose(
         "The first step is free, and all others follow from it. The paper finds a trade-off: a small \
@@ -62,7 +62,7 @@ pub(super) fn section(book: &mut Book, study: Study) -> Result<(), Failure> {
 }
 
 impl Rung {
-    fn of(case: Case, study: Study) -> Result<Self, StepError> {
+    fn of(case: Case, study: &Study) -> Result<Self, StepError> {
         let mut integrator = case.start()?;
         let system = *integrator.system();
         let state = integrator.state();
@@ -95,7 +95,7 @@ impl Rung {
 
 /// Steps on a rung: enough to reach the time at which trajectories are compared.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 10⁵ + 1
-fn steps(h0: f64, study: Study) -> usize {
+fn steps(h0: f64, study: &Study) -> usize {
     LENGTH.max(COMPARED / h0 + 1.0).min(f64::from(study.steps)) as usize
 }
 

@@ -5,7 +5,7 @@
 use vi_report::chart::Axis;
 use vi_report::failure::Failure;
 use vi_report::quantity::Quantity;
-use vi_runs::ready::Entry;
+use vi_runs::entry::Entry;
 
 /// A quantity with its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,11 +58,11 @@ impl Span {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vi_report::catalogue;
+    use crate::tests::catalogue;
 
     #[test]
     fn axes_are_read_and_mistakes_named() {
-        let entry = catalogue::find("kepler").unwrap_or_else(|failure| panic!("{failure}"));
+        let entry = catalogue().find("kepler").unwrap_or_else(|failure| panic!("{failure}"));
         let span = |text: &str| Span::parse(&entry, text).map_err(|failure| failure.to_string());
         assert_eq!(span("y=-1:2").map(|span| (span.quantity, span.range)), Ok((Quantity::Coordinate(1), (-1.0, 2.0))));
         assert_eq!(span("v_x=0:1").map(|span| span.quantity), Ok(Quantity::Velocity(0)));

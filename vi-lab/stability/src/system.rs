@@ -11,8 +11,8 @@ use vi_report::catalogue::kebab;
 use vi_report::chart::{Class, Look, Series, boundary, middles};
 use vi_report::failure::Failure;
 use vi_report::quantity::Quantity;
+use vi_runs::entry::Entry;
 use vi_runs::plan::{Method, PhasePoint, Plan};
-use vi_runs::ready::Entry;
 use vi_runs::simulation::Simulation;
 use vi_runs::system::System;
 

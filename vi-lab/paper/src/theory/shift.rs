@@ -2,15 +2,12 @@
 
 use super::super::book::Book;
 use super::super::unexpected;
-use super::{densities, pendulum, released};
-use core::cell::Cell;
+use super::{densities, released};
 use vi_core::StepError;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, scientific};
 use vi_report::page::math::{id, num, op, row, sub, sup};
-use vi_runs::plan::{Method, Plan, Shift};
-use vi_runs::simulation::ShiftedEnergy;
 
 const ANGLE: f64 = 2.0;
 const H: f64 = 0.05;
@@ -85,25 +82,15 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
 
 /// The nodes of the run, its shift measured.
 fn run() -> Result<Vec<Node>, StepError> {
-    let system = pendulum();
-    let plan = Plan { stages: Some(2), shift: Some(Shift::Over(UNTIL)), ..released(Method::Energy, ANGLE, H) };
-    let sweeps = Cell::new(0);
-    let mut run = system.begin(&plan, &sweeps)?;
+    let mut run = released::<2>(ANGLE, H)?.with_shift_from(UNTIL)?;
     let mut nodes = Vec::new();
     while run.t() < UNTIL {
-        run.advance()?;
-        let [_, density, _] = densities(system.as_ref(), run.t(), run.q(), run.p())?;
-        let kept = run.shifted_energy().zip(run.discrete_energy());
-        let Some((ShiftedEnergy { energy: shifted, shift }, discrete)) = kept else { break };
-        nodes.push(Node {
-            t: run.t(),
-            total: run.energy()?,
-            discrete,
-            shifted,
-            h: run.h(),
-            density: density + shift,
-            shift,
-        });
+        let state = run.step()?;
+        let [_, density, _] = densities(&state)?;
+        let Some(discrete) = run.discrete_energy() else { break };
+        let (shifted, shift) = (run.shifted_energy(), run.shift());
+        let total = run.energy()?;
+        nodes.push(Node { t: state.t, total, discrete, shifted, h: run.h(), density: density + shift, shift });
     }
     Ok(nodes)
 }

@@ -1,52 +1,14 @@
 //! The predefined systems, each with an initial state.
 //!
-//! In: the systems of `vi_systems`. Out: a list of type-erased [`Entry`] values. Here the compiler instantiates all
-//! code that is generic over systems, once per system.
+//! In: the systems of `vi_systems`. Out: a list of type-erased [`Entry`] values. The compiler instantiates every integrator for
+//! each of them here, which takes longer than the rest of the command: only `vi-lab` depends on this crate.
 
-use crate::kind::{ByRule, GaussOnly};
-use crate::system::{self, System};
-use vi_core::collocation::Collocation;
-use vi_core::lagrangian::Parameters;
-use vi_core::stepping::{Convertible, EnergyStepping};
+use vi_runs::entry::Entry;
 use vi_systems::{
     ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
     HarmonicOscillator, HenonHeiles, Kepler, NPendulum, OuterSolarSystem, ParametricPendulum, Pendulum, RotatingHoop,
     SphericalPendulum, ThreeBody,
 };
-
-/// A system with an initial state.
-pub struct Entry {
-    /// The system, with the default parameters.
-    pub system: Box<dyn System>,
-    /// Its description.
-    pub about: &'static str,
-    /// Default initial coordinates.
-    pub q: Vec<f64>,
-    /// Default initial velocities.
-    pub v: Vec<f64>,
-    /// Default step.
-    pub h: f64,
-}
-
-impl Entry {
-    /// A system from its description, initial coordinates and velocities, and a step.
-    #[must_use]
-    pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
-    where
-        S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
-    {
-        Self { system: system::erased::<S, ByRule, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
-    }
-
-    /// The same for a system without a rule, which has Gauss methods only.
-    #[must_use]
-    pub fn with_gauss_only<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
-    where
-        S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
-    {
-        Self { system: system::erased::<S, GaussOnly, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
-    }
-}
 
 /// sin(π (i + 1)/17), to three digits: the lowest mode of 16 masses between walls.
 const LOWEST_MODE: [f64; 16] =
@@ -65,18 +27,6 @@ const EIGHT_V: [f64; 6] = [
     -0.864_731_460_921_02,
 ];
 
-/// A planet about a fixed sun.
-#[must_use]
-pub fn kepler() -> Entry {
-    Entry::new::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005)
-}
-
-/// A mass on a rod.
-#[must_use]
-pub fn pendulum() -> Entry {
-    Entry::new::<Pendulum, 1>("mass on a rod", [1.0], [0.0], 0.01)
-}
-
 /// The predefined systems in the order of the list.
 #[must_use]
 pub fn systems() -> Vec<Entry> {
@@ -85,8 +35,8 @@ pub fn systems() -> Vec<Entry> {
     vec![
         Entry::new::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
         Entry::new::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
-        pendulum(),
-        kepler(),
+        Entry::new::<Pendulum, 1>("mass on a rod", [1.0], rest, 0.01),
+        Entry::new::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
         Entry::new::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
         Entry::new::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),
         Entry::new::<HardDuffing, 1>("driven oscillator with a stiffening spring", [1.0], rest, 0.01),

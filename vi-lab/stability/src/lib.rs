@@ -34,7 +34,7 @@ mod trial;
 use atlas::Atlas;
 use clap::Args;
 use std::path::PathBuf;
-use vi_report::catalogue;
+use vi_report::catalogue::{Catalogue, kebab, with_rule};
 use vi_report::failure::Failure;
 use vi_report::machine::Machine;
 use vi_report::page::{Page, Report};
@@ -65,32 +65,32 @@ pub struct Arguments {
 ///
 /// # Errors
 /// [`Failure::Input`] for a system or an axis that does not exist, [`Failure::File`] where a file cannot be written.
-pub fn write(arguments: &Arguments) -> Result<String, Failure> {
+pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let machine = Machine::here();
     let entry = match &arguments.system {
-        Some(name) => Some(catalogue::find(name)?),
-        None => catalogue::own(),
+        Some(name) => Some(catalogue.find(name)?),
+        None => catalogue.own(),
     };
     if entry.is_none() && (arguments.x.is_some() || arguments.y.is_some()) {
         return Err(Failure::Input("--x and --y are axes of the map of one system: name it".to_owned()));
     }
     let report = match entry {
         Some(entry) => {
-            let entry = catalogue::with_rule(entry, "stability")?;
+            let entry = with_rule(entry, "stability")?;
             let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
-            let title = format!("Where runs of the system {} end", catalogue::kebab(entry.system.name()));
+            let title = format!("Where runs of the system {} end", kebab(entry.system.name()));
             let report = Report::new(&arguments.out, Page::new(&title, entry.about))?;
             let mut atlas = Atlas::new(report, arguments.columns, 2);
             system::maps(&mut atlas, &entry, &axes)?;
             atlas.into_report()
         }
-        None => whole(arguments)?,
+        None => whole(arguments, catalogue)?,
     };
     Ok(report.finish(&machine)?.display().to_string())
 }
 
 /// The page of all ways of failing.
-fn whole(arguments: &Arguments) -> Result<Report, Failure> {
+fn whole(arguments: &Arguments, catalogue: &Catalogue) -> Result<Report, Failure> {
     let page = Page::new(
         "Where methods fail",
         "Variational integrators with fixed and with energy-preserving steps: before, at, and after the step that does not \
@@ -113,23 +113,29 @@ fn whole(arguments: &Arguments) -> Result<Report, Failure> {
     damping::section(&mut atlas)?;
     composed::section(&mut atlas)?;
     kepler::section(&mut atlas)?;
-    separatrix::section(&mut atlas)?;
-    orders::section(&mut atlas)?;
+    separatrix::section(&mut atlas, catalogue)?;
+    orders::section(&mut atlas, catalogue)?;
     chain::section(&mut atlas)?;
     tradeoff::section(&mut atlas)?;
     Ok(atlas.into_report())
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use std::fs;
+    use vi_report::catalogue::Systems;
+
+    /// The ready systems.
+    pub(crate) fn catalogue() -> Catalogue {
+        Catalogue::new(Systems { sources: &[], entries: vi_ready::systems })
+    }
 
     #[test]
     fn a_coarse_page_has_every_file() {
         let out = std::env::temp_dir().join(format!("vi-lab-stability-{}", std::process::id()));
         let arguments = Arguments { system: None, out: out.clone(), columns: 6, x: None, y: None };
-        let place = write(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
+        let place = write(&arguments, &catalogue()).unwrap_or_else(|failure| panic!("{failure}"));
         let page = fs::read_to_string(place).expect("the page");
         let files: Vec<&str> = page
             .split("href=\"")

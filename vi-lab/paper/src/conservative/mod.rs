@@ -26,7 +26,7 @@ const CASES: [Case; 4] = [
 ];
 
 /// The sections on the conservative example.
-pub(super) fn chapter(book: &mut Book, study: Study, progress: &mut Progress) -> Result<(), Failure> {
+pub(super) fn chapter(book: &mut Book, study: &Study, progress: &mut Progress) -> Result<(), Failure> {
     let mut runs = Vec::new();
     for case in CASES {
         progress.message(format!("double well, {}", case.label()));

@@ -7,13 +7,13 @@ use super::super::book::Book;
 use super::super::unexpected;
 use core::cell::Cell;
 use core::f64::consts::TAU;
-use vi_core::{Called, Gauss, Starts, StepError};
+use vi_core::{
+    Called, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Lagrangian, Method, Run, Starts as _, StepError,
+};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
-use vi_runs::plan::{Method, PhasePoint, Plan, Shift};
-use vi_runs::ready;
-use vi_runs::system::System;
+use vi_runs::counting::Counting;
 use vi_systems::Kepler;
 
 /// Periods of a run; the error is that of the last.
@@ -40,18 +40,22 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     let mut table = Table::new("theory-work", ["eccentricity", "order", "fixed steps", "energy-preserving", "ratio"]);
     let orbits = [(0.3, "theory-work-0.3", [false; 3]), (0.6, "theory-work-0.6", [false, false, true])];
     for (eccentricity, name, shifted) in orbits {
-        let orbit = Orbit::new(eccentricity);
+        let orbit = Orbit { eccentricity };
         let fixed = [
             orbit.ladder(0, |h| orbit.fixed(h)),
             orbit.ladder(1, |h| orbit.gauss::<2>(h)),
             orbit.ladder(2, |h| orbit.gauss::<3>(h)),
         ];
+        let energy = [
+            orbit.ladder(0, |h| orbit.energy(h)),
+            orbit.ladder(1, |h| orbit.energy_gauss::<2>(h, shifted[1])),
+            orbit.ladder(2, |h| orbit.energy_gauss::<3>(h, shifted[2])),
+        ];
         let mut series = Vec::new();
-        for (index, fixed) in fixed.into_iter().enumerate() {
+        for (index, (fixed, energy)) in fixed.into_iter().zip(energy).enumerate() {
             let order = 2 * (index + 1);
             let fixed = fixed.map_err(unexpected("Kepler"))?;
-            let energy =
-                orbit.ladder(index, |h| orbit.energy(index, h, shifted[index])).map_err(unexpected("Kepler"))?;
+            let energy = energy.map_err(unexpected("Kepler"))?;
             let note = if shifted[index] { ", with a shift" } else { "" };
             let [by_fixed, by_energy] = [&fixed, &energy].map(price);
             let cells = [by_fixed, by_energy, by_energy / by_fixed];
@@ -89,14 +93,9 @@ fn caption(eccentricity: f64) -> &'static str {
 /// An orbit about the unit mass, with the unit as its half axis, from the pericentre.
 struct Orbit {
     eccentricity: f64,
-    erased: Box<dyn System>,
 }
 
 impl Orbit {
-    fn new(eccentricity: f64) -> Self {
-        Self { eccentricity, erased: ready::kepler().system }
-    }
-
     /// Where it starts, and how fast.
     fn start(&self) -> ([f64; 2], [f64; 2]) {
         let e = self.eccentricity;
@@ -121,54 +120,70 @@ impl Orbit {
         steps.map(run).collect()
     }
 
-    /// A run of energy-preserving steps.
-    fn energy(&self, index: usize, h: f64, is_shifted: bool) -> Result<(f64, f64), StepError> {
-        let stages = (index > 0).then_some(index + 1);
-        let shift = is_shifted.then_some(Shift::Over(TAU));
-        self.run(&Plan { stages, shift, ..self.plan(Method::Energy, h) })
+    /// A run of energy-preserving steps of order 2.
+    fn energy(&self, h: f64) -> Result<(f64, f64), StepError> {
+        let evaluations = Cell::new(0);
+        let (q, v) = self.start();
+        let system = Counting::new(Kepler::default(), &evaluations);
+        let error = self.follow(EnergyPreserving::from_midpoint(system, 0.0, q, v, h)?, |_| ())?;
+        Ok((count(evaluations.get()), error))
+    }
+
+    /// A run of energy-preserving steps of more stages.
+    fn energy_gauss<const STAGES: usize>(&self, h: f64, is_shifted: bool) -> Result<(f64, f64), StepError> {
+        let (q, v) = self.start();
+        let run = Called(Kepler::default()).at(0.0, q, v).integrate(EnergyPreservingGauss::<STAGES>, h)?;
+        self.swept(if is_shifted { run.with_shift_from(TAU)? } else { run }, STAGES)
     }
 
     /// A run of fixed steps of order 2.
     fn fixed(&self, h: f64) -> Result<(f64, f64), StepError> {
-        self.run(&self.plan(Method::Fixed, h))
-    }
-
-    fn plan(&self, method: Method, h: f64) -> Plan {
-        let (q, v) = self.start();
-        Plan::new(method, h, PhasePoint { t: 0.0, q: q.to_vec(), v: v.to_vec() })
-    }
-
-    /// Evaluations and error of a run.
-    fn run(&self, plan: &Plan) -> Result<(f64, f64), StepError> {
         let evaluations = Cell::new(0);
-        let mut run = self.erased.begin(plan, &evaluations)?;
-        run.advance_until((PERIODS - 1.0) * TAU, u64::MAX)?;
-        let mut error = 0.0_f64;
-        while run.t() < PERIODS * TAU {
-            run.advance()?;
-            error = error.max(self.error(run.t(), run.q()));
-        }
-        drop(run);
-        #[allow(clippy::cast_precision_loss)] // a count far below 2⁵³
-        Ok((evaluations.get() as f64, error))
+        let (q, v) = self.start();
+        let system = Counting::new(Kepler::default(), &evaluations);
+        let error = self.follow(system.at(0.0, q, v).integrate(FixedStep, h)?, |_| ())?;
+        Ok((count(evaluations.get()), error))
     }
 
     /// A run of fixed Gauss steps.
-    #[allow(clippy::cast_precision_loss)] // a count far below 2⁵³
-    fn gauss<const S: usize>(&self, h: f64) -> Result<(f64, f64), StepError> {
+    fn gauss<const STAGES: usize>(&self, h: f64) -> Result<(f64, f64), StepError> {
         let (q, v) = self.start();
-        let system = Called(Kepler::default());
-        let mut run = system.at(0.0, q, v).integrate(Gauss::<S>, h)?;
-        let [mut sweeps, mut error] = [0.0, 0.0_f64];
-        while run.state().t < PERIODS * TAU {
+        self.swept(Called(Kepler::default()).at(0.0, q, v).integrate(Gauss::<STAGES>, h)?, STAGES)
+    }
+
+    /// Evaluations and error of a run whose iterations evaluate so many stages.
+    fn swept<M: Method<Called<Kepler>, 2>>(
+        &self,
+        run: Run<M, Called<Kepler>, 2>,
+        stages: usize,
+    ) -> Result<(f64, f64), StepError> {
+        let mut iterations = 0;
+        let error = self.follow(run, |run| iterations += u64::from(run.iterations()))?;
+        Ok((count(iterations * stages as u64), error))
+    }
+
+    /// The error of a run over its last period; `see` gets the run after each step.
+    fn follow<S: Lagrangian<2> + Copy, M: Method<S, 2>>(
+        &self,
+        mut run: Run<M, S, 2>,
+        mut see: impl FnMut(&Run<M, S, 2>),
+    ) -> Result<f64, StepError> {
+        let mut error = 0.0_f64;
+        while run.t() < PERIODS * TAU {
+            let is_last = run.t() >= (PERIODS - 1.0) * TAU;
             let state = run.step()?;
-            sweeps += f64::from(run.iterations());
-            if state.t > (PERIODS - 1.0) * TAU {
+            see(&run);
+            if is_last {
                 error = error.max(self.error(state.t, state.q.as_slice()));
             }
         }
-        Ok((sweeps * S as f64, error))
+        Ok(error)
     }
+}
+
+#[allow(clippy::cast_precision_loss)] // a count far below 2⁵³
+fn count(evaluations: u64) -> f64 {
+    evaluations as f64
 }
 
 /// The evaluations at which a ladder comes to the error that is compared, between two runs by a power law; not a number where none does.

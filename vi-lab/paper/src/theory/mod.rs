@@ -9,14 +9,13 @@ mod shift;
 mod work;
 
 use super::book::Book;
-use core::cell::Cell;
-use vi_core::StepError;
+use vi_core::gauss::step_density;
+use vi_core::{Called, EnergyPreservingGauss, Gauss, Run, Starts as _, State, StepError};
 use vi_report::chart::Look;
 use vi_report::failure::Failure;
 use vi_report::progress::Progress;
-use vi_runs::plan::{ENERGY_STAGES, Method, PhasePoint, Plan};
-use vi_runs::ready;
-use vi_runs::system::System;
+use vi_runs::plan::ENERGY_STAGES;
+use vi_systems::Pendulum;
 
 /// How energy-preserving steps of 1, 2 and 3 stages are drawn.
 const LOOKS: [Look; ENERGY_STAGES.len()] = [Look::ENERGY.dotted(), Look::ENERGY.dashed(), Look::ENERGY.line()];
@@ -33,27 +32,31 @@ pub(super) fn chapter(book: &mut Book, progress: &mut Progress) -> Result<(), Fa
     work::section(book)
 }
 
-/// A pendulum, its type erased: the command has its integrators anyway.
-fn pendulum() -> Box<dyn System> {
-    ready::pendulum().system
+/// A pendulum, its functions not inlined.
+fn pendulum() -> Called<Pendulum> {
+    Called(Pendulum::default())
 }
 
-/// A run from rest at an angle by steps of the length h.
-fn released(method: Method, angle: f64, h: f64) -> Plan {
-    Plan::new(method, h, PhasePoint { t: 0.0, q: vec![angle], v: vec![0.0] })
+/// A run of energy-preserving steps of so many stages, the first of the length h, from rest at an angle.
+fn released<const STAGES: usize>(
+    angle: f64,
+    h: f64,
+) -> Result<Run<EnergyPreservingGauss<STAGES>, Called<Pendulum>, 1>, StepError> {
+    pendulum().at(0.0, [angle], [0.0]).integrate(EnergyPreservingGauss::<STAGES>, h)
 }
 
 /// When a run of energy-preserving steps of so many stages from rest at an angle ends, if it does before a time.
 fn end(stages: usize, angle: f64, h: f64, until: f64) -> Result<Option<f64>, StepError> {
-    let plan = Plan { stages: Some(stages), ..released(Method::Energy, angle, h) };
-    let sweeps = Cell::new(0);
-    let mut run = pendulum().begin(&plan, &sweeps)?;
-    while run.t() < until {
-        if run.advance().is_err() {
-            return Ok(Some(run.t()));
+    fn of<const STAGES: usize>(angle: f64, h: f64, until: f64) -> Result<Option<f64>, StepError> {
+        let mut run = released::<STAGES>(angle, h)?;
+        while run.t() < until {
+            if run.step().is_err() {
+                return Ok(Some(run.t()));
+            }
         }
+        Ok(None)
     }
-    Ok(None)
+    [of::<1>, of::<2>, of::<3>][stages - 1](angle, h, until)
 }
 
 /// A state on a motion, and the step densities of 1, 2 and 3 stages there.
@@ -69,24 +72,24 @@ fn largest(points: &[Point], index: usize) -> f64 {
 
 /// Points along the accurate motion of a pendulum from rest, until a time.
 fn swing(angle: f64, until: f64) -> Result<Vec<Point>, StepError> {
-    let system = pendulum();
-    let sweeps = Cell::new(0);
-    let mut run = system.begin(&released(Method::Gauss, angle, 0.05), &sweeps)?;
+    let mut run = pendulum().0.at(0.0, [angle], [0.0]).integrate(Gauss::<8>, 0.05)?;
     let mut points = Vec::new();
     loop {
-        let densities = densities(system.as_ref(), run.t(), run.q(), run.p())?;
-        points.push(Point { t: run.t(), densities });
-        if run.t() >= until {
+        let state = run.state();
+        points.push(Point { t: state.t, densities: densities(&state)? });
+        if state.t >= until {
             return Ok(points);
         }
-        run.advance()?;
+        run.step()?;
     }
 }
 
-/// The step densities of 1, 2 and 3 stages at a node.
-fn densities(system: &dyn System, t: f64, q: &[f64], p: &[f64]) -> Result<[f64; ENERGY_STAGES.len()], StepError> {
-    match system.step_densities(t, q, p) {
-        [Some(one), Some(two), Some(three)] => Ok([one, two, three]),
-        _ => Err(StepError::NonFinite { t, quantity: "step density", expression: None }),
-    }
+/// The step densities of 1, 2 and 3 stages of the pendulum at a state.
+fn densities(state: &State<1>) -> Result<[f64; ENERGY_STAGES.len()], StepError> {
+    let system = pendulum();
+    Ok([
+        step_density::<_, 1, 1>(&system, state)?,
+        step_density::<_, 1, 2>(&system, state)?,
+        step_density::<_, 1, 3>(&system, state)?,
+    ])
 }

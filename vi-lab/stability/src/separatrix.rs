@@ -7,9 +7,10 @@ use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};
 use super::system;
 use vi_core::stepping::EnergyStepping;
-use vi_report::catalogue;
+use vi_report::catalogue::Catalogue;
 use vi_report::chart::{Axis, Class, boundary};
 use vi_report::failure::Failure;
+use vi_runs::entry::Entry;
 use vi_systems::{DoubleWell, Pendulum};
 
 /// Steps enough for the time even where the first one, close to D = 0, is by far the longest.
@@ -17,7 +18,7 @@ const LIMIT: Limit = Limit { steps: 100_000, until: 25.0, bound: 1e3 };
 const STEPS: (f64, f64) = (0.003, 0.6);
 
 /// The section: two maps over the first step, two over the phase plane.
-pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
+pub(super) fn section(atlas: &mut Atlas, catalogue: &Catalogue) -> Result<(), Failure> {
     atlas.section("Across the separatrix");
     atlas.prose(
         "An energy-preserving step exists while the step density <i>D</i> keeps its sign. In a potential well it does; on \
@@ -49,10 +50,10 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
                    of some runs. What ends meets that curve sooner or later; what runs never does, but for a rare run \
                    whose steps, long where <i>D</i> is small, lead over it every time.";
     let labels = Labels { name: "plane-well", title: "Double well: phase plane", caption };
-    plane(atlas, labels, "double-well", ["q=-1.5:1.5", "v_q=-1.2:1.2"])?;
+    plane(atlas, labels, &catalogue.find("double-well")?, ["q=-1.5:1.5", "v_q=-1.2:1.2"])?;
     let caption = "Phase plane of the pendulum: librations run, rotations end on <i>D</i> = 0.";
     let labels = Labels { name: "plane-pendulum", title: "Pendulum: phase plane", caption };
-    plane(atlas, labels, "pendulum", ["θ=-3.1416:3.1416", "v_θ=-3:3"])?;
+    plane(atlas, labels, &catalogue.find("pendulum")?, ["θ=-3.1416:3.1416", "v_θ=-3:3"])?;
     atlas.advice(
         "Ask <code>vi-lab stability SYSTEM</code> before a long run: a motion that stays clear of <i>D</i> = 0 runs. For a \
          motion across a barrier take fixed steps, at least while <i>D</i> has the wrong sign.",
@@ -65,10 +66,9 @@ fn course<S: EnergyStepping<1>>(system: S, q: f64, v: f64, h: f64) -> Class {
 }
 
 /// The phase plane of a system of the catalogue.
-fn plane(atlas: &mut Atlas, labels: Labels<'_>, system: &str, [x, y]: [&str; 2]) -> Result<(), Failure> {
-    let entry = catalogue::find(system)?;
-    let axes = system::axes(&entry, Some(x), Some(y))?;
-    system::energy(atlas, labels, &entry, &axes)
+fn plane(atlas: &mut Atlas, labels: Labels<'_>, entry: &Entry, [x, y]: [&str; 2]) -> Result<(), Failure> {
+    let axes = system::axes(entry, Some(x), Some(y))?;
+    system::energy(atlas, labels, entry, &axes)
 }
 
 #[cfg(test)]

@@ -6,10 +6,11 @@
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};
 use core::f64::consts::FRAC_PI_2;
+use vi_report::catalogue::Catalogue;
 use vi_report::chart::{Axis, Class, boundary};
 use vi_report::failure::Failure;
 use vi_runs::plan::{Method, PhasePoint, Plan, Shift};
-use vi_runs::ready;
+use vi_runs::system::System;
 
 const LIMIT: Limit = Limit { steps: 20_000, until: 25.0, bound: 1e3 };
 const STEPS: (f64, f64) = (0.02, 0.8);
@@ -17,12 +18,14 @@ const STEPS: (f64, f64) = (0.02, 0.8);
 const SHIFT: Option<Shift> = Some(Shift::Over(LIMIT.until));
 
 /// The section: a map for each number of stages, and one with a shift.
-pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
+pub(super) fn section(atlas: &mut Atlas, catalogue: &Catalogue) -> Result<(), Failure> {
     atlas.section("Energy-preserving steps of order 2, 4, 6, and the shift");
     atlas.prose(
         "A step of <i>s</i> stages, of order 2<i>s</i>, has a step density <i>D<sub>s</sub></i> of its own, and exists while that \
          keeps its sign: the domain of a higher order is another one. Pendulum released at rest, for 25 units of time.",
     );
+    let system = catalogue.find("pendulum")?.system;
+    let class = |stages, shift, angle, h| class(system.as_ref(), stages, shift, (angle, h));
     let axes =
         Axes { x: Axis::linear("angle a, from rest").over(0.2, 3.1), y: Axis::log10("h₀").over(STEPS.0, STEPS.1) };
     let grid = atlas.coarse_grid(axes, 2);
@@ -48,10 +51,10 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
 }
 
 /// How a run of so many stages ends that starts from rest at an angle.
-fn class(stages: usize, shift: Option<Shift>, angle: f64, h: f64) -> Class {
+fn class(system: &dyn System, stages: usize, shift: Option<Shift>, (angle, h): (f64, f64)) -> Class {
     let start = PhasePoint { t: 0.0, q: vec![angle], v: vec![0.0] };
     let plan = Plan { stages: Some(stages), shift, ..Plan::new(Method::Energy, h, start) };
-    Course::planned(ready::pendulum().system.as_ref(), &plan, LIMIT).ending.class()
+    Course::planned(system, &plan, LIMIT).ending.class()
 }
 
 #[cfg(test)]
@@ -60,23 +63,27 @@ mod tests {
     use super::super::atlas::tests::strays;
     use super::super::ending::LASTING;
     use super::*;
+    use vi_runs::kind::ByRule;
+    use vi_runs::system::erased;
+    use vi_systems::Pendulum;
 
-    fn cells(class: impl Fn(f64, f64) -> Class + Sync) -> (Grid, Vec<Class>) {
+    fn cells(stages: usize, shift: Option<Shift>) -> (Grid, Vec<Class>) {
+        let system = erased::<Pendulum, ByRule, 1>();
         let axes = Axes { x: Axis::linear("a").over(0.2, 3.0), y: Axis::log10("h").over(0.03, 0.06) };
         let grid = Grid::new(axes, 20);
-        let cells = grid.cells(&class, |_| ());
+        let cells = grid.cells(&|angle, h| class(system.as_ref(), stages, shift, (angle, h)), |_| ());
         (grid, cells)
     }
 
     #[test]
     fn each_order_has_its_domain() {
-        let (grid, runs) = cells(|angle, h| class(2, None, angle, h));
+        let (grid, runs) = cells(2, None);
         assert_eq!(strays(&grid, &runs, LASTING, |a, _| a < FRAC_PI_2), 0);
     }
 
     #[test]
     fn with_a_shift_every_motion_runs() {
-        let (_, runs) = cells(|angle, h| class(2, SHIFT, angle, h));
+        let (_, runs) = cells(2, SHIFT);
         assert!(runs.iter().all(|class| class.number == LASTING.number));
     }
 }

@@ -1,0 +1,43 @@
+//! A system with a place to start from: what a list of systems is made of.
+//!
+//! In: the type of a system, and its start. Out: an [`Entry`], the type erased: there the compiler meets all that is generic over systems.
+
+use crate::kind::{ByRule, GaussOnly};
+use crate::system::{self, System};
+use vi_core::collocation::Collocation;
+use vi_core::lagrangian::Parameters;
+use vi_core::stepping::{Convertible, EnergyStepping};
+
+/// A system with a place to start from.
+pub struct Entry {
+    /// The system, with the default parameters.
+    pub system: Box<dyn System>,
+    /// What it is.
+    pub about: &'static str,
+    /// Default initial coordinates.
+    pub q: Vec<f64>,
+    /// Default initial velocities.
+    pub v: Vec<f64>,
+    /// Default step.
+    pub h: f64,
+}
+
+impl Entry {
+    /// A system with a place to start from: what it is, its initial coordinates and velocities, a step.
+    #[must_use]
+    pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
+    where
+        S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
+    {
+        Self { system: system::erased::<S, ByRule, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
+    }
+
+    /// The same of a system without a rule, which has Gauss steps alone.
+    #[must_use]
+    pub fn with_gauss_only<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
+    where
+        S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
+    {
+        Self { system: system::erased::<S, GaussOnly, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
+    }
+}
