@@ -17,7 +17,7 @@ use vi_core::derivatives::{Differentiable, Tangent, Variation};
 use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
 use vi_core::{EnergyPreserving, FixedStep, Gauss, Lagrangian, Run, SVector, Starts, State};
 use vi_ensemble::Ensemble;
-use vi_systems::{DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum};
+use vi_systems::{DoublePendulum, DoubleWell, FpuChain, Kepler, NPendulum};
 
 const BY_HAND: &str = "by hand, sums compensated";
 const BY_HAND_PLAIN: &str = "by hand, plain sums";
@@ -55,7 +55,6 @@ pub fn all() -> Vec<Contest> {
         double_pendulum_gauss_derivatives(),
         pendula("Triple pendulum, fixed step, h = 0.01", &black_box(TriplePendulum::default())),
         pendula("Four pendula, fixed step, h = 0.01", &black_box(NPendulum::default())),
-        oscillator(),
         chain::<_, 16, 17>("Chain of 16, fixed step, h = 0.1", &black_box(FpuChain::default()), 10.0),
         chain::<_, 64, 65>("Chain of 64, fixed step, h = 0.1", &black_box(LongChain::default()), 60.0),
     ]
@@ -194,30 +193,6 @@ fn pendula<S: Batch<N> + Clone + 'static, const N: usize>(name: &'static str, sy
     let (start, h) = ((from_fn(|i| [0.3, 0.2, 0.1, 0.05][i]), [0.0; N]), black_box(0.01));
     let ensemble = together(system, start, h);
     Contest::new(name, fixed(system, start, h)).ensemble(TOGETHER, 64, TOGETHER_KEPT, Target::Slower(1.0), ensemble)
-}
-
-fn oscillator() -> Contest {
-    let (system, start, h) = (black_box(HarmonicOscillator::default()), (0.8, 0.0), black_box(0.01));
-    Contest::new("Harmonic oscillator, fixed step, h = 0.01", fixed(&system, ([start.0], [start.1]), h))
-        .rival(
-            "closed form by hand, sums compensated",
-            KEPT,
-            Target::AtMost(1.05),
-            hand::oscillator::Fixed::<Compensated>::new(&system, start, h),
-        )
-        .rival(
-            "closed form by hand, plain sums",
-            LOST,
-            Target::None,
-            hand::oscillator::Fixed::<Plain>::new(&system, start, h),
-        )
-        .rival(
-            "Newton by hand, sums compensated",
-            KEPT,
-            Target::Faster(3.5),
-            hand::oscillator::Newton::<Compensated>::new(&system, start, h),
-        )
-        .rival(DUAL, LOST, Target::None, newton::<_, Dual, 1>(&system, ([start.0], [start.1]), h, 1e-14))
 }
 
 /// A chain in its lowest mode.

@@ -16,7 +16,6 @@ pub mod chain;
 pub mod double_pendulum;
 pub mod double_well;
 pub mod kepler;
-pub mod oscillator;
 mod sine;
 
 use core::array::from_fn;
