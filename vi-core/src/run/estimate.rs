@@ -503,6 +503,10 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
 pub struct Tolerance(pub f64);
 
 /// What determines the length of a step: a number, or a [`Tolerance`].
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a step length of a system in `{T}`",
+    label = "write a step length such as `0.1`, or `Tolerance(1e-9)`"
+)]
 pub trait Length<T: Scalar> {
     /// The length of the steps of a run from a start by a method.
     ///
