@@ -68,7 +68,7 @@ mod tests {
         assert_eq!(span("v_x=0:1").map(|span| span.quantity), Ok(Quantity::Velocity(0)));
         assert_eq!(span("mu=0.1:2").map(|span| span.quantity), Ok(Quantity::Parameter("mu".to_owned())));
         assert_eq!(span("h=0.1:2").map(|span| span.quantity), Ok(Quantity::Step));
-        let unknown = "there is no quantity `z` to vary; there are x, y, v_x, v_y, mu, h";
+        let unknown = "there is no quantity `z` to vary; the quantities are x, y, v_x, v_y, mu, h";
         assert_eq!(span("z=0:1"), Err(unknown.to_owned()));
         assert_eq!(span("h=0:1"), Err("the step h must be positive, not `h=0:1`".to_owned()));
         for text in ["x", "x=1", "x=2:1", "x=1:1", "x=a:b", "x=0:inf"] {
