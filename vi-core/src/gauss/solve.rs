@@ -172,7 +172,9 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let Ok(constant) = constant(system, self.node) else { return extrapolated };
         let Self { node, h, pause, .. } = *self;
         let start = Start { node, h, stages: &constant, are_last: false, before: &Convergence::NONE, pause };
-        start.by_newton(system, instructions, start.middle(rare), newton).or(extrapolated)
+        // Fixed-point iteration first, as in the first step of a run: it may converge where a linearization in the middle of a long step misleads.
+        let iterated = start.swept(system, instructions).or_else(|left| start.accepted(rare, &left, None).ok_or(()));
+        iterated.or_else(|()| start.by_newton(system, instructions, start.middle(rare), newton).or(extrapolated))
     }
 
     /// The step by Newton's iteration.

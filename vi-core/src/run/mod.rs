@@ -128,16 +128,15 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Ok(self.node.state())
     }
 
-    /// Takes one step of the length h in time. The length of further steps stays, and so does the energy that an energy-preserving run keeps.
+    /// Takes one step of the length h in time. The length of further steps stays, and so does the energy that an energy-preserving run keeps. If it
+    /// succeeds, an error of the step before is forgotten: a shorter step may pass the place where a longer one failed.
     ///
     /// # Errors
-    /// As [`Run::step`], but the run stays what it was and can continue. [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, or negative
+    /// Those of a step; the run stays what it was and can continue. [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, or negative
     /// if the method only goes forward.
     pub fn step_of(&mut self, h: T) -> Result<State<N, T>, StepError> {
-        if let Some(failure) = self.failure {
-            return Err(failure);
-        }
         (self.node, self.memory) = self.method.step_of(&self.system, (&self.node, &self.memory), [h, self.h])?;
+        self.failure = None;
         Ok(self.node.state())
     }
 
