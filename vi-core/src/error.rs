@@ -3,7 +3,7 @@
 use core::fmt;
 
 /// Why a step was not taken. The integrator still holds the last good state, and a further call returns the same error.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {
     /// No energy-preserving step leads forward from here: a property of the method, not of the solver.
@@ -294,6 +294,13 @@ impl fmt::Display for Reason<'_> {
     }
 }
 
+/// The message: a `main` that returns the error prints it by `Debug`.
+impl fmt::Debug for StepError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 impl fmt::Display for StepError {
     /// The reason, and what to do where something can be done.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -315,9 +322,11 @@ impl fmt::Display for StepError {
                 2.0 * largest
             ),
             Self::ShiftTooLarge { shorter, .. } => write!(f, "; start with steps of {shorter:.1e} or shorter"),
-            Self::StepBounds { found, .. } => write!(
+            // Rounded away from the bounds, so that the number itself is allowed.
+            Self::StepBounds { found, h_max, .. } => write!(
                 f,
-                "; allow {found:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`"
+                "; allow {:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`",
+                if found > h_max { 1.001 * found } else { 0.999 * found }
             ),
             Self::NotConverged { h, .. } if *h == 0.0 => {
                 f.write_str("; start from the momenta of a velocity, `system.at(t, q, v)`, or take shorter steps")

@@ -384,6 +384,9 @@ impl<T: Scalar> Phase<T> {
     }
 }
 
+/// The step of a method that finds its length.
+pub(super) const FORWARD: &str = "the step h of a method that only goes forward in time";
+
 /// A step must lead forward.
 pub(crate) fn check_forward<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
     let value = h.to_f64();

@@ -12,7 +12,7 @@
 //!
 //! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
 
-use super::bounds::{Alternating, check_forward};
+use super::bounds::{Alternating, FORWARD, check_forward};
 use super::{Method, Problem, Report};
 use crate::called::Called;
 use crate::condition::Condition;
@@ -63,7 +63,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     fn check_length(&self, h: T) -> Result<(), StepError> {
-        check_forward("the step h", h)
+        check_forward(FORWARD, h)
     }
 
     fn prepare(&self, _system: &S, _h: T) {}

@@ -30,7 +30,7 @@
 //!
 //! AFTER A STEP its stages and its energy were measured at the numbers that were taken, and are at the rounding floor. Theory and measurements: `docs/theory.md`.
 
-use super::bounds::{Alternating, Control, Controlled, Phase, RATIO, check_forward};
+use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, RATIO, check_forward};
 use super::gauss::{Gauss, LastStages, Motion};
 use super::length::{Search, Trial};
 use super::{Memory, Method, Problem, Report};
@@ -434,7 +434,7 @@ where
     }
 
     fn check_length(&self, h: f64) -> Result<(), StepError> {
-        check_forward("the step h", h)?;
+        check_forward(FORWARD, h)?;
         if power::<STAGES>(h).is_normal() {
             return Ok(());
         }
