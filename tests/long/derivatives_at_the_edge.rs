@@ -127,7 +127,7 @@ fn names_and_indices_that_do_not_exist_are_told() {
     let unknown = Err(StepError::UnknownParameter { system: "Hill", parameters: &["k", "c"] });
     assert_eq!(Variation::<1>::of_parameter::<Hill>("kk"), unknown);
     let text = unknown.map_err(|error| error.to_string());
-    assert_eq!(text, Err("`Hill` has no parameter of the name that was given; its parameters are `k`, `c`".to_owned()));
+    assert_eq!(text, Err("`Hill` has no parameter of the given name; its parameters are `k`, `c`".to_owned()));
     let input = |outcome: Result<Variation<1>, StepError>| match outcome {
         Err(StepError::InvalidInput { input, value, .. }) => (input, value),
         other => panic!("{other:?}"),
