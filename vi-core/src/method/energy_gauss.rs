@@ -1,34 +1,37 @@
-//! Energy-preserving steps of order 2S: Gauss steps whose length keeps the discrete energy.
+//! Energy-preserving steps of order 2S: Gauss steps whose length preserves the discrete energy.
 //!
-//! One step solves, in the stages and h > 0,
+//! One step solves, for the stages and h > 0,
 //!
 //! ```text
 //! Q_i = q0 + h Σ a_ij V_j        L_v(T_i, Q_i, V_i) = p0 + h Σ a_ij (L_q + f)_j        E0(h) = E
 //! E0(h) = Σ b_i En_i − h Σ b_i (1 − c_i) (f·v − L_t)_i        E ← E + h Σ b_i (f·v − L_t)_i
 //! ```
 //!
-//! so that the discrete energy of every step is that of the first one, and the work done since. The length follows from `H − E0(h) = C_s h^2s D_s`, D_s the step density
-//! ([`crate::gauss::density`]): `h D_s^(1/(2s+1))` is constant up to O(h²) without force, and a step exists while D_s keeps its sign. A shift D_* adds
-//! `C_s D_* h^(2s+1)/(2s+1)` to L_d. Then D_s + D_* has to keep its sign, and the run keeps
+//! The discrete energy of every step is then that of the first one, plus the work done since. The length follows from
+//! `H − E0(h) = C_s h^2s D_s` with the step density D_s ([`crate::gauss::density`]). Without force `h D_s^(1/(2s+1))`
+//! is constant up to O(h²), and a step exists while D_s keeps its sign. A shift D_* adds `C_s D_* h^(2s+1)/(2s+1)` to
+//! L_d. Then D_s + D_* must keep its sign, and the run preserves
 //!
 //! ```text
 //! E' = E − C_s h^2s D_*
 //! ```
 //!
-//! The unknown is ln h: `ln[(H − E0(h))/(H − E)]` is nearly a line of slope 2s in it, and the last step backwards, which solves the equations too, does not exist. A step
-//! is one `Search` over the solution of Gauss steps of any length.
+//! The unknown is ln h: `ln[(H − E0(h))/(H − E)]` is nearly a line of slope 2s in it. It also excludes the last step
+//! backwards, which solves the same equations. A step is one `Search` over the solutions of Gauss steps of any length.
 //!
-//! If no step exists, a run with `Fallback::FixedSteps` takes fixed Gauss steps of the last length until an energy-preserving one exists again. E stays, with the work
-//! done, and fixed steps end when the step law `h |D|^(1/(2s+1)) = C` asks for their length or a shorter one: with D_0 the density at which they began,
+//! If no step exists, a run with `Fallback::FixedSteps` takes fixed Gauss steps of the last length until an
+//! energy-preserving one exists again. E changes by the work only. Fixed steps end when the step law `h |D|^(1/(2s+1))
+//! = C` requires their length or a shorter one. With D_0 the density at their start,
 //!
 //! ```text
 //! H − E = C_s h_f^2s (2s D_0 + D)/(2s + 1)        D = D_s + D_*
 //! ```
 //!
-//! to leading order without force, which has the sign of D if D has that of D_0. Only if no step has the energy of before, E becomes the discrete energy of the last
-//! fixed step.
+//! to leading order without force, with the sign of D if D has that of D_0. If no step has the previous energy, E
+//! becomes the discrete energy of the last fixed step.
 //!
-//! AFTER A STEP its stages and its energy were measured at the numbers that were taken, and are at the rounding floor. Theory and measurements: `docs/theory.md`.
+//! The stages and the energy of every accepted step are at the rounding floor. Theory and measurements:
+//! `docs/theory.md`.
 
 use super::bounds::{Alternating, Control, Controlled, Phase, RATIO, check_forward};
 use super::gauss::{Gauss, LastStages, Motion};
@@ -55,11 +58,12 @@ use vi_dispatch::Instructions;
 
 /// Energy-preserving steps of order 2 STAGES, with 1 to 3 stages: `EnergyPreservingGauss::<2>`. See the [module](self).
 ///
-/// A run from a state starts with a step of the length h, and keeps the discrete energy of that step, which differs from H at the state by `C_s h^2s D_s`.
+/// A run from a state starts with a step of the length h, and preserves the discrete energy of that step. It differs
+/// from H at the state by `C_s h^2s D_s`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnergyPreservingGauss<const STAGES: usize>;
 
-/// What a run remembers: stages, and what lengths are predicted from.
+/// The memory of a run: stages, and data for the prediction of lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lengths<const N: usize, const S: usize> {
@@ -79,7 +83,7 @@ impl<const N: usize, const S: usize> Controlled<f64> for Lengths<N, S> {
     }
 }
 
-/// A step of some length, its stages solved.
+/// A step of some length with solved stages.
 #[derive(Clone, Copy, Debug)]
 struct Tried<const N: usize, const S: usize> {
     step: Step<N, S>,
@@ -87,7 +91,7 @@ struct Tried<const N: usize, const S: usize> {
     residual: f64,
     /// `E1 − E0`.
     work: f64,
-    /// The size of the terms of E0.
+    /// Sum of the absolute terms of E0.
     size: f64,
 }
 
@@ -105,11 +109,11 @@ impl<const N: usize, const S: usize> Trial for Tried<N, S> {
     }
 }
 
-/// A step that was found, with all that follows from it.
+/// A solved step, with its energies and density.
 #[derive(Clone, Copy, Debug)]
 pub struct Found<const N: usize, const S: usize> {
     step: Step<N, S>,
-    /// What the energy of the node gains.
+    /// Increment of the energy of the node.
     gain: f64,
     course: Course,
 }
@@ -117,14 +121,14 @@ pub struct Found<const N: usize, const S: usize> {
 /// Buffers for stiff steps.
 type Cache<const N: usize, const S: usize> = Option<Box<Newton<N, S>>>;
 
-/// Part of the terms of an energy that its rounding may be: one that is known to fewer digits is not kept.
+/// Largest accepted rounding error of an energy, relative to its terms. With fewer digits the energy is not preserved.
 const KNOWN: f64 = 1e-10;
-/// Times that the step is halved along which the step density is measured.
+/// Most halvings of the step for the measurement of the step density.
 const HALVINGS: u32 = 16;
-/// Part of the terms of the energy that a step may miss it by there.
+/// Largest energy error of that measurement, relative to the terms of the energy.
 const HELD: f64 = 0.01;
 
-/// A run at a node: what a step is found from.
+/// A run at a node: the inputs of the search for a step.
 struct Here<'a, S, const N: usize, const K: usize> {
     system: &'a S,
     instructions: Instructions,
@@ -142,13 +146,13 @@ impl<S, const N: usize, const K: usize> Clone for Here<'_, S, N, K> {
 impl<S, const N: usize, const K: usize> Copy for Here<'_, S, N, K> {}
 
 impl<const K: usize> EnergyPreservingGauss<K> {
-    /// The order, which is the slope of `ln (H − E0)` over ln h to leading order.
+    /// The order: to leading order the slope of `ln (H − E0)` over ln h.
     #[allow(clippy::cast_precision_loss)]
     const ORDER: f64 = 2.0 * K as f64;
 
-    /// The least `|H − E|` that tells a length, if energies are rounded by so much.
+    /// The smallest `|H − E|` that determines a length, for energies with this rounding error.
     fn least_excess(rounding: f64) -> f64 {
-        // The length is known to this part of itself, so that the numbers of its step are.
+        // Relative accuracy of the length that the numbers of its step need.
         const PARTS: f64 = 1000.0;
         PARTS * rounding / Self::ORDER
     }
@@ -163,13 +167,14 @@ where
         Self { system, instructions: *prepared, node, stages: &memory.stages, course: &memory.course }
     }
 
-    /// The stages of the step of length h, by those of the last one.
+    /// The stages of the step of length h, extrapolated from the last one.
     fn guess(&self, h: f64) -> Stages<N, K> {
         let LastStages { stages, convergence, h: last, .. } = self.stages;
         if convergence.has_begun() { at(&stages.data.0, |c| 1.0 + c * (h / last)) } else { stages.data.0 }
     }
 
-    /// The step of length h, by the stages of another from the same node, else by those of the last step.
+    /// Solves the step of length h, guessed from another step from the same node if there is one, otherwise from the
+    /// last step.
     ///
     /// # Errors
     /// Those of a Gauss step; [`StepError::NonFinite`] if its energy is not finite.
@@ -185,7 +190,7 @@ where
         let before = &Convergence { sweeps: 0, ..last.convergence };
         let start = Start { node, h, stages: &stages, are_last: false, before, pause: last.pause };
         let swept = if last.pause.is_over() { start.swept(system, instructions).map_err(Some) } else { Err(None) };
-        // Lengths differ from step to step, and each has its own linearization.
+        // Lengths differ from step to step, so each has its own linearization.
         let step = swept.or_else(|left| start.with_care(system, instructions, (left.as_ref(), None), cache))?;
         let energies = energies(system, node, h, step.stages, node.energy);
         let residual = energies.start - node.energy_low - power::<K>(h) * course.shift;
@@ -195,20 +200,20 @@ where
         Ok(Tried { step: Step { linearization: None, ..step }, residual, work: energies.work, size: energies.size })
     }
 
-    /// What rounding moves the energy of a trial by at most, by running error analysis, in ulps of 1.
+    /// Rounding-error bound of the energy of a trial by running error analysis, in units of `ε`.
     #[cold]
     fn rounding_of(&self, trial: &Tried<N, K>) -> f64 {
         bounded_energies(self.system, self.node, trial.h(), trial.step.stages, self.node.energy).start.ulps()
     }
 
-    /// Whether the energy of a trial is the one to keep, as far as its arithmetic can tell.
+    /// Whether the energy of a trial equals the preserved one within its rounding error.
     ///
     /// # Errors
-    /// [`StepError::DegenerateStep`] if it is, and `H − E` is too small to tell the length.
+    /// [`StepError::DegenerateStep`] if it does, but `H − E` is too small to determine the length.
     #[cold]
     fn is_kept(&self, trial: &Tried<N, K>) -> Result<bool, StepError> {
         let rounding = f64::EPSILON * self.rounding_of(trial);
-        // At a turning point H may be zero, while the energies of the motion are not.
+        // At a turning point H may be zero although the energies of the trajectory are not.
         let size = trial.size.max(self.course.largest_size);
         if !(trial.residual.abs() <= FLOOR * rounding && rounding <= KNOWN * size) {
             return Ok(false);
@@ -217,13 +222,13 @@ where
         if self.course.excess.abs() < least { Err(self.degenerate()) } else { Ok(true) }
     }
 
-    /// The error if `H − E` tells no length.
+    /// The error if `H − E` does not determine a length.
     fn degenerate(&self) -> StepError {
         let h = self.course.h();
         StepError::DegenerateStep { t: self.node.t, h, density: self.course.excess / power::<K>(h) }
     }
 
-    /// The error if no step leads forward.
+    /// The error if no forward step exists.
     #[cold]
     fn no_step(&self) -> StepError {
         let Self { system, node, course, .. } = *self;
@@ -234,7 +239,8 @@ where
         StepError::NoForwardGaussStep { t: node.t, h: course.h(), stages: K, excess, density, shift, largest }
     }
 
-    /// The step that keeps the energy, within the bounds, with the slope of its energy over its length, and the iterations of all lengths that were tried.
+    /// The energy-preserving step within the bounds, the slope of its energy over its length, and the iterations of all
+    /// trials.
     fn found(&self, cache: &mut Cache<N, K>) -> Result<(Tried<N, K>, f64, u32), StepError> {
         let Self { node, course, .. } = *self;
         let (t, last) = (node.t, course.h());
@@ -242,11 +248,11 @@ where
         if excess.abs() < EnergyPreservingGauss::<K>::least_excess(f64::EPSILON * size) {
             return Err(self.degenerate());
         }
-        // A motion that has only gained speed so far has not shown how large its energies are.
+        // A trajectory that has only gained speed so far does not show the size of its energies.
         if size < largest_size {
             check_shift::<K>(t, last, shift, largest_size)?;
         }
-        // Past a change of sign lies another root.
+        // Beyond a sign change of D lies another root.
         if course.density().is_some_and(|density| excess * density < 0.0) {
             return Err(self.no_step());
         }
@@ -280,7 +286,7 @@ where
         Ok((step, slope, iterations.get()))
     }
 
-    /// What follows from a step: the energies at its end.
+    /// Computes the energies at the end of a step.
     fn after(&self, trial: &Tried<N, K>) -> Result<Found<N, K>, StepError> {
         let Self { system, node, .. } = *self;
         let mut course = *self.course;
@@ -362,7 +368,7 @@ where
 /// `H − E'` at a node, and the size of the terms of H.
 ///
 /// # Errors
-/// Those of [`State::velocity`]; [`StepError::NonFinite`] if H is not finite.
+/// As [`State::velocity`]; [`StepError::NonFinite`] if H is not finite.
 fn measured<S: Lagrangian<N>, const N: usize>(system: &S, node: &Node<N>) -> Result<[f64; 2], StepError> {
     let State { t, .. } = node.state();
     let NodeEnergy { total, size } = energy_at(system, &node.state())?;
@@ -391,7 +397,8 @@ fn energy_at<S: Lagrangian<N>, const N: usize>(
     Ok(NodeEnergy { total, size: v.dot(p).abs() + total.abs() })
 }
 
-/// Refuses a shift that adds more to the energy of a step of the length h than `size`, the size of the terms of the energy along the motion.
+/// Rejects a shift that adds more to the energy of a step of the length h than `size`, the size of the energy terms
+/// along the trajectory.
 ///
 /// # Errors
 /// [`StepError::ShiftTooLarge`].
@@ -404,7 +411,7 @@ fn check_shift<const K: usize>(t: f64, h: f64, shift: f64, size: f64) -> Result<
     Err(StepError::ShiftTooLarge { t, h, shift, part, size, shorter })
 }
 
-/// The memory before the first step, which keeps the energy of the node.
+/// The memory before the first step, which preserves the energy of the node.
 fn begun<S, const N: usize, const K: usize>(system: &S, node: &Node<N>, h: f64) -> Result<Lengths<N, K>, StepError>
 where
     S: Collocation<N>,
@@ -452,13 +459,13 @@ where
         let at = Problem { system, prepared: &Instructions::detected(), node, h };
         let first = Here::of(at, &memory).tried(h, None, &mut None)?;
         node.energy = first.residual;
-        // The stages of the first step are known.
+        // The start has already solved the stages of the first step.
         memory.stages.stages = SMatrix::from_array_storage(ArrayStorage(first.step.stages));
         memory.course.set_excess(measured(system, node)?);
         Ok(memory)
     }
 
-    /// Every step is a search, compiled once.
+    /// The search of a step, compiled once.
     #[inline(never)]
     fn attempt(
         &self,
@@ -590,8 +597,9 @@ where
 }
 
 impl<const STAGES: usize> EnergyPreservingGauss<STAGES> {
-    /// A run of `system` from `state` that keeps `energy`, in units of L, with a first step of about the length `h`: up to a factor of 3 from it. H at the state differs
-    /// from that energy by `C_s h^2s D_s`; a step that belongs to `E = H` itself has no length.
+    /// A run of `system` from `state` that preserves `energy`, in units of L. The first step has about the length `h`,
+    /// up to a factor of 3. H at the state differs from that energy by `C_s h^2s D_s`; for `E = H` itself no step
+    /// length exists.
     ///
     /// # Errors
     /// As [`integrate`](crate::run::Start::integrate); [`StepError::NonFinite`] for an energy that is not finite.
@@ -611,16 +619,17 @@ impl<const STAGES: usize> EnergyPreservingGauss<STAGES> {
     }
 }
 
-/// Options of a run, and what only such a run knows.
+/// Options and results that only such a run has.
 impl<S, const N: usize, const STAGES: usize> Run<EnergyPreservingGauss<STAGES>, S, N>
 where
     S: Collocation<N> + Convertible<N>,
 {
-    /// Adds `shift`, in the units of the step density, to the step density of every step: a step exists while `D_s + shift` keeps its sign. The run keeps
-    /// E' = E − C_s h^2s D_*, [`Run::shifted_energy`], to rounding; momenta and the order stay. With zero it is a run without a shift. The larger the shift, the closer
-    /// to fixed steps. An error of the last step is forgotten.
+    /// Adds `shift`, in the units of the step density, to the step density of every step: a step exists while `D_s +
+    /// shift` keeps its sign.
     ///
-    /// The length of the last step, or the first one, stays what it is.
+    /// The run preserves E' = E − C_s h^2s D_*, [`Run::shifted_energy`], to rounding. Momenta and the order stay. Zero
+    /// means no shift. A larger shift makes the steps more uniform. The run clears an error of the last step. The
+    /// length of the last or the first step stays.
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] for a shift that is not finite.
@@ -639,13 +648,16 @@ where
         Ok(self)
     }
 
-    /// [`Run::with_shift`] with twice the largest `|D_s|` that fixed steps meet over `duration` from here, in units of time: a period of the motion, or a few. The steps
-    /// are then within a factor of `3^(1/(2s+1))` of each other while the motion stays like that. The fixed steps have the first length, halved until their energy holds
-    /// to a hundredth of its terms.
+    /// [`Run::with_shift`] with twice the largest `|D_s|` of fixed steps over `duration` from here, in units of time:
+    /// one or a few periods.
+    ///
+    /// Step lengths then stay within a factor of `3^(1/(2s+1))` of each other as long as the motion does not change.
+    /// The fixed steps have the first length, halved until their energy error is below a hundredth of the energy terms.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for a duration that is not positive and finite, or over which no fixed steps hold the energy; [`StepError::ShiftTooLarge`] for a first
-    /// step that is too long for this shift; those of Gauss steps and of [`step_density`].
+    /// [`StepError::InvalidInput`] for a duration that is not positive and finite, or over which no fixed steps
+    /// preserve the energy; [`StepError::ShiftTooLarge`] if the first step is too long for this shift; those of Gauss
+    /// steps and of [`step_density`].
     pub fn with_shift_from(mut self, duration: f64) -> Result<Self, StepError> {
         check_forward("the duration over which the step density is measured", duration)?;
         let mut h = self.memory.course.h();
@@ -663,7 +675,7 @@ where
         Err(StepError::InvalidInput { input, allowed: "one over which fixed steps hold the energy", value: duration })
     }
 
-    /// The stages of a step of the length h from here, whose energy does not matter.
+    /// The stages of a step of the length h from here, regardless of its energy.
     ///
     /// # Errors
     /// Those of a Gauss step; [`StepError::NonFinite`] if its energy is not finite.
@@ -673,7 +685,7 @@ where
         Ok(Here::of(at, memory).tried(h, None, &mut None)?.step.stages)
     }
 
-    /// What fixed steps of the length h meet over `duration` from here; `None` if their energy does not hold.
+    /// Maxima along fixed steps of the length h over `duration` from here; `None` if their energy error is too large.
     fn met_along(&self, h: f64, duration: f64) -> Result<Option<Met>, StepError> {
         let system = &self.system;
         let mut steps = Starts::at_state(*system, self.node.state()).integrate(Gauss::<STAGES>, h)?;
@@ -703,12 +715,12 @@ where
             met.scale = (kinetic / count).max(after.total.abs());
             before = after;
         }
-        // The energy of a start from rest may be zero: what is missed is judged by the whole motion.
+        // The energy of a start from rest may be zero, so the whole trajectory sets the scale of the energy error.
         Ok((largest_missed <= HELD * met.size).then_some(met))
     }
 
-    /// What is kept, E' = E − C_s h^2s D_*: without a shift the discrete energy E. It changes by the work of forces and with an explicit time alone. During fixed steps
-    /// it is what was kept before them, with the work done since.
+    /// The preserved quantity, E' = E − C_s h^2s D_*; without a shift the discrete energy E. It changes only by the
+    /// work of forces and by an explicit time. During fixed steps it is the previous value plus the work done since.
     pub fn shifted_energy(&self) -> f64 {
         self.node.energy
     }
@@ -718,17 +730,19 @@ where
         self.memory.course.shift
     }
 
-    /// Step density D_s of the last step, without the shift, by its energy: the mean of `H − E` at both ends over `C_s h^2s`. Before the first step, of its start.
+    /// Step density D_s of the last step, without the shift, from its energy: the mean of `H − E` at both ends over
+    /// `C_s h^2s`. Before the first step, at its start.
     pub fn density(&self) -> f64 {
         self.memory.course.told_density::<STAGES>() - self.memory.course.shift
     }
 }
 
-/// What a motion meets.
+/// Maxima along a trajectory.
 struct Met {
     /// The largest `|D_s|`.
     density: f64,
-    /// The larger of the mean of `|v·p|` and of `|H|` at the end: whatever constant V has, one of them tells how large energies are.
+    /// The larger of the mean of `|v·p|` and of `|H|` at the end: one of them shows the size of the energies for any
+    /// constant in V.
     scale: f64,
     /// The largest `|v·p| + |H|`.
     size: f64,

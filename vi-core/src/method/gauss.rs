@@ -7,11 +7,12 @@
 //! q1  = q0 + h Σ b_i V_i         p1 = p0 + h Σ b_i (L_q + f)_i        E1 = Σ b_i En_i − h Σ b_i c_i (L_t − f·v)_i
 //! ```
 //!
-//! En_i the energy at a stage. It is the variational integrator of the discrete Lagrangian `L_d = h Σ b_i L_i`: symplectic without force, time-symmetric, and it keeps
-//! momenta of cyclic coordinates bit for bit. S = 1 is the midpoint rule (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.3 and VI.6.2). The equations
-//! of the stages and their solution are in [`crate::gauss`].
+//! with En_i the energy at a stage. It is the variational integrator of the discrete Lagrangian `L_d = h Σ b_i L_i`:
+//! symplectic without force and time-symmetric. It preserves momenta of cyclic coordinates bit for bit. S = 1 is the
+//! midpoint rule (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.3 and VI.6.2). [`crate::gauss`]
+//! solves the stage equations.
 //!
-//! AFTER A STEP the residual of its stages was measured, and is at the rounding floor.
+//! The stages of every accepted step satisfy their equations to rounding.
 
 use super::{Memory, Method, Problem, Report};
 use crate::collocation::Collocation;
@@ -39,45 +40,46 @@ pub struct Gauss<const STAGES: usize>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C, align(64))]
 pub struct LastStages<const N: usize, const S: usize> {
-    /// Velocities at the stages of the last step, forces there of a separable system: a column a coordinate. Before the first step those of the node. First and aligned:
-    /// a vector of eight numbers then lies in one line of the cache.
+    /// Velocities at the stages of the last step, or the forces there for a separable system; one column per
+    /// coordinate. Before the first step, values at the node. The first field is aligned, so that a vector of eight
+    /// numbers fits one cache line.
     pub(crate) stages: SMatrix<f64, S, N>,
-    /// The node before the last step; that of the run if the step is not known by the parameters that the system has.
+    /// The start node of the last step, or the current node if the parameters have changed since.
     pub(crate) before: Node<N>,
     /// Length of the last step.
     pub(crate) h: f64,
     pub(crate) convergence: Convergence,
     pub(crate) pause: Pause,
-    /// Where the equations of the next stiff step are linearized; `None` if it takes its own linearization.
+    /// Linearization point of the next stiff step; `None` if it linearizes anew.
     pub(crate) linearization: Option<Linearization<N>>,
 }
 
 impl<const N: usize, const S: usize> Memory for LastStages<N, S> {}
 
 impl<const N: usize, const S: usize> LastStages<N, S> {
-    /// Before the first step of the length h: stages that are all like the node.
+    /// Stages equal to the node, before the first step of the length h.
     ///
     /// # Errors
-    /// Those of [`State::velocity`].
+    /// As [`State::velocity`].
     pub(crate) fn constant<Y: Collocation<N>>(system: &Y, node: &Node<N>, h: f64) -> Result<Self, StepError> {
         let stages = SMatrix::from_array_storage(ArrayStorage(constant(system, node)?));
         let (convergence, pause) = (Convergence::NONE, Pause::NONE);
         Ok(Self { stages, before: *node, h, convergence, pause, linearization: None })
     }
 
-    /// Whether the step is known that led to the node: by other parameters its stages mean nothing.
+    /// Whether the stages belong to the step that led to the node. After a change of parameters they do not.
     pub(crate) fn has_step(&self, node: &Node<N>) -> bool {
         self.convergence.has_begun() && self.before != *node
     }
 
-    /// What the next step, which is as long, is solved from.
+    /// The initial data of the next step of equal length.
     #[inline(always)]
     fn start<'a>(&'a self, node: &'a Node<N>) -> Start<'a, N, S> {
         let (before, pause) = (&self.convergence, self.pause);
         Start { node, h: self.h, stages: &self.stages.data.0, are_last: before.has_begun(), before, pause }
     }
 
-    /// Moves to the end of a step.
+    /// Advances to the end of a step.
     #[inline(always)]
     pub(crate) fn take(&mut self, node: &mut Node<N>, step: &Step<N, S>) {
         self.h = step.h;
@@ -89,7 +91,7 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         self.linearization = step.linearization;
     }
 
-    /// Moves to the end of a step that fixed-point iteration solved.
+    /// Advances to the end of a step that fixed-point iteration solved.
     #[inline(always)]
     fn take_solved(&mut self, node: &mut Node<N>, solved: &Solved<N, S>) {
         let Increment { velocity, momentum } = &solved.increment;
@@ -101,13 +103,13 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         self.linearization = None;
     }
 
-    /// Discrete energy of the last step, if it is known and finite.
+    /// Discrete energy of the last step, if its stages are stored and it is finite.
     fn discrete_energy<Y: Collocation<N> + Convertible<N>>(&self, system: &Y, node: &Node<N>) -> Option<f64> {
         let energy = energies(system, &self.before, self.h, self.stages.data.0, 0.0).end;
         (self.has_step(node) && energy.is_finite()).then_some(energy)
     }
 
-    /// The motion over the last step, or over one of the length h whose stages are not known.
+    /// Dense output of the last step, or of a step of the length h without stored stages.
     pub(crate) fn dense_output<Y: Collocation<N> + Convertible<N>>(
         &self,
         system: &Y,
@@ -123,7 +125,7 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         }
     }
 
-    /// Whether stored stages are finite.
+    /// Checks that the stored stages are finite.
     ///
     /// # Errors
     /// [`StepError::NonFinite`].
@@ -140,7 +142,7 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
     }
 }
 
-/// The next step of a run, taken inside the dispatched function.
+/// Takes the next step of a run inside the dispatched function.
 struct Advancing<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     node: &'a mut Node<N>,
@@ -307,12 +309,12 @@ where
     }
 }
 
-/// The motion over a Gauss step.
+/// Dense output of a Gauss step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion<const N: usize, const S: usize> {
-    /// Over a step of the run.
+    /// A step with stored stages.
     Collocation(Polynomial<N, S>),
-    /// Over a step of another length, the stages of which are not kept.
+    /// A step without stored stages, of another length.
     Hermite(Hermite<N>),
 }
 

@@ -1,23 +1,27 @@
-//! How accurate the steps of a run are: the error of one step, measured.
+//! Measured errors of steps.
 //!
-//! In: a run. Out: the error of q and of h·v in a step, for each coordinate; by an [`ErrorMonitor`], the largest relative error along the run and the time at which
-//! it was. A step is a pure function, so its error is measured: against two steps of half the length from the same node. With p the order of the method,
+//! For each coordinate this module measures the error of q and of h·v in one step. An [`ErrorMonitor`] reports the
+//! largest relative error along the run and its time. A step is a pure function, so comparison with two steps of half
+//! the length from the same node measures its error. With p the order of the method,
 //!
 //! ```text
 //! error = |one step − two half steps| · 2^p/(2^p − 1)
 //! ```
 //!
-//! The error of a coordinate is relative to its own excursion: the largest `|q_i − q_i(start)|` and `|h v_i|` so far. So it has no unit, and neither a large coordinate
-//! nor the choice of an origin hides the error of a small one. A coordinate counts if it moves by more than [`VISIBLE`] roundings of its own value, and if its
-//! `|p_i v_i|` exceeds `(4096 ε)²` of the largest one. Below that its excursion is rounding that the other coordinates cause, and so would be its error.
+//! The error of a coordinate is relative to its own excursion: the largest `|q_i − q_i(start)|` and `|h v_i|` so far.
+//! It has no unit, and neither a large coordinate nor the choice of an origin hides the error of a small one. A
+//! coordinate counts if it moves by more than [`VISIBLE`] ulps of its own value, and if its `|p_i v_i|` exceeds `(4096
+//! ε)²` of the largest one. Smaller excursions are rounding errors that the other coordinates cause.
 //!
-//! THE FIRST STRETCH ends when every counted coordinate that has turned back at all has covered four times its excursion, and after [`STRETCH`] steps at most. Until then
-//! excursions grow: the largest error is relative to the excursions at the time of the question. After it a measured value stays.
+//! The first stretch ends when every counted coordinate with a turning point has covered four times its excursion, or
+//! after [`STRETCH`] steps. Until then excursions grow, so the largest error is relative to the excursions at the time
+//! of the query. Later measurements are final.
 //!
-//! A monitor measures every step at first. Then it divides the run into windows, each an eighth of the steps so far and [`WINDOW`] steps at most, and measures one
-//! step of each: the one with the largest indicator `|Δ²p_i|/|p_i − p_i(start)|`, the change of the momentum increments. So it finds peaks that are shorter than a window.
-//! A measurement takes the time of about two steps (eight in transformed time): 3 % of the steps of a run of 5000, 1.1 % of a long one. The indicator takes about 60
-//! instructions a step of one coordinate, 90 of two. A run without a monitor pays nothing.
+//! A monitor first measures every step. Then it divides the run into windows of an eighth of the steps so far, at most
+//! [`WINDOW`] steps. In each window it measures the step with the largest indicator `|Δ²p_i|/|p_i − p_i(start)|`, the
+//! change of the momentum increments. This finds peaks that are shorter than a window. One measurement costs about two
+//! steps (eight in transformed time). A run of 5000 steps measures 3 % of them, a long run 1.1 %. The indicator costs
+//! about 60 instructions a step for one coordinate, 90 for two. A run without a monitor has no extra cost.
 
 use super::{Run, Start};
 use crate::error::StepError;
@@ -28,18 +32,19 @@ use crate::real::Scalar;
 use crate::state::State;
 use nalgebra::SVector;
 
-/// Roundings of a coordinate that it has to move by to count.
+/// A coordinate counts if it moves by more ulps than this.
 const VISIBLE: f64 = 64.0;
-/// Roundings to which a coordinate, compared with the others by the root of `|p_i v_i|`, has to amount to count.
+/// A coordinate counts if the root of its `|p_i v_i|`, relative to the others, exceeds so many `ε`.
 const FAINT: f64 = 4096.0;
 /// The longest window between two measurements, in steps: about 1 % of their time.
 const WINDOW: u64 = 200;
-/// The most steps of the first stretch.
+/// Most steps of the first stretch.
 const STRETCH: u64 = 4096;
-/// Excursions that a coordinate covers in the first stretch: two full oscillations from a turning point.
+/// Excursions per coordinate in the first stretch: two full oscillations from a turning point.
 const COVERED: f64 = 4.0;
 
-/// The error of one step, for each coordinate. Infinite if its half steps have no solution: then the step is too long to be measured.
+/// The error of one step, for each coordinate. Infinite if its half steps have no solution, because the step is too
+/// long to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalError<const N: usize> {
     /// Error of the coordinates.
@@ -48,7 +53,7 @@ pub struct LocalError<const N: usize> {
     pub hv: SVector<f64, N>,
 }
 
-/// What a measurement finds.
+/// Result of a measurement.
 struct Measured<const N: usize> {
     /// The larger error of q and h·v.
     error: SVector<f64, N>,
@@ -66,7 +71,7 @@ impl<const N: usize> Measured<N> {
     }
 }
 
-/// Measures the step between two nodes. Half steps are guessed from `memory`.
+/// Measures the step between two nodes. The half steps start from guesses by `memory`.
 #[inline(never)]
 fn measured<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     run: &Run<M, S, N, T>,
@@ -74,7 +79,7 @@ fn measured<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     [before, after]: [&Node<N, T>; 2],
 ) -> Measured<N> {
     let fresh = || {
-        // Stages of a long step can guess a half step so badly that its iteration diverges.
+        // Stages of a long step can give a guess from which the iteration of a half step diverges.
         let mut node = *before;
         let memory = run.method.begin(&run.system, &mut node, run.h)?;
         compared(run, &memory, [before, after])
@@ -82,8 +87,10 @@ fn measured<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     compared(run, memory, [before, after]).or_else(|_| fresh()).unwrap_or_else(|_| Measured::unknown())
 }
 
+/// Compares the step with two half steps.
+///
 /// # Errors
-/// Why a half step or a velocity has no solution.
+/// The reason why a half step or a velocity has no solution.
 fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     run: &Run<M, S, N, T>,
     memory: &M::Memory,
@@ -99,7 +106,7 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let halved = 2.0_f64.powi(i32::try_from(method.order()).unwrap_or(i32::MAX));
     let factor = halved / (halved - 1.0);
     let length = h.to_f64();
-    // The low parts are what the method carries beyond the digits of a number.
+    // The low parts carry the digits beyond the precision of a number.
     let q = (after.q - end.q) + (after.q_low - end.q_low);
     let q = q.map(|entry| known(factor * entry.to_f64()));
     let hv = (v - better).map(|entry| known(factor * length * entry.to_f64()));
@@ -109,7 +116,7 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     Ok(Measured { error, of: LocalError { q, hv }, displacement, action })
 }
 
-/// The size of an error; infinite for one that is not a number.
+/// The size of an error; infinite for NaN.
 fn known(error: f64) -> f64 {
     if error.is_nan() { f64::INFINITY } else { error.abs() }
 }
@@ -120,23 +127,23 @@ fn duration<const N: usize, T: Scalar>(before: &Node<N, T>, after: &Node<N, T>) 
 }
 
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Run<M, S, N, T> {
-    /// The error of the next step, for each coordinate in its own unit. The run stays where it is.
+    /// The error of the next step, for each coordinate in its own unit. The run does not change.
     ///
     /// # Errors
-    /// That of the next step. If it exists and its half steps do not, its error is infinite.
+    /// That of the next step. If only its half steps fail, its error is infinite.
     pub fn local_error(&self) -> Result<LocalError<N>, StepError> {
         let mut ahead = self.clone();
         ahead.single_step()?;
         Ok(measured(self, &self.memory, [&self.node, &ahead.node]).of)
     }
 
-    /// The same run with a monitor of its errors, which changes no bit of its steps. See the [module](crate::run::ErrorMonitor).
+    /// Adds an error monitor, which changes no bit of the steps. See the [module](crate::run::ErrorMonitor).
     pub fn monitored(self) -> Monitored<M, S, N, T> {
         Monitored { monitor: ErrorMonitor::new(&self), run: self, limit: f64::INFINITY }
     }
 }
 
-/// A step that may be measured.
+/// A candidate for a measurement.
 #[derive(Clone, Debug)]
 struct Candidate<M, const N: usize, T> {
     before: Node<N, T>,
@@ -145,10 +152,11 @@ struct Candidate<M, const N: usize, T> {
     indicator: T,
 }
 
-/// The largest relative error of a step, and the time at which the step began.
+/// The largest relative error of a step, and the time at which that step began.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
-    /// The error of q and h·v in one step, relative to the excursion of the coordinate: the largest entry. Infinite if the half steps of a step have no solution.
+    /// Error of q and h·v in one step, relative to the excursion of the coordinate: the largest entry. Infinite if the
+    /// half steps of a step have no solution.
     pub estimate: f64,
     /// Time at which the step began.
     pub t: f64,
@@ -162,10 +170,11 @@ impl ErrorEstimate {
     }
 }
 
-/// Watches the steps of a run, and keeps the largest relative error. See [`Run::monitored`] and `docs/choosing.md`.
+/// Monitors the steps of a run, and keeps the largest relative error. See [`Run::monitored`] and `docs/choosing.md`.
 ///
-/// Relative: to the largest `|q_i − q_i(start)|` and `|h v_i|` of the coordinate so far. The monitor measures the steps at which the momenta change their increments
-/// most, by half steps: all of the first sixteen, then fewer and fewer down to one of 200.
+/// Errors are relative to the largest `|q_i − q_i(start)|` and `|h v_i|` of the coordinate so far. The monitor
+/// measures, by half steps, those steps in which the momentum increments change most: the first sixteen, then ever
+/// fewer, down to one of 200.
 #[derive(Clone, Debug)]
 pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
     start: State<N, T>,
@@ -179,10 +188,10 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     momentum: SVector<T, N>,
     candidate: Option<Candidate<M::Memory, N, T>>,
     steps: u64,
-    /// Number of steps after which the window ends.
+    /// Step number at which the window ends.
     due: u64,
     stretch: Option<Stretch<N, T>>,
-    /// Largest `|p_i v_i|` and `|h v_i|` of measured steps.
+    /// Largest `|p_i v_i|` and `|h v_i|` of the measured steps.
     action: SVector<f64, N>,
     displacement: SVector<f64, N>,
     largest: ErrorEstimate,
@@ -192,15 +201,15 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
 /// The first stretch of a run.
 #[derive(Clone, Debug)]
 struct Stretch<const N: usize, T> {
-    /// Length of the way of each coordinate.
+    /// Path length of each coordinate.
     way: SVector<T, N>,
-    /// The largest error of each coordinate, in its unit, and the time of its step.
+    /// The largest error of each coordinate, in its unit, and the time of that step.
     errors: SVector<f64, N>,
     times: SVector<f64, N>,
 }
 
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> ErrorMonitor<M, S, N, T> {
-    /// A monitor of a run from the node at which the run is.
+    /// A monitor that starts at the current node of a run.
     pub fn new(run: &Run<M, S, N, T>) -> Self {
         let (node, zeros, none) = (run.node, SVector::zeros(), SVector::zeros());
         Self {
@@ -221,7 +230,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
-    /// Takes notice of the step that the run has just taken.
+    /// Records the step that the run has just taken.
     #[inline]
     pub fn watch(&mut self, run: &Run<M, S, N, T>) {
         let node = &run.node;
@@ -236,7 +245,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             indicator += change * change;
         }
         if M::FINDS_LENGTH {
-            // A damped motion has longer and longer steps: their errors grow while its momenta decay.
+            // The steps of a damped motion grow: their errors increase while its momenta decay.
             let h = duration(&self.last, node);
             indicator *= h * h * h * h;
         }
@@ -253,14 +262,15 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
-    /// Forgets a jump of the state: the next step begins at the node of the run.
+    /// Skips a jump of the state: the next step begins at the current node of the run.
     pub fn resume(&mut self, run: &Run<M, S, N, T>) {
         self.close(run);
         self.last = run.node;
         self.increment = SVector::zeros();
     }
 
-    /// The largest relative error of a step so far, and where it was. Measures the step that is due next, so that a short run is told too.
+    /// The largest relative error of a step so far, and its time. Also measures the candidate of the open window, so
+    /// that short runs have a result.
     pub fn largest(&self, run: &Run<M, S, N, T>) -> ErrorEstimate {
         if self.candidate.is_none() {
             return self.found();
@@ -270,7 +280,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         closed.found()
     }
 
-    /// Steps that were measured.
+    /// Number of measured steps.
     pub fn measurements(&self) -> u64 {
         self.measurements
     }
@@ -278,12 +288,12 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// The error of the next step of the run, relative to the excursions so far.
     ///
     /// # Errors
-    /// That of the step.
+    /// Those of the step.
     pub fn error_estimate(&self, run: &Run<M, S, N, T>) -> Result<f64, StepError> {
         let mut ahead = run.clone();
         ahead.single_step()?;
         let mut monitor = self.clone();
-        // The step counts in the excursions.
+        // The excursions include this step.
         monitor.watch(&ahead);
         let found = measured(run, &run.memory, [&run.node, &ahead.node]);
         monitor.add(&found);
@@ -301,7 +311,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.candidate = Some(Candidate { before, after, memory, indicator });
     }
 
-    /// Measures the step of the window with the largest indicator, and begins the next window.
+    /// Measures the step with the largest indicator, and begins the next window.
     #[cold]
     #[inline(never)]
     fn close(&mut self, run: &Run<M, S, N, T>) {
@@ -339,7 +349,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.displacement = self.displacement.zip_map(&found.displacement, f64::max);
     }
 
-    /// Whether every counted coordinate has turned back and covered its excursion several times, or never turned.
+    /// Whether every counted coordinate has turned back and covered its excursion several times, or has never turned.
     fn has_turned(&self) -> bool {
         let Some(stretch) = &self.stretch else { return true };
         let mut has_turned = false;
@@ -373,7 +383,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
-    /// The largest of errors of coordinates, relative to their excursions.
+    /// The largest error over all coordinates, relative to their excursions.
     fn relative(&self, errors: &SVector<f64, N>, times: &SVector<f64, N>) -> ErrorEstimate {
         let mut largest = ErrorEstimate { estimate: 0.0, t: self.last.t.to_f64(), coordinate: 0 };
         for i in 0..N {
@@ -396,7 +406,7 @@ fn larger<T: Scalar>(a: T, b: T) -> T {
     if b > a { b } else { a }
 }
 
-/// A run with a monitor of its errors: [`Run::monitored`].
+/// A run with an error monitor: [`Run::monitored`].
 #[derive(Clone, Debug)]
 pub struct Monitored<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
     run: Run<M, S, N, T>,
@@ -405,16 +415,17 @@ pub struct Monitored<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
 }
 
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Monitored<M, S, N, T> {
-    /// Ends the run with [`StepError::Tolerance`] if the error of a measured step exceeds `limit`: ten times the tolerance, for instance.
+    /// Ends the run with [`StepError::Tolerance`] if a measured error exceeds `limit`, for example ten times the
+    /// tolerance.
     #[must_use]
     pub fn with_limit(self, limit: f64) -> Self {
         Self { limit, ..self }
     }
 
-    /// Takes one step and returns the state reached.
+    /// Takes one step and returns its end state.
     ///
     /// # Errors
-    /// Those of [`Run::step`]. [`StepError::Tolerance`] if a limit is set and the error of a step measured so far exceeds it: the state reached stays, and a
+    /// As [`Run::step`]. [`StepError::Tolerance`] if a measured error exceeds the limit: the last state stays, and a
     /// further call returns the same error.
     #[inline]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
@@ -425,11 +436,13 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Ok(self.run.state())
     }
 
+    /// Checks the limit.
+    ///
     /// # Errors
     /// [`StepError::Tolerance`] beyond the limit.
     #[inline]
     fn check(&self) -> Result<(), StepError> {
-        // In the first stretch errors are relative to excursions that still grow.
+        // Errors of the first stretch are relative to excursions that still grow.
         if self.monitor.largest.estimate <= self.limit || !self.monitor.is_over() {
             return Ok(());
         }
@@ -437,7 +450,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Err(StepError::Tolerance { t, estimate, tolerance: self.limit })
     }
 
-    /// The largest relative error of a step so far, and where it was.
+    /// The largest relative error of a step so far, and its time.
     pub fn largest(&self) -> ErrorEstimate {
         self.monitor.largest(&self.run)
     }
@@ -445,12 +458,12 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// The error of the next step, relative to the excursions so far.
     ///
     /// # Errors
-    /// That of the step.
+    /// Those of the step.
     pub fn error_estimate(&self) -> Result<f64, StepError> {
         self.monitor.error_estimate(&self.run)
     }
 
-    /// Steps that were measured.
+    /// Number of measured steps.
     pub fn measurements(&self) -> u64 {
         self.monitor.measurements()
     }
@@ -460,9 +473,9 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         &self.run
     }
 
-    /// Changes the run, its state or its parameters for instance. Monitoring continues at the node where it is then.
+    /// Changes the run, for example its state or its parameters. Monitoring continues at the current node.
     pub fn change<R>(&mut self, change: impl FnOnce(&mut Run<M, S, N, T>) -> R) -> R {
-        // What is measured belongs to the system of before.
+        // Open measurements belong to the system before the change.
         self.monitor.close(&self.run);
         let outcome = change(&mut self.run);
         self.monitor.resume(&self.run);
@@ -479,7 +492,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
     /// Takes steps up to the time t, as [`Run::until`] does.
     ///
     /// # Errors
-    /// Those of [`Run::until`] and of [`Monitored::step`].
+    /// As [`Run::until`] and [`Monitored::step`].
     pub fn until(&mut self, t: f64) -> Result<State<N>, StepError> {
         self.run.check_ahead(t)?;
         loop {
@@ -494,20 +507,23 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
     }
 }
 
-/// A tolerance in place of a step length: `start.integrate(method, Tolerance(1e-9))`.
+/// A tolerance instead of a step length: `start.integrate(method, Tolerance(1e-9))`.
 ///
-/// The run then has the constant step for which the largest relative error of a step over the first stretch is the tolerance: at least 0.4 of it, if
-/// such steps exist. If steps stop existing before the tolerance is reached, the run has half of the longest length that exists. The stretch lasts until the coordinates have turned back twice or more, and 4096 steps at most. A symplectic method keeps its step: a motion that
-/// becomes faster later exceeds the tolerance, which [`Run::monitored`] reports. The global error is larger: about the tolerance times the number of steps, or more.
+/// The run then has the constant step whose largest relative error over the first stretch is at most the tolerance, and
+/// at least 0.4 of it if such steps exist. If steps stop existing before the tolerance is reached, the run uses half of
+/// the longest length that exists. The stretch lasts until the coordinates have turned back twice or more, at most 4096
+/// steps. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
+/// [`Run::monitored`] reports it. The global error is larger: about the tolerance times the number of steps, or more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance(pub f64);
 
-/// What determines the length of a step: a number, or a [`Tolerance`].
+/// A step length: a number, or a [`Tolerance`].
 pub trait Length<T: Scalar> {
-    /// The length of the steps of a run from a start by a method.
+    /// The step length of a run from a start by a method.
     ///
     /// # Errors
-    /// [`StepError::Tolerance`] if no length has the tolerance, [`StepError::InvalidInput`] for one below a rounding (2.2e-16 in `f64`) or not below 1; the error of the shortest steps tried.
+    /// [`StepError::Tolerance`] if no length meets the tolerance; [`StepError::InvalidInput`] for a tolerance below a
+    /// rounding (2.2e-16 in `f64`) or not below 1; the error of the shortest steps tried.
     fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
         self,
         start: &Start<S, N, T>,
@@ -526,16 +542,16 @@ impl<T: Scalar> Length<T> for T {
     }
 }
 
-/// Lengths that are tried.
+/// Most trial lengths.
 const TRIALS: u32 = 60;
-/// Largest factor between two of them.
+/// Largest factor between two trial lengths.
 const FACTOR: f64 = 8.0;
-/// The error that a trial aims at, and the least that it accepts, as parts of the tolerance.
+/// The error target of a trial, and the least accepted error, relative to the tolerance.
 const AIM: f64 = 0.7;
 const LEAST: f64 = 0.4;
 /// Longest step, in units of the first guess.
 const LONGEST: f64 = 1e4;
-/// Trials in a row that shorten the step without reducing the error: it is rounding.
+/// Consecutive shorter trials without a smaller error, after which rounding dominates.
 const STALLED: u32 = 3;
 
 impl<T: Scalar> Length<T> for Tolerance {
@@ -551,7 +567,7 @@ impl<T: Scalar> Length<T> for Tolerance {
         }
         let guess = guess(start)?;
         let mut h = guess;
-        // The longest length that is accurate enough, and the shortest that is not.
+        // The longest accepted length, and the shortest rejected one.
         let (mut low, mut high) = (0.0_f64, f64::INFINITY);
         let mut least = f64::INFINITY;
         let mut stalled = 0;
@@ -576,7 +592,7 @@ impl<T: Scalar> Length<T> for Tolerance {
                 if h < high {
                     (high, is_edge) = (h, estimate.is_infinite());
                 }
-                // Where rounding ends the error of every method.
+                // Below this, rounding dominates the error of every method.
                 let is_rounding = estimate < T::EPSILON.sqrt() && estimate > 0.7 * least;
                 stalled = if is_rounding { stalled + 1 } else { 0 };
                 if stalled >= STALLED && low == 0.0 {
@@ -602,7 +618,7 @@ impl<T: Scalar> Length<T> for Tolerance {
     }
 }
 
-/// A length between two.
+/// A length between two lengths.
 fn bisected(low: f64, high: f64) -> f64 {
     if low == 0.0 {
         high / FACTOR
@@ -613,10 +629,10 @@ fn bisected(low: f64, high: f64) -> f64 {
     }
 }
 
-/// The largest relative error of steps of the length h over the first stretch.
+/// The largest relative error over the first stretch with steps of the length h.
 ///
 /// # Errors
-/// Why a step does not exist.
+/// The reason why a step fails.
 fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     start: &Start<S, N, T>,
     method: &M,
@@ -633,7 +649,7 @@ fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
 /// A tenth of the shortest time scale of a coordinate: the longest of `|q|/|v|`, `|v|/|a|` and `√(|q|/|a|)`.
 ///
 /// # Errors
-/// If no velocity belongs to the momenta.
+/// Those of a velocity without a solution.
 fn guess<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Start<S, N, T>) -> Result<f64, StepError> {
     let Start { system, state } = start;
     let v = state.velocity(system)?;

@@ -345,7 +345,7 @@ mod tests {
             found.missing(),
             [
                 "1 of the 4 runs of energy-preserving ended early; at h₀ = 0.2000: no energy-preserving step exists past \
-                 from t = 1.000000000 (last h = 1.000e-1, H − E = 0.000e0, step density D = -1.000e0).",
+                 t = 1.000000000 (last h = 1.000e-1, H − E = 0.000e0, step density D = -1.000e0).",
                 "1 of the 4 runs of energy-preserving have an error above 2."
             ]
         );
