@@ -1,13 +1,13 @@
 //! The discrete energies of a step.
 //!
-//! In: the stages of a step of length h from a node. Out: what its energy is at its start and at its end,
+//! From the stages of a step of length h from a node follow its energies at both ends, relative to `base`:
 //!
 //! ```text
 //! E0 =  D1 L_d + g_d⁻ = Σ b_i En_i − h Σ b_i (1 − c_i) (f·v − L_t)_i
 //! E1 = −D3 L_d − g_d⁺ = Σ b_i En_i + h Σ b_i c_i (f·v − L_t)_i
 //! ```
 //!
-//! less a number that is close to them: energies of stages differ from it by little, exactly, so that no sum of large terms is rounded.
+//! Nearby energies subtract exactly, so that the sum loses no digits.
 
 use super::general::equations;
 use super::points::Rare;
@@ -21,12 +21,12 @@ use crate::real::{Real, Rounded};
 use crate::stepping::Convertible;
 use nalgebra::SVector;
 
-/// The energies of a step less a given number, and how large their terms are; see the [module](self).
+/// The energies of a step relative to `base`, and the size of their terms; see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Energies<T = f64> {
-    /// E0, less the number.
+    /// E0 − base.
     pub(crate) start: T,
-    /// E1, less the number.
+    /// E1 − base.
     pub(crate) end: T,
     /// `E1 − E0`.
     pub(crate) work: T,
@@ -34,7 +34,7 @@ pub(crate) struct Energies<T = f64> {
     pub(crate) size: T,
 }
 
-/// The energies, less `base`, of the step of length h from `node` with the stages of its equations.
+/// The energies relative to `base`, for the step of length h from `node` with the stages of its equations.
 #[inline(always)]
 pub(crate) fn energies<Y, const N: usize, const S: usize>(
     system: &Y,
@@ -50,8 +50,9 @@ where
     interval.energies(system, base, |number| number, |i| stage(&interval.velocities, i))
 }
 
-/// The same in numbers that carry a bound of their rounding, each position the nearest to the one that is meant. Velocities carry the
-/// rounding of the forces that they follow from: at an angle of thousands of turns these are known to the ulp of the angle only.
+/// The energies in numbers with rounding-error bounds, at positions rounded to the nearest number. Velocities include
+/// the rounding error of their forces: at an angle of thousands of turns these are accurate only to the ulp of the
+/// angle.
 pub(crate) fn bounded_energies<Y, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
@@ -68,7 +69,7 @@ where
     interval.energies(&system.convert::<Rounded>(), base, Rounded::nearest, |i| velocities[i])
 }
 
-/// A step with the positions and the velocities at its stages.
+/// A step with its stage positions and velocities.
 struct Interval<'a, const N: usize, const S: usize> {
     node: &'a Node<N>,
     h: f64,

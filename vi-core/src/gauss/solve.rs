@@ -1,7 +1,8 @@
-//! The solution of a step.
+//! The solver of a step.
 //!
-//! In: a `Start`: a node, a length, and what the stages are guessed from. Out: a [`Step`], its stages solved by fixed-point iteration in vectors, by the instructions of
-//! the processor. If that does not solve it: the same in plain numbers, or Newton's iteration. Nothing changes. A [`Step`] was measured to leave rounding of the equations.
+//! A `Start` has a node, a length, and the guess of the stages. The solver returns a [`Step`], with stages from SIMD
+//! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
+//! no state. The stages of every [`Step`] satisfy their equations to rounding.
 
 use super::general::{General, equations};
 use super::newton::{Linearization, Newton};
@@ -17,20 +18,21 @@ use crate::real::{Lane, Lanes};
 use crate::stepping::Convertible;
 use vi_dispatch::{Instructions, Loop};
 
-/// What the equations of a step are solved from.
+/// Initial data of the stage equations.
 #[derive(Clone, Copy)]
 pub(crate) struct Start<'a, const N: usize, const S: usize> {
     pub(crate) node: &'a Node<N>,
     pub(crate) h: f64,
     pub(crate) stages: &'a Stages<N, S>,
-    /// Whether these are the stages of the step before, which was as long: then their polynomials are continued.
+    /// Whether these are the stages of the previous step of equal length, so that their polynomials can be
+    /// extrapolated.
     pub(crate) are_last: bool,
-    /// How the step before ended.
+    /// Outcome of the previous step.
     pub(crate) before: &'a Convergence,
     pub(crate) pause: Pause,
 }
 
-/// A step that was found.
+/// A solved step.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<const N: usize, const S: usize> {
     pub(crate) h: f64,
@@ -38,11 +40,11 @@ pub struct Step<const N: usize, const S: usize> {
     pub(crate) stages: Stages<N, S>,
     pub(crate) convergence: Convergence,
     pub(crate) pause: Pause,
-    /// The linearization for the next step, if Newton's iteration solved this one.
+    /// The linearization for the next step, if Newton iteration solved this one.
     pub(crate) linearization: Option<Linearization<N>>,
 }
 
-/// The stages that an iteration led to.
+/// The stages after an iteration.
 pub struct Solved<const N: usize, const S: usize> {
     pub(crate) increment: Increment<N>,
     pub(crate) stages: Stages<N, S>,
@@ -58,7 +60,7 @@ impl<const N: usize, const S: usize> Solved<N, S> {
         self.sweeps.convergence.is_at_floor() && node.stays_finite(h, velocity, momentum)
     }
 
-    /// The same stages as a step.
+    /// Converts the stages to a step.
     #[inline(always)]
     fn step(&self, h: f64) -> Step<N, S> {
         let Self { increment, stages, sweeps, .. } = self;
@@ -68,20 +70,20 @@ impl<const N: usize, const S: usize> Solved<N, S> {
 }
 
 impl<const N: usize, const S: usize> Start<'_, N, S> {
-    /// Velocities at the stages of the step, or forces there.
+    /// Velocities at the stages, or forces there for a separable system.
     #[inline(always)]
     fn guess<const FUSED: bool>(&self) -> Stages<N, S> {
         if self.are_last { extrapolated::<N, S, FUSED>(self.stages) } else { *self.stages }
     }
 
-    /// The step of stages that leave rounding of their equations; else `None`.
+    /// The step, if its stages satisfy their equations to rounding.
     fn accepted(
         &self,
         system: &Rare<'_, N>,
         solved: &Solved<N, S>,
         newton: Option<&Newton<N, S>>,
     ) -> Option<Step<N, S>> {
-        // Plain numbers have sines and cosines of every angle; lanes lose large ones.
+        // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
         let plain;
         let solved = if solved.increment.is_finite() {
             solved
@@ -96,7 +98,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         (after.is_finite() && step.convergence.is_at_floor()).then_some(step)
     }
 
-    /// The number by which a step is judged: the last change of its stages, or, if that stalls, the residual of the stages by running error analysis.
+    /// The acceptance criterion of a step: the last change of its stages or, if that stalls, their residual by running
+    /// error analysis.
     fn residual(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> f64 {
         let Solved { sweeps, velocities, .. } = solved;
         if sweeps.convergence.is_at_floor() || sweeps.are_given_up {
@@ -105,13 +108,13 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         rounding::residual(system, self.node, self.h, &sweeps.positions, velocities.as_ref())
     }
 
-    /// The stages in plain numbers. Not inlined: one copy serves all systems of N coordinates.
+    /// The stages in scalar numbers. Not inlined: one copy serves all systems of N coordinates.
     #[inline(never)]
     pub(crate) fn plainly(&self, system: &Rare<'_, N>, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
         solved::<f64, _, _, N, S, false>(system, system, self, newton)
     }
 
-    /// The point in the middle of the step, about which its equations are linearized.
+    /// The linearization point at the middle of the step.
     fn middle(&self, system: &Rare<'_, N>) -> Linearization<N> {
         let equations = equations(system, self.node, self.h, self.guess::<false>());
         let middle = S / 2;
@@ -121,10 +124,10 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Linearization { h: self.h, t, q, v, iterations: None }
     }
 
-    /// The step by fixed-point iteration, by the instructions of the processor; else what that led to.
+    /// The step by fixed-point iteration, with SIMD dispatch.
     ///
     /// # Errors
-    /// The stages.
+    /// The stages of the failed iteration.
     #[inline(never)]
     pub(crate) fn swept<Y>(&self, system: &Y, instructions: Instructions) -> Result<Step<N, S>, Solved<N, S>>
     where
@@ -138,11 +141,11 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         if solved.is_step(self.node, self.h) { Ok(solved.step(self.h)) } else { Err(solved) }
     }
 
-    /// The step, if fixed-point iteration did not bring it to the rounding of its positions, or was not tried. `last` is where the equations of the step before were
-    /// linearized, if that step was as long.
+    /// The step, if fixed-point iteration failed or was skipped. `last` is the linearization of the previous step, if
+    /// that had the same length.
     ///
     /// # Errors
-    /// [`StepError::StagesUnsettled`], or why the stages have no value.
+    /// [`StepError::StagesUnsettled`], or the reason why the stages have no value.
     #[cold]
     pub(crate) fn with_care<Y>(
         &self,
@@ -159,7 +162,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             return Ok(step);
         }
         let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
-        // About the last linearization; else a new one; else from stages that are all like the node, since the polynomials of the last step may lead far away.
+        // First the last linearization, then a new one, then stages equal to the node, because extrapolated polynomials
+        // may be far off.
         if let Some(at) = last
             && let Ok(step) = self.by_newton(system, instructions, at, newton)
         {
@@ -175,7 +179,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         start.by_newton(system, instructions, start.middle(rare), newton).or(extrapolated)
     }
 
-    /// The step by Newton's iteration.
+    /// The step by Newton iteration.
     fn by_newton<Y>(
         &self,
         system: &Y,
@@ -188,7 +192,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     {
         let rare = &Rare::of(system);
         newton.linearize(rare, at);
-        // A copy of Newton's iteration is not worth its build if fixed-point iteration has equations of its own, or short ones: one serves all systems of N coordinates.
+        // With special or short equations for fixed-point iteration, a specialized Newton iteration is not worth its
+        // build time: one copy serves all systems of N coordinates.
         let side_by_side = if Y::SIDE_BY_SIDE && const { N > LOOPED && !Y::SEPARABLE } {
             long(instructions, Iterating { system, start: self, newton })
         } else {
@@ -204,10 +209,10 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     }
 }
 
-/// Stages that are all like a node: velocities, or forces of a separable system.
+/// Stages equal to a node: velocities, or forces of a separable system.
 ///
 /// # Errors
-/// Those of [`State::velocity`](crate::State::velocity).
+/// As [`State::velocity`](crate::State::velocity).
 pub(crate) fn constant<Y: Collocation<N>, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
@@ -217,11 +222,12 @@ pub(crate) fn constant<Y: Collocation<N>, const N: usize, const S: usize>(
     Ok(start.data.0[0].map(|entry| [entry; S]))
 }
 
-/// Whether every processor of this architecture has vectors that are worth a copy of long equations. Those of x86-64 without AVX2 hold two
-/// numbers, and are of before 2013 or of the simplest machines: they evaluate one stage after another.
+/// Whether every processor of this architecture has vectors that justify a copy of long equations. Those of x86-64
+/// without AVX2 hold two numbers, and date from before 2013 or from the simplest machines: they evaluate one stage
+/// after another.
 pub(crate) const WIDE: bool = !cfg!(target_arch = "x86_64");
 
-/// The stages by fixed-point iteration, by the instructions of the processor.
+/// Fixed-point iteration of the stages, with SIMD dispatch.
 pub(crate) struct Sweeping<'a, Y, const N: usize, const S: usize> {
     pub(crate) system: &'a Y,
     pub(crate) start: &'a Start<'a, N, S>,
@@ -236,7 +242,7 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
     }
 }
 
-/// The stages in the numbers that the instructions are best at.
+/// Iterates in the number type that suits the instructions best.
 #[inline(always)]
 pub(crate) fn sweeping<Y, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,
@@ -254,7 +260,7 @@ where
     }
 }
 
-/// The stages by Newton's iteration, by the instructions of the processor; `None` if the iteration that serves all systems has to do.
+/// Newton iteration of the stages, with SIMD dispatch; `None` if the shared iteration applies.
 struct Iterating<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     start: &'a Start<'a, N, S>,
@@ -275,13 +281,14 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
     }
 }
 
-/// A loop over long equations. Not inlined: one copy for each set of instructions.
+/// A loop over long equations. Not inlined: one copy per instruction set.
 #[inline(never)]
 pub(crate) fn long<L: Loop>(instructions: Instructions, step: L) -> L::Output {
     instructions.run(step)
 }
 
-/// The stages, the equations evaluated in the numbers T; `plain` is the same system in plain ones. By fixed-point iteration, else by Newton's.
+/// The stages, with equations evaluated over the numbers T; `plain` is the same system over scalars. Fixed-point
+/// iteration, then Newton iteration.
 #[inline(always)]
 fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,
@@ -295,7 +302,8 @@ where
     P: Points<N, f64>,
 {
     let Start { node, h, stages, are_last, .. } = *start;
-    // Of a known type the compiler sees one of the two. Newton's iteration corrects velocities: of stiff steps they are known better than forces.
+    // For a known form the compiler sees one branch. Newton iteration corrects velocities: in stiff steps they are more
+    // accurate than forces.
     let is_separable =
         const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable;
     if is_separable && newton.is_none() {
@@ -317,8 +325,9 @@ fn finished<const N: usize, const S: usize>(
     Solved { increment: equations.increment(), stages: equations.guess(), velocities: equations.velocities(), sweeps }
 }
 
-/// Why stages cannot be evaluated about the step of length h from `node`: no velocity belongs to its momenta, or L, f or a slope of L is not
-/// finite at the node or half a step from it; the system names the part of L or f. None where they can.
+/// The reason why stages cannot be evaluated in the step of length h from `node`: no velocity has its momenta, or L, f
+/// or a derivative of L is not finite at the node or half a step from it. The system names the part of L or f. `None`
+/// if evaluation succeeds.
 #[cold]
 pub(crate) fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> Option<StepError> {
     let v = match node.state().velocity(system) {

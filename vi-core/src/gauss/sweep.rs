@@ -1,66 +1,68 @@
-//! Sweeps over the stages of a step until they no longer move.
+//! Fixed-point iteration of the stages to convergence.
 //!
-//! In: the equations of the stages, and positions to start from. Out: stages that satisfy them to rounding, measured:
+//! From the stage equations and initial positions, the iteration computes stages that satisfy the equations to
+//! rounding:
 //!
 //! ```text
-//! sweep      x' = what the equations give at the forces, masses and momenta of x
-//! accept x   where |x' − x| ≤ 4 ε |q|, or |v' − v| ≤ 64 ε Σ |M⁻¹ p| where positions follow from velocities, the largest on the way of
-//!            each coordinate, and a step from x has a thousandth of a rounding of the error that sweeps before left
+//! iterate    x' = positions by the equations at the forces, masses and momenta of x
+//! accept x   if |x' − x| ≤ 4 ε |q|, or |v' − v| ≤ 64 ε Σ |M⁻¹ p| if positions follow from velocities, with the largest values so far of
+//!            each coordinate, and the error of a step from x is below a thousandth of a rounding
 //! ```
 //!
-//! The change from x to x' is what x leaves of its equations: it is measured at the very x whose forces the step uses.
-//! A step is not ended at the first change that is small enough, but where the error left is negligible: an error of the stages that is
-//! left after every step has a sign, and the energy would drift by it. Rounding hides that error in the change, so it is predicted: each
-//! sweep multiplies it by the contraction, which is measured as long as changes stand out of rounding.
+//! The change from x to x' is the residual at x, the same x whose forces the step uses. The iteration does not stop at
+//! the first small change, but when the remaining error is negligible. An error of the stages with the same sign in
+//! every step would let the energy drift. Rounding hides that error in the change, so the iteration predicts it: each
+//! iteration multiplies it by the contraction, which is measured while changes exceed rounding.
 
 use super::stages::Stages;
 use crate::error::StepError;
 use crate::newton::FLOOR;
 use nalgebra::SVector;
 
-/// Sweeps that are tried.
+/// Most iterations.
 const SWEEPS: u32 = 60;
-/// Sweeps after which slow ones are given up, where there is another way.
+/// Iterations after which slow convergence ends the iteration, if Newton iteration is available.
 const PATIENCE: u32 = 5;
-/// The contraction of slow sweeps.
+/// Contraction of slow convergence.
 const SLOW: f64 = 0.5;
-/// Roundings of q from which a change is slow to vanish.
+/// A larger change, in ulps of q, is far from convergence.
 const FAR: f64 = 1e3;
-/// Roundings of q that a change must have for the next one at the floor to say by how much it is smaller: a rounding or two are noise.
+/// Smallest change, in ulps of q, that measures the contraction together with a change at the floor; one or two ulps
+/// are noise.
 const NOISE: f64 = 64.0;
-/// Sweeps without a smaller change, after which no further one comes closer.
+/// Iterations without a smaller change, after which the iteration has stalled.
 const STALLS: u32 = 4;
-/// Part of a rounding of q that a rounding of the terms of v counts as: velocities are solved for by the mass matrix.
+/// Ulps of q that an ulp of the terms of v counts as, because the mass matrix solves for velocities.
 pub(crate) const VELOCITY: f64 = 1.0 / 16.0;
-/// Roundings of q that a step may leave of the error of its stages.
+/// Accepted stage error of a step, in ulps of q.
 const NEGLIGIBLE: f64 = 1.0 / 1024.0;
-/// Roundings of a change after which roundings are taken anew: a sixteenth of the number that they are roundings of.
+/// Change, in ulps, after which the ulps are recomputed: a sixteenth of the number itself.
 const COARSE: f64 = 0.0625 / f64::EPSILON;
 
-/// The equations of the stages of a step.
+/// The stage equations of a step.
 pub(crate) trait Equations<const N: usize, const S: usize> {
-    /// Whether there is another way to solve them, where sweeps are slow.
+    /// Whether Newton iteration is available for slow convergence.
     fn has_another_way(&self) -> bool;
-    /// The positions that the guess of the step leads to.
+    /// The initial positions, from the guess of the step.
     fn start(&self) -> Stages<N, S>;
-    /// Evaluates the equations at the positions x, and sets y to those that follow from it.
+    /// Evaluates the equations at the positions x, and writes the resulting positions to y.
     fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>);
-    /// What moves the node, by the evaluation of the last sweep.
+    /// The increment of the node, from the last evaluation.
     fn increment(&self) -> Increment<N>;
-    /// What the stages are found from: what is extrapolated to the next step.
+    /// The stage values that the next step extrapolates.
     fn guess(&self) -> Stages<N, S>;
-    /// The velocities at which the last sweep evaluated; none where nothing depends on them.
+    /// The velocities of the last evaluation; `None` if nothing depends on them.
     fn velocities(&self) -> Option<Stages<N, S>>;
-    /// Takes the roundings in which changes are measured, after a sweep that led to the positions x, and returns by how much changes are larger in them
-    /// than in those taken before, at most.
+    /// Recomputes the ulps for changes, after an iteration that led to the positions x. Returns the largest factor by
+    /// which changes grow in the new units.
     fn take_roundings(&mut self, x: &Stages<N, S>) -> f64;
-    /// The change by the last sweep, which led from x to y, in the roundings taken last, those of positions; then x is y.
+    /// The change of the last iteration from x to y, in the current ulps of positions. Sets x to y.
     fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64;
-    /// What of the error of the stages, relative, the increment has, where a sweep leaves `contraction` of it.
+    /// Part of the relative stage error that enters the increment, if an iteration contracts by `contraction`.
     fn passed_on(&self, contraction: f64) -> f64;
 }
 
-/// What moves a step from its node to the next.
+/// Increment from a node to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Increment<const N: usize> {
     /// `(q1 − q0)/h`.
@@ -70,35 +72,35 @@ pub(crate) struct Increment<const N: usize> {
 }
 
 impl<const N: usize> Increment<N> {
-    /// Whether it leads anywhere; not where a stage was not finite.
+    /// Whether the increment is finite; a stage that is not finite makes it NaN or infinite.
     pub(crate) fn is_finite(&self) -> bool {
         self.velocity.iter().chain(&self.momentum).all(|entry| entry.is_finite())
     }
 }
 
-/// How long sweeps are not tried, since the last ones did not converge.
+/// The pause of fixed-point iteration after it failed to converge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pause {
-    /// Steps that are left to Newton's iteration.
+    /// Remaining steps by Newton iteration.
     left: u32,
-    /// Steps of the next pause.
+    /// Length of the next pause, in steps.
     next: u32,
 }
 
-/// Steps by Newton's iteration after which sweeps are tried again, at most.
+/// Longest pause, in steps by Newton iteration.
 const LONGEST_PAUSE: u32 = 64;
 
 impl Pause {
-    /// Where sweeps converge.
+    /// No pause: fixed-point iteration converges.
     pub(crate) const NONE: Self = Self { left: 0, next: 1 };
 
-    /// Whether sweeps are to be tried.
+    /// Whether to try fixed-point iteration.
     pub(crate) fn is_over(self) -> bool {
         self.left == 0
     }
 
-    /// The pause after a step by Newton's iteration: where sweeps were tried in vain, twice as long as the last one.
+    /// The pause after a step by Newton iteration; twice the last one if fixed-point iteration failed.
     pub(crate) fn after_newton(self) -> Self {
         match self.left.checked_sub(1) {
             Some(left) => Self { left, ..self },
@@ -107,15 +109,15 @@ impl Pause {
     }
 }
 
-/// How sweeps ended.
+/// The outcome of a fixed-point iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Convergence {
-    /// How many there were.
+    /// Number of iterations.
     pub(crate) sweeps: u32,
-    /// The last change, in roundings of q, or in sixteens of those of the terms of v.
+    /// The last change, in ulps of q, or in sixteenths of the ulps of the terms of v.
     pub(crate) change: f64,
-    /// The ratio of a change to the one before, the last that stood out of rounding.
+    /// The last ratio of two changes above rounding.
     pub(crate) contraction: f64,
 }
 
@@ -123,12 +125,12 @@ impl Convergence {
     /// Before the first step.
     pub(crate) const NONE: Self = Self { sweeps: 0, change: 0.0, contraction: 1.0 };
 
-    /// Whether there was a step.
+    /// Whether the run has taken a step.
     pub(crate) fn has_begun(&self) -> bool {
         self.sweeps > 0
     }
 
-    /// The error of stages that did not come to rest, in the step of length h from the time t, and led to this increment.
+    /// The error of stages that did not converge, in the step of length h from the time t with this increment.
     pub(crate) fn unsettled<const N: usize>(
         &self,
         increment: &Increment<N>,
@@ -136,20 +138,20 @@ impl Convergence {
         stiffness: f64,
     ) -> StepError {
         let Self { sweeps, change, contraction } = *self;
-        // What is not a number was beyond all: of two infinite numbers the change is none.
+        // NaN counts as divergence: two infinite values have no finite change.
         let is_beyond = |ratio: f64| ratio.is_nan() || !increment.is_finite();
         let [change, contraction] =
             [change, contraction].map(|ratio| if is_beyond(ratio) { f64::INFINITY } else { ratio });
         StepError::StagesUnsettled { t, h, iterations: sweeps, change, contraction, stiffness }
     }
 
-    /// Whether the stages are at the rounding of their positions.
+    /// Whether the stages are at the rounding floor of their positions.
     pub(crate) fn is_at_floor(&self) -> bool {
         self.change <= FLOOR
     }
 }
 
-/// Sweeps until the stages no longer move, or no longer come closer. `before` is how the step before ended.
+/// Iterates until the stages converge or stall. `before` is the outcome of the previous step.
 #[inline(always)]
 pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     equations: &mut E,
@@ -158,9 +160,9 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     let mut x = equations.start();
     let mut y = [[0.0; S]; N];
     let mut state = Convergence { sweeps: 0, change: f64::INFINITY, ..*before };
-    // What x leaves, without the rounding of its change.
+    // Residual at x, without the rounding error of the change.
     let mut error = f64::INFINITY;
-    // What a step from x would have of it.
+    // Error of a step from x.
     let mut left = f64::INFINITY;
     let mut least = f64::INFINITY;
     let mut stalls = 0;
@@ -178,7 +180,7 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         let mut change = equations.change(&mut x, &y);
         let is_small = |change, left| change <= FLOOR && (left <= NEGLIGIBLE || change == 0.0);
         if is_small(change, left) || change >= least {
-            // What ends sweeps is measured in roundings of the stages that they lead to: those taken before may be of other numbers.
+            // Convergence is judged in ulps of the resulting stages; older ulps may belong to other numbers.
             let growth = equations.take_roundings(&x);
             change *= growth;
             left *= growth;
@@ -189,7 +191,7 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
             break false;
         }
         let stands_out = change > FLOOR || last > NOISE;
-        // Of the first sweep the step before says nothing.
+        // The previous step does not predict the first change.
         if stands_out && state.sweeps > 1 {
             state.contraction = change / last;
         }
@@ -205,17 +207,17 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         if state.sweeps >= PATIENCE && is_slow() {
             break true;
         }
-        // What is judged then is what the stages leave at x.
+        // The decision then depends on the residual at x.
         is_last = stalls == STALLS || state.sweeps == SWEEPS;
     };
     Sweeps { convergence: state, positions: x, are_given_up }
 }
 
-/// The last of the sweeps of a step.
+/// The last iteration of a step.
 pub(crate) struct Sweeps<const N: usize, const S: usize> {
     pub(crate) convergence: Convergence,
-    /// Positions that it led to; those at which it evaluated, where they do not rest.
+    /// The resulting positions, or those of the evaluation if the stages did not converge.
     pub(crate) positions: Stages<N, S>,
-    /// Whether further sweeps would come closer, but slowly.
+    /// Whether further iterations would converge, but slowly.
     pub(crate) are_given_up: bool,
 }

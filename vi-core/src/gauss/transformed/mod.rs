@@ -1,12 +1,13 @@
-//! The equations of a Gauss step in transformed time, and their solution. [`InTransformedTime`](crate::method::InTransformedTime) is the method.
+//! The stage equations of a step in transformed time, and their solver.
+//! [`InTransformedTime`](crate::method::InTransformedTime) is the method.
 //!
 //! | file | part of a step |
 //! |---|---|
-//! | `equations` | the equations of the stages, solved by fixed-point iteration, else by simplified Newton iterations |
-//! | `rates` | what is remembered of the last step, from which the next one is guessed |
-//! | `path` | the motion between the nodes of a step |
-//! | `rounding` | whether stages that stall are solved, by running error analysis |
-//! | `variation` | how a solved step varies |
+//! | `equations` | the stage equations, for fixed-point iteration and simplified Newton iteration |
+//! | `rates` | memory of the last step, for the guess of the next one |
+//! | `path` | dense output |
+//! | `rounding` | residuals of stalled stages, by running error analysis |
+//! | `variation` | derivatives of a step |
 
 mod equations;
 mod path;
@@ -30,7 +31,7 @@ pub(crate) use rates::time_scale;
 pub use rates::{After, LastRates};
 use vi_dispatch::{Instructions, Loop};
 
-/// What a step of the length Δτ is solved from.
+/// Initial data of a step of the length Δτ.
 #[derive(Debug)]
 pub(crate) struct Start<'a, Y, const N: usize, const S: usize> {
     pub(crate) system: &'a Y,
@@ -51,10 +52,10 @@ impl<Y, const N: usize, const S: usize> Start<'_, Y, N, S>
 where
     Y: TimeScale<N> + Convertible<N>,
 {
-    /// The run after the step that fixed-point iteration finds; else the stages that it leads to.
+    /// The run after the step by fixed-point iteration.
     ///
     /// # Errors
-    /// These stages.
+    /// The stages of the failed iteration.
     #[inline(always)]
     pub(crate) fn swept(self, instructions: Instructions) -> Result<After<N, S>, Solved<N, S>> {
         let solved = if Y::SIDE_BY_SIDE { instructions.run(Sweeping(self)) } else { self.plainly(None) };
@@ -64,7 +65,7 @@ where
         if is_step { Ok(after) } else { Err(solved) }
     }
 
-    /// The run after a step that fixed-point iteration did not bring to the rounding of its positions, or was not tried on, or whose g is not positive.
+    /// The run after a step, if fixed-point iteration failed or was skipped, or g is not positive.
     ///
     /// # Errors
     /// [`StepError::StagesUnsettled`], [`StepError::TimeScale`], [`StepError::NonFinite`].
@@ -75,7 +76,7 @@ where
         cache: &mut Option<Box<Newton<N, S>>>,
     ) -> Result<After<N, S>, StepError> {
         if let Some(swept) = swept {
-            // Plain numbers have sines and cosines of every angle; lanes lose large ones.
+            // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
             let plain;
             let solved = if swept.increment.is_finite() {
                 swept
@@ -95,8 +96,8 @@ where
         self.accepted(&solved, after).ok_or_else(|| self.failure_of(&solved, &after, newton.stiffness()))
     }
 
-    /// The run after a solved step, with the number by which the step is judged: the last change of its stages, or, if that stalls, their residual by running error
-    /// analysis. `None` if that is more than rounding, or the run cannot continue.
+    /// The run after a solved step, with its acceptance criterion: the last change of its stages or, if that stalls,
+    /// their residual by running error analysis. `None` if that exceeds rounding, or the run cannot continue.
     fn accepted(&self, solved: &Solved<N, S>, mut after: After<N, S>) -> Option<After<N, S>> {
         let Self { system, node, dtau, last } = *self;
         if !solved.is_at_floor() && !solved.sweeps.are_given_up {
@@ -106,7 +107,7 @@ where
         (is_step && after.goes_on((node, last), solved)).then_some(after)
     }
 
-    /// Why a step was not solved.
+    /// The reason why a step failed.
     fn failure_of(&self, solved: &Solved<N, S>, after: &After<N, S>, stiffness: f64) -> StepError {
         let Self { system, node, dtau, last } = *self;
         let stages = (0..S).map(|i| (solved.clock.time[i], stage(&solved.sweeps.positions, i)));
@@ -126,7 +127,7 @@ where
         solved.sweeps.convergence.unsettled(&solved.increment, [node.t, h], stiffness)
     }
 
-    /// The point in the middle of the step, about which its equations are linearized.
+    /// The linearization point at the middle of the step.
     fn middle(&self) -> Linearization<N> {
         let Self { system, node, dtau, last } = *self;
         let rates = last.guess::<false>(dtau);
@@ -138,7 +139,7 @@ where
         Linearization { h, t: node.t + 0.5 * h, q, v, iterations: None }
     }
 
-    /// The stages in plain numbers. Not inlined: if vectors do not solve a step, its speed does not matter.
+    /// The stages in scalar numbers. Not inlined: speed does not matter after SIMD iteration has failed.
     #[inline(never)]
     fn plainly(&self, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
         let Self { system, node, dtau, last } = *self;
@@ -149,26 +150,26 @@ where
 /// A solved step.
 pub struct Solved<const N: usize, const S: usize> {
     pub(crate) increment: Increment<N>,
-    /// What time and energy gain.
+    /// Increments of time and energy.
     gains: [f64; 2],
-    /// The largest `|H − E|` at its stages, and the size of the terms of H there.
+    /// The largest `|H − E|` at its stages, and the size of the terms of H.
     excess: [f64; 2],
-    /// What the next step is extrapolated from.
+    /// Rates for the extrapolation of the next step.
     rates: Rates<N, S>,
-    /// Velocities, times and energies at which the last sweep evaluated.
+    /// Velocities, times and energies of the last evaluation.
     velocity: Stages<N, S>,
     clock: Clock<S>,
     sweeps: Sweeps<N, S>,
 }
 
 impl<const N: usize, const S: usize> Solved<N, S> {
-    /// Whether the stages are at the rounding of their positions.
+    /// Whether the stages are at the rounding floor of their positions.
     fn is_at_floor(&self) -> bool {
         self.sweeps.convergence.is_at_floor()
     }
 }
 
-/// The stages by the instructions of the processor.
+/// Iterates the stages with SIMD dispatch.
 struct Sweeping<'a, Y, const N: usize, const S: usize>(Start<'a, Y, N, S>);
 
 impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Sweeping<'_, Y, N, S> {
@@ -181,7 +182,7 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Sweeping<'_, Y,
     }
 }
 
-/// The stages, the equations evaluated in the numbers T; by fixed-point iteration, else by Newton's.
+/// The stages, with equations evaluated over the numbers T, by fixed-point iteration, then by Newton iteration.
 #[inline(always)]
 fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,

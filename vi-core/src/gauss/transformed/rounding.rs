@@ -1,13 +1,15 @@
-//! What the stages of a step in transformed time leave of their equations, in roundings by running error analysis.
+//! Residuals of the stage equations in transformed time, in units of their rounding-error bounds, by running error
+//! analysis.
 //!
-//! In: a system in numbers that carry a bound of their rounding, and stages, each number the nearest to the one that is meant. Out:
-//! the largest row over its bound,
+//! The system evaluates in numbers that carry their rounding-error bounds; stage values are rounded to the nearest
+//! number. The result is the largest row over its bound,
 //!
 //! ```text
 //! q0 + Δτ Σ a_ij g_j V_j − Q_i        p0 + Δτ Σ a_ij P'_j − L_v(T_i, Q_i, V_i)        t0 + Δτ Σ a_ij g_j − T_i        E0 + Δτ Σ a_ij E'_j − E_i
 //! ```
 //!
-//! It is asked where changes stall above the rounding of the unknowns: where terms cancel, their sum is known less well.
+//! The solver uses it if changes stall above the ulps of the unknowns: a sum of cancelling terms has a larger rounding
+//! error.
 
 use super::super::rounding::{nearest, worse_row};
 use super::super::tableau::Tableau;
@@ -17,14 +19,14 @@ use crate::node::Node;
 use crate::real::Rounded;
 use nalgebra::SVector;
 
-/// Numbers of a stage: what time, position and energy are there, or change by.
+/// Time, position and energy at a stage, or their rates.
 struct Place<const N: usize> {
     t: Rounded,
     q: SVector<Rounded, N>,
     energy: Rounded,
 }
 
-/// What the stages of the step of length Δτ from `node` leave of their equations, in roundings; not a number where these have no bound.
+/// The residual of the stages of the step of length Δτ from `node`, over its rounding-error bound; NaN without a bound.
 pub(crate) fn residual<Y, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
@@ -36,7 +38,7 @@ where
 {
     let Tableau { b, first, .. } = const { &Tableau::<S>::VALUES };
     let Solved { sweeps, velocity, clock, .. } = solved;
-    // What a row comes to at stage i: the sum over the stages, from where it starts.
+    // Row value at stage i: its start plus the sum over the stages.
     let sum = |i: usize, start: [f64; 2], of: &dyn Fn(usize) -> Rounded| {
         let weight = |j: usize| Rounded::nearest(first[j][i]) * Rounded::nearest(dtau * b[j]);
         let start = Rounded::exact(start[0]) + Rounded::exact(start[1]);
@@ -56,7 +58,7 @@ where
         let (ScaledPoint { g, g_dt, power, .. }, excess, v) = at(i, &places[i]);
         Place { t: g, q: v.map(|v| g * v), energy: g * power + excess * g_dt }
     });
-    // Times, positions and energies follow from their rates, and carry the rounding of that sum.
+    // Times, positions and energies follow from their rates, and carry the rounding error of that sum.
     let followed: [Place<N>; S] = core::array::from_fn(|i| Place {
         t: sum(i, [node.t, node.t_low], &|j| rates[j].t),
         q: SVector::from_fn(|k, _| sum(i, [node.q[k], node.q_low[k]], &|j| rates[j].q[k])),
