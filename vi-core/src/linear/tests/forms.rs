@@ -166,7 +166,7 @@ fn block_diagonal_matrices() {
     }
 }
 
-/// No way of solving gives numbers only.
+/// Checks that no solver returns finite numbers only.
 fn lost<const N: usize, F: Matrix<N, f64>>(form: &F) {
     let rhs = SVector::<f64, N>::repeat(1.0);
     assert!(!form.solve(&rhs).iter().all(|entry| entry.is_finite()), "{form:?}");
@@ -205,7 +205,7 @@ fn singular_matrices_have_no_solution() {
     lost(&Symmetric(SMatrix::<f64, 6, 6>::from_fn(free)));
 }
 
-/// Each row's unknown is its neighbour's right-hand side: nothing on the diagonal, regular for an even N.
+/// An antidiagonal of pairs: a zero diagonal, regular for even N.
 fn swapping<const N: usize>() -> SMatrix<f64, N, N> {
     SMatrix::from_fn(|i, j| f64::from(u8::from(i.abs_diff(j) == 1)))
 }
