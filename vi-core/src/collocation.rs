@@ -59,7 +59,7 @@ pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
 /// [`Collocation::scaled_point`] returns g.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no time scale",
-    label = "nothing says how this system scales its time",
+    label = "this system declares no time scale",
     note = "write the clause `time_scale = …;` in its `lagrangian!`, as `time_scale = r^(3/2);`",
     note = "`Gauss` takes steps of a given length in time without it"
 )]

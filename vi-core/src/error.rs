@@ -330,31 +330,29 @@ impl fmt::Display for StepError {
             Self::NotConverged { h, .. } | Self::StagesUnsettled { h, .. } => {
                 write!(f, "; take steps shorter than {:.3e}", h.abs())
             }
-            Self::TimeScale { g, .. } if *g > 0.0 && g.is_finite() => {
-                f.write_str("; take shorter steps, end the run before, or write a `time_scale` that stays well above zero")
-            }
-            Self::TimeScale { .. } => {
-                f.write_str("; take shorter steps, or write a `time_scale` that stays positive")
-            }
+            Self::TimeScale { g, .. } if *g > 0.0 && g.is_finite() => f.write_str(
+                "; take shorter steps, end the run before, or write a `time_scale` that stays well above zero",
+            ),
+            Self::TimeScale { .. } => f.write_str("; take shorter steps, or write a `time_scale` that stays positive"),
             Self::NoTimeScale { .. } => {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or use `Gauss`")
             }
-            Self::NoRule { .. } => {
-                f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`")
+            Self::NoRule { .. } => f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`"),
+            Self::Ambiguous { .. } => {
+                f.write_str("; L is not defined at rest and has a branch on each side: write an L with one branch")
             }
-            Self::Ambiguous { .. } => f.write_str("; L is not defined at rest and has a branch on each side: write an L with one branch"),
             Self::UnknownParameter { parameters, .. } if !parameters.is_empty() => {
                 write!(f, "; its parameters are `{}`", parameters.join("`, `"))
             }
-            Self::OtherSystem { parameter: None, .. } => {
-                f.write_str("; restart its own system with its own rule")
-            }
+            Self::OtherSystem { parameter: None, .. } => f.write_str("; restart its own system with its own rule"),
             Self::OtherSystem { .. } => f.write_str("; restart with the parameters of the checkpoint"),
             Self::CannotLeave { event, .. } => write!(
                 f,
                 "; set the velocity toward the zero to zero and change the system so that it stays at rest, or search without event {event}"
             ),
-            Self::Tolerance { .. } => f.write_str("; take shorter steps, a method of higher order, or allow a larger error"),
+            Self::Tolerance { .. } => {
+                f.write_str("; take shorter steps, a method of higher order, or allow a larger error")
+            }
             Self::Singular { .. }
             | Self::NonFinite { .. }
             | Self::NoDerivative { .. }

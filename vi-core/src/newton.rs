@@ -112,7 +112,7 @@ pub(crate) fn solve<T: Real, E: Equations<T>>(
             return Err(Failure::Stalled { iterations, residual, residuals });
         }
         iterations += 1;
-        match lessened(equations, &u, &at, correction) {
+        match damped(equations, &u, &at, correction) {
             Some(next) => (u, at) = next,
             None if residual <= FLOOR => return Ok(Root { u, at, iterations, above_floor, residuals }),
             None => return Err(Failure::Stalled { iterations, residual, residuals }),
@@ -121,7 +121,7 @@ pub(crate) fn solve<T: Real, E: Equations<T>>(
 }
 
 /// Damped Newton step: halves the correction until the residuals decrease; `None` if they never do.
-fn lessened<T: Real, E: Equations<T>>(
+fn damped<T: Real, E: Equations<T>>(
     equations: &E,
     u: &E::Unknowns,
     last: &E::Evaluation,

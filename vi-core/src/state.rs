@@ -21,7 +21,7 @@ pub struct State<const N: usize, T = f64> {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not one number for each of {N} coordinate(s)",
     label = "the system has {N} coordinate(s)",
-    note = "write an array or a vector of so many numbers: `[0.5, 1.0]` for two coordinates"
+    note = "write an array or a vector of that length: `[0.5, 1.0]` for two coordinates"
 )]
 pub trait Numbers<const N: usize, T = f64> {
     /// Converts to a vector.

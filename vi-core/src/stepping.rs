@@ -65,7 +65,7 @@ pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T
 /// density of the trapezoidal rule, `|V_q|² − 2 v·V_qq v`, changes its sign in every period of an oscillator.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no energy-preserving step of order 2 by the rule `{R}`",
-    label = "no rule of this system gives a step its length",
+    label = "no rule of this system has a step density",
     note = "add `discretize midpoint;` to `{Self}`, or `midpoint` to its `discretize`: the midpoint rule has a step density",
     note = "`EnergyPreservingGauss` needs no rule; `FixedStep` and `Composition` take any"
 )]

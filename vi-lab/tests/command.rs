@@ -833,7 +833,8 @@ fn every_method_is_compared_and_early_ends_have_a_reason() {
         assert_eq!(ended, if method == "energy-preserving" { of.len() } else { 0 }, "{method}");
     }
     let page = fs::read_to_string(out.join("index.html")).expect("the page");
-    let diagnostic = "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step exists past t = ";
+    let diagnostic =
+        "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step exists past t = ";
     assert!(
         page.contains(diagnostic) && page.contains("(debug build") | page.contains("(release build"),
         "the page says so"

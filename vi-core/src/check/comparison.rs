@@ -53,7 +53,7 @@ impl Comparison {
         let name = || index.map_or_else(|| what.to_owned(), |index| format!("{what}[{index}]"));
         // The check's own derivative does not exist, although the system may have one.
         if wanted.value.is_nan() && !found.value.is_nan() {
-            let why = "has no derivative that can be computed here, at the edge of a root, a quotient or a kink";
+            let why = "has no derivative here, at the edge of a root, a quotient or a kink";
             return Err(self.vacuous(format!("{} {why}; choose another place", name())));
         }
         // NaN agrees with nothing; an infinite bound allows everything.

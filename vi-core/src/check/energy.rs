@@ -84,7 +84,7 @@ fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) 
         moved = moved.max((step.p - first.p).amax());
     }
     if moved == 0.0 {
-        return Err(check.vacuous("no momentum changes from this place; choose another"));
+        return Err(check.vacuous("no momentum changes from this place; choose another place"));
     }
     check.finish(&["energy at the midpoint", "E1"])
 }

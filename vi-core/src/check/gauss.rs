@@ -75,7 +75,7 @@ pub fn gauss_symplecticity<const N: usize, S: MotionChecked<N>>(
 ) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "gauss symplecticity");
     if S::FORCED {
-        return Err(check.not_applicable("a force does not keep the symplectic form"));
+        return Err(check.not_applicable("a system with a force does not preserve the symplectic form"));
     }
     for sample in samples(system, place, &check)? {
         symmetries::keeps_area(&mut check, |column| {

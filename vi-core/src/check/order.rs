@@ -53,7 +53,7 @@ pub(super) fn judged<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: La
 ) -> Result<Report, CheckFailure> {
     let course = SampledMotion::from(system, place, check)?;
     if !course.accelerates() {
-        return Err(check.vacuous("nothing accelerates, and steps of any rule are exact; choose another place"));
+        return Err(check.vacuous("nothing accelerates, so that steps of any rule are exact; choose another place"));
     }
     let start = Motion { t: place.t, q: place.q, v: place.v };
     let beside = |vector: &SVector<f64, N>| vector * (1.0 + BESIDE * f64::EPSILON);

@@ -80,7 +80,7 @@ impl<const N: usize> SampledMotion<N> {
             }
         }
         if course.range(|state| state.q).amax() == 0.0 {
-            return Err(check.vacuous("nothing moves from this place; choose another"));
+            return Err(check.vacuous("nothing moves from this place; choose another place"));
         }
         Ok(course)
     }

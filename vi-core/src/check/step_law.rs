@@ -40,12 +40,12 @@ const EVEN: f64 = 8.0;
 pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let check = Comparison::new(S::NAME, "step law");
     if S::FORCED {
-        return Err(check.not_applicable("the law is one of systems without a force"));
+        return Err(check.not_applicable("the law requires a system without a force"));
     }
     let course = SampledMotion::from(system, place, &check)?;
     let density = density(system, &(place.t, place.q, place.v)).map_err(|error| check.step(error))?;
     if !density.is_seen() {
-        return Err(check.vacuous("the step density is zero at this place; choose another"));
+        return Err(check.vacuous("the step density is zero at this place; choose another place"));
     }
     let prepare = |h: f64| {
         if h > place.h && !is_even(system, place, h).map_err(|error| check.step(error))? {

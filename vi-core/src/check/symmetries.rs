@@ -75,7 +75,7 @@ pub(super) fn kept<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: Lagr
         let stands_still = place.v[index] == 0.0 && end.q[index] - start.q[index] == 0.0;
         if start.p[index] == 0.0 || stands_still {
             let name = S::COORDINATES[index];
-            let why = format!("`{name}` stands still or its momentum is zero; choose a velocity `dot({name})`");
+            let why = format!("`{name}` does not change or its momentum is zero; choose a velocity `dot({name})`");
             return Err(check.vacuous(why));
         }
     }
@@ -111,7 +111,7 @@ pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>
 pub fn symplecticity<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "symplecticity");
     if S::FORCED {
-        return Err(check.not_applicable("a force does not keep the symplectic form"));
+        return Err(check.not_applicable("a system with a force does not preserve the symplectic form"));
     }
     for sample in step_samples(system, place, &check)? {
         keeps_area(&mut check, |column| Column::at(column, &sample.q, &sample.v, |q, v| ends(&sample, q, v)))?;

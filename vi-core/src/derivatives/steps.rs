@@ -70,7 +70,7 @@ pub(crate) enum Sought {
 /// # Errors
 /// [`StepError::NoDerivative`] for the step from the time `t`.
 pub(crate) fn check_fallback(fallback: Fallback, t: f64) -> Result<(), StepError> {
-    let because = "with a fallback the energy of the run may leap; take `Fallback::Stop`";
+    let because = "with a fallback the energy of the run may jump; use `Fallback::Stop`";
     if fallback == Fallback::Stop { Ok(()) } else { Err(StepError::NoDerivative { t, because }) }
 }
 
@@ -126,7 +126,7 @@ fn check_last<const N: usize>(
 
 /// The given node is not the start of the last step, or that step had other parameters.
 pub(crate) fn not_last(t: f64) -> StepError {
-    let because = "the run did not take it last with the parameters that it has; give the node at which its last step began, before the parameters change";
+    let because = "it is not the last step of the run with its current parameters; pass the start node of the last step, before any change of parameters";
     StepError::NoDerivative { t, because }
 }
 

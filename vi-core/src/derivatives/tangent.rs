@@ -291,7 +291,7 @@ where
         };
         self.end_at(length, after, |varied, along| {
             let change = -slope(varied)? / slope(along)?;
-            let because = "the function of the event has no finite derivative along the motion, or one of zero";
+            let because = "the event function has a derivative along the trajectory that is zero or not finite";
             if change.is_finite() { Ok(change) } else { Err(StepError::NoDerivative { t, because }) }
         })?;
         Ok(Some(crossing))

@@ -16,12 +16,12 @@ pub(crate) type Varied<const W: usize = TOGETHER> = Dual<f64, Slopes<f64, W>>;
 
 /// The tangent vectors of a step are out of range or NaN.
 pub(crate) fn not_finite(t: f64) -> StepError {
-    StepError::NonFinite { t, quantity: "variation of a step", expression: None }
+    StepError::NonFinite { t, quantity: "tangent vector of a step", expression: None }
 }
 
 /// A tangent vector has more parameters than the system of the step from the time `t`.
 pub(crate) fn more_parameters(t: f64) -> StepError {
-    let because = "a variation has more parameters than the system; give at most as many as `PARAMETERS` names";
+    let because = "a tangent vector has more parameters than the system; `PARAMETERS` lists them";
     StepError::NoDerivative { t, because }
 }
 

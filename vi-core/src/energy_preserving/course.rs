@@ -4,14 +4,14 @@
 //! search, otherwise at a given length if the user allows it (`Fallback`). No state changes.
 
 use super::bracket;
-use super::equations::{self, Elimination, EnergyStep, Measured, NoStep};
+use super::equations::{self, Elimination, EnergyStep, NoStep, RowResiduals};
 use super::guess;
 use super::interval::Last;
 use super::predicted::{Predicted, Prediction};
 use crate::error::StepError;
 use crate::method::Memory;
 use crate::method::bounds::{Alternating, Control, Controlled, Phase, RATIO, check_forward};
-use crate::momentum::continuation::{self, Reached};
+use crate::momentum::continuation::{self, BranchPoint};
 use crate::momentum::newton;
 use crate::node::Node;
 use crate::real::Scalar;
@@ -54,7 +54,7 @@ impl<const N: usize, T: Scalar> Memory for Lengths<N, T> {
         if !stored.last.change.iter().all(|entry| entry.is_finite()) {
             stored.last.change = SVector::zeros();
         }
-        stored.last.measured = Measured::of(stored.last.measured.roundings());
+        stored.last.measured = RowResiduals::of(stored.last.measured.roundings());
         stored
     }
 }
@@ -130,7 +130,7 @@ pub(crate) struct Search<'a, S, const N: usize, T> {
 
 impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Search<'_, S, N, T> {
     const POWER: f64 = 3.0;
-    type Found = After<N, T>;
+    type StepSolution = After<N, T>;
 
     fn control(&self) -> &Control<T> {
         &self.lengths.control
@@ -167,7 +167,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Sear
     fn fixed(&self, h: T) -> Result<(After<N, T>, [T; 2]), StepError> {
         let Self { system, node, lengths: Lengths { last, .. } } = *self;
         let guess = last.v + last.slope() * ((last.h + h) * T::real(0.5));
-        let Reached { v, iterations } = continuation::nearest(system, node, h, guess, last.v)?;
+        let BranchPoint { v, iterations } = continuation::nearest(system, node, h, guess, last.v)?;
         let equations = system.extended_system(node, h, &v);
         let t = node.t.to_f64();
         let singular = StepError::Singular { t, matrix: "derivative of the momentum equation" };
@@ -181,7 +181,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Sear
         if !gap.is_finite() {
             return Err(StepError::NonFinite { t, quantity: "energy", expression: None });
         }
-        let step = EnergyStep { v, h, density, iterations, measured: Measured::of(residual) };
+        let step = EnergyStep { v, h, density, iterations, measured: RowResiduals::of(residual) };
         let mut after = self.after(node, &step)?;
         // A given length predicts no other.
         after.lengths.prediction = Prediction::new(v, h);

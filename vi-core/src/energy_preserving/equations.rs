@@ -32,7 +32,7 @@ pub(crate) struct EnergyStep<const N: usize, T> {
     pub(crate) h: T,
     pub(crate) density: T,
     pub(crate) iterations: u32,
-    pub(crate) measured: Measured<N, T>,
+    pub(crate) measured: RowResiduals<N, T>,
 }
 
 /// The residuals of a step and the scales of its rows, compared on request only (measured: a tenth of a step of the
@@ -46,14 +46,14 @@ pub(crate) struct EnergyStep<const N: usize, T> {
         deserialize = "T: crate::real::Real + serde::Deserialize<'de>"
     ))
 )]
-pub(crate) struct Measured<const N: usize, T> {
+pub(crate) struct RowResiduals<const N: usize, T> {
     pub(crate) rows: SVector<T, N>,
     pub(crate) scales: SVector<T, N>,
     pub(crate) energy: T,
     pub(crate) energy_scale: T,
 }
 
-impl<const N: usize, T: Scalar> Measured<N, T> {
+impl<const N: usize, T: Scalar> RowResiduals<N, T> {
     /// A residual given in roundings.
     pub(crate) fn of(roundings: f64) -> Self {
         let rows = SVector::zeros();
@@ -257,5 +257,5 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         return Err(NoStep::Degenerate { h, density });
     }
     let [momentum, energy] = extended.roundings(&root.at, &root.at);
-    Ok(EnergyStep { v, h, density, iterations: root.iterations, measured: Measured::of(worse(momentum, energy)) })
+    Ok(EnergyStep { v, h, density, iterations: root.iterations, measured: RowResiduals::of(worse(momentum, energy)) })
 }

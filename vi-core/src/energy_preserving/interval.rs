@@ -1,6 +1,6 @@
 //! The last interval, from which the next step continues.
 
-use super::equations::{EnergyStep, Measured};
+use super::equations::{EnergyStep, RowResiduals};
 use crate::real::Scalar;
 use nalgebra::SVector;
 
@@ -30,7 +30,7 @@ pub(crate) struct Last<const N: usize, T> {
     /// Number of Newton iterations.
     pub(crate) iterations: u32,
     /// Its residuals.
-    pub(crate) measured: Measured<N, T>,
+    pub(crate) measured: RowResiduals<N, T>,
 }
 
 impl<const N: usize, T: Scalar> Last<N, T> {
@@ -45,7 +45,7 @@ impl<const N: usize, T: Scalar> Last<N, T> {
             change,
             is_step: false,
             iterations: 0,
-            measured: Measured::of(0.0),
+            measured: RowResiduals::of(0.0),
         }
     }
 

@@ -13,7 +13,7 @@
 //! problem is off by 8e-14 after a million steps, with it by 3e-15. The energy row, from which h follows, carries
 //! nothing: one rounding of it is `4 ε E/(h² D)` of h.
 
-use super::equations::{Elimination, EnergyStep, Measured, energy_residual};
+use super::equations::{Elimination, EnergyStep, RowResiduals, energy_residual};
 use super::interval::Last;
 use crate::method::bounds::RATIO;
 use crate::newton::{FLOOR, are_at_floor};
@@ -156,7 +156,7 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
         node: &Node<N, T>,
         trial: &VelocityStep<N, T>,
         at: &ExtendedResidual<N, T>,
-    ) -> Option<(SVector<T, N>, Measured<N, T>)> {
+    ) -> Option<(SVector<T, N>, RowResiduals<N, T>)> {
         let remainder = at.residual + self.remainder;
         let is_at_floor = |rows: &SVector<T, N>, energy: T| {
             let rounding = energy * T::real(T::EPSILON);
@@ -178,7 +178,8 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
                 return None;
             }
         }
-        let measured = Measured { rows: at.residual, scales: rows, energy: at.energy_residual, energy_scale: energy };
+        let measured =
+            RowResiduals { rows: at.residual, scales: rows, energy: at.energy_residual, energy_scale: energy };
         Some((remainder, measured))
     }
 }

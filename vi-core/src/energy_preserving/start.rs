@@ -7,7 +7,7 @@ use super::equations::Elimination;
 use super::interval::Last;
 use crate::called::Called;
 use crate::error::StepError;
-use crate::momentum::continuation::{self, Reached};
+use crate::momentum::continuation::{self, BranchPoint};
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::stepping::EnergyStepping;
@@ -28,7 +28,7 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     let called = &Called(*system);
     let first = continuation::nearest(called, node, h, rest, rest);
     let explained = |failure: StepError| failure.explained(system, node, h, &rest);
-    let Reached { v, .. } = first.map_err(explained)?;
+    let BranchPoint { v, .. } = first.map_err(explained)?;
     let bare = Node::new(state, T::zero());
     let equations = called.extended_system(&bare, h, &v);
     let t = state.t.to_f64();

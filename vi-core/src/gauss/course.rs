@@ -8,7 +8,7 @@ use crate::method::bounds::{Control, check_forward};
 /// Memory of a run beside its node and its stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Course {
+pub(crate) struct StepHistory {
     /// Length of the last step.
     h: f64,
     /// `(H − E) √(h₋ h₊)` at the last nodes between two steps, the newest first, and their count.
@@ -35,7 +35,7 @@ pub(crate) struct Course {
     pub(crate) control: Control,
 }
 
-impl Course {
+impl StepHistory {
     /// Before the first step, which has about the length h.
     pub(crate) fn new(h: f64, slope: f64) -> Self {
         Self {
@@ -101,7 +101,7 @@ impl Course {
     }
 
     /// `D_s + D_*` at the start, before the first step, from the energy of S stages.
-    pub(crate) fn told_density<const S: usize>(&self) -> f64 {
+    pub(crate) fn initial_density<const S: usize>(&self) -> f64 {
         self.density().unwrap_or(self.excess / power::<S>(self.h))
     }
 

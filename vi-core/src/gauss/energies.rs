@@ -9,11 +9,11 @@
 //!
 //! Nearby energies subtract exactly, so that the sum loses no digits.
 
+use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::Rare;
+use super::points::ErasedSystem;
 use super::rounding;
 use super::stages::{Stages, stage};
-use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::node::Node;
@@ -46,7 +46,7 @@ pub(crate) fn energies<Y, const N: usize, const S: usize>(
 where
     Y: Collocation<N> + Convertible<N>,
 {
-    let interval = Interval::new(&Rare::of(system), node, h, stages);
+    let interval = Interval::new(&ErasedSystem::of(system), node, h, stages);
     interval.energies(system, base, |number| number, |i| stage(&interval.velocities, i))
 }
 
@@ -63,7 +63,7 @@ pub(crate) fn bounded_energies<Y, const N: usize, const S: usize>(
 where
     Y: Collocation<N> + Convertible<N>,
 {
-    let rare = Rare::of(system);
+    let rare = ErasedSystem::of(system);
     let interval = Interval::new(&rare, node, h, stages);
     let velocities = rounding::velocities(&rare, node, h, &interval.positions, &interval.velocities);
     interval.energies(&system.convert::<Rounded>(), base, Rounded::nearest, |i| velocities[i])
@@ -79,7 +79,7 @@ struct Interval<'a, const N: usize, const S: usize> {
 
 impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
     #[inline(always)]
-    fn new(system: &Rare<'_, N>, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
+    fn new(system: &ErasedSystem<'_, N>, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
         let equations = equations(system, node, h, stages);
         Self { node, h, positions: equations.start(), velocities: equations.velocity() }
     }

@@ -11,13 +11,13 @@
 //! by the new V. If L is quadratic in v, it solves for V exactly. The change of V is the residual, because Q follows
 //! from V.
 
+use super::fixed_point::{Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
-use super::points::{Form, Points, Rare};
+use super::points::{ErasedSystem, Form, Points};
 use super::stages::{
     AtStages, Roundings, Stages, change, constant_mass, gathered, growth, maximum, product, roundings, scaled, scatter,
     sum, times, weights,
 };
-use super::sweep::{Equations, Increment, VELOCITY};
 use super::tableau::Tableau;
 use crate::collocation::Point;
 use crate::linear::Matrix;
@@ -51,11 +51,11 @@ pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
 
 /// The equations of a step from `node`, with velocities at its stages, or forces there of a separable system.
 pub(crate) fn equations<'a, const N: usize, const S: usize>(
-    system: &'a Rare<'a, N>,
+    system: &'a ErasedSystem<'a, N>,
     node: &'a Node<N>,
     h: f64,
     stages: Stages<N, S>,
-) -> General<'a, f64, Rare<'a, N>, SMatrix<f64, N, N>, N, S, false> {
+) -> General<'a, f64, ErasedSystem<'a, N>, SMatrix<f64, N, N>, N, S, false> {
     let mass = constant_mass::<N, f64, _>(system, node);
     General::new(system, mass.as_ref(), node, h, stages, None)
 }
@@ -226,7 +226,7 @@ where
 
     /// An iteration with the constant mass matrix.
     #[inline(always)]
-    fn sweep_constant(&mut self, x: &Stages<N, S>) {
+    fn iterate_constant(&mut self, x: &Stages<N, S>) {
         let mut correction = self.evaluate(x);
         self.solve(&mut correction);
         self.correct(&correction);
@@ -234,7 +234,7 @@ where
 
     /// An iteration with the mass matrix of each stage, whose inverse waits for the momenta of all stages.
     #[inline(always)]
-    fn sweep_varying(&mut self, x: &Stages<N, S>) {
+    fn iterate_varying(&mut self, x: &Stages<N, S>) {
         let (missing, inverse) = self.evaluate_with_masses(x);
         for k in 0..N {
             for l in 0..N {
@@ -264,25 +264,25 @@ where
     }
 
     #[inline(always)]
-    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
         // For a known form the compiler sees one branch.
         let varies = || self.system.form() == Form::VaryingMass;
         if let Some(newton) = self.newton {
             let missing = self.evaluate(x);
             self.correct(&newton.correction(&missing));
         } else if const { Form::VaryingMass.is_known(Y::FORM) } || const { Y::FORM.is_none() } && varies() {
-            self.sweep_varying(x);
+            self.iterate_varying(x);
         } else {
-            self.sweep_constant(x);
+            self.iterate_constant(x);
         }
         *y = self.positions();
     }
 
     #[inline(always)]
-    fn increment(&self) -> Increment<N> {
+    fn increment(&self) -> StageIncrement<N> {
         let b = const { &Tableau::<S>::VALUES.b };
         let weights = weights::<S>(self.h);
-        let mut increment = Increment { velocity: SVector::zeros(), momentum: SVector::zeros() };
+        let mut increment = StageIncrement { velocity: SVector::zeros(), momentum: SVector::zeros() };
         for k in 0..N {
             increment.velocity[k] = sum(&scaled(b, &self.velocity[k]));
             increment.momentum[k] = sum(&scaled(&weights, &self.force[k]));

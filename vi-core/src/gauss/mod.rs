@@ -7,7 +7,7 @@
 //! | `tableau` | the coefficients, computed at compile time in twice the precision (`pair`) |
 //! | `stages` | arrays of stage values, laid out for SIMD |
 //! | `separable`, `general` | the stage equations: forces of the position alone, and any system |
-//! | `sweep` | fixed-point iteration to convergence |
+//! | `fixed_point` | fixed-point iteration to convergence |
 //! | `solve` | the solver of a step, with runtime dispatch to SIMD instructions |
 //! | `points` | the equations of motion at a point, generic and type-erased |
 //! | `newton` | simplified Newton iteration, linearized at the middle of the step |
@@ -27,6 +27,7 @@
 pub(crate) mod course;
 pub mod density;
 pub(crate) mod energies;
+pub(crate) mod fixed_point;
 mod general;
 mod modes;
 pub mod newton;
@@ -38,11 +39,10 @@ mod separable;
 mod slots;
 pub mod solve;
 pub(crate) mod stages;
-pub(crate) mod sweep;
 mod tableau;
 pub mod transformed;
 mod variation;
 
 pub use density::step_density;
-pub use polynomial::Polynomial;
+pub use polynomial::CollocationPolynomial;
 pub use slots::Slots;

@@ -18,7 +18,7 @@
 //! allocates the buffer.
 
 use super::modes::{Modal, Spectrum};
-use super::points::{AnyDerivatives, Rare};
+use super::points::{AnyDerivatives, ErasedSystem};
 use super::stages::{LOOPED, Stages, product};
 use crate::linear::Pivoted;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
@@ -79,7 +79,7 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     }
 
     /// Linearizes the equations of a system, unless they already are at this point.
-    pub(crate) fn linearize(&mut self, system: &Rare<'_, N>, at: Linearization<N>) {
+    pub(crate) fn linearize(&mut self, system: &ErasedSystem<'_, N>, at: Linearization<N>) {
         if self.linearization.is_some_and(|last| last.is_at(&at)) {
             return;
         }

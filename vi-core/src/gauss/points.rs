@@ -1,6 +1,6 @@
 //! The equations of motion at a point, generic and type-erased.
 //!
-//! Every system implements [`Points`] with inlined functions. [`Rare`] is the same system behind a pointer. Cold paths
+//! Every system implements [`Points`] with inlined functions. [`ErasedSystem`] is the same system behind a pointer. Cold paths
 //! use it: slow convergence and once-per-step measurements. They are compiled once per number of coordinates and
 //! stages, for all systems of a program. They make up three fifths of the code of a step.
 
@@ -119,9 +119,9 @@ fn dense<S: Convertible<N>, T: Real, const N: usize>(
 
 /// A type-erased system.
 #[derive(Clone, Copy)]
-pub(crate) struct Rare<'a, const N: usize>(&'a dyn Erased<N>);
+pub(crate) struct ErasedSystem<'a, const N: usize>(&'a dyn Erased<N>);
 
-impl<'a, const N: usize> Rare<'a, N> {
+impl<'a, const N: usize> ErasedSystem<'a, N> {
     /// Erases the type of the system.
     pub(crate) fn of<S: Convertible<N>>(system: &'a S) -> Self {
         Self(system)
@@ -135,7 +135,7 @@ impl<'a, const N: usize> Rare<'a, N> {
 
 macro_rules! rare {
     ($($number:ty, $point:ident);*) => {$(
-        impl<const N: usize> Points<N, $number> for Rare<'_, N> {
+        impl<const N: usize> Points<N, $number> for ErasedSystem<'_, N> {
             type Mass = SMatrix<$number, N, N>;
 
             const FORM: Option<Form> = None;

@@ -11,10 +11,10 @@
 //! and the same for p with the forces. The order is S + 1 inside the step, and 2S at its ends (Hairer, Lubich, Wanner,
 //! *Geometric Numerical Integration*, II.1.2 and II.1.3).
 
+use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::{Points, Rare};
+use super::points::{ErasedSystem, Points};
 use super::stages::{Stages, set, stage, time};
-use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::node::Node;
 use crate::run::DenseOutput;
@@ -23,7 +23,7 @@ use nalgebra::SVector;
 
 /// Dense output of a step of S stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Polynomial<const N: usize, const S: usize> {
+pub struct CollocationPolynomial<const N: usize, const S: usize> {
     /// The state at the start of the step.
     start: State<N>,
     h: f64,
@@ -32,9 +32,15 @@ pub struct Polynomial<const N: usize, const S: usize> {
     force: Stages<N, S>,
 }
 
-impl<const N: usize, const S: usize> Polynomial<N, S> {
+impl<const N: usize, const S: usize> CollocationPolynomial<N, S> {
     /// Dense output of the step of length h from the node `before` with the state `start`.
-    pub(crate) fn over(system: &Rare<'_, N>, before: &Node<N>, h: f64, stages: Stages<N, S>, start: State<N>) -> Self {
+    pub(crate) fn over(
+        system: &ErasedSystem<'_, N>,
+        before: &Node<N>,
+        h: f64,
+        stages: Stages<N, S>,
+        start: State<N>,
+    ) -> Self {
         let equations = equations(system, before, h, stages);
         let x = equations.start();
         let velocity = equations.velocity();
@@ -52,7 +58,7 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
     }
 }
 
-impl<const N: usize, const S: usize> DenseOutput<N> for Polynomial<N, S> {
+impl<const N: usize, const S: usize> DenseOutput<N> for CollocationPolynomial<N, S> {
     fn since_start(self) -> Self {
         Self { start: State { t: 0.0, ..self.start }, ..self }
     }

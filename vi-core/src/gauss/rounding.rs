@@ -11,7 +11,7 @@
 //! and the velocities with the rounding error of their forces. The solver uses it if changes stall above the ulps of
 //! the unknowns: a sum of cancelling terms has a larger rounding error.
 
-use super::points::{Form, Points, Rare};
+use super::points::{ErasedSystem, Form, Points};
 use super::stages::Stages;
 use super::tableau::Tableau;
 use crate::linear::Matrix;
@@ -44,7 +44,7 @@ struct Rows<'a, const N: usize, const S: usize> {
 
 impl<'a, const N: usize, const S: usize> Rows<'a, N, S> {
     fn of(
-        system: &Rare<'_, N>,
+        system: &ErasedSystem<'_, N>,
         node: &'a Node<N>,
         h: f64,
         positions: &Stages<N, S>,
@@ -90,7 +90,7 @@ impl<'a, const N: usize, const S: usize> Rows<'a, N, S> {
 
 /// The residual of the stages of the step of length h from `node`, over its rounding-error bound; NaN without a bound.
 pub(crate) fn residual<const N: usize, const S: usize>(
-    system: &Rare<'_, N>,
+    system: &ErasedSystem<'_, N>,
     node: &Node<N>,
     h: f64,
     positions: &Stages<N, S>,
@@ -112,7 +112,7 @@ pub(crate) fn residual<const N: usize, const S: usize>(
 
 /// The velocities at the stages, with the rounding error of their forces and therefore of the positions.
 pub(crate) fn velocities<const N: usize, const S: usize>(
-    system: &Rare<'_, N>,
+    system: &ErasedSystem<'_, N>,
     node: &Node<N>,
     h: f64,
     positions: &Stages<N, S>,

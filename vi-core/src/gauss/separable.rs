@@ -10,11 +10,11 @@
 //!
 //! This needs half of the products of the general equations, and fixed-point iteration contracts twice as fast.
 
+use super::fixed_point::{Equations, StageIncrement};
 use super::points::Points;
 use super::stages::{
     AtStages, Roundings, Stages, change, gathered, growth, product, roundings, scaled, scatter, sum, times, weights,
 };
-use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
 use crate::linear::{Matrix, row_by_row};
 use crate::node::Node;
@@ -111,7 +111,7 @@ where
     }
 
     #[inline(always)]
-    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
         let rest = SVector::zeros();
         let times = times::<N, S, FUSED>(self.node, self.h);
         for i in 0..T::EVALUATIONS {
@@ -122,7 +122,7 @@ where
     }
 
     #[inline(always)]
-    fn increment(&self) -> Increment<N> {
+    fn increment(&self) -> StageIncrement<N> {
         let c = const { &Tableau::<S>::VALUES.c };
         let weights = weights::<S>(self.h);
         let mut momentum = SVector::zeros();
@@ -136,7 +136,7 @@ where
             momentum[k] = sum(&impulses);
             mean[k] = self.node.p[k] + (self.node.p_low[k] + sum(&ahead));
         }
-        Increment { velocity: M::apply(&self.inverse, &mean), momentum }
+        StageIncrement { velocity: M::apply(&self.inverse, &mean), momentum }
     }
 
     #[inline(always)]

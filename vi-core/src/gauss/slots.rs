@@ -18,10 +18,10 @@
 //! With a force only these sums are determined. Their split into slot and force is a convention, since the stages
 //! depend on f (Marsden and West, *Discrete mechanics and variational integrators*, section 3.2).
 
+use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::Rare;
+use super::points::ErasedSystem;
 use super::stages::{Stages, stage, time};
-use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::node::Node;
@@ -67,7 +67,7 @@ impl<const N: usize> Slots<N> {
         stages: Stages<N, S>,
     ) -> Self {
         let Tableau { b, c, .. } = const { &Tableau::<S>::VALUES };
-        let rare = Rare::of(system);
+        let rare = ErasedSystem::of(system);
         let equations = equations(&rare, node, h, stages);
         let x = equations.start();
         let velocities = equations.velocity();

@@ -4,13 +4,13 @@
 //! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
 //! no state. The stages of every [`Step`] satisfy their equations to rounding.
 
+use super::fixed_point::{self, Convergence, Equations, FixedPointResult, Pause, StageIncrement};
 use super::general::{General, equations};
 use super::newton::{Linearization, Newton};
-use super::points::{Form, Points, Rare};
+use super::points::{ErasedSystem, Form, Points};
 use super::rounding;
 use super::separable::Separable;
 use super::stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
-use super::sweep::{self, Convergence, Equations, Increment, Pause, Sweeps};
 use crate::collocation::{Collocation, Point};
 use crate::error::StepError;
 use crate::node::Node;
@@ -36,7 +36,7 @@ pub(crate) struct Start<'a, const N: usize, const S: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct Step<const N: usize, const S: usize> {
     pub(crate) h: f64,
-    pub(crate) increment: Increment<N>,
+    pub(crate) increment: StageIncrement<N>,
     pub(crate) stages: Stages<N, S>,
     pub(crate) convergence: Convergence,
     pub(crate) pause: Pause,
@@ -45,26 +45,26 @@ pub struct Step<const N: usize, const S: usize> {
 }
 
 /// The stages after an iteration.
-pub struct Solved<const N: usize, const S: usize> {
-    pub(crate) increment: Increment<N>,
+pub struct StageSolution<const N: usize, const S: usize> {
+    pub(crate) increment: StageIncrement<N>,
     pub(crate) stages: Stages<N, S>,
     velocities: Option<Stages<N, S>>,
-    pub(crate) sweeps: Sweeps<N, S>,
+    pub(crate) iteration: FixedPointResult<N, S>,
 }
 
-impl<const N: usize, const S: usize> Solved<N, S> {
+impl<const N: usize, const S: usize> StageSolution<N, S> {
     /// Whether fixed-point iteration solved the step of length h from a node to the rounding of its positions.
     #[inline(always)]
     pub(crate) fn is_step(&self, node: &Node<N>, h: f64) -> bool {
-        let Increment { velocity, momentum } = &self.increment;
-        self.sweeps.convergence.is_at_floor() && node.stays_finite(h, velocity, momentum)
+        let StageIncrement { velocity, momentum } = &self.increment;
+        self.iteration.convergence.is_at_floor() && node.stays_finite(h, velocity, momentum)
     }
 
     /// Converts the stages to a step.
     #[inline(always)]
     fn step(&self, h: f64) -> Step<N, S> {
-        let Self { increment, stages, sweeps, .. } = self;
-        let (convergence, pause) = (sweeps.convergence, Pause::NONE);
+        let Self { increment, stages, iteration, .. } = self;
+        let (convergence, pause) = (iteration.convergence, Pause::NONE);
         Step { h, increment: *increment, stages: *stages, convergence, pause, linearization: None }
     }
 }
@@ -79,8 +79,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// The step, if its stages satisfy their equations to rounding.
     fn accepted(
         &self,
-        system: &Rare<'_, N>,
-        solved: &Solved<N, S>,
+        system: &ErasedSystem<'_, N>,
+        solved: &StageSolution<N, S>,
         newton: Option<&Newton<N, S>>,
     ) -> Option<Step<N, S>> {
         // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
@@ -100,22 +100,22 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
 
     /// The acceptance criterion of a step: the last change of its stages or, if that stalls, their residual by running
     /// error analysis.
-    fn residual(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> f64 {
-        let Solved { sweeps, velocities, .. } = solved;
-        if sweeps.convergence.is_at_floor() || sweeps.are_given_up {
-            return sweeps.convergence.change;
+    fn residual(&self, system: &ErasedSystem<'_, N>, solved: &StageSolution<N, S>) -> f64 {
+        let StageSolution { iteration, velocities, .. } = solved;
+        if iteration.convergence.is_at_floor() || iteration.are_given_up {
+            return iteration.convergence.change;
         }
-        rounding::residual(system, self.node, self.h, &sweeps.positions, velocities.as_ref())
+        rounding::residual(system, self.node, self.h, &iteration.positions, velocities.as_ref())
     }
 
     /// The stages in scalar numbers. Not inlined: one copy serves all systems of N coordinates.
     #[inline(never)]
-    pub(crate) fn plainly(&self, system: &Rare<'_, N>, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
+    pub(crate) fn plainly(&self, system: &ErasedSystem<'_, N>, newton: Option<&Newton<N, S>>) -> StageSolution<N, S> {
         solved::<f64, _, _, N, S, false>(system, system, self, newton)
     }
 
     /// The linearization point at the middle of the step.
-    fn middle(&self, system: &Rare<'_, N>) -> Linearization<N> {
+    fn middle(&self, system: &ErasedSystem<'_, N>) -> Linearization<N> {
         let equations = equations(system, self.node, self.h, self.guess::<false>());
         let middle = S / 2;
         let q = stage(&equations.start(), middle);
@@ -129,14 +129,18 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// # Errors
     /// The stages of the failed iteration.
     #[inline(never)]
-    pub(crate) fn swept<Y>(&self, system: &Y, instructions: Instructions) -> Result<Step<N, S>, Solved<N, S>>
+    pub(crate) fn by_fixed_point<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+    ) -> Result<Step<N, S>, StageSolution<N, S>>
     where
         Y: Collocation<N> + Convertible<N>,
     {
         let solved = if Y::SIDE_BY_SIDE {
-            instructions.run(Sweeping { system, start: self })
+            instructions.run(FixedPoint { system, start: self })
         } else {
-            self.plainly(&Rare::of(system), None)
+            self.plainly(&ErasedSystem::of(system), None)
         };
         if solved.is_step(self.node, self.h) { Ok(solved.step(self.h)) } else { Err(solved) }
     }
@@ -151,13 +155,13 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         &self,
         system: &Y,
         instructions: Instructions,
-        (left, last): (Option<&Solved<N, S>>, Option<Linearization<N>>),
+        (left, last): (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
         cache: &mut Option<Box<Newton<N, S>>>,
     ) -> Result<Step<N, S>, StepError>
     where
         Y: Collocation<N> + Convertible<N>,
     {
-        let rare = &Rare::of(system);
+        let rare = &ErasedSystem::of(system);
         if let Some(step) = left.and_then(|left| self.accepted(rare, left, None)) {
             return Ok(step);
         }
@@ -190,7 +194,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     where
         Y: Collocation<N> + Convertible<N>,
     {
-        let rare = &Rare::of(system);
+        let rare = &ErasedSystem::of(system);
         newton.linearize(rare, at);
         // With special or short equations for fixed-point iteration, a specialized Newton iteration is not worth its
         // build time: one copy serves all systems of N coordinates.
@@ -200,11 +204,12 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             None
         };
         let solved = side_by_side.unwrap_or_else(|| self.plainly(rare, Some(newton)));
-        let Solved { increment, sweeps, .. } = &solved;
-        let unsettled = || sweeps.convergence.unsettled(increment, [self.node.t, self.h], newton.stiffness());
+        let StageSolution { increment, iteration, .. } = &solved;
+        let not_converged =
+            || iteration.convergence.not_converged(increment, [self.node.t, self.h], newton.stiffness());
         let accepted = self.accepted(rare, &solved, Some(newton));
-        let step = accepted.ok_or_else(|| lost_force(system, self.node, self.h).unwrap_or_else(unsettled))?;
-        let linearization = at.after(step.convergence.sweeps);
+        let step = accepted.ok_or_else(|| lost_force(system, self.node, self.h).unwrap_or_else(not_converged))?;
+        let linearization = at.after(step.convergence.iterations);
         Ok(Step { pause: self.pause.after_newton(), linearization, ..step })
     }
 }
@@ -228,26 +233,26 @@ pub(crate) fn constant<Y: Collocation<N>, const N: usize, const S: usize>(
 pub(crate) const WIDE: bool = !cfg!(target_arch = "x86_64");
 
 /// Fixed-point iteration of the stages, with SIMD dispatch.
-pub(crate) struct Sweeping<'a, Y, const N: usize, const S: usize> {
+pub(crate) struct FixedPoint<'a, Y, const N: usize, const S: usize> {
     pub(crate) system: &'a Y,
     pub(crate) start: &'a Start<'a, N, S>,
 }
 
-impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Sweeping<'_, Y, N, S> {
-    type Output = Solved<N, S>;
+impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for FixedPoint<'_, Y, N, S> {
+    type Output = StageSolution<N, S>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Solved<N, S> {
-        sweeping::<_, N, S, FUSED>(self.system, self.start)
+    fn run<const FUSED: bool>(self) -> StageSolution<N, S> {
+        fixed_point_iteration::<_, N, S, FUSED>(self.system, self.start)
     }
 }
 
 /// Iterates in the number type that suits the instructions best.
 #[inline(always)]
-pub(crate) fn sweeping<Y, const N: usize, const S: usize, const FUSED: bool>(
+pub(crate) fn fixed_point_iteration<Y, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,
     start: &Start<'_, N, S>,
-) -> Solved<N, S>
+) -> StageSolution<N, S>
 where
     Y: Collocation<N> + Convertible<N>,
 {
@@ -268,10 +273,10 @@ struct Iterating<'a, Y, const N: usize, const S: usize> {
 }
 
 impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Iterating<'_, Y, N, S> {
-    type Output = Option<Solved<N, S>>;
+    type Output = Option<StageSolution<N, S>>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Option<Solved<N, S>> {
+    fn run<const FUSED: bool>(self) -> Option<StageSolution<N, S>> {
         let Self { system, start, newton } = self;
         if const { N > LOOPED && (FUSED || WIDE) && !Y::SEPARABLE } {
             let lanes = system.convert::<Lanes<S, FUSED>>();
@@ -295,7 +300,7 @@ fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool>(
     plain: &P,
     start: &Start<'_, N, S>,
     newton: Option<&Newton<N, S>>,
-) -> Solved<N, S>
+) -> StageSolution<N, S>
 where
     T: AtStages<S>,
     Y: Points<N, T>,
@@ -320,9 +325,14 @@ where
 fn finished<const N: usize, const S: usize>(
     mut equations: impl Equations<N, S>,
     start: &Start<'_, N, S>,
-) -> Solved<N, S> {
-    let sweeps = sweep::solve(&mut equations, start.before);
-    Solved { increment: equations.increment(), stages: equations.guess(), velocities: equations.velocities(), sweeps }
+) -> StageSolution<N, S> {
+    let iteration = fixed_point::solve(&mut equations, start.before);
+    StageSolution {
+        increment: equations.increment(),
+        stages: equations.guess(),
+        velocities: equations.velocities(),
+        iteration,
+    }
 }
 
 /// The reason why stages cannot be evaluated in the step of length h from `node`: no velocity has its momenta, or L, f

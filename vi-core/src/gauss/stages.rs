@@ -218,7 +218,7 @@ pub(crate) fn growth<const N: usize>(before: &Roundings<N>, after: &Roundings<N>
 
 /// The largest change of an entry from `before` to `after`, in ulps. Sets `before` to `after`.
 ///
-/// Unspecified if a stage is not finite: the [`Increment`](super::sweep::Increment) of the step then is not finite
+/// Unspecified if a stage is not finite: the [`StageIncrement`](super::fixed_point::StageIncrement) of the step then is not finite
 /// either.
 #[inline(always)]
 pub(crate) fn change<const N: usize, const S: usize>(

@@ -13,11 +13,11 @@
 //! must be exact at every stage.
 
 use super::density::power;
+use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::Rare;
+use super::points::ErasedSystem;
 use super::solve::WIDE;
 use super::stages::{AtStages, LOOPED, Stages, gathered, maximum, product, scaled, set, stage, sum, times, weights};
-use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::{Collocation, PointDerivatives};
 use crate::derivatives::{
@@ -190,7 +190,7 @@ where
     S: Collocation<N> + Convertible<N>,
 {
     let instructions = Instructions::detected();
-    let rare = Rare::of(system);
+    let rare = ErasedSystem::of(system);
     let equations = equations(&rare, before, h, *stages);
     let at = Solution {
         times: times::<N, STAGES, false>(before, h),
@@ -247,7 +247,7 @@ fn are_finite<const N: usize, const S: usize>(derivatives: &Derivatives<N, S>) -
 
 /// The derivatives, one stage at a time.
 fn differentiate_plainly<const N: usize, const S: usize>(
-    system: &Rare<'_, N>,
+    system: &ErasedSystem<'_, N>,
     at: &Solution<N, S>,
     derivatives: &mut Derivatives<N, S>,
 ) {

@@ -192,7 +192,7 @@ pub(crate) trait Alternating<T: Scalar> {
     /// The step law is `h |D|^(1/POWER) = constant`.
     const POWER: f64;
     /// A step.
-    type Found;
+    type StepSolution;
 
     fn control(&self) -> &Control<T>;
     /// Time of the node.
@@ -200,17 +200,17 @@ pub(crate) trait Alternating<T: Scalar> {
     /// Length of the last step, and D there.
     fn last(&self) -> [T; 2];
     /// The energy-preserving step within the bounds for the energy of the node plus `gap`, and its length.
-    fn preserving(&self, gap: T) -> Result<(Self::Found, T), StepError>;
+    fn preserving(&self, gap: T) -> Result<(Self::StepSolution, T), StepError>;
     /// The step of a given length; its discrete energy minus that of the node; and the extrapolated D at the middle of
     /// the step after it.
-    fn fixed(&self, h: T) -> Result<(Self::Found, [T; 2]), StepError>;
-    fn control_of(found: &mut Self::Found) -> &mut Control<T>;
+    fn fixed(&self, h: T) -> Result<(Self::StepSolution, [T; 2]), StepError>;
+    fn control_of(found: &mut Self::StepSolution) -> &mut Control<T>;
 
     /// The next step: energy-preserving, or fixed if there is none and the user allows it.
     ///
     /// # Errors
     /// The reason why both fail.
-    fn next(&self) -> Result<Self::Found, StepError> {
+    fn next(&self) -> Result<Self::StepSolution, StepError> {
         if let Some(phase) = self.control().phase {
             return self.next_in(phase);
         }
@@ -239,7 +239,7 @@ pub(crate) trait Alternating<T: Scalar> {
     /// The step after a fixed one: energy-preserving by the previous energy, otherwise by that of the last step,
     /// otherwise fixed.
     #[cold]
-    fn next_in(&self, phase: Phase<T>) -> Result<Self::Found, StepError> {
+    fn next_in(&self, phase: Phase<T>) -> Result<Self::StepSolution, StepError> {
         if !phase.is_over(Self::POWER) {
             return self.fixed_in(phase);
         }
@@ -260,7 +260,7 @@ pub(crate) trait Alternating<T: Scalar> {
     }
 
     /// A fixed step of a phase.
-    fn fixed_in(&self, phase: Phase<T>) -> Result<Self::Found, StepError> {
+    fn fixed_in(&self, phase: Phase<T>) -> Result<Self::StepSolution, StepError> {
         let (mut found, [gap, density_next]) = self.fixed(phase.h)?;
         let control = Self::control_of(&mut found);
         control.kind = StepKind::FixedStep;

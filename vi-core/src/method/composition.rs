@@ -121,7 +121,7 @@ impl<const N: usize, T: Scalar> Memory for Substeps<N, T> {}
 
 /// A solved step.
 #[derive(Clone, Debug)]
-pub struct Found<const N: usize, T = f64> {
+pub struct CompositionSolution<const N: usize, T = f64> {
     after: Node<N, T>,
     /// The updated memory of the substeps.
     substeps: Vec<Steps<N, T>>,
@@ -136,7 +136,7 @@ where
     type Memory = Substeps<N, T>;
     /// The old memory of the substeps, reused as a buffer for the next step.
     type Cache = Vec<Steps<N, T>>;
-    type Step = Found<N, T>;
+    type Step = CompositionSolution<N, T>;
     type Left = StepError;
     type DenseOutput = Hermite<N, T>;
 
@@ -185,7 +185,7 @@ where
             substep.push(&solved);
             last = Some(solved.v);
         }
-        Ok(Found { after, substeps })
+        Ok(CompositionSolution { after, substeps })
     }
 
     fn recover(
@@ -253,7 +253,7 @@ where
         if !is_of_scheme || substeps.next().is_some() {
             #[allow(clippy::cast_precision_loss)] // a few substeps
             let value = memory.0.len() as f64;
-            let allowed = "those of the scheme that the run is restarted with";
+            let allowed = "those of the composition of the restarted run";
             return Err(StepError::InvalidInput { input: "the substeps of a checkpoint", allowed, value });
         }
         memory.0.iter().try_for_each(|substep| check_steps(substep, substep.h, t))

@@ -38,7 +38,7 @@ pub struct EnergyPreserving;
 /// A solved step.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant)] // inlined on the hot path, which makes the small one
-pub enum Found<const N: usize, T = f64> {
+pub enum EnergySolution<const N: usize, T = f64> {
     /// Solved from a guess of the highest order.
     Predicted(Predicted<N, T>),
     /// Solved otherwise: the run after the step.
@@ -49,7 +49,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     type Prepared = ();
     type Memory = Lengths<N, T>;
     type Cache = ();
-    type Step = Found<N, T>;
+    type Step = EnergySolution<N, T>;
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
@@ -74,13 +74,18 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     #[inline(always)]
-    fn attempt(&self, at: Problem<'_, S, (), N, T>, memory: &Lengths<N, T>, (): &mut ()) -> Result<Found<N, T>, ()> {
+    fn attempt(
+        &self,
+        at: Problem<'_, S, (), N, T>,
+        memory: &Lengths<N, T>,
+        (): &mut (),
+    ) -> Result<EnergySolution<N, T>, ()> {
         let Problem { system, node, .. } = at;
         if memory.is_common()
             && let Some(predicted) = memory.predicted(system, node, memory.prediction.guess_highest())
             && node.advanced::<S>(predicted.step.h, &predicted.step.v, &predicted.increment).is_finite()
         {
-            return Ok(Found::Predicted(predicted));
+            return Ok(EnergySolution::Predicted(predicted));
         }
         Err(())
     }
@@ -91,21 +96,27 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         memory: &Lengths<N, T>,
         (): &mut (),
         (): (),
-    ) -> Result<Found<N, T>, StepError> {
+    ) -> Result<EnergySolution<N, T>, StepError> {
         let after = Search { system: &Called(*at.system), node: at.node, lengths: memory }.next();
-        after.map(Found::After).map_err(|failure| explained(failure, at.system, at.node, memory))
+        after.map(EnergySolution::After).map_err(|failure| explained(failure, at.system, at.node, memory))
     }
 
     #[inline(always)]
-    fn take(&self, _h: T, (node, memory): (&mut Node<N, T>, &mut Lengths<N, T>), (): &mut (), step: Found<N, T>) {
+    fn take(
+        &self,
+        _h: T,
+        (node, memory): (&mut Node<N, T>, &mut Lengths<N, T>),
+        (): &mut (),
+        step: EnergySolution<N, T>,
+    ) {
         match &step {
-            Found::Predicted(predicted) => {
+            EnergySolution::Predicted(predicted) => {
                 let step = &predicted.step;
                 *node = node.advanced::<S>(step.h, &step.v, &predicted.increment);
                 memory.last = memory.last.followed(step);
                 memory.prediction.push_common(predicted);
             }
-            Found::After(after) => (*node, *memory) = (after.node, after.lengths),
+            EnergySolution::After(after) => (*node, *memory) = (after.node, after.lengths),
         }
     }
 

@@ -34,18 +34,18 @@
 //! `docs/theory.md`.
 
 use super::bounds::{Alternating, Control, Controlled, Phase, RATIO, check_forward};
-use super::gauss::{Gauss, LastStages, Motion};
+use super::gauss::{Gauss, GaussOutput, LastStages};
 use super::length::{Search, Trial};
 use super::{Memory, Method, Problem, Report};
 use crate::collocation::Collocation;
 use crate::error::StepError;
-use crate::gauss::course::Course;
+use crate::gauss::course::StepHistory;
 use crate::gauss::density::{power, step_density};
 use crate::gauss::energies::{bounded_energies, energies};
+use crate::gauss::fixed_point::Convergence;
 use crate::gauss::newton::Newton;
 use crate::gauss::solve::{Start, Step};
 use crate::gauss::stages::{Stages, at};
-use crate::gauss::sweep::Convergence;
 use crate::lagrangian::Lagrangian;
 use crate::newton::{FLOOR, roundings};
 use crate::node::Node;
@@ -68,7 +68,7 @@ pub struct EnergyPreservingGauss<const STAGES: usize>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lengths<const N: usize, const S: usize> {
     pub(crate) stages: LastStages<N, S>,
-    pub(crate) course: Course,
+    pub(crate) course: StepHistory,
 }
 
 impl<const N: usize, const S: usize> Memory for Lengths<N, S> {}
@@ -111,11 +111,11 @@ impl<const N: usize, const S: usize> Trial for Tried<N, S> {
 
 /// A solved step, with its energies and density.
 #[derive(Clone, Copy, Debug)]
-pub struct Found<const N: usize, const S: usize> {
+pub struct EnergyGaussSolution<const N: usize, const S: usize> {
     step: Step<N, S>,
     /// Increment of the energy of the node.
     gain: f64,
-    course: Course,
+    course: StepHistory,
 }
 
 /// Buffers for stiff steps.
@@ -129,21 +129,21 @@ const HALVINGS: u32 = 16;
 const HELD: f64 = 0.01;
 
 /// A run at a node: the inputs of the search for a step.
-struct Here<'a, S, const N: usize, const K: usize> {
+struct SearchContext<'a, S, const N: usize, const K: usize> {
     system: &'a S,
     instructions: Instructions,
     node: &'a Node<N>,
     stages: &'a LastStages<N, K>,
-    course: &'a Course,
+    course: &'a StepHistory,
 }
 
-impl<S, const N: usize, const K: usize> Clone for Here<'_, S, N, K> {
+impl<S, const N: usize, const K: usize> Clone for SearchContext<'_, S, N, K> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S, const N: usize, const K: usize> Copy for Here<'_, S, N, K> {}
+impl<S, const N: usize, const K: usize> Copy for SearchContext<'_, S, N, K> {}
 
 impl<const K: usize> EnergyPreservingGauss<K> {
     /// The order: to leading order the slope of `ln (H − E0)` over ln h.
@@ -158,7 +158,7 @@ impl<const K: usize> EnergyPreservingGauss<K> {
     }
 }
 
-impl<'a, S, const N: usize, const K: usize> Here<'a, S, N, K>
+impl<'a, S, const N: usize, const K: usize> SearchContext<'a, S, N, K>
 where
     S: Collocation<N> + Convertible<N>,
 {
@@ -187,11 +187,13 @@ where
                 at(&other.step.stages, |c| ratio * c)
             },
         );
-        let before = &Convergence { sweeps: 0, ..last.convergence };
+        let before = &Convergence { iterations: 0, ..last.convergence };
         let start = Start { node, h, stages: &stages, are_last: false, before, pause: last.pause };
-        let swept = if last.pause.is_over() { start.swept(system, instructions).map_err(Some) } else { Err(None) };
+        let by_fixed_point =
+            if last.pause.is_over() { start.by_fixed_point(system, instructions).map_err(Some) } else { Err(None) };
         // Lengths differ from step to step, so each has its own linearization.
-        let step = swept.or_else(|left| start.with_care(system, instructions, (left.as_ref(), None), cache))?;
+        let step =
+            by_fixed_point.or_else(|left| start.with_care(system, instructions, (left.as_ref(), None), cache))?;
         let energies = energies(system, node, h, step.stages, node.energy);
         let residual = energies.start - node.energy_low - power::<K>(h) * course.shift;
         if !residual.is_finite() {
@@ -232,9 +234,9 @@ where
     #[cold]
     fn no_step(&self) -> StepError {
         let Self { system, node, course, .. } = *self;
-        let told = || course.told_density::<K>() - course.shift;
+        let told = || course.initial_density::<K>() - course.shift;
         let density = step_density::<S, N, K>(system, &node.state()).unwrap_or_else(|_| told());
-        let Course { excess, shift, largest, .. } = *course;
+        let StepHistory { excess, shift, largest, .. } = *course;
         let largest = largest.max(density.abs());
         StepError::NoForwardGaussStep { t: node.t, h: course.h(), stages: K, excess, density, shift, largest }
     }
@@ -244,7 +246,7 @@ where
     fn found(&self, cache: &mut Cache<N, K>) -> Result<(Tried<N, K>, f64, u32), StepError> {
         let Self { node, course, .. } = *self;
         let (t, last) = (node.t, course.h());
-        let Course { excess, size, largest_size, shift, .. } = *course;
+        let StepHistory { excess, size, largest_size, shift, .. } = *course;
         if excess.abs() < EnergyPreservingGauss::<K>::least_excess(f64::EPSILON * size) {
             return Err(self.degenerate());
         }
@@ -261,7 +263,7 @@ where
         let search = Search {
             solve: &|h, beside| {
                 let tried = self.tried(h, beside, &mut cache.borrow_mut())?;
-                iterations.set(iterations.get() + tried.step.convergence.sweeps);
+                iterations.set(iterations.get() + tried.step.convergence.iterations);
                 Ok(tried)
             },
             is_rounding: &|trial| self.is_kept(trial),
@@ -287,7 +289,7 @@ where
     }
 
     /// Computes the energies at the end of a step.
-    fn after(&self, trial: &Tried<N, K>) -> Result<Found<N, K>, StepError> {
+    fn after(&self, trial: &Tried<N, K>) -> Result<EnergyGaussSolution<N, K>, StepError> {
         let Self { system, node, .. } = *self;
         let mut course = *self.course;
         let step = trial.step;
@@ -301,13 +303,13 @@ where
         let mean = 0.5 * (course.excess + measured[0]) - trial.residual;
         course.push(step.h, mean / power::<K>(step.h));
         course.set_excess(measured);
-        Ok(Found { step, gain, course })
+        Ok(EnergyGaussSolution { step, gain, course })
     }
 }
 
 /// The search for the next step, with the buffers for stiff steps.
 struct Searching<'a, S, const N: usize, const K: usize> {
-    here: Here<'a, S, N, K>,
+    here: SearchContext<'a, S, N, K>,
     cache: RefCell<&'a mut Cache<N, K>>,
 }
 
@@ -316,7 +318,7 @@ where
     S: Collocation<N> + Convertible<N>,
 {
     const POWER: f64 = EnergyPreservingGauss::<K>::ORDER + 1.0;
-    type Found = Found<N, K>;
+    type StepSolution = EnergyGaussSolution<N, K>;
 
     fn control(&self) -> &Control {
         &self.here.course.control
@@ -327,16 +329,16 @@ where
     }
 
     fn last(&self) -> [f64; 2] {
-        [self.here.course.h(), self.here.course.told_density::<K>()]
+        [self.here.course.h(), self.here.course.initial_density::<K>()]
     }
 
-    fn preserving(&self, gap: f64) -> Result<(Found<N, K>, f64), StepError> {
+    fn preserving(&self, gap: f64) -> Result<(EnergyGaussSolution<N, K>, f64), StepError> {
         let (mut node, mut course) = (*self.here.node, *self.here.course);
         if gap != 0.0 {
             node.add_energy(gap);
             course.set_excess(measured(self.here.system, &node)?);
         }
-        let here = Here { node: &node, course: &course, ..self.here };
+        let here = SearchContext { node: &node, course: &course, ..self.here };
         let (trial, slope, iterations) = here.found(&mut self.cache.borrow_mut())?;
         let mut found = here.after(&trial)?;
         found.gain += gap;
@@ -348,19 +350,19 @@ where
         Ok((found, trial.h()))
     }
 
-    fn fixed(&self, h: f64) -> Result<(Found<N, K>, [f64; 2]), StepError> {
+    fn fixed(&self, h: f64) -> Result<(EnergyGaussSolution<N, K>, [f64; 2]), StepError> {
         let trial = self.here.tried(h, None, &mut self.cache.borrow_mut())?;
-        let last = self.here.course.told_density::<K>();
+        let last = self.here.course.initial_density::<K>();
         let mut found = self.here.after(&trial)?;
         found.course.residual = 0.0;
         found.course.forget_lengths();
-        found.course.iterations = trial.step.convergence.sweeps;
-        let density = found.course.told_density::<K>();
+        found.course.iterations = trial.step.convergence.iterations;
+        let density = found.course.initial_density::<K>();
         // The next interval has the same length.
         Ok((found, [trial.residual, density + (density - last)]))
     }
 
-    fn control_of(found: &mut Found<N, K>) -> &mut Control {
+    fn control_of(found: &mut EnergyGaussSolution<N, K>) -> &mut Control {
         &mut found.course.control
     }
 }
@@ -416,7 +418,7 @@ fn begun<S, const N: usize, const K: usize>(system: &S, node: &Node<N>, h: f64) 
 where
     S: Collocation<N>,
 {
-    let mut course = Course::new(h, EnergyPreservingGauss::<K>::ORDER);
+    let mut course = StepHistory::new(h, EnergyPreservingGauss::<K>::ORDER);
     let stages = LastStages::constant(system, node, h)?;
     course.set_excess(measured(system, node)?);
     Ok(Lengths { stages, course })
@@ -429,9 +431,9 @@ where
     type Prepared = Instructions;
     type Memory = Lengths<N, STAGES>;
     type Cache = Cache<N, STAGES>;
-    type Step = Found<N, STAGES>;
+    type Step = EnergyGaussSolution<N, STAGES>;
     type Left = StepError;
-    type DenseOutput = Motion<N, STAGES>;
+    type DenseOutput = GaussOutput<N, STAGES>;
 
     const FINDS_LENGTH: bool = true;
 
@@ -457,7 +459,7 @@ where
         node.energy = 0.0;
         let mut memory = begun(system, node, h)?;
         let at = Problem { system, prepared: &Instructions::detected(), node, h };
-        let first = Here::of(at, &memory).tried(h, None, &mut None)?;
+        let first = SearchContext::of(at, &memory).tried(h, None, &mut None)?;
         node.energy = first.residual;
         // The start has already solved the stages of the first step.
         memory.stages.stages = SMatrix::from_array_storage(ArrayStorage(first.step.stages));
@@ -473,7 +475,7 @@ where
         memory: &Self::Memory,
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, StepError> {
-        Searching { here: Here::of(at, memory), cache: RefCell::new(cache) }.next()
+        Searching { here: SearchContext::of(at, memory), cache: RefCell::new(cache) }.next()
     }
 
     fn recover(
@@ -506,7 +508,7 @@ where
     ) -> Result<(Node<N>, Self::Memory), StepError> {
         check_forward("the step h", h)?;
         let at = Problem { system, prepared: &Instructions::detected(), node, h };
-        let Tried { step, residual, work, .. } = Here::of(at, memory).tried(h, None, &mut None)?;
+        let Tried { step, residual, work, .. } = SearchContext::of(at, memory).tried(h, None, &mut None)?;
         let mut after = *node;
         after.advance(h, &step.increment.velocity, &step.increment.momentum);
         after.add_energy(work);
@@ -568,7 +570,7 @@ where
         node: &Node<N>,
         h: f64,
         memory: &Self::Memory,
-    ) -> Result<Motion<N, STAGES>, StepError> {
+    ) -> Result<GaussOutput<N, STAGES>, StepError> {
         memory.stages.dense_output(system, before, node, h)
     }
 
@@ -662,7 +664,7 @@ where
         check_forward("the duration over which the step density is measured", duration)?;
         let mut h = self.memory.course.h();
         for _ in 0..HALVINGS {
-            if let Some(Met { density, scale, size }) = self.met_along(h, duration)? {
+            if let Some(Maxima { density, scale, size }) = self.met_along(h, duration)? {
                 let shift = 2.0 * density;
                 check_shift::<STAGES>(self.node.t, self.memory.course.h(), shift, scale)?;
                 let course = &mut self.memory.course;
@@ -672,7 +674,11 @@ where
             h *= 0.5;
         }
         let input = "the duration over which the step density is measured";
-        Err(StepError::InvalidInput { input, allowed: "one over which fixed steps hold the energy", value: duration })
+        Err(StepError::InvalidInput {
+            input,
+            allowed: "one over which fixed steps preserve the energy",
+            value: duration,
+        })
     }
 
     /// The stages of a step of the length h from here, regardless of its energy.
@@ -682,17 +688,17 @@ where
     pub(crate) fn stages_of(&self, h: f64) -> Result<Stages<N, STAGES>, StepError> {
         let Self { system, prepared, node, memory, .. } = self;
         let at = Problem { system, prepared, node, h };
-        Ok(Here::of(at, memory).tried(h, None, &mut None)?.step.stages)
+        Ok(SearchContext::of(at, memory).tried(h, None, &mut None)?.step.stages)
     }
 
     /// Maxima along fixed steps of the length h over `duration` from here; `None` if their energy error is too large.
-    fn met_along(&self, h: f64, duration: f64) -> Result<Option<Met>, StepError> {
+    fn met_along(&self, h: f64, duration: f64) -> Result<Option<Maxima>, StepError> {
         let system = &self.system;
         let mut steps = Starts::at_state(*system, self.node.state()).integrate(Gauss::<STAGES>, h)?;
         let end = self.node.t + duration;
         let density = |state: &State<N>| step_density::<S, N, STAGES>(system, state).map(f64::abs);
         let mut before = energy_at(system, &steps.state())?;
-        let mut met = Met { density: density(&steps.state())?, scale: 0.0, size: before.size };
+        let mut met = Maxima { density: density(&steps.state())?, scale: 0.0, size: before.size };
         let mut kinetic = 0.0;
         let mut count = 0.0;
         let mut largest_missed = 0.0_f64;
@@ -733,12 +739,12 @@ where
     /// Step density D_s of the last step, without the shift, from its energy: the mean of `H − E` at both ends over
     /// `C_s h^2s`. Before the first step, at its start.
     pub fn density(&self) -> f64 {
-        self.memory.course.told_density::<STAGES>() - self.memory.course.shift
+        self.memory.course.initial_density::<STAGES>() - self.memory.course.shift
     }
 }
 
 /// Maxima along a trajectory.
-struct Met {
+struct Maxima {
     /// The largest `|D_s|`.
     density: f64,
     /// The larger of the mean of `|v·p|` and of `|H|` at the end: one of them shows the size of the energies for any

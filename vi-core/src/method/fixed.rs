@@ -20,7 +20,7 @@ use super::{Memory, Method, Problem, Report};
 use crate::branch::Branch;
 use crate::called::Called;
 use crate::error::StepError;
-use crate::momentum::steps::{Corrector, Solved, Steps};
+use crate::momentum::steps::{Corrector, MomentumStep, Steps};
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::run::{Hermite, Run};
@@ -72,8 +72,8 @@ impl<const N: usize, T: Scalar> Memory for Velocities<N, T> {
 
 /// A solved step.
 #[derive(Clone, Copy, Debug)]
-pub struct Found<const N: usize, T = f64> {
-    solved: Solved<N, T>,
+pub struct FixedSolution<const N: usize, T = f64> {
+    solved: MomentumStep<N, T>,
     /// A constant at inlined call sites, so that the compiler sees that only the newest velocity changes.
     is_common: bool,
 }
@@ -82,7 +82,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     type Prepared = Corrector<S::Jacobian, N, T>;
     type Memory = Velocities<N, T>;
     type Cache = ();
-    type Step = Found<N, T>;
+    type Step = FixedSolution<N, T>;
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
@@ -108,13 +108,13 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
         at: Problem<'_, S, Self::Prepared, N, T>,
         memory: &Velocities<N, T>,
         (): &mut (),
-    ) -> Result<Found<N, T>, ()> {
+    ) -> Result<FixedSolution<N, T>, ()> {
         let Problem { system, prepared, node, h } = at;
         if memory.steps.is_common::<S>()
             && let Some(solved) = memory.steps.common(system, node, prepared)
             && node.stays_finite(h, &solved.v, &solved.increment)
         {
-            return Ok(Found { solved, is_common: true });
+            return Ok(FixedSolution { solved, is_common: true });
         }
         Err(())
     }
@@ -125,7 +125,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
         memory: &Velocities<N, T>,
         (): &mut (),
         (): (),
-    ) -> Result<Found<N, T>, StepError> {
+    ) -> Result<FixedSolution<N, T>, StepError> {
         let Problem { system, prepared, node, .. } = at;
         let steps = &memory.steps;
         // A common step above the floor has already had all corrections that pay off.
@@ -136,7 +136,13 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     }
 
     #[inline(always)]
-    fn take(&self, h: T, (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>), (): &mut (), step: Found<N, T>) {
+    fn take(
+        &self,
+        h: T,
+        (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>),
+        (): &mut (),
+        step: FixedSolution<N, T>,
+    ) {
         take(h, node, memory, &step);
     }
 
@@ -189,7 +195,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
     type Prepared = ();
     type Memory = Velocities<N, T>;
     type Cache = ();
-    type Step = Found<N, T>;
+    type Step = FixedSolution<N, T>;
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
@@ -212,7 +218,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         _at: Problem<'_, S, (), N, T>,
         _memory: &Velocities<N, T>,
         (): &mut (),
-    ) -> Result<Found<N, T>, ()> {
+    ) -> Result<FixedSolution<N, T>, ()> {
         Err(())
     }
 
@@ -222,11 +228,17 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         memory: &Velocities<N, T>,
         (): &mut (),
         (): (),
-    ) -> Result<Found<N, T>, StepError> {
+    ) -> Result<FixedSolution<N, T>, StepError> {
         found(at, memory, None, Branch::Connected)
     }
 
-    fn take(&self, h: T, (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>), (): &mut (), step: Found<N, T>) {
+    fn take(
+        &self,
+        h: T,
+        (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>),
+        (): &mut (),
+        step: FixedSolution<N, T>,
+    ) {
         take(h, node, memory, &step);
     }
 
@@ -319,8 +331,13 @@ pub(super) fn check_steps<const N: usize, T: Scalar>(steps: &Steps<N, T>, h: T, 
 }
 
 #[inline(always)]
-fn take<const N: usize, T: Scalar>(h: T, node: &mut Node<N, T>, memory: &mut Velocities<N, T>, step: &Found<N, T>) {
-    let Found { solved, is_common } = step;
+fn take<const N: usize, T: Scalar>(
+    h: T,
+    node: &mut Node<N, T>,
+    memory: &mut Velocities<N, T>,
+    step: &FixedSolution<N, T>,
+) {
+    let FixedSolution { solved, is_common } = step;
     if *is_common {
         memory.steps.push_common(solved);
     } else {
@@ -334,15 +351,15 @@ fn take<const N: usize, T: Scalar>(h: T, node: &mut Node<N, T>, memory: &mut Vel
 fn found<S: FixedStepping<N, T>, P, const N: usize, T: Scalar>(
     at: Problem<'_, S, P, N, T>,
     memory: &Velocities<N, T>,
-    corrected: Option<Solved<N, T>>,
+    corrected: Option<MomentumStep<N, T>>,
     branch: Branch,
-) -> Result<Found<N, T>, StepError> {
+) -> Result<FixedSolution<N, T>, StepError> {
     let Problem { system, node, h, .. } = at;
     let searched = || memory.steps.searched(&Called(*system), node, branch);
     let found = corrected.map_or_else(searched, Ok).and_then(|solved| {
         let mut after = *node;
         after.advance(h, &solved.v, &solved.increment);
-        after.check_finite(node.t).map(|()| Found { solved, is_common: false })
+        after.check_finite(node.t).map(|()| FixedSolution { solved, is_common: false })
     });
     found.map_err(|failure| failure.explained(system, node, h, &memory.steps.v()))
 }

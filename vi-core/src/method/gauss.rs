@@ -18,12 +18,12 @@ use super::{Memory, Method, Problem, Report};
 use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::gauss::energies::energies;
+use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
 use crate::gauss::newton::{Linearization, Newton};
-use crate::gauss::points::Rare;
-use crate::gauss::solve::{Solved, Start, Step, constant, long, sweeping};
+use crate::gauss::points::ErasedSystem;
+use crate::gauss::solve::{StageSolution, Start, Step, constant, fixed_point_iteration, long};
 use crate::gauss::stages::LOOPED;
-use crate::gauss::sweep::{Convergence, Increment, Pause};
-use crate::gauss::{Polynomial, Slots};
+use crate::gauss::{CollocationPolynomial, Slots};
 use crate::node::Node;
 use crate::run::{DenseOutput, Hermite, Run};
 use crate::state::State;
@@ -93,12 +93,12 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
 
     /// Advances to the end of a step that fixed-point iteration solved.
     #[inline(always)]
-    fn take_solved(&mut self, node: &mut Node<N>, solved: &Solved<N, S>) {
-        let Increment { velocity, momentum } = &solved.increment;
+    fn take_solved(&mut self, node: &mut Node<N>, solved: &StageSolution<N, S>) {
+        let StageIncrement { velocity, momentum } = &solved.increment;
         self.before = *node;
         node.advance(self.h, velocity, momentum);
         self.stages = SMatrix::from_array_storage(ArrayStorage(solved.stages));
-        self.convergence = solved.sweeps.convergence;
+        self.convergence = solved.iteration.convergence;
         self.pause = Pause::NONE;
         self.linearization = None;
     }
@@ -116,12 +116,18 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         before: &State<N>,
         node: &Node<N>,
         h: f64,
-    ) -> Result<Motion<N, S>, StepError> {
+    ) -> Result<GaussOutput<N, S>, StepError> {
         if self.has_step(node) {
-            let motion = Polynomial::over(&Rare::of(system), &self.before, self.h, self.stages.data.0, *before);
-            Ok(Motion::Collocation(motion))
+            let motion = CollocationPolynomial::over(
+                &ErasedSystem::of(system),
+                &self.before,
+                self.h,
+                self.stages.data.0,
+                *before,
+            );
+            Ok(GaussOutput::Collocation(motion))
         } else {
-            Hermite::between(system, before, &node.state(), h).map(Motion::Hermite)
+            Hermite::between(system, before, &node.state(), h).map(GaussOutput::Hermite)
         }
     }
 
@@ -150,12 +156,12 @@ struct Advancing<'a, Y, const N: usize, const S: usize> {
 }
 
 impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Advancing<'_, Y, N, S> {
-    type Output = Result<(), Option<Solved<N, S>>>;
+    type Output = Result<(), Option<StageSolution<N, S>>>;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Self::Output {
         let Self { system, node, memory } = self;
-        let solved = sweeping::<_, N, S, FUSED>(system, &memory.start(node));
+        let solved = fixed_point_iteration::<_, N, S, FUSED>(system, &memory.start(node));
         if solved.is_step(node, memory.h) {
             memory.take_solved(node, &solved);
             return Ok(());
@@ -172,8 +178,8 @@ where
     type Memory = LastStages<N, STAGES>;
     type Cache = Option<Box<Newton<N, STAGES>>>;
     type Step = Step<N, STAGES>;
-    type Left = Option<Solved<N, STAGES>>;
-    type DenseOutput = Motion<N, STAGES>;
+    type Left = Option<StageSolution<N, STAGES>>;
+    type DenseOutput = GaussOutput<N, STAGES>;
 
     #[allow(clippy::cast_possible_truncation)] // 16 stages at most
     fn order(&self) -> u32 {
@@ -197,7 +203,7 @@ where
         if !memory.pause.is_over() {
             return Err(None);
         }
-        memory.start(at.node).swept(at.system, *at.prepared).map_err(Some)
+        memory.start(at.node).by_fixed_point(at.system, *at.prepared).map_err(Some)
     }
 
     #[inline(always)]
@@ -213,7 +219,7 @@ where
             return Err(None);
         }
         if !S::SIDE_BY_SIDE {
-            let solved = memory.start(node).plainly(&Rare::of(system), None);
+            let solved = memory.start(node).plainly(&ErasedSystem::of(system), None);
             if !solved.is_step(node, memory.h) {
                 return Err(Some(solved));
             }
@@ -275,12 +281,12 @@ where
         node: &Node<N>,
         h: f64,
         memory: &Self::Memory,
-    ) -> Result<Motion<N, STAGES>, StepError> {
+    ) -> Result<GaussOutput<N, STAGES>, StepError> {
         memory.dense_output(system, before, node, h)
     }
 
     fn report(&self, memory: &Self::Memory) -> Report {
-        Report { residual: memory.convergence.change, iterations: memory.convergence.sweeps }
+        Report { residual: memory.convergence.change, iterations: memory.convergence.iterations }
     }
 
     fn discrete_energy(&self, system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {
@@ -311,14 +317,14 @@ where
 
 /// Dense output of a Gauss step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion<const N: usize, const S: usize> {
+pub enum GaussOutput<const N: usize, const S: usize> {
     /// A step with stored stages.
-    Collocation(Polynomial<N, S>),
+    Collocation(CollocationPolynomial<N, S>),
     /// A step without stored stages, of another length.
     Hermite(Hermite<N>),
 }
 
-impl<const N: usize, const S: usize> DenseOutput<N> for Motion<N, S> {
+impl<const N: usize, const S: usize> DenseOutput<N> for GaussOutput<N, S> {
     fn since_start(self) -> Self {
         match self {
             Self::Collocation(polynomial) => Self::Collocation(polynomial.since_start()),

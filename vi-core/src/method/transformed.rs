@@ -20,7 +20,9 @@ use super::{Gauss, Method, Problem, Report, check_step};
 use crate::collocation::TimeScale;
 use crate::error::{Residuals, StepError};
 use crate::gauss::newton::Newton;
-use crate::gauss::transformed::{After, LastRates, Polynomial, Solved, Start, check_time_scale, time_scale};
+use crate::gauss::transformed::{
+    After, LastRates, Start, TransformedPolynomial, TransformedStages, check_time_scale, time_scale,
+};
 use crate::node::Node;
 use crate::run::Run;
 use crate::state::State;
@@ -54,8 +56,8 @@ where
     type Memory = LastRates<N, STAGES>;
     type Cache = Option<Box<Newton<N, STAGES>>>;
     type Step = After<N, STAGES>;
-    type Left = Option<Solved<N, STAGES>>;
-    type DenseOutput = Polynomial<N, STAGES>;
+    type Left = Option<TransformedStages<N, STAGES>>;
+    type DenseOutput = TransformedPolynomial<N, STAGES>;
 
     // No bound of the change of g from step to step is known.
     const FINDS_LENGTH: bool = true;
@@ -96,7 +98,7 @@ where
         if !memory.pause.is_over() {
             return Err(None);
         }
-        Start { system, node, dtau: h, last: memory }.swept(*prepared).map_err(Some)
+        Start { system, node, dtau: h, last: memory }.by_fixed_point(*prepared).map_err(Some)
     }
 
     fn recover(
@@ -211,8 +213,8 @@ where
         node: &Node<N>,
         _h: f64,
         memory: &Self::Memory,
-    ) -> Result<Polynomial<N, STAGES>, StepError> {
-        Ok(Polynomial::of(system, node.energy, memory, *before))
+    ) -> Result<TransformedPolynomial<N, STAGES>, StepError> {
+        Ok(TransformedPolynomial::of(system, node.energy, memory, *before))
     }
 
     fn length(&self, _dtau: f64, memory: &Self::Memory) -> f64 {
@@ -224,7 +226,7 @@ where
     }
 
     fn report(&self, memory: &Self::Memory) -> Report {
-        Report { residual: memory.convergence.change, iterations: memory.convergence.sweeps }
+        Report { residual: memory.convergence.change, iterations: memory.convergence.iterations }
     }
 
     fn discrete_energy(&self, _system: &S, node: &Node<N>, _dtau: f64, memory: &Self::Memory) -> Option<f64> {

@@ -36,7 +36,7 @@ impl Pace {
 
 /// A velocity, and the number of iterations.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reached<const N: usize, T> {
+pub(crate) struct BranchPoint<const N: usize, T> {
     pub(crate) v: SVector<T, N>,
     pub(crate) iterations: u32,
 }
@@ -53,9 +53,9 @@ pub(crate) fn nearest<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     h: T,
     guess: SVector<T, N>,
     start: SVector<T, N>,
-) -> Result<Reached<N, T>, StepError> {
+) -> Result<BranchPoint<N, T>, StepError> {
     match newton::solve(system, node, h, guess) {
-        Ok(root) => Ok(Reached { v: root.u, iterations: root.iterations }),
+        Ok(root) => Ok(BranchPoint { v: root.u, iterations: root.iterations }),
         Err(_) => solve(system, node, h, start, Pace::RESCUE),
     }
 }
@@ -71,7 +71,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     h: T,
     guess: SVector<T, N>,
     pace: Pace,
-) -> Result<Reached<N, T>, StepError> {
+) -> Result<BranchPoint<N, T>, StepError> {
     let mut v = newton::velocity(system, node, [guess, node.p])?;
     let sign = |h: T, v: &SVector<T, N>| {
         if pace.signed { linear::determinant_sign(&system.momentum_equation(node, h, v).jacobian.dense()) } else { 1 }
@@ -107,5 +107,5 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
             }
         }
     }
-    Ok(Reached { v, iterations: spent })
+    Ok(BranchPoint { v, iterations: spent })
 }

@@ -19,7 +19,7 @@
 //! compensated sum.
 
 use super::closed_form::ClosedForm;
-use super::continuation::{self, Reached};
+use super::continuation::{self, BranchPoint};
 use crate::branch::Branch;
 use crate::error::StepError;
 use crate::linear::Matrix;
@@ -77,14 +77,14 @@ impl<J: Matrix<N, T>, const N: usize, T: Scalar> Corrector<J, N, T> {
     feature = "serde",
     serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
 )]
-pub(crate) struct Measured<const N: usize, T> {
+pub(crate) struct StepResidual<const N: usize, T> {
     /// r(v).
     residual: SVector<T, N>,
     /// Scale of each row: one rounding is ε times this.
     scale: SVector<T, N>,
 }
 
-impl<const N: usize, T: Scalar> Measured<N, T> {
+impl<const N: usize, T: Scalar> StepResidual<N, T> {
     /// Before the first step.
     fn none() -> Self {
         Self { residual: SVector::zeros(), scale: SVector::zeros() }
@@ -105,14 +105,14 @@ impl<const N: usize, T: Scalar> Measured<N, T> {
 
 /// A solved momentum step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Solved<const N: usize, T> {
+pub(crate) struct MomentumStep<const N: usize, T> {
     /// The velocity.
     pub(crate) v: SVector<T, N>,
     /// The momentum increment.
     pub(crate) increment: SVector<T, N>,
     /// Number of corrections.
     pub(crate) iterations: u32,
-    measured: Measured<N, T>,
+    measured: StepResidual<N, T>,
     /// Remainder for the next step.
     remainder: SVector<T, N>,
     /// Whether the guess was usable.
@@ -130,7 +130,7 @@ pub struct Steps<const N: usize, T> {
     pub(crate) h: T,
     predictor: Predictor<N, T>,
     remainder: SVector<T, N>,
-    measured: Measured<N, T>,
+    measured: StepResidual<N, T>,
     /// Whether a step has been taken.
     begun: bool,
     /// Whether the parameters have changed since. Merging the two flags into one enum slows a step of Kepler's problem
@@ -141,18 +141,18 @@ pub struct Steps<const N: usize, T> {
 impl<const N: usize, T: Scalar> Steps<N, T> {
     /// Starts from a guess of the first velocity.
     pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
-        let (predictor, measured) = (Predictor::new(guess), Measured::none());
+        let (predictor, measured) = (Predictor::new(guess), StepResidual::none());
         Self { h, predictor, remainder: SVector::zeros(), measured, begun: false, changed: false }
     }
 
     /// Passes every number through `convert`.
     pub(crate) fn map(self, convert: impl Fn(T) -> T + Copy) -> Self {
-        let Measured { residual, scale } = self.measured;
+        let StepResidual { residual, scale } = self.measured;
         Self {
             h: convert(self.h),
             predictor: self.predictor.map(convert),
             remainder: self.remainder.map(convert),
-            measured: Measured { residual: residual.map(convert), scale: scale.map(convert) },
+            measured: StepResidual { residual: residual.map(convert), scale: scale.map(convert) },
             begun: self.begun,
             changed: self.changed,
         }
@@ -184,13 +184,13 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     }
 
     /// Residual of the last step.
-    pub(crate) fn measured(&self) -> &Measured<N, T> {
+    pub(crate) fn measured(&self) -> &StepResidual<N, T> {
         &self.measured
     }
 
     /// Whether every number is finite.
     pub(crate) fn is_finite(&self) -> bool {
-        let Measured { residual, scale } = &self.measured;
+        let StepResidual { residual, scale } = &self.measured;
         let vectors = [&self.remainder, residual, scale];
         self.predictor.is_finite() && vectors.into_iter().flat_map(|u| u.iter()).all(|entry| entry.is_finite())
     }
@@ -209,7 +209,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         system: &S,
         node: &Node<N, T>,
         corrector: &Corrector<S::Jacobian, N, T>,
-    ) -> Option<Solved<N, T>> {
+    ) -> Option<MomentumStep<N, T>> {
         match corrector {
             Corrector::ClosedForm(form, _) if S::CLOSED_FORM => self.by_matrix(system, node, form),
             _ => self.corrected(system, node, corrector, self.predictor.guess_highest()),
@@ -229,7 +229,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         node: &Node<N, T>,
         corrector: &Corrector<S::Jacobian, N, T>,
         mut v: SVector<T, N>,
-    ) -> Option<Solved<N, T>> {
+    ) -> Option<MomentumStep<N, T>> {
         // A known variant, for the optimizer.
         let corrector = if S::CONSTANT_JACOBIAN { corrector } else { &Corrector::Newton };
         for iterations in 1..=CORRECTIONS {
@@ -250,14 +250,14 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         corrector: &Corrector<S::Jacobian, N, T>,
         v: &mut SVector<T, N>,
         iterations: u32,
-    ) -> Option<Solved<N, T>> {
+    ) -> Option<MomentumStep<N, T>> {
         let equation = system.momentum_equation(node, self.h, v);
         *v -= corrector.correction(&equation.jacobian, &(equation.residual + self.remainder));
         let MomentumResidual { residual, scale, increment } = system.momentum_residual(node, self.h, v);
         // Long functions have computed the scales of their terms. Short ones are inlined and compute them on request,
         // if momenta vanish but their terms do not.
         let first = if S::INLINED { momentum_scale(node, &increment) } else { scale };
-        let mut measured = Measured { residual, scale: first };
+        let mut measured = StepResidual { residual, scale: first };
         if !measured.is_at_floor(&self.remainder) {
             measured.scale = scale;
             if !(S::INLINED && measured.is_at_floor(&self.remainder)) {
@@ -265,7 +265,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
             }
         }
         let remainder = residual + self.remainder;
-        Some(Solved { v: *v, increment, iterations, measured, remainder, predicted: true })
+        Some(MomentumStep { v: *v, increment, iterations, measured, remainder, predicted: true })
     }
 
     /// The step by one matrix product, if that solves it to rounding.
@@ -275,14 +275,14 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         system: &S,
         node: &Node<N, T>,
         form: &ClosedForm<T>,
-    ) -> Option<Solved<N, T>> {
+    ) -> Option<MomentumStep<N, T>> {
         let (v, increment) = form.step(node);
         let at = system.momentum_residual(node, self.h, &v);
-        let measured = Measured { residual: at.residual, scale: momentum_scale(node, &increment) };
-        let lost = Measured { residual: increment - at.increment, ..measured };
+        let measured = StepResidual { residual: at.residual, scale: momentum_scale(node, &increment) };
+        let lost = StepResidual { residual: increment - at.increment, ..measured };
         let remainder = SVector::zeros();
         let solved = measured.is_at_floor(&remainder) && lost.is_at_floor(&remainder);
-        solved.then_some(Solved { v, increment, iterations: 0, measured, remainder, predicted: true })
+        solved.then_some(MomentumStep { v, increment, iterations: 0, measured, remainder, predicted: true })
     }
 
     /// The step from `node` by Newton iteration, or by continuation.
@@ -295,26 +295,26 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         system: &S,
         node: &Node<N, T>,
         branch: Branch,
-    ) -> Result<Solved<N, T>, StepError> {
+    ) -> Result<MomentumStep<N, T>, StepError> {
         let (h, start) = (self.h, self.v());
-        let Reached { v, iterations } = match branch {
+        let BranchPoint { v, iterations } = match branch {
             Branch::Nearest => continuation::nearest(system, node, h, start, start)?,
             Branch::Connected => continuation::solve(system, node, h, start, continuation::Pace::CLOSE)?,
         };
         let MomentumResidual { residual, increment, .. } = system.momentum_residual(node, h, &v);
-        let measured = Measured { residual, scale: system.momentum_rounding(node, h, &v) };
-        Ok(Solved { v, increment, iterations, measured, remainder: SVector::zeros(), predicted: false })
+        let measured = StepResidual { residual, scale: system.momentum_rounding(node, h, &v) };
+        Ok(MomentumStep { v, increment, iterations, measured, remainder: SVector::zeros(), predicted: false })
     }
 
     /// Records a common step.
     #[inline(always)]
-    pub(crate) fn push_common(&mut self, solved: &Solved<N, T>) {
+    pub(crate) fn push_common(&mut self, solved: &MomentumStep<N, T>) {
         self.predictor.push_highest(solved.v);
         self.keep(solved);
     }
 
     /// Records any step.
-    pub(crate) fn push(&mut self, solved: &Solved<N, T>) {
+    pub(crate) fn push(&mut self, solved: &MomentumStep<N, T>) {
         if solved.predicted {
             self.predictor.push(solved.v);
         } else {
@@ -324,7 +324,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     }
 
     #[inline(always)]
-    fn keep(&mut self, solved: &Solved<N, T>) {
+    fn keep(&mut self, solved: &MomentumStep<N, T>) {
         self.remainder = solved.remainder;
         self.measured = solved.measured;
         self.begun = true;

@@ -1,4 +1,4 @@
-//! Measured errors of steps.
+//! Measurement errors of steps.
 //!
 //! For each coordinate this module measures the error of q and of h·v in one step. An [`ErrorMonitor`] reports the
 //! largest relative error along the run and its time. A step is a pure function, so comparison with two steps of half
@@ -54,7 +54,7 @@ pub struct LocalError<const N: usize> {
 }
 
 /// Result of a measurement.
-struct Measured<const N: usize> {
+struct Measurement<const N: usize> {
     /// The larger error of q and h·v.
     error: SVector<f64, N>,
     of: LocalError<N>,
@@ -63,7 +63,7 @@ struct Measured<const N: usize> {
     action: SVector<f64, N>,
 }
 
-impl<const N: usize> Measured<N> {
+impl<const N: usize> Measurement<N> {
     fn unknown() -> Self {
         let infinite = SVector::repeat(f64::INFINITY);
         let of = LocalError { q: infinite, hv: infinite };
@@ -77,14 +77,14 @@ fn measured<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     run: &Run<M, S, N, T>,
     memory: &M::Memory,
     [before, after]: [&Node<N, T>; 2],
-) -> Measured<N> {
+) -> Measurement<N> {
     let fresh = || {
         // Stages of a long step can give a guess from which the iteration of a half step diverges.
         let mut node = *before;
         let memory = run.method.begin(&run.system, &mut node, run.h)?;
         compared(run, &memory, [before, after])
     };
-    compared(run, memory, [before, after]).or_else(|_| fresh()).unwrap_or_else(|_| Measured::unknown())
+    compared(run, memory, [before, after]).or_else(|_| fresh()).unwrap_or_else(|_| Measurement::unknown())
 }
 
 /// Compares the step with two half steps.
@@ -95,7 +95,7 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     run: &Run<M, S, N, T>,
     memory: &M::Memory,
     [before, after]: [&Node<N, T>; 2],
-) -> Result<Measured<N>, StepError> {
+) -> Result<Measurement<N>, StepError> {
     let Run { method, system, h: of_run, .. } = run;
     let h = duration(before, after);
     let half = h * T::real(0.5);
@@ -113,7 +113,7 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let displacement = v.map(|entry| (length * entry.to_f64()).abs());
     let action = v.zip_map(&after.p, |v, p| (v.to_f64() * p.to_f64()).abs());
     let error = q.zip_map(&hv, f64::max);
-    Ok(Measured { error, of: LocalError { q, hv }, displacement, action })
+    Ok(Measurement { error, of: LocalError { q, hv }, displacement, action })
 }
 
 /// The size of an error; infinite for NaN.
@@ -344,7 +344,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
-    fn add(&mut self, found: &Measured<N>) {
+    fn add(&mut self, found: &Measurement<N>) {
         self.action = self.action.zip_map(&found.action, f64::max);
         self.displacement = self.displacement.zip_map(&found.displacement, f64::max);
     }
@@ -562,7 +562,7 @@ impl<T: Scalar> Length<T> for Tolerance {
     ) -> Result<T, StepError> {
         let Self(tolerance) = self;
         if !(tolerance >= T::EPSILON && tolerance < 1.0) {
-            let allowed = "between a rounding of its numbers and 1";
+            let allowed = "between an ulp and 1";
             return Err(StepError::InvalidInput { input: "the tolerance", allowed, value: tolerance });
         }
         let guess = guess(start)?;

@@ -16,7 +16,7 @@
 //! floor, even if the run stops there. Rising and falling refer to the direction of the run.
 
 use super::Run;
-use super::search::{Ahead, Reached, Searched, Watched};
+use super::search::{Ahead, Searched, StepEnd, Watched};
 use super::side::{Node, ROUNDING, Side};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -388,7 +388,7 @@ impl<const N: usize> fmt::Debug for Crossings<'_, N> {
     }
 }
 
-impl<const N: usize> Reached<N> {
+impl<const N: usize> StepEnd<N> {
     /// The moment of this crossing.
     pub(super) fn moment(&self) -> Moment<N> {
         Moment { t: self.state.t, q: self.state.q, v: self.v }

@@ -25,17 +25,17 @@ const SAMPLES: u32 = 8;
 const ITERATIONS: u32 = 60;
 
 /// A type-erased run from one node on. The search is then compiled once, not once per method and system.
-pub(super) trait Motion<const N: usize> {
+pub(super) trait ErasedRun<const N: usize> {
     /// Length of a step.
     fn step_length(&self) -> f64;
     /// The end of a step of this length.
-    fn reached(&self, length: f64) -> Result<Reached<N>, StepError>;
+    fn reached(&self, length: f64) -> Result<StepEnd<N>, StepError>;
     /// The run after a step of this length.
-    fn apart(&self, length: f64) -> Result<Box<dyn Motion<N> + '_>, StepError>;
+    fn run_after(&self, length: f64) -> Result<Box<dyn ErasedRun<N> + '_>, StepError>;
 }
 
 /// The end of a step.
-pub(super) struct Reached<const N: usize> {
+pub(super) struct StepEnd<const N: usize> {
     pub(super) state: State<N>,
     pub(super) v: SVector<f64, N>,
 }
@@ -53,17 +53,17 @@ where
     Ok(aside)
 }
 
-impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Motion<N> for Run<M, S, N> {
+impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> ErasedRun<N> for Run<M, S, N> {
     fn step_length(&self) -> f64 {
         self.h()
     }
 
-    fn reached(&self, length: f64) -> Result<Reached<N>, StepError> {
+    fn reached(&self, length: f64) -> Result<StepEnd<N>, StepError> {
         let end = moved(self, length)?;
-        Ok(Reached { state: end.state(), v: end.velocity()? })
+        Ok(StepEnd { state: end.state(), v: end.velocity()? })
     }
 
-    fn apart(&self, length: f64) -> Result<Box<dyn Motion<N> + '_>, StepError> {
+    fn run_after(&self, length: f64) -> Result<Box<dyn ErasedRun<N> + '_>, StepError> {
         Ok(Box::new(moved(self, length)?))
     }
 }
@@ -77,9 +77,9 @@ pub(super) trait Searched<const N: usize> {
     /// Moves to a length within the previewed step.
     fn stop(&mut self, length: f64) -> Result<(), StepError>;
     /// The run at its node.
-    fn node(&self) -> &dyn Motion<N>;
+    fn node(&self) -> &dyn ErasedRun<N>;
     /// The run at the end of the previewed step.
-    fn end(&self) -> &dyn Motion<N>;
+    fn end(&self) -> &dyn ErasedRun<N>;
 }
 
 /// A run, and the run at the end of the searched step, with its length.
@@ -133,11 +133,11 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Searched<N> for A
         Ok(())
     }
 
-    fn node(&self) -> &dyn Motion<N> {
+    fn node(&self) -> &dyn ErasedRun<N> {
         &*self.run
     }
 
-    fn end(&self) -> &dyn Motion<N> {
+    fn end(&self) -> &dyn ErasedRun<N> {
         self.end.as_ref().map_or(&*self.run, |(end, _)| end)
     }
 }
@@ -265,7 +265,7 @@ impl<const N: usize> Step<N> {
                 }
             }
             if !events.is_empty() {
-                let Reached { state, v } = search.reached(length)?;
+                let StepEnd { state, v } = search.reached(length)?;
                 if take(Crossing { events, state, v, length: length.copysign(self.length) }) {
                     return Ok(());
                 }
@@ -286,7 +286,7 @@ impl<const N: usize> Search<'_, N> {
     }
 
     /// The end of a step of this length.
-    fn reached(&self, length: f64) -> Result<Reached<N>, StepError> {
+    fn reached(&self, length: f64) -> Result<StepEnd<N>, StepError> {
         if length.to_bits() == self.length.to_bits() {
             self.run.end().reached(0.0)
         } else {
@@ -315,8 +315,8 @@ impl<const N: usize> Search<'_, N> {
         if length.to_bits() == self.length.to_bits() {
             return ask(&mut Node::of(self.run.end())?);
         }
-        let apart = self.run.node().apart(length.copysign(self.step.length))?;
-        ask(&mut Node::of(&*apart)?)
+        let run_after = self.run.node().run_after(length.copysign(self.step.length))?;
+        ask(&mut Node::of(&*run_after)?)
     }
 
     /// Samples a function over the step, up to the first value that is not finite.

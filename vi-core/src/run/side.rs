@@ -12,7 +12,7 @@
 //! The side depends on the node alone, so that two searches that meet at a node agree on it.
 
 use super::events::{Event, Moment};
-use super::search::Motion;
+use super::search::ErasedRun;
 use super::times::LONGER;
 use crate::error::StepError;
 
@@ -44,7 +44,7 @@ pub(super) struct Side {
 
 /// A node, and the moments shortly after it.
 pub(super) struct Node<'a, const N: usize> {
-    motion: &'a dyn Motion<N>,
+    motion: &'a dyn ErasedRun<N>,
     pub(super) moment: Moment<N>,
     /// Length of a step of the run.
     h: f64,
@@ -55,7 +55,7 @@ pub(super) struct Node<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Node<'a, N> {
-    pub(super) fn of(motion: &'a dyn Motion<N>) -> Result<Self, StepError> {
+    pub(super) fn of(motion: &'a dyn ErasedRun<N>) -> Result<Self, StepError> {
         let moment = motion.reached(0.0)?.moment();
         let h = motion.step_length();
         let instant = (ROUNDING * moment.t.abs()).min(LONGER * h.abs()).max(resolution(moment.t, h));

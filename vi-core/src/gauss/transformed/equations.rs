@@ -12,11 +12,11 @@
 //! One iteration evaluates everything at (T, Q, V, E), corrects V by `M⁻¹ (P − L_v)` with the momenta P from P', and
 //! moves T, Q and E by the new g, V and E'.
 
+use super::super::fixed_point::{Equations, StageIncrement, VELOCITY};
 use super::super::newton::Newton;
 use super::super::stages::{
     Roundings, Stages, change, constant_mass, growth, product, roundings, scaled, set, stage, weights,
 };
-use super::super::sweep::{Equations, Increment, VELOCITY};
 use super::super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::linear::Matrix;
@@ -312,7 +312,7 @@ where
     }
 
     #[inline(always)]
-    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
         let correction = match self.newton {
             Some(newton) => newton.correction(&self.evaluate(x, |_, _| {})),
             None if Y::CONSTANT_MASS => self.by_constant_mass(x),
@@ -322,8 +322,8 @@ where
     }
 
     #[inline(always)]
-    fn increment(&self) -> Increment<N> {
-        let mut increment = Increment { velocity: SVector::zeros(), momentum: SVector::zeros() };
+    fn increment(&self) -> StageIncrement<N> {
+        let mut increment = StageIncrement { velocity: SVector::zeros(), momentum: SVector::zeros() };
         for k in 0..N {
             increment.velocity[k] = self.quadrature(&scaled(&self.rates.g, &self.velocity[k])) / self.dtau;
             increment.momentum[k] = self.quadrature(&self.force[k]);

@@ -15,18 +15,18 @@ mod rates;
 mod rounding;
 mod variation;
 
+use super::fixed_point::{self, Equations, FixedPointResult, StageIncrement};
 use super::newton::{Linearization, Newton};
-use super::points::Rare;
+use super::points::ErasedSystem;
 use super::solve::lost_force;
 use super::stages::{Stages, stage};
-use super::sweep::{self, Equations, Increment, Sweeps};
 use crate::collocation::{Collocation, TimeScale};
 use crate::error::StepError;
 use crate::node::Node;
 use crate::real::{Lane, Real, Rounded};
 use crate::stepping::Convertible;
 use equations::{Clock, Rates, Scaled};
-pub use path::Polynomial;
+pub use path::TransformedPolynomial;
 pub(crate) use rates::time_scale;
 pub use rates::{After, LastRates};
 use vi_dispatch::{Instructions, Loop};
@@ -57,11 +57,11 @@ where
     /// # Errors
     /// The stages of the failed iteration.
     #[inline(always)]
-    pub(crate) fn swept(self, instructions: Instructions) -> Result<After<N, S>, Solved<N, S>> {
-        let solved = if Y::SIDE_BY_SIDE { instructions.run(Sweeping(self)) } else { self.plainly(None) };
+    pub(crate) fn by_fixed_point(self, instructions: Instructions) -> Result<After<N, S>, TransformedStages<N, S>> {
+        let solved = if Y::SIDE_BY_SIDE { instructions.run(FixedPoint(self)) } else { self.plainly(None) };
         let after = self.last.after(self.node, self.dtau, &solved);
         let is_step =
-            solved.is_at_floor() && after.is_sound(self.system) && after.goes_on((self.node, self.last), &solved);
+            solved.is_at_floor() && after.is_sound(self.system) && after.can_continue((self.node, self.last), &solved);
         if is_step { Ok(after) } else { Err(solved) }
     }
 
@@ -72,14 +72,14 @@ where
     #[cold]
     pub(crate) fn with_care(
         self,
-        swept: Option<&Solved<N, S>>,
+        by_fixed_point: Option<&TransformedStages<N, S>>,
         cache: &mut Option<Box<Newton<N, S>>>,
     ) -> Result<After<N, S>, StepError> {
-        if let Some(swept) = swept {
+        if let Some(by_fixed_point) = by_fixed_point {
             // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
             let plain;
-            let solved = if swept.increment.is_finite() {
-                swept
+            let solved = if by_fixed_point.increment.is_finite() {
+                by_fixed_point
             } else {
                 plain = self.plainly(None);
                 &plain
@@ -89,7 +89,7 @@ where
             }
         }
         let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
-        newton.linearize(&Rare::of(self.system), self.middle());
+        newton.linearize(&ErasedSystem::of(self.system), self.middle());
         let solved = self.plainly(Some(newton));
         let mut after = self.last.after(self.node, self.dtau, &solved);
         after.rates.pause = self.last.pause.after_newton();
@@ -98,19 +98,19 @@ where
 
     /// The run after a solved step, with its acceptance criterion: the last change of its stages or, if that stalls,
     /// their residual by running error analysis. `None` if that exceeds rounding, or the run cannot continue.
-    fn accepted(&self, solved: &Solved<N, S>, mut after: After<N, S>) -> Option<After<N, S>> {
+    fn accepted(&self, solved: &TransformedStages<N, S>, mut after: After<N, S>) -> Option<After<N, S>> {
         let Self { system, node, dtau, last } = *self;
-        if !solved.is_at_floor() && !solved.sweeps.are_given_up {
+        if !solved.is_at_floor() && !solved.iteration.are_given_up {
             after.rates.convergence.change = rounding::residual(&system.convert::<Rounded>(), node, dtau, solved);
         }
         let is_step = after.rates.convergence.is_at_floor() && after.is_sound(system);
-        (is_step && after.goes_on((node, last), solved)).then_some(after)
+        (is_step && after.can_continue((node, last), solved)).then_some(after)
     }
 
     /// The reason why a step failed.
-    fn failure_of(&self, solved: &Solved<N, S>, after: &After<N, S>, stiffness: f64) -> StepError {
+    fn failure_of(&self, solved: &TransformedStages<N, S>, after: &After<N, S>, stiffness: f64) -> StepError {
         let Self { system, node, dtau, last } = *self;
-        let stages = (0..S).map(|i| (solved.clock.time[i], stage(&solved.sweeps.positions, i)));
+        let stages = (0..S).map(|i| (solved.clock.time[i], stage(&solved.iteration.positions, i)));
         for (t, q) in stages.chain([(after.node.t, after.node.q)]) {
             let is_known = t.is_finite() && q.iter().all(|q: &f64| q.is_finite());
             if is_known && let Err(failure) = check_time_scale(t, time_scale(system, t, &q)) {
@@ -120,11 +120,11 @@ where
         if let Some(failure) = lost_force(system, node, last.h) {
             return failure;
         }
-        if after.rates.convergence.is_at_floor() && !after.goes_on((node, last), solved) {
+        if after.rates.convergence.is_at_floor() && !after.can_continue((node, last), solved) {
             return StepError::TimeScale { t: node.t, g: solved.rates.g[0] };
         }
         let h = time_scale(system, node.t, &node.q) * dtau;
-        solved.sweeps.convergence.unsettled(&solved.increment, [node.t, h], stiffness)
+        solved.iteration.convergence.not_converged(&solved.increment, [node.t, h], stiffness)
     }
 
     /// The linearization point at the middle of the step.
@@ -141,15 +141,15 @@ where
 
     /// The stages in scalar numbers. Not inlined: speed does not matter after SIMD iteration has failed.
     #[inline(never)]
-    fn plainly(&self, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
+    fn plainly(&self, newton: Option<&Newton<N, S>>) -> TransformedStages<N, S> {
         let Self { system, node, dtau, last } = *self;
         solved::<f64, Y, N, S, false>(system, node, dtau, last, newton)
     }
 }
 
 /// A solved step.
-pub struct Solved<const N: usize, const S: usize> {
-    pub(crate) increment: Increment<N>,
+pub struct TransformedStages<const N: usize, const S: usize> {
+    pub(crate) increment: StageIncrement<N>,
     /// Increments of time and energy.
     gains: [f64; 2],
     /// The largest `|H − E|` at its stages, and the size of the terms of H.
@@ -159,24 +159,24 @@ pub struct Solved<const N: usize, const S: usize> {
     /// Velocities, times and energies of the last evaluation.
     velocity: Stages<N, S>,
     clock: Clock<S>,
-    sweeps: Sweeps<N, S>,
+    iteration: FixedPointResult<N, S>,
 }
 
-impl<const N: usize, const S: usize> Solved<N, S> {
+impl<const N: usize, const S: usize> TransformedStages<N, S> {
     /// Whether the stages are at the rounding floor of their positions.
     fn is_at_floor(&self) -> bool {
-        self.sweeps.convergence.is_at_floor()
+        self.iteration.convergence.is_at_floor()
     }
 }
 
 /// Iterates the stages with SIMD dispatch.
-struct Sweeping<'a, Y, const N: usize, const S: usize>(Start<'a, Y, N, S>);
+struct FixedPoint<'a, Y, const N: usize, const S: usize>(Start<'a, Y, N, S>);
 
-impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Sweeping<'_, Y, N, S> {
-    type Output = Solved<N, S>;
+impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for FixedPoint<'_, Y, N, S> {
+    type Output = TransformedStages<N, S>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Solved<N, S> {
+    fn run<const FUSED: bool>(self) -> TransformedStages<N, S> {
         let Self(Start { system, node, dtau, last }) = self;
         solved::<Lane<FUSED>, _, N, S, FUSED>(&system.convert::<Lane<FUSED>>(), node, dtau, last, None)
     }
@@ -190,22 +190,22 @@ fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(
     dtau: f64,
     last: &LastRates<N, S>,
     newton: Option<&Newton<N, S>>,
-) -> Solved<N, S>
+) -> TransformedStages<N, S>
 where
     T: Real,
     Y: Collocation<N, T>,
 {
     let rates = last.guess::<FUSED>(dtau);
     let mut equations = Scaled::<T, Y, N, S, FUSED>::new(system, node, dtau, rates, newton);
-    let sweeps = sweep::solve(&mut equations, &last.convergence);
-    Solved {
+    let iteration = fixed_point::solve(&mut equations, &last.convergence);
+    TransformedStages {
         increment: equations.increment(),
         gains: equations.gains(),
         excess: equations.excess(),
         rates: equations.rates(),
         velocity: equations.velocity(),
         clock: equations.evaluated(),
-        sweeps,
+        iteration,
     }
 }
 

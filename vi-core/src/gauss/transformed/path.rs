@@ -22,7 +22,7 @@ use nalgebra::SVector;
 
 /// Dense output of a step of S stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Polynomial<const N: usize, const S: usize> {
+pub struct TransformedPolynomial<const N: usize, const S: usize> {
     /// The state at the start of the step.
     start: State<N>,
     dtau: f64,
@@ -35,7 +35,7 @@ pub struct Polynomial<const N: usize, const S: usize> {
 /// Most iterations for the fraction of a step.
 const ITERATIONS: u32 = 60;
 
-impl<const N: usize, const S: usize> Polynomial<N, S> {
+impl<const N: usize, const S: usize> TransformedPolynomial<N, S> {
     /// Dense output of the last step, from `start` to a node with this energy.
     pub(crate) fn of<Y: Collocation<N>>(system: &Y, energy: f64, last: &LastRates<N, S>, start: State<N>) -> Self {
         let rates = last.rates();
@@ -87,7 +87,7 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
     }
 }
 
-impl<const N: usize, const S: usize> DenseOutput<N> for Polynomial<N, S> {
+impl<const N: usize, const S: usize> DenseOutput<N> for TransformedPolynomial<N, S> {
     fn since_start(self) -> Self {
         Self { start: State { t: 0.0, ..self.start }, ..self }
     }

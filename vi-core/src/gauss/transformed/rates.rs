@@ -4,13 +4,13 @@
 //! of the last one.
 
 use super::equations::Rates;
-use super::{Solved, check_time_scale};
+use super::{TransformedStages, check_time_scale};
 use crate::collocation::{ScaledPoint, TimeScale};
 use crate::compensated;
 use crate::error::StepError;
+use crate::gauss::fixed_point::{Convergence, Pause};
 use crate::gauss::polynomial::{coefficients, polynomials, sum};
 use crate::gauss::stages::{extrapolated, set};
-use crate::gauss::sweep::{Convergence, Pause};
 use crate::gauss::tableau::{DEGREE, Tableau};
 use crate::method::Memory;
 use crate::node::Node;
@@ -110,8 +110,8 @@ impl<const N: usize, const S: usize> LastRates<N, S> {
 
     /// The run after a step of the length Δτ from a node.
     #[inline(always)]
-    pub(crate) fn after(&self, node: &Node<N>, dtau: f64, solved: &Solved<N, S>) -> After<N, S> {
-        let Solved { increment, gains: [h, energy], rates, sweeps, .. } = solved;
+    pub(crate) fn after(&self, node: &Node<N>, dtau: f64, solved: &TransformedStages<N, S>) -> After<N, S> {
+        let TransformedStages { increment, gains: [h, energy], rates, iteration, .. } = solved;
         let mut node = *node;
         compensated::add_rounded(&mut node.t, &mut node.t_low, *h);
         compensated::add_vector(&mut node.q, &mut node.q_low, &(increment.velocity * dtau));
@@ -120,7 +120,7 @@ impl<const N: usize, const S: usize> LastRates<N, S> {
         let velocities = SMatrix::from_array_storage(ArrayStorage(rates.velocity));
         let clock = SMatrix::from_array_storage(ArrayStorage([rates.g, rates.energy]));
         let size = self.size.max(solved.excess[1]);
-        let convergence = sweeps.convergence;
+        let convergence = iteration.convergence;
         After { node, rates: Self { taken: dtau, h: *h, size, velocities, clock, convergence, pause: Pause::NONE } }
     }
 
@@ -140,7 +140,7 @@ impl<const N: usize, const S: usize> After<N, S> {
     /// Whether the step changes the time, whose two parts hold twice the digits of a number, and preserves the energy.
     /// K = g (H − E) is nearly constant: if g almost vanishes, H − E grows, and the trajectory would be reflected.
     #[inline(always)]
-    pub(crate) fn goes_on(&self, before: (&Node<N>, &LastRates<N, S>), solved: &Solved<N, S>) -> bool {
+    pub(crate) fn can_continue(&self, before: (&Node<N>, &LastRates<N, S>), solved: &TransformedStages<N, S>) -> bool {
         let (node, rates) = before;
         let [excess, size] = solved.excess;
         let is_lost = excess > size && excess > LOST * rates.size;

@@ -13,14 +13,14 @@
 
 use super::super::rounding::{nearest, worse_row};
 use super::super::tableau::Tableau;
-use super::Solved;
+use super::TransformedStages;
 use crate::collocation::{Collocation, ScaledPoint};
 use crate::node::Node;
 use crate::real::Rounded;
 use nalgebra::SVector;
 
 /// Time, position and energy at a stage, or their rates.
-struct Place<const N: usize> {
+struct StageValues<const N: usize> {
     t: Rounded,
     q: SVector<Rounded, N>,
     energy: Rounded,
@@ -31,35 +31,35 @@ pub(crate) fn residual<Y, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
     dtau: f64,
-    solved: &Solved<N, S>,
+    solved: &TransformedStages<N, S>,
 ) -> f64
 where
     Y: Collocation<N, Rounded>,
 {
     let Tableau { b, first, .. } = const { &Tableau::<S>::VALUES };
-    let Solved { sweeps, velocity, clock, .. } = solved;
+    let TransformedStages { iteration, velocity, clock, .. } = solved;
     // Row value at stage i: its start plus the sum over the stages.
     let sum = |i: usize, start: [f64; 2], of: &dyn Fn(usize) -> Rounded| {
         let weight = |j: usize| Rounded::nearest(first[j][i]) * Rounded::nearest(dtau * b[j]);
         let start = Rounded::exact(start[0]) + Rounded::exact(start[1]);
         (0..S).fold(start, |sum, j| sum + weight(j) * of(j))
     };
-    let at = |i: usize, Place { t, q, energy }: &Place<N>| {
+    let at = |i: usize, StageValues { t, q, energy }: &StageValues<N>| {
         let v = nearest(velocity, i);
         let at = system.scaled_point(*t, q, &v);
         let excess = at.energy - *energy;
         (at, excess, v)
     };
-    let places: [Place<N>; S] = core::array::from_fn(|i| {
+    let places: [StageValues<N>; S] = core::array::from_fn(|i| {
         let [t, energy] = [clock.time[i], clock.energy[i]].map(Rounded::nearest);
-        Place { t, q: nearest(&sweeps.positions, i), energy }
+        StageValues { t, q: nearest(&iteration.positions, i), energy }
     });
-    let rates: [Place<N>; S] = core::array::from_fn(|i| {
+    let rates: [StageValues<N>; S] = core::array::from_fn(|i| {
         let (ScaledPoint { g, g_dt, power, .. }, excess, v) = at(i, &places[i]);
-        Place { t: g, q: v.map(|v| g * v), energy: g * power + excess * g_dt }
+        StageValues { t: g, q: v.map(|v| g * v), energy: g * power + excess * g_dt }
     });
     // Times, positions and energies follow from their rates, and carry the rounding error of that sum.
-    let followed: [Place<N>; S] = core::array::from_fn(|i| Place {
+    let followed: [StageValues<N>; S] = core::array::from_fn(|i| StageValues {
         t: sum(i, [node.t, node.t_low], &|j| rates[j].t),
         q: SVector::from_fn(|k, _| sum(i, [node.q[k], node.q_low[k]], &|j| rates[j].q[k])),
         energy: sum(i, [node.energy, node.energy_low], &|j| rates[j].energy),

@@ -14,8 +14,8 @@
 //! δT_i = δt0 + Σ_j δ(Δτ a_ij g_j)         δQ_i = δq0 + Σ_j δ(Δτ a_ij g_j V_j)         δE_i = δE0 + Σ_j δ(Δτ a_ij E'_j)
 //! ```
 
+use super::super::fixed_point::Equations;
 use super::super::stages::{stage, weights};
-use super::super::sweep::Equations;
 use super::super::tableau::Tableau;
 use super::equations::Scaled;
 use super::rates::LastRates;

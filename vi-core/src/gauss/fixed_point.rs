@@ -20,7 +20,7 @@ use crate::newton::FLOOR;
 use nalgebra::SVector;
 
 /// Most iterations.
-const SWEEPS: u32 = 60;
+const ITERATIONS: u32 = 60;
 /// Iterations after which slow convergence ends the iteration, if Newton iteration is available.
 const PATIENCE: u32 = 5;
 /// Contraction of slow convergence.
@@ -46,9 +46,9 @@ pub(crate) trait Equations<const N: usize, const S: usize> {
     /// The initial positions, from the guess of the step.
     fn start(&self) -> Stages<N, S>;
     /// Evaluates the equations at the positions x, and writes the resulting positions to y.
-    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>);
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>);
     /// The increment of the node, from the last evaluation.
-    fn increment(&self) -> Increment<N>;
+    fn increment(&self) -> StageIncrement<N>;
     /// The stage values that the next step extrapolates.
     fn guess(&self) -> Stages<N, S>;
     /// The velocities of the last evaluation; `None` if nothing depends on them.
@@ -64,14 +64,14 @@ pub(crate) trait Equations<const N: usize, const S: usize> {
 
 /// Increment from a node to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Increment<const N: usize> {
+pub(crate) struct StageIncrement<const N: usize> {
     /// `(q1 − q0)/h`.
     pub(crate) velocity: SVector<f64, N>,
     /// `p1 − p0`.
     pub(crate) momentum: SVector<f64, N>,
 }
 
-impl<const N: usize> Increment<N> {
+impl<const N: usize> StageIncrement<N> {
     /// Whether the increment is finite; a stage that is not finite makes it NaN or infinite.
     pub(crate) fn is_finite(&self) -> bool {
         self.velocity.iter().chain(&self.momentum).all(|entry| entry.is_finite())
@@ -114,7 +114,8 @@ impl Pause {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Convergence {
     /// Number of iterations.
-    pub(crate) sweeps: u32,
+    #[cfg_attr(feature = "serde", serde(rename = "sweeps"))]
+    pub(crate) iterations: u32,
     /// The last change, in ulps of q, or in sixteenths of the ulps of the terms of v.
     pub(crate) change: f64,
     /// The last ratio of two changes above rounding.
@@ -123,26 +124,26 @@ pub(crate) struct Convergence {
 
 impl Convergence {
     /// Before the first step.
-    pub(crate) const NONE: Self = Self { sweeps: 0, change: 0.0, contraction: 1.0 };
+    pub(crate) const NONE: Self = Self { iterations: 0, change: 0.0, contraction: 1.0 };
 
     /// Whether the run has taken a step.
     pub(crate) fn has_begun(&self) -> bool {
-        self.sweeps > 0
+        self.iterations > 0
     }
 
     /// The error of stages that did not converge, in the step of length h from the time t with this increment.
-    pub(crate) fn unsettled<const N: usize>(
+    pub(crate) fn not_converged<const N: usize>(
         &self,
-        increment: &Increment<N>,
+        increment: &StageIncrement<N>,
         [t, h]: [f64; 2],
         stiffness: f64,
     ) -> StepError {
-        let Self { sweeps, change, contraction } = *self;
+        let Self { iterations, change, contraction } = *self;
         // NaN counts as divergence: two infinite values have no finite change.
         let is_beyond = |ratio: f64| ratio.is_nan() || !increment.is_finite();
         let [change, contraction] =
             [change, contraction].map(|ratio| if is_beyond(ratio) { f64::INFINITY } else { ratio });
-        StepError::StagesUnsettled { t, h, iterations: sweeps, change, contraction, stiffness }
+        StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness }
     }
 
     /// Whether the stages are at the rounding floor of their positions.
@@ -156,10 +157,10 @@ impl Convergence {
 pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     equations: &mut E,
     before: &Convergence,
-) -> Sweeps<N, S> {
+) -> FixedPointResult<N, S> {
     let mut x = equations.start();
     let mut y = [[0.0; S]; N];
-    let mut state = Convergence { sweeps: 0, change: f64::INFINITY, ..*before };
+    let mut state = Convergence { iterations: 0, change: f64::INFINITY, ..*before };
     // Residual at x, without the rounding error of the change.
     let mut error = f64::INFINITY;
     // Error of a step from x.
@@ -168,8 +169,8 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     let mut stalls = 0;
     let mut is_last = false;
     let are_given_up = loop {
-        equations.sweep(&x, &mut y);
-        state.sweeps += 1;
+        equations.iterate(&x, &mut y);
+        state.iterations += 1;
         if is_last {
             break false;
         }
@@ -192,7 +193,7 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         }
         let stands_out = change > FLOOR || last > NOISE;
         // The previous step does not predict the first change.
-        if stands_out && state.sweeps > 1 {
+        if stands_out && state.iterations > 1 {
             state.contraction = change / last;
         }
         error = state.contraction * if stands_out || change < error { change } else { error };
@@ -204,17 +205,17 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
             stalls += 1;
         }
         let is_slow = || state.contraction > SLOW && change > FAR && equations.has_another_way();
-        if state.sweeps >= PATIENCE && is_slow() {
+        if state.iterations >= PATIENCE && is_slow() {
             break true;
         }
         // The decision then depends on the residual at x.
-        is_last = stalls == STALLS || state.sweeps == SWEEPS;
+        is_last = stalls == STALLS || state.iterations == ITERATIONS;
     };
-    Sweeps { convergence: state, positions: x, are_given_up }
+    FixedPointResult { convergence: state, positions: x, are_given_up }
 }
 
 /// The last iteration of a step.
-pub(crate) struct Sweeps<const N: usize, const S: usize> {
+pub(crate) struct FixedPointResult<const N: usize, const S: usize> {
     pub(crate) convergence: Convergence,
     /// The resulting positions, or those of the evaluation if the stages did not converge.
     pub(crate) positions: Stages<N, S>,
