@@ -140,7 +140,7 @@ impl<const N: usize> SampledMotion<N> {
         [positive(q, q), positive(v, speeds(first))]
     }
 
-    /// The samples near this trajectory, each where the system is defined.
+    /// The samples near this trajectory, each with values of the system.
     fn samples<S: MotionChecked<N>>(&self, system: &S, is_defined: fn(&Sample<S, N>) -> bool) -> Vec<Sample<S, N>> {
         let extent = self.extent(system);
         let mut draw = Sequence(7);

@@ -4,7 +4,7 @@
 //! | file | part of a step |
 //! |---|---|
 //! | `start` | the node and the interval before the first step |
-//! | `course` | the memory of a run, and the choice of the solver |
+//! | `lengths` | the memory of a run, and the choice of the solver |
 //! | `predicted` | first: up to three Newton steps from extrapolated v and h |
 //! | `guess` | second: v by extrapolation, h by the step law `h D^(1/3) = constant` |
 //! | `equations` | the n + 1 equations for Newton iteration |
@@ -12,9 +12,9 @@
 //! | `interval` | the last interval |
 
 mod bracket;
-pub mod course;
 mod equations;
 mod guess;
 pub(crate) mod interval;
+pub mod lengths;
 pub mod predicted;
 pub(crate) mod start;

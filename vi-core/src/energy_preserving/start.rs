@@ -2,9 +2,9 @@
 //!
 //! Both return the node with its energy, and the interval that precedes the next step.
 
-use super::course::{After, Lengths};
 use super::equations::Elimination;
 use super::interval::Last;
+use super::lengths::{After, Lengths};
 use crate::called::Called;
 use crate::error::StepError;
 use crate::momentum::continuation::{self, BranchPoint};

@@ -15,7 +15,7 @@
 //! | `polynomial` | dense output |
 //! | `energies` | the discrete energies of a step |
 //! | `density` | the step density of order 2s |
-//! | `course` | the memory of energy-preserving steps |
+//! | `history` | the memory of energy-preserving steps |
 //! | `slots` | the discrete Lagrangian of a step, with derivatives, forces and powers, for checks |
 //! | `variation` | derivatives of a step |
 //! | `rounding` | residuals of stalled stages, by running error analysis |
@@ -24,11 +24,11 @@
 // One index addresses several arrays, so that a SIMD register holds neighbours.
 #![allow(clippy::needless_range_loop)]
 
-pub(crate) mod course;
 pub mod density;
 pub(crate) mod energies;
 pub(crate) mod fixed_point;
 mod general;
+pub(crate) mod history;
 mod modes;
 pub mod newton;
 mod pair;

@@ -88,7 +88,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let solved = if solved.increment.is_finite() {
             solved
         } else {
-            plain = self.plainly(system, newton);
+            plain = self.in_scalars(system, newton);
             &plain
         };
         let mut after = *self.node;
@@ -110,7 +110,11 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
 
     /// The stages in scalar numbers. Not inlined: one copy serves all systems of N coordinates.
     #[inline(never)]
-    pub(crate) fn plainly(&self, system: &ErasedSystem<'_, N>, newton: Option<&Newton<N, S>>) -> StageSolution<N, S> {
+    pub(crate) fn in_scalars(
+        &self,
+        system: &ErasedSystem<'_, N>,
+        newton: Option<&Newton<N, S>>,
+    ) -> StageSolution<N, S> {
         solved::<f64, _, _, N, S, false>(system, system, self, newton)
     }
 
@@ -140,7 +144,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let solved = if Y::SIDE_BY_SIDE {
             instructions.run(FixedPoint { system, start: self })
         } else {
-            self.plainly(&ErasedSystem::of(system), None)
+            self.in_scalars(&ErasedSystem::of(system), None)
         };
         if solved.is_step(self.node, self.h) { Ok(solved.step(self.h)) } else { Err(solved) }
     }
@@ -151,7 +155,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// # Errors
     /// [`StepError::StagesUnsettled`], or the reason why the stages have no value.
     #[cold]
-    pub(crate) fn with_care<Y>(
+    pub(crate) fn recover<Y>(
         &self,
         system: &Y,
         instructions: Instructions,
@@ -203,7 +207,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         } else {
             None
         };
-        let solved = side_by_side.unwrap_or_else(|| self.plainly(rare, Some(newton)));
+        let solved = side_by_side.unwrap_or_else(|| self.in_scalars(rare, Some(newton)));
         let StageSolution { increment, iteration, .. } = &solved;
         let not_converged =
             || iteration.convergence.not_converged(increment, [self.node.t, self.h], newton.stiffness());

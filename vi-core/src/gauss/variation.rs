@@ -204,7 +204,7 @@ where
     let are_found = S::SIDE_BY_SIDE && instructions.run(Differentiate { system, at: &at, derivatives });
     if !are_found || !are_finite(derivatives) {
         // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
-        differentiate_plainly(&rare, &at, derivatives);
+        differentiate_in_scalars(&rare, &at, derivatives);
     }
     for variations in variations.chunks_mut(TOGETHER) {
         let explicit = explicit(system, &at, variations, before.t)?;
@@ -246,7 +246,7 @@ fn are_finite<const N: usize, const S: usize>(derivatives: &Derivatives<N, S>) -
 }
 
 /// The derivatives, one stage at a time.
-fn differentiate_plainly<const N: usize, const S: usize>(
+fn differentiate_in_scalars<const N: usize, const S: usize>(
     system: &ErasedSystem<'_, N>,
     at: &Solution<N, S>,
     derivatives: &mut Derivatives<N, S>,

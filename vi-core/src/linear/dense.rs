@@ -177,7 +177,7 @@ fn eliminate_column<T: Real, const N: usize, const M: usize>(
     }
 }
 
-/// Back substitution in what is above the diagonal.
+/// Back substitution in the upper triangle.
 #[inline]
 fn substitute<T: Real, const N: usize, const M: usize>(
     a: &SMatrix<T, N, N>,

@@ -39,10 +39,10 @@ use super::length::{Search, Trial};
 use super::{Memory, Method, Problem, Report};
 use crate::collocation::Collocation;
 use crate::error::StepError;
-use crate::gauss::course::StepHistory;
 use crate::gauss::density::{power, step_density};
 use crate::gauss::energies::{bounded_energies, energies};
 use crate::gauss::fixed_point::Convergence;
+use crate::gauss::history::StepHistory;
 use crate::gauss::newton::Newton;
 use crate::gauss::solve::{Start, Step};
 use crate::gauss::stages::{Stages, at};
@@ -192,8 +192,7 @@ where
         let by_fixed_point =
             if last.pause.is_over() { start.by_fixed_point(system, instructions).map_err(Some) } else { Err(None) };
         // Lengths differ from step to step, so each has its own linearization.
-        let step =
-            by_fixed_point.or_else(|left| start.with_care(system, instructions, (left.as_ref(), None), cache))?;
+        let step = by_fixed_point.or_else(|left| start.recover(system, instructions, (left.as_ref(), None), cache))?;
         let energies = energies(system, node, h, step.stages, node.energy);
         let residual = energies.start - node.energy_low - power::<K>(h) * course.shift;
         if !residual.is_finite() {

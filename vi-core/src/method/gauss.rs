@@ -219,7 +219,7 @@ where
             return Err(None);
         }
         if !S::SIDE_BY_SIDE {
-            let solved = memory.start(node).plainly(&ErasedSystem::of(system), None);
+            let solved = memory.start(node).in_scalars(&ErasedSystem::of(system), None);
             if !solved.is_step(node, memory.h) {
                 return Err(Some(solved));
             }
@@ -240,7 +240,7 @@ where
         left: Self::Left,
     ) -> Result<Step<N, STAGES>, StepError> {
         let last = memory.linearization;
-        memory.start(at.node).with_care(at.system, *at.prepared, (left.as_ref(), last), cache)
+        memory.start(at.node).recover(at.system, *at.prepared, (left.as_ref(), last), cache)
     }
 
     fn take(

@@ -21,7 +21,7 @@ const SOLVED: f64 = 0.5;
 /// Largest factor between two lengths of the secant iteration.
 const FACTOR: f64 = 1.5;
 /// Difference of two residuals, in rounding units, that determines a slope to three digits.
-const TOLD: f64 = 1e4;
+const DISTINCT: f64 = 1e4;
 /// Sample lengths for a bracket, in geometric progression with the factor 1.15.
 const POINTS: u32 = 32;
 const BISECTIONS: u32 = 60;
@@ -89,7 +89,7 @@ impl<T: Trial> Search<'_, T> {
                 break;
             }
             let next = (self.solve)(h, Some(&best)).ok()?;
-            if (next.residual() - last).abs() > TOLD * f64::EPSILON * next.size() {
+            if (next.residual() - last).abs() > DISTINCT * f64::EPSILON * next.size() {
                 let measured = ((-next.residual() / self.excess).ln_1p() - y) / factor.ln();
                 // Beyond the smallest root the energies fall again.
                 if measured.is_nan() || measured <= 0.0 {

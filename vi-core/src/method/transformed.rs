@@ -109,7 +109,7 @@ where
         left: Self::Left,
     ) -> Result<Self::Step, StepError> {
         let Problem { system, node, h, .. } = at;
-        Start { system, node, dtau: h, last: memory }.with_care(left.as_ref(), cache)
+        Start { system, node, dtau: h, last: memory }.recover(left.as_ref(), cache)
     }
 
     #[inline(always)]

@@ -34,7 +34,7 @@ use nalgebra::SVector;
 
 /// A coordinate counts if it moves by more ulps than this.
 const VISIBLE: f64 = 64.0;
-/// A coordinate counts if the root of its `|p_i v_i|`, relative to the others, exceeds so many `ε`.
+/// A coordinate counts if the root of its `|p_i v_i|`, relative to the others, exceeds this many `ε`.
 const FAINT: f64 = 4096.0;
 /// The longest window between two measurements, in steps: about 1 % of their time.
 const WINDOW: u64 = 200;

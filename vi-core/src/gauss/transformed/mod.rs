@@ -5,12 +5,12 @@
 //! |---|---|
 //! | `equations` | the stage equations, for fixed-point iteration and simplified Newton iteration |
 //! | `rates` | memory of the last step, for the guess of the next one |
-//! | `path` | dense output |
+//! | `polynomial` | dense output |
 //! | `rounding` | residuals of stalled stages, by running error analysis |
 //! | `variation` | derivatives of a step |
 
 mod equations;
-mod path;
+mod polynomial;
 mod rates;
 mod rounding;
 mod variation;
@@ -26,7 +26,7 @@ use crate::node::Node;
 use crate::real::{Lane, Real, Rounded};
 use crate::stepping::Convertible;
 use equations::{Clock, Rates, Scaled};
-pub use path::TransformedPolynomial;
+pub use polynomial::TransformedPolynomial;
 pub(crate) use rates::time_scale;
 pub use rates::{After, LastRates};
 use vi_dispatch::{Instructions, Loop};
@@ -58,7 +58,7 @@ where
     /// The stages of the failed iteration.
     #[inline(always)]
     pub(crate) fn by_fixed_point(self, instructions: Instructions) -> Result<After<N, S>, TransformedStages<N, S>> {
-        let solved = if Y::SIDE_BY_SIDE { instructions.run(FixedPoint(self)) } else { self.plainly(None) };
+        let solved = if Y::SIDE_BY_SIDE { instructions.run(FixedPoint(self)) } else { self.in_scalars(None) };
         let after = self.last.after(self.node, self.dtau, &solved);
         let is_step =
             solved.is_at_floor() && after.is_sound(self.system) && after.can_continue((self.node, self.last), &solved);
@@ -70,7 +70,7 @@ where
     /// # Errors
     /// [`StepError::StagesUnsettled`], [`StepError::TimeScale`], [`StepError::NonFinite`].
     #[cold]
-    pub(crate) fn with_care(
+    pub(crate) fn recover(
         self,
         by_fixed_point: Option<&TransformedStages<N, S>>,
         cache: &mut Option<Box<Newton<N, S>>>,
@@ -81,7 +81,7 @@ where
             let solved = if by_fixed_point.increment.is_finite() {
                 by_fixed_point
             } else {
-                plain = self.plainly(None);
+                plain = self.in_scalars(None);
                 &plain
             };
             if let Some(after) = self.accepted(solved, self.last.after(self.node, self.dtau, solved)) {
@@ -90,7 +90,7 @@ where
         }
         let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
         newton.linearize(&ErasedSystem::of(self.system), self.middle());
-        let solved = self.plainly(Some(newton));
+        let solved = self.in_scalars(Some(newton));
         let mut after = self.last.after(self.node, self.dtau, &solved);
         after.rates.pause = self.last.pause.after_newton();
         self.accepted(&solved, after).ok_or_else(|| self.failure_of(&solved, &after, newton.stiffness()))
@@ -141,7 +141,7 @@ where
 
     /// The stages in scalar numbers. Not inlined: speed does not matter after SIMD iteration has failed.
     #[inline(never)]
-    fn plainly(&self, newton: Option<&Newton<N, S>>) -> TransformedStages<N, S> {
+    fn in_scalars(&self, newton: Option<&Newton<N, S>>) -> TransformedStages<N, S> {
         let Self { system, node, dtau, last } = *self;
         solved::<f64, Y, N, S, false>(system, node, dtau, last, newton)
     }

@@ -151,7 +151,7 @@ fn block_diagonal_matrices() {
         let together = |i: usize, j: usize| members.iter().any(|block| block.contains(&i) && block.contains(&j));
         worst::<N, _>(together, false, |a| blocks::<N, B>(a, members))
     }
-    // Blocks in closed form and by elimination, filled up or not, of rows that stand together or do not.
+    // Blocks in closed form and by elimination, filled up or not, of contiguous rows or not.
     for off in [
         of::<1, 1>(&[&[0]]),
         of::<2, 1>(&[&[0], &[1]]),
@@ -247,7 +247,7 @@ fn an_indefinite_symmetric_matrix_is_solved_with_pivoting() {
     }
 }
 
-/// How far the solution of `a x = b` is off where elimination alone loses digits, and gives nothing out.
+/// Error of the solution of `a x = b` for a matrix whose elimination without pivoting loses digits and returns NaN.
 fn off_where_lost<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
     let x = SMatrix::<f64, N, 2>::from_fn(|row, column| [4.0, -1.0, 3.0, 2.0, -2.0, 5.0][(row + 2 * column) % 6]);
     let (rhs, three, five) = (a * x, tridiagonal(a), banded::<N, 5>(a));
