@@ -12,7 +12,7 @@ pub(crate) enum Branch {
     /// It depends on the earlier steps only.
     #[default]
     Nearest,
-    /// The root that is connected with h = 0, where it is the velocity of p. It depends on the state alone. The solver
+    /// The root that is connected with h = 0: there it is the velocity of p. It depends on the state alone. The solver
     /// follows it in sixteen parts or more, at 20 to 40 times the cost. If the branch ends before h, it returns
     /// [`StepError::NotConverged`](crate::error::StepError::NotConverged).
     Connected,

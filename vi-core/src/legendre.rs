@@ -88,7 +88,7 @@ pub fn step_density<T: Real>(t: T, density: T) -> Result<T, StepError> {
     if density.is_finite() { Ok(density) } else { Err(lost) }
 }
 
-/// The v with `mass · v = momentum`, where momentum excludes that at rest.
+/// The v with `mass · v = momentum`; momentum excludes that at rest.
 ///
 /// # Errors
 /// [`StepError::Singular`] if the mass matrix is singular at the time `t`, [`StepError::NonFinite`] if it or the

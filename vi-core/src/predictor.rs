@@ -1,7 +1,6 @@
 //! Extrapolation of the next step.
 //!
-//! From the unknowns u of the last steps, u_0 the newest, this module guesses those of the next one by the polynomial
-//! of degree k through the last k + 1:
+//! The guess of the next unknowns u is the polynomial of degree k through the last k + 1 of them, u_0 the newest:
 //!
 //! ```text
 //! guess_k = Σ_i (−1)^i C(k + 1, i + 1) u_i,  i = 0 … k        k = 6:  7 u_0 − 21 u_1 + 35 u_2 − 35 u_3 + 21 u_4 − 7 u_5 + u_6

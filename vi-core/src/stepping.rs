@@ -1,7 +1,7 @@
 //! The equations of one step from a node, in the unknowns `(v, h)`: `q1 = q0 + h v`, `t1 = t0 + h`.
 //!
-//! For a node, h and v, the traits here return the residuals of the discrete equations ([`crate::discrete`]), their
-//! derivatives and rounding-error bounds, and the increments of momentum and energy. Every rule implements
+//! For a node, h and v, the traits return the residuals of the discrete equations ([`crate::discrete`]), with
+//! derivatives and rounding-error bounds. They also return the increments of momentum and energy. Every rule implements
 //! [`FixedStepping`]. Rules whose steps have a density also implement [`EnergyStepping`].
 
 use crate::collocation::Collocation;

@@ -8,8 +8,8 @@
 //!
 //! Tolerance: the rounding error of E at the midpoint, after one rounding of its arguments; that of the slots at the
 //! ends, as in `steps`; and the residual of the solved equations. The last line has no tolerance. The length of a step
-//! has the rounding error `δh/h ≈ 4 ε (τ/h)²` (`length`). If that is too large for a run, the check takes the first of
-//! 2 h, 4 h, … for which it is not, up to the system's own time scale.
+//! has the rounding error `δh/h ≈ 4 ε (τ/h)²` (`length`). If that is too large for a run, the check tries 2 h, 4 h, …,
+//! up to the system's own time scale.
 
 use super::bounded::{Bounded, exact, once};
 use super::comparison::Comparison;

@@ -23,8 +23,8 @@ use crate::stepping::{EnergyStepping, ExtendedResidual, FixedStepping};
 use nalgebra::SVector;
 use std::array;
 
-/// Tests the step density against dual numbers, the energy row of a step and its increments against the slots, its
-/// derivatives against dual numbers, and its momentum rows against those of a fixed step.
+/// Tests the step density and the derivatives of the energy row against dual numbers. Tests the energy row and its
+/// increments against the slots, and the momentum rows against those of a fixed step.
 ///
 /// # Errors
 /// The first number that differs; [`CheckFailure::Vacuous`] if the energy row is zero throughout.

@@ -1,8 +1,7 @@
 //! Gauss steps of a system: order, momenta of cyclic coordinates, symplectic form.
 //!
 //! These checks need no rule. Order and momenta are tested on steps with [`STAGES`] stages. The symplectic form is that
-//! of the step with one stage, as a function of its start and of the velocity of the stage, so that no equation is
-//! solved:
+//! of the step with one stage, as a function of its start and of the stage velocity. No equation is solved:
 //!
 //! ```text
 //! p0 = L_v − (h/2) (L_q + f)      q1 = q0 + h v      p1 = L_v + (h/2) (L_q + f)      at t0 + h/2, q0 + (h/2) v, v

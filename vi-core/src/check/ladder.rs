@@ -1,9 +1,9 @@
 //! Slopes over sequences of step lengths.
 //!
-//! For quantities that decrease with a power of h, measured for steps h, h/2, … together with their rounding errors,
-//! this module fits the slope of log(quantity) over log(h). The least-squares fit uses the three smallest steps at
-//! which the quantity exceeds its rounding-error bound [`CLEAR`] times. If there are not three, it tries sequences from
-//! 4 h, 16 h, …, up to the system's own time scale:
+//! Quantities that decrease with a power of h are measured for steps h, h/2, …, with their rounding errors. This module
+//! fits the slope of log(quantity) over log(h). The least-squares fit uses the three smallest steps at which the
+//! quantity exceeds its rounding-error bound [`CLEAR`] times. If there are not three, it tries sequences from 4 h, 16
+//! h, …, up to the system's own time scale:
 //!
 //! ```text
 //! the quantity is clear at three steps or more              the slope is judged

@@ -1,8 +1,7 @@
 //! Derivatives of a trajectory with respect to its initial conditions and the parameters of its system.
 //!
-//! From a run and the tangent vectors of its start and parameters, this module computes the tangent vectors at every
-//! node, by the implicit function theorem on the solved step. If u solves `R(u, z0, θ) = 0` and `z1 = Z(u, z0, θ)`,
-//! then
+//! Tangent vectors of the start and the parameters propagate to every node of a run, by the implicit function theorem
+//! on the solved step. If u solves `R(u, z0, θ) = 0` and `z1 = Z(u, z0, θ)`, then
 //!
 //! ```text
 //! δu = −(∂R/∂u)⁻¹ (∂R/∂z0 δz0 + ∂R/∂θ δθ)        δz1 = ∂Z/∂u δu + ∂Z/∂z0 δz0 + ∂Z/∂θ δθ

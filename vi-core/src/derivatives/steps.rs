@@ -1,9 +1,8 @@
 //! Tangent vectors of one step, for each method; `gauss/variation.rs` has those of Gauss steps.
 //!
-//! From a run after a step, the start node of the step and tangent vectors at that node, this module computes the
-//! tangent vectors at the end node. The unknowns of the step are stored. The system provides the derivatives with
-//! respect to them and to the coordinates of the node; dual numbers provide those with respect to the time and the
-//! parameters, if a direction needs them.
+//! From the start node of the last step and tangent vectors there follow the tangent vectors at the end node. The
+//! unknowns of the step are stored. The system provides the derivatives with respect to them and to the coordinates of
+//! the node; dual numbers provide those with respect to the time and the parameters, if a direction needs them.
 
 use super::variation::{TOGETHER, Variation, Varied, more_parameters, not_finite};
 use crate::energy_preserving::interval::Last;

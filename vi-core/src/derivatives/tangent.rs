@@ -1,9 +1,8 @@
 //! Tangent vectors along a run.
 //!
-//! From a run and tangent vectors at its node ([`Variation`]), this module computes the tangent vectors after each
-//! step, at a time, at an event, and after a change of the parameters or the state. Directions share their evaluations,
-//! so that more of them cost little (`docs/benchmarks.md`). Tangent vectors of a chaotic trajectory grow: rescale them
-//! by [`Tangent::variations_mut`].
+//! Tangent vectors ([`Variation`]) at the node of a run propagate with each step, to a time, to an event, and across
+//! changes of the parameters or the state. Directions share their evaluations, so that more of them cost little
+//! (`docs/benchmarks.md`). Tangent vectors of a chaotic trajectory grow: rescale them by [`Tangent::variations_mut`].
 //!
 //! The length ℓ of a step that ends at a time or at an event follows from a condition g = 0 at its end z(ℓ):
 //!

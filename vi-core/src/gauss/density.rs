@@ -8,8 +8,8 @@
 //! ```
 //!
 //! with H the energy as a function of (t, q, p). Power series in τ give the motion, and H along π, from the functions
-//! of a point that the steps also use, so that D_s is independent of the step solver. For s = 1 it is `step_density` of
-//! the generated rule. `docs/theory.md` derives it.
+//! of a point that the steps also use. D_s is therefore independent of the step solver. For s = 1 it is `step_density`
+//! of the generated rule. `docs/theory.md` derives it.
 
 use crate::collocation::Collocation;
 use crate::error::StepError;

@@ -66,8 +66,8 @@ where
     Y: Points<N, T>,
     M: Matrix<N, f64>,
 {
-    /// The equations of the step of length h from `node`, with the mass matrix if it is constant, and a guess of the
-    /// stage velocities, or of the stage forces of a separable system.
+    /// The equations of the step of length h from `node`, with the mass matrix if it is constant. The guess has stage
+    /// velocities, or the stage forces of a separable system.
     #[inline(always)]
     pub(crate) fn new(
         system: &'a Y,

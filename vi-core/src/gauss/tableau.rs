@@ -35,8 +35,8 @@ pub(crate) struct Tableau<const S: usize> {
     pub(crate) first: [[f64; S]; S],
     /// `second[j][i] = (A²)_ij / b_j`.
     pub(crate) second: [[f64; S]; S],
-    /// `next[j][i]`: the weight of stage j in the value at stage i of the next step, of the polynomial of degree up to
-    /// [`DEGREE`] through the stages of a step.
+    /// `next[j][i]`: the weight of stage j in the value extrapolated to stage i of the next step. The polynomial
+    /// through the stages has a degree of up to [`DEGREE`].
     pub(crate) next: [[f64; S]; S],
     /// `ahead[j][i]`: `second` applied to `next`.
     pub(crate) ahead: [[f64; S]; S],

@@ -1,8 +1,8 @@
 //! Tangent vectors of a solved Gauss step.
 //!
-//! From the stages of the last step and tangent vectors at its node follow those at the next node. With `C = ∂L_v/∂q, M
+//! From the stages of the last step and tangent vectors at its node follow those at the next node. Let `C = ∂L_v/∂q, M
 //! = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` at each stage, and m, f the derivatives of L_v and F with respect to the time and
-//! the parameters, the stage velocities vary by the solution of
+//! the parameters. The stage velocities vary by the solution of
 //!
 //! ```text
 //! C_i δQ_i + M_i δV_i + m_i = δp0 + h Σ_j a_ij δF_j        δQ_i = δq0 + h Σ_j a_ij δV_j        δF_j = K_j δQ_j + B_j δV_j + f_j

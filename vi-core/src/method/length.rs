@@ -8,8 +8,8 @@
 //! ```
 //!
 //! then a bracket of the smallest root and bisection. If the step density is about to vanish, φ can rise above zero and
-//! fall again between two lengths, so the search follows a maximum below zero to its top. The function is behind a
-//! pointer, so that this module is compiled once per trial type.
+//! fall again between two lengths. The search therefore follows a maximum below zero to its top. The function is behind
+//! a pointer, so that this module is compiled once per trial type.
 
 use crate::error::{Residuals, StepError};
 use crate::newton::FLOOR;

@@ -1,6 +1,6 @@
 //! A linear step as one matrix product.
 //!
-//! For an autonomous system of up to [`LARGEST`] coordinates with quadratic L and linear f, and a given h, the velocity
+//! The system is autonomous with up to [`LARGEST`] coordinates, quadratic L and linear f. For a given h, the velocity
 //! of a step and its momentum increment are
 //!
 //! ```text

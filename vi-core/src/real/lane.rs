@@ -1,7 +1,7 @@
 //! The number type of loops over trajectories.
 //!
-//! Formulas generic over [`Real`] compute in `f64`, one trajectory at a time, without branches or calls if possible, so
-//! that the compiler vectorizes the surrounding loop for the processor's lanes. An explicit vector type would fix its
+//! Formulas generic over [`Real`] compute in `f64`, one trajectory at a time. They avoid branches and calls, so that
+//! the compiler vectorizes the surrounding loop for the processor's lanes. An explicit vector type would fix its
 //! instructions at compile time, before the processor is known.
 //!
 //! The compiler may not fuse operations on its own. A product therefore stays a pair of factors until an addition

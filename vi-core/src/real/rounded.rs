@@ -1,7 +1,7 @@
 //! Numbers that carry a rounding-error bound: running error analysis.
 //!
-//! A formula generic over [`Real`] returns its value and a first-order bound of its rounding error, in units of half an
-//! ulp of 1, for any number type of the steppers. With `z = x ∘ y`,
+//! A formula generic over [`Real`] returns its value and a first-order bound of its rounding error. The bound is in
+//! units of half an ulp of 1, and holds for any number type of the steppers. With `z = x ∘ y`,
 //!
 //! ```text
 //! e(x ± y) = e(x) + e(y) + |z|          e(x y) = |x| e(y) + |y| e(x) + |z|          e(f(x)) = |f'(x)| e(x) + 2 |z|

@@ -509,8 +509,8 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
 
 /// A tolerance instead of a step length: `start.integrate(method, Tolerance(1e-9))`.
 ///
-/// The run then has the constant step whose largest relative error over the first stretch is at most the tolerance, and
-/// at least 0.4 of it if such steps exist. If steps stop existing before the tolerance is reached, the run uses half of
+/// The run then has a constant step. Its largest relative error over the first stretch is at most the tolerance, and at
+/// least 0.4 of it if such steps exist. If steps stop existing before the tolerance is reached, the run uses half of
 /// the longest length that exists. The stretch lasts until the coordinates have turned back twice or more, at most 4096
 /// steps. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
 /// [`Run::monitored`] reports it. The global error is larger: about the tolerance times the number of steps, or more.

@@ -1,7 +1,7 @@
 //! States at sign changes of event functions.
 //!
-//! For a run, functions g(t, q, v) and an end time, the search returns the states at which a function changes sign, in
-//! the order of the run.
+//! For event functions g(t, q, v) and an end time, the search returns the states at which a function changes sign, in
+//! order.
 //!
 //! ```text
 //! sign       zero counts as positive: g RISES if it goes from below zero to zero or above, and FALLS if it goes from zero or above to below

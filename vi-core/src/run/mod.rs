@@ -15,8 +15,8 @@
 //! | `estimate` | measured error of a step; a step length from a tolerance |
 //! | `checkpoint` | stored runs that resume bit for bit |
 //!
-//! A state at a time t is the end of a last step of exactly the remaining length, so that it has the full order of the
-//! method. The run computes output at several times and recorded events on a copy, and keeps its own steps bit for bit.
+//! A state at a time t is the end of a last step of exactly the remaining length. It has the full order of the method.
+//! The run computes output at several times and recorded events on a copy, and keeps its own steps bit for bit.
 
 mod checkpoint;
 mod dense_output;

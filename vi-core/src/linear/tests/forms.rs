@@ -53,8 +53,8 @@ pub(super) fn blocks<const N: usize, const B: usize>(
     Blocks { members, rows: core::array::from_fn(|i| core::array::from_fn(|place| at(i, place))) }
 }
 
-/// How far the solutions by a form of `a` are from those of `a` by elimination with pivoting, for one and for two
-/// right-hand sides, and by the inverse for one and for two side by side; and its product with a vector from nalgebra's.
+/// Largest difference of the solutions by a form of `a` from those of `a` by elimination with pivoting. Covers one and
+/// two right-hand sides, directly and by the inverse, and the product with a vector against nalgebra.
 fn off<const N: usize, F: Matrix<N, f64>>(a: &SMatrix<f64, N, N>, form: &F, seed: &mut u32) -> f64 {
     assert_eq!(form.dense(), *a);
     let two = SMatrix::<f64, N, 2>::from_fn(|_, _| next(seed));
