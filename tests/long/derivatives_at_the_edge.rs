@@ -33,7 +33,7 @@ fn a_slope_without_a_bound_is_told() {
     let start = State { t: 0.0, q: SVector::from([-1.0]), p: SVector::from([0.25]) };
     let run = Kink::default().at_state(start).integrate(FixedStep, 1.0).expect("valid");
     let mut tangent = Tangent::new(run.clone(), Variation::of_state());
-    let is_told = |outcome: Result<(), StepError>| matches!(outcome, Err(StepError::NonFinite { t: 0.0, quantity, .. }) if quantity.contains("variation"));
+    let is_told = |outcome: Result<(), StepError>| matches!(outcome, Err(StepError::NonFinite { t: 0.0, quantity, .. }) if quantity.contains("tangent vector"));
     let failure = tangent.step().map(drop);
     assert_eq!(tangent.run().state().q, SVector::from([0.0]));
     assert!(is_told(failure), "{failure:?}");
@@ -79,7 +79,7 @@ fn differentiates_its_last_step<M: Differentiable<Hill, 1>>(mut run: Run<M, Hill
     run.vary(&after, &mut states()).expect("the last step");
     // The last step had other parameters: its derivative with respect to the new ones would be wrong.
     run.set_parameters(|hill| hill.k *= 2.0).expect("regular");
-    assert!(has_none(&run.vary(&after, &mut states()), after.t, "before the parameters change"), "other parameters");
+    assert!(has_none(&run.vary(&after, &mut states()), after.t, "before any change of parameters"), "other parameters");
     let changed = *run.node();
     run.step().expect("solvable");
     run.vary(&changed, &mut states()).expect("the last step, with the new parameters");
@@ -101,7 +101,7 @@ fn only_the_last_step_is_differentiated() {
     differentiates_its_last_step(energy.clone());
     let leaping = energy.with_fallback(Fallback::FixedSteps);
     let failure = Tangent::new(leaping, Variation::of_state()).step().map(drop);
-    assert!(failure.as_ref().is_err_and(|error| error.to_string().ends_with("take `Fallback::Stop`")), "{failure:?}");
+    assert!(failure.as_ref().is_err_and(|error| error.to_string().ends_with("use `Fallback::Stop`")), "{failure:?}");
     // Second derivatives too.
     let mut run = fixed;
     let first = *run.node();
@@ -114,10 +114,10 @@ fn only_the_last_step_is_differentiated() {
     assert!(has_none(&second(&run, &Variation { parameters: vec![0.0; 3], ..one.clone() }), 0.7, "more parameters"));
     let mut changed = run.clone();
     changed.set_parameters(|hill| hill.k *= 2.0).expect("regular");
-    assert!(has_none(&second(&changed, &one), 0.7, "before the parameters change"));
+    assert!(has_none(&second(&changed, &one), 0.7, "before any change of parameters"));
     // A stored run also knows this.
     let changed = Run::restart(*changed.system(), FixedStep, changed.checkpoint()).expect("its own system");
-    assert!(has_none(&second(&changed, &one), 0.7, "before the parameters change"));
+    assert!(has_none(&second(&changed, &one), 0.7, "before any change of parameters"));
     run.step().expect("solvable");
     assert!(has_none(&second(&run, &one), 0.7, "last"));
 }
@@ -127,7 +127,7 @@ fn names_and_indices_that_do_not_exist_are_told() {
     let unknown = Err(StepError::UnknownParameter { system: "Hill", parameters: &["k", "c"] });
     assert_eq!(Variation::<1>::of_parameter::<Hill>("kk"), unknown);
     let text = unknown.map_err(|error| error.to_string());
-    assert_eq!(text, Err("`Hill` has no parameter of the name that was given; its parameters are `k`, `c`".to_owned()));
+    assert_eq!(text, Err("`Hill` has no parameter of the given name; its parameters are `k`, `c`".to_owned()));
     let input = |outcome: Result<Variation<1>, StepError>| match outcome {
         Err(StepError::InvalidInput { input, value, .. }) => (input, value),
         other => panic!("{other:?}"),
@@ -213,13 +213,13 @@ fn what_grows_beyond_the_range_of_numbers_is_told() {
     let huge = Variation { q: SVector::from([1e155]), parameters: vec![1e155], ..Variation::zero() };
     let one = Variation::of_coordinate(0).expect("a coordinate");
     assert!(run.second_variation(&before, &one, &one).is_ok());
-    assert!(is_not_finite(&run.second_variation(&before, &huge, &huge), "variation"));
+    assert!(is_not_finite(&run.second_variation(&before, &huge, &huge), "tangent vector"));
     let large = Variation { q: SVector::from([1e154]), parameters: vec![1e154], ..Variation::zero() };
-    assert!(is_not_finite(&run.second_variation(&before, &large, &large), "variation"));
+    assert!(is_not_finite(&run.second_variation(&before, &large, &large), "tangent vector"));
     // The input is not a number.
     let none = Variation { q: SVector::from([f64::NAN]), ..Variation::zero() };
-    assert!(is_not_finite(&Tangent::new(fixed, vec![none.clone()]).step(), "variation"));
-    assert!(is_not_finite(&Tangent::new(gauss, vec![none]).step(), "variation"));
+    assert!(is_not_finite(&Tangent::new(fixed, vec![none.clone()]).step(), "tangent vector"));
+    assert!(is_not_finite(&Tangent::new(gauss, vec![none]).step(), "tangent vector"));
 }
 
 #[test]

@@ -357,7 +357,7 @@ fn stages_that_do_not_settle_are_a_typed_error_and_nothing_is_lost() {
     assert_eq!(run.state(), state);
     assert_eq!(run.step().expect_err("the same error"), error);
     let message = error.to_string();
-    assert!(message.contains("do not settle") && message.contains("take steps shorter than 2"), "{message}");
+    assert!(message.contains("did not converge") && message.contains("take steps shorter than 2"), "{message}");
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn two_velocities_of_one_momentum_are_an_error() {
         let start = State::at(&system, 0.5, [0.1], [v]);
         let error = start.velocity(&system).expect_err("two velocities");
         assert_eq!(error, StepError::Ambiguous { t: 0.5 });
-        assert!(error.to_string().contains("two velocities have the momenta"), "{error}");
+        assert!(error.to_string().contains("two velocities have the same momenta"), "{error}");
         assert!(system.at_state(start).integrate(Gauss::<2>, 0.01).is_err());
     }
 }

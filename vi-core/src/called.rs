@@ -1,17 +1,16 @@
-//! A system whose functions of a step are calls.
+//! A wrapper that compiles the functions of a system once.
 //!
-//! In: a system. Out: the same system, the same formulas. The emitted functions are inlined wherever they stand, so that the common step is
-//! one stretch of code. For [`Called`] each function is compiled once, and integrators of it are smaller: the rare code of every integrator
-//! takes the system in this way, and whoever needs an integrator now and then can, to build it several times faster and step several
-//! times slower.
+//! The emitted functions are inlined at every call site, so that the hot path is one piece of code. [`Called`] compiles
+//! each function once, which makes integrators smaller. Cold paths of every integrator use it. Use it also if build
+//! time matters more than speed: it builds several times faster and steps several times slower.
 
 use core::ops::{Deref, DerefMut};
 
-/// A system whose functions are calls: `Called(system).at(t, q, v).integrate(Gauss::<3>, h)` is built sooner, and steps in plain numbers, not in
-/// vector instructions. Its states are those of the system but for rounding.
+/// A system whose functions are not inlined: `Called(system).at(t, q, v).integrate(Gauss::<3>, h)` builds faster, and
+/// steps in plain numbers instead of SIMD vectors. Its states agree with those of the system to rounding.
 ///
-/// It stands for a system whose time scale is not known when a generic function is compiled, too: `in_transformed_time` asks
-/// [`Collocation::SCALES_TIME`](crate::collocation::Collocation::SCALES_TIME) instead.
+/// Generic code also uses it for a system whose time scale is unknown at compile time: `in_transformed_time` then
+/// checks [`Collocation::SCALES_TIME`](crate::collocation::Collocation::SCALES_TIME) at run time.
 #[derive(Clone, Copy, Debug)]
 pub struct Called<S>(pub S);
 

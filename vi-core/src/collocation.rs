@@ -1,16 +1,18 @@
-//! What collocation asks of a system: the equations `q' = v, p' = L_q + f, p = L_v` at one point.
+//! The equations of motion at one point, in the form that collocation needs: `q' = v, p' = L_q + f, p = L_v`.
 //!
-//! In: a point (t, q, v). Out: both sides of `p = L_v` and of `p' = L_q + f`, and the mass matrix, from one evaluation:
+//! One evaluation at a point (t, q, v) gives both sides of `p = L_v` and of `p' = L_q + f`, and the mass matrix:
 //!
 //! ```text
 //! momentum   L_v(t, q, v)          mass   M = L_vv(t, q, v)          force   L_q + f          power   dE/dt = f·v − L_t
 //! ```
 //!
-//! and, where a motion is differentiated or Newton's iteration solves a step, how they change with q and v ([`PointDerivatives`]).
+//! Sensitivities and Newton iteration also need the derivatives with respect to q and v ([`PointDerivatives`]).
 //!
-//! A system with the clause `time_scale = g;` gives g of the time transformation `dt = g(t, q) dτ` besides ([`TimeScale`]).
+//! A system with the clause `time_scale = g;` also gives g of the time transformation `dt = g(t, q) dτ`
+//! ([`TimeScale`]).
 //!
-//! The velocity that belongs to p follows by `v + M⁻¹ (p − L_v(v))`, at once where L is quadratic in v, else again and again.
+//! The velocity of given momenta follows from `v + M⁻¹ (p − L_v(v))`. One correction is exact if L is quadratic in v;
+//! otherwise iterate.
 
 use crate::lagrangian::Lagrangian;
 use crate::linear::Matrix;
@@ -21,24 +23,25 @@ use nalgebra::SVector;
 ///
 /// Systems are small and `Copy`. Cold paths get a copy, so that the hot loop stays in registers.
 pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
-    /// The form of M, by its zero pattern.
+    /// Matrix type of M, with its zero pattern.
     type Mass: Matrix<N, T>;
-    /// The form of [`PointDerivatives`], by the zero pattern of all of its matrices.
+    /// Matrix type of [`PointDerivatives`], with the joint zero pattern of all its matrices.
     type PointMatrix: Matrix<N, T>;
-    /// Whether M is a constant of the parameters.
+    /// Whether M depends on the parameters only.
     const CONSTANT_MASS: bool;
-    /// Whether `L_v = M v` with constant M, and neither L_q nor f depends on v: then `q'' = M⁻¹ (L_q + f)` is all there is.
+    /// Whether `L_v = M v` with constant M, and neither L_q nor f depends on v. The system is then `q'' = M⁻¹ (L_q +
+    /// f)`.
     const SEPARABLE: bool;
-    /// Whether the system has a time scale g: then it is a [`TimeScale`], and [`Collocation::scaled_point`] gives g.
+    /// Whether the system has a time scale g. It is then a [`TimeScale`], and [`Collocation::scaled_point`] returns g.
     const SCALES_TIME: bool = false;
 
-    /// The equations at a point.
+    /// Evaluates the equations at a point.
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
-    /// How the equations change at a point.
+    /// Evaluates their derivatives at a point.
     fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix>;
-    /// What the motion gains of energy by time: `f·v − L_t`.
+    /// Rate of change of the energy: `f·v − L_t`.
     fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
-    /// All that a step in transformed time takes at a point, from one evaluation; g = 1 for a system without a time scale.
+    /// Evaluates everything that a step in transformed time needs at a point. Without a time scale, g = 1.
     #[inline(always)]
     fn scaled_point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> ScaledPoint<N, T, Self::Mass> {
         ScaledPoint {
@@ -52,11 +55,11 @@ pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     }
 }
 
-/// A system with a time scale, `dt = g(t, q) dτ`: the clause `time_scale = g;` of `lagrangian!`. Its g is that of
-/// [`Collocation::scaled_point`].
+/// A system with a time scale, `dt = g(t, q) dτ`, from the clause `time_scale = g;` of `lagrangian!`.
+/// [`Collocation::scaled_point`] returns g.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no time scale",
-    label = "nothing says how this system scales its time",
+    label = "this system declares no time scale",
     note = "write the clause `time_scale = …;` in its `lagrangian!`, as `time_scale = r^(3/2);`",
     note = "`Gauss` takes steps of a given length in time without it"
 )]
@@ -73,7 +76,8 @@ pub struct Point<const N: usize, T, M> {
     pub mass: M,
 }
 
-/// How the equations of motion change at a point (t, q, v): row i, column j is the derivative of entry i by coordinate or velocity j.
+/// Derivatives of the equations of motion at a point (t, q, v). Row i, column j is the derivative of entry i with
+/// respect to coordinate or velocity j.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointDerivatives<D> {
     /// `∂L_v/∂q`.
@@ -86,7 +90,7 @@ pub struct PointDerivatives<D> {
     pub force_dv: D,
 }
 
-/// The equations of motion at a point (t, q, v), with what scales the time there.
+/// The equations of motion and the time scale at a point (t, q, v).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaledPoint<const N: usize, T, M> {
     /// The point.
@@ -95,7 +99,7 @@ pub struct ScaledPoint<const N: usize, T, M> {
     pub energy: T,
     /// `f·v − L_t`.
     pub power: T,
-    /// g, dt/dτ.
+    /// g = dt/dτ.
     pub g: T,
     /// `∂g/∂q`.
     pub g_dq: SVector<T, N>,

@@ -1,12 +1,12 @@
-//! Sums that keep what rounding takes from them.
+//! Compensated summation.
 //!
-//! In: a number as the unevaluated sum of `value` and `low`, and an increment. Out: the new sum in the same form, by Knuth's
-//! two-sum or Kahan's. No branch, so it serves every [`Real`].
+//! A number is the unevaluated sum of `value` and `low`. Adding an increment returns the new sum in the same form, by
+//! Knuth's two-sum or Kahan's algorithm. There is no branch, so that it works for every [`Real`].
 
 use crate::real::Real;
 use nalgebra::SVector;
 
-/// `a + b` as (rounded sum, what rounding took from it).
+/// `a + b` as (rounded sum, rounding error).
 #[inline(always)]
 pub fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
@@ -14,34 +14,34 @@ pub fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     (sum, (a - (sum - b_seen)) + (b - b_seen))
 }
 
-/// Adds `increment`, exact to ε² of the sum: for what grows by the same number again and again.
+/// Adds `increment`, exact to ε² of the sum, for repeated equal increments.
 #[inline]
 pub(crate) fn add<T: Real>(value: &mut T, low: &mut T, increment: T) {
     let (sum, lost) = two_sum(*value, increment);
     (*value, *low) = two_sum(sum, lost + *low);
 }
 
-/// What [`add_rounded`] makes of `value`.
+/// The new `value` of [`add_rounded`].
 #[inline(always)]
 pub(crate) fn sum<T: Real>(value: T, low: T, increment: T) -> T {
     value + (increment + low)
 }
 
-/// Adds `increment`, exact to an ulp of it, as it is itself rounded: Kahan's sum, a third of the operations.
+/// Adds `increment`, exact to an ulp of the increment: Kahan's sum, a third of the operations.
 #[inline(always)]
 pub(crate) fn add_rounded<T: Real>(value: &mut T, low: &mut T, increment: T) {
     let sum = sum(*value, *low, increment);
     (*value, *low) = (sum, (increment + *low) - (sum - *value));
 }
 
-/// The same, entry by entry.
+/// Adds vectors entry by entry.
 #[inline(always)]
 pub(crate) fn add_vector<T: Real, const N: usize>(
     value: &mut SVector<T, N>,
     low: &mut SVector<T, N>,
     increment: &SVector<T, N>,
 ) {
-    // Slices become vector instructions, the iterators of a matrix do not.
+    // Loops over slices vectorize, those over matrix iterators do not.
     let (value, low, increment) = (value.as_mut_slice(), low.as_mut_slice(), increment.as_slice());
     for ((value, low), increment) in value.iter_mut().zip(low).zip(increment) {
         add_rounded(value, low, *increment);
@@ -58,8 +58,7 @@ mod tests {
         for _ in 0..1_000_000 {
             add(&mut value, &mut low, 0.1);
         }
-        // The number written 0.1 is 0.1 + 5.55e-18: a million of them are 100000 + 5.55e-12.
-        // A plain sum is wrong by 1.3e-6.
+        // The double 0.1 is 0.1 + 5.55e-18: a million of them sum to 100000 + 5.55e-12. A plain sum is wrong by 1.3e-6.
         assert!((value - 100_000.0 + low - 5.551_115_123_125_783e-12).abs() < 1e-24);
     }
 

@@ -1,27 +1,28 @@
-//! Condition numbers of the equations that an energy-preserving step solves.
+//! Condition numbers of the equations of an energy-preserving step.
 //!
-//! In: an [`ExtendedSystem`] at the solution `(v, h)`. Out: the ratio of the largest to the smallest singular value of its
-//! Jacobian in three forms. With the momentum row r and the energy row e, un-combined,
+//! For an [`ExtendedSystem`] at the solution `(v, h)`, this module computes the ratio of the largest to the smallest
+//! singular value of its Jacobian in three forms. With the momentum row r and the energy row e, uncombined,
 //!
 //! ```text
 //! ∂e/∂v = h energy_dv + vᵀA        ∂e/∂h = h energy_dh + v·∂r/∂h
 //! ```
 //!
-//! grow as `1/h` in the unknowns `(v, h)`; in `(q1, t1)`, where `v = (q1 − q0)/h`, as `1/h²`; combined and scaled not at all.
+//! grow as `1/h` in the unknowns `(v, h)`, and as `1/h²` in `(q1, t1)` with `v = (q1 − q0)/h`. Combined and scaled rows
+//! do not grow.
 
 use crate::linear::Matrix;
 use crate::real::Scalar;
 use crate::stepping::ExtendedSystem;
 use nalgebra::{DMatrix, SVector};
 
-/// Condition numbers in the 2-norm; infinite where the Jacobian is singular.
+/// Condition numbers in the 2-norm; infinite if the Jacobian is singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// Rows `(r, e)`, unknowns `(q1, t1)`: the paper's.
+    /// Rows `(r, e)`, unknowns `(q1, t1)`, as in the paper.
     pub position_time: f64,
     /// Rows `(r, e)`, unknowns `(v, h)`.
     pub velocity_step: f64,
-    /// Rows `(r/h, (e − v·r)/h²)`, unknowns `(v/h, h/h_previous)`: what the stepper solves.
+    /// Rows `(r/h, (e − v·r)/h²)`, unknowns `(v/h, h/h_previous)`, as in the stepper.
     pub scaled: f64,
 }
 

@@ -1,5 +1,5 @@
-//! What a system says of itself, said by what dereferences to it: a reference, a system by another rule, a system whose functions
-//! are calls.
+//! Implementations of the system traits by delegation: for references, for systems by another rule, and for systems
+//! whose functions are not inlined.
 
 use crate::called::Called;
 use crate::collocation::{Collocation, TimeScale};
@@ -10,7 +10,7 @@ use crate::real::Real;
 use crate::rules::{By, Own, Rule};
 use crate::stepping::{Batch, Convertible, Discretized, EnergyStepping, FixedStepping};
 
-/// The motion of what dereferences to S, the functions of a point with this attribute.
+/// Implements the motion traits by the dereferenced system, with this attribute on the functions of a point.
 macro_rules! motion {
     ($wrapper:ty, $attribute:tt $(, $rule:ident)?) => {
         impl<const N: usize, T: Real, S: Lagrangian<N, T>$(, $rule: Rule)?> Lagrangian<N, T> for $wrapper {
@@ -25,7 +25,8 @@ macro_rules! motion {
     };
 }
 
-/// The steps of what dereferences to S, the equations with this attribute: its rule `$of_rule` is the rule `$rule` of the wrapper and has this name.
+/// Implements the step traits by the dereferenced system, with this attribute on the equations: its rule `$of_rule` is
+/// the rule `$rule` of the wrapper and has this name.
 macro_rules! steps {
     ($wrapper:ty, $of_rule:ident as $rule:ident, $name:expr, $attribute:tt $(, $generic:ident)?) => {
         impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T, $of_rule>$(, $generic: Rule)?>
@@ -52,11 +53,11 @@ macro_rules! steps {
     };
 }
 
-// A system may be lent as well as given.
+// A reference to a system is a system.
 motion!(&S, [#[inline(always)]]);
 steps!(&S, R as R, S::RULE, [#[inline(always)]], R);
 
-/// The name of a rule; that of the system's own is what the system says.
+/// The name of a rule; the system itself names its own rule.
 const fn rule_name(of_rule: Option<&'static str>, of_system: Option<&'static str>) -> Option<&'static str> {
     match of_rule {
         Some(name) => Some(name),
@@ -86,7 +87,7 @@ impl<const N: usize, T: Real, S: TimeScale<N, T>> TimeScale<N, T> for &S {}
 
 impl<const N: usize, T: Real, S: TimeScale<N, T>, R: Rule> TimeScale<N, T> for By<S, R> {}
 
-// Whether it has one is asked when a run begins.
+// Whether a time scale exists is checked when a run begins.
 impl<const N: usize, T: Real, S: Collocation<N, T>> TimeScale<N, T> for Called<S> {}
 
 impl<const N: usize, S: Convertible<N>> Convertible<N> for &S {
@@ -101,7 +102,7 @@ impl<const N: usize, S: Convertible<N>> Convertible<N> for &S {
 
 impl<const N: usize, S: Convertible<N>> Convertible<N> for Called<S> {
     type In<T: Real> = Called<S::In<T>>;
-    // A vector of stages would be taken apart for each call.
+    // Each call would split a vector of stages.
     const SIDE_BY_SIDE: bool = false;
 
     fn convert<T: Real>(&self) -> Self::In<T> {

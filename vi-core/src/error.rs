@@ -1,23 +1,25 @@
-//! Every way in which a step can fail, with its numbers, and what to do about it.
+//! Typed failures of a step: their numbers, and advice.
 
 use core::fmt;
 
-/// Why a step was not taken. The integrator still holds the last good state, and a further call returns the same error.
+/// The reason why a step failed.
+///
+/// The integrator still holds the last good state, and a further call returns the same error.
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {
-    /// No energy-preserving step leads forward from here: a property of the method, not of the solver.
+    /// No energy-preserving step exists past this point. This is a property of the method, not of the solver.
     NoForwardStep {
         /// Time of the last good node.
         t: f64,
         /// Length of the last good step.
         h: f64,
-        /// `H(t, q, p) − E`: where a step exists it is `h² D/8` to leading order.
+        /// `H(t, q, p) − E`. If a step exists, this is `h² D/8` to leading order.
         excess: f64,
         /// Step density D at the last good node.
         density: f64,
     },
-    /// No energy-preserving Gauss step leads forward from here: its step density vanishes or changes its sign.
+    /// No energy-preserving Gauss step exists past this point: its step density vanishes or changes sign.
     NoForwardGaussStep {
         /// Time of the last good node.
         t: f64,
@@ -25,16 +27,17 @@ pub enum StepError {
         h: f64,
         /// Stages s of the step.
         stages: usize,
-        /// `H(t, q, p) − E'`: where a step exists it is `C_s h^2s (D_s + D_*)` to leading order.
+        /// `H(t, q, p) − E'`. If a step exists, this is `C_s h^2s (D_s + D_*)` to leading order.
         excess: f64,
         /// Step density D_s at the last good node.
         density: f64,
         /// The shift D_*.
         shift: f64,
-        /// The largest `|D_s|` that the run has met.
+        /// The largest `|D_s|` of the run so far.
         largest: f64,
     },
-    /// The shift of the step density adds more to the energy that is kept than the energy has: E' would say nothing of it.
+    /// The shift of the step density adds more to the preserved energy than the energy itself, so that E' carries no
+    /// information on it.
     ShiftTooLarge {
         /// Time of the last good node.
         t: f64,
@@ -42,14 +45,14 @@ pub enum StepError {
         h: f64,
         /// The shift D_*.
         shift: f64,
-        /// What it adds, `C_s h^2s D_*`.
+        /// The energy that the shift adds, `C_s h^2s D_*`.
         part: f64,
-        /// The size of the terms of H, `|v·p| + |H|`, along the motion.
+        /// The size of the terms of H along the trajectory, `|v·p| + |H|`.
         size: f64,
-        /// Length of a step whose part is a tenth of that size.
+        /// The step length at which the shift adds a tenth of that size.
         shorter: f64,
     },
-    /// The step density vanishes: the length of the step is not determined.
+    /// The step density vanishes, so that the step length is not determined.
     DegenerateStep {
         /// Time of the last good node.
         t: f64,
@@ -58,7 +61,7 @@ pub enum StepError {
         /// Step density D at the trial step.
         density: f64,
     },
-    /// The only forward step is longer or shorter than the last one by more than the factor allowed.
+    /// The length of the only forward step differs from that of the last step by more than the factor allowed.
     StepRatio {
         /// Time of the last good node.
         t: f64,
@@ -78,137 +81,139 @@ pub enum StepError {
         /// Longest length allowed.
         h_max: f64,
     },
-    /// Newton's iteration ended above the rounding floor.
+    /// The Newton iteration ended above the rounding floor.
     NotConverged {
-        /// Time at which the step begins; of a composition, its substep.
+        /// Time at which the step, or the substep of a composition, begins.
         t: f64,
-        /// Length of the trial step; of a composition, of its substep.
+        /// Length of the trial step, or of the substep of a composition.
         h: f64,
-        /// Iterations spent.
+        /// Number of iterations.
         iterations: u32,
-        /// Residual left, in units of rounding.
+        /// Last residual, in units of its rounding-error bound.
         residual: f64,
-        /// The last residuals on the way there.
+        /// The residuals of the last iterations.
         residuals: Residuals,
     },
-    /// The stages of a Gauss step did not come to rest, neither by sweeps nor by Newton's iteration.
+    /// The stages of a Gauss step converged neither by fixed-point iteration nor by Newton iteration.
     StagesUnsettled {
         /// Time at which the step begins.
         t: f64,
         /// Length of the step.
         h: f64,
-        /// Iterations spent.
+        /// Number of iterations.
         iterations: u32,
-        /// The last change of a stage, in roundings of its coordinate.
+        /// The last update of a stage, in ulps of its coordinate.
         change: f64,
-        /// The last change by the one before.
+        /// Ratio of the last update to the one before.
         contraction: f64,
-        /// Estimate of h ω, ω the fastest rate of the equations linearized in the middle of the step.
+        /// Estimate of h ω, with ω the fastest rate of the equations linearized at the middle of the step.
         stiffness: f64,
     },
-    /// The time scale g of `dt = g dτ` is not positive, not finite, or so small that a step does not change the time or does not keep the energy.
+    /// The time scale g of `dt = g dτ` is not positive, not finite, or too small: the step does not change the time or
+    /// does not preserve the energy.
     TimeScale {
-        /// Time at which it was met.
+        /// Time of this value.
         t: f64,
-        /// Its value there.
+        /// Value of g.
         g: f64,
     },
-    /// Steps in transformed time were asked of a system without a time scale.
+    /// The method steps in transformed time, but the system has no time scale.
     NoTimeScale {
         /// Name of the system.
         system: &'static str,
     },
-    /// Steps by a rule were asked of a system without one.
+    /// The method needs a quadrature rule, but the system declares none.
     NoRule {
         /// Name of the system.
         system: &'static str,
     },
-    /// Two velocities have the same momenta: L is not defined at rest and has a branch on each side of it.
+    /// Two velocities have the same momenta: L is not defined at rest and has a branch on each side.
     Ambiguous {
-        /// Time at which it was met.
+        /// Time of this state.
         t: f64,
     },
-    /// A matrix that has to be inverted is singular.
+    /// A matrix to invert is singular.
     Singular {
-        /// Time at which it was met.
+        /// Time of this state.
         t: f64,
-        /// Which matrix.
+        /// Name of the matrix.
         matrix: &'static str,
     },
     /// A quantity is infinite or not a number.
     NonFinite {
-        /// Time at which it was met.
+        /// Time of this value.
         t: f64,
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// The part of L or f that is not finite there, where the system says so.
+        /// The subexpression of L or f that is not finite, if the system can name it.
         expression: Option<&'static str>,
     },
-    /// The search for an event of one direction begins at its zero, and the motion leads through it again at that instant: a ball that has come to rest.
+    /// A one-directional event is at its zero at the start of the search, and its function passes zero again at the
+    /// same instant. A ball at rest on its floor is an example.
     CannotLeave {
         /// Time at which the search begins.
         t: f64,
-        /// The index of the event among those that were asked for.
+        /// Index of the event in the list given.
         event: usize,
-        /// The function of the event there.
+        /// Value of the event function.
         value: f64,
-        /// Length of time after which it has passed zero again.
+        /// Time after which the function has passed zero again.
         within: f64,
     },
-    /// A step has no derivative, or not the one that was asked for.
+    /// The step has no derivative, or not the requested one.
     NoDerivative {
-        /// Time at which the step was to begin.
+        /// Time at which the step begins.
         t: f64,
-        /// Why, and what to do.
+        /// The reason, with advice.
         because: &'static str,
     },
-    /// The system has no parameter of the name that was given.
+    /// The system has no parameter of the given name.
     UnknownParameter {
         /// Name of the system.
         system: &'static str,
-        /// The names that its parameters have.
+        /// Names of its parameters.
         parameters: &'static [&'static str],
     },
-    /// A checkpoint was taken of another system, or with another value of a parameter.
+    /// The checkpoint belongs to another system, or to another value of a parameter.
     OtherSystem {
-        /// Name of the system that was to be restarted.
+        /// Name of the system to restart.
         system: &'static str,
-        /// The parameter whose values differ; `None` where the systems or their rules do.
+        /// The parameter that differs; `None` if the systems or their rules differ.
         parameter: Option<&'static str>,
-        /// Its value in the checkpoint; not a number where the systems differ.
+        /// Its value in the checkpoint; NaN if the systems differ.
         stored: f64,
-        /// Its value in the system that was to be restarted; not a number where the systems differ.
+        /// Its value in the system to restart; NaN if the systems differ.
         given: f64,
     },
-    /// The error of a step exceeds what was asked for, relative to the excursion of a coordinate.
+    /// The error of a step, relative to the excursion of a coordinate, exceeds the tolerance.
     Tolerance {
         /// Time at which the step begins.
         t: f64,
-        /// Its relative error; infinite if its half steps have no solution.
+        /// Relative error of the step; infinite if its half steps have no solution.
         estimate: f64,
-        /// The largest that is allowed.
+        /// Largest error allowed.
         tolerance: f64,
     },
-    /// The caller gave a number with which no step can be taken.
+    /// An input is outside of its allowed range.
     InvalidInput {
-        /// Which input.
+        /// Name of the input.
         input: &'static str,
-        /// What is allowed.
+        /// Description of the allowed values.
         allowed: &'static str,
-        /// What was given.
+        /// Value given.
         value: f64,
     },
 }
 
 impl StepError {
-    /// What the error says, with its numbers, but without what to do: for a program that gives its own users other advice.
+    /// The reason with its numbers, without the advice: for programs that give their own.
     #[must_use]
     pub fn reason(&self) -> impl fmt::Display + '_ {
         Reason(self)
     }
 }
 
-/// What a [`StepError`] says without what to do about it; see [`StepError::reason`].
+/// Displays a [`StepError`] without its advice; see [`StepError::reason`].
 struct Reason<'a>(&'a StepError);
 
 impl fmt::Display for Reason<'_> {
@@ -216,11 +221,11 @@ impl fmt::Display for Reason<'_> {
         match self.0 {
             StepError::NoForwardStep { t, h, excess, density } => write!(
                 f,
-                "no energy-preserving step leads forward from t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e})"
+                "no energy-preserving step exists past t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e})"
             ),
             StepError::NoForwardGaussStep { t, h, stages, excess, density, shift, .. } => write!(
                 f,
-                "no energy-preserving step with s = {stages} leads forward from t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e}, shifted by {shift:.3e})"
+                "no energy-preserving step with s = {stages} exists past t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e}, shifted by {shift:.3e})"
             ),
             StepError::ShiftTooLarge { t, h, shift, part, size, .. } => write!(
                 f,
@@ -244,24 +249,24 @@ impl fmt::Display for Reason<'_> {
                 } else {
                     write!(f, "no solution found from t = {t:.9} with h = {h:.3e}")?;
                 }
-                write!(f, ": residual {residual:.3e} roundings after {iterations} iterations{residuals}")
+                write!(f, ": residual {residual:.3e} ulp after {iterations} iterations{residuals}")
             }
             StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness } => write!(
                 f,
-                "the stages of the step from t = {t:.9} with h = {h:.3e} do not settle: they change by {change:.3e} roundings in iteration {iterations}, {contraction:.2} times the change before; h ω is about {stiffness:.3e}"
+                "the Gauss stages did not converge from t = {t:.9} with h = {h:.3e}: update {change:.3e} ulp after {iterations} iterations (contraction {contraction:.2}, estimated h ω ≈ {stiffness:.3e})"
             ),
             StepError::TimeScale { t, g } if *g > 0.0 && g.is_finite() => {
                 write!(
                     f,
-                    "the time scale is g = {g:.3e} at t = {t:.9}, too small for the time to go on or the energy to stay"
+                    "the time scale is g = {g:.3e} at t = {t:.9}, too small to advance the time or to preserve the energy"
                 )
             }
             StepError::TimeScale { t, g } => {
-                write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, where it must be positive and finite")
+                write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, but it must be positive and finite")
             }
             StepError::NoTimeScale { system } => write!(f, "`{system}` has no time scale"),
-            StepError::NoRule { system } => write!(f, "`{system}` takes no steps by a rule"),
-            StepError::Ambiguous { t } => write!(f, "two velocities have the momenta at t = {t:.9}"),
+            StepError::NoRule { system } => write!(f, "`{system}` declares no quadrature rule"),
+            StepError::Ambiguous { t } => write!(f, "two velocities have the same momenta at t = {t:.9}"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
             StepError::NonFinite { t, quantity, expression: None } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}")
@@ -271,16 +276,16 @@ impl fmt::Display for Reason<'_> {
             }
             StepError::CannotLeave { t, event, value, within } => write!(
                 f,
-                "the motion cannot leave the zero of event {event} at t = {t:.9}: its function is {value:.3e} there and has passed zero again within {within:.3e}"
+                "the trajectory cannot leave the zero of event {event} at t = {t:.9}: its function is {value:.3e} and passes zero again within {within:.3e}"
             ),
             StepError::NoDerivative { t, because } => {
                 write!(f, "the step from t = {t:.9} cannot be differentiated: {because}")
             }
             StepError::UnknownParameter { system, .. } => {
-                write!(f, "`{system}` has no parameter of the name that was given")
+                write!(f, "`{system}` has no parameter of the given name")
             }
             StepError::OtherSystem { system, parameter: None, .. } => {
-                write!(f, "the checkpoint is of another system than `{system}`, or of another rule")
+                write!(f, "the checkpoint belongs to another system than `{system}`, or to another rule")
             }
             StepError::OtherSystem { system, parameter: Some(parameter), stored, given } => {
                 write!(f, "the checkpoint of `{system}` was taken with `{parameter}` = {stored:e}, not {given:e}")
@@ -302,30 +307,30 @@ impl fmt::Debug for StepError {
 }
 
 impl fmt::Display for StepError {
-    /// The reason, and what to do where something can be done.
+    /// Writes the reason, then advice if there is any.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.reason().fmt(f)?;
         match self {
             Self::DegenerateStep { h, .. } => write!(
                 f,
-                "; `with_fallback(Fallback::FixedSteps)` or fixed steps of h = {h:.3e} go on, and so may longer steps, fewer stages, or `EnergyPreservingGauss` with another shift"
+                "; continue by `with_fallback(Fallback::FixedSteps)` or by fixed steps of h = {h:.3e}, or try longer steps, fewer stages, or `EnergyPreservingGauss` with another shift"
             ),
             Self::NoForwardStep { h, .. } | Self::StepRatio { previous: h, .. } => {
                 write!(
                     f,
-                    "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` with h = {h:.3e} goes on, and so does `EnergyPreservingGauss` with a shift, which `with_shift_from(duration)` measures"
+                    "; continue by `with_fallback(Fallback::FixedSteps)`, by `FixedStep` with h = {h:.3e}, or by `EnergyPreservingGauss` with a shift, which `with_shift_from(duration)` measures"
                 )
             }
             Self::NoForwardGaussStep { h, largest, .. } => write!(
                 f,
-                "; `with_shift({:.3e})`, beyond the largest |D| so far, makes steps that exist here, other numbers of stages have other densities, and `with_fallback(Fallback::FixedSteps)` or `Gauss` with h = {h:.3e} goes on",
+                "; use `with_shift({:.3e})`, which exceeds the largest |D| so far, another number of stages, `with_fallback(Fallback::FixedSteps)`, or `Gauss` with h = {h:.3e}",
                 2.0 * largest
             ),
             Self::ShiftTooLarge { shorter, .. } => write!(f, "; start with steps of {shorter:.1e} or shorter"),
             // Rounded away from the bounds, so that the number itself is allowed.
             Self::StepBounds { found, h_max, .. } => write!(
                 f,
-                "; allow {:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`",
+                "; allow {:.3e} by `with_step_bounds`, or continue with steps of the bound by `with_fallback(Fallback::FixedSteps)`",
                 if found > h_max { 1.001 * found } else { 0.999 * found }
             ),
             Self::NotConverged { h, .. } if *h == 0.0 => {
@@ -334,31 +339,29 @@ impl fmt::Display for StepError {
             Self::NotConverged { h, .. } | Self::StagesUnsettled { h, .. } => {
                 write!(f, "; take steps shorter than {:.3e}", h.abs())
             }
-            Self::TimeScale { g, .. } if *g > 0.0 && g.is_finite() => {
-                f.write_str("; take shorter steps, end the run before, or write a `time_scale` that does not nearly vanish there")
-            }
-            Self::TimeScale { .. } => {
-                f.write_str("; take shorter steps, or write a `time_scale` that is positive there")
-            }
+            Self::TimeScale { g, .. } if *g > 0.0 && g.is_finite() => f.write_str(
+                "; take shorter steps, end the run before, or write a `time_scale` that stays well above zero",
+            ),
+            Self::TimeScale { .. } => f.write_str("; take shorter steps, or write a `time_scale` that stays positive"),
             Self::NoTimeScale { .. } => {
-                f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or take `Gauss`")
+                f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or use `Gauss`")
             }
-            Self::NoRule { .. } => {
-                f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`")
+            Self::NoRule { .. } => f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`"),
+            Self::Ambiguous { .. } => {
+                f.write_str("; L is not defined at rest and has a branch on each side: write an L with one branch")
             }
-            Self::Ambiguous { .. } => f.write_str("; L is not defined at rest and has a branch on each side of it: take one that is defined on one side alone"),
             Self::UnknownParameter { parameters, .. } if !parameters.is_empty() => {
                 write!(f, "; its parameters are `{}`", parameters.join("`, `"))
             }
-            Self::OtherSystem { parameter: None, .. } => {
-                f.write_str("; restart the system that it was taken of, by its rule")
-            }
-            Self::OtherSystem { .. } => f.write_str("; restart with the parameters that it was taken with"),
+            Self::OtherSystem { parameter: None, .. } => f.write_str("; restart its own system with its own rule"),
+            Self::OtherSystem { .. } => f.write_str("; restart with the parameters of the checkpoint"),
             Self::CannotLeave { event, .. } => write!(
                 f,
-                "; set the velocity toward it to zero and change the system so that it stays, or search without event {event}"
+                "; set the velocity toward the zero to zero and change the system so that it stays at rest, or search without event {event}"
             ),
-            Self::Tolerance { .. } => f.write_str("; take shorter steps, a method of higher order, or allow a larger error"),
+            Self::Tolerance { .. } => {
+                f.write_str("; take shorter steps, a method of higher order, or allow a larger error")
+            }
             Self::Singular { .. }
             | Self::NonFinite { .. }
             | Self::NoDerivative { .. }
@@ -370,25 +373,26 @@ impl fmt::Display for StepError {
 
 impl core::error::Error for StepError {}
 
-/// The last residuals of an iteration that did not converge, in units of rounding: whether it stalled, wandered or was
-/// cut short.
+/// The last residuals of an iteration that did not converge, in units of their rounding-error bounds.
+///
+/// They show whether the iteration stalled, wandered or was cut short.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residuals {
-    /// The newest last; those that are not there yet are zero.
+    /// The newest residual is last. Unused entries are zero.
     kept: [f64; Self::KEPT],
     count: usize,
 }
 
 impl Residuals {
-    /// So many are kept.
+    /// Number of residuals kept.
     pub const KEPT: usize = 6;
 
-    /// None yet.
+    /// An empty list.
     pub(crate) fn new() -> Self {
         Self { kept: [0.0; Self::KEPT], count: 0 }
     }
 
-    /// Adds the newest; one that is not finite says nothing and is left out.
+    /// Adds the newest residual, and ignores one that is not finite.
     pub(crate) fn push(&mut self, residual: f64) {
         if residual.is_finite() {
             self.kept.rotate_left(1);
@@ -406,10 +410,10 @@ impl Residuals {
 }
 
 impl fmt::Display for Residuals {
-    /// `, residuals up to there 1.2e3, 4.5e2`; nothing where there are none.
+    /// Writes `, last residuals 1.2e3, 4.5e2`, or nothing for an empty list.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, residual) in self.iter().enumerate() {
-            write!(f, "{}{residual:.1e}", if index == 0 { ", residuals up to there " } else { ", " })?;
+            write!(f, "{}{residual:.1e}", if index == 0 { ", last residuals " } else { ", " })?;
         }
         Ok(())
     }

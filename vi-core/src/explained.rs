@@ -1,7 +1,7 @@
-//! A failure with the expression that is not finite.
+//! Adds the expression that is not finite to a failure.
 //!
-//! In: a [`StepError::NonFinite`] and the step that was tried. Out: the same with the part of L or f that has no value there, where the
-//! system says which.
+//! For a [`StepError::NonFinite`] and the attempted step, this module asks the system for the part of L or f without a
+//! value there.
 
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -10,8 +10,7 @@ use crate::real::Scalar;
 use nalgebra::SVector;
 
 impl StepError {
-    /// With the expression that is not finite where the step `(v, h)` from `node` was tried, if that is the error and the
-    /// system says so.
+    /// Adds the expression that is not finite at the attempted step `(v, h)` from `node`, if the system can name it.
     #[cold]
     pub(crate) fn explained<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
         self,
@@ -21,7 +20,7 @@ impl StepError {
         v: &SVector<T, N>,
     ) -> Self {
         let Self::NonFinite { t, quantity, expression: None } = self else { return self };
-        // The middle of the step, the node, and the middle of the longest step that is looked at.
+        // The middle of the step, the node, and the middle of the longest trial step.
         let lengths = [h, T::zero(), h * T::real(3.0)];
         let mut places = lengths.into_iter().map(|h| node.midpoint(h, v));
         let expression = places.find_map(|(t, q)| system.non_finite(t, &q, v));

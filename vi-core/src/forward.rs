@@ -1,12 +1,14 @@
-//! The functions of the traits of a system, each forwarded to another value: the one table of their signatures beside the traits.
+//! Forwarding of trait functions: one table of their signatures beside the traits.
 //!
-//! In an implementation for a wrapper of a system `S`, with `N` coordinates, in the numbers `T`, by the rule `R` of S, which is its own if none is given:
+//! In an implementation for a wrapper of a system `S`, with `N` coordinates, over the numbers `T`, by the rule `R` of S
+//! (its own rule by default),
 //!
 //! ```text
 //! forward! { [N T S R] self => &self.system; [#[inline]] lagrangian energy momentum }
 //! ```
 //!
-//! writes these functions with these attributes. `lagrangian_constants`, `collocation_types` and `stepping_types` are the types and constants of a trait.
+//! writes these functions with these attributes. `lagrangian_constants`, `collocation_types` and `stepping_types` write
+//! the types and constants of a trait.
 
 /// Writes functions that call those of another system; see the source of this module.
 #[doc(hidden)]

@@ -1,4 +1,4 @@
-//! The continuous system: what `lagrangian!` says of L and f, in `(t, q, v)` and in `(t, q, p)`.
+//! The continuous system from `lagrangian!`, in `(t, q, v)` and in `(t, q, p)`.
 
 use crate::error::StepError;
 use crate::real::Real;
@@ -10,11 +10,11 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     const NAME: &'static str;
     /// Names of the coordinates, as declared.
     const COORDINATES: [&'static str; N];
-    /// Whether neither L nor f depends on the time.
+    /// Whether L and f are both independent of time.
     const AUTONOMOUS: bool;
     /// Whether there is a generalized force.
     const FORCED: bool;
-    /// Which coordinates do not appear in L and have no force: their momenta are conserved.
+    /// For each coordinate, whether it appears neither in L nor has a force. Its momentum is then conserved.
     const CYCLIC: [bool; N];
     /// Names of the parameters, as declared.
     const PARAMETERS: &'static [&'static str] = &[];
@@ -29,22 +29,27 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     fn energy(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
     /// Momentum `∂L/∂v`.
     fn momentum(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N>;
-    /// Generalized force f; zero where none is declared.
+    /// Generalized force f; zero if none is declared.
     fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N>;
     /// Acceleration `a = (∂²L/∂v²)⁻¹ (L_q + f − L_vt − L_vq v)`.
     ///
     /// # Errors
-    /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NonFinite`] where a derivative of L or f is not finite.
+    /// [`StepError::Singular`] if the mass matrix is singular, [`StepError::NonFinite`] if a derivative of L or f is
+    /// not finite.
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError>;
-    /// The flow at `(t, q, p)`: the velocity that belongs to p, and the rates of change of p and E. Where L is quadratic in the
-    /// velocities v follows from p by the mass matrix; else by Newton's iteration, from rest.
+    /// The flow at `(t, q, p)`: the velocity of p, and the rates of change of p and E.
+    ///
+    /// If L is quadratic in the velocities, v follows from p by the mass matrix; otherwise by Newton iteration from
+    /// rest.
     ///
     /// # Errors
-    /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NotConverged`] where no velocity has these momenta,
-    /// [`StepError::NonFinite`].
+    /// [`StepError::Singular`] if the mass matrix is singular, [`StepError::NotConverged`] if no velocity has these
+    /// momenta, [`StepError::NonFinite`].
     fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError>;
-    /// Where a value was lost: the first of what L and f are made of that is not finite at `(t, q, v)`, as text; parts
-    /// before wholes. `None` where everything is finite, and for a system that does not say.
+    /// The first subexpression of L and f that is not finite at `(t, q, v)`, as text, with inner expressions before
+    /// outer ones.
+    ///
+    /// `None` if everything is finite, and for systems that do not implement it.
     fn non_finite(&self, _t: T, _q: &SVector<T, N>, _v: &SVector<T, N>) -> Option<&'static str> {
         None
     }

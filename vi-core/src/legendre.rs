@@ -1,6 +1,6 @@
-//! The Legendre transform: momenta of velocities, and velocities and the energy of momenta.
+//! The Legendre transform: momenta from velocities, and velocities and the energy from momenta.
 //!
-//! In: a system, and `(t, q, v)` or `(t, q, p)`. Out: `p = ∂L/∂v`; the v with `∂L/∂v(t, q, v) = p`; `H = v·p − L`.
+//! At `(t, q, v)` it returns `p = ∂L/∂v`; at `(t, q, p)` the v with `∂L/∂v(t, q, v) = p`, and `H = v·p − L`.
 
 use crate::error::StepError;
 use crate::lagrangian::{Flow, Lagrangian};
@@ -21,34 +21,34 @@ impl<const N: usize, T: Real> State<N, T> {
 }
 
 impl<const N: usize, T: Scalar> State<N, T> {
-    /// The velocity v at this node, the root of `∂L/∂v(t, q, v) = p`: in the coordinates' units by time.
+    /// The velocity v at this state, the root of `∂L/∂v(t, q, v) = p`, in units of the coordinates over time.
     ///
-    /// Not the velocity of the last interval, `(q1 − q0)/h`, which differs from it by a term of order h.
+    /// It differs from the velocity of the last interval, `(q1 − q0)/h`, by a term of order h.
     ///
     /// # Errors
-    /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NotConverged`] where no velocity has
-    /// these momenta, [`StepError::NonFinite`].
+    /// [`StepError::Singular`] if the mass matrix is singular, [`StepError::NotConverged`] if no velocity has these
+    /// momenta, [`StepError::NonFinite`].
     pub fn velocity<S: Lagrangian<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
         self.flow(system).map(|flow| flow.v)
     }
 
-    /// The rates of change at this node: its velocity, `L_q + f`, and the power `f·v − L_t`.
+    /// The rates of change at this state: its velocity, `L_q + f`, and the power `f·v − L_t`.
     ///
     /// # Errors
-    /// Those of [`State::velocity`].
+    /// As [`State::velocity`].
     pub fn flow<S: Lagrangian<N, T>>(&self, system: &S) -> Result<Flow<N, T>, StepError> {
         let node = Node::new(*self, T::zero());
         let flow = node.check_finite(T::zero()).and_then(|()| system.flow(self.t, &self.q, &self.p));
         flow.map_err(|failure| failure.explained(system, &node, T::zero(), &SVector::zeros()))
     }
 
-    /// The energy `H = v·∂L/∂v − L` at this node, in the units of L, v the velocity that belongs to its momenta.
+    /// The energy `H = v·∂L/∂v − L` at this state, in the units of L, with v the velocity of its momenta.
     ///
-    /// Along a run of fixed steps it oscillates about the energy of the motion by a term of order h²; the discrete energy of
-    /// an interval, which the integrators report, is another number.
+    /// Along a run of fixed steps it oscillates about the energy of the trajectory by a term of order h². It differs
+    /// from the discrete energy of an interval, which the integrators report.
     ///
     /// # Errors
-    /// Those of [`State::velocity`]; [`StepError::NonFinite`] where L is not finite, though its forces may be.
+    /// As [`State::velocity`]; [`StepError::NonFinite`] if L is not finite, although its forces may be.
     pub fn energy<S: Lagrangian<N, T>>(&self, system: &S) -> Result<T, StepError> {
         let v = self.velocity(system)?;
         let energy = system.energy(self.t, &self.q, &v);
@@ -63,8 +63,8 @@ impl<const N: usize, T: Scalar> State<N, T> {
 /// The acceleration a with `mass · a = applied`.
 ///
 /// # Errors
-/// [`StepError::NonFinite`] where a slope of L or f is not finite at the time `t`, [`StepError::Singular`] where the mass matrix cannot be
-/// inverted.
+/// [`StepError::NonFinite`] if a derivative of L or f is not finite at the time `t`, [`StepError::Singular`] if the
+/// mass matrix is singular.
 #[inline]
 pub fn acceleration<T: Real, const N: usize>(
     t: T,
@@ -78,21 +78,21 @@ pub fn acceleration<T: Real, const N: usize>(
     })
 }
 
-/// The step density, where it is finite.
+/// Checks that the step density is finite.
 ///
 /// # Errors
-/// [`StepError::NonFinite`] where it is not, at the time `t`.
+/// [`StepError::NonFinite`] at the time `t` otherwise.
 #[inline]
 pub fn step_density<T: Real>(t: T, density: T) -> Result<T, StepError> {
     let lost = StepError::NonFinite { t: t.to_f64(), quantity: "step density", expression: None };
     if density.is_finite() { Ok(density) } else { Err(lost) }
 }
 
-/// The v with `mass · v = momentum`, the momentum less that at rest.
+/// The v with `mass · v = momentum`; momentum excludes that at rest.
 ///
 /// # Errors
-/// [`StepError::Singular`] where the mass matrix cannot be inverted at the time `t`, [`StepError::NonFinite`] where it or the momentum
-/// is not finite.
+/// [`StepError::Singular`] if the mass matrix is singular at the time `t`, [`StepError::NonFinite`] if it or the
+/// momentum is not finite.
 #[inline]
 pub fn velocity_by_mass<T: Real, const N: usize>(
     t: T,
@@ -102,8 +102,8 @@ pub fn velocity_by_mass<T: Real, const N: usize>(
     solved(mass, momentum).map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))
 }
 
-/// Systems of more coordinates solve for an acceleration out of line: optimized, LLVM 22 (rustc 1.95) crashes on that of `FpuChain` inside the
-/// start of an energy-preserving run.
+/// Systems with more coordinates solve for an acceleration out of line: LLVM 22 (rustc 1.95) crashes when it optimizes
+/// that of `FpuChain` inside the start of an energy-preserving run.
 const INLINED: usize = 8;
 
 /// [`solved`], not inlined.
@@ -115,7 +115,7 @@ fn solved_apart<T: Real, const N: usize>(
     solved(mass, momentum)
 }
 
-/// The v with `mass · v = momentum`; where there is none, whether the matrix is singular or not finite.
+/// The v with `mass · v = momentum`; otherwise whether the matrix is singular or not finite.
 #[inline]
 fn solved<T: Real, const N: usize>(
     mass: &impl Matrix<N, T>,
@@ -136,7 +136,7 @@ fn solved<T: Real, const N: usize>(
 /// The equation `∂L/∂v(t, q, v) − p = 0` in v.
 struct Momentum<'a, const N: usize, T, S, R, F> {
     system: &'a S,
-    /// The same system in numbers that carry a bound of their rounding.
+    /// The same system over numbers with rounding-error bounds.
     rounded: &'a R,
     mass: F,
     t: T,
@@ -144,7 +144,7 @@ struct Momentum<'a, const N: usize, T, S, R, F> {
     p: &'a SVector<T, N>,
 }
 
-/// That equation at some velocity.
+/// The equation at some velocity.
 struct LegendreEvaluation<const N: usize, T, M> {
     residual: SVector<T, N>,
     mass: M,
@@ -182,21 +182,25 @@ where
     }
 }
 
-/// Sizes of velocities from which a search starts where Newton's iteration finds none from rest: logarithms and roots are defined for one sign,
-/// and far from the root they send it out of their domain.
+/// Sizes of initial velocities, for the case that Newton iteration from rest fails. Logarithms and roots are defined
+/// for one sign only, and far from the root the iteration leaves their domain.
 const SCALES: [f64; 9] = [1.0, 0.1, 10.0, 1e-2, 1e2, 1e-4, 1e4, 1e-8, 1e8];
-/// Multiples of a velocity from which the search for another one starts, and the relative distance of different velocities.
+/// Multiples of a velocity from which the search for another one starts, and the relative distance of different
+/// velocities.
 const PARTS: [f64; 3] = [1.0, 1.0 / 16.0, 16.0];
 const APART: f64 = 1e-6;
-/// Coordinates up to which every choice of their signs is tried; of more, those of all at once and of each alone.
+/// Up to this number of coordinates the search tries all sign combinations; beyond, all signs at once and each alone.
 const FEW: usize = 4;
 
-/// The v with `∂L/∂v(t, q, v) = p` of a system, given also in numbers that carry a bound of their rounding, and its mass matrix: by
-/// Newton's iteration from rest. Where that has no value, or no slope, from p and from velocities of several sizes and signs.
+/// The v with `∂L/∂v(t, q, v) = p`, and its mass matrix. `rounded` is the system over numbers with rounding-error
+/// bounds.
+///
+/// Newton iteration starts from rest. If L has no value or slope there, it starts from p and from velocities of several
+/// sizes and signs.
 ///
 /// # Errors
-/// [`StepError::Ambiguous`] where another velocity that the search meets has the same momenta; [`StepError::Singular`], [`StepError::NonFinite`] or
-/// [`StepError::NotConverged`] from p where no guess leads to one.
+/// [`StepError::Ambiguous`] if the search finds another velocity with the same momenta; [`StepError::Singular`],
+/// [`StepError::NonFinite`] or [`StepError::NotConverged`] of the start from p if no start converges.
 pub fn velocity<const N: usize, T: Real, M: Matrix<N, T>>(
     system: &impl Lagrangian<N, T>,
     rounded: &impl Lagrangian<N, Rounded>,
@@ -211,13 +215,13 @@ pub fn velocity<const N: usize, T: Real, M: Matrix<N, T>>(
     let sized = || SCALES.iter().flat_map(|scale| signed(SVector::repeat(T::real(*scale))));
     let v = from(*p).or_else(|failure| sized().find_map(|guess| from(guess).ok()).ok_or(failure));
     let v = v.map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))?;
-    // L has no value at rest, and may have several branches: which of them is meant, momenta do not say.
+    // Without a value at rest L may have several branches, which the momenta do not distinguish.
     let is_other = |guess| from(guess).is_ok_and(|other| (other - v).longest() > APART * v.longest());
     let mut guesses = PARTS.iter().flat_map(|part| signed(v * T::real(*part))).chain(sized());
     if guesses.any(is_other) { Err(StepError::Ambiguous { t: t.to_f64() }) } else { Ok(v) }
 }
 
-/// The vectors whose entries are those of `v` but for their signs.
+/// All vectors that differ from `v` in signs only.
 fn signed<const N: usize, T: Real>(v: SVector<T, N>) -> impl Iterator<Item = SVector<T, N>> {
     let choices = if N <= FEW { 1 << N } else { N + 2 };
     (0..choices).map(move |choice: usize| {

@@ -1,7 +1,8 @@
 //! Run time of generated variational integrators.
 //!
-//! In: a system that `lagrangian!` generated, a state, a method, a step length. Out: states, or a typed [`StepError`]. AFTER A STEP its residual was measured at the
-//! very unknowns that were taken, row by row, and is at the rounding floor (`docs/mathematics.md`, section 8).
+//! Inputs are a system that `lagrangian!` generated, a state, a method and a step length. Outputs are states, or a
+//! typed [`StepError`]. Every accepted step satisfies its equations to rounding: the residual of each row is at the
+//! rounding floor (`docs/mathematics.md`, section 8).
 //!
 //! ```
 //! use vi_core::prelude::*;
@@ -24,27 +25,29 @@
 //! # }
 //! ```
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
-//! | [`real`] | the numbers that generated code computes with |
-//! | [`mod@lagrangian`] | what a system says of itself, continuous and discrete |
-//! | [`state`] | states, intervals, steps |
-//! | [`node`] | nodes as the steppers carry them |
-//! | [`linear`] | small linear systems, by their zero pattern |
-//! | [`method`] | how a step is found: one file for each method |
-//! | [`run`] | what all methods share: steps, states at times, events, changes, checkpoints |
-//! | `momentum`, [`energy_preserving`], [`gauss`] | the equations of a step, and their solution |
+//! | [`mod@lagrangian`] | the continuous system: L, f, energy, momentum, flow |
+//! | [`discrete`] | the discrete Lagrangian of a rule, with its derivatives |
+//! | [`stepping`] | the momentum and energy equations of one step, and their derivatives |
+//! | [`collocation`] | the equations of motion at one point, for Gauss steps |
+//! | [`rules`] | markers of the quadrature rules that `discretize` can name |
+//! | [`state`], [`node`] | states, intervals and steps; nodes with compensated sums |
+//! | [`method`] | the integrators, one file each |
+//! | [`run`] | shared by all methods: steps, dense output, output at given times, events, error estimates, checkpoints |
 //! | [`derivatives`] | sensitivities to initial conditions and parameters, gradients, Lyapunov exponents |
-//! | `solve` | solvers that do not depend on a method: a bracket of a root |
-//! | [`condition`] | condition numbers of the equations that a step solves |
-//! | [`error`] | every way in which a step can fail, with its numbers |
-//! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
-//! | `predictor` | the guess of a step, by a polynomial through the last ones |
-//! | `called` | a system whose functions are not inlined, for cold code |
-//! | `forward` | the functions of a system, forwarded by a wrapper |
-//! | `compensated` | sums that keep what rounding takes from them |
+//! | `momentum`, [`energy_preserving`], [`gauss`] | solvers of the step equations |
+//! | `newton`, `solve`, [`linear`] | Newton iteration, root bracketing, small linear systems with their zero patterns |
+//! | `predictor` | the initial guess of a step, extrapolated from the last steps |
+//! | `legendre` | velocities from momenta |
+//! | [`condition`] | condition numbers of the step equations |
+//! | [`error`] | the typed failures of a step, with their numbers |
+//! | [`check`] | tests of a system: derivatives, order, momenta, symplecticity; also from `check { … }` |
+//! | [`real`] | number types: `f64`, duals, series, running error analysis, SIMD lanes |
+//! | `compensated` | compensated summation |
+//! | [`called`], `delegate`, `forward` | wrappers of a system, for example with functions that are not inlined |
 //!
-//! Nothing here panics, allocates in a step (but for the room that the first stiff Gauss step makes), or prints.
+//! Nothing here panics or prints. Stepping does not allocate, except for one buffer at the first stiff Gauss step.
 
 // A call that is not inlined spills the run's state out of registers.
 #![allow(clippy::inline_always)]
@@ -95,7 +98,7 @@ pub use run::{Run, Start, Starts, Tolerance};
 pub use state::{Interval, State, Step};
 pub use vi_macros::lagrangian;
 
-/// What a user's file needs.
+/// The names that a typical program needs.
 pub mod prelude {
     pub use crate::error::StepError;
     pub use crate::method::{Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method};

@@ -1,47 +1,48 @@
-//! Newton's iteration to the rounding floor.
+//! Newton iteration to the rounding floor.
 //!
-//! In: equations `r(u) = 0` with their Jacobian J, and a guess of u. Out: the root, with every residual at the floor: at most one
-//! rounding, or no longer lessened by a Newton step and within [`FLOOR`] of them. A rounding is what evaluating the row loses at most,
-//! by running error analysis, with u the numbers nearest to the root.
+//! From equations `r(u) = 0` with their Jacobian J and a guess of u, this module computes the root. Every residual is
+//! then at its floor: at most one rounding, or within [`FLOOR`] roundings and no longer reduced by a Newton step. One
+//! rounding is the bound of the evaluation error of the row by running error analysis, with u the numbers nearest to
+//! the root.
 //!
 //! ```text
-//! u ← u − J⁻¹ r(u)        halved while that does not lessen the residuals, or leaves the domain
+//! u ← u − J⁻¹ r(u)        halved until the residuals decrease and u is in the domain
 //! ```
 //!
-//! An absolute tolerance is used nowhere. AFTER IT J at the root has an inverse.
+//! There is no absolute tolerance. J is regular at every accepted root.
 
 use crate::error::{Residuals, StepError};
 use crate::real::{Real, Scalar};
 use crate::vector::{Vector, worse};
 use nalgebra::SVector;
 
-/// Residual, in roundings, below which an iteration that no longer gains is at the floor.
+/// Residual, in roundings, below which a stalled iteration counts as converged.
 pub(crate) const FLOOR: f64 = 4.0;
 const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;
 
 /// Equations in unknowns U.
 pub(crate) trait Equations<T: Real> {
-    /// The unknowns, and changes of them.
+    /// The unknowns, and corrections of them.
     type Unknowns: Vector<T>;
     /// Residuals, Jacobian and rounding scales at some u.
     type Evaluation;
 
-    /// The equations at u.
+    /// Evaluates the equations at u.
     fn at(&self, u: &Self::Unknowns) -> Self::Evaluation;
-    /// The largest residual of each of two groups of rows, in roundings by the scales of `scales`: groups that are solved each to its
-    /// own floor. Not a number where one is not finite.
+    /// The largest residual of each of two groups of rows, in roundings by the scales of `scales`. Each group converges
+    /// to its own floor. NaN if a residual is not finite.
     fn roundings(&self, of: &Self::Evaluation, scales: &Self::Evaluation) -> [f64; 2];
-    /// `J⁻¹ r`, J at one u and r at another.
+    /// `J⁻¹ r`, with J and r at different u.
     ///
     /// # Errors
-    /// [`Failure::Singular`] or [`Failure::InfiniteJacobian`] where there is none.
+    /// [`Failure::Singular`] or [`Failure::InfiniteJacobian`] if it does not exist.
     fn correction(&self, jacobian: &Self::Evaluation, residual: &Self::Evaluation) -> Result<Self::Unknowns, Failure>;
-    /// The same with pivoting, where [`Equations::correction`] does without.
+    /// The correction with pivoting, if [`Equations::correction`] does not pivot.
     fn pivoted(&self, _: &Self::Evaluation) -> Option<Self::Unknowns> {
         None
     }
-    /// Whether u may be tried.
+    /// Whether u is in the domain of trials.
     fn admits(&self, _: &Self::Unknowns) -> bool {
         true
     }
@@ -51,20 +52,20 @@ pub(crate) trait Equations<T: Real> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Root<U, E> {
     pub(crate) u: U,
-    /// The equations there.
+    /// The equations at the root.
     pub(crate) at: E,
     pub(crate) iterations: u32,
-    /// Iterations from a residual above the floor.
+    /// Number of iterations with a residual above the floor.
     pub(crate) above_floor: u32,
     pub(crate) residuals: Residuals,
 }
 
-/// Why no root was found.
+/// The reason why no root was found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Failure {
     Singular,
     NonFinite,
-    /// The equations are finite, and their Jacobian is not.
+    /// The equations are finite, but their Jacobian is not.
     InfiniteJacobian,
     Stalled {
         iterations: u32,
@@ -74,7 +75,7 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
-    /// The error that this is, for the step h from time t.
+    /// The error of the step h from time t.
     pub(crate) fn at(self, t: f64, h: f64, matrix: &'static str) -> StepError {
         match self {
             Self::Singular => StepError::Singular { t, matrix },
@@ -87,7 +88,7 @@ impl Failure {
     }
 }
 
-/// The root of `equations` from a guess.
+/// Solves `equations` from a guess.
 pub(crate) fn solve<T: Real, E: Equations<T>>(
     equations: &E,
     guess: E::Unknowns,
@@ -111,7 +112,7 @@ pub(crate) fn solve<T: Real, E: Equations<T>>(
             return Err(Failure::Stalled { iterations, residual, residuals });
         }
         iterations += 1;
-        match lessened(equations, &u, &at, correction) {
+        match damped(equations, &u, &at, correction) {
             Some(next) => (u, at) = next,
             None if residual <= FLOOR => return Ok(Root { u, at, iterations, above_floor, residuals }),
             None => return Err(Failure::Stalled { iterations, residual, residuals }),
@@ -119,8 +120,8 @@ pub(crate) fn solve<T: Real, E: Equations<T>>(
     }
 }
 
-/// Where a part of the correction leads that lessens the residuals; none where none does.
-fn lessened<T: Real, E: Equations<T>>(
+/// Damped Newton step: halves the correction until the residuals decrease; `None` if they never do.
+fn damped<T: Real, E: Equations<T>>(
     equations: &E,
     u: &E::Unknowns,
     last: &E::Evaluation,
@@ -132,8 +133,8 @@ fn lessened<T: Real, E: Equations<T>>(
         let next = u.zip_map(&correction, |u, correction| u - correction);
         if equations.admits(&next) {
             let at = equations.at(&next);
-            // Measured in the scales at u: those far away would make any residual look small. One group at its floor must not hide
-            // that the other still gains: so the sum; and within the floor a half of either.
+            // Measured in the scales at u: those far away would make any residual look small. The sum decides, so that
+            // one group at its floor does not hide progress of the other. Within the floor, either group must halve.
             let [momentum, energy] = equations.roundings(&at, last);
             let is_finite = largest(equations.roundings(&at, &at)).is_finite();
             let halves_one = momentum < 0.5 * before[0] || energy < 0.5 * before[1];
@@ -151,7 +152,7 @@ fn lessened<T: Real, E: Equations<T>>(
         if halvings == HALVINGS {
             return None;
         }
-        // A pivot may have been lost, before the step is too long.
+        // A lost pivot is checked before the step counts as too long.
         match if pivoted { None } else { equations.pivoted(last) } {
             Some(other) if other != correction => correction = other,
             _ => {
@@ -163,9 +164,9 @@ fn lessened<T: Real, E: Equations<T>>(
     }
 }
 
-/// Whether the correction that would follow, by the same matrix, is less than half as long: Newton's own measure (Deuflhard,
-/// Newton Methods for Nonlinear Problems, section 3.3). It judges where a row has no terms at u, as at rest at the bottom
-/// of a potential, and so no scale to measure its residual in.
+/// Whether the next correction, by the same matrix, is less than half as long: Newton's natural measure (Deuflhard,
+/// Newton Methods for Nonlinear Problems, section 3.3). It decides if a row has no terms at u, as at rest at the bottom
+/// of a potential, and therefore no scale for its residual.
 #[cold]
 fn contracts<T: Real, E: Equations<T>>(
     equations: &E,
@@ -177,7 +178,8 @@ fn contracts<T: Real, E: Equations<T>>(
     next.is_ok_and(|next| next.longest() < 0.5 * correction.longest())
 }
 
-/// Whether each row leaves at most [`FLOOR`] roundings of its scale, and with what is carried to it `remaining` ones.
+/// Whether each row is within [`FLOOR`] roundings of its scale, and within `remaining` ones including its carried
+/// remainder.
 #[inline(always)]
 pub(crate) fn are_at_floor<T: Scalar, const N: usize>(
     residual: &SVector<T, N>,
@@ -185,7 +187,7 @@ pub(crate) fn are_at_floor<T: Scalar, const N: usize>(
     scale: &SVector<T, N>,
     remaining: f64,
 ) -> bool {
-    // A mask: a loop over booleans does not become vector instructions.
+    // A bit mask, because loops over booleans do not vectorize.
     let mut above = 0_u64;
     for i in 0..N {
         let bound = scale[i] * T::real(FLOOR * T::EPSILON);
@@ -197,18 +199,18 @@ pub(crate) fn are_at_floor<T: Scalar, const N: usize>(
     above == 0
 }
 
-/// `|residual|` in units of one ulp of `scale`. Not a number where either is not finite.
+/// `|residual|` in units of one ulp of `scale`. NaN if either is not finite.
 #[inline]
 pub(crate) fn roundings<T: Real>(residual: T, scale: T) -> f64 {
     let (residual, scale) = (residual.to_f64().abs(), scale.to_f64());
     if residual == 0.0 && scale.is_finite() {
         return 0.0;
     }
-    // ∞/∞ is not a number, and x/∞ shall be none either: a scale that overflows proves nothing about x.
+    // Both ∞/∞ and x/∞ return NaN: a scale that overflows proves nothing about x.
     if scale.is_finite() { residual / scale / T::EPSILON } else { f64::NAN }
 }
 
-/// The largest of two groups.
+/// The larger of two groups.
 fn largest([momentum, energy]: [f64; 2]) -> f64 {
     worse(momentum, energy)
 }

@@ -1,7 +1,7 @@
-//! Nodes as the steppers carry them, and how one follows from another.
+//! Nodes with compensated sums, and their update.
 //!
-//! In: a node, the solved `(v, h)` of a step and what momentum and energy gain over it. Out: the next node,
-//! `q1 = q0 + h v` and every other sum compensated. AFTER A STEP each low part is below half an ulp of its number.
+//! From a node, the solved `(v, h)` of a step and its increments of momentum and energy follows the next node, `q1 = q0
+//! + h v`, with every other sum compensated. Each low part stays below half an ulp of its number.
 
 use crate::compensated;
 use crate::error::StepError;
@@ -9,8 +9,8 @@ use crate::real::{Real, Scalar};
 use crate::state::State;
 use nalgebra::SVector;
 
-/// A node as the steppers carry it: each quantity as the unevaluated sum of a number and its low part, so that
-/// ten million additions cost no digit.
+/// A node of a run. Each quantity is the unevaluated sum of a number and its low part, so that ten million additions
+/// lose no digit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -20,24 +20,24 @@ use nalgebra::SVector;
 pub struct Node<const N: usize, T = f64> {
     /// Time.
     pub t: T,
-    /// What rounding took from `t`.
+    /// Low part of `t`.
     pub t_low: T,
     /// Coordinates.
     pub q: SVector<T, N>,
-    /// What rounding took from `q`.
+    /// Low part of `q`.
     pub q_low: SVector<T, N>,
     /// Momenta.
     pub p: SVector<T, N>,
-    /// What rounding took from `p`.
+    /// Low part of `p`.
     pub p_low: SVector<T, N>,
     /// Discrete energy.
     pub energy: T,
-    /// What rounding took from `energy`.
+    /// Low part of `energy`.
     pub energy_low: T,
 }
 
 impl<const N: usize, T: Real> Node<N, T> {
-    /// The node at a state, with its discrete energy (of no meaning to the fixed-step integrator) and low parts zero.
+    /// The node at a state with its discrete energy, which fixed steps ignore. Low parts are zero.
     pub fn new(state: State<N, T>, energy: T) -> Self {
         let (zero, zeros) = (T::zero(), SVector::zeros());
         let State { t, q, p } = state;
@@ -49,7 +49,7 @@ impl<const N: usize, T: Real> Node<N, T> {
         Self::new(State { t: T::zero(), q: SVector::zeros(), p: SVector::zeros() }, T::zero())
     }
 
-    /// The same node in other numbers.
+    /// Converts the node to other numbers.
     pub(crate) fn map<U: Real>(&self, convert: impl Fn(T) -> U + Copy) -> Node<N, U> {
         Node {
             t: convert(self.t),
@@ -63,13 +63,13 @@ impl<const N: usize, T: Real> Node<N, T> {
         }
     }
 
-    /// Time, coordinates and momenta, low parts left out.
+    /// Time, coordinates and momenta, without low parts.
     #[inline]
     pub fn state(&self) -> State<N, T> {
         State { t: self.t, q: self.q, p: self.p }
     }
 
-    /// Middle of the step `(v, h)` from here: `(t + h/2, q + (h/2) v)`.
+    /// Middle of the step `(v, h)` from this node: `(t + h/2, q + (h/2) v)`.
     #[inline]
     pub fn midpoint(&self, h: T, v: &SVector<T, N>) -> (T, SVector<T, N>) {
         let half = h * T::real(0.5);
@@ -82,21 +82,21 @@ impl<const N: usize, T: Real> Node<N, T> {
         self.q + (self.q_low + v * h)
     }
 
-    /// Moves to the end of the step `(v, h)` in time and coordinates, `q1 = q0 + h v`; momenta and energy stay.
+    /// Advances time and coordinates by the step `(v, h)`, `q1 = q0 + h v`; momenta and energy stay.
     #[inline(always)]
     pub(crate) fn shift(&mut self, h: T, v: &SVector<T, N>) {
         compensated::add_rounded(&mut self.t, &mut self.t_low, h);
         compensated::add_vector(&mut self.q, &mut self.q_low, &(v * h));
     }
 
-    /// Moves to the end of the step `(v, h)`, which adds `increment` to p; the energy stays.
+    /// Advances by the step `(v, h)`, which adds `increment` to p; the energy stays.
     #[inline(always)]
     pub fn advance(&mut self, h: T, v: &SVector<T, N>, increment: &SVector<T, N>) {
         self.shift(h, v);
         compensated::add_vector(&mut self.p, &mut self.p_low, increment);
     }
 
-    /// The node at another state, with the energy of this one.
+    /// This node moved to another state, with the same energy.
     pub(crate) fn with_state(&self, state: State<N, T>) -> Self {
         Self { energy_low: self.energy_low, ..Self::new(state, self.energy) }
     }
@@ -115,8 +115,8 @@ impl<const N: usize, T: Real> Node<N, T> {
 }
 
 impl<const N: usize, T: Scalar> Node<N, T> {
-    /// Whether [`Node::advance`] leads to a node that is finite. Asked before, since what is asked after has to be taken back,
-    /// and a long node is not copied for nothing.
+    /// Whether [`Node::advance`] leads to a finite node. Checked before advancing, so that a failed step needs no
+    /// rollback and no copy of a large node.
     #[inline(always)]
     pub(crate) fn stays_finite(&self, h: T, v: &SVector<T, N>, increment: &SVector<T, N>) -> bool {
         let displacement = v * h;
@@ -132,11 +132,10 @@ impl<const N: usize, T: Scalar> Node<N, T> {
         are_finite::<N, T>(self.t, self.energy, |i| self.q[i], |i| self.p[i])
     }
 
-    /// Whether every quantity is finite; else [`StepError::NonFinite`] names the first that is not. `t` is the time of
-    /// the last good node.
+    /// Checks that every quantity is finite. `t` is the time of the last good node.
     ///
     /// # Errors
-    /// That one.
+    /// [`StepError::NonFinite`] names the first that is not finite.
     pub fn check_finite(&self, t: T) -> Result<(), StepError> {
         let entries = |vector: &SVector<T, N>| vector.iter().all(|entry| entry.is_finite());
         let quantities = [
@@ -152,14 +151,15 @@ impl<const N: usize, T: Scalar> Node<N, T> {
     }
 }
 
-/// Whether time, energy, and N coordinates and momenta are finite: by their sum, which is finite then unless they are huge.
+/// Whether time, energy, and N coordinates and momenta are finite. Tests their sum, which is exact unless they are
+/// huge.
 #[inline(always)]
 fn are_finite<const N: usize, T: Scalar>(t: T, energy: T, q: impl Fn(usize) -> T, p: impl Fn(usize) -> T) -> bool {
     let ([a, b], [c, d]) = (halves::<N, T>(t, q), halves::<N, T>(energy, p));
     ((a + c) + (b + d)).is_finite()
 }
 
-/// The sums of the entries with even indices and with odd ones: neighbours are added side by side, in vector registers.
+/// Sums the entries with even and with odd indices, so that neighbours add in SIMD registers.
 #[inline(always)]
 fn halves<const N: usize, T: Scalar>(start: T, entry: impl Fn(usize) -> T) -> [T; 2] {
     let [mut even, mut odd] = [start, T::zero()];

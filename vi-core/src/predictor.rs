@@ -1,16 +1,15 @@
-//! What the next step will be, extrapolated over the last ones.
+//! Extrapolation of the next step.
 //!
-//! In: the unknowns u of the steps up to now, u_0 the newest. Out: a guess of those of the next one, on the polynomial of degree k
-//! through the last k + 1:
+//! The guess of the next unknowns u is the polynomial of degree k through the last k + 1 of them, u_0 the newest:
 //!
 //! ```text
 //! guess_k = Σ_i (−1)^i C(k + 1, i + 1) u_i,  i = 0 … k        k = 6:  7 u_0 − 21 u_1 + 35 u_2 − 35 u_3 + 21 u_4 − 7 u_5 + u_6
 //! ```
 //!
-//! One step waits for the other, so what has to be done after u_0 is known is little: `7 u_0` and one sum.
+//! Each step waits for the previous one, so only `7 u_0` and one addition depend on u_0.
 //!
-//! The degree grows by one a step, while that makes the guess better, up to [`HIGHEST`]. After a step at which the guess was too
-//! poor to use, [`Predictor::restart`] takes the degree that would have been the best there.
+//! The degree grows by one per step while the guess improves, up to [`HIGHEST`]. After a step with an unusable guess,
+//! [`Predictor::restart`] selects the degree that would have been the best.
 
 use crate::real::{Real, Scalar};
 use crate::vector::length_squared;
@@ -28,10 +27,10 @@ const WEIGHTS: [[f64; HIGHEST + 1]; HIGHEST + 1] = {
     }
     all
 };
-/// Part of u, in roundings, that an error of the guess may be before it is told from what extrapolation makes of roundings.
+/// Error of a guess, in ulps of u, below which it may be amplified rounding.
 const NOISE: f64 = 128.0;
 
-/// The weights `(−1)^i C(degree + 1, i + 1)` of the last steps in a guess, the newest first; zero beyond i = degree.
+/// The weights `(−1)^i C(degree + 1, i + 1)` of the last steps, the newest first; zero for i > degree.
 #[must_use]
 pub const fn weights<const K: usize>(degree: usize) -> [f64; K] {
     let mut weights = [0.0; K];
@@ -56,18 +55,18 @@ pub const fn weights<const K: usize>(degree: usize) -> [f64; K] {
     serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
 )]
 pub(crate) struct Predictor<const M: usize, T> {
-    /// The last steps, the newest first; at the start all of them are the guess of the first one.
+    /// The last steps, the newest first; initially all equal to the first guess.
     last: [SVector<T, M>; HIGHEST + 1],
     degree: usize,
 }
 
 impl<const M: usize, T: Real> Predictor<M, T> {
-    /// Before the first step, with a guess of it.
+    /// Starts from a guess of the first step.
     pub(crate) fn new(guess: SVector<T, M>) -> Self {
         Self { last: [guess; HIGHEST + 1], degree: 0 }
     }
 
-    /// The same, every number passed through `convert`.
+    /// Passes every number through `convert`.
     pub(crate) fn map(self, convert: impl Fn(T) -> T + Copy) -> Self {
         Self { last: self.last.map(|u| u.map(convert)), degree: self.degree }
     }
@@ -78,7 +77,7 @@ impl<const M: usize, T: Real> Predictor<M, T> {
         self.last[0]
     }
 
-    /// Whether the guess is of the highest degree.
+    /// Whether the guess has the highest degree.
     #[inline(always)]
     pub(crate) fn is_highest(&self) -> bool {
         self.degree == HIGHEST
@@ -100,7 +99,7 @@ impl<const M: usize, T: Real> Predictor<M, T> {
         let [u0, u1, u2, u3, u4, u5, u6] = &self.last;
         let mut guess = *u0;
         for i in 0..M {
-            // What is known longer first.
+            // The terms that are known earlier come first.
             let known = (u6[i] - u5[i] * T::real(7.0))
                 + (u4[i] * T::real(21.0) - u3[i] * T::real(35.0))
                 + (u2[i] * T::real(35.0) - u1[i] * T::real(21.0));
@@ -114,7 +113,7 @@ impl<const M: usize, T: Real> Predictor<M, T> {
         terms.fold(SVector::zeros(), |sum, (u, weight)| sum + u * T::real(weight))
     }
 
-    /// Takes the step `u` at the highest degree, or where no guess is needed.
+    /// Adds the step `u` at the highest degree, or if no guess is needed.
     #[inline(always)]
     pub(crate) fn push_highest(&mut self, u: SVector<T, M>) {
         let [u0, u1, u2, u3, u4, u5, _] = self.last;
@@ -123,8 +122,8 @@ impl<const M: usize, T: Real> Predictor<M, T> {
 }
 
 impl<const M: usize, T: Scalar> Predictor<M, T> {
-    /// Takes the step `u`. The degree grows by one where the guess of the next one would not have been worse, or as good as
-    /// rounding allows.
+    /// Adds the step `u`. The degree grows by one if its guess would not have been worse, or as good as rounding
+    /// allows.
     pub(crate) fn push(&mut self, u: SVector<T, M>) {
         if !self.is_highest() {
             let [error, next] = [0, 1].map(|more| length_squared(&(u - self.guess_of(self.degree + more))));
@@ -134,7 +133,7 @@ impl<const M: usize, T: Scalar> Predictor<M, T> {
         self.push_highest(u);
     }
 
-    /// Takes the step `u` after a guess that was too poor to use: the degree becomes that which would have guessed best.
+    /// Adds the step `u` after an unusable guess, and selects the degree that would have guessed best.
     #[cold]
     pub(crate) fn restart(&mut self, u: SVector<T, M>) {
         let (mut best, mut least) = (0, None);
@@ -158,7 +157,7 @@ mod tests {
         SVector::from([u])
     }
 
-    /// A predictor that has taken the steps 0 … 20 of a sequence.
+    /// A predictor after the steps 0 … 20 of a sequence.
     fn after_twenty(sequence: impl Fn(f64) -> f64) -> Predictor<1, f64> {
         let mut predictor = Predictor::new(one(sequence(0.0)));
         (1..=20).for_each(|step| predictor.push(one(sequence(f64::from(step)))));
@@ -222,7 +221,7 @@ mod tests {
 
     #[test]
     fn where_the_guess_was_too_poor_the_best_degree_is_kept() {
-        // A parabola that was disturbed four steps ago: degree 2 no longer sees it, higher ones do.
+        // A parabola with a disturbance four steps ago: degree 2 no longer includes it, higher degrees do.
         let mut predictor = after_twenty(|t| t * t);
         predictor.last[3][0] += 1e-3;
         predictor.restart(one(21.0 * 21.0));

@@ -1,10 +1,10 @@
-//! The numbers that generated code computes with.
+//! Number types of generated code.
 //!
-//! In: formulas written once, generic over [`Real`]. Out: the same formulas in `f64`, `f32`, and in lanes of an ensemble.
-//! [`Real`] holds what a formula needs and nothing that a lane of several numbers could not answer;
-//! [`Scalar`] adds what the control flow of a stepper needs: order.
+//! Formulas are generic over [`Real`] and run in `f64`, in `f32`, and in lanes of an ensemble. [`Real`] has the
+//! operations of formulas, all of which a lane of several numbers can perform. [`Scalar`] adds the order that the
+//! control flow of a stepper needs.
 
-/// The assigning operators of a number, by those that do not assign.
+/// Implements the assigning operators by the others.
 macro_rules! assignments {
     ($number:ty) => {
         $crate::real::assignments! { $number: AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign * }
@@ -35,7 +35,7 @@ pub use series::Series;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A number that generated formulas can be evaluated with.
+/// A number type of generated formulas.
 pub trait Real:
     Copy
     + Debug
@@ -79,10 +79,10 @@ pub trait Real:
     fn cos(self) -> Self;
     /// Sine and cosine of one angle in radians, in this order.
     fn sin_cos(self) -> (Self, Self);
-    /// The same of angles that do not wait for each other: at once, where that is faster.
+    /// Sine and cosine of several independent angles, at once if that is faster.
     #[inline(always)]
     fn sin_cos_each<const K: usize>(angles: [Self; K]) -> [(Self, Self); K] {
-        // A loop: `map` is a call where K is large.
+        // A loop, because `map` is a call for large K.
         let mut pairs = [(Self::zero(), Self::zero()); K];
         for (pair, angle) in pairs.iter_mut().zip(angles) {
             *pair = angle.sin_cos();
@@ -128,28 +128,28 @@ pub trait Real:
     /// The larger of two numbers.
     #[must_use]
     fn max(self, other: Self) -> Self;
-    /// The number itself, and 0 where `base` is zero: the limit of a product whose factors are zero and infinite there.
-    /// So many of its derivatives have the limit 0 too; of a derivative beyond these, numbers that carry one know nothing.
+    /// The number itself, or 0 if `base` is zero: the limit of a product whose factors are zero and infinite there. The
+    /// first `derivatives` derivatives have the limit 0 too; number types with derivatives do not know higher ones.
     #[must_use]
     #[inline(always)]
     fn zero_where(self, base: Self, _derivatives: u8) -> Self {
         if base.is_zero() { Self::zero() } else { self }
     }
-    /// Whether it is finite.
+    /// Whether the number is finite.
     fn is_finite(self) -> bool;
-    /// Whether it is above zero.
+    /// Whether the number is above zero.
     fn is_positive(self) -> bool;
-    /// Whether `self ≤ bound`. What is not a number is not below anything.
+    /// Whether `self ≤ bound`. False for NaN.
     fn is_at_most(self, bound: Self) -> bool;
-    /// The value, as it stands in errors and tables.
+    /// The value as `f64`, for errors and tables.
     fn to_f64(self) -> f64;
 }
 
-/// One number: what the control flow of a stepper needs beside the formulas.
+/// A single number, with the order that the control flow of a stepper needs.
 pub trait Scalar: Real + PartialOrd {}
 
-/// Sine and cosine, in this order, with one branch for all, which angles that one meets do not take: between branches the
-/// compiler makes vectors of them.
+/// Sine and cosine, in this order, with one branch for all that typical angles do not take: the compiler vectorizes the
+/// code between branches.
 #[inline]
 fn sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
     if angles.iter().fold(true, |all, x| all & (x.abs() <= sine::LARGEST)) {
@@ -159,7 +159,7 @@ fn sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
     }
 }
 
-/// Sine and cosine of angles of many turns, or of what is not a number, among others.
+/// Sine and cosine if an angle has many turns or is NaN.
 #[cold]
 fn large_sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
     angles.map(f64::sin_cos)
@@ -171,7 +171,7 @@ macro_rules! impl_real {
             #[allow(clippy::cast_lossless)]
             const EPSILON: f64 = $float::EPSILON as f64;
 
-            // A constant of a formula is rounded to the type it is evaluated in: that is what `real` says.
+            // A constant of a formula is rounded to the evaluating type, as `real` documents.
             #[allow(clippy::cast_possible_truncation, clippy::cast_lossless)]
             #[inline]
             fn real(value: f64) -> Self { value as $float }
@@ -192,7 +192,7 @@ macro_rules! impl_real {
                 let [pair] = Real::sin_cos_each([self]);
                 pair
             }
-            // In double precision, whatever the type: it costs less than the library's call.
+            // In double precision for every type: cheaper than the library call.
             #[allow(clippy::cast_possible_truncation, clippy::cast_lossless)]
             #[inline]
             fn sin_cos_each<const K: usize>(angles: [Self; K]) -> [(Self, Self); K] {

@@ -1,26 +1,27 @@
-//! Markers of discretization rules, and a system by a rule that is not its own.
+//! Markers of quadrature rules, and systems by a rule other than their own.
 //!
 //! The traits of a discrete system ([`DiscreteLagrangian`](crate::discrete::DiscreteLagrangian),
-//! [`FixedStepping`](crate::stepping::FixedStepping), [`EnergyStepping`](crate::stepping::EnergyStepping)) are implemented once for
-//! each rule that a system is declared with, told apart by the marker R. The integrators take steps by [`Own`], the first of them. A call
-//! of one of their functions on a system with several rules names the marker: `FixedStepping::<1, f64, Own>::discrete_energy(&system, …)`.
+//! [`FixedStepping`](crate::stepping::FixedStepping), [`EnergyStepping`](crate::stepping::EnergyStepping)) are
+//! implemented once per declared rule, with the marker R. The integrators step by [`Own`], the first rule. A direct
+//! call of a trait function on a system with several rules names the marker: `FixedStepping::<1, f64,
+//! Own>::discrete_energy(&system, …)`.
 
 use core::fmt::Debug;
 use core::ops::Deref;
 
 /// A marker of a rule.
 pub trait Rule: Copy + Debug + PartialEq + Send + Sync + 'static {
-    /// Its name in the language; none of the system's own, which may be any.
+    /// Name of the rule in the language; `None` for the system's own rule, which can be any.
     const NAME: Option<&'static str>;
 }
 
-/// The rule that a system is declared with; of several, the first.
+/// The declared rule of a system; the first if there are several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Own;
-/// The midpoint rule, declared after another one.
+/// The midpoint rule, declared as a further rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Midpoint;
-/// The trapezoidal rule, declared after another one.
+/// The trapezoidal rule, declared as a further rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trapezoidal;
 
@@ -72,7 +73,7 @@ impl<S, R: Rule> By<S, R> {
         &self.system
     }
 
-    /// The same, to change its parameters.
+    /// The system, mutably, to change its parameters.
     pub(crate) fn system_mut(&mut self) -> &mut S {
         &mut self.system
     }

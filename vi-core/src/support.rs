@@ -1,4 +1,4 @@
-//! What the other crates of this project need, and no one else: it may change with any version.
+//! Internals for the other crates of this project, without any stability promise.
 
 pub use crate::compensated::two_sum;
 pub use crate::legendre::{acceleration, step_density, velocity, velocity_by_mass};
@@ -15,11 +15,11 @@ use crate::real::Scalar;
 use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
-/// The node and the velocity after one step of length h from `node`, by Newton's iteration from `last`, the velocity of the step
-/// before.
+/// The node and the velocity after one step of length h from `node`, by Newton iteration from `last`, the velocity of
+/// the previous step.
 ///
 /// # Errors
-/// Those of [`FixedStep::step`](crate::Run::step).
+/// As [`FixedStep::step`](crate::Run::step).
 #[cold]
 pub fn step_alone<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,

@@ -1,6 +1,4 @@
-//! The unknowns of a step as one vector: the velocity v, or (v, h).
-//!
-//! In: numbers by their names. Out: the same numbers entry by entry, for Newton's iteration.
+//! The unknowns of a step as one vector: the velocity v, or (v, h). Newton iteration accesses them entry by entry.
 
 use crate::real::Real;
 use nalgebra::SVector;
@@ -9,7 +7,7 @@ use nalgebra::SVector;
 pub(crate) trait Vector<T: Real>: Copy + PartialEq {
     /// Entry by entry.
     fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T) -> Self;
-    /// The largest entry, without its sign; not a number where one is not.
+    /// The largest absolute value of an entry; NaN if an entry is NaN.
     fn longest(&self) -> f64;
     /// Whether every entry is finite.
     fn is_finite(&self) -> bool {
@@ -38,7 +36,7 @@ impl<const N: usize, T: Real> Vector<T> for SVector<T, N> {
     }
 }
 
-/// The larger of two numbers; not a number where either is not.
+/// The larger of two numbers; NaN if either is NaN.
 #[inline]
 pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }

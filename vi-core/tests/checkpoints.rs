@@ -1,7 +1,7 @@
 //! A stored and resumed run continues bit for bit; and properties of very long runs.
 
 use crate::systems::{DoubleWell, ForcedDuffing, Kepler, Steppable, UnitMass};
-use vi_core::energy_preserving::course::Lengths;
+use vi_core::energy_preserving::lengths::Lengths;
 use vi_core::run::Checkpoint;
 use vi_core::{EnergyPreserving, Fallback, FixedStep, Run, Starts, State, Step, StepError};
 

@@ -237,17 +237,17 @@ fn a_check_that_proves_nothing_does_not_pass() {
         refused(check(&particle, &rest), still);
     }
     refused(check::gauss_symplecticity(&particle, &rest), still);
-    refused(check::gauss_momenta(&particle, &rest), "`x` stands still");
+    refused(check::gauss_momenta(&particle, &rest), "`x` does not change");
     refused(check::gauss_momenta(&duffing, &DUFFING), "no coordinate is cyclic");
-    refused(check::gauss_symplecticity(&duffing, &DUFFING), "a force does not keep");
+    refused(check::gauss_symplecticity(&duffing, &DUFFING), "a system with a force does not preserve");
     refused(check::order(&particle, &free, 2), "steps of any rule are exact");
     refused(check::gauss_order(&particle, &free), "steps of any rule are exact");
     refused(check::step_law(&particle, &free), "the step density is zero");
-    refused(check::momenta(&particle, &rest), "`x` stands still");
+    refused(check::momenta(&particle, &rest), "`x` does not change");
     refused(check::momenta(&pendulum, &Place { v: [0.2, 0.0].into(), ..PENDULUM }), "choose a velocity `dot(φ)`");
     refused(check::momenta(&duffing, &DUFFING), "no coordinate is cyclic");
-    refused(check::symplecticity(&duffing, &DUFFING), "a force does not keep");
-    refused(check::step_law(&duffing, &DUFFING), "systems without a force");
+    refused(check::symplecticity(&duffing, &DUFFING), "a system with a force does not preserve");
+    refused(check::step_law(&duffing, &DUFFING), "a system without a force");
     // The lowest point has no azimuth: the failure reports its singular mass matrix.
     let failure = check::derivatives(&pendulum, &bottom).expect_err("a singular mass matrix");
     assert!(matches!(failure, CheckFailure::Step { .. }), "{failure}");

@@ -382,7 +382,7 @@ fn what_has_no_derivative_says_so() {
     has_none(many.step().map(drop), "more parameters");
     let jump = Event::smooth_falling(|at| at.q[1].sign());
     let mut jumped = Tangent::new(start.integrate(Gauss::<6>, 0.1).expect("a start"), all());
-    has_none(jumped.until_event(&jump, 9.0).map(drop), "along the motion");
+    has_none(jumped.until_event(&jump, 9.0).map(drop), "along the trajectory");
     // Before an event variations are those at the time.
     let mut before = Tangent::new(start.integrate(EnergyPreserving, 0.1).expect("a start"), all());
     assert!(before.until_event(&event(), 0.5).expect("no event").is_none());

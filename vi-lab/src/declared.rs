@@ -94,7 +94,7 @@ mod tests {
         }
         let message = StepError::NoRule { system: "Alone" }.to_string();
         assert!(
-            message.contains("`Alone` takes no steps by a rule") && message.contains("add `discretize midpoint;`"),
+            message.contains("`Alone` declares no quadrature rule") && message.contains("add `discretize midpoint;`"),
             "{message}"
         );
     }

@@ -188,7 +188,7 @@ fn a_failing_step_leaves_the_output_so_far() {
     let run = ["run", "double-well", "--method", "energy", "--start", "points", "--q", "1.05", "--steps", "1000"];
     let (status, output, errors) = lab(&[run.as_slice(), &["-o", path(&file)]].concat());
     assert_eq!((status, output.as_str()), (Some(1), ""));
-    assert!(errors.starts_with("error: no energy-preserving step leads forward from t = "), "{errors}");
+    assert!(errors.starts_with("error: no energy-preserving step exists past t = "), "{errors}");
     let written = rows(&fs::read_to_string(&file).expect("the file"));
     // The last step is number 113 or 114: the theory of the paper has no solution at step 114 ± 1.
     assert!((112..=115).contains(&written.len()), "{} rows", written.len());
@@ -828,12 +828,13 @@ fn every_method_is_compared_and_early_ends_have_a_reason() {
     let runs = fs::read_to_string(out.join("runs.csv")).expect("the runs");
     for method in methods {
         let of: Vec<&str> = runs.lines().filter(|line| line.starts_with(method)).collect();
-        let ended = of.iter().filter(|line| line.contains("no energy-preserving step leads forward")).count();
+        let ended = of.iter().filter(|line| line.contains("no energy-preserving step exists past")).count();
         assert!(of.len() >= 9, "{method}: {} runs", of.len());
         assert_eq!(ended, if method == "energy-preserving" { of.len() } else { 0 }, "{method}");
     }
     let page = fs::read_to_string(out.join("index.html")).expect("the page");
-    let diagnostic = "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step leads forward from t = ";
+    let diagnostic =
+        "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step exists past t = ";
     assert!(
         page.contains(diagnostic) && page.contains("(debug build") | page.contains("(release build"),
         "the page says so"

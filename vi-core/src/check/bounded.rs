@@ -1,16 +1,16 @@
-//! Numbers that know their rounding: a value, and a bound of how far it is from the exact result of its formula.
+//! Numbers with a rounding-error bound: a value, and a bound of its distance from the exact result of its formula.
 //!
-//! In: a function that is generic over [`Real`]. Out: its value, the same bits as in `f64`, and the bound; each operation
-//! adds its own rounding to what it makes of those of its operands:
+//! A function that is generic over [`Real`] returns the same bits as in `f64`, and the bound. Each operation adds its
+//! own rounding error to the propagated errors of its operands:
 //!
 //! ```text
 //! z = x + y    δz = δx + δy + ε |z|          z = x y    δz = |x| δy + |y| δx + δx δy + ε |z|
 //! z = x / y    δz = (δx + |z| δy) / (|y| − δy) + ε |z|          z = f(x)    δz = max |f'| δx + 2 ε |z|
 //! ```
 //!
-//! ε = 2⁻⁵² is twice what one operation of IEEE rounds off, and what a library's function may be off by. What cancels leaves
-//! its roundings behind, and they are seen. Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.3
-//! (running error analysis).
+//! ε = 2⁻⁵² is twice the rounding error of one IEEE operation, and the error that library functions may have.
+//! Cancellation keeps the rounding errors in the bound. Source: Higham, Accuracy and Stability of Numerical Algorithms,
+//! section 3.3 (running error analysis).
 
 use crate::real::Real;
 use crate::real::assignments;
@@ -18,72 +18,72 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use nalgebra::SVector;
 
 const EPSILON: f64 = f64::EPSILON;
-/// A constant that is a multiple of one over this, and not larger than it, stands in a formula as it is.
+/// A constant counts as exact if it is a multiple of the inverse of this, and not larger than it.
 const EXACT: f64 = 1_048_576.0;
 
 /// A value and the bound of its rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounded {
     pub(super) value: f64,
-    /// Not negative; infinite, or not a number, where nothing is known.
+    /// Not negative; infinite or NaN if there is no bound.
     pub(super) error: f64,
 }
 
 impl Bounded {
-    /// A number as it stands.
+    /// An exact number.
     pub(super) fn exact(value: f64) -> Self {
         Self { value, error: 0.0 }
     }
 
-    /// A number that was rounded once, or twice.
+    /// A number after one rounding, or two.
     pub(super) fn once(value: f64) -> Self {
         Self { value, error: EPSILON * value.abs() }
     }
 
-    /// The result of an operation or of a function, of which the bound `error` is due to its operands.
+    /// The result of an operation or of a function, with the propagated error `error` of its operands.
     fn after(value: f64, error: f64, roundings: f64) -> Self {
         Self { value, error: error + roundings * EPSILON * value.abs() }
     }
 
-    /// f(self), with a bound of |f'| up to the bound.
+    /// f(self), with a bound of |f'| over the error interval.
     fn chain(self, value: f64, slope: f64) -> Self {
-        // Else 0 · ∞ where f' has no bound.
+        // Avoids 0 · ∞ if f' has no bound.
         let error = if self.error == 0.0 { 0.0 } else { slope * self.error };
         Self::after(value, error, 2.0)
     }
 
-    /// The smallest |x| up to the bound.
+    /// The smallest |x| within the bound.
     fn least(self) -> f64 {
         (self.value.abs() - self.error).max(0.0)
     }
 
-    /// The largest |x| up to the bound.
+    /// The largest |x| within the bound.
     pub(super) fn most(self) -> f64 {
         self.value.abs() + self.error
     }
 
-    /// The number as it was computed elsewhere by the same formula.
+    /// This bound with a value that the same formula gave elsewhere.
     pub(super) fn of(self, value: f64) -> Self {
         Self { value, ..self }
     }
 
-    /// Whether it is not zero, rounding apart.
+    /// Whether the number is nonzero beyond its rounding error.
     pub(super) fn is_seen(self) -> bool {
         self.value.abs() > self.error
     }
 }
 
-/// A vector as it stands.
+/// An exact vector.
 pub(super) fn exact<const N: usize>(vector: &SVector<f64, N>) -> SVector<Bounded, N> {
     vector.map(Bounded::exact)
 }
 
-/// The vector as it was computed elsewhere by the same formula.
+/// These bounds with a vector that the same formula gave elsewhere.
 pub(super) fn vector_of<const N: usize>(value: &SVector<f64, N>, again: &SVector<Bounded, N>) -> SVector<Bounded, N> {
     again.zip_map(value, Bounded::of)
 }
 
-/// A vector whose entries were rounded once, or twice.
+/// A vector after one rounding per entry, or two.
 pub(super) fn once<const N: usize>(vector: &SVector<f64, N>) -> SVector<Bounded, N> {
     vector.map(Bounded::once)
 }
@@ -148,7 +148,7 @@ impl num_traits::One for Bounded {
 impl Real for Bounded {
     const EPSILON: f64 = EPSILON;
 
-    /// A constant of a formula: rounded once, unless it is a fraction that needs no rounding.
+    /// A constant of a formula: rounded once, unless it is an exact fraction.
     fn real(value: f64) -> Self {
         let is_exact = value.abs() <= EXACT && (value * EXACT).fract() == 0.0;
         if is_exact { Self::exact(value) } else { Self::once(value) }
@@ -196,7 +196,7 @@ impl Real for Bounded {
     fn atan2(self, other: Self) -> Self {
         let distance = self.least() * self.least() + other.least() * other.least();
         let across = self.error * other.most() + other.error * self.most();
-        // The negative axis, where the angle jumps by a turn, may be crossed.
+        // The error interval may cross the negative axis, where the angle jumps by a turn.
         let may_jump = self.error > 0.0 && self.least() == 0.0 && other.value <= other.error;
         let error = if across == 0.0 { 0.0 } else { across / distance };
         Self::after(self.value.atan2(other.value), if may_jump { core::f64::consts::TAU } else { error }, 2.0)
@@ -225,7 +225,7 @@ impl Real for Bounded {
         if self.value == 0.0 {
             return Self { value, error: if self.error == 0.0 { 0.0 } else { self.error.powf(exponent.value) } };
         }
-        // The bound of ln z = y ln x. An exponent that is exact needs no ln x, which a base below zero does not have.
+        // The bound of ln z = y ln x. An exact exponent needs no ln x, which does not exist for a negative base.
         let by_base = if self.error == 0.0 { 0.0 } else { exponent.most() * self.error / self.least() };
         let by_exponent = if exponent.error == 0.0 { 0.0 } else { self.value.ln().abs() * exponent.error };
         Self::after(value, value.abs() * (by_base + by_exponent).exp_m1(), 2.0)
@@ -234,7 +234,7 @@ impl Real for Bounded {
         let larger = if self.value >= other.value { self } else { other };
         Self { error: self.error.max(other.error), ..larger }
     }
-    /// Where the base may be zero or not, nothing is known.
+    /// Without bound if the base may be zero.
     fn zero_where(self, base: Self, _derivatives: u8) -> Self {
         let value = if base.value == 0.0 { 0.0 } else { self.value };
         let error = match (base.value == 0.0, base.is_seen()) {
@@ -262,7 +262,7 @@ impl Real for Bounded {
 mod tests {
     use super::*;
 
-    /// A function of one number, in both kinds of numbers.
+    /// A unary function, in both number types.
     type Function = (&'static str, fn(f64) -> f64, fn(Bounded) -> Bounded);
 
     const FUNCTIONS: [Function; 16] = [
@@ -284,7 +284,7 @@ mod tests {
         ("x^2.5", |x| Real::pow(x, 2.5), |x| x.pow(Bounded::real(2.5))),
     ];
 
-    /// A function of two numbers.
+    /// A binary function, in both number types.
     type Pair = (&'static str, fn(f64, f64) -> f64, fn(Bounded, Bounded) -> Bounded);
 
     const PAIRS: [Pair; 8] = [
@@ -298,16 +298,16 @@ mod tests {
         ("max", Real::max, Real::max),
     ];
 
-    /// The values to try, from where bounds are steep to where numbers are lost beside others.
+    /// Test values, from steep bounds to absorbed terms.
     const VALUES: [f64; 10] = [-30.0, -1.5, -0.75, -1e-6, 1e-9, 0.3, 0.999, 1.0, 2.6, 40.0];
     /// Bounds of the operands.
     const ERRORS: [f64; 4] = [0.0, 1e-6, 1e-3, 0.6];
 
-    /// Whether the bound holds where an operand lies anywhere within its own; where there is no value there is no bound.
+    /// Whether the bound holds for operands anywhere within theirs. A missing value has no bound.
     fn holds(result: Bounded, values: impl Iterator<Item = f64>) -> bool {
         values.filter(|value| !value.is_nan()).all(|value| {
             let distance = (value - result.value).abs();
-            // A bound that is reached may be rounded itself, and so may the operand there.
+            // At the bound, the bound and the operand may themselves be rounded.
             distance <= result.error * (1.0 + 1e-7) || result.error.is_nan() || result.value.is_nan()
         })
     }

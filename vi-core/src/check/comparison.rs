@@ -1,7 +1,7 @@
-//! Numbers, compared and counted.
+//! Comparison of numbers with rounding-error bounds.
 //!
-//! In: pairs of numbers, each with the bound of its own rounding. Out: a [`Report`]; or at the first pair that differs by
-//! more than both bounds, or where a quantity that matters did not stand above rounding anywhere, a [`CheckFailure`].
+//! It collects pairs of numbers and returns a [`Report`], or a [`CheckFailure`] at the first pair that differs by more
+//! than both bounds. It also fails if a required quantity never exceeded its rounding error.
 
 use super::bounded::Bounded;
 use super::report::{CheckFailure, Report};
@@ -9,11 +9,11 @@ use crate::error::StepError;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 
-/// Pairs of numbers of one check.
+/// The compared pairs of one check.
 pub(super) struct Comparison {
     system: &'static str,
     check: &'static str,
-    /// How many numbers above their rounding each quantity had.
+    /// For each quantity, how many numbers exceeded their rounding error.
     seen: BTreeMap<&'static str, usize>,
     what: String,
     worst: f64,
@@ -24,12 +24,12 @@ impl Comparison {
         Self { system, check, seen: BTreeMap::new(), what: String::new(), worst: 0.0 }
     }
 
-    /// Two numbers.
+    /// Compares two numbers.
     pub(super) fn number(&mut self, what: &'static str, found: Bounded, wanted: Bounded) -> Result<(), CheckFailure> {
         self.entry(what, None, found, wanted)
     }
 
-    /// Two vectors, entry by entry.
+    /// Compares two vectors, entry by entry.
     pub(super) fn vector<const N: usize>(
         &mut self,
         what: &'static str,
@@ -51,12 +51,12 @@ impl Comparison {
         let allowed = found.error + wanted.error;
         *self.seen.entry(what).or_default() += usize::from(wanted.value.abs() > allowed);
         let name = || index.map_or_else(|| what.to_owned(), |index| format!("{what}[{index}]"));
-        // The check's own derivatives: the system may have a number all the same.
+        // The check's own derivative does not exist, although the system may have one.
         if wanted.value.is_nan() && !found.value.is_nan() {
-            let why = "has no derivative that can be computed here, at the edge of a root, a quotient or a kink";
+            let why = "has no derivative here, at the edge of a root, a quotient or a kink";
             return Err(self.vacuous(format!("{} {why}; choose another place", name())));
         }
-        // Not a number agrees with nothing; where no bound is known, nothing is said.
+        // NaN agrees with nothing; an infinite bound allows everything.
         if difference.is_nan() || difference > allowed {
             return Err(self.differs(name(), [found.value, wanted.value], difference, allowed));
         }
@@ -67,7 +67,7 @@ impl Comparison {
         Ok(())
     }
 
-    /// The failure of this check by these numbers, the one found and the one wanted.
+    /// Fails because two numbers differ.
     pub(super) fn differs(
         &self,
         what: String,
@@ -78,40 +78,40 @@ impl Comparison {
         CheckFailure::Differs { system: self.system, check: self.check, what, found, wanted, difference, tolerance }
     }
 
-    /// The failure of this check for want of numbers.
+    /// Fails because nothing was compared.
     pub(super) fn vacuous(&self, why: impl Into<String>) -> CheckFailure {
         CheckFailure::Vacuous { system: self.system, check: self.check, why: why.into() }
     }
 
-    /// The failure of this check by steps that are all rounding.
+    /// Fails because all steps are dominated by rounding.
     pub(super) fn too_small(&self, what: &'static str, needed: Option<f64>, why: String) -> CheckFailure {
         CheckFailure::StepTooSmall { system: self.system, check: self.check, what, needed, why }
     }
 
-    /// The failure of this check by a step.
+    /// Fails because of a step.
     pub(super) fn step(&self, error: StepError) -> CheckFailure {
         CheckFailure::Step { system: self.system, check: self.check, error }
     }
 
-    /// The failure of this check for a system that it is not about.
+    /// Fails because the check does not apply to the system.
     pub(super) fn not_applicable(&self, why: &'static str) -> CheckFailure {
         CheckFailure::NotApplicable { system: self.system, check: self.check, why }
     }
 
-    /// A slope or another single number, fitted through so many points.
+    /// Reports a slope or another single number, fitted through this many points.
     pub(super) fn fitted(&self, compared: usize, what: String, worst: f64, tolerance: f64) -> Report {
         Report { system: self.system, check: self.check, compared, what, worst, tolerance }
     }
 
-    /// The report, if each of the quantities needed stood above its rounding somewhere.
+    /// The report, if each required quantity exceeded its rounding error somewhere.
     pub(super) fn finish(self, needed: &[&'static str]) -> Result<Report, CheckFailure> {
         let count = |what: &str| self.seen.get(what).copied().unwrap_or_default();
         if let Some(zero) = needed.iter().find(|what| count(what) == 0) {
-            return Err(self.vacuous(format!("{zero} is zero wherever it was compared; choose another place")));
+            return Err(self.vacuous(format!("{zero} is zero in every comparison; choose another place")));
         }
         let compared = self.seen.values().sum();
         if compared == 0 {
-            return Err(self.vacuous("everything that was compared is zero; choose another place"));
+            return Err(self.vacuous("all compared numbers are zero; choose another place"));
         }
         let (what, worst) = (self.what.clone(), self.worst);
         Ok(self.fitted(compared, what, worst, 1.0))

@@ -1,13 +1,13 @@
-//! Every generated derivative against dual numbers.
+//! Generated derivatives against dual numbers.
 //!
 //! ```text
 //! p = ∂L/∂v      E = v·p − L      d/dt ∂L/∂v = L_q + f      dE/dt = f·v − L_t
 //! ∂L_v/∂q        ∂L_v/∂v = M      ∂(L_q + f)/∂q      ∂(L_q + f)/∂v
 //! ```
 //!
-//! Left: what the system says. Right: L, and what the system evaluates at a point, differentiated operation by operation.
-//! Rounding: both sides are evaluated in numbers that carry the bound of theirs (`bounded`), and may differ by the sum of
-//! the two bounds. h is that of the samples, a part of the system's own time scale: the place's h does not enter.
+//! Left sides: generated code. Right sides: automatic differentiation of L, and of the evaluation at a point.
+//! Tolerance: the sum of the rounding-error bounds of both sides (`bounded`). h is that of the samples, a fraction of
+//! the system's own time scale; the h of the place is not used.
 
 use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
@@ -26,7 +26,7 @@ use std::array;
 pub(super) type First = Dual<Bounded>;
 type Second = Dual<First>;
 
-/// Momentum, energy, acceleration, the equations at a point and how they change, against dual numbers.
+/// Tests momentum, energy, acceleration, the equations at a point and their derivatives against dual numbers.
 ///
 /// # Errors
 /// The first number that differs; [`CheckFailure::Vacuous`] if momentum, energy or the mass matrix is zero throughout.
@@ -39,7 +39,7 @@ pub fn derivatives<const N: usize, S: MotionChecked<N>>(system: &S, place: &Plac
     check.finish(&["momentum", "energy", "mass"])
 }
 
-/// `∂L/∂q`, its rate and that of `∂L/∂t` along the motion (1, v, a), by second-order dual numbers.
+/// `∂L/∂q`, and its rate and that of `∂L/∂t` along the trajectory (1, v, a), by second-order dual numbers.
 fn gradient_and_rates<const N: usize>(
     system: &impl Lagrangian<N, Second>,
     t: f64,
@@ -80,7 +80,7 @@ fn continuous<const N: usize, S: MotionChecked<N>>(
     let (gradient, _, _) = gradient_and_rates(&second, *t, [&place, &velocity, &a]);
     let applied = gradient + bounded.force(time, &place, &velocity);
     check.vector("rate of the momentum", &rate, &applied)?;
-    // What Gauss steps evaluate at a point says the same.
+    // The point evaluation of Gauss steps must agree too.
     let (point, bounds) = (system.point(*t, q, v), bounded.point(time, &place, &velocity));
     check.vector("momentum at a point", &vector_of(&point.momentum, &bounds.momentum), &momentum)?;
     check.vector("force at a point", &vector_of(&point.force, &bounds.force), &applied)?;
@@ -107,7 +107,7 @@ pub(super) fn density<const N: usize, S: MotionChecked<N>>(
     Ok(a.dot(&applied) - velocity.dot(&gradient_rate) - time_rate)
 }
 
-/// How fast each entry of a vector changes in each direction: a column a direction.
+/// Derivatives of a vector in each direction, one column per direction.
 pub(super) fn columns<R, const N: usize>(
     directions: &[R; N],
     vector: impl Fn(&R) -> SVector<First, N>,
@@ -115,7 +115,7 @@ pub(super) fn columns<R, const N: usize>(
     SMatrix::from_columns(&directions.each_ref().map(|direction| slopes(&vector(direction))))
 }
 
-/// A matrix against the one wanted, column by column.
+/// Compares a matrix with the expected one, column by column.
 pub(super) fn matrix<const N: usize>(
     check: &mut Comparison,
     what: &'static str,
@@ -149,7 +149,7 @@ fn point<const N: usize, S: MotionChecked<N>>(
     matrix(check, "force_dv", (&found.force_dv, &again.force_dv), &force_dv)
 }
 
-/// A row is a sum that loses at least half an ulp of itself.
+/// A row is a sum with a rounding error of at least half an ulp of itself.
 pub(super) fn enough(residual: f64, rounding: f64, check: &mut Comparison) -> Result<(), CheckFailure> {
     let least = 0.5 * residual.abs();
     check.number("rounding", Bounded::exact(rounding.max(least)), Bounded::once(least).of(rounding))

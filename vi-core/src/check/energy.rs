@@ -1,15 +1,15 @@
 //! The energy of the energy-preserving integrator.
 //!
 //! ```text
-//! E(t̄, q̄, v) = (E0 + E1)/2         midpoint rule: E0 and E1 as they are carried, E by the generated energy
+//! E(t̄, q̄, v) = (E0 + E1)/2         midpoint rule: E0 and E1 as carried, E by the generated energy
 //! E1 = −D3 L_d − g_d⁺               any rule
 //! E1 = E0                           no force, no time in L
 //! ```
 //!
-//! Rounding: that of E at the middle, known to one rounding; that of the slots at the ends, as in `steps`; and what the
-//! solved equations may leave. The last line has none. The length of a step is rounded by `δh/h ≈ 4 ε (τ/h)²` (`length`):
-//! where that is too much for a run, the first of 2 h, 4 h, … is taken with which it is not, up to the system's own time
-//! scale.
+//! Tolerance: the rounding error of E at the midpoint, after one rounding of its arguments; that of the slots at the
+//! ends, as in `steps`; and the residual of the solved equations. The last line has no tolerance. The length of a step
+//! has the rounding error `δh/h ≈ 4 ε (τ/h)²` (`length`). If that is too large for a run, the check tries 2 h, 4 h, …,
+//! up to the system's own time scale.
 
 use super::bounded::{Bounded, exact, once};
 use super::comparison::Comparison;
@@ -24,20 +24,20 @@ use crate::method::EnergyPreserving;
 use crate::node::Node;
 use crate::state::State;
 
-/// The energy carried over a run of the energy-preserving integrator, against the energy at the midpoints and the slot
-/// derivatives. For the midpoint rule.
+/// Tests the carried energy of an energy-preserving run against the energy at the midpoints and the slot derivatives.
+/// For the midpoint rule.
 ///
 /// # Errors
-/// The first energy that differs; a step that does not exist; [`CheckFailure::StepTooSmall`] where rounding decides how
-/// long the steps are; [`CheckFailure::Vacuous`] where every energy is zero or no momentum changes, so that there is
-/// nothing to preserve.
+/// The first energy that differs; a step that does not exist; [`CheckFailure::StepTooSmall`] if rounding determines the
+/// step lengths; [`CheckFailure::Vacuous`] if every energy is zero or no momentum changes, so that there is nothing to
+/// preserve.
 pub fn energy<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let check = Comparison::new(S::NAME, "energy");
     let longest = SampledMotion::from(system, place, &check)?.h;
     let (mut h, mut met) = (place.h, String::new());
     loop {
         let rounding = length::at_start(system, place, h);
-        // Where there is no density at all, the integrator says so.
+        // Without any density the integrator returns the error.
         if rounding <= length::COARSE || rounding.is_infinite() {
             let may_be_rounding = rounding.is_finite() && rounding > length::FINE;
             match along_run(system, &Place { h, ..*place }) {
@@ -71,7 +71,7 @@ fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) 
         let step = run.last_step();
         let (t, q, v) = step.midpoint;
         let rounding = system.extended_rounding(&Node::new(before, 0.0), step.h, &v);
-        // What the solved equations may leave, and the end may miss by, for the rounding of the start.
+        // Allowed residual of the solved equations, and rounding error of the end, for the tolerance of the start.
         let left = SOLVED * f64::EPSILON * (rounding.energy_residual + v.abs().dot(&rounding.residual));
         let mean = Bounded { value: f64::midpoint(carried, step.energy), error: left };
         let found = bounded.energy(Bounded::once(t), &once(&q), &exact(&v)).of(system.energy(t, &q, &v));
@@ -84,7 +84,7 @@ fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) 
         moved = moved.max((step.p - first.p).amax());
     }
     if moved == 0.0 {
-        return Err(check.vacuous("no momentum changes from this place; choose another"));
+        return Err(check.vacuous("no momentum changes from this place; choose another place"));
     }
     check.finish(&["energy at the midpoint", "E1"])
 }

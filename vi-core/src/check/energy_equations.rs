@@ -5,8 +5,9 @@
 //! ∂r/∂h      (∂e/∂v − v·A)/h = (∂c/∂v + r)/h      (∂e/∂h − v·∂r/∂h)/h = (∂c/∂h)/h
 //! ```
 //!
-//! and how both rows, p1 − p0 and E1 − E0 change with q0, v and h. Left: what the system says. Right: the slots, and r and c differentiated operation by operation. What it says of r, A and p1 − p0
-//! must be what it says of them for a fixed step. Rounding: as in `derivatives`, that of both sides, carried along.
+//! and the derivatives of both rows, p1 − p0 and E1 − E0 with respect to q0, v and h. Left sides: generated code. Right
+//! sides: the slots, and automatic differentiation of r and c. The generated r, A and p1 − p0 must agree with those of
+//! a fixed step. Tolerance: as in `derivatives`, the rounding-error bounds of both sides.
 
 use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
@@ -22,11 +23,11 @@ use crate::stepping::{EnergyStepping, ExtendedResidual, FixedStepping};
 use nalgebra::SVector;
 use std::array;
 
-/// The step density against dual numbers, the energy row of a step and its increments against the slots, its derivatives against dual numbers, its momentum rows against
-/// those of a fixed step.
+/// Tests the step density and the derivatives of the energy row against dual numbers. Tests the energy row and its
+/// increments against the slots, and the momentum rows against those of a fixed step.
 ///
 /// # Errors
-/// The first number that differs; [`CheckFailure::Vacuous`] where the energy row is zero throughout.
+/// The first number that differs; [`CheckFailure::Vacuous`] if the energy row is zero throughout.
 pub fn energy_equations<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     place: &Place<N>,
@@ -40,7 +41,7 @@ pub fn energy_equations<const N: usize, S: EnergyChecked<N>>(
     check.finish(&["energy residual", "momentum rows"])
 }
 
-/// The step density against that of L and the acceleration.
+/// Tests the step density against that of L and the acceleration.
 fn step_density<const N: usize, S: EnergyChecked<N>>(
     sample: &Sample<S, N>,
     check: &mut Comparison,

@@ -1,13 +1,14 @@
-//! Gauss steps of a system: the order, the momenta of cyclic coordinates, the symplectic form.
+//! Gauss steps of a system: order, momenta of cyclic coordinates, symplectic form.
 //!
-//! A system needs no rule for these. Order and momenta are those of steps taken with [`STAGES`] stages. The symplectic form is that of the step with one
-//! stage, as a function of its start and of the velocity of the stage, so that no equation is solved:
+//! These checks need no rule. Order and momenta are tested on steps with [`STAGES`] stages. The symplectic form is that
+//! of the step with one stage, as a function of its start and of the stage velocity. No equation is solved:
 //!
 //! ```text
 //! p0 = L_v − (h/2) (L_q + f)      q1 = q0 + h v      p1 = L_v + (h/2) (L_q + f)      at t0 + h/2, q0 + (h/2) v, v
 //! ```
 //!
-//! Rounding: as in `order` and `symplecticity`. A Gauss step is reversible whatever the functions of the system are, so no check is about that.
+//! Tolerance: as in `order` and `symplecticity`. A Gauss step is reversible for any functions of a system, so that
+//! there is no such check.
 
 use super::bounded::Bounded;
 use super::comparison::Comparison;
@@ -24,15 +25,15 @@ use crate::real::Dual;
 use crate::run::Starts;
 use nalgebra::SVector;
 
-/// Stages of the steps that are taken.
+/// Stages of the tested steps.
 const STAGES: usize = 2;
 /// Their order.
 const ORDER: u32 = 4;
 
-/// The error of Gauss steps with two stages falls with h⁴ or a higher power.
+/// Tests that the error of Gauss steps with two stages decreases with h⁴ or a higher power.
 ///
 /// # Errors
-/// Those of [`order`](super::order()).
+/// As [`order`](super::order()).
 pub fn gauss_order<const N: usize, S: MotionChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let check = Comparison::new(S::NAME, "gauss order");
     order::judged(&check, system, place, ORDER, |start, h| {
@@ -40,10 +41,11 @@ pub fn gauss_order<const N: usize, S: MotionChecked<N>>(system: &S, place: &Plac
     })
 }
 
-/// Momenta of cyclic coordinates keep every bit over Gauss steps, and no force acts on them at any point.
+/// Tests that momenta of cyclic coordinates are constant bit for bit over Gauss steps, and that no force acts on them
+/// at any point.
 ///
 /// # Errors
-/// Those of [`momenta`](super::momenta).
+/// As [`momenta`](super::momenta).
 pub fn gauss_momenta<const N: usize, S: MotionChecked<N>>(
     system: &S,
     place: &Place<N>,
@@ -61,17 +63,18 @@ pub fn gauss_momenta<const N: usize, S: MotionChecked<N>>(
     check.finish(&[])
 }
 
-/// Gauss steps keep the symplectic form.
+/// Tests that Gauss steps preserve the symplectic form.
 ///
 /// # Errors
-/// An entry that differs; [`CheckFailure::NotApplicable`] for a system with a force; [`CheckFailure::Vacuous`] where nothing moves.
+/// An entry that differs; [`CheckFailure::NotApplicable`] for a system with a force; [`CheckFailure::Vacuous`] if
+/// nothing moves.
 pub fn gauss_symplecticity<const N: usize, S: MotionChecked<N>>(
     system: &S,
     place: &Place<N>,
 ) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "gauss symplecticity");
     if S::FORCED {
-        return Err(check.not_applicable("a force does not keep the symplectic form"));
+        return Err(check.not_applicable("a system with a force does not preserve the symplectic form"));
     }
     for sample in samples(system, place, &check)? {
         symmetries::keeps_area(&mut check, |column| {
@@ -81,7 +84,7 @@ pub fn gauss_symplecticity<const N: usize, S: MotionChecked<N>>(
     check.finish(&[symmetries::AREA])
 }
 
-/// The displacement of the step with one stage that begins at q with the velocity v of its stage, and the momenta at both ends.
+/// The displacement of the step with one stage from q with the stage velocity v, and the momenta at both ends.
 fn one_stage<const N: usize, S: MotionChecked<N>>(
     sample: &Sample<S, N>,
     q: &SVector<First, N>,

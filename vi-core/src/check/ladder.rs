@@ -1,37 +1,38 @@
-//! Slopes over a ladder of steps.
+//! Slopes over sequences of step lengths.
 //!
-//! In: quantities that fall with a power of h, measured for steps h, h/2, …, each with its rounding. Out: the slope of
-//! log(quantity) over log(h), by least squares through the three smallest steps at which the quantity is [`CLEAR`] of the
-//! bound of its rounding. Where there are no three, ladders from 4 h, 16 h, … are climbed, up to the system's own time scale:
+//! Quantities that decrease with a power of h are measured for steps h, h/2, …, with their rounding errors. This module
+//! fits the slope of log(quantity) over log(h). The least-squares fit uses the three smallest steps at which the
+//! quantity exceeds its rounding-error bound [`CLEAR`] times. If there are not three, it tries sequences from 4 h, 16
+//! h, …, up to the system's own time scale:
 //!
 //! ```text
 //! the quantity is clear at three steps or more              the slope is judged
-//! at none, on the ladder that comes to the time scale       the law holds exactly, as far as rounding shows
-//! else                                                      h is too small: a failure that says which h to try
+//! at none, on the sequence that reaches the time scale      the law holds exactly, to rounding
+//! otherwise                                                 h is too small: a failure that suggests an h
 //! ```
 
 use super::comparison::Comparison;
 use super::report::{CheckFailure, Report};
 
-/// Halvings of the step: the ladder.
+/// Halvings of the step in a sequence.
 const HALVINGS: u32 = 4;
-/// Where a slope is too small, halvings up to which the ladder is extended while the quantity stands clear: the next power
-/// of h may have its part in it.
+/// Most halvings if a slope is too small: the sequence is extended while the quantity is clear, because the next power
+/// of h may contribute.
 const FURTHER: u32 = 8;
 /// Points that a slope needs.
 const FEWEST: usize = 3;
-/// So many times the bound of its rounding is clear of it.
+/// A quantity is clear if it exceeds its rounding-error bound by this factor.
 const CLEAR: f64 = 2.0;
-/// From one ladder to the next.
+/// Factor from one sequence to the next.
 const CLIMB: f64 = 4.0;
-/// Multiples of the longest step of a ladder beyond which none is worth a try.
+/// Largest suggested step, in units of the longest step of a sequence.
 pub(super) const REACH: f64 = 4.0;
-/// What a slope may be too small by. Measured on the ready systems: 2.6e-3.
+/// Tolerance below the expected slope. Measured on the ready-made systems: 2.6e-3.
 const TOLERANCE: f64 = 0.1;
-/// Rounding, as a part of what is measured, up to which a law may be called exact.
+/// Relative rounding error up to which a law counts as exact.
 const EXACT: f64 = 1e-6;
 
-/// A quantity for one step, and what rounding may have made of it.
+/// A quantity for one step, and its rounding error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measured {
     pub(super) quantity: f64,
@@ -40,26 +41,26 @@ pub(super) struct Measured {
 
 impl Measured {
     fn is_clear(&self) -> bool {
-        // Not a number is clear, and no slope goes through it.
+        // NaN counts as clear, and then fails every slope.
         self.quantity.is_nan() || self.quantity > CLEAR * self.rounding
     }
 }
 
-/// What has to fall with h to the power `slope`.
+/// A law of decrease with h to the power `slope`.
 pub(super) struct Law {
     pub(super) name: &'static str,
     pub(super) quantities: Vec<String>,
     pub(super) slope: f64,
-    /// Whether a quantity that is not seen must be exact, or the others will do.
+    /// Whether every quantity must be clear or exact, or one clear quantity is enough.
     pub(super) every: bool,
 }
 
 impl Law {
-    /// Judges the law by ladders of steps from `h` to `longest`. `prepare` makes what the steps of the ladder from its
-    /// argument share; `measure` gives the quantities for one of them, by how often it is halved.
+    /// Judges the law by sequences of steps from `h` to `longest`. `prepare` computes the data that the steps of a
+    /// sequence share; `measure` returns the quantities for one of them, by its number of halvings.
     ///
     /// # Errors
-    /// A slope that is too small; what `prepare` and `measure` fail with on the ladder from `h`;
+    /// A slope that is too small; errors of `prepare` and `measure` on the sequence from `h`;
     /// [`CheckFailure::StepTooSmall`].
     pub(super) fn judge<P>(
         &self,
@@ -100,7 +101,7 @@ impl Law {
         Err(check.too_small(self.name, needed, format!("steps up to {:.0e} were tried{beyond}", ladder.h)))
     }
 
-    /// Fits the quantities that are seen on this ladder, and were not on an earlier one.
+    /// Fits the quantities that are clear on this sequence and were not on an earlier one.
     fn fit(&self, ladder: &mut Ladder, fits: &mut [Option<Fit>], check: &Comparison) -> Result<(), CheckFailure> {
         for (index, (fit, name)) in fits.iter_mut().zip(&self.quantities).enumerate() {
             if fit.is_none() {
@@ -128,7 +129,7 @@ impl Law {
     }
 }
 
-/// What was measured for the steps h, h/2, …
+/// Measurements for the steps h, h/2, …
 struct Ladder<'a> {
     h: f64,
     measure: Box<dyn Fn(u32) -> Result<Vec<Measured>, CheckFailure> + 'a>,
@@ -145,8 +146,8 @@ impl<'a> Ladder<'a> {
         Ok(Self { h, measure, rungs, further: HALVINGS + 1..=FURTHER })
     }
 
-    /// The slope of a quantity through the smallest steps at which it is seen, smaller ones than the ladder's where that
-    /// is too small; `None` where there are too few.
+    /// The slope of a quantity through the smallest steps at which it is clear, extended to smaller steps if it is too
+    /// small; `None` if there are too few.
     fn fit(&mut self, index: usize, slope: f64) -> Result<Option<Fit>, CheckFailure> {
         loop {
             let points = self.clear(index);
@@ -160,22 +161,22 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    /// Steps and a quantity, from the largest step down to where the quantity is lost in its rounding.
+    /// Steps and values of a quantity, from the largest step down to the first one within its rounding error.
     fn clear(&self, index: usize) -> Vec<(f64, f64)> {
         let steps = core::iter::successors(Some(self.h), |h| Some(h / 2.0));
         let measured = self.rungs.iter().filter_map(|rung| rung.get(index)).take_while(|measured| measured.is_clear());
         steps.zip(measured.map(|measured| measured.quantity)).collect()
     }
 
-    /// Whether the quantities without a fit are zero to a rounding that hides little.
+    /// Whether the quantities without a fit are zero, with a small rounding error.
     fn are_exact(&self, fits: &[Option<Fit>]) -> bool {
         let top = self.rungs.first().into_iter().flatten();
         let mut hidden = top.zip(fits).filter(|(_, fit)| fit.is_none());
         hidden.all(|(measured, _)| !measured.is_clear() && measured.rounding <= EXACT)
     }
 
-    /// The factor of h with which the quantities without a fit would be seen, 2 at least: over a time in proportion to h a
-    /// quantity grows as h⁴, or as h² while its rounding falls as 1/h².
+    /// The factor of h that would make the quantities without a fit clear, at least 2. Over a time in proportion to h a
+    /// quantity grows as h⁴, or as h² while its rounding error decreases as 1/h².
     fn missing(&self, fits: &[Option<Fit>]) -> f64 {
         let third = self.rungs.get(FEWEST - 1).into_iter().flatten();
         let hidden = third.zip(fits).filter(|(_, fit)| fit.is_none());
@@ -184,7 +185,7 @@ impl<'a> Ladder<'a> {
     }
 }
 
-/// A slope, and the points that it was fitted through.
+/// A slope, and its fitted points.
 struct Fit {
     slope: f64,
     points: Vec<(f64, f64)>,
@@ -201,12 +202,12 @@ impl Fit {
         Self { slope: products / squares, points }
     }
 
-    /// Whether the slope is large enough. One that is not a number is not.
+    /// Whether the slope is large enough. NaN is not.
     fn is_steep(&self, slope: f64) -> bool {
         slope - self.slope <= TOLERANCE
     }
 
-    /// The points, as a message shows them.
+    /// The points, formatted for a message.
     fn describe(&self, of: &str) -> String {
         let each: Vec<String> =
             self.points.iter().map(|(h, quantity)| format!("{quantity:.1e} at h = {h:.1e}")).collect();

@@ -1,21 +1,22 @@
-//! The rounding of an energy-preserving step's length.
+//! The rounding error of an energy-preserving step's length.
 //!
-//! In: a step that solves its equations, and the node that it begins at. Out: by which part of itself its length may be
-//! wrong, for no other reason than the rounding of its equations. That is the Newton step that is left,
+//! From a step that solves its equations, and its start node, follows the relative error of its length due to the
+//! rounding of its equations alone. It is the remaining Newton step,
 //!
 //! ```text
 //! δh = −(c/h − energy_dv·a)/S        a = A⁻¹ r        S = energy_dh − energy_dv·A⁻¹ ∂r/∂h = −D/4
 //! ```
 //!
-//! evaluated in numbers that carry their rounding. c is rounded by ε times the size S_E of the terms of the energy, so
+//! evaluated in numbers with rounding-error bounds. The rounding error of c is ε times the size S_E of the terms of the
+//! energy, so that
 //!
 //! ```text
 //! δh/h ≈ 4 ε S_E/(h² D) = 4 ε (τ/h)²        τ² = S_E/D
 //! ```
 //!
-//! with τ the time in which the motion turns: the length of a step is a quantity of second order. Each step finds its length
-//! anew from the excess `H − E = h² D/8` at its node, so this does not add up along a run. Measured on the systems of
-//! `tests/checks_of_many.rs` with steps that are all rounding: 0.005 to 0.12 of the bound.
+//! with τ the time scale of turning: the length of a step is a second-order quantity. Each step computes its length
+//! anew from the excess `H − E = h² D/8` at its node, so that these errors do not add up along a run. Measured on the
+//! systems of `tests/checks_of_many.rs` with steps dominated by rounding: 0.005 to 0.12 of the bound.
 
 use super::bounded::{Bounded, exact};
 use super::subject::{EnergyChecked, Place};
@@ -25,20 +26,20 @@ use crate::state::State;
 use crate::stepping::{EnergyStepping, ExtendedSystem};
 use nalgebra::{SMatrix, SVector};
 
-/// Part of itself by which the length of a step may be rounded in a run that is taken at all.
+/// Largest relative rounding error of a step length for which the check takes a run.
 pub(super) const COARSE: f64 = 1e-2;
-/// Beyond this part, what it does to v is of the second order and still above the rounding of the momentum equation: a run
-/// may fail for no other reason.
+/// Beyond this relative error, its second-order effect on v exceeds the rounding of the momentum equation: a run may
+/// fail for this reason alone.
 pub(super) const FINE: f64 = 1e-6;
 
-/// The step density of a step, and the part of itself by which its length may be wrong.
+/// The step density of a step, and the relative error of its length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SolvedLength {
     pub(super) density: Bounded,
     pub(super) length: f64,
 }
 
-/// The step `(v, h)` from `node`, which solves its equations; `None` where A is singular.
+/// The solved step `(v, h)` from `node`; `None` if A is singular.
 pub(super) fn solved<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     node: &Node<N, Bounded>,
@@ -53,17 +54,17 @@ pub(super) fn solved<const N: usize, S: EnergyChecked<N>>(
     let schur = energy_dh - energy_dv.dot(&eliminated.column(1));
     let change = (energy_residual / h - energy_dv.dot(&eliminated.column(0))) / schur;
     let length = change.most() / h.value.abs();
-    // Nothing is known of it where S may be zero.
+    // Unbounded if S may be zero.
     let length = if length.is_nan() { f64::INFINITY } else { length };
     Some(SolvedLength { density: schur * Bounded::exact(-4.0), length })
 }
 
-/// The rounding of the first interval of length h, of which the place is the middle.
+/// The rounding error of the first interval of length h, with the place as its midpoint.
 pub(super) fn at_start<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>, h: f64) -> f64 {
     let Place { t, q, v, .. } = place;
     let node = Node::new(State { t: t - h / 2.0, q: q - v * (h / 2.0), p: SVector::zeros() }, 0.0);
     let equations = system.extended_system(&node, h, v);
-    // The momenta and the energy with which the equations hold: the energy row is c + v·r.
+    // The momenta and the energy that satisfy the equations: the energy row is c + v·r.
     let p = equations.momentum.residual;
     let node = Node { p, energy: equations.energy_residual + v.dot(&p), ..node };
     solved(system, &node.map(Bounded::exact), h, v).map_or(f64::INFINITY, |solved| solved.length)

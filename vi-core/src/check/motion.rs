@@ -1,7 +1,7 @@
-//! Accurate motion, by extrapolation of the modified midpoint rule (Gragg, Bulirsch, Stoer): Hairer, Nørsett, Wanner,
-//! Solving Ordinary Differential Equations I, section II.9.
+//! Accurate reference trajectories, by extrapolation of the modified midpoint rule (Gragg, Bulirsch, Stoer): Hairer,
+//! Nørsett, Wanner, Solving Ordinary Differential Equations I, section II.9.
 //!
-//! In: a system, of which nothing is used but its acceleration, and a state. Out: the state at another time.
+//! They use only the acceleration of the system.
 
 use crate::error::Residuals;
 use crate::error::StepError;
@@ -12,17 +12,16 @@ use nalgebra::SVector;
 const ROWS: u32 = 7;
 /// Substeps of the rows; the last entry of the tableau is of order 14.
 const SUBSTEPS: [u32; ROWS as usize] = [2, 4, 6, 8, 10, 12, 14];
-/// Difference of the last two columns up to which a step is accepted, relative to the state; the last column is better by
-/// far.
+/// Accepted difference of the last two columns, relative to the state; the last column is far more accurate.
 const TOLERANCE: f64 = 1e-14;
-/// A difference below this that half a step does not lessen by [`FALL`] is rounding, and the step is accepted.
+/// A smaller difference that half a step does not reduce by [`FALL`] is rounding error, and the step is accepted.
 const ROUNDING: f64 = 1e-8;
-/// Where it is not rounding, half a step lessens the difference by a factor of some thousands.
+/// Expected reduction for half a step; without rounding it is some thousands.
 const FALL: f64 = 16.0;
-/// Parts of the way below which a step is given up.
+/// Shortest step before failure, as a fraction of the time span.
 const SHORTEST: f64 = 1e-7;
 
-/// Where a motion is: time, coordinates, velocities.
+/// A point of a trajectory: time, coordinates, velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<const N: usize> {
     /// Time.
@@ -37,25 +36,25 @@ pub struct Motion<const N: usize> {
 type Change<const N: usize> = (SVector<f64, N>, SVector<f64, N>);
 
 impl<const N: usize> Motion<N> {
-    /// The same motion at the time `end`, later or earlier.
+    /// The trajectory at the time `end`, later or earlier.
     ///
     /// # Errors
-    /// Those of the acceleration; [`StepError::NotConverged`] where the motion cannot be followed.
+    /// Those of the acceleration; [`StepError::NotConverged`] if the integration fails.
     pub fn at(self, system: &impl Lagrangian<N>, end: f64) -> Result<Self, StepError> {
         self.within(system, end, u32::MAX)
     }
 
-    /// The same, given up after so many trial steps.
+    /// The same, with a limit of trial steps.
     pub(super) fn within(mut self, system: &impl Lagrangian<N>, end: f64, mut trials: u32) -> Result<Self, StepError> {
         let way = end - self.t;
         let mut h = way;
         let mut arrived = way == 0.0;
-        // The difference of the trial step before from the same state, which was twice as long.
+        // The difference of the previous trial step from the same state, of twice the length.
         let mut before = f64::INFINITY;
         while !arrived {
             let last = (end - self.t).abs() <= h.abs();
             let step = if last { end - self.t } else { h };
-            // A trial step that is too long may end anywhere, even where there is no acceleration.
+            // A trial step that is too long may end anywhere, even at a state without acceleration.
             let trial = self.extrapolated(system, step);
             let error = trial.as_ref().map_or(f64::NAN, |(_, error)| *error);
             let is_accurate = error <= TOLERANCE || error <= ROUNDING && error * FALL >= before;
@@ -92,7 +91,7 @@ impl<const N: usize> Motion<N> {
         for (j, n) in SUBSTEPS.into_iter().enumerate() {
             let mut entry = self.modified_midpoint(system, h, n)?;
             for (above, before) in row.iter_mut().zip(SUBSTEPS[..j].iter().rev()) {
-                // Aitken and Neville, in h²: the entry beside and the one above it cancel one more power.
+                // Aitken and Neville, in h²: two neighbouring entries cancel one more power.
                 let ratio = f64::from(n) / f64::from(*before);
                 let gain = 1.0 / (ratio * ratio - 1.0);
                 let better = (entry.0 + (entry.0 - above.0) * gain, entry.1 + (entry.1 - above.1) * gain);
@@ -108,7 +107,8 @@ impl<const N: usize> Motion<N> {
         Ok((best, if finite { error } else { f64::NAN }))
     }
 
-    /// Change over `h` by the modified midpoint rule with `n` substeps, without the starting value and its digits.
+    /// Change over `h` by the modified midpoint rule with `n` substeps, without the rounding error of the starting
+    /// value.
     fn modified_midpoint(&self, system: &impl Lagrangian<N>, h: f64, n: u32) -> Result<Change<N>, StepError> {
         let part = h / f64::from(n);
         let rate = |index: u32, (y, w): &Change<N>| {

@@ -1,17 +1,17 @@
 //! The order of the rule.
 //!
-//! In: a place. The motion from there is taken by fixed steps h, h/2, … and, independently, followed accurately from
-//! nothing but the acceleration. Out: for each coordinate the slope of log(error) over log(h), the error being the largest
-//! over the run, relative to the size of the coordinate: its largest value, and how far it goes in the time t, which is
-//! rounded too.
+//! Fixed steps h, h/2, … from a place are compared with an accurate reference trajectory, which uses only the
+//! acceleration. For each coordinate the check fits the slope of log(error) over log(h). The error is the largest over
+//! the run, relative to the size of the coordinate: its largest value, and its largest displacement in the time t,
+//! because t is rounded too.
 //!
-//! Rounding: that of each step, grown as the motion makes it grow, and that of the accurate motion. So the error is
-//! measured twice, from the place and from a place [`BESIDE`] roundings away, from which the accurate motion is followed in
-//! other parts. The error of the rule is the same in both but for its last digits, so what they differ by is rounding. The
-//! accurate motion adds 32 changes and times, which may round the same way in both:
+//! Tolerance: the rounding errors of all steps, amplified by the motion, and those of the reference. The error is
+//! measured twice, from the place and from a place [`BESIDE`] ulps away, with references in different parts. The error
+//! of the rule is the same in both up to its last digits, so that their difference is rounding error. The reference
+//! adds 32 changes and times, which may round equally in both:
 //!
 //! ```text
-//! bound of rounding = 4 max over the run of |error − error'|, and 128 ε (|q| + |t v|) at least
+//! rounding-error bound = 4 max over the run of |error − error'|, and at least 128 ε (|q| + |t v|)
 //! ```
 
 use super::comparison::Comparison;
@@ -27,23 +27,23 @@ use crate::run::{Run, Starts};
 use crate::state::State;
 use nalgebra::SVector;
 
-/// Roundings of each coordinate and velocity between the two places.
+/// Distance of the two places, in ulps of each coordinate and velocity.
 const BESIDE: f64 = 64.0;
-/// The bound of the rounding of one run, in what two differ by.
+/// Rounding-error bound of one run, in units of the difference of two.
 const BOUND: f64 = 4.0;
 
-/// The error of fixed steps falls with h to the power `order` or a higher one: 2 for the midpoint and the trapezoidal rule.
-/// Where every error is one of rounding the steps are exact, as for a constant force.
+/// Tests that the error of fixed steps decreases with h to the power `order` or a higher one: 2 for the midpoint and
+/// the trapezoidal rule. If every error is a rounding error, the steps are exact, as for a constant force.
 ///
 /// # Errors
-/// A smaller slope; [`CheckFailure::StepTooSmall`] for less than three errors above rounding; [`CheckFailure::Vacuous`]
-/// where nothing accelerates; a step that is not taken.
+/// A smaller slope; [`CheckFailure::StepTooSmall`] for fewer than three errors above rounding;
+/// [`CheckFailure::Vacuous`] if nothing accelerates; a failed step.
 pub fn order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, order: u32) -> Result<Report, CheckFailure> {
     let check = Comparison::new(S::NAME, "order");
     judged(&check, system, place, order, |start, h| system.at_state(start).integrate(FixedStep, h))
 }
 
-/// The same for the runs that `begin` makes from a state with a step.
+/// The same for the runs that `begin` starts from a state with a step.
 pub(super) fn judged<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
     check: &Comparison,
     system: &S,
@@ -53,7 +53,7 @@ pub(super) fn judged<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: La
 ) -> Result<Report, CheckFailure> {
     let course = SampledMotion::from(system, place, check)?;
     if !course.accelerates() {
-        return Err(check.vacuous("nothing accelerates, and steps of any rule are exact; choose another place"));
+        return Err(check.vacuous("nothing accelerates, so that steps of any rule are exact; choose another place"));
     }
     let start = Motion { t: place.t, q: place.q, v: place.v };
     let beside = |vector: &SVector<f64, N>| vector * (1.0 + BESIDE * f64::EPSILON);
@@ -73,7 +73,7 @@ pub(super) fn judged<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: La
     law.judge(check, [place.h, course.h], paths, measure)
 }
 
-/// The error of each coordinate, and its rounding, from the errors along two runs.
+/// The error of each coordinate, and its rounding error, from the errors along two runs.
 fn measured<const N: usize>(
     size: &SVector<f64, N>,
     errors: &[SVector<f64, N>],
@@ -94,19 +94,19 @@ fn measured<const N: usize>(
     (0..N).map(measured).collect()
 }
 
-/// The larger of two numbers; not a number where either is not.
+/// The larger of two numbers; NaN if either is NaN.
 fn larger(one: f64, other: f64) -> f64 {
     if one > other || one.is_nan() { one } else { other }
 }
 
-/// The accurate motion at equal times.
+/// The reference trajectory at equal time intervals.
 struct Path<const N: usize> {
     h: f64,
     states: Vec<Motion<N>>,
 }
 
 impl<const N: usize> Path<N> {
-    /// The motion over [`STEPS`] steps h, each followed in so many parts.
+    /// The reference over [`STEPS`] steps h, each integrated in this many parts.
     fn from<S: MotionChecked<N>>(system: &S, start: Motion<N>, h: f64, parts: u32) -> Result<Self, StepError> {
         let mut states = vec![start];
         let mut now = start;
@@ -125,7 +125,7 @@ impl<const N: usize> Path<N> {
         self.states.iter().fold(SVector::zeros(), |largest, state| largest.sup(&size(state)))
     }
 
-    /// What steps of the length h, so many times halved, are off by along the motion.
+    /// Errors of steps of the length h, after this many halvings, along the reference.
     fn errors<S: MotionChecked<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
         &self,
         system: &S,

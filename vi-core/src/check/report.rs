@@ -1,4 +1,4 @@
-//! What a check found.
+//! Results of checks.
 
 use crate::error::StepError;
 use core::fmt;
@@ -10,77 +10,77 @@ pub struct Report {
     pub system: &'static str,
     /// The check.
     pub check: &'static str,
-    /// Numbers above their rounding that were compared; of a slope, the points that it was fitted through.
+    /// Number of compared values above their rounding errors; for a slope, the number of fitted points.
     pub compared: usize,
-    /// Where the difference was worst.
+    /// Quantity with the worst difference.
     pub what: String,
-    /// The worst difference, as a part of what rounding may do there; of a slope, what it falls short by.
+    /// The worst difference, relative to its tolerance; for a slope, its shortfall.
     pub worst: f64,
-    /// What would have been allowed: 1, or for a slope how much it may fall short by.
+    /// The tolerance: 1, or for a slope the allowed shortfall.
     pub tolerance: f64,
 }
 
-/// Why a check did not pass.
+/// The reason why a check failed.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum CheckFailure {
-    /// Two numbers that should agree do not.
+    /// Two numbers differ that should agree.
     Differs {
         /// The system.
         system: &'static str,
         /// The check.
         check: &'static str,
-        /// Which number.
+        /// Name of the number.
         what: String,
-        /// As the system has it.
+        /// Value of the system.
         found: f64,
-        /// As the check has it.
+        /// Value of the check.
         wanted: f64,
-        /// Their difference; of a slope, what it falls short by.
+        /// Their difference; for a slope, its shortfall.
         difference: f64,
-        /// What would have been allowed: the bound of the rounding of both.
+        /// The tolerance: the sum of both rounding-error bounds.
         tolerance: f64,
     },
-    /// Nothing was compared, or only zeros: this proves nothing.
+    /// Nothing was compared, or only zeros, which proves nothing.
     Vacuous {
         /// The system.
         system: &'static str,
         /// The check.
         check: &'static str,
-        /// What was missing, and what to do.
+        /// The missing quantity, with advice.
         why: String,
     },
-    /// The step is so small that what the check is about is all rounding, and larger ones, which the check tried, did not
-    /// help. This proves nothing, so it is a failure.
+    /// The step is so small that rounding dominates the tested quantity, and larger steps, which the check tried, did
+    /// not help. This proves nothing, so it is a failure.
     StepTooSmall {
         /// The system.
         system: &'static str,
         /// The check.
         check: &'static str,
-        /// What is to be seen.
+        /// The tested quantity.
         what: &'static str,
-        /// The step with which it would be, by extrapolation from the largest one tried, in units of time; `None` where that is
-        /// far beyond the time in which the system moves, and only another place will do.
+        /// A sufficient step, extrapolated from the largest one tried, in units of time; `None` if it is far beyond the
+        /// time scale of the system, so that only another place can help.
         needed: Option<f64>,
-        /// Which steps were tried, and what stood against larger ones.
+        /// The steps tried, and the obstacle to larger ones.
         why: String,
     },
-    /// The system has not the property that the check is about.
+    /// The system lacks the tested property.
     NotApplicable {
         /// The system.
         system: &'static str,
         /// The check.
         check: &'static str,
-        /// What stands against it.
+        /// The reason.
         why: &'static str,
     },
-    /// A step of the check was not taken.
+    /// A step of the check failed.
     Step {
         /// The system.
         system: &'static str,
         /// The check.
         check: &'static str,
-        /// Why.
+        /// The error of the step.
         error: StepError,
     },
 }
@@ -100,7 +100,7 @@ impl fmt::Display for CheckFailure {
         match self {
             Self::Differs { system, check, what, found, wanted, difference, tolerance } => write!(
                 f,
-                "{system}, {check}: {what} is {found:e} instead of {wanted:e}, off by {difference:.1e} where {tolerance:.1e} is allowed"
+                "{system}, {check}: {what} is {found:e} instead of {wanted:e}, off by {difference:.1e} (allowed {tolerance:.1e})"
             ),
             Self::Vacuous { system, check, why } => write!(f, "{system}, {check}: proves nothing, {why}"),
             Self::StepTooSmall { system, check, what, needed, why } => {
@@ -113,7 +113,7 @@ impl fmt::Display for CheckFailure {
             Self::NotApplicable { system, check, why } => write!(f, "{system}, {check}: does not apply, {why}"),
             Self::Step { system, check, error } => write!(
                 f,
-                "{system}, {check}: {}; a check needs steps: try another place, where D keeps its sign, or a shorter h",
+                "{system}, {check}: {}; try a place at which D keeps its sign, or a shorter h",
                 error.reason()
             ),
         }

@@ -1,9 +1,10 @@
-//! Where formulas are compared: states about the motion from a place, with parameters about the given ones.
+//! Samples for the comparison of formulas: states near the trajectory from a place, with parameters near the given
+//! ones.
 //!
-//! In: a system and a [`Place`]. Out: the [`SampledMotion`] of the motion, whose time scale is the system's and not that of the
-//! place's h; and samples about it, of which no coordinate, velocity or parameter has a value that could hide a term, as
-//! zero and one can. A formula holds for every h. At a step that is a part of the time scale its terms are of like size,
-//! however small the place's h is; with h itself a term of order h² would lie below the rounding of the others.
+//! From a system and a [`Place`] follows the [`SampledMotion`], whose time scale is that of the system, not that of the
+//! place's h. No coordinate, velocity or parameter of a sample has a value that could hide a term, such as zero and
+//! one. A formula holds for every h. At a fraction of the time scale its terms are of similar size; with a small h of
+//! the place, a term of order h² would lie below the rounding error of the others.
 
 use super::comparison::Comparison;
 use super::motion::Motion;
@@ -15,23 +16,23 @@ use crate::node::Node;
 use crate::state::{Interval, State};
 use nalgebra::SVector;
 
-/// Samples of one place.
+/// Samples per place.
 const SAMPLES: u32 = 8;
-/// Part of the extent of the motion by which samples lie beside it.
+/// Distance of the samples from the trajectory, relative to its extent.
 const BESIDE: f64 = 0.5;
-/// Part of its value by which a parameter is varied.
+/// Relative variation of a parameter.
 const VARIATION: f64 = 0.1;
-/// Part of the largest extent, in the measure of kinetic energy, that a coordinate which moves less is given.
+/// Smallest extent of a coordinate, relative to the largest one in the measure of kinetic energy.
 const LEAST: f64 = 1e-2;
-/// Radians that the fastest coordinate goes through before the motion has turned.
+/// Phase, in radians, of the fastest coordinate after which the trajectory has turned.
 const TURN: f64 = 2.0;
-/// How often the time of the place's own steps is doubled for a motion that does not turn.
+/// Doublings of the time span for a trajectory that does not turn.
 const DOUBLINGS: u32 = 40;
-/// Trial steps from one state to the next after which a motion beyond the place's own steps is given up.
+/// Most trial steps between two states beyond the place's own steps.
 const TRIALS: u32 = 256;
-/// Roundings of the time below which a step is lost in it.
+/// Smallest step, in ulps of the time.
 const LOST: f64 = 16.0;
-/// How often a sample that has no value is moved half way to the motion.
+/// Most moves of a sample without a value half way toward the trajectory.
 const RETREATS: u32 = 6;
 
 /// A system with varied parameters at a state.
@@ -43,20 +44,20 @@ pub(super) struct Sample<S, const N: usize> {
     pub(super) h: f64,
 }
 
-/// The motion from a place, until it has turned: at least over [`STEPS`] steps of the place's length, and as far beyond as
-/// it can be followed.
+/// The trajectory from a place, until it has turned: at least over [`STEPS`] steps of the place's length, and beyond as
+/// far as the integration succeeds.
 pub(super) struct SampledMotion<const N: usize> {
-    /// States at equal times.
+    /// States at equal time intervals.
     pub(super) states: Vec<Motion<N>>,
-    /// A step of which [`STEPS`] are all of it.
+    /// The step length: the span divided by [`STEPS`].
     pub(super) h: f64,
 }
 
 impl<const N: usize> SampledMotion<N> {
-    /// The course of the motion from a place.
+    /// The trajectory from a place.
     ///
     /// # Errors
-    /// A motion that cannot be followed over the place's own steps; [`CheckFailure::Vacuous`] where nothing moves.
+    /// A failed integration over the place's own steps; [`CheckFailure::Vacuous`] if nothing moves.
     pub(super) fn from<S: MotionChecked<N>>(
         system: &S,
         place: &Place<N>,
@@ -72,19 +73,19 @@ impl<const N: usize> SampledMotion<N> {
             if course.has_turned(system).map_err(|error| check.step(error))? {
                 break;
             }
-            // The place promises no more than its own steps.
+            // The place guarantees only its own steps.
             match Self::over(system, place, 2.0 * course.h, TRIALS) {
                 Ok(longer) => course = longer,
                 Err(_) => break,
             }
         }
         if course.range(|state| state.q).amax() == 0.0 {
-            return Err(check.vacuous("nothing moves from this place; choose another"));
+            return Err(check.vacuous("nothing moves from this place; choose another place"));
         }
         Ok(course)
     }
 
-    /// The motion over [`STEPS`] steps h, given up where it takes more trial steps from one state to the next.
+    /// The trajectory over [`STEPS`] steps h, with a limit of trial steps from one state to the next.
     pub(super) fn over<S: MotionChecked<N>>(
         system: &S,
         place: &Place<N>,
@@ -101,7 +102,7 @@ impl<const N: usize> SampledMotion<N> {
         Ok(Self { states, h })
     }
 
-    /// Whether a coordinate has gone through a good part of a turn, were its acceleration `−ω² q` but for a constant.
+    /// Whether a coordinate has passed a substantial phase, if its acceleration is `−ω² q` plus a constant.
     fn has_turned<S: MotionChecked<N>>(&self, system: &S) -> Result<bool, StepError> {
         let accelerations = self.states.iter().map(|state| system.acceleration(state.t, &state.q, &state.v));
         let accelerations: Vec<_> = accelerations.collect::<Result<_, _>>()?;
@@ -120,8 +121,8 @@ impl<const N: usize> SampledMotion<N> {
         range(self.states.iter().map(of))
     }
 
-    /// Distances for each coordinate and velocity, none zero: how far they move, or, where they hardly do, as far as makes
-    /// a part of the same kinetic energy.
+    /// Nonzero distances for each coordinate and velocity: their extents or, if these are tiny, the extents of a fixed
+    /// part of the same kinetic energy.
     fn extent<S: MotionChecked<N>>(&self, system: &S) -> [SVector<f64, N>; 2] {
         let Some(first) = self.states.first() else { return [SVector::zeros(); 2] };
         let mass = system.point(first.t, &first.q, &first.v).mass.dense();
@@ -139,7 +140,7 @@ impl<const N: usize> SampledMotion<N> {
         [positive(q, q), positive(v, speeds(first))]
     }
 
-    /// The samples about this motion, each where the system is defined.
+    /// The samples near this trajectory, each with values of the system.
     fn samples<S: MotionChecked<N>>(&self, system: &S, is_defined: fn(&Sample<S, N>) -> bool) -> Vec<Sample<S, N>> {
         let extent = self.extent(system);
         let mut draw = Sequence(7);
@@ -160,10 +161,10 @@ impl<const N: usize> SampledMotion<N> {
     }
 }
 
-/// The samples about the motion from a place.
+/// The samples near the trajectory from a place.
 ///
 /// # Errors
-/// Those of [`SampledMotion::from`].
+/// As [`SampledMotion::from`].
 pub(super) fn samples<const N: usize, S: MotionChecked<N>>(
     system: &S,
     place: &Place<N>,
@@ -172,10 +173,10 @@ pub(super) fn samples<const N: usize, S: MotionChecked<N>>(
     Ok(SampledMotion::from(system, place, check)?.samples(system, Sample::has_values))
 }
 
-/// The same samples, where a step from each has values too.
+/// The same samples, restricted to those from which a step also has values.
 ///
 /// # Errors
-/// Those of [`SampledMotion::from`].
+/// As [`SampledMotion::from`].
 pub(super) fn step_samples<const N: usize, S: Checked<N>>(
     system: &S,
     place: &Place<N>,
@@ -184,13 +185,13 @@ pub(super) fn step_samples<const N: usize, S: Checked<N>>(
     Ok(SampledMotion::from(system, place, check)?.samples(system, Sample::has_step))
 }
 
-/// The largest distances from the first of these vectors, entry by entry.
+/// The largest distances from the first vector, entry by entry.
 fn range<const N: usize>(mut vectors: impl Iterator<Item = SVector<f64, N>>) -> SVector<f64, N> {
     let Some(first) = vectors.next() else { return SVector::zeros() };
     vectors.fold(SVector::zeros(), |range, vector| range.sup(&(vector - first).abs()))
 }
 
-/// The sample beside a state: part 1 of the way is as far as it may be, part 0 is the state itself.
+/// The sample near a state: part 1 is the largest distance, part 0 the state itself.
 fn beside<const N: usize, S: MotionChecked<N>>(
     system: &S,
     state: &Motion<N>,
@@ -211,25 +212,25 @@ fn beside<const N: usize, S: MotionChecked<N>>(
 }
 
 impl<S: MotionChecked<N>, const N: usize> Sample<S, N> {
-    /// The interval that begins here, with the velocity of the sample.
+    /// The interval that starts here, with the velocity of the sample.
     pub(super) fn interval(&self) -> Interval<N> {
         Interval { t0: self.t, q0: self.q, t1: self.t + self.h, q1: self.q + self.v * self.h }
     }
 
-    /// The interval of which this is the middle, over a part of the step.
+    /// The interval with this midpoint, over a fraction of the step.
     pub(super) fn about(&self, part: f64) -> Interval<N> {
         let half = self.h * part / 2.0;
         Interval { t0: self.t - half, q0: self.q - self.v * half, t1: self.t + half, q1: self.q + self.v * half }
     }
 
-    /// A node from which `(v, h)` is no solution, so that the residuals are not zero.
+    /// A node from which `(v, h)` is not a solution, so that the residuals are nonzero.
     pub(super) fn node(&self) -> Node<N> {
         let Self { system, t, q, v, .. } = self;
         let p = system.momentum(*t, q, &(v * 0.75));
         Node::new(State { t: *t, q: *q, p }, system.energy(*t, q, &(v * 0.5)))
     }
 
-    /// Whether the motion is defined here: an exponent, say, may allow no other value.
+    /// Whether the equations of motion have values here; an exponent, for example, may exclude others.
     fn has_values(&self) -> bool {
         let Self { system, t, q, v, .. } = self;
         let Ok(acceleration) = system.acceleration(*t, q, v) else { return false };
@@ -240,7 +241,7 @@ impl<S: MotionChecked<N>, const N: usize> Sample<S, N> {
 }
 
 impl<S: Checked<N>, const N: usize> Sample<S, N> {
-    /// Whether the motion is defined here, and the step from here.
+    /// Whether the equations of motion and the step have values here.
     fn has_step(&self) -> bool {
         let Self { system, v, h, .. } = self;
         let (node, interval) = (self.node(), self.interval());
@@ -250,7 +251,8 @@ impl<S: Checked<N>, const N: usize> Sample<S, N> {
     }
 }
 
-/// A fixed sequence in (−1, 1) that looks random: a linear congruence (Knuth and Lewis, Numerical Recipes, section 7.1).
+/// A fixed pseudorandom sequence in (−1, 1): a linear congruential generator (Knuth and Lewis, Numerical Recipes,
+/// section 7.1).
 #[derive(Clone, Copy)]
 struct Sequence(u32);
 

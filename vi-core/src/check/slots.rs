@@ -5,8 +5,8 @@
 //! L_d/h → L        (f_d⁻ + f_d⁺)/h → f        (g_d⁻ + g_d⁺)/h → −f·v              as h → 0
 //! ```
 //!
-//! Rounding: as in `derivatives`, that of both sides, carried along. The limits are approached from 1/64 of the samples'
-//! step, which is a part of the system's own time scale, about one middle.
+//! Tolerance: as in `derivatives`, the rounding-error bounds of both sides. The limits are approached from 1/64 of the
+//! samples' step, which is a fraction of the system's own time scale, about one midpoint.
 
 use super::bounded::{Bounded, vector_of};
 use super::comparison::Comparison;
@@ -22,17 +22,17 @@ use crate::real::dual::{along, unit};
 use crate::state::Interval;
 use nalgebra::SVector;
 
-/// Parts of the step from which a limit is approached: two, since the distance may happen to be zero at one.
+/// Initial fractions of the step for a limit: two, since the distance may be zero at one by chance.
 const FAR: [f64; 2] = [1.0 / 64.0, 1.0 / 128.0];
-/// The part with which it is approached.
+/// Final fraction of the step.
 const NEAR: f64 = 1.0 / 1024.0;
-/// By so much the distance has to fall: that of a rule of order one falls to 1/16, and from the nearer part to 1/8.
+/// Required reduction of the distance: that of a rule of order one falls to 1/16, and from the nearer fraction to 1/8.
 const FALL: f64 = 0.3;
 
-/// Slot derivatives against dual numbers; L_d, discrete forces and powers against what they stand for.
+/// Tests slot derivatives against dual numbers, and L_d, discrete forces and powers against their limits.
 ///
 /// # Errors
-/// The first number that differs; [`CheckFailure::Vacuous`] where L_d, D2 or D4, or f_d of a forced system, is zero
+/// The first number that differs; [`CheckFailure::Vacuous`] if L_d, D2 or D4, or f_d of a forced system, is zero
 /// throughout.
 pub fn slots<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "slots");
@@ -43,7 +43,7 @@ pub fn slots<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
     check.finish(if S::FORCED { &["L_d", "D2", "D4", "f_d"] } else { &["L_d", "D2", "D4"] })
 }
 
-/// An interval in other numbers.
+/// Converts an interval to other numbers.
 pub(super) fn between<const N: usize, T: Real>(interval: &Interval<N>, number: impl Fn(f64) -> T) -> Interval<N, T> {
     let Interval { t0, q0, t1, q1 } = interval;
     Interval { t0: number(*t0), q0: q0.map(&number), t1: number(*t1), q1: q1.map(&number) }
@@ -66,8 +66,8 @@ fn by_slot<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Com
     check.vector("D4", &vector_of(&system.d4_ld(&interval), &bounded.d4_ld(&known)), &d4)
 }
 
-/// What L_d, f_d and g_d are to a part of the step, and what to a smaller one: nearer to L, f and −f·v by [`FALL`], or equal
-/// to rounding.
+/// Tests that L_d, f_d and g_d over a smaller fraction of the step are nearer to L, f and −f·v by [`FALL`], or equal to
+/// rounding.
 fn limits<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
     let system = sample.system.steps::<Bounded>();
     let pairs = |part: f64| {

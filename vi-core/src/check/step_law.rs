@@ -1,15 +1,15 @@
-//! How long the energy-preserving integrator makes its steps.
+//! The step law of the energy-preserving integrator.
 //!
 //! ```text
 //! h D^(1/3) = constant + O(h²)      D of the step = D(t̄, q̄, v) + O(h²)          midpoint rule, no force
 //! ```
 //!
-//! Left: D by the generated step density at the middle of each step, h as it was solved for. Right: D from the determinant of
-//! the equations.
+//! Left sides: D by the generated step density at the midpoint of each step, with the solved h. Right side: D from the
+//! determinant of the equations.
 //!
-//! Rounding: of the length of each step `δh/h ≈ 4 ε S_E/(h² D) = 4 ε (τ/h)²`, and of the two densities what their terms carry,
-//! both evaluated at the step (`length`, `rounded`), as the root of the mean square along the run. So a deviation of `C (h/τ)²` is
-//! seen where `h > (4 ε/C)^(1/4) τ`, about 2e-4 τ for a C of 1.
+//! Tolerance: the rounding errors of the step lengths, `δh/h ≈ 4 ε S_E/(h² D) = 4 ε (τ/h)²`, and of both densities,
+//! evaluated at the step (`length`, `rounded`), as the root mean square along the run. A deviation of `C (h/τ)²` is
+//! therefore visible if `h > (4 ε/C)^(1/4) τ`, about 2e-4 τ for a C of 1.
 
 use super::bounded::{Bounded, exact, once};
 use super::comparison::Comparison;
@@ -24,28 +24,28 @@ use crate::node::Node;
 use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
-/// Slope of what falls with h².
+/// Slope of a quantity that decreases with h².
 const SLOPE: f64 = 2.0;
-/// Up to so many steps of the course a ladder is climbed.
+/// Longest step of a sequence, in steps of the trajectory.
 const LONGEST: f64 = 4.0;
-/// Factor by which the step density may change over the time of a ladder that is longer than the place's.
+/// Largest ratio of step densities over the time of a sequence that is longer than the place's.
 const EVEN: f64 = 8.0;
 
-/// The step law, over a ladder of first steps. Where every deviation is one of rounding the law holds exactly, as for the
-/// harmonic oscillator.
+/// Tests the step law over a sequence of first steps. If every deviation is a rounding error the law holds exactly, as
+/// for the harmonic oscillator.
 ///
 /// # Errors
-/// A deviation that does not fall with h²; [`CheckFailure::NotApplicable`] for a system with a force;
-/// [`CheckFailure::StepTooSmall`] for less than three deviations above rounding; a step that does not exist.
+/// A deviation that does not decrease with h²; [`CheckFailure::NotApplicable`] for a system with a force;
+/// [`CheckFailure::StepTooSmall`] for fewer than three deviations above rounding; a step that does not exist.
 pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let check = Comparison::new(S::NAME, "step law");
     if S::FORCED {
-        return Err(check.not_applicable("the law is one of systems without a force"));
+        return Err(check.not_applicable("the law requires a system without a force"));
     }
     let course = SampledMotion::from(system, place, &check)?;
     let density = density(system, &(place.t, place.q, place.v)).map_err(|error| check.step(error))?;
     if !density.is_seen() {
-        return Err(check.vacuous("the step density is zero at this place; choose another"));
+        return Err(check.vacuous("the step density is zero at this place; choose another place"));
     }
     let prepare = |h: f64| {
         if h > place.h && !is_even(system, place, h).map_err(|error| check.step(error))? {
@@ -70,8 +70,8 @@ pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N
     law.judge(&check, [place.h, LONGEST * course.h], prepare, measure)
 }
 
-/// Whether the step density keeps its sign and size along the motion over the time of a ladder: where it comes near zero
-/// steps grow without bound, and nothing falls with h².
+/// Whether the step density keeps its sign and size along the trajectory over the time of a sequence. Near a zero of
+/// the density steps grow without bound, and nothing decreases with h².
 fn is_even<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>, h: f64) -> Result<bool, StepError> {
     let states = SampledMotion::over(system, place, h, u32::MAX)?.states;
     let densities = states.iter().map(|state| system.step_density(state.t, &state.q, &state.v));
@@ -80,8 +80,8 @@ fn is_even<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>, h:
     Ok(ratios.all(|ratio| (1.0 / EVEN..EVEN).contains(&ratio)))
 }
 
-/// Relative deviations of h D^(1/3) and of D over a run, as the root of their mean square in time: unlike the largest one
-/// it does not depend on where in a steep place a step happens to lie.
+/// Relative deviations of h D^(1/3) and of D over a run, as the root of their mean square in time. Unlike the maximum,
+/// it does not depend on the exact position of a step in a steep region.
 fn deviations<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     place: &Place<N>,
@@ -107,7 +107,7 @@ fn deviations<const N: usize, S: EnergyChecked<N>>(
             rounding: solved.length + here.error / here.value.abs() / 3.0,
         };
         let density = Measured { quantity: ratio.value - 1.0, rounding: ratio.error };
-        // The last step may end beyond the span: it counts as far as it lies inside.
+        // The last step may end beyond the span; only its part inside counts.
         let part = step.h.min(span - passed) / span;
         for (square, measured) in squares.iter_mut().zip([law, density]) {
             square.quantity += measured.quantity.powi(2) * part;
@@ -123,7 +123,7 @@ fn singular(t: f64) -> StepError {
     StepError::Singular { t, matrix: "derivative of the momentum equation" }
 }
 
-/// The step density in the middle of a step, which is known to one rounding.
+/// The step density at the midpoint of a step, after one rounding of its arguments.
 fn density<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     (t, q, v): &(f64, SVector<f64, N>, SVector<f64, N>),

@@ -1,14 +1,14 @@
-//! The equations of a step, and steps taken, against the slots.
+//! The equations of a step, and actual steps, against the slots.
 //!
 //! ```text
 //! r = −D2 L_d − f_d⁻ − p0        p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺        E1 = −D3 L_d − g_d⁺
 //! ```
 //!
-//! and of each step taken `p0 = −D2 L_d − f_d⁻`, `p1 = D4 L_d + f_d⁺`, `E1 = −D3 L_d − g_d⁺`.
+//! and for each actual step `p0 = −D2 L_d − f_d⁻`, `p1 = D4 L_d + f_d⁺`, `E1 = −D3 L_d − g_d⁺`.
 //!
-//! Rounding: as in `derivatives`, that of both sides, carried along. The ends of a step that was taken are known to one
-//! rounding each, so that v made of them, `(q1 − q0)/h`, and with it D2 and D4, carry `ε |q|/h`; and the equations that were
-//! solved for it may leave [`SOLVED`] roundings of their terms.
+//! Tolerance: as in `derivatives`, the rounding-error bounds of both sides. The ends of an actual step have one
+//! rounding each, so that v = `(q1 − q0)/h`, and with it D2 and D4, have the error `ε |q|/h`. The solved equations have
+//! residuals of up to [`SOLVED`] roundings.
 
 use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
@@ -27,16 +27,15 @@ use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 use std::array;
 
-/// Steps that are taken.
+/// Number of actual steps.
 const TAKEN: u32 = 8;
-/// Bounds of its rounding that a solved equation may leave: the steppers promise 4 roundings, and what is carried adds some.
+/// Allowed residual of a solved equation, in roundings: the steppers guarantee 4, and carried remainders add some.
 pub(super) const SOLVED: f64 = 16.0;
 
-/// Residual and increments of a step, and `p1, E1` of fixed steps taken, against the slot derivatives.
+/// Tests residual and increments of a step, and `p1, E1` of actual fixed steps, against the slot derivatives.
 ///
 /// # Errors
-/// The first number that differs; a step that is not taken; [`CheckFailure::Vacuous`] where momenta or energies are zero
-/// throughout.
+/// The first number that differs; a failed step; [`CheckFailure::Vacuous`] if momenta or energies are zero throughout.
 pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "steps");
     for sample in step_samples(system, place, &check)? {
@@ -79,7 +78,7 @@ fn equations<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut C
     check.number("discrete energy", energy, -bounded.d3_ld(&interval) - bounded.gd_plus(&interval))
 }
 
-/// How residual and increment change, against dual numbers.
+/// Tests the derivatives of residual and increment against dual numbers.
 fn derivatives<const N: usize, S: Checked<N>>(
     sample: &Sample<S, N>,
     check: &mut Comparison,
@@ -121,7 +120,7 @@ pub(super) fn ends<const N: usize>(
     Interval { t0: node.t, q0: node.q, t1: node.t + h, q1: node.q + v * h }
 }
 
-/// What the slots say of the step between two states.
+/// Slot values of the step between two states.
 pub(super) struct SlotValues<const N: usize> {
     momentum_before: SVector<Bounded, N>,
     momentum_after: SVector<Bounded, N>,

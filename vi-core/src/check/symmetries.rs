@@ -1,14 +1,14 @@
-//! What a fixed step keeps: momenta of cyclic coordinates, the symplectic form, and itself backwards.
+//! Invariants of a fixed step: momenta of cyclic coordinates, the symplectic form, reversibility.
 //!
 //! ```text
 //! p1 = p0                                       of a cyclic coordinate: every bit
 //! dq1 ∧ dp1 = dq0 ∧ dp0                         with p0 = −D2 L_d − f_d⁻ and q1 = q0 + h v: as functions of (q0, v)
-//! r(t1, q1, p1; −h, v) = 0,  p1 → p0            where r(t0, q0, p0; h, v) = 0 and p0 → p1
+//! r(t1, q1, p1; −h, v) = 0,  p1 → p0            if r(t0, q0, p0; h, v) = 0 and p0 → p1
 //! ```
 //!
-//! p0 is made for (q0, v), so no equation is solved, and the derivatives of the second line are dual numbers, so nothing is
-//! differenced. Rounding: none in the first line; in the others that of both sides, carried along as in `derivatives`. h is
-//! that of the samples, a part of the system's own time scale.
+//! p0 is computed for (q0, v), so that no equation is solved. The derivatives of the second line are dual numbers
+//! instead of differences. Tolerance: none in the first line; in the others the rounding-error bounds of both sides, as
+//! in `derivatives`. h is that of the samples, a fraction of the system's own time scale.
 
 use super::bounded::{Bounded, exact};
 use super::comparison::Comparison;
@@ -27,15 +27,16 @@ use crate::state::State;
 use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
-/// Momenta of cyclic coordinates keep every bit over fixed steps, and gain nothing in any step.
+/// Tests that momenta of cyclic coordinates are constant bit for bit over fixed steps, with a zero increment in every
+/// step.
 ///
 /// # Errors
 /// A momentum that changes; [`CheckFailure::NotApplicable`] for a system without a cyclic coordinate;
-/// [`CheckFailure::Vacuous`] where such a momentum is zero or its coordinate stands still.
+/// [`CheckFailure::Vacuous`] if such a momentum is zero or its coordinate does not change.
 pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "momenta");
     kept(&mut check, system, place, |start, h| system.at_state(start).integrate(FixedStep, h))?;
-    // What a momentum of moderate size would round away.
+    // A momentum of moderate size would round away a small increment.
     for Sample { system, t, q, v, h } in step_samples(system, place, &check)? {
         let gain = system.momentum_residual(&Node::new(State::at(&system, t, q, v), 0.0), h, &v).increment;
         for index in (0..N).filter(|index| S::CYCLIC[*index]) {
@@ -45,10 +46,11 @@ pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> R
     check.finish(&[])
 }
 
-/// Momenta of cyclic coordinates keep every bit over the run that `begin` makes from a state with a step.
+/// Tests that momenta of cyclic coordinates are constant bit for bit over the run that `begin` starts from a state with
+/// a step.
 ///
 /// # Errors
-/// Those of [`momenta`].
+/// As [`momenta`].
 pub(super) fn kept<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
     check: &mut Comparison,
     system: &S,
@@ -73,18 +75,18 @@ pub(super) fn kept<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: Lagr
         let stands_still = place.v[index] == 0.0 && end.q[index] - start.q[index] == 0.0;
         if start.p[index] == 0.0 || stands_still {
             let name = S::COORDINATES[index];
-            let why = format!("`{name}` stands still or its momentum is zero; choose a velocity `dot({name})`");
+            let why = format!("`{name}` does not change or its momentum is zero; choose a velocity `dot({name})`");
             return Err(check.vacuous(why));
         }
     }
     Ok(())
 }
 
-/// The fixed step −h leads back the way that the fixed step h led. For rules that are symmetric in the two ends of the
-/// interval; with forces too.
+/// Tests that the fixed step −h reverses the fixed step h. For rules that are symmetric in both ends of the interval;
+/// with forces too.
 ///
 /// # Errors
-/// A number that differs; [`CheckFailure::Vacuous`] where nothing moves, or no momentum changes.
+/// A number that differs; [`CheckFailure::Vacuous`] if nothing moves, or no momentum changes.
 pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "reversibility");
     for sample in step_samples(system, place, &check)? {
@@ -101,15 +103,15 @@ pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>
     check.finish(&["momentum at the end"])
 }
 
-/// A fixed step keeps the symplectic form, `dq1 ∧ dp1 = dq0 ∧ dp0`.
+/// Tests that a fixed step preserves the symplectic form, `dq1 ∧ dp1 = dq0 ∧ dp0`.
 ///
 /// # Errors
-/// An entry that differs; [`CheckFailure::NotApplicable`] for a system with a force; [`CheckFailure::Vacuous`] where
+/// An entry that differs; [`CheckFailure::NotApplicable`] for a system with a force; [`CheckFailure::Vacuous`] if
 /// nothing moves.
 pub fn symplecticity<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "symplecticity");
     if S::FORCED {
-        return Err(check.not_applicable("a force does not keep the symplectic form"));
+        return Err(check.not_applicable("a system with a force does not preserve the symplectic form"));
     }
     for sample in step_samples(system, place, &check)? {
         keeps_area(&mut check, |column| Column::at(column, &sample.q, &sample.v, |q, v| ends(&sample, q, v)))?;
@@ -117,10 +119,10 @@ pub fn symplecticity<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>
     check.finish(&[AREA])
 }
 
-/// What [`keeps_area`] compares.
+/// Name of the quantity that [`keeps_area`] compares.
 pub(super) const AREA: &str = "area of two columns";
 
-/// The symplectic form of each two columns is the same before and after a step.
+/// Compares the symplectic form of every two columns before and after a step.
 pub(super) fn keeps_area<const N: usize>(
     check: &mut Comparison,
     column: impl Fn(usize) -> Column<N>,
@@ -134,7 +136,7 @@ pub(super) fn keeps_area<const N: usize>(
     Ok(())
 }
 
-/// The place of a sample, without a momentum: its momentum equation says which one it would need.
+/// The node of a sample with zero momentum, so that the residual of its momentum equation is the required momentum.
 fn bare<const N: usize, S: Checked<N>>(sample: &Sample<S, N>) -> Node<N> {
     Node::new(State { t: sample.t, q: sample.q, p: SVector::zeros() }, 0.0)
 }
@@ -142,14 +144,15 @@ fn bare<const N: usize, S: Checked<N>>(sample: &Sample<S, N>) -> Node<N> {
 /// Changes of coordinates and momenta.
 type Change<const N: usize> = (SVector<Bounded, N>, SVector<Bounded, N>);
 
-/// What one entry of (q0, v) changes before the step and after it.
+/// Derivatives with respect to one entry of (q0, v), before and after a step.
 pub(super) struct Column<const N: usize> {
     before: Change<N>,
     after: Change<N>,
 }
 
 impl<const N: usize> Column<N> {
-    /// The column of this index, of a step from the coordinates q with the velocity v; `step` gives its displacement and the momenta at both ends.
+    /// The column of this index, for a step from the coordinates q with the velocity v; `step` returns its displacement
+    /// and the momenta at both ends.
     pub(super) fn at(
         column: usize,
         q: &SVector<f64, N>,

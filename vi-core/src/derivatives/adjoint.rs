@@ -1,17 +1,19 @@
-//! The gradient of a number that a run leads to, by one sweep backwards.
+//! The gradient of an objective of a run, by one backward pass.
 //!
-//! In: a run, an [`Objective`] `J = Σ_k g_k(z_k)` over the nodes of its next steps. Out: `∂J/∂z0` and `∂J/∂θ`, by
+//! For an [`Objective`] `J = Σ_k g_k(z_k)` over the nodes of the next steps of a run, this module computes `∂J/∂z0` and
+//! `∂J/∂θ` by
 //!
 //! ```text
 //! λ_K = ∂g_K/∂z        λ_k = (∂z_{k+1}/∂z_k)ᵀ λ_{k+1} + ∂g_k/∂z        ∂J/∂θ_k = (∂z_{k+1}/∂θ)ᵀ λ_{k+1}
 //! ```
 //!
-//! z the time, coordinates and momenta, and the energy E that an energy-preserving run keeps. Parameters change as by
-//! [`Run::set_parameters`]: there E gains `H(z, θ_k) − H(z, θ_{k−1})`, and of H at fixed v is `δH = v·δp − δL`.
+//! with z the time, coordinates and momenta, and the preserved energy E of an energy-preserving run. Parameters change
+//! as by [`Run::set_parameters`]: E increases by `H(z, θ_k) − H(z, θ_{k−1})`, and at fixed v `δH = v·δp − δL`.
 //!
-//! The run is kept at every √K-th node and taken again between them: memory for `2 √K` runs, and one more run of work (Griewank and Walther, *Evaluating
-//! Derivatives*, chapter 12). Where the caller allows for all nodes, nothing is taken again. Of each step 2N directions are followed, that of the energy and that of
-//! the time where steps depend on them, and one for each parameter that is asked for.
+//! The run is stored at every √K-th node and repeated between them. The memory is that of `2 √K` runs, and the extra
+//! work is one run (Griewank and Walther, *Evaluating Derivatives*, chapter 12). If the caller allows storage for all
+//! nodes, no step is repeated. Each step follows 2N directions, those of the energy and of the time if steps depend on
+//! them, and one for each requested parameter.
 
 use super::steps::Differentiable;
 use super::variation::{Variation, changes_of_energy};
@@ -23,27 +25,27 @@ use crate::state::State;
 use crate::stepping::Convertible;
 use nalgebra::SVector;
 
-/// How fast a number changes with a node.
+/// Derivatives of a number with respect to a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Covector<const N: usize> {
-    /// By the time.
+    /// With respect to the time.
     pub t: f64,
-    /// By the coordinates.
+    /// With respect to the coordinates.
     pub q: SVector<f64, N>,
-    /// By the momenta.
+    /// With respect to the momenta.
     pub p: SVector<f64, N>,
-    /// By the energy that an energy-preserving run keeps.
+    /// With respect to the energy that an energy-preserving run preserves.
     pub energy: f64,
 }
 
 impl<const N: usize> Covector<N> {
-    /// That of what does not depend on the node.
+    /// The zero covector.
     #[must_use]
     pub fn zero() -> Self {
         Self { t: 0.0, q: SVector::zeros(), p: SVector::zeros(), energy: 0.0 }
     }
 
-    /// What a variation changes the number by.
+    /// The derivative of the number along a tangent vector.
     #[must_use]
     pub fn of(&self, variation: &Variation<N>) -> f64 {
         let of_energy = self.energy * variation.energy;
@@ -51,16 +53,16 @@ impl<const N: usize> Covector<N> {
     }
 }
 
-/// What a run is for: a sum of functions of its nodes, and the inputs on the way.
+/// An objective: a sum of functions of the nodes of a run, with inputs on the way.
 pub trait Objective<M: Method<S, N>, S, const N: usize> {
-    /// Sets the inputs of the step from the node `step`, before it is taken. It has to do the same whenever it is asked.
+    /// Sets the inputs of the step from the node `step`, before the step. It must have the same effect at every call.
     ///
     /// # Errors
-    /// That of [`Run::set_parameters`].
+    /// As [`Run::set_parameters`].
     fn prepare(&self, _step: u64, _run: &mut Run<M, S, N>) -> Result<(), StepError> {
         Ok(())
     }
-    /// Names of the parameters with respect to which the gradient is wanted: a column each.
+    /// Names of the parameters of the gradient, one column each.
     fn parameters(&self) -> &[&str] {
         &[]
     }
@@ -71,19 +73,22 @@ pub trait Objective<M: Method<S, N>, S, const N: usize> {
 /// The gradient of an objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient<const N: usize> {
-    /// By the node at the start.
+    /// With respect to the start node.
     pub start: Covector<N>,
-    /// By the parameters of each step, a row a step, in the order of [`Objective::parameters`]. Their sum is the gradient by parameters that do
-    /// not change on the way, where the energy that a run keeps gains what H gains by them at the start.
+    /// With respect to the parameters of each step, one row per step, in the order of [`Objective::parameters`]. Their
+    /// sum is the gradient with respect to constant parameters, if the preserved energy includes the derivative of H
+    /// with respect to them at the start.
     pub parameters: Vec<Vec<f64>>,
 }
 
-/// The gradient of an objective over the next `steps` steps of a run. `kept` runs are kept on the way at most, at least `√steps`, and while the sweep goes back those of
-/// the nodes between two of them. Steps between are taken twice: with `kept = steps` none is.
+/// The gradient of an objective over the next `steps` steps of a run.
+///
+/// Stores max(`kept`, √steps) checkpoints, plus the states between two of them during the backward pass. Steps between
+/// checkpoints are taken twice; with `kept = steps` none is.
 ///
 /// # Errors
-/// That of the step that fails, of its derivative, or of its inputs; [`StepError::UnknownParameter`] for a name that no parameter has; [`StepError::NonFinite`] where the gradient is beyond the range of numbers, or a slope of the objective is
-/// no number.
+/// Those of a failed step, of its derivative, or of its inputs; [`StepError::UnknownParameter`] for a name that no
+/// parameter has; [`StepError::NonFinite`] if the gradient is out of range, or a derivative of the objective is NaN.
 pub fn gradient<M, S, const N: usize>(
     run: &Run<M, S, N>,
     steps: u64,
@@ -128,7 +133,7 @@ where
         let first = last.saturating_sub(1) / stride * stride;
         let inner = between(&station, first, last, objective)?;
         for step in (first..last).rev() {
-            // The run before the step, and after it, with its inputs.
+            // The run before and after the step, with its inputs.
             let place = usize::try_from(step - first).unwrap_or(usize::MAX);
             let before = place.checked_sub(1).map_or(&station, |place| &inner[place]);
             let after = inner.get(place).unwrap_or(&end);
@@ -140,7 +145,7 @@ where
                 let state = before.state();
                 let gained = changes_of_energy(after.system(), &state, &directions)?;
                 let lost = changes_of_energy(before.system(), &state, &directions)?;
-                // The parameters that the step found are those of the step before.
+                // The run still has the parameters of the previous step.
                 let of_energy = changes[2 * N];
                 for (index, change) in changes.iter_mut().enumerate() {
                     let is_of_state = index < of_state;
@@ -151,7 +156,7 @@ where
             }
             let (mut back, of_parameters) = sorted::<M, S, N>(&changes);
             if is_autonomous {
-                // A motion that begins later is the same motion.
+                // A later start does not change an autonomous trajectory.
                 back.t = slope.t;
             }
             let own = objective.slope(step, &before.state());
@@ -171,25 +176,25 @@ where
     Ok(Gradient { start: slope, parameters })
 }
 
-/// A covector, unless it is beyond the range of numbers: the slope of the objective, or what it becomes on the way back, may be.
+/// Returns a finite covector. The derivative of the objective may overflow, also during the backward pass.
 fn finite<const N: usize>(covector: Covector<N>, t: f64) -> Result<Covector<N>, StepError> {
     let numbers = [covector.t, covector.energy];
     let are_finite = numbers.iter().chain(&covector.q).chain(&covector.p).all(|entry| entry.is_finite());
     if are_finite { Ok(covector) } else { Err(not_finite(t)) }
 }
 
-/// The slope of the objective, or what it becomes on the way back, is beyond the range of numbers.
+/// The derivative of the objective is out of range.
 fn not_finite(t: f64) -> StepError {
     StepError::NonFinite { t, quantity: "gradient", expression: None }
 }
 
-/// Every how many steps a run is kept.
+/// Number of steps between two checkpoints.
 fn stride(steps: u64, kept: usize) -> u64 {
     let kept = u64::try_from(kept).unwrap_or(u64::MAX).max(steps.isqrt()).max(1);
     steps.div_ceil(kept).max(1)
 }
 
-/// The runs at the nodes between `first`, where a run is given, and `last`.
+/// The runs at the nodes from `first`, if given, to `last`.
 fn between<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
     start: &Run<M, S, N>,
     first: u64,
@@ -210,12 +215,13 @@ fn between<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
     Ok(runs)
 }
 
-/// Whether two systems have the same parameters: then a run that goes from one to the other keeps its energy.
+/// Whether two systems have the same parameters. A change between them then keeps the energy of a run.
 fn have_equal_parameters<S: Lagrangian<N>, const N: usize>(one: &S, other: &S) -> bool {
     (0..S::PARAMETERS.len()).all(|index| one.parameter(index).to_bits() == other.parameter(index).to_bits())
 }
 
-/// What a number changes by in all directions, sorted: the covector at the start of a step, and the changes by the parameters of the step.
+/// Splits the derivatives in all directions: the covector at the start of a step, and the derivatives with respect to
+/// the parameters of the step.
 fn sorted<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
     changes: &[f64],
 ) -> (Covector<N>, Vec<f64>) {

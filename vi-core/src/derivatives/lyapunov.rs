@@ -1,14 +1,15 @@
 //! Lyapunov exponents.
 //!
-//! In: a run, and how many of the largest exponents are wanted. Out: their estimates, the mean rates at which volumes of so many directions grow along it:
+//! From a run and a number k, this module estimates the k largest exponents: the mean growth rates of volumes along the
+//! run,
 //!
 //! ```text
 //! λ_1 + … + λ_k = lim ln |δz_1 ∧ … ∧ δz_k| / t
 //! ```
 //!
-//! The directions are made orthogonal again after every step, and the logarithms of what they had grown by are summed. Source: Benettin, Galgani, Giorgilli,
-//! Strelcyn, *Meccanica* 15 (1980) 9. Coordinates and momenta are measured in their own units; the limit does not depend on them, its estimate does, by a term of
-//! order 1/t.
+//! Every step orthogonalizes the directions again and sums the logarithms of their growth. Source: Benettin, Galgani,
+//! Giorgilli, Strelcyn, *Meccanica* 15 (1980) 9. Coordinates and momenta keep their own units. The limit does not
+//! depend on them; the estimate does, by a term of order 1/t.
 
 use super::steps::Differentiable;
 use super::tangent::Tangent;
@@ -19,19 +20,20 @@ use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::run::Run;
 
-/// Estimates of the largest Lyapunov exponents along a run: mean rates at which its directions grow.
+/// Estimates of the largest Lyapunov exponents along a run: mean growth rates of its directions.
 #[derive(Clone, Debug)]
 pub struct Lyapunov<M: Method<S, N>, S, const N: usize> {
     tangent: Tangent<M, S, N>,
     start: f64,
-    /// The time up to which growth is summed.
+    /// End time of the summed growth.
     end: f64,
     /// Sums of logarithms, with their low parts.
     growth: Vec<(f64, f64)>,
 }
 
 impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<M, S, N> {
-    /// The `count` largest exponents of a run. The first directions are fixed, so that two runs give the same.
+    /// Estimates the `count` largest exponents of a run. The first directions are fixed, so that results are
+    /// reproducible.
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] unless `count` is 1 to 2N.
@@ -50,11 +52,11 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<
         Ok(Self { tangent: Tangent::new(run, variations), start, end: start, growth: vec![(0.0, 0.0); count] })
     }
 
-    /// Takes so many steps.
+    /// Takes this number of steps.
     ///
     /// # Errors
-    /// That of the step that fails, and [`StepError::NonFinite`] where a step leaves nothing of a direction, whose exponent is then without a bound. The estimates
-    /// are then those up to there.
+    /// Those of the failed step; [`StepError::NonFinite`] if a step maps a direction to zero, so that its exponent is
+    /// unbounded. The estimates then end there.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
         for _ in 0..steps {
             let before = self.tangent.run().t();
@@ -71,8 +73,8 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<
         Ok(())
     }
 
-    /// The estimates, the largest first as a rule, in units of one over time; not a number before the first step. Those of a run backwards in time are of
-    /// the motion backwards: rates by the time that has passed, whatever its sign.
+    /// The estimates, usually in descending order, in units of one over time; NaN before the first step. For a run
+    /// backwards in time they are rates of the reversed flow, relative to the absolute elapsed time.
     #[must_use]
     pub fn exponents(&self) -> Vec<f64> {
         let t = (self.end - self.start).abs();
@@ -85,7 +87,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<
     }
 }
 
-/// Turns a direction away from the coordinate or momentum that it is of: a direction in an invariant plane would not leave it.
+/// Turns a direction away from its coordinate or momentum axis, because it could never leave an invariant plane.
 fn turn<const N: usize>(variation: &mut Variation<N>) {
     let mut part = 0.1;
     for entry in variation.q.iter_mut().chain(variation.p.iter_mut()) {
@@ -94,7 +96,7 @@ fn turn<const N: usize>(variation: &mut Variation<N>) {
     }
 }
 
-/// Makes directions orthogonal, of length one, in order, and returns the lengths that they had.
+/// Orthonormalizes directions in order, and returns their previous lengths.
 fn orthogonalize<const N: usize>(variations: &mut [Variation<N>]) -> Vec<f64> {
     let mut lengths = Vec::with_capacity(variations.len());
     for index in 0..variations.len() {
@@ -111,7 +113,7 @@ fn orthogonalize<const N: usize>(variations: &mut [Variation<N>]) -> Vec<f64> {
         let length = own.q.norm().hypot(own.p.norm());
         own.q /= length;
         own.p /= length;
-        // Of steps that find their length the time varies too, and by a force the energy that is kept.
+        // Steps that find their length also vary in time, and with a force in the preserved energy.
         own.t /= length;
         own.energy /= length;
         lengths.push(length);

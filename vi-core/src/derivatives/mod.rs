@@ -1,22 +1,23 @@
-//! Derivatives of a motion: by its start, and by the parameters of its system.
+//! Derivatives of a trajectory with respect to its initial conditions and the parameters of its system.
 //!
-//! In: a run, and directions in which its start and its parameters vary. Out: the variations of every node, by the implicit function theorem on the solved
-//! step: where u solves `R(u, z0, θ) = 0` and `z1 = Z(u, z0, θ)`,
+//! Tangent vectors of the start and the parameters propagate to every node of a run, by the implicit function theorem
+//! on the solved step. If u solves `R(u, z0, θ) = 0` and `z1 = Z(u, z0, θ)`, then
 //!
 //! ```text
 //! δu = −(∂R/∂u)⁻¹ (∂R/∂z0 δz0 + ∂R/∂θ δθ)        δz1 = ∂Z/∂u δu + ∂Z/∂z0 δz0 + ∂Z/∂θ δθ
 //! ```
 //!
-//! the derivatives of R and Z by coordinates and unknowns as the system says them, those by the time and by parameters in dual numbers. They are those of the step that
-//! was taken, to rounding, not of the continuous motion: the tangent map of a variational integrator without force is symplectic, to rounding too. An energy-preserving
-//! step varies in its length besides.
+//! The system provides the derivatives of R and Z with respect to coordinates and unknowns. Dual numbers provide those
+//! with respect to the time and the parameters. The result is the derivative of the discrete step, exact to rounding,
+//! not that of the continuous flow. The tangent map of a variational integrator without force is therefore symplectic
+//! to rounding. An energy-preserving step also varies in its length.
 //!
-//! | file | what it gives |
+//! | file | contents |
 //! |---|---|
-//! | `variation` | directions, and the dual numbers that they are |
-//! | `steps` | variations of one step, for each method |
+//! | `variation` | tangent vectors, and their dual numbers |
+//! | `steps` | tangent vectors of one step, for each method |
 //! | `tangent` | tangent vectors along a run, to times, events and across changes |
-//! | `adjoint` | the gradient of what a run ends in, by one sweep backwards |
+//! | `adjoint` | the gradient of an objective, by one backward pass |
 //! | `lyapunov` | Lyapunov exponents |
 
 mod adjoint;

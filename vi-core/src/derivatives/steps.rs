@@ -1,8 +1,8 @@
-//! Variations of one step, for each method; those of a Gauss step stand with its stages (`gauss/variation.rs`).
+//! Tangent vectors of one step, for each method; `gauss/variation.rs` has those of Gauss steps.
 //!
-//! In: a run after a step, the node at which the step began, variations of that node. Out: those of the node reached. The unknowns of the step are at
-//! hand, and its system says how the equations change with them and with the coordinates of the node. How they change with the time and with parameters dual numbers
-//! say, where one of the directions asks for it.
+//! From the start node of the last step and tangent vectors there follow the tangent vectors at the end node. The
+//! unknowns of the step are stored. The system provides the derivatives with respect to them and to the coordinates of
+//! the node; dual numbers provide those with respect to the time and the parameters, if a direction needs them.
 
 use super::variation::{TOGETHER, Variation, Varied, more_parameters, not_finite};
 use crate::energy_preserving::interval::Last;
@@ -19,21 +19,22 @@ use nalgebra::{SMatrix, SVector};
 
 /// A method whose steps have derivatives.
 pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> {
-    /// Whether the energy that the run keeps is a variable beside coordinates and momenta.
+    /// Whether the preserved energy is a variable beside coordinates and momenta.
     const KEEPS_ENERGY: bool = false;
-    /// Whether a step depends on the time at which it begins.
+    /// Whether a step depends on its start time.
     const DEPENDS_ON_TIME: bool = !S::AUTONOMOUS;
 
     /// [`Run::vary`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Run::vary`].
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError>;
 
-    /// Turns tangent vectors at the node of a run into those after [`Run::step_of`] by `length`. Here `h` of a vector is the change of this length, in time.
+    /// Maps tangent vectors at the node of a run to those after [`Run::step_of`] by `length`. Here `h` of a vector is
+    /// the change of this length, in time.
     ///
     /// # Errors
-    /// Those of [`Run::step_of`] and of [`Run::vary`].
+    /// As [`Run::step_of`] and [`Run::vary`].
     fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { method, system, node, memory, .. } = run;
         let memory = method.with_length(system, memory, node, length)?;
@@ -42,8 +43,8 @@ pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> 
         Self::vary(&aside, node, variations)
     }
 
-    /// Sets `energy` of tangent vectors at the start of a run by [`Start::integrate`](crate::Start::integrate): the energy that the run keeps follows from the state and
-    /// the parameters.
+    /// Sets `energy` of tangent vectors at the start of a run by [`Start::integrate`](crate::Start::integrate): the
+    /// preserved energy follows from the state and the parameters.
     ///
     /// # Errors
     /// As [`Run::vary`].
@@ -52,46 +53,47 @@ pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> 
     }
 }
 
-/// The unknown beside the momentum equations of an energy-preserving step.
+/// The unknown of an energy-preserving step beside v.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sought {
-    /// The length, from the energy that is kept.
+    /// The length, for given energy.
     Length,
-    /// None: the length is given, and the energy equation is left out.
+    /// None: the length is given, and the energy equation does not apply.
     Neither,
-    /// The energy to keep, from the length of the first step. The node stays.
+    /// The energy, for a given length of the first step. The node stays.
     Energy,
 }
 
-/// Checks that a run takes energy-preserving steps alone.
+/// Checks that a run takes energy-preserving steps only.
 ///
 /// # Errors
-/// [`StepError::NoDerivative`] of the step from the time `t`.
+/// [`StepError::NoDerivative`] for the step from the time `t`.
 pub(crate) fn check_fallback(fallback: Fallback, t: f64) -> Result<(), StepError> {
-    let because = "with a fallback the energy of the run may leap; take `Fallback::Stop`";
+    let because = "with a fallback the energy of the run may jump; use `Fallback::Stop`";
     if fallback == Fallback::Stop { Ok(()) } else { Err(StepError::NoDerivative { t, because }) }
 }
 
 impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
-    /// Turns variations of the node `before`, at which the last step began, into those of the node that it reached.
+    /// Maps tangent vectors at `before`, the start node of the last step, to those at its end node.
     ///
     /// The step is the one that [`Run::step`] took last.
     ///
     /// # Errors
-    /// [`StepError::Singular`] if the equations of the step do not determine how its solution varies; [`StepError::NonFinite`] if its derivative is infinite, or beyond
-    /// the range of numbers; [`StepError::NoDerivative`] if `before` is not the node at which the last step began, the parameters have changed since, or a variation has
-    /// more parameters than the system.
+    /// [`StepError::Singular`] if the step equations do not determine the derivative of their solution;
+    /// [`StepError::NonFinite`] if the derivative is infinite or out of range; [`StepError::NoDerivative`] if `before`
+    /// is not the start node of the last step, the parameters have changed since, or a tangent vector has more
+    /// parameters than the system.
     pub fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         M::vary(self, before, variations)
     }
 }
 
-/// The derivative of the equations of a step cannot be inverted.
+/// The Jacobian of the step equations is singular.
 pub(crate) fn singular(t: f64) -> StepError {
     StepError::Singular { t, matrix: "derivative of the equations of a step" }
 }
 
-/// Why an equation `A x = rhs` for the variation of a step has no solution.
+/// The error of an equation `A x = rhs` for tangent vectors without a solution.
 fn unsolved<A: Matrix<N, f64>, const N: usize>(matrix: &A, rhs: &SVector<f64, N>, t: f64) -> StepError {
     let are_finite = matrix.dense().iter().chain(rhs).all(|entry| entry.is_finite());
     if are_finite { singular(t) } else { not_finite(t) }
@@ -99,16 +101,17 @@ fn unsolved<A: Matrix<N, f64>, const N: usize>(matrix: &A, rhs: &SVector<f64, N>
 
 /// Whether a step that ends at the time and the coordinates of `end` is the one that led to the node `reached`.
 fn is_last<const N: usize>(end: &Node<N>, reached: &Node<N>) -> bool {
-    // The time of the last node may have been set to the one that was asked for.
+    // The time of the last node may have been set to the requested one.
     let late = (end.t - reached.t) + (end.t_low - reached.t_low);
     let is_in_time = late.abs() <= 2.0 * f64::EPSILON * reached.t.abs();
     is_in_time && end.q == reached.q && end.q_low == reached.q_low
 }
 
-/// Checks that the step `(v, h)` from the node `before` led to the node `reached`, and that its parameters are those of the system.
+/// Checks that the step `(v, h)` from `before` led to the node `reached`, and that its parameters are those of the
+/// system.
 ///
 /// # Errors
-/// [`StepError::NoDerivative`] where it did not.
+/// [`StepError::NoDerivative`] otherwise.
 fn check_last<const N: usize>(
     before: &Node<N>,
     (h, v): (f64, &SVector<f64, N>),
@@ -120,26 +123,26 @@ fn check_last<const N: usize>(
     if has_its_parameters && is_last(&end, reached) { Ok(()) } else { Err(not_last(before.t)) }
 }
 
-/// The node given is not the one at which the last step began, or that step had other parameters.
+/// The given node is not the start of the last step, or that step had other parameters.
 pub(crate) fn not_last(t: f64) -> StepError {
-    let because = "the run did not take it last with the parameters that it has; give the node at which its last step began, before the parameters change";
+    let because = "it is not the last step of the run with its current parameters; pass the start node of the last step, before any change of parameters";
     StepError::NoDerivative { t, because }
 }
 
-/// A number that varies in W directions, its value a number that may vary itself.
+/// A number with derivatives in W directions; its value may itself be dual.
 type Along<T, const W: usize> = Dual<T, Slopes<T, W>>;
 
-/// How fast each entry changes: a column a direction.
+/// Derivatives of each entry, one column per direction.
 fn slopes<T: Real, const N: usize, const W: usize>(of: &SVector<Along<T, W>, N>) -> SMatrix<T, N, W> {
     SMatrix::from_fn(|row, direction| of[row].slope.0[direction])
 }
 
-/// How fast each entry changes in one of the directions.
+/// Derivatives of each entry in one direction.
 fn slope_along<const N: usize, const W: usize>(direction: usize, of: &SVector<Varied<W>, N>) -> SVector<f64, N> {
     of.map(|entry| entry.slope.0[direction])
 }
 
-/// A vector that changes by so much in each direction.
+/// A vector with these derivatives in each direction.
 fn varied<T: Real, const N: usize, const W: usize>(
     value: &SVector<T, N>,
     slopes: &SMatrix<T, N, W>,
@@ -150,8 +153,8 @@ fn varied<T: Real, const N: usize, const W: usize>(
     })
 }
 
-/// The node after the momentum step `(v, h)` of a system, in dual numbers whose values solve it: one Newton step, by the derivative of the same system
-/// in the numbers T, gives v its slopes. None where it has no inverse.
+/// The node after the momentum step `(v, h)` of a system, in dual numbers whose values solve it. One Newton step with
+/// the Jacobian over the numbers T sets the derivatives of v. `None` if the Jacobian is singular.
 fn momentum_step<T, P, S, const N: usize, const W: usize>(
     plain: &P,
     system: &S,
@@ -174,7 +177,7 @@ where
     Some(node)
 }
 
-/// The x with `A x = rhs`, from the inverse of A; where that lost a pivot, from A.
+/// Solves `A x = rhs` by the inverse of A, or by A itself if the inverse lost a pivot.
 fn solved<A: Matrix<N, f64>, const N: usize>(
     matrix: &A,
     inverse: &A::Inverse,
@@ -184,7 +187,8 @@ fn solved<A: Matrix<N, f64>, const N: usize>(
     if x.iter().all(|entry| entry.is_finite()) { Some(x) } else { linear::solve(matrix, rhs) }
 }
 
-/// Turns tangent vectors at a node into those after the momentum step `(v, h)`. Its length is `part` times that of a whole step.
+/// Maps tangent vectors at a node to those after the momentum step `(v, h)`. Its length is `part` times that of a whole
+/// step.
 fn vary<S, const N: usize>(
     system: &S,
     node: &Node<N>,
@@ -195,7 +199,7 @@ fn vary<S, const N: usize>(
 where
     S: Discretized<N>,
 {
-    // Borrowed: those of long systems are large.
+    // Borrowed, because those of long systems are large.
     let derivatives = system.momentum_derivatives(node, h, v);
     let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = &derivatives;
     let inverse = residual_dv.inverse();
@@ -241,7 +245,7 @@ where
     }
 }
 
-/// Variations of the step that led a run to its node with the velocity v.
+/// Tangent vectors of the step that led a run to its node with the velocity v.
 fn vary_fixed<M: Method<S, N>, S: Discretized<N>, const N: usize>(
     run: &Run<M, S, N>,
     v: SVector<f64, N>,
@@ -257,8 +261,9 @@ impl<S, const N: usize> Run<FixedStep, S, N>
 where
     S: Discretized<N>,
 {
-    /// Second derivatives of the last step, which began at the node `before`: how the variation `one` of the node that it reached changes along
-    /// `other`; coordinates, then momenta. The variations are those of `before`, and straight: they do not vary themselves.
+    /// Second derivatives of the last step, which began at `before`: the derivative, along `other`, of the tangent
+    /// vector at the end node that belongs to `one`; coordinates, then momenta. Both are tangent vectors at `before`
+    /// and constant.
     ///
     /// # Errors
     /// As [`Differentiable::vary`].
@@ -270,7 +275,7 @@ where
     ) -> Result<(SVector<f64, N>, SVector<f64, N>), StepError> {
         let (h, v) = (self.h, self.memory.steps.v());
         check_last(before, (h, &v), &self.node, self.memory.steps.has_parameters_of_last())?;
-        // Where the matrix has an inverse, it is the variations that are beyond the range of numbers.
+        // With a regular matrix, the tangent vectors themselves are out of range.
         let unsolved = || {
             let equation = self.system().momentum_equation(before, h, &v);
             linear::solve(&equation.jacobian, &v)
@@ -290,7 +295,7 @@ where
         let [one, other] = [one, other].map(core::slice::from_ref);
         let inner = Variation::node::<1>(other, before);
         let node = nested(&Variation::node(one, before), &inner);
-        // The velocity as the other direction varies it; the dual numbers of the first differentiate its equation once more.
+        // The velocity along the other direction; the dual numbers of the first differentiate its equation again.
         let plain = Variation::steps::<_, 1>(other, self.system());
         let equation = plain.momentum_equation(&inner, Dual::fixed(h), &v.map(Dual::fixed));
         let change = linear::solve(&equation.jacobian, &equation.residual).ok_or_else(unsolved)?;
@@ -304,7 +309,7 @@ where
     }
 }
 
-/// A node that varies in two directions.
+/// A node with derivatives in two directions.
 fn nested<const N: usize>(one: &Node<N, Varied<1>>, other: &Node<N, Varied<1>>) -> Node<N, Along<Varied<1>, 1>> {
     let both = |one: Varied<1>, other: Varied<1>| Dual { value: other, slope: Slopes(one.slope.0.map(Dual::fixed)) };
     Node {
@@ -346,8 +351,8 @@ where
 {
     const KEEPS_ENERGY: bool = true;
 
-    /// The energy that the run keeps is a variable of its own, beside q and p, and the length of the step varies. With
-    /// [`Fallback::FixedSteps`] the run may leap from one energy to another: it has no derivative, and this is [`StepError::NoDerivative`].
+    /// The preserved energy is a variable beside q and p, and the step length varies. With [`Fallback::FixedSteps`] the
+    /// energy may jump, so that the run has no derivative: [`StepError::NoDerivative`].
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         check_fallback(run.memory.control.fallback, before.t)?;
         let Last { h, v, is_step, .. } = run.memory.last;
@@ -366,7 +371,7 @@ where
     }
 }
 
-/// Turns tangent vectors at a node into those after the energy-preserving step `(v, h)`.
+/// Maps tangent vectors at a node to those after the energy-preserving step `(v, h)`.
 fn vary_extended<S, const N: usize>(
     system: &S,
     before: &Node<N>,

@@ -1,8 +1,8 @@
 //! Tangent vectors along a run.
 //!
-//! In: a run, tangent vectors at its node ([`Variation`]). Out: the tangent vectors after each step, at a time, at an event, and after a change of the parameters or the
-//! state. Directions share their evaluations, so that more of them cost little (`docs/benchmarks.md`). Tangent vectors of a chaotic motion grow: rescale them by
-//! [`Tangent::variations_mut`].
+//! Tangent vectors ([`Variation`]) at the node of a run propagate with each step, to a time, to an event, and across
+//! changes of the parameters or the state. Directions share their evaluations, so that more of them cost little
+//! (`docs/benchmarks.md`). Tangent vectors of a chaotic trajectory grow: rescale them by [`Tangent::variations_mut`].
 //!
 //! The length ℓ of a step that ends at a time or at an event follows from a condition g = 0 at its end z(ℓ):
 //!
@@ -10,7 +10,7 @@
 //! δz = δz|ℓ + ∂z/∂ℓ δℓ        δℓ = −(∂g·δz|ℓ)/(∂g·∂z/∂ℓ)
 //! ```
 //!
-//! ∂z/∂ℓ is the derivative of the step, not of the motion: the two differ by the order of the method.
+//! ∂z/∂ℓ is the derivative of the discrete step. It differs from that of the flow by the order of the method.
 
 use super::steps::Differentiable;
 use super::variation::{Variation, changes_of_energy, not_finite};
@@ -24,7 +24,7 @@ use crate::run::{Crossing, Event, Moment, Run};
 use crate::state::State;
 use crate::stepping::Convertible;
 
-/// A run, and how its node varies in some directions.
+/// A run with tangent vectors at its node.
 #[derive(Clone, Debug)]
 pub struct Tangent<M: Method<S, N>, S, const N: usize> {
     run: Run<M, S, N>,
@@ -33,14 +33,15 @@ pub struct Tangent<M: Method<S, N>, S, const N: usize> {
 }
 
 impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M, S, N> {
-    /// A run, and variations of the node at which it is.
+    /// Combines a run and tangent vectors at its current node.
     #[must_use]
     pub fn new(run: Run<M, S, N>, variations: Vec<Variation<N>>) -> Self {
         Self { run, variations, failure: None }
     }
 
-    /// A run before its first step, started by [`Start::integrate`](crate::Start::integrate), and tangent vectors of its initial state and parameters. The energy that
-    /// the run keeps follows from these: the function sets `energy` of each vector.
+    /// A run before its first step, started by [`Start::integrate`](crate::Start::integrate), with tangent vectors of
+    /// its initial state and parameters. The preserved energy follows from these: the function sets `energy` of each
+    /// vector.
     ///
     /// # Errors
     /// As [`Run::vary`].
@@ -49,11 +50,11 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
         Ok(Self::new(run, variations))
     }
 
-    /// Takes a step, and returns the state reached.
+    /// Takes a step, and returns its end state.
     ///
     /// # Errors
-    /// That of the step, after which the run and its variations are those before; or of [`Run::vary`], after which the variations have no meaning. The same
-    /// error again after an error.
+    /// Those of the step; run and tangent vectors then do not change. Those of [`Run::vary`]; the tangent vectors are
+    /// then invalid. Further calls return the same error.
     pub fn step(&mut self) -> Result<State<N>, StepError> {
         self.latched(|tangent| {
             let before = *tangent.run.node();
@@ -62,10 +63,11 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
         })
     }
 
-    /// Takes a step of the length h in time, as [`Run::step_of`] does, and returns the state reached. This length does not vary.
+    /// Takes a step of the length h in time, as [`Run::step_of`] does, and returns its end state. This length does not
+    /// vary.
     ///
     /// # Errors
-    /// Those of [`Run::step_of`] and of [`Run::vary`]. The same error again after an error.
+    /// As [`Run::step_of`] and [`Run::vary`]. Further calls return the same error.
     pub fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
         self.latched(|tangent| {
             let mut after = tangent.run.clone();
@@ -74,10 +76,11 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
         })
     }
 
-    /// Takes steps up to the time t, as [`Run::until`] does, and returns the state there. The tangent vectors are at this fixed time: their `t` is zero.
+    /// Takes steps up to the time t, as [`Run::until`] does, and returns the state there. The tangent vectors are at
+    /// this fixed time: their `t` is zero.
     ///
     /// # Errors
-    /// Those of [`Run::until`] and of [`Run::vary`]. The same error again after an error.
+    /// As [`Run::until`] and [`Run::vary`]. Further calls return the same error.
     pub fn until(&mut self, t: f64) -> Result<State<N>, StepError> {
         self.latched(|tangent| tangent.end_at_time(t))
     }
@@ -87,18 +90,18 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
         &self.run
     }
 
-    /// The variations of the node at which the run is, in the order given.
+    /// The tangent vectors at the current node, in the given order.
     #[must_use]
     pub fn variations(&self) -> &[Variation<N>] {
         &self.variations
     }
 
-    /// The same, to be changed: made shorter, or orthogonal to each other.
+    /// The tangent vectors, mutably, for example to rescale or orthogonalize them.
     pub fn variations_mut(&mut self) -> &mut [Variation<N>] {
         &mut self.variations
     }
 
-    /// Runs a function unless one failed before, and keeps its failure.
+    /// Runs a function unless an earlier one failed, and stores its failure.
     fn latched<R>(&mut self, take: impl FnOnce(&mut Self) -> Result<R, StepError>) -> Result<R, StepError> {
         if let Some(failure) = self.failure {
             return Err(failure);
@@ -122,8 +125,8 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
         }
     }
 
-    /// Moves to the run `after` by a step of this length. `of_length` returns the change of the length, from the tangent vector at fixed length and the derivative with
-    /// respect to the length.
+    /// Advances to the run `after` by a step of this length. `of_length` returns the change of the length, from the
+    /// tangent vector at fixed length and the derivative with respect to the length.
     fn end_at(
         &mut self,
         length: f64,
@@ -137,7 +140,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
             M::vary_step_of(run, length, &mut all)?;
             all.pop().unwrap_or_else(Variation::zero)
         } else {
-            // No step is left: the state moves along the motion.
+            // No time remains: the state moves along the flow.
             let State { t, q, p } = run.state();
             let Flow { v, force, power } = run.system().flow(t, &q, &p)?;
             Variation { t: 1.0, q: v, p: force, energy: power, ..Variation::zero() }
@@ -161,23 +164,25 @@ where
     M: Differentiable<S, N>,
     S: Convertible<N> + Collocation<N>,
 {
-    /// Takes steps up to the event, as [`Run::until_event`] does, or to the time `end` if there is none before. The tangent vectors are at the event: their `t` is the
-    /// derivative of its time. The event needs a derivative: [`Event::smooth_rising`], [`Event::smooth_falling`], [`Event::smooth_crossing`].
+    /// Takes steps up to the event, as [`Run::until_event`] does, or to the time `end` if there is none before. The
+    /// tangent vectors are at the event: their `t` is the derivative of its time. The event needs a derivative:
+    /// [`Event::smooth_rising`], [`Event::smooth_falling`], [`Event::smooth_crossing`].
     ///
     /// # Errors
-    /// Those of [`Run::until_event`] and of [`Run::vary`]; [`StepError::NoDerivative`] for an event without a derivative, or with a derivative along the motion that is
-    /// zero or not finite. The same error again after an error.
+    /// As [`Run::until_event`] and [`Run::vary`]; [`StepError::NoDerivative`] for an event without a derivative, or
+    /// with a derivative along the trajectory that is zero or not finite. Further calls return the same error.
     pub fn until_event(&mut self, event: &Event<N>, end: f64) -> Result<Option<Crossing<N>>, StepError> {
         self.latched(|tangent| tangent.end_at_event(event, end))
     }
 
-    /// Changes parameters, as [`Run::set_parameters`] does. The function in dual numbers changes their slopes too: a parameter that it sets to `Dual::fixed(2.0)` does not
-    /// vary any more.
+    /// Changes parameters, as [`Run::set_parameters`] does. The function of dual numbers also changes their
+    /// derivatives: a parameter set to `Dual::fixed(2.0)` no longer varies.
     ///
-    /// The energy that a run keeps gains `H_new − H_old`, and its derivative the derivative of that.
+    /// The preserved energy increases by `H_new − H_old`, and its derivative by the derivative of that.
     ///
     /// # Errors
-    /// Those of [`Run::set_parameters`]; [`StepError::NonFinite`] if a derivative is not finite. The same error again after an error.
+    /// As [`Run::set_parameters`]; [`StepError::NonFinite`] if a derivative is not finite. Further calls return the
+    /// same error.
     pub fn set_parameters(&mut self, change: impl Fn(&mut S::In<Dual<f64>>)) -> Result<(), StepError>
     where
         S: Parameters,
@@ -210,12 +215,14 @@ where
         })
     }
 
-    /// Maps the state, as [`Run::set_state`] does: an impact, or another frame. The map takes the system and the state in dual numbers.
+    /// Maps the state, as [`Run::set_state`] does, for example at an impact or into another frame. The map takes the
+    /// system and the state in dual numbers.
     ///
-    /// The energy that a run keeps gains `H(after) − H(before)`, and its derivative the derivative of that.
+    /// The preserved energy increases by `H(after) − H(before)`, and its derivative by the derivative of that.
     ///
     /// # Errors
-    /// Those of [`Run::set_state`]; [`StepError::NonFinite`] if a derivative is not finite. The same error again after an error.
+    /// As [`Run::set_state`]; [`StepError::NonFinite`] if a derivative is not finite. Further calls return the same
+    /// error.
     pub fn set_state(
         &mut self,
         map: impl Fn(&S::In<Dual<f64>>, State<N, Dual<f64>>) -> State<N, Dual<f64>>,
@@ -241,7 +248,7 @@ where
         })
     }
 
-    /// Adds the change of the derivatives of H to those of the energy that the run keeps.
+    /// Adds the change of the derivatives of H to those of the preserved energy.
     fn gain_energy(&mut self, before: &[f64], after: &[f64]) -> Result<(), StepError> {
         if M::KEEPS_ENERGY {
             for (variation, (before, after)) in self.variations.iter_mut().zip(before.iter().zip(after)) {
@@ -283,14 +290,14 @@ where
         };
         self.end_at(length, after, |varied, along| {
             let change = -slope(varied)? / slope(along)?;
-            let because = "the function of the event has no finite derivative along the motion, or one of zero";
+            let because = "the event function has a derivative along the trajectory that is zero or not finite";
             if change.is_finite() { Ok(change) } else { Err(StepError::NoDerivative { t, because }) }
         })?;
         Ok(Some(crossing))
     }
 }
 
-/// A system, its parameters varied in one direction.
+/// A system with parameters that vary in one direction.
 fn varied<S: Convertible<N> + Lagrangian<N>, const N: usize>(system: &S, variation: &Variation<N>) -> S::In<Dual<f64>> {
     let mut varied = system.convert::<Dual<f64>>();
     for (name, slope) in S::PARAMETERS.iter().zip(&variation.parameters) {

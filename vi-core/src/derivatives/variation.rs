@@ -1,6 +1,4 @@
-//! Directions in which a node and the parameters of a system vary.
-//!
-//! In: how fast each number of a node and each parameter changes. Out: the node and the system in dual numbers.
+//! Tangent vectors of nodes and parameters, and their dual numbers.
 
 use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Parameters};
@@ -10,42 +8,45 @@ use crate::state::State;
 use crate::stepping::{Convertible, Discretized};
 use nalgebra::SVector;
 
-/// Directions that one evaluation follows.
+/// Number of directions per evaluation.
 pub(crate) const TOGETHER: usize = 4;
 
-/// A number that varies in W directions.
+/// A number with derivatives in W directions.
 pub(crate) type Varied<const W: usize = TOGETHER> = Dual<f64, Slopes<f64, W>>;
 
-/// The variations of a step are beyond the range of numbers, or not a number.
+/// The tangent vectors of a step are out of range or NaN.
 pub(crate) fn not_finite(t: f64) -> StepError {
-    StepError::NonFinite { t, quantity: "variation of a step", expression: None }
+    StepError::NonFinite { t, quantity: "tangent vector of a step", expression: None }
 }
 
-/// A variation has more parameters than the system of the step from the time `t`.
+/// A tangent vector has more parameters than the system of the step from the time `t`.
 pub(crate) fn more_parameters(t: f64) -> StepError {
-    let because = "a variation has more parameters than the system; give at most as many as `PARAMETERS` names";
+    let because = "a tangent vector has more parameters than the system; `PARAMETERS` lists them";
     StepError::NoDerivative { t, because }
 }
 
-/// How fast a node and the parameters of its system change in one direction.
+/// A tangent vector: derivatives of a node and of the parameters of its system in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variation<const N: usize> {
-    /// Of the time.
+    /// Derivative of the time.
     pub t: f64,
-    /// Of the coordinates.
+    /// Derivatives of the coordinates.
     pub q: SVector<f64, N>,
-    /// Of the momenta.
+    /// Derivatives of the momenta.
     pub p: SVector<f64, N>,
-    /// Of the energy that an energy-preserving run keeps; of no meaning to others. [`crate::Run::set_parameters`] changes it by that of `H_new − H_old`.
+    /// Derivative of the energy that an energy-preserving run preserves; other runs ignore it.
+    /// [`crate::Run::set_parameters`] adds the derivative of `H_new − H_old`.
     pub energy: f64,
-    /// Of the length of a step: h, or Δτ in transformed time. A method that finds its lengths ignores it. Constant along a run.
+    /// Derivative of the step length: h, or Δτ in transformed time. Methods that find their lengths ignore it. Constant
+    /// along a run.
     pub h: f64,
-    /// Of the parameters, in the order of [`Lagrangian::PARAMETERS`]; those beyond the end do not change. The same all along a run.
+    /// Derivatives of the parameters, in the order of [`Lagrangian::PARAMETERS`]; missing entries are zero. Constant
+    /// along a run.
     pub parameters: Vec<f64>,
 }
 
 impl<const N: usize> Variation<N> {
-    /// No change.
+    /// The zero vector.
     #[must_use]
     pub fn zero() -> Self {
         Self { t: 0.0, q: SVector::zeros(), p: SVector::zeros(), energy: 0.0, h: 0.0, parameters: Vec::new() }
@@ -54,7 +55,7 @@ impl<const N: usize> Variation<N> {
     /// The direction of a coordinate, by its index from 0.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for an index that no coordinate has.
+    /// [`StepError::InvalidInput`] for an index out of range.
     pub fn of_coordinate(index: usize) -> Result<Self, StepError> {
         Self::of_entry(index, "the index of a coordinate", |variation| &mut variation.q)
     }
@@ -62,17 +63,17 @@ impl<const N: usize> Variation<N> {
     /// The direction of a momentum, by its index from 0.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for an index that no momentum has.
+    /// [`StepError::InvalidInput`] for an index out of range.
     pub fn of_momentum(index: usize) -> Result<Self, StepError> {
         Self::of_entry(index, "the index of a momentum", |variation| &mut variation.p)
     }
 
-    /// The direction of the length of a step.
+    /// The direction of the step length.
     pub(crate) fn of_length() -> Self {
         Self { h: 1.0, ..Self::zero() }
     }
 
-    /// Adds a multiple of another one, at the same node.
+    /// Adds a multiple of another tangent vector at the same node.
     pub(crate) fn add(&mut self, other: &Self, factor: f64) {
         self.t += other.t * factor;
         self.q += other.q * factor;
@@ -95,7 +96,7 @@ impl<const N: usize> Variation<N> {
         Ok(variation)
     }
 
-    /// The directions of all coordinates, and then of all momenta: the variations are the columns of the tangent map.
+    /// The directions of all coordinates, then of all momenta: after a step they are the columns of the tangent map.
     #[must_use]
     pub fn of_state() -> Vec<Self> {
         let mut variations = vec![Self::zero(); 2 * N];
@@ -108,8 +109,9 @@ impl<const N: usize> Variation<N> {
 
     /// The direction of a parameter of the system S, by its name.
     ///
-    /// Time, coordinates, momenta and the energy that is kept stay. Where the start is given by other numbers, velocities or the step of `from_midpoint`, what they
-    /// change by with the parameter belongs into `p` and `energy` of the variation. [`Tangent::from_start`](super::Tangent::from_start) sets `energy`.
+    /// Time, coordinates, momenta and the preserved energy stay. If other numbers define the start, such as velocities
+    /// or the step of `from_midpoint`, add their derivatives with respect to the parameter to `p` and `energy`.
+    /// [`Tangent::from_start`](super::Tangent::from_start) sets `energy`.
     ///
     /// # Errors
     /// [`StepError::UnknownParameter`] for a name that no parameter of S has.
@@ -121,14 +123,15 @@ impl<const N: usize> Variation<N> {
         Ok(Self { parameters, ..Self::zero() })
     }
 
-    /// Refuses what is not finite: the derivative of a force may be infinite where the force is not, and what varies along a chaotic run may leave the range of numbers.
+    /// Rejects values that are not finite. A finite force may have an infinite derivative, and tangent vectors of a
+    /// chaotic run may overflow.
     pub(crate) fn check_finite(variations: &[Self], t: f64) -> Result<(), StepError> {
-        // Zero times a number is zero, or NaN where the number is not finite: one sum, and one test for all.
+        // Zero times a number is zero, or NaN for one that is not finite. One sum then tests all entries.
         let is_finite = |of: &Self| (of.q * 0.0 + of.p * 0.0).sum() + of.t * 0.0 + of.energy * 0.0 == 0.0;
         if variations.iter().all(is_finite) { Ok(()) } else { Err(not_finite(t)) }
     }
 
-    /// The number that varies as `of` says in each of the directions.
+    /// The number with its derivative in each direction; `of` selects it.
     pub(crate) fn number<const W: usize>(variations: &[Self], value: f64, of: impl Fn(&Self) -> f64) -> Varied<W> {
         let mut slopes = [0.0; W];
         for (slope, variation) in slopes.iter_mut().zip(variations) {
@@ -137,10 +140,11 @@ impl<const N: usize> Variation<N> {
         Dual { value, slope: Slopes(slopes) }
     }
 
-    /// The system, its parameters varied in each of the directions; none where neither they, the time, nor the length of a step vary in any.
+    /// The system with parameters that vary in each direction; `None` if neither they, the time, nor the step length
+    /// vary.
     ///
     /// # Errors
-    /// [`StepError::NoDerivative`] of the step from the time `t` where a direction has more parameters than the system.
+    /// [`StepError::NoDerivative`] for the step from the time `t` if a direction has more parameters than the system.
     pub(crate) fn varying_system<S: Convertible<N> + Lagrangian<N>>(
         variations: &[Self],
         system: &S,
@@ -161,7 +165,7 @@ impl<const N: usize> Variation<N> {
         Ok(Self::are_explicit::<S>(variations, t)?.then(|| Self::steps(variations, system)))
     }
 
-    /// Whether the time of a system that depends on it, the length of a step, or a parameter varies in any direction.
+    /// Whether a parameter, the step length, or the time of a nonautonomous system varies in any direction.
     fn are_explicit<S: Lagrangian<N>>(variations: &[Self], t: f64) -> Result<bool, StepError> {
         if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
             return Err(more_parameters(t));
@@ -171,7 +175,7 @@ impl<const N: usize> Variation<N> {
         Ok(variations.iter().any(is_explicit))
     }
 
-    /// The system, its parameters varied in each of the directions.
+    /// The system with parameters that vary in each direction.
     pub(crate) fn system<S: Convertible<N> + Lagrangian<N>, const W: usize>(
         variations: &[Self],
         system: &S,
@@ -179,12 +183,12 @@ impl<const N: usize> Variation<N> {
         Self::vary_parameters(variations, S::PARAMETERS, system.convert())
     }
 
-    /// The system with its steps, its parameters varied in each of the directions.
+    /// The system with its steps, with parameters that vary in each direction.
     pub(super) fn steps<S: Discretized<N>, const W: usize>(variations: &[Self], system: &S) -> S::Steps<Varied<W>> {
         Self::vary_parameters(variations, S::PARAMETERS, system.steps())
     }
 
-    /// A system whose parameters of these names vary in each of the directions.
+    /// A system whose parameters of these names vary in each direction.
     fn vary_parameters<Y: Parameters<Varied<W>>, const W: usize>(
         variations: &[Self],
         names: &[&str],
@@ -200,13 +204,13 @@ impl<const N: usize> Variation<N> {
         system
     }
 
-    /// The node, its time varied in each of the directions.
+    /// The node with a time that varies in each direction.
     pub(super) fn in_time<const W: usize>(variations: &[Self], node: &Node<N>) -> Node<N, Varied<W>> {
         let t = Self::number(variations, node.t, |variation| variation.t);
         Node { t, ..node.map(Varied::<W>::fixed) }
     }
 
-    /// The node, varied in each of the directions.
+    /// The node with derivatives in each direction.
     pub(super) fn node<const W: usize>(variations: &[Self], node: &Node<N>) -> Node<N, Varied<W>> {
         let mut varied = node.map(Varied::<W>::fixed);
         for (direction, variation) in variations.iter().enumerate() {
@@ -221,7 +225,7 @@ impl<const N: usize> Variation<N> {
     }
 }
 
-/// What H at a state changes by in each direction: `v·δp − δL`, v fixed.
+/// Derivative of H at a state in each direction: `v·δp − δL` at fixed v.
 pub(crate) fn changes_of_energy<S, const N: usize>(
     system: &S,
     state: &State<N>,

@@ -1,13 +1,15 @@
-//! The smallest forward step, if Newton's iteration has not found one.
+//! The smallest forward step, if Newton iteration has failed.
 //!
-//! In: a node and the interval that led to it. Out: the root of `φ(h) = c(v(h), h)` with the smallest h > 0, where v(h)
-//! solves the momentum equation, polished on all n + 1 equations; or why there is none. Since
+//! From a node and the last interval follows the root of `φ(h) = c(v(h), h)` with the smallest h > 0, or the reason why
+//! there is none. v(h) solves the momentum equation, and Newton iteration on all n + 1 equations polishes the root.
+//! Since
 //!
 //! ```text
 //! φ(0) = H − E = h² D/8        and        φ(h) = φ(0) − h² D/8        to leading order,
 //! ```
 //!
-//! φ starts with the sign of D, and the forward step is its first change of sign: a [`Search`] over the momentum equation.
+//! φ starts with the sign of D, and the forward step is its first change of sign: a [`Search`] over the momentum
+//! equation.
 
 use super::equations::{self, EnergyStep, NoStep};
 use super::interval::Last;
@@ -22,7 +24,7 @@ use crate::stepping::EnergyStepping;
 use crate::vector::VelocityStep;
 use nalgebra::SVector;
 
-/// Roundings within which φ counts as zero.
+/// |φ| in roundings that counts as zero.
 const NOISE: f64 = 16.0;
 
 /// A point of the curve `(v(h), h)`, and φ there.
@@ -36,10 +38,10 @@ struct Point<const N: usize, T> {
 }
 
 impl<const N: usize, T: Scalar> Point<N, T> {
-    /// The point at `h`, v by Newton's iteration from `guess`.
+    /// The point at `h`, with v by Newton iteration from `guess`.
     ///
     /// # Errors
-    /// Why v(h) does not exist; [`StepError::NonFinite`] if φ is not finite.
+    /// The reason why v(h) does not exist; [`StepError::NonFinite`] if φ is not finite.
     fn at<S: EnergyStepping<N, T>>(
         system: &S,
         node: &Node<N, T>,
@@ -106,7 +108,7 @@ pub(crate) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     }
     let search = Search {
         solve: &|h, beside| Point::at(system, node, T::real(h), beside.map_or(v, |point: &Point<N, T>| point.v)),
-        // All equations judge the root.
+        // The polished root is checked on all equations.
         is_rounding: &|_| Ok(true),
         t,
         predicted: h,
@@ -120,12 +122,12 @@ pub(crate) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     match search.smallest() {
         Ok(Some(point)) => polished(system, node, last, &point),
         Err(failure @ (StepError::NonFinite { .. } | StepError::StepRatio { .. })) => Err(failure),
-        // The curve ends where the momentum equation has no solution, and the search with it.
+        // The curve and the search end if the momentum equation has no solution.
         _ => Err(none),
     }
 }
 
-/// The root on all equations, from a point of the curve.
+/// Polishes a point of the curve on all equations.
 fn polished<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,

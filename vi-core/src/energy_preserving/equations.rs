@@ -1,16 +1,16 @@
-//! The n + 1 equations for Newton's iteration.
+//! The n + 1 equations for Newton iteration.
 //!
-//! In: a trial `(v, h)` and the range that h must keep to. Out: the root with momentum and energy equation at the rounding
-//! floor. With `a = A⁻¹ r`, `b = A⁻¹ ∂r/∂h` the combined and scaled rows of [`ExtendedSystem`] leave one equation for
-//! δh,
+//! From a trial `(v, h)` and the range of h follows the root with momentum and energy equation at the rounding floor.
+//! With `a = A⁻¹ r`, `b = A⁻¹ ∂r/∂h`, elimination in the combined and scaled rows of [`ExtendedSystem`] gives one
+//! equation for δh,
 //!
 //! ```text
 //! S δh = −((c + ½ a·r)/h − energy_dv·a)        S = energy_dh − energy_dv·b = −D/4
 //! δv = −a − b δh
 //! ```
 //!
-//! and S is the step density besides. The term `½ a·r` is not Newton's: it is `½ δv·A δv`, by which the energy is curved along v
-//! (to leading order in h, and all of it where the mass is constant). Without it that is what δh is off by after a step.
+//! so that S also gives the step density. The term `½ a·r` goes beyond Newton: it is `½ δv·A δv`, the curvature of the
+//! energy along v (to leading order in h, and exact for constant mass). It removes the leading error of δh.
 
 use crate::error::Residuals;
 use crate::linear::{self, Matrix};
@@ -22,7 +22,7 @@ use crate::vector::{VelocityStep, worse};
 use core::cmp::Ordering;
 use nalgebra::{SMatrix, SVector};
 
-/// Roundings of its terms below which S counts as zero.
+/// Relative size, in roundings of its terms, below which S counts as zero.
 const VANISHING: f64 = 64.0;
 
 /// A step that solves the equations.
@@ -32,10 +32,11 @@ pub(crate) struct EnergyStep<const N: usize, T> {
     pub(crate) h: T,
     pub(crate) density: T,
     pub(crate) iterations: u32,
-    pub(crate) measured: Measured<N, T>,
+    pub(crate) measured: RowResiduals<N, T>,
 }
 
-/// What a step leaves of its equations, and the scales of its rows: compared only when someone asks (measured: a tenth of a step of the double well).
+/// The residuals of a step and the scales of its rows, compared on request only (measured: a tenth of a step of the
+/// double well).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -45,15 +46,15 @@ pub(crate) struct EnergyStep<const N: usize, T> {
         deserialize = "T: crate::real::Real + serde::Deserialize<'de>"
     ))
 )]
-pub(crate) struct Measured<const N: usize, T> {
+pub(crate) struct RowResiduals<const N: usize, T> {
     pub(crate) rows: SVector<T, N>,
     pub(crate) scales: SVector<T, N>,
     pub(crate) energy: T,
     pub(crate) energy_scale: T,
 }
 
-impl<const N: usize, T: Scalar> Measured<N, T> {
-    /// A residual that is known in roundings.
+impl<const N: usize, T: Scalar> RowResiduals<N, T> {
+    /// A residual given in roundings.
     pub(crate) fn of(roundings: f64) -> Self {
         let rows = SVector::zeros();
         Self {
@@ -70,17 +71,18 @@ impl<const N: usize, T: Scalar> Measured<N, T> {
     }
 }
 
-/// Why there is no step here.
+/// The reason why there is no step here.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum NoStep<T> {
-    /// The equations hold, and would for other lengths too.
+    /// The equations hold, but would also for other lengths.
     Degenerate { h: T, density: T },
-    /// The iteration left the range, met a singular matrix or an overflow, or did not reach the floor: its last residuals.
+    /// The iteration left the range, met a singular matrix or an overflow, or did not reach the floor: its last
+    /// residuals.
     NoRoot(Residuals),
 }
 
-/// The momentum rows eliminated from the energy row; everything times the determinant of A where that is solved by one
-/// quotient, so that the quotients of a step do not wait for each other, else times 1.
+/// The momentum rows eliminated from the energy row. Everything is multiplied by the determinant of A if A is solved by
+/// one quotient, so that the quotients of a step are independent; otherwise by 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Elimination<const N: usize, T> {
     /// `a = A⁻¹ r`.
@@ -97,7 +99,7 @@ pub(crate) struct Elimination<const N: usize, T> {
 }
 
 impl<const N: usize, T: Scalar> Elimination<N, T> {
-    /// Not finite where A is singular.
+    /// Not finite if A is singular.
     #[inline]
     pub(crate) fn of(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Self {
         let momentum = &equations.momentum;
@@ -105,7 +107,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
         Self::from_solved(equations, momentum.jacobian.quotient(&both))
     }
 
-    /// `None` where A is singular.
+    /// `None` if A is singular.
     #[inline]
     pub(crate) fn finite(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Option<Self> {
         let momentum = &equations.momentum;
@@ -130,7 +132,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
         Self { residual, residual_dh, schur, schur_magnitude, determinant, reciprocal: determinant.recip() }
     }
 
-    /// The change `(δv, δh)` that follows from the trial.
+    /// The correction `(δv, δh)` of the trial.
     #[inline]
     pub(crate) fn change(
         &self,
@@ -142,7 +144,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
             known +=
                 (equations.energy_dv[i] * trial.h - equations.momentum.residual[i] * T::real(0.5)) * self.residual[i];
         }
-        // The bent row over h, and S, both times h: one quotient, where two would wait for each other.
+        // The curved row over h, and S, both times h: one quotient instead of two in sequence.
         let energy = equations.energy_residual * self.determinant - known;
         let dh = -(energy / (self.schur * trial.h));
         VelocityStep { v: -(self.residual + self.residual_dh * dh) * self.reciprocal, h: dh }
@@ -154,36 +156,36 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
         self.schur * self.reciprocal * T::real(-4.0)
     }
 
-    /// Step density D of the interval; `None` where a term of it is not finite.
+    /// Step density D of the interval; `None` if one of its terms is not finite.
     #[inline]
     pub(crate) fn density(&self) -> Option<T> {
         (self.schur_magnitude * T::real(4.0)).is_finite().then(|| self.density_or_infinite())
     }
 
-    /// Whether S is zero but for its rounding.
+    /// Whether S is zero to rounding.
     #[inline]
     pub(crate) fn is_degenerate(&self) -> bool {
-        // Where it is not a number, too.
+        // Also true for NaN.
         let rounding = self.schur_magnitude * T::real(VANISHING * T::EPSILON);
         self.schur.abs().partial_cmp(&rounding) != Some(Ordering::Greater)
     }
 }
 
-/// The energy residual `e = c + v·r` of measured rows. In stiff steps v·(h/2) L_q, of which c knows no more digits than L_q has, is the
-/// same number in both, and leaves e.
+/// The energy residual `e = c + v·r` of evaluated rows. In stiff steps the term v·(h/2) L_q, accurate only to the
+/// digits of L_q, is the same number in both and cancels.
 #[inline(always)]
 pub(crate) fn energy_residual<const N: usize, T: Scalar>(measured: &ExtendedResidual<N, T>, v: &SVector<T, N>) -> T {
     measured.energy_residual + v.dot(&measured.residual)
 }
 
-/// Both equations of a step whose length lies in a range.
+/// Both equations of a step with h in a range.
 struct Extended<'a, const N: usize, T, S> {
     system: &'a S,
     node: &'a Node<N, T>,
     range: (T, T),
 }
 
-/// The equations at a trial, with what their rounding is measured in.
+/// The equations at a trial, with their rounding-error bounds.
 struct RowEvaluation<const N: usize, T, J> {
     trial: VelocityStep<N, T>,
     system: ExtendedSystem<N, T, J>,
@@ -210,7 +212,7 @@ impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extend
         let scale = &scales.scale;
         let combined = roundings(measured.energy_residual, scale.energy_residual);
         let energy = roundings(energy_residual(measured, &trial.v), scale.energy);
-        // It follows from the rows: no iteration is for what it has within its floor.
+        // It follows from the rows, so that no iteration is spent on it below the floor.
         let energy = if energy <= FLOOR { 0.0 } else { energy };
         [worst(&measured.residual, &scale.residual), worse(combined, energy)]
     }
@@ -225,7 +227,7 @@ impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extend
         system.energy_residual = residual.system.energy_residual;
         let elimination = Elimination::finite(&system).ok_or(newton::Failure::Singular)?;
         let change = elimination.change(&system, &jacobian.trial);
-        // A Newton step is taken off.
+        // The correction is subtracted.
         Ok(VelocityStep { v: -change.v, h: -change.h })
     }
 
@@ -235,7 +237,7 @@ impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extend
     }
 }
 
-/// The step that Newton's iteration reaches from `trial` with h inside `range`.
+/// The step that Newton iteration reaches from `trial` with h inside `range`.
 pub(crate) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
@@ -255,5 +257,5 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         return Err(NoStep::Degenerate { h, density });
     }
     let [momentum, energy] = extended.roundings(&root.at, &root.at);
-    Ok(EnergyStep { v, h, density, iterations: root.iterations, measured: Measured::of(worse(momentum, energy)) })
+    Ok(EnergyStep { v, h, density, iterations: root.iterations, measured: RowResiduals::of(worse(momentum, energy)) })
 }

@@ -1,8 +1,8 @@
-//! Where the search for a step starts, when prediction has not solved it.
+//! The trial of a search, if extrapolation has failed.
 //!
-//! In: a node and the interval that led to it. Out: a trial `(v, h)`: v extrapolated and improved by one Newton step on the
-//! momentum equation at the last h; then h by the step law, `h = h_last (D_last/D)^(1/3)`, within the factor allowed;
-//! then v carried along `dv/dh` of the momentum equation. No prediction is made where D has changed its sign.
+//! From a node and the last interval follows a trial `(v, h)`. v is extrapolated and improved by one Newton step on the
+//! momentum equation at the last h. Then h follows from the step law, `h = h_last (D_last/D)^(1/3)`, within the factor
+//! allowed, and v moves along `dv/dh` of the momentum equation. There is no prediction if D has changed its sign.
 
 use super::equations::Elimination;
 use super::interval::Last;
@@ -13,7 +13,7 @@ use crate::stepping::EnergyStepping;
 use crate::vector::VelocityStep;
 use nalgebra::SVector;
 
-/// The trial that follows `last`.
+/// The trial after `last`.
 pub(crate) fn predict<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,

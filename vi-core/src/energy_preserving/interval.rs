@@ -1,10 +1,10 @@
-//! The interval that the next step follows.
+//! The last interval, from which the next step continues.
 
-use super::equations::{EnergyStep, Measured};
+use super::equations::{EnergyStep, RowResiduals};
 use crate::real::Scalar;
 use nalgebra::SVector;
 
-/// The interval that the next step follows.
+/// The last interval, from which the next step continues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -25,16 +25,16 @@ pub(crate) struct Last<const N: usize, T> {
     pub(crate) density_before: T,
     /// Change of v since the interval before.
     pub(crate) change: SVector<T, N>,
-    /// Whether it is a step, taken with the parameters that the system has.
+    /// Whether it is a step, taken with the current parameters.
     pub(crate) is_step: bool,
-    /// Newton iterations that found it.
+    /// Number of Newton iterations.
     pub(crate) iterations: u32,
-    /// What it left of its equations.
-    pub(crate) measured: Measured<N, T>,
+    /// Its residuals.
+    pub(crate) measured: RowResiduals<N, T>,
 }
 
 impl<const N: usize, T: Scalar> Last<N, T> {
-    /// An interval that a run starts from.
+    /// The initial interval of a run.
     pub(crate) fn first(v: SVector<T, N>, h: T, density: T, change: SVector<T, N>) -> Self {
         Self {
             v,
@@ -45,11 +45,11 @@ impl<const N: usize, T: Scalar> Last<N, T> {
             change,
             is_step: false,
             iterations: 0,
-            measured: Measured::of(0.0),
+            measured: RowResiduals::of(0.0),
         }
     }
 
-    /// The interval of the next step.
+    /// The interval after the next step.
     #[inline(always)]
     pub(crate) fn followed(&self, step: &EnergyStep<N, T>) -> Self {
         let EnergyStep { v, h, density, iterations, measured } = *step;
@@ -62,12 +62,12 @@ impl<const N: usize, T: Scalar> Last<N, T> {
         self.change * self.frequency()
     }
 
-    /// D in the middle of the next interval, if it changes as it did over the last two.
+    /// D at the middle of the next interval, extrapolated linearly from the last two.
     pub(crate) fn density_next(&self) -> T {
         self.density + (self.density - self.density_before) * (self.frequency() * self.h)
     }
 
-    /// One over the time between the middles of the last two intervals.
+    /// The inverse of the time between the middles of the last two intervals.
     fn frequency(&self) -> T {
         T::real(2.0) / (self.h + self.previous)
     }

@@ -1,20 +1,19 @@
-//! The step from a guess that the steps before it give.
+//! Steps by Newton correction of an extrapolated guess.
 //!
-//! In: the velocities and lengths of the last steps. Out: the root of both equations, by Newton steps from (v, h) extrapolated
-//! over them (`predictor`), each followed by a measurement:
+//! Velocities and lengths of the last steps extrapolate to a trial (v, h) (`predictor`). Newton steps lead from there
+//! to the root of both equations, each followed by a check:
 //!
 //! ```text
-//! accept     where |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|)  and  |c| ≤ (ε/2) (|E0| + |E1 − E0| + Σ_i |v_i p0_i|),
+//! accept     if |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|)  and  |c| ≤ (ε/2) (|E0| + |E1 − E0| + Σ_i |v_i p0_i|),
 //!            or the same parts of the sum of the absolute values of the terms of each row, if e = c + v·r is at the first of these too
 //! ```
 //!
-//! `None` where three Newton steps do not come there, the length leaves its range or D changes its sign. What is left of the
-//! momentum rows is carried to the next step, as in `momentum::steps`: without that, the angular momentum of Kepler's problem is off
-//! by 8e-14 after a million steps, with it by 3e-15. Nothing is carried in the energy row, from which h follows: one rounding of it
-//! is `4 ε E/(h² D)` of h.
-//! AFTER A STEP both residuals were measured at the (v, h) that was taken.
+//! `None` if three Newton steps do not converge, the length leaves its range or D changes its sign. The next step
+//! carries the residual of the momentum rows, as in `momentum::steps`: without that, the angular momentum of Kepler's
+//! problem is off by 8e-14 after a million steps, with it by 3e-15. The energy row, from which h follows, carries
+//! nothing: one rounding of it is `4 ε E/(h² D)` of h.
 
-use super::equations::{Elimination, EnergyStep, Measured, energy_residual};
+use super::equations::{Elimination, EnergyStep, RowResiduals, energy_residual};
 use super::interval::Last;
 use crate::method::bounds::RATIO;
 use crate::newton::{FLOOR, are_at_floor};
@@ -25,17 +24,17 @@ use crate::stepping::{EnergyStepping, ExtendedResidual, Increment};
 use crate::vector::{Vector, VelocityStep, length_squared};
 use nalgebra::SVector;
 
-/// Newton steps that may follow a guess.
+/// Most Newton steps after a guess.
 const ATTEMPTS: u32 = 3;
-/// Roundings that a momentum row may leave with what is carried to it.
+/// Accepted residual of a momentum row including its carried remainder, in roundings.
 const REMAINING: f64 = 1.0;
-/// Roundings that may be left of the energy row.
+/// Accepted residual of the energy row, in roundings.
 const ENERGY_FLOOR: f64 = 0.5;
-/// Part of v and h that a short change is at most.
+/// Largest relative size of a short change of v and h.
 const SHORT: f64 = 1e-6;
 
-/// The predictors of v and of h, and what the last step left. Each has a degree of its own: h follows from a small difference, and its
-/// roundings, which extrapolation enlarges, are larger.
+/// The predictors of v and of h, and the last remainder. Each has its own degree: h follows from a small difference, so
+/// that its rounding errors, which extrapolation amplifies, are larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -48,18 +47,18 @@ const SHORT: f64 = 1e-6;
 pub(crate) struct Prediction<const N: usize, T> {
     v: Predictor<N, T>,
     h: Predictor<1, T>,
-    /// What the last step left of its momentum rows.
+    /// Remainder of the momentum rows of the last step.
     remainder: SVector<T, N>,
 }
 
-/// A step that was predicted.
+/// A solved step.
 #[derive(Clone, Copy, Debug)]
 pub struct Predicted<const N: usize, T> {
     /// What solves the equations.
     pub(crate) step: EnergyStep<N, T>,
-    /// What momentum and energy gain over it.
+    /// Increments of momentum and energy.
     pub(crate) increment: Increment<N, T>,
-    /// What it leaves of its momentum rows.
+    /// Remainder of its momentum rows.
     remainder: SVector<T, N>,
 }
 
@@ -74,13 +73,13 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
         self.v.is_finite() && self.h.is_finite() && Vector::is_finite(&self.remainder)
     }
 
-    /// Whether both guesses are of the highest degree.
+    /// Whether both guesses have the highest degree.
     #[inline(always)]
     pub(crate) fn is_highest(&self) -> bool {
         self.v.is_highest() && self.h.is_highest()
     }
 
-    /// Takes a step that was predicted from a guess of the highest degree.
+    /// Records a step from a guess of the highest degree.
     #[inline(always)]
     pub(crate) fn push_common(&mut self, predicted: &Predicted<N, T>) {
         let EnergyStep { v, h, .. } = predicted.step;
@@ -89,7 +88,7 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
         self.remainder = predicted.remainder;
     }
 
-    /// Takes a step that was predicted.
+    /// Records a step from a guess.
     pub(crate) fn push(&mut self, predicted: &Predicted<N, T>) {
         let EnergyStep { v, h, .. } = predicted.step;
         self.v.push(v);
@@ -97,19 +96,19 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
         self.remainder = predicted.remainder;
     }
 
-    /// Takes a step that was searched.
+    /// Records a step from a search.
     pub(crate) fn restart(&mut self, step: &EnergyStep<N, T>) {
         self.v.restart(step.v);
         self.h.restart(SVector::repeat(step.h));
         self.remainder = SVector::zeros();
     }
 
-    /// The unknowns that the last steps give.
+    /// The extrapolated unknowns.
     pub(crate) fn guess(&self) -> VelocityStep<N, T> {
         VelocityStep { v: self.v.guess(), h: self.h.guess()[0] }
     }
 
-    /// The same at the highest degree.
+    /// The extrapolated unknowns at the highest degree.
     #[inline(always)]
     pub(crate) fn guess_highest(&self) -> VelocityStep<N, T> {
         VelocityStep { v: self.v.guess_highest(), h: self.h.guess_highest()[0] }
@@ -130,7 +129,7 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
             let elimination = Elimination::of(&equations);
             let change = elimination.change(&equations, &trial);
             trial = VelocityStep { v: trial.v + change.v, h: trial.h + change.h };
-            // D is that of the trial before, which has to be next to the root for it.
+            // D belongs to the previous trial, which must be close to the root.
             if !is_short(&change, &trial) {
                 continue;
             }
@@ -141,7 +140,7 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
             let VelocityStep { v, h } = trial;
             let density = elimination.density_or_infinite();
             let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
-            // At the smallest root D has the sign that it had: past a change of sign lies another root.
+            // At the smallest root D has the same sign as before: another root lies beyond a sign change.
             let forward = density * last.density > T::zero() && !elimination.is_degenerate();
             let step = EnergyStep { v, h, density, iterations, measured };
             return (in_range && forward).then_some(Predicted { step, increment: at.increment, remainder });
@@ -149,14 +148,15 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
         None
     }
 
-    /// What is left of the momentum rows with what was carried to them, and all residuals with their scales, if every row is at the floor.
+    /// The remainders of the momentum rows including carried ones, and all residuals with their scales, if every row is
+    /// at the floor.
     #[inline(always)]
     fn measured(
         &self,
         node: &Node<N, T>,
         trial: &VelocityStep<N, T>,
         at: &ExtendedResidual<N, T>,
-    ) -> Option<(SVector<T, N>, Measured<N, T>)> {
+    ) -> Option<(SVector<T, N>, RowResiduals<N, T>)> {
         let remainder = at.residual + self.remainder;
         let is_at_floor = |rows: &SVector<T, N>, energy: T| {
             let rounding = energy * T::real(T::EPSILON);
@@ -167,23 +167,24 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
         let own = node.energy.abs() + at.increment.energy.abs();
         let mut rows = node.p.zip_map(&at.increment.momentum, |p, increment| p.abs() + increment.abs());
         let mut energy = node.p.iter().zip(trial.v.iter()).fold(own, |sum, (p, v)| sum + (*p * *v).abs());
-        // Rows at this floor keep the energy itself: e = c + v·r.
+        // Rows at this floor preserve the energy itself: e = c + v·r.
         if !is_at_floor(&rows, energy) {
             let terms = rows.iter().zip(trial.v.iter()).fold(own, |sum, (row, v)| sum + (*row * *v).abs());
             let left = energy_residual(at, &trial.v).abs();
-            // Where momenta or the energy vanish, what they are sums of need not.
+            // Momenta or energy may vanish although their terms do not.
             (rows, energy) = (at.scale, at.energy_scale);
             let is_kept = left <= terms * T::real(FLOOR * T::EPSILON);
             if !(is_at_floor(&rows, energy) && is_kept) {
                 return None;
             }
         }
-        let measured = Measured { rows: at.residual, scales: rows, energy: at.energy_residual, energy_scale: energy };
+        let measured =
+            RowResiduals { rows: at.residual, scales: rows, energy: at.energy_residual, energy_scale: energy };
         Some((remainder, measured))
     }
 }
 
-/// Whether a change is less than a millionth of the trial that it leads to.
+/// Whether a change is less than a millionth of the resulting trial.
 #[inline(always)]
 fn is_short<const N: usize, T: Scalar>(change: &VelocityStep<N, T>, trial: &VelocityStep<N, T>) -> bool {
     let part = T::real(SHORT);

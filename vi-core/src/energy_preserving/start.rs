@@ -1,19 +1,20 @@
-//! Where the first step comes from.
+//! Starts of a run: from a state, or from a first interval.
 //!
-//! In: a state, or the first interval. Out: the node from which the run continues with its energy, and the interval that the next step follows.
+//! Both return the node with its energy, and the interval that precedes the next step.
 
-use super::course::{After, Lengths};
 use super::equations::Elimination;
 use super::interval::Last;
+use super::lengths::{After, Lengths};
 use crate::called::Called;
 use crate::error::StepError;
-use crate::momentum::continuation::{self, Reached};
+use crate::momentum::continuation::{self, BranchPoint};
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
-/// The memory of a run that starts at a node, with a first step of the length h: the node gets the discrete energy `D1 L_d + g_d⁻` of that step.
+/// The memory of a run that starts at a node with a first step of the length h. Sets the energy of the node to the
+/// discrete energy `D1 L_d + g_d⁻` of that step.
 ///
 /// # Errors
 /// Those of a fixed step of that length.
@@ -27,7 +28,7 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     let called = &Called(*system);
     let first = continuation::nearest(called, node, h, rest, rest);
     let explained = |failure: StepError| failure.explained(system, node, h, &rest);
-    let Reached { v, .. } = first.map_err(explained)?;
+    let BranchPoint { v, .. } = first.map_err(explained)?;
     let bare = Node::new(state, T::zero());
     let equations = called.extended_system(&bare, h, &v);
     let t = state.t.to_f64();
@@ -41,11 +42,11 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         return Err(explained(infinite("energy")));
     }
     node.energy = energy;
-    // The first step is this one: it follows an interval like it.
+    // The first step is this one, so that the interval before it is an equal one.
     Ok(Lengths::new(Last::first(v, h, density, SVector::zeros())))
 }
 
-/// The run at the end of the step `(v, h)` from the place of `start`.
+/// The run at the end of the step `(v, h)` from `start`.
 pub(crate) fn first_interval<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     start: Node<N, T>,
@@ -62,7 +63,7 @@ pub(crate) fn first_interval<const N: usize, T: Scalar, S: EnergyStepping<N, T>>
     let elimination = Elimination::finite(&system.extended_system(&start, h, &v)).ok_or(singular)?;
     let density = elimination.density().ok_or(infinite)?;
     let (t_mid, q_mid) = start.midpoint(h, &v);
-    // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
+    // Only the first guess depends on the acceleration; without one v is constant.
     let acceleration = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
     Ok(After { node, lengths: Lengths::new(Last::first(v, h, density, acceleration * h)) })
 }

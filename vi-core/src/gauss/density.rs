@@ -1,15 +1,15 @@
 //! The step density of order 2s.
 //!
-//! In: a system and a state. Out: the number that the length of an energy-preserving step of s stages follows from,
+//! At a state of a system, the density determines the length of an energy-preserving step of s stages:
 //!
 //! ```text
 //! H − E0(h) = C_s h^2s D_s + O(h^(2s+1))        C_s = (s!)⁴/((2s)!)³ = 1/8, 1/864, 1/288000
 //! D_s = (d/dτ)^2s H(t + τ, π_q(τ), π_p(τ)) at τ = 0        π = Taylor polynomial of degree s of the forced motion
 //! ```
 //!
-//! H the energy as a function of (t, q, p). The motion, and H along π, are computed as power series in τ, from the functions of a point
-//! that the steps use: D_s owes nothing to the steps. For s = 1 it is `step_density` of the generated rule.
-//! `docs/theory.md` derives it.
+//! with H the energy as a function of (t, q, p). Power series in τ give the motion, and H along π, from the functions
+//! of a point that the steps also use. D_s is therefore independent of the step solver. For s = 1 it is `step_density`
+//! of the generated rule. `docs/theory.md` derives it.
 
 use crate::collocation::Collocation;
 use crate::error::StepError;
@@ -36,12 +36,13 @@ pub(crate) fn power<const S: usize>(h: f64) -> f64 {
     (1..S).fold(h * h, |power, _| power * (h * h)) * const { constant(S) }
 }
 
-/// The step density `D_s` of s = STAGES stages at a state, in units of energy by time to the power 2s. An energy-preserving step exists, for
-/// small h, while it keeps its sign. Computed in power series, for analysis rather than for the loop of a step.
+/// The step density `D_s` of s = STAGES stages at a state, in units of energy over time to the power 2s. For small h an
+/// energy-preserving step exists while it keeps its sign. The power series are for analysis, too slow for the loop of a
+/// step.
 ///
 /// # Errors
-/// [`StepError::Singular`] or [`StepError::NotConverged`] where no velocity belongs to the momenta, [`StepError::NonFinite`] where D_s has no
-/// value.
+/// [`StepError::Singular`] or [`StepError::NotConverged`] if no velocity has the momenta, [`StepError::NonFinite`] if
+/// D_s has no value.
 pub fn step_density<S, const N: usize, const STAGES: usize>(system: &S, state: &State<N>) -> Result<f64, StepError>
 where
     S: Collocation<N> + Convertible<N>,
@@ -50,7 +51,7 @@ where
     density(system, state, STAGES)
 }
 
-/// The step density of so many stages. A number here, not a type: one copy of this serves all.
+/// The step density of this many stages. A runtime argument, so that one copy serves all.
 fn density<S, const N: usize>(system: &S, state: &State<N>, stages: usize) -> Result<f64, StepError>
 where
     S: Collocation<N> + Convertible<N>,
@@ -62,7 +63,7 @@ where
     let mut q = start;
     let mut p = momentum;
     let mut v = state.velocity(system)?.map(Series::fixed);
-    // Each integration makes one more term right.
+    // Each integration adds one correct term.
     for _ in 0..stages {
         v = velocity(&series, t, [&q, &p], v);
         let force = series.point(t, &q, &v).force;
@@ -71,7 +72,7 @@ where
     }
     let q = q.map(|q| q.truncated(stages));
     let p = p.map(|p| p.truncated(stages));
-    // The velocities are those of π up to the term s − 1; each iteration doubles the number of right terms.
+    // The velocities are those of π up to the term s − 1; each iteration doubles the number of correct terms.
     v = velocity(&series, t, [&q, &p], v);
     v = velocity(&series, t, [&q, &p], v);
     let energy = crate::Lagrangian::energy(&series, t, &q, &v);
@@ -83,7 +84,7 @@ where
     }
 }
 
-/// The velocity after one of Newton's iterations on `L_v(t, q, v) = p`.
+/// The velocity after one Newton iteration on `L_v(t, q, v) = p`.
 fn velocity<S, const N: usize>(
     system: &S,
     t: Series,

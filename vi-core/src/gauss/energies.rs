@@ -1,19 +1,19 @@
 //! The discrete energies of a step.
 //!
-//! In: the stages of a step of length h from a node. Out: what its energy is at its start and at its end,
+//! From the stages of a step of length h from a node follow its energies at both ends, relative to `base`:
 //!
 //! ```text
 //! E0 =  D1 L_d + g_d⁻ = Σ b_i En_i − h Σ b_i (1 − c_i) (f·v − L_t)_i
 //! E1 = −D3 L_d − g_d⁺ = Σ b_i En_i + h Σ b_i c_i (f·v − L_t)_i
 //! ```
 //!
-//! less a number that is close to them: energies of stages differ from it by little, exactly, so that no sum of large terms is rounded.
+//! Nearby energies subtract exactly, so that the sum loses no digits.
 
+use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::Rare;
+use super::points::ErasedSystem;
 use super::rounding;
 use super::stages::{Stages, stage};
-use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::node::Node;
@@ -21,12 +21,12 @@ use crate::real::{Real, Rounded};
 use crate::stepping::Convertible;
 use nalgebra::SVector;
 
-/// The energies of a step less a given number, and how large their terms are; see the [module](self).
+/// The energies of a step relative to `base`, and the size of their terms; see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Energies<T = f64> {
-    /// E0, less the number.
+    /// E0 − base.
     pub(crate) start: T,
-    /// E1, less the number.
+    /// E1 − base.
     pub(crate) end: T,
     /// `E1 − E0`.
     pub(crate) work: T,
@@ -34,7 +34,7 @@ pub(crate) struct Energies<T = f64> {
     pub(crate) size: T,
 }
 
-/// The energies, less `base`, of the step of length h from `node` with the stages of its equations.
+/// The energies relative to `base`, for the step of length h from `node` with the stages of its equations.
 #[inline(always)]
 pub(crate) fn energies<Y, const N: usize, const S: usize>(
     system: &Y,
@@ -46,12 +46,13 @@ pub(crate) fn energies<Y, const N: usize, const S: usize>(
 where
     Y: Collocation<N> + Convertible<N>,
 {
-    let interval = Interval::new(&Rare::of(system), node, h, stages);
+    let interval = Interval::new(&ErasedSystem::of(system), node, h, stages);
     interval.energies(system, base, |number| number, |i| stage(&interval.velocities, i))
 }
 
-/// The same in numbers that carry a bound of their rounding, each position the nearest to the one that is meant. Velocities carry the
-/// rounding of the forces that they follow from: at an angle of thousands of turns these are known to the ulp of the angle only.
+/// The energies in numbers with rounding-error bounds, at positions rounded to the nearest number. Velocities include
+/// the rounding error of their forces: at an angle of thousands of turns these are accurate only to the ulp of the
+/// angle.
 pub(crate) fn bounded_energies<Y, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
@@ -62,13 +63,13 @@ pub(crate) fn bounded_energies<Y, const N: usize, const S: usize>(
 where
     Y: Collocation<N> + Convertible<N>,
 {
-    let rare = Rare::of(system);
+    let rare = ErasedSystem::of(system);
     let interval = Interval::new(&rare, node, h, stages);
     let velocities = rounding::velocities(&rare, node, h, &interval.positions, &interval.velocities);
     interval.energies(&system.convert::<Rounded>(), base, Rounded::nearest, |i| velocities[i])
 }
 
-/// A step with the positions and the velocities at its stages.
+/// A step with its stage positions and velocities.
 struct Interval<'a, const N: usize, const S: usize> {
     node: &'a Node<N>,
     h: f64,
@@ -78,7 +79,7 @@ struct Interval<'a, const N: usize, const S: usize> {
 
 impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
     #[inline(always)]
-    fn new(system: &Rare<'_, N>, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
+    fn new(system: &ErasedSystem<'_, N>, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
         let equations = equations(system, node, h, stages);
         Self { node, h, positions: equations.start(), velocities: equations.velocity() }
     }

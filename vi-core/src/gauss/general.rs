@@ -1,22 +1,23 @@
-//! The stages of any system.
+//! The stage equations of any system.
 //!
-//! In: the equations `q' = v, p' = F = L_q + f, p = L_v` at the stages. Out: velocities and forces there,
+//! For `q' = v, p' = F = L_q + f, p = L_v` at the stages, the unknowns are velocities and forces there,
 //!
 //! ```text
 //! Q_i = q0 + Σ_j first_ij h b_j V_j        L_v(Q_i, V_i) = p0 + Σ_j first_ij h b_j F_j
 //! q1  = q0 + Σ_j h b_j V_j                 p1 = p0 + Σ_j h b_j F_j
 //! ```
 //!
-//! A sweep evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from F, and moves Q by the new V.
-//! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
+//! One iteration evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)` with the momenta P from F, and moves Q
+//! by the new V. If L is quadratic in v, it solves for V exactly. The change of V is the residual, because Q follows
+//! from V.
 
+use super::fixed_point::{Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
-use super::points::{Form, Points, Rare};
+use super::points::{ErasedSystem, Form, Points};
 use super::stages::{
     AtStages, Roundings, Stages, change, constant_mass, gathered, growth, maximum, product, roundings, scaled, scatter,
     sum, times, weights,
 };
-use super::sweep::{Equations, Increment, VELOCITY};
 use super::tableau::Tableau;
 use crate::collocation::Point;
 use crate::linear::Matrix;
@@ -30,19 +31,19 @@ pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     system: &'a Y,
     node: &'a Node<N>,
     h: f64,
-    /// M, ready to solve with, where it is constant.
+    /// M, factored, if it is constant.
     inverse: Option<M::Inverse>,
-    /// The linearized equations, where sweeps do not contract.
+    /// The linearized equations, if fixed-point iteration does not contract.
     newton: Option<&'a Newton<N, S>>,
-    /// Velocities from which the positions follow.
+    /// Velocities that determine the positions.
     velocity: Stages<N, S>,
-    /// Velocities and forces at which the equations were evaluated last.
+    /// Velocities and forces of the last evaluation.
     evaluated: Stages<N, S>,
     force: Stages<N, S>,
-    /// The largest `Σ_l |M⁻¹_kl P_l|` of the stages, where the mass matrix varies: where velocities are less, these terms cancel, and leave their rounding.
-    /// Zero where M is constant, and where it is not finite.
+    /// The largest `Σ_l |M⁻¹_kl P_l|` of the stages, for a variable mass matrix. If velocities are smaller, these terms
+    /// cancel and determine the rounding error. Zero if M is constant or not finite.
     terms: SVector<f64, N>,
-    /// Roundings of the velocities, and of the positions where they are looked at.
+    /// Ulps of the velocities, and of the positions if they are checked.
     of_velocity: Roundings<N>,
     of_position: Roundings<N>,
     numbers: PhantomData<T>,
@@ -50,11 +51,11 @@ pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
 
 /// The equations of a step from `node`, with velocities at its stages, or forces there of a separable system.
 pub(crate) fn equations<'a, const N: usize, const S: usize>(
-    system: &'a Rare<'a, N>,
+    system: &'a ErasedSystem<'a, N>,
     node: &'a Node<N>,
     h: f64,
     stages: Stages<N, S>,
-) -> General<'a, f64, Rare<'a, N>, SMatrix<f64, N, N>, N, S, false> {
+) -> General<'a, f64, ErasedSystem<'a, N>, SMatrix<f64, N, N>, N, S, false> {
     let mass = constant_mass::<N, f64, _>(system, node);
     General::new(system, mass.as_ref(), node, h, stages, None)
 }
@@ -65,8 +66,8 @@ where
     Y: Points<N, T>,
     M: Matrix<N, f64>,
 {
-    /// The equations of the step of length h from `node`, with the mass matrix, where it is constant, and a guess of the velocities at the stages, or of
-    /// the forces there of a separable system.
+    /// The equations of the step of length h from `node`, with the mass matrix if it is constant. The guess has stage
+    /// velocities, or the stage forces of a separable system.
     #[inline(always)]
     pub(crate) fn new(
         system: &'a Y,
@@ -101,7 +102,7 @@ where
         equations
     }
 
-    /// The velocities at hand.
+    /// The current velocities.
     pub(crate) fn velocity(&self) -> Stages<N, S> {
         self.velocity
     }
@@ -118,7 +119,7 @@ where
         integrals
     }
 
-    /// Where the velocities at hand lead.
+    /// The positions by the current velocities.
     #[inline(always)]
     fn positions(&self) -> Stages<N, S> {
         let mut x = self.integrals(&self.velocity, &self.node.q_low);
@@ -130,7 +131,7 @@ where
         x
     }
 
-    /// What the momenta that follow from the forces are beyond `momentum`, the L_v of the velocities.
+    /// The momenta by the current forces minus `momentum`, the L_v of the velocities.
     #[inline(always)]
     fn missing(&self, momentum: &Stages<N, S>) -> Stages<N, S> {
         let mut missing = self.integrals(&self.force, &self.node.p_low);
@@ -167,10 +168,10 @@ where
         point
     }
 
-    /// Evaluates the equations at the positions x, and returns what is missing in the momenta.
+    /// Evaluates the equations at the positions x, and returns the residuals of the momenta.
     #[inline(always)]
     fn evaluate(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        // Arrays of this function do not overlap, so far as the compiler knows: it makes vectors of their loops.
+        // Local arrays cannot alias, so that the compiler vectorizes their loops.
         let velocity = self.velocity;
         let x = *x;
         let mut force = [[0.0; S]; N];
@@ -223,17 +224,17 @@ where
         }
     }
 
-    /// A sweep with the constant mass matrix.
+    /// An iteration with the constant mass matrix.
     #[inline(always)]
-    fn sweep_constant(&mut self, x: &Stages<N, S>) {
+    fn iterate_constant(&mut self, x: &Stages<N, S>) {
         let mut correction = self.evaluate(x);
         self.solve(&mut correction);
         self.correct(&correction);
     }
 
-    /// A sweep with the mass matrix of each stage, whose inverse waits for the momenta of all stages.
+    /// An iteration with the mass matrix of each stage, whose inverse waits for the momenta of all stages.
     #[inline(always)]
-    fn sweep_varying(&mut self, x: &Stages<N, S>) {
+    fn iterate_varying(&mut self, x: &Stages<N, S>) {
         let (missing, inverse) = self.evaluate_with_masses(x);
         for k in 0..N {
             for l in 0..N {
@@ -263,25 +264,25 @@ where
     }
 
     #[inline(always)]
-    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
-        // Of a known type the compiler sees one of the two forms.
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+        // For a known form the compiler sees one branch.
         let varies = || self.system.form() == Form::VaryingMass;
         if let Some(newton) = self.newton {
             let missing = self.evaluate(x);
             self.correct(&newton.correction(&missing));
         } else if const { Form::VaryingMass.is_known(Y::FORM) } || const { Y::FORM.is_none() } && varies() {
-            self.sweep_varying(x);
+            self.iterate_varying(x);
         } else {
-            self.sweep_constant(x);
+            self.iterate_constant(x);
         }
         *y = self.positions();
     }
 
     #[inline(always)]
-    fn increment(&self) -> Increment<N> {
+    fn increment(&self) -> StageIncrement<N> {
         let b = const { &Tableau::<S>::VALUES.b };
         let weights = weights::<S>(self.h);
-        let mut increment = Increment { velocity: SVector::zeros(), momentum: SVector::zeros() };
+        let mut increment = StageIncrement { velocity: SVector::zeros(), momentum: SVector::zeros() };
         for k in 0..N {
             increment.velocity[k] = sum(&scaled(b, &self.velocity[k]));
             increment.momentum[k] = sum(&scaled(&weights, &self.force[k]));
@@ -310,7 +311,8 @@ where
         of_velocities
     }
 
-    /// That of the velocities, in roundings of what they are the sums of, from which positions follow; of stiff steps that of the positions too, which move their forces much.
+    /// Changes of velocities, in ulps of the terms of these sums; in stiff steps also of positions, because the forces
+    /// depend on them strongly.
     #[inline(always)]
     fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64 {
         let mut evaluated = self.evaluated;
@@ -322,9 +324,10 @@ where
         of_velocities
     }
 
-    /// After a sweep velocities are what its forces lead to, and these are off by as much as velocities are then. A correction by Newton's iteration leaves the
-    /// forces of stiff steps behind. The energy is off by roundings of velocities, not by sixteenths of them, and what is left has a sign. Measured, for a
-    /// double pendulum in small swings: half of that costs 6 % more sweeps, and the drift of 2.4e-17 a step becomes 3e-18; of rounding it is 1e-18.
+    /// After an iteration the velocities follow from its forces and share their error. A Newton correction does not
+    /// update the forces of stiff steps. The energy error is then that of the velocities in ulps, not in sixteenths of
+    /// them, and has a sign. Measured for a double pendulum with small oscillations: half of that tolerance costs 6 %
+    /// more iterations and reduces the drift from 2.4e-17 a step to 3e-18; rounding alone has 1e-18.
     #[inline(always)]
     fn passed_on(&self, contraction: f64) -> f64 {
         if self.newton.is_some() { 1.0 } else { 0.5 * contraction / VELOCITY }

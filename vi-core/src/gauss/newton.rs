@@ -1,29 +1,30 @@
-//! Simplified Newton iterations on the equations of the stages, for steps where sweeps do not contract.
+//! Simplified Newton iteration of the stage equations, for steps whose fixed-point iteration does not contract.
 //!
-//! In: the equations linearized in the middle of a step, and what velocities leave of `L_v(Q_i, V_i) = p0 + h Σ a_ij F_j`. Out: the
-//! correction of the velocities. With `C = ∂L_v/∂q, M = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` it solves
+//! The equations are linearized at the middle of a step. From the residuals of `L_v(Q_i, V_i) = p0 + h Σ a_ij F_j`
+//! follow corrections of the velocities. With `C = ∂L_v/∂q, M = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` they solve
 //!
 //! ```text
 //! δQ_i = h Σ_j a_ij δV_j        M δV_i + C δQ_i − h Σ_j a_ij (K δQ_j + B δV_j) = missing_i
 //! ```
 //!
-//! At each eigenvalue λ of A (`modes`) these are N equations, by a matrix that is inverted once for a linearization,
+//! At each eigenvalue λ of A (`modes`) these are N equations, with a matrix that is inverted once per linearization,
 //!
 //! ```text
 //! (M + h λ (C − B) − h² λ² K) δV = missing
 //! ```
 //!
-//! all eigenvalues side by side. It exists for whatever oscillates or is damped, however stiff: there K and B have no positive eigenvalues, and λ has a
-//! positive real part. It allocates once, when a run meets its first stiff step.
+//! All eigenvalues are processed side by side. The inverse exists for every oscillating or damped system, however
+//! stiff: then K and B have no positive eigenvalues, and λ has a positive real part. The first stiff step of a run
+//! allocates the buffer.
 
 use super::modes::{Modal, Spectrum};
-use super::points::{AnyDerivatives, Rare};
+use super::points::{AnyDerivatives, ErasedSystem};
 use super::stages::{LOOPED, Stages, product};
 use crate::linear::Pivoted;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use vi_dispatch::{Instructions, Loop, by_baseline};
 
-/// Where the equations of a step of length h are linearized.
+/// The linearization point of a step of length h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Linearization<const N: usize> {
@@ -31,12 +32,12 @@ pub struct Linearization<const N: usize> {
     pub(crate) t: f64,
     pub(crate) q: SVector<f64, N>,
     pub(crate) v: SVector<f64, N>,
-    /// Iterations of the first step that was solved with it; none before.
+    /// Iterations of the first step with this linearization; `None` before.
     pub(crate) iterations: Option<u32>,
 }
 
 impl<const N: usize> Linearization<N> {
-    /// The linearization for the next step, after one of so many iterations; `None` if a new one pays.
+    /// The linearization for the next step, after one of this many iterations; `None` if a new one pays off.
     pub(crate) fn after(self, iterations: u32) -> Option<Self> {
         let first = self.iterations.unwrap_or(iterations);
         (2 * iterations <= 3 * first).then_some(Self { iterations: Some(first), ..self })
@@ -50,13 +51,13 @@ impl<const N: usize> Linearization<N> {
             && self.v == other.v
     }
 
-    /// Whether every number of it is finite.
+    /// Whether all numbers are finite.
     pub(crate) fn is_finite(&self) -> bool {
         [self.h, self.t].iter().chain(&self.q).chain(&self.v).all(|number| number.is_finite())
     }
 }
 
-/// The linearized equations of a step, solved.
+/// The linearized equations of a step, factored.
 #[derive(Clone, Debug)]
 pub struct Newton<const N: usize, const S: usize> {
     linearization: Option<Linearization<N>>,
@@ -68,7 +69,7 @@ pub struct Newton<const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> Newton<N, S> {
-    /// Room for the equations.
+    /// Allocates the buffers.
     pub(crate) fn new() -> Self {
         let zeros = SMatrix::zeros();
         let derivatives = AnyDerivatives { momentum_dq: zeros, mass: zeros, force_dq: zeros, force_dv: zeros };
@@ -77,8 +78,8 @@ impl<const N: usize, const S: usize> Newton<N, S> {
         Self { linearization: None, instructions, spectrum: Spectrum::new(), derivatives, inverse }
     }
 
-    /// Linearizes the equations of a system, unless they are linearized there.
-    pub(crate) fn linearize(&mut self, system: &Rare<'_, N>, at: Linearization<N>) {
+    /// Linearizes the equations of a system, unless they already are at this point.
+    pub(crate) fn linearize(&mut self, system: &ErasedSystem<'_, N>, at: Linearization<N>) {
         if self.linearization.is_some_and(|last| last.is_at(&at)) {
             return;
         }
@@ -97,12 +98,12 @@ impl<const N: usize, const S: usize> Newton<N, S> {
         self.linearization = Some(at);
     }
 
-    /// The corrections of the velocities that make up for what is missing in the momenta.
+    /// The corrections of the velocities for the residuals of the momenta.
     pub(crate) fn correction(&self, missing: &Stages<N, S>) -> Stages<N, S> {
         by_width::<N, _>(self.instructions, Correct { newton: self, missing })
     }
 
-    /// An estimate of the largest h ω: how much `h E⁻¹ G` stretches a vector, `E = [I 0; C M]` and `G = [0 I; K B]`.
+    /// An estimate of the largest h ω: the growth of a vector by `h E⁻¹ G`, with `E = [I 0; C M]` and `G = [0 I; K B]`.
     pub(crate) fn stiffness(&self) -> f64 {
         let h = self.linearization.map_or(f64::NAN, |at| at.h);
         let AnyDerivatives { momentum_dq: c, mass: m, force_dq: k, force_dv: b } = &self.derivatives;
@@ -129,12 +130,12 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     }
 }
 
-/// A loop over the rows of N coordinates, by the instructions of the processor where there are many.
+/// Runs a loop over the rows of N coordinates, with SIMD dispatch if there are many.
 fn by_width<const N: usize, L: Loop>(instructions: Instructions, of: L) -> L::Output {
     if const { N > LOOPED } { instructions.run(of) } else { by_baseline(of) }
 }
 
-/// The inverse of a matrix, in its place, by elimination of rows and columns with partial pivoting; not finite where it is singular.
+/// Inverts a matrix in place, by Gauss–Jordan elimination with partial pivoting; not finite if it is singular.
 struct Invert<'a, const N: usize, const S: usize> {
     matrix: &'a mut [[Modal<S>; N]],
 }
@@ -205,5 +206,5 @@ impl<const N: usize, const S: usize> Loop for Correct<'_, N, S> {
     }
 }
 
-/// Multiplications that estimate the stiffness.
+/// Power iterations of the stiffness estimate.
 const POWERS: u32 = 16;

@@ -1,8 +1,8 @@
-//! Numbers of twice the precision, as the unevaluated sum of two: for constants that the compiler computes.
+//! Double-double numbers, the unevaluated sum of two, for constants computed at compile time.
 //!
-//! In and out: a pair `(high, low)` with |low| ≤ half an ulp of high. Error: a few units of 2⁻¹⁰⁴ (Dekker 1971).
+//! A pair `(high, low)` has |low| ≤ half an ulp of high. Error: a few units of 2⁻¹⁰⁴ (Dekker 1971).
 
-/// A number of twice the precision.
+/// A double-double number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     pub(crate) high: f64,
@@ -17,7 +17,7 @@ impl Pair {
         Self { high: value, low: 0.0 }
     }
 
-    /// The pair of a sum whose second term is the smaller one.
+    /// Normalizes a sum whose second term is the smaller one.
     const fn normalized(high: f64, low: f64) -> Self {
         let sum = high + low;
         Self { high: sum, low: low - (sum - high) }
@@ -48,7 +48,7 @@ impl Pair {
     }
 }
 
-/// A number as the sum of two with half the digits each, whose products are exact.
+/// Splits a number into a sum of two with half the digits each, whose products are exact.
 const fn halves(value: f64) -> [f64; 2] {
     // 2²⁷ + 1.
     let scaled = value * 134_217_729.0;

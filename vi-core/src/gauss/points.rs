@@ -1,8 +1,8 @@
-//! The equations at a point, as the steps ask for them.
+//! The equations of motion at a point, generic and type-erased.
 //!
-//! In: a system. Out: [`Points`], which every system is, its function inlined wherever it stands; or [`Rare`], the same system behind
-//! a pointer. Rare code, where sweeps do not settle or something is measured once a step, takes the latter: it is compiled once for
-//! each number of coordinates and stages, however many systems a program has. Three fifths of the code of a step are rare.
+//! Every system implements [`Points`] with inlined functions. [`ErasedSystem`] is the same system behind a pointer. Cold paths
+//! use it: slow convergence and once-per-step measurements. They are compiled once per number of coordinates and
+//! stages, for all systems of a program. They make up three fifths of the code of a step.
 
 use crate::collocation::{Collocation, Point, PointDerivatives};
 use crate::linear::Matrix;
@@ -10,14 +10,14 @@ use crate::real::{Real, Rounded};
 use crate::stepping::Convertible;
 use nalgebra::{SMatrix, SVector};
 
-/// The form of equations of motion.
+/// Form of the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
-    /// The mass matrix is constant, and forces depend on the position alone: [`Collocation::SEPARABLE`].
+    /// Constant mass matrix, and forces of the position alone: [`Collocation::SEPARABLE`].
     Separable,
-    /// The mass matrix is constant: [`Collocation::CONSTANT_MASS`].
+    /// Constant mass matrix: [`Collocation::CONSTANT_MASS`].
     ConstantMass,
-    /// The mass matrix varies.
+    /// Variable mass matrix.
     VaryingMass,
 }
 
@@ -31,18 +31,18 @@ impl Form {
         }
     }
 
-    /// Whether the type of a system says that its equations have this form. In `if const { … }` the other branch is then not compiled.
+    /// Whether the type of a system guarantees this form. `if const { … }` then does not compile the other branch.
     pub(crate) const fn is_known(self, known: Option<Self>) -> bool {
         matches!(known, Some(known) if known as u8 == self as u8)
     }
 }
 
-/// Equations of motion in the numbers T.
+/// Equations of motion over the numbers T.
 pub(crate) trait Points<const N: usize, T: Real> {
-    /// The form of the mass matrix.
+    /// Matrix type of the mass matrix.
     type Mass: Matrix<N, T>;
 
-    /// The form, where the type of the system says it.
+    /// The form, if the type of the system determines it.
     const FORM: Option<Form>;
 
     /// The form of the equations.
@@ -67,13 +67,13 @@ impl<Y: Collocation<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     }
 }
 
-/// A point with the mass matrix as one of any system.
+/// A point with a dense mass matrix, for any system.
 type AnyPoint<const N: usize, T> = Point<N, T, SMatrix<T, N, N>>;
 
-/// How the equations of any system change at a point.
+/// Derivatives of the equations at a point, for any system.
 pub(crate) type AnyDerivatives<const N: usize> = PointDerivatives<SMatrix<f64, N, N>>;
 
-/// A system in the numbers of rare code.
+/// A type-erased system.
 trait Erased<const N: usize> {
     fn form(&self) -> Form;
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64>;
@@ -106,7 +106,7 @@ impl<S: Convertible<N>, const N: usize> Erased<N> for S {
     }
 }
 
-/// The point of a system, in the numbers T.
+/// Evaluates a point over the numbers T, with a dense mass matrix.
 fn dense<S: Convertible<N>, T: Real, const N: usize>(
     system: &S,
     t: T,
@@ -117,17 +117,17 @@ fn dense<S: Convertible<N>, T: Real, const N: usize>(
     Point { momentum, force, mass: mass.dense() }
 }
 
-/// A system behind a pointer.
+/// A type-erased system.
 #[derive(Clone, Copy)]
-pub(crate) struct Rare<'a, const N: usize>(&'a dyn Erased<N>);
+pub(crate) struct ErasedSystem<'a, const N: usize>(&'a dyn Erased<N>);
 
-impl<'a, const N: usize> Rare<'a, N> {
-    /// The system, as rare code sees it.
+impl<'a, const N: usize> ErasedSystem<'a, N> {
+    /// Erases the type of the system.
     pub(crate) fn of<S: Convertible<N>>(system: &'a S) -> Self {
         Self(system)
     }
 
-    /// How L_v and L_q + f change.
+    /// Derivatives of L_v and L_q + f.
     pub(crate) fn derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyDerivatives<N> {
         self.0.derivatives(t, q, v)
     }
@@ -135,7 +135,7 @@ impl<'a, const N: usize> Rare<'a, N> {
 
 macro_rules! rare {
     ($($number:ty, $point:ident);*) => {$(
-        impl<const N: usize> Points<N, $number> for Rare<'_, N> {
+        impl<const N: usize> Points<N, $number> for ErasedSystem<'_, N> {
             type Mass = SMatrix<$number, N, N>;
 
             const FORM: Option<Form> = None;

@@ -1,29 +1,30 @@
-//! The motion over a Gauss step: its collocation polynomials.
+//! Dense output of a Gauss step: its collocation polynomials.
 //!
-//! In: velocities and forces at the stages. Out: q and p at any time of the step, in Legendre polynomials of x = 2θ − 1, θ the part of the step:
+//! From velocities and forces at the stages follow q and p at any time of the step, in Legendre polynomials of x = 2θ −
+//! 1, with θ the fraction of the step:
 //!
 //! ```text
-//! v(θ) = Σ_k u_k P_k(x)        u_k = (2k + 1) Σ_i b_i P_k(x_i) V_i        exact, since the rule of Gauss is
+//! v(θ) = Σ_k u_k P_k(x)        u_k = (2k + 1) Σ_i b_i P_k(x_i) V_i        exact, since the Gauss rule is
 //! q(θ) = q0 + h Σ_k u_k I_k    I_0 = θ,  I_k = (P_{k+1}(x) − P_{k−1}(x)) / (2 (2k + 1))
 //! ```
 //!
-//! and the same of p with the forces. Of order S + 1 in the step, and of order 2S at its ends (Hairer, Lubich, Wanner, *Geometric Numerical Integration*,
-//! II.1.2 and II.1.3).
+//! and the same for p with the forces. The order is S + 1 inside the step, and 2S at its ends (Hairer, Lubich, Wanner,
+//! *Geometric Numerical Integration*, II.1.2 and II.1.3).
 
+use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::{Points, Rare};
+use super::points::{ErasedSystem, Points};
 use super::stages::{Stages, set, stage, time};
-use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::node::Node;
 use crate::run::DenseOutput;
 use crate::state::State;
 use nalgebra::SVector;
 
-/// The motion over a step of S stages.
+/// Dense output of a step of S stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Polynomial<const N: usize, const S: usize> {
-    /// Where the step began.
+pub struct CollocationPolynomial<const N: usize, const S: usize> {
+    /// The state at the start of the step.
     start: State<N>,
     h: f64,
     /// Coefficients of the velocity and of the force in Legendre polynomials.
@@ -31,9 +32,15 @@ pub struct Polynomial<const N: usize, const S: usize> {
     force: Stages<N, S>,
 }
 
-impl<const N: usize, const S: usize> Polynomial<N, S> {
-    /// The motion over the step of length h from the node `before`, whose state was `start`.
-    pub(crate) fn over(system: &Rare<'_, N>, before: &Node<N>, h: f64, stages: Stages<N, S>, start: State<N>) -> Self {
+impl<const N: usize, const S: usize> CollocationPolynomial<N, S> {
+    /// Dense output of the step of length h from the node `before` with the state `start`.
+    pub(crate) fn over(
+        system: &ErasedSystem<'_, N>,
+        before: &Node<N>,
+        h: f64,
+        stages: Stages<N, S>,
+        start: State<N>,
+    ) -> Self {
         let equations = equations(system, before, h, stages);
         let x = equations.start();
         let velocity = equations.velocity();
@@ -45,13 +52,13 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
         Self { start, h, velocity: coefficients(&velocity), force: coefficients(&force) }
     }
 
-    /// The part of the step that is over at the time t.
+    /// The fraction of the step at the time t.
     fn part(&self, t: f64) -> f64 {
         (t - self.start.t) / self.h
     }
 }
 
-impl<const N: usize, const S: usize> DenseOutput<N> for Polynomial<N, S> {
+impl<const N: usize, const S: usize> DenseOutput<N> for CollocationPolynomial<N, S> {
     fn since_start(self) -> Self {
         Self { start: State { t: 0.0, ..self.start }, ..self }
     }
@@ -84,7 +91,7 @@ pub(crate) fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>
     coefficients
 }
 
-/// `Σ_k u_k basis_k` of each coordinate, the small ones first.
+/// `Σ_k u_k basis_k` of each coordinate, in ascending magnitude.
 pub(crate) fn sum<const N: usize, const S: usize>(coefficients: &Stages<N, S>, basis: &[f64; S]) -> SVector<f64, N> {
     let mut total = SVector::<f64, N>::zeros();
     for (total, row) in total.iter_mut().zip(coefficients) {

@@ -1,17 +1,17 @@
-//! What stages leave of their equations, in roundings by running error analysis.
+//! Residuals of the stage equations, in units of their rounding-error bounds, by running error analysis.
 //!
-//! In: a system in numbers that carry a bound of their rounding, and stages, each number the nearest to the one that is meant. Out: the
-//! largest row over its bound,
+//! The system evaluates in numbers that carry their rounding-error bounds; stage values are rounded to the nearest
+//! number. The result is the largest row over its bound,
 //!
 //! ```text
-//! p0 + h Σ a_ij F_j − L_v(T_i, Q_i, V_i)                     where there are velocities
-//! q0 + h Σ a_ij M⁻¹ (p0 + h Σ a_jk F_k) − Q_i                where there are positions only
+//! p0 + h Σ a_ij F_j − L_v(T_i, Q_i, V_i)                     with velocities
+//! q0 + h Σ a_ij M⁻¹ (p0 + h Σ a_jk F_k) − Q_i                with positions only
 //! ```
 //!
-//! and the velocities with the rounding of the forces that they follow from. It is asked where changes stall above the rounding of the
-//! unknowns: where terms cancel, their sum is known less well.
+//! and the velocities with the rounding error of their forces. The solver uses it if changes stall above the ulps of
+//! the unknowns: a sum of cancelling terms has a larger rounding error.
 
-use super::points::{Form, Points, Rare};
+use super::points::{ErasedSystem, Form, Points};
 use super::stages::Stages;
 use super::tableau::Tableau;
 use crate::linear::Matrix;
@@ -26,25 +26,25 @@ pub(crate) fn nearest<const N: usize, const S: usize>(of: &Stages<N, S>, i: usiz
     SVector::from_fn(|k, _| Rounded::nearest(of[k][i]))
 }
 
-/// The larger of a residual so far and that of a row, in roundings; not a number where the rounding of the row has no bound.
+/// The larger of a residual so far and that of a row, over its bound; NaN if the row has no bound.
 pub(crate) fn worse_row(worst: f64, row: Rounded) -> f64 {
     worse(worst, roundings(row.to_f64(), row.ulps()))
 }
 
-/// The equations of stages; see the [module](self).
+/// The stage equations; see the [module](self).
 struct Rows<'a, const N: usize, const S: usize> {
     node: &'a Node<N>,
     /// `h b_j`.
     weights: [Rounded; S],
-    /// What the forces give beyond L_v, at each stage; beyond L_v of rest where there are positions only.
+    /// Forces minus L_v at each stage; minus L_v at rest if there are positions only.
     missing: [SVector<Rounded, N>; S],
-    /// M⁻¹ of that.
+    /// M⁻¹ times `missing`.
     velocity: [SVector<Rounded, N>; S],
 }
 
 impl<'a, const N: usize, const S: usize> Rows<'a, N, S> {
     fn of(
-        system: &Rare<'_, N>,
+        system: &ErasedSystem<'_, N>,
         node: &'a Node<N>,
         h: f64,
         positions: &Stages<N, S>,
@@ -56,7 +56,7 @@ impl<'a, const N: usize, const S: usize> Rows<'a, N, S> {
         let points: [_; S] = core::array::from_fn(|i| {
             let t = Rounded::nearest(node.t + h * c[i]);
             match velocities {
-                // Positions follow from velocities, and carry the rounding of that sum.
+                // Positions follow from velocities, and carry the rounding error of that sum.
                 Some(v) => {
                     let q = SVector::from_fn(|k, _| rows.sum(rows.start(k), i, &|j| Rounded::nearest(v[k][j])));
                     system.at(t, &q, &nearest(v, i))
@@ -76,7 +76,7 @@ impl<'a, const N: usize, const S: usize> Rows<'a, N, S> {
         rows
     }
 
-    /// The coordinate k of the node.
+    /// Coordinate k of the node.
     fn start(&self, k: usize) -> Rounded {
         Rounded::exact(self.node.q[k]) + Rounded::exact(self.node.q_low[k])
     }
@@ -88,9 +88,9 @@ impl<'a, const N: usize, const S: usize> Rows<'a, N, S> {
     }
 }
 
-/// What the stages of the step of length h from `node` leave of their equations, in roundings; not a number where these have no bound.
+/// The residual of the stages of the step of length h from `node`, over its rounding-error bound; NaN without a bound.
 pub(crate) fn residual<const N: usize, const S: usize>(
-    system: &Rare<'_, N>,
+    system: &ErasedSystem<'_, N>,
     node: &Node<N>,
     h: f64,
     positions: &Stages<N, S>,
@@ -110,9 +110,9 @@ pub(crate) fn residual<const N: usize, const S: usize>(
     worst
 }
 
-/// The velocities at the stages, with the rounding of the forces, and so of the positions, that they follow from.
+/// The velocities at the stages, with the rounding error of their forces and therefore of the positions.
 pub(crate) fn velocities<const N: usize, const S: usize>(
-    system: &Rare<'_, N>,
+    system: &ErasedSystem<'_, N>,
     node: &Node<N>,
     h: f64,
     positions: &Stages<N, S>,

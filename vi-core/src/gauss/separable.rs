@@ -1,19 +1,20 @@
-//! The stages of a system whose forces depend on its position alone.
+//! The stage equations of a system with forces of the position alone.
 //!
-//! In: `q'' = M⁻¹ F(t, q)`, M constant. Out: forces at the stages, with `I_j = h b_j F_j` and the coefficients of the tableau
+//! For `q'' = M⁻¹ F(t, q)` with constant M, the unknowns are the forces at the stages. With `I_j = h b_j F_j` and the
+//! tableau
 //!
 //! ```text
-//! Q_i = q0 + h M⁻¹ (c_i p0 + Σ_j second_ij I_j)           at the start with ahead_ij and the forces of the last step
+//! Q_i = q0 + h M⁻¹ (c_i p0 + Σ_j second_ij I_j)           initially with ahead_ij and the forces of the last step
 //! q1  = q0 + h M⁻¹ (p0 + Σ_j (1 − c_j) I_j)                p1 = p0 + Σ_j I_j
 //! ```
 //!
-//! Half of the products of the general equations, and sweeps that contract twice as fast.
+//! This needs half of the products of the general equations, and fixed-point iteration contracts twice as fast.
 
+use super::fixed_point::{Equations, StageIncrement};
 use super::points::Points;
 use super::stages::{
     AtStages, Roundings, Stages, change, gathered, growth, product, roundings, scaled, scatter, sum, times, weights,
 };
-use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
 use crate::linear::{Matrix, row_by_row};
 use crate::node::Node;
@@ -26,12 +27,12 @@ pub(crate) struct Separable<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S
     system: &'a Y,
     node: &'a Node<N>,
     h: f64,
-    /// M, ready to solve with.
+    /// M, factored.
     inverse: M::Inverse,
     /// `h c_i M⁻¹ p0` at the stages.
     drift: Stages<N, S>,
     force: Stages<N, S>,
-    /// Whether they are those of the step before.
+    /// Whether the forces are those of the previous step.
     are_last: bool,
     roundings: Roundings<N>,
     numbers: PhantomData<T>,
@@ -40,7 +41,8 @@ pub(crate) struct Separable<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S
 impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool>
     Separable<'a, T, Y, M, N, S, FUSED>
 {
-    /// The equations of the step of length h from `node`, with the mass matrix and the forces at the stages of the last step, else a guess of them.
+    /// The equations of the step of length h from `node`, with the mass matrix and the stage forces of the last step or
+    /// a guess of them.
     #[inline(always)]
     pub(crate) fn new(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, force: Stages<N, S>, are_last: bool) -> Self {
         let c = const { &Tableau::<S>::VALUES.c };
@@ -57,7 +59,8 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
         Self { system, node, h, inverse, drift, force, are_last, roundings, numbers: PhantomData }
     }
 
-    /// Sets x to where the forces at hand lead, by the coefficients `second`, or `ahead` where they are those of the step before.
+    /// Sets x to the positions by the current forces, with the coefficients `second`, or `ahead` for forces of the
+    /// previous step.
     #[inline(always)]
     fn set_positions(&self, x: &mut Stages<N, S>, coefficients: &[[f64; S]; S]) {
         let weights = weights(self.h);
@@ -75,7 +78,7 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
         }
     }
 
-    /// The coordinate k, moved by the velocities that forces add to its mean from the node to the stages.
+    /// Coordinate k, moved by the velocities that the forces add to its mean from the node to the stages.
     #[inline(always)]
     fn moved(&self, k: usize, velocity: &[f64; S]) -> [f64; S] {
         row_by_row();
@@ -108,7 +111,7 @@ where
     }
 
     #[inline(always)]
-    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
         let rest = SVector::zeros();
         let times = times::<N, S, FUSED>(self.node, self.h);
         for i in 0..T::EVALUATIONS {
@@ -119,7 +122,7 @@ where
     }
 
     #[inline(always)]
-    fn increment(&self) -> Increment<N> {
+    fn increment(&self) -> StageIncrement<N> {
         let c = const { &Tableau::<S>::VALUES.c };
         let weights = weights::<S>(self.h);
         let mut momentum = SVector::zeros();
@@ -133,7 +136,7 @@ where
             momentum[k] = sum(&impulses);
             mean[k] = self.node.p[k] + (self.node.p_low[k] + sum(&ahead));
         }
-        Increment { velocity: M::apply(&self.inverse, &mean), momentum }
+        StageIncrement { velocity: M::apply(&self.inverse, &mean), momentum }
     }
 
     #[inline(always)]
@@ -157,7 +160,7 @@ where
         change(x, y, &self.roundings)
     }
 
-    /// Momenta have h ω of it: not much less than all, where a sweep leaves (h ω)².
+    /// Momenta have an error of h ω relative to the stages, which is not small if an iteration contracts by (h ω)².
     #[inline(always)]
     fn passed_on(&self, _contraction: f64) -> f64 {
         1.0

@@ -1,6 +1,6 @@
-//! The slots of a Gauss step: its discrete Lagrangian, the derivatives of that, and the discrete forces and powers.
+//! The slot derivatives of a Gauss step: its discrete Lagrangian with derivatives, and the discrete forces and powers.
 //!
-//! In: the stages (T_i, Q_i, V_i) of a solved step, with `P = L_v` and `En = V·P − L` there. Out:
+//! From the stages (T_i, Q_i, V_i) of a solved step, with `P = L_v` and `En = V·P − L` there, follow
 //!
 //! ```text
 //! L_d = h Σ b L
@@ -8,26 +8,27 @@
 //! D2 = h Σ b (1−c) L_q − Σ b P         D4 = h Σ b c L_q + Σ b P          f_d⁻ = h Σ b (1−c) f           f_d⁺ = h Σ b c f
 //! ```
 //!
-//! L_d is a function of (t0, q0, t1, q1): the stages are those at which `h Σ b L` is stationary. AFTER A STEP, to its residual,
+//! L_d is a function of (t0, q0, t1, q1), with the stages at which `h Σ b L` is stationary. After a step, to its
+//! residual,
 //!
 //! ```text
 //! −D2 − f_d⁻ = p0        D4 + f_d⁺ = p1        D1 + g_d⁻ = E0        −D3 − g_d⁺ = E1 = E0 + h Σ b (f·V − L_t)
 //! ```
 //!
-//! Where a force acts the sums alone are determined: how they part into slot and force is a convention, since the stages depend on f
-//! (Marsden and West, *Discrete mechanics and variational integrators*, section 3.2).
+//! With a force only these sums are determined. Their split into slot and force is a convention, since the stages
+//! depend on f (Marsden and West, *Discrete mechanics and variational integrators*, section 3.2).
 
+use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::Rare;
+use super::points::ErasedSystem;
 use super::stages::{Stages, stage, time};
-use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::node::Node;
 use crate::stepping::Convertible;
 use nalgebra::SVector;
 
-/// The slots of one step, in the names of [`DiscreteLagrangian`](crate::DiscreteLagrangian).
+/// The slots of one step, with the names of [`DiscreteLagrangian`](crate::DiscreteLagrangian).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slots<const N: usize> {
     /// `L_d`.
@@ -51,7 +52,7 @@ pub struct Slots<const N: usize> {
 }
 
 impl<const N: usize> Slots<N> {
-    /// Whether all of them are finite: forces may be finite where L is not.
+    /// Whether all values are finite: forces may be finite although L is not.
     pub(crate) fn is_finite(&self) -> bool {
         let Self { ld, d1_ld, d2_ld, d3_ld, d4_ld, fd_minus, fd_plus, gd_minus, gd_plus } = self;
         let vectors = [d2_ld, d4_ld, fd_minus, fd_plus].into_iter().flat_map(SVector::iter);
@@ -66,7 +67,7 @@ impl<const N: usize> Slots<N> {
         stages: Stages<N, S>,
     ) -> Self {
         let Tableau { b, c, .. } = const { &Tableau::<S>::VALUES };
-        let rare = Rare::of(system);
+        let rare = ErasedSystem::of(system);
         let equations = equations(&rare, node, h, stages);
         let x = equations.start();
         let velocities = equations.velocity();

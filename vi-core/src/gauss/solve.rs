@@ -1,15 +1,16 @@
-//! The solution of a step.
+//! The solver of a step.
 //!
-//! In: a `Start`: a node, a length, and what the stages are guessed from. Out: a [`Step`], its stages solved by fixed-point iteration in vectors, by the instructions of
-//! the processor. If that does not solve it: the same in plain numbers, or Newton's iteration. Nothing changes. A [`Step`] was measured to leave rounding of the equations.
+//! A `Start` has a node, a length, and the guess of the stages. The solver returns a [`Step`], with stages from SIMD
+//! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
+//! no state. The stages of every [`Step`] satisfy their equations to rounding.
 
+use super::fixed_point::{self, Convergence, Equations, FixedPointResult, Pause, StageIncrement};
 use super::general::{General, equations};
 use super::newton::{Linearization, Newton};
-use super::points::{Form, Points, Rare};
+use super::points::{ErasedSystem, Form, Points};
 use super::rounding;
 use super::separable::Separable;
 use super::stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
-use super::sweep::{self, Convergence, Equations, Increment, Pause, Sweeps};
 use crate::collocation::{Collocation, Point};
 use crate::error::StepError;
 use crate::node::Node;
@@ -17,76 +18,77 @@ use crate::real::{Lane, Lanes};
 use crate::stepping::Convertible;
 use vi_dispatch::{Instructions, Loop};
 
-/// What the equations of a step are solved from.
+/// Initial data of the stage equations.
 #[derive(Clone, Copy)]
 pub(crate) struct Start<'a, const N: usize, const S: usize> {
     pub(crate) node: &'a Node<N>,
     pub(crate) h: f64,
     pub(crate) stages: &'a Stages<N, S>,
-    /// Whether these are the stages of the step before, which was as long: then their polynomials are continued.
+    /// Whether these are the stages of the previous step of equal length, so that their polynomials can be
+    /// extrapolated.
     pub(crate) are_last: bool,
-    /// How the step before ended.
+    /// Outcome of the previous step.
     pub(crate) before: &'a Convergence,
     pub(crate) pause: Pause,
 }
 
-/// A step that was found.
+/// A solved step.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<const N: usize, const S: usize> {
     pub(crate) h: f64,
-    pub(crate) increment: Increment<N>,
+    pub(crate) increment: StageIncrement<N>,
     pub(crate) stages: Stages<N, S>,
     pub(crate) convergence: Convergence,
     pub(crate) pause: Pause,
-    /// The linearization for the next step, if Newton's iteration solved this one.
+    /// The linearization for the next step, if Newton iteration solved this one.
     pub(crate) linearization: Option<Linearization<N>>,
 }
 
-/// The stages that an iteration led to.
-pub struct Solved<const N: usize, const S: usize> {
-    pub(crate) increment: Increment<N>,
+/// The stages after an iteration.
+pub struct StageSolution<const N: usize, const S: usize> {
+    pub(crate) increment: StageIncrement<N>,
     pub(crate) stages: Stages<N, S>,
     velocities: Option<Stages<N, S>>,
-    pub(crate) sweeps: Sweeps<N, S>,
+    pub(crate) iteration: FixedPointResult<N, S>,
 }
 
-impl<const N: usize, const S: usize> Solved<N, S> {
+impl<const N: usize, const S: usize> StageSolution<N, S> {
     /// Whether fixed-point iteration solved the step of length h from a node to the rounding of its positions.
     #[inline(always)]
     pub(crate) fn is_step(&self, node: &Node<N>, h: f64) -> bool {
-        let Increment { velocity, momentum } = &self.increment;
-        self.sweeps.convergence.is_at_floor() && node.stays_finite(h, velocity, momentum)
+        let StageIncrement { velocity, momentum } = &self.increment;
+        self.iteration.convergence.is_at_floor() && node.stays_finite(h, velocity, momentum)
     }
 
-    /// The same stages as a step.
+    /// Converts the stages to a step.
     #[inline(always)]
     fn step(&self, h: f64) -> Step<N, S> {
-        let Self { increment, stages, sweeps, .. } = self;
-        let (convergence, pause) = (sweeps.convergence, Pause::NONE);
+        let Self { increment, stages, iteration, .. } = self;
+        let (convergence, pause) = (iteration.convergence, Pause::NONE);
         Step { h, increment: *increment, stages: *stages, convergence, pause, linearization: None }
     }
 }
 
 impl<const N: usize, const S: usize> Start<'_, N, S> {
-    /// Velocities at the stages of the step, or forces there.
+    /// Velocities at the stages, or forces there for a separable system.
     #[inline(always)]
     fn guess<const FUSED: bool>(&self) -> Stages<N, S> {
         if self.are_last { extrapolated::<N, S, FUSED>(self.stages) } else { *self.stages }
     }
 
-    /// The step of stages that leave rounding of their equations; else `None`.
+    /// The step, if its stages satisfy their equations to rounding.
     fn accepted(
         &self,
-        system: &Rare<'_, N>,
-        solved: &Solved<N, S>,
+        system: &ErasedSystem<'_, N>,
+        solved: &StageSolution<N, S>,
         newton: Option<&Newton<N, S>>,
     ) -> Option<Step<N, S>> {
-        // Plain numbers have sines and cosines of every angle; lanes lose large ones.
+        // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
         let plain;
         let solved = if solved.increment.is_finite() {
             solved
         } else {
-            plain = self.plainly(system, newton);
+            plain = self.in_scalars(system, newton);
             &plain
         };
         let mut after = *self.node;
@@ -96,23 +98,28 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         (after.is_finite() && step.convergence.is_at_floor()).then_some(step)
     }
 
-    /// The number by which a step is judged: the last change of its stages, or, if that stalls, the residual of the stages by running error analysis.
-    fn residual(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> f64 {
-        let Solved { sweeps, velocities, .. } = solved;
-        if sweeps.convergence.is_at_floor() || sweeps.are_given_up {
-            return sweeps.convergence.change;
+    /// The acceptance criterion of a step: the last change of its stages or, if that stalls, their residual by running
+    /// error analysis.
+    fn residual(&self, system: &ErasedSystem<'_, N>, solved: &StageSolution<N, S>) -> f64 {
+        let StageSolution { iteration, velocities, .. } = solved;
+        if iteration.convergence.is_at_floor() || iteration.are_given_up {
+            return iteration.convergence.change;
         }
-        rounding::residual(system, self.node, self.h, &sweeps.positions, velocities.as_ref())
+        rounding::residual(system, self.node, self.h, &iteration.positions, velocities.as_ref())
     }
 
-    /// The stages in plain numbers. Not inlined: one copy serves all systems of N coordinates.
+    /// The stages in scalar numbers. Not inlined: one copy serves all systems of N coordinates.
     #[inline(never)]
-    pub(crate) fn plainly(&self, system: &Rare<'_, N>, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
+    pub(crate) fn in_scalars(
+        &self,
+        system: &ErasedSystem<'_, N>,
+        newton: Option<&Newton<N, S>>,
+    ) -> StageSolution<N, S> {
         solved::<f64, _, _, N, S, false>(system, system, self, newton)
     }
 
-    /// The point in the middle of the step, about which its equations are linearized.
-    fn middle(&self, system: &Rare<'_, N>) -> Linearization<N> {
+    /// The linearization point at the middle of the step.
+    fn middle(&self, system: &ErasedSystem<'_, N>) -> Linearization<N> {
         let equations = equations(system, self.node, self.h, self.guess::<false>());
         let middle = S / 2;
         let q = stage(&equations.start(), middle);
@@ -121,45 +128,50 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Linearization { h: self.h, t, q, v, iterations: None }
     }
 
-    /// The step by fixed-point iteration, by the instructions of the processor; else what that led to.
+    /// The step by fixed-point iteration, with SIMD dispatch.
     ///
     /// # Errors
-    /// The stages.
+    /// The stages of the failed iteration.
     #[inline(never)]
-    pub(crate) fn swept<Y>(&self, system: &Y, instructions: Instructions) -> Result<Step<N, S>, Solved<N, S>>
+    pub(crate) fn by_fixed_point<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+    ) -> Result<Step<N, S>, StageSolution<N, S>>
     where
         Y: Collocation<N> + Convertible<N>,
     {
         let solved = if Y::SIDE_BY_SIDE {
-            instructions.run(Sweeping { system, start: self })
+            instructions.run(FixedPoint { system, start: self })
         } else {
-            self.plainly(&Rare::of(system), None)
+            self.in_scalars(&ErasedSystem::of(system), None)
         };
         if solved.is_step(self.node, self.h) { Ok(solved.step(self.h)) } else { Err(solved) }
     }
 
-    /// The step, if fixed-point iteration did not bring it to the rounding of its positions, or was not tried. `last` is where the equations of the step before were
-    /// linearized, if that step was as long.
+    /// The step, if fixed-point iteration failed or was skipped. `last` is the linearization of the previous step, if
+    /// that had the same length.
     ///
     /// # Errors
-    /// [`StepError::StagesUnsettled`], or why the stages have no value.
+    /// [`StepError::StagesUnsettled`], or the reason why the stages have no value.
     #[cold]
-    pub(crate) fn with_care<Y>(
+    pub(crate) fn recover<Y>(
         &self,
         system: &Y,
         instructions: Instructions,
-        (left, last): (Option<&Solved<N, S>>, Option<Linearization<N>>),
+        (left, last): (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
         cache: &mut Option<Box<Newton<N, S>>>,
     ) -> Result<Step<N, S>, StepError>
     where
         Y: Collocation<N> + Convertible<N>,
     {
-        let rare = &Rare::of(system);
+        let rare = &ErasedSystem::of(system);
         if let Some(step) = left.and_then(|left| self.accepted(rare, left, None)) {
             return Ok(step);
         }
         let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
-        // About the last linearization; else a new one; else from stages that are all like the node, since the polynomials of the last step may lead far away.
+        // First the last linearization, then a new one, then stages equal to the node, because extrapolated polynomials
+        // may be far off.
         if let Some(at) = last
             && let Ok(step) = self.by_newton(system, instructions, at, newton)
         {
@@ -172,12 +184,14 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let Ok(constant) = constant(system, self.node) else { return extrapolated };
         let Self { node, h, pause, .. } = *self;
         let start = Start { node, h, stages: &constant, are_last: false, before: &Convergence::NONE, pause };
-        // Fixed-point iteration first, as in the first step of a run: it may converge where a linearization in the middle of a long step misleads.
-        let iterated = start.swept(system, instructions).or_else(|left| start.accepted(rare, &left, None).ok_or(()));
+        // Fixed-point iteration first, as in the first step of a run: it may converge where a linearization in the middle
+        // of a long step misleads.
+        let iterated =
+            start.by_fixed_point(system, instructions).or_else(|left| start.accepted(rare, &left, None).ok_or(()));
         iterated.or_else(|()| start.by_newton(system, instructions, start.middle(rare), newton).or(extrapolated))
     }
 
-    /// The step by Newton's iteration.
+    /// The step by Newton iteration.
     fn by_newton<Y>(
         &self,
         system: &Y,
@@ -188,28 +202,30 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     where
         Y: Collocation<N> + Convertible<N>,
     {
-        let rare = &Rare::of(system);
+        let rare = &ErasedSystem::of(system);
         newton.linearize(rare, at);
-        // A copy of Newton's iteration is not worth its build if fixed-point iteration has equations of its own, or short ones: one serves all systems of N coordinates.
+        // With special or short equations for fixed-point iteration, a specialized Newton iteration is not worth its
+        // build time: one copy serves all systems of N coordinates.
         let side_by_side = if Y::SIDE_BY_SIDE && const { N > LOOPED && !Y::SEPARABLE } {
             long(instructions, Iterating { system, start: self, newton })
         } else {
             None
         };
-        let solved = side_by_side.unwrap_or_else(|| self.plainly(rare, Some(newton)));
-        let Solved { increment, sweeps, .. } = &solved;
-        let unsettled = || sweeps.convergence.unsettled(increment, [self.node.t, self.h], newton.stiffness());
+        let solved = side_by_side.unwrap_or_else(|| self.in_scalars(rare, Some(newton)));
+        let StageSolution { increment, iteration, .. } = &solved;
+        let not_converged =
+            || iteration.convergence.not_converged(increment, [self.node.t, self.h], newton.stiffness());
         let accepted = self.accepted(rare, &solved, Some(newton));
-        let step = accepted.ok_or_else(|| lost_force(system, self.node, self.h).unwrap_or_else(unsettled))?;
-        let linearization = at.after(step.convergence.sweeps);
+        let step = accepted.ok_or_else(|| lost_force(system, self.node, self.h).unwrap_or_else(not_converged))?;
+        let linearization = at.after(step.convergence.iterations);
         Ok(Step { pause: self.pause.after_newton(), linearization, ..step })
     }
 }
 
-/// Stages that are all like a node: velocities, or forces of a separable system.
+/// Stages equal to a node: velocities, or forces of a separable system.
 ///
 /// # Errors
-/// Those of [`State::velocity`](crate::State::velocity).
+/// As [`State::velocity`](crate::State::velocity).
 pub(crate) fn constant<Y: Collocation<N>, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
@@ -219,31 +235,32 @@ pub(crate) fn constant<Y: Collocation<N>, const N: usize, const S: usize>(
     Ok(start.data.0[0].map(|entry| [entry; S]))
 }
 
-/// Whether every processor of this architecture has vectors that are worth a copy of long equations. Those of x86-64 without AVX2 hold two
-/// numbers, and are of before 2013 or of the simplest machines: they evaluate one stage after another.
+/// Whether every processor of this architecture has vectors that justify a copy of long equations. Those of x86-64
+/// without AVX2 hold two numbers, and date from before 2013 or from the simplest machines: they evaluate one stage
+/// after another.
 pub(crate) const WIDE: bool = !cfg!(target_arch = "x86_64");
 
-/// The stages by fixed-point iteration, by the instructions of the processor.
-pub(crate) struct Sweeping<'a, Y, const N: usize, const S: usize> {
+/// Fixed-point iteration of the stages, with SIMD dispatch.
+pub(crate) struct FixedPoint<'a, Y, const N: usize, const S: usize> {
     pub(crate) system: &'a Y,
     pub(crate) start: &'a Start<'a, N, S>,
 }
 
-impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Sweeping<'_, Y, N, S> {
-    type Output = Solved<N, S>;
+impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for FixedPoint<'_, Y, N, S> {
+    type Output = StageSolution<N, S>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Solved<N, S> {
-        sweeping::<_, N, S, FUSED>(self.system, self.start)
+    fn run<const FUSED: bool>(self) -> StageSolution<N, S> {
+        fixed_point_iteration::<_, N, S, FUSED>(self.system, self.start)
     }
 }
 
-/// The stages in the numbers that the instructions are best at.
+/// Iterates in the number type that suits the instructions best.
 #[inline(always)]
-pub(crate) fn sweeping<Y, const N: usize, const S: usize, const FUSED: bool>(
+pub(crate) fn fixed_point_iteration<Y, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,
     start: &Start<'_, N, S>,
-) -> Solved<N, S>
+) -> StageSolution<N, S>
 where
     Y: Collocation<N> + Convertible<N>,
 {
@@ -256,7 +273,7 @@ where
     }
 }
 
-/// The stages by Newton's iteration, by the instructions of the processor; `None` if the iteration that serves all systems has to do.
+/// Newton iteration of the stages, with SIMD dispatch; `None` if the shared iteration applies.
 struct Iterating<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     start: &'a Start<'a, N, S>,
@@ -264,10 +281,10 @@ struct Iterating<'a, Y, const N: usize, const S: usize> {
 }
 
 impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Iterating<'_, Y, N, S> {
-    type Output = Option<Solved<N, S>>;
+    type Output = Option<StageSolution<N, S>>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Option<Solved<N, S>> {
+    fn run<const FUSED: bool>(self) -> Option<StageSolution<N, S>> {
         let Self { system, start, newton } = self;
         if const { N > LOOPED && (FUSED || WIDE) && !Y::SEPARABLE } {
             let lanes = system.convert::<Lanes<S, FUSED>>();
@@ -277,27 +294,29 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
     }
 }
 
-/// A loop over long equations. Not inlined: one copy for each set of instructions.
+/// A loop over long equations. Not inlined: one copy per instruction set.
 #[inline(never)]
 pub(crate) fn long<L: Loop>(instructions: Instructions, step: L) -> L::Output {
     instructions.run(step)
 }
 
-/// The stages, the equations evaluated in the numbers T; `plain` is the same system in plain ones. By fixed-point iteration, else by Newton's.
+/// The stages, with equations evaluated over the numbers T; `plain` is the same system over scalars. Fixed-point
+/// iteration, then Newton iteration.
 #[inline(always)]
 fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,
     plain: &P,
     start: &Start<'_, N, S>,
     newton: Option<&Newton<N, S>>,
-) -> Solved<N, S>
+) -> StageSolution<N, S>
 where
     T: AtStages<S>,
     Y: Points<N, T>,
     P: Points<N, f64>,
 {
     let Start { node, h, stages, are_last, .. } = *start;
-    // Of a known type the compiler sees one of the two. Newton's iteration corrects velocities: of stiff steps they are known better than forces.
+    // For a known form the compiler sees one branch. Newton iteration corrects velocities: in stiff steps they are more
+    // accurate than forces.
     let is_separable =
         const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable;
     if is_separable && newton.is_none() {
@@ -314,13 +333,19 @@ where
 fn finished<const N: usize, const S: usize>(
     mut equations: impl Equations<N, S>,
     start: &Start<'_, N, S>,
-) -> Solved<N, S> {
-    let sweeps = sweep::solve(&mut equations, start.before);
-    Solved { increment: equations.increment(), stages: equations.guess(), velocities: equations.velocities(), sweeps }
+) -> StageSolution<N, S> {
+    let iteration = fixed_point::solve(&mut equations, start.before);
+    StageSolution {
+        increment: equations.increment(),
+        stages: equations.guess(),
+        velocities: equations.velocities(),
+        iteration,
+    }
 }
 
-/// Why stages cannot be evaluated about the step of length h from `node`: no velocity belongs to its momenta, or L, f or a slope of L is not
-/// finite at the node or half a step from it; the system names the part of L or f. None where they can.
+/// The reason why stages cannot be evaluated in the step of length h from `node`: no velocity has its momenta, or L, f
+/// or a derivative of L is not finite at the node or half a step from it. The system names the part of L or f. `None`
+/// if evaluation succeeds.
 #[cold]
 pub(crate) fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> Option<StepError> {
     let v = match node.state().velocity(system) {

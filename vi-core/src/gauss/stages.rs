@@ -1,7 +1,6 @@
-//! Numbers of the S stages of a step, side by side.
+//! Arrays of stage values: N rows, one per coordinate, of S numbers, one per stage.
 //!
-//! In and out: N rows, one a coordinate, of S numbers, one a stage. A loop over the stages of a row, or over all stages of a point,
-//! becomes vector instructions.
+//! A loop over the stages of a row, or over all stages of a point, vectorizes.
 
 use super::points::{Form, Points};
 use super::tableau::Tableau;
@@ -13,16 +12,17 @@ use nalgebra::SVector;
 /// N vectors of S stages.
 pub(crate) type Stages<const N: usize, const S: usize> = [[f64; S]; N];
 
-/// Coordinates up to which the compiler makes vectors of a loop over the stages. Longer equations are evaluated of all stages at once.
+/// Up to this number of coordinates the compiler vectorizes loops over the stages. Longer equations evaluate all stages
+/// at once.
 pub(crate) const LOOPED: usize = 3;
 
-/// A number by which stages are evaluated: one at a time, or all at once.
+/// A number type of stage evaluations: one stage, or all stages at once.
 pub(crate) trait AtStages<const S: usize>: Real {
-    /// Evaluations of all stages.
+    /// Number of evaluations for all stages.
     const EVALUATIONS: usize;
-    /// The number of an evaluation.
+    /// Loads the number of an evaluation.
     fn of(row: &[f64; S], evaluation: usize) -> Self;
-    /// Sets the number of an evaluation.
+    /// Stores the number of an evaluation.
     fn put(self, row: &mut [f64; S], evaluation: usize);
 }
 
@@ -52,7 +52,7 @@ impl<const S: usize, const FUSED: bool> AtStages<S> for Lanes<S, FUSED> {
     }
 }
 
-/// The vector of an evaluation.
+/// Loads the vector of an evaluation.
 #[inline(always)]
 pub(crate) fn gathered<const N: usize, const S: usize, T: AtStages<S>>(
     of: &Stages<N, S>,
@@ -65,7 +65,7 @@ pub(crate) fn gathered<const N: usize, const S: usize, T: AtStages<S>>(
     vector.into()
 }
 
-/// Sets the vector of an evaluation.
+/// Stores the vector of an evaluation.
 #[inline(always)]
 pub(crate) fn scatter<const N: usize, const S: usize, T: AtStages<S>>(
     stages: &mut Stages<N, S>,
@@ -122,13 +122,13 @@ pub(crate) fn mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &
     system.at(T::real(node.t), &node.q.map(T::real), &SVector::zeros()).mass
 }
 
-/// The mass matrix of a system, where it is constant.
+/// The mass matrix of a system, if it is constant.
 #[inline(always)]
 pub(crate) fn constant_mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Option<Y::Mass> {
     (system.form() != Form::VaryingMass).then(|| mass(system, node))
 }
 
-/// `base_i + Σ_j matrix_ij x_j` at the stages i. In two sums, since each addition waits for the one before.
+/// `base_i + Σ_j matrix_ij x_j` at the stages i. Two sums, because additions form a dependency chain.
 #[inline(always)]
 pub(crate) fn product<const S: usize, const FUSED: bool>(
     matrix: &[[f64; S]; S],
@@ -150,7 +150,7 @@ pub(crate) fn product<const S: usize, const FUSED: bool>(
     even
 }
 
-/// What the polynomials through the stages of a step are at those of the next one.
+/// Extrapolates the polynomials through the stages of a step to the stages of the next one.
 #[inline(always)]
 pub(crate) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(of: &Stages<N, S>) -> Stages<N, S> {
     let next = const { &Tableau::<S>::VALUES.next };
@@ -161,7 +161,7 @@ pub(crate) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(of
     stages
 }
 
-/// `h b_j` of every stage.
+/// `h b_j` for each stage.
 #[inline(always)]
 pub(crate) fn weights<const S: usize>(h: f64) -> [f64; S] {
     let b = const { &Tableau::<S>::VALUES.b };
@@ -172,7 +172,7 @@ pub(crate) fn weights<const S: usize>(h: f64) -> [f64; S] {
     weights
 }
 
-/// `weights_j x_j` of every stage.
+/// `weights_j x_j` for each stage.
 #[inline(always)]
 pub(crate) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; S] {
     let mut scaled = [0.0; S];
@@ -182,10 +182,10 @@ pub(crate) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; 
     scaled
 }
 
-/// What changes of each row are measured by: one over its scale. A change times that, over ε, is in roundings.
+/// Inverse scale of each row. A change times that, over ε, is in ulps.
 pub(crate) type Roundings<const N: usize> = [f64; N];
 
-/// One over the largest entry of each row, and of `start`.
+/// The inverse of the largest entry of each row, and of `start`.
 #[inline(always)]
 pub(crate) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start: &SVector<f64, N>) -> Roundings<N> {
     let mut scales = [0.0; N];
@@ -197,16 +197,16 @@ pub(crate) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start
         }
         scales[k] = larger(maximum(&sizes), start[k].abs());
     }
-    // Vectors of divisions.
+    // Vector divisions.
     let mut roundings = [0.0; N];
     for k in 0..N {
-        // Never zero: a change without end stays one.
+        // Never zero, so that an infinite change stays infinite.
         roundings[k] = 1.0 / (scales[k] + f64::MIN_POSITIVE).min(f64::MAX);
     }
     roundings
 }
 
-/// By how much a change is larger in the roundings `after` than in those `before`, at most.
+/// Largest growth of a change in the units `after` relative to those `before`.
 #[inline(always)]
 pub(crate) fn growth<const N: usize>(before: &Roundings<N>, after: &Roundings<N>) -> f64 {
     let mut growths = [0.0; N];
@@ -216,9 +216,10 @@ pub(crate) fn growth<const N: usize>(before: &Roundings<N>, after: &Roundings<N>
     maximum(&growths)
 }
 
-/// The largest change of an entry from `before` to `after`, in roundings; then `before` is `after`.
+/// The largest change of an entry from `before` to `after`, in ulps. Sets `before` to `after`.
 ///
-/// Anything where a stage is not finite: then neither is the [`Increment`](super::sweep::Increment) of the step.
+/// Unspecified if a stage is not finite: the [`StageIncrement`](super::fixed_point::StageIncrement) of the step then is not finite
+/// either.
 #[inline(always)]
 pub(crate) fn change<const N: usize, const S: usize>(
     before: &mut Stages<N, S>,
@@ -240,7 +241,7 @@ pub(crate) fn change<const N: usize, const S: usize>(
     maximum(&changes) / f64::EPSILON
 }
 
-/// The same of many rows: the largest of each stage, and then of all.
+/// The same for many rows: the largest change of each stage, then of all.
 #[inline(always)]
 fn change_of_many<const N: usize, const S: usize>(
     before: &mut Stages<N, S>,
@@ -255,7 +256,7 @@ fn change_of_many<const N: usize, const S: usize>(
             before[k][i] = after[k][i];
         }
     }
-    // In memory: else the compiler takes pairs of numbers all along, for the sake of this one.
+    // Forces a store: otherwise LLVM narrows the loop to pairs of numbers.
     maximum(&core::hint::black_box(changes)) / f64::EPSILON
 }
 
@@ -277,7 +278,7 @@ pub(crate) fn sum<const W: usize>(of: &[f64; W]) -> f64 {
     by_pairs(of, |a, b| a + b)
 }
 
-/// One number from W, each from a pair: in a sequence they would wait for one another.
+/// Reduces W numbers to one by pairs, which shortens the dependency chain.
 #[inline(always)]
 fn by_pairs<const W: usize>(of: &[f64; W], one: impl Fn(f64, f64) -> f64) -> f64 {
     let mut left = *of;
@@ -292,7 +293,7 @@ fn by_pairs<const W: usize>(of: &[f64; W], one: impl Fn(f64, f64) -> f64) -> f64
     left[0]
 }
 
-/// What the polynomials through the stages of a step are elsewhere: at `place(c_i)` in units of its length.
+/// Extrapolates the polynomials through the stages of a step to `place(c_i)`, in units of its length.
 #[inline(always)]
 pub(crate) fn at<const N: usize, const S: usize>(stages: &Stages<N, S>, place: impl Fn(f64) -> f64) -> Stages<N, S> {
     let c = const { &Tableau::<S>::VALUES.c };

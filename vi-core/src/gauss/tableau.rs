@@ -1,26 +1,27 @@
-//! The coefficients of Gauss collocation with S stages, computed by the compiler.
+//! The coefficients of Gauss collocation with S stages, computed at compile time.
 //!
-//! In: S. Out: nodes c, weights b, and what a step multiplies with, in the matrix form `column j over the stages i`:
+//! The nodes are c and the weights b. The matrices of a step have the form `column j over the stages i`:
 //!
 //! ```text
 //! a_ij = ∫_0^{c_i} l_j        first   = a_ij / b_j            second = (A²)_ij / b_j        next = l_j(1 + c_i)
 //! ahead = (A² next)_ij / b_j
 //! ```
 //!
-//! l_j is Lagrange's polynomial of node j; sums over Legendre polynomials give its integral without cancellation
-//! (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.3). Everything is computed in twice the precision, and rounded
-//! so that what a symplectic method needs holds exactly:
+//! l_j is the Lagrange polynomial of node j; sums over Legendre polynomials give its integral without cancellation
+//! (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.3). The computation has twice the precision. Its
+//! results are rounded so that the conditions of a symplectic method hold exactly:
 //!
 //! ```text
 //! first_ij + first_ji = 1        second_ij − second_ji = c_i − c_j        first_ii = 1/2
 //! ```
 //!
-//! A step that multiplies stage impulses `h b_j F_j` by these is symplectic but for the rounding of its sums; with `a_ij` rounded each
-//! for itself the energy would drift (Antoñana, Makazaga, Murua, arXiv 2511.03655).
+//! A step that multiplies stage impulses `h b_j F_j` by these is symplectic up to the rounding of its sums. With
+//! individually rounded `a_ij` the energy would drift (Antoñana, Makazaga, Murua, arXiv 2511.03655).
 
 use super::pair::Pair;
 
-/// Highest degree of the polynomial that starts a step: beyond, it amplifies rounding more than it guesses.
+/// Highest degree of the polynomial that extrapolates a step. A higher degree amplifies rounding more than it improves
+/// the guess.
 pub(crate) const DEGREE: usize = 7;
 
 /// The coefficients of S stages; see the [module](self).
@@ -34,10 +35,10 @@ pub(crate) struct Tableau<const S: usize> {
     pub(crate) first: [[f64; S]; S],
     /// `second[j][i] = (A²)_ij / b_j`.
     pub(crate) second: [[f64; S]; S],
-    /// `next[j][i]`: the weight of stage j in the value that the polynomial of degree up to [`DEGREE`] through the stages of a step
-    /// has at stage i of the next one.
+    /// `next[j][i]`: the weight of stage j in the value extrapolated to stage i of the next step. The polynomial
+    /// through the stages has a degree of up to [`DEGREE`].
     pub(crate) next: [[f64; S]; S],
-    /// `ahead[j][i]`: what `second` makes of `next`.
+    /// `ahead[j][i]`: `second` applied to `next`.
     pub(crate) ahead: [[f64; S]; S],
     /// `legendre[k][i] = P_k(2 c_i − 1)`.
     pub(crate) legendre: [[f64; S]; S],
@@ -54,7 +55,7 @@ impl<const S: usize> Tableau<S> {
         let mut b = [Pair::ZERO; S];
         let mut i = 0;
         while i < S {
-            // The nodes lie as mirror images about the middle.
+            // The nodes are symmetric about the middle.
             x[i] = if 2 * i < S { node(S, i) } else { Pair::ZERO.minus(x[S - 1 - i]) };
             c[i] = Pair::ONE.plus(x[i]).times(HALF);
             b[i] = weight(S, x[i]);
@@ -70,7 +71,8 @@ impl<const S: usize> Tableau<S> {
         Self { next: nearest(&scaled(&next, &b)), ahead: nearest(&ahead), legendre: nearest(&legendre), ..rounded }
     }
 
-    /// Rounded so that the conditions of the [module](self) hold exactly: sums and differences of multiples of 2⁻⁵³ below 1 are exact.
+    /// Rounds so that the conditions of the [module](self) hold exactly: sums and differences of multiples of 2⁻⁵³
+    /// below 1 are exact.
     const fn rounded(c: &[Pair; S], b: &[Pair; S], first: &[[Pair; S]; S], second: &[[Pair; S]; S]) -> Self {
         let zeros = [[0.0; S]; S];
         let mut values =
@@ -97,7 +99,7 @@ impl<const S: usize> Tableau<S> {
 
 const HALF: Pair = Pair::new(0.5);
 
-/// The polynomials P_k, k = 0 … S − 1, at x: a row each.
+/// The polynomials P_k, k = 0 … S − 1, at x, one row each.
 const fn polynomials<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
     let mut values = [[Pair::ZERO; S]; S];
     let mut i = 0;
@@ -114,7 +116,7 @@ const fn polynomials<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
     values
 }
 
-/// `(2k + 1) ∫_0^c P_k = (P_{k+1} − P_{k−1})/2` up to each node x of c, from the polynomials there: a row each.
+/// `(2k + 1) ∫_0^c P_k = (P_{k+1} − P_{k−1})/2` up to each node x of c, from the polynomials there, one row each.
 const fn integrals<const S: usize>(x: &[Pair; S], legendre: &[[Pair; S]; S]) -> [[Pair; S]; S] {
     let mut integrals = [[Pair::ZERO; S]; S];
     let mut i = 0;
@@ -132,7 +134,7 @@ const fn integrals<const S: usize>(x: &[Pair; S], legendre: &[[Pair; S]; S]) -> 
     integrals
 }
 
-/// `(2k + 1) P_k` at the nodes of the next step: a row each.
+/// `(2k + 1) P_k` at the nodes of the next step, one row each.
 const fn beyond<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
     let mut next = *x;
     let mut i = 0;
@@ -153,8 +155,8 @@ const fn beyond<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
     values
 }
 
-/// `Σ_k left_ki right_jk`, of so many k. Of `(2k + 1) P_k` and P_k(x_j) it is `l_j / b_j`, without its terms of higher degrees; of the integrals of these the
-/// integral of that; of `b_k a_ik / b_k` and `a_kj / b_j` it is `(A²)_ij / b_j`.
+/// `Σ_k left_ki right_jk` over this number of k. For `(2k + 1) P_k` and P_k(x_j) it is `l_j / b_j` truncated in degree;
+/// for their integrals it is the integral of that; for `b_k a_ik / b_k` and `a_kj / b_j` it is `(A²)_ij / b_j`.
 const fn product<const S: usize>(left: &[[Pair; S]; S], right: &[[Pair; S]; S], terms: usize) -> [[Pair; S]; S] {
     let mut product = [[Pair::ZERO; S]; S];
     let mut j = 0;
@@ -173,7 +175,7 @@ const fn product<const S: usize>(left: &[[Pair; S]; S], right: &[[Pair; S]; S], 
     product
 }
 
-/// Rows as columns.
+/// Transposes a matrix.
 const fn transposed<const S: usize>(matrix: &[[Pair; S]; S]) -> [[Pair; S]; S] {
     let mut transposed = *matrix;
     let mut j = 0;
@@ -203,7 +205,7 @@ const fn scaled<const S: usize>(matrix: &[[Pair; S]; S], b: &[Pair; S]) -> [[Pai
     scaled
 }
 
-/// A matrix, rounded.
+/// Rounds a matrix to `f64`.
 const fn nearest<const S: usize>(matrix: &[[Pair; S]; S]) -> [[f64; S]; S] {
     let mut nearest = [[0.0; S]; S];
     let mut j = 0;
@@ -218,7 +220,7 @@ const fn nearest<const S: usize>(matrix: &[[Pair; S]; S]) -> [[f64; S]; S] {
     nearest
 }
 
-/// Rounded to a multiple of 2⁻⁵³, of a number in (−1, 1): adding 1 or 2 leaves no bit below.
+/// Rounds a number in (−1, 1) to a multiple of 2⁻⁵³: adding 1 or 2 drops the lower bits.
 const fn on_grid(value: Pair) -> f64 {
     let shift = if value.high < 0.0 { -1.0 } else { 1.0 };
     // Numbers in [1, 2) are multiples of 2⁻⁵², so half of the doubled number is a multiple of 2⁻⁵³.
@@ -226,7 +228,7 @@ const fn on_grid(value: Pair) -> f64 {
     ((doubled + shift) - shift) * 0.5
 }
 
-/// Node i of s on [−1, 1], ascending: the root of P_s by Newton's iteration from Tricomi's estimate.
+/// Node i of s on [−1, 1], ascending: the root of P_s by Newton iteration from Tricomi's estimate.
 const fn node(s: usize, i: usize) -> Pair {
     if 2 * i + 1 == s {
         return Pair::ZERO;
@@ -234,7 +236,7 @@ const fn node(s: usize, i: usize) -> Pair {
     let angle = core::f64::consts::PI * (real(i) + 0.75) / (real(s) + 0.5);
     let mut x = Pair::new(-cosine(angle));
     let mut k = 0;
-    // The distance is squared each time: 1e-3 at the start.
+    // Each iteration squares the distance, initially 1e-3.
     while k < 5 {
         let (value, slope) = legendre(s, x);
         x = x.minus(value.over(slope));
@@ -269,7 +271,7 @@ const fn following(k: usize, x: Pair, last: [Pair; 2]) -> Pair {
     first.minus(second).over(Pair::new(real(k + 1)))
 }
 
-/// cos x for x in (0, π), by its power series: an estimate, so its roundings do not matter.
+/// cos x for x in (0, π), by its power series: an estimate, so that its rounding does not matter.
 const fn cosine(x: f64) -> f64 {
     let mut sum = 1.0;
     let mut term = 1.0;
@@ -292,7 +294,7 @@ pub(crate) const fn real(integer: usize) -> f64 {
 mod tests {
     use super::Tableau;
 
-    /// What the conditions of the module and those of order 2s leave, for one S.
+    /// Tests the residuals of the module's conditions and of the order conditions up to 2s, for one S.
     fn check<const S: usize>() {
         let Tableau { c, b, first, second, next, ahead, legendre } = &Tableau::<S>::VALUES;
         for i in 0..S {

@@ -1,20 +1,23 @@
-//! Variations of a solved Gauss step.
+//! Tangent vectors of a solved Gauss step.
 //!
-//! In: the stages of the last step, variations of its node. Out: those of the next node. With `C = ∂L_v/∂q, M = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` at each stage,
-//! and m, f what L_v and F change by the time and the parameters, the velocities of the stages vary by the solution of
+//! From the stages of the last step and tangent vectors at its node follow those at the next node. Let `C = ∂L_v/∂q, M
+//! = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` at each stage, and m, f the derivatives of L_v and F with respect to the time and
+//! the parameters. The stage velocities vary by the solution of
 //!
 //! ```text
 //! C_i δQ_i + M_i δV_i + m_i = δp0 + h Σ_j a_ij δF_j        δQ_i = δq0 + h Σ_j a_ij δV_j        δF_j = K_j δQ_j + B_j δV_j + f_j
 //! ```
 //!
-//! S N equations with the same matrix for all directions. The length h of the step may vary too: then T_i, Q_i and the momenta change at fixed V_j and F_j. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
+//! These S N equations have the same matrix for all directions. The step length h may vary too: then T_i, Q_i and the
+//! momenta change at fixed V_j and F_j. The matrix differs from the simplified one of `newton`, because derivatives
+//! must be exact at every stage.
 
 use super::density::power;
+use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::Rare;
+use super::points::ErasedSystem;
 use super::solve::WIDE;
 use super::stages::{AtStages, LOOPED, Stages, gathered, maximum, product, scaled, set, stage, sum, times, weights};
-use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::{Collocation, PointDerivatives};
 use crate::derivatives::{
@@ -38,7 +41,7 @@ impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for Gauss<STAG
 where
     S: Collocation<N> + Convertible<N>,
 {
-    /// Allocates: the equations of all stages are one matrix.
+    /// Allocates the joint matrix of all stages.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { system, node, memory, .. } = run;
         let LastStages { h, stages, before: start, .. } = memory;
@@ -80,9 +83,10 @@ where
     }
 }
 
-/// Turns tangent vectors at a node into those after an energy-preserving step, or one of a given length, from its stages.
+/// Maps tangent vectors at a node to those after an energy-preserving step, or one of a given length, from its stages.
 ///
-/// The energy equation and the unknown h border the equations of the stages. These are solved at fixed h and for the direction of h; one scalar equation gives δh.
+/// The energy equation and the unknown h border the stage equations. These are solved at fixed h and for the direction
+/// of h; one scalar equation gives δh.
 fn vary_length<S, const N: usize, const STAGES: usize>(
     system: &S,
     step: (&Node<N>, f64, &Stages<N, STAGES>),
@@ -174,7 +178,8 @@ where
     (0..variations.len()).map(of).collect()
 }
 
-/// Turns tangent vectors at a node into those after the Gauss step of length h with these stages, and adds the derivatives of its energies if they are wanted.
+/// Maps tangent vectors at a node to those after the Gauss step of length h with these stages, and optionally adds the
+/// derivatives of its energies.
 fn vary<S, const N: usize, const STAGES: usize>(
     system: &S,
     (before, h, stages): (&Node<N>, f64, &Stages<N, STAGES>),
@@ -185,28 +190,28 @@ where
     S: Collocation<N> + Convertible<N>,
 {
     let instructions = Instructions::detected();
-    let rare = Rare::of(system);
+    let rare = ErasedSystem::of(system);
     let equations = equations(&rare, before, h, *stages);
     let at = Solution {
         times: times::<N, STAGES, false>(before, h),
         positions: equations.start(),
         velocities: equations.velocity(),
     };
-    // Not arrays: those of long systems are too large for the stack of a thread.
+    // On the heap: arrays of long systems would overflow the stack of a thread.
     let mut rows = vec![[[0.0; STAGES]; N]; 4 * N + N * STAGES + TOGETHER];
     let (derivatives, equations) = rows.split_at_mut(4 * N);
     let derivatives = derivatives.as_chunks_mut::<N>().0;
     let are_found = S::SIDE_BY_SIDE && instructions.run(Differentiate { system, at: &at, derivatives });
     if !are_found || !are_finite(derivatives) {
-        // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
-        differentiate_plainly(&rare, &at, derivatives);
+        // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
+        differentiate_in_scalars(&rare, &at, derivatives);
     }
     for variations in variations.chunks_mut(TOGETHER) {
         let explicit = explicit(system, &at, variations, before.t)?;
         let from = if energies.is_some() { variations.to_vec() } else { Vec::new() };
         let are_found = instructions.run(Vary { derivatives, equations, h, explicit, variations });
         if !are_found {
-            // What is singular, and what was not finite before.
+            // Excludes singular equations, and input that was not finite.
             Variation::check_finite(variations, before.t)?;
             return Err(if are_finite(derivatives) { singular(before.t) } else { not_finite(before.t) });
         }
@@ -231,7 +236,8 @@ impl<const N: usize, const S: usize> Solution<N, S> {
     }
 }
 
-/// How L_v and F change at the stages: C, M, K and B. Entry (k, l) is the derivative of component k by coordinate or velocity l, a row of stages.
+/// Derivatives of L_v and F at the stages: C, M, K and B. Entry (k, l) is the derivative of component k with respect to
+/// coordinate or velocity l, as a row of stages.
 type Derivatives<const N: usize, const S: usize> = [[Stages<N, S>; N]];
 
 /// Whether every number is finite.
@@ -239,9 +245,9 @@ fn are_finite<const N: usize, const S: usize>(derivatives: &Derivatives<N, S>) -
     derivatives.as_flattened().as_flattened().as_flattened().iter().all(|entry| entry.is_finite())
 }
 
-/// The derivatives of every stage by itself.
-fn differentiate_plainly<const N: usize, const S: usize>(
-    system: &Rare<'_, N>,
+/// The derivatives, one stage at a time.
+fn differentiate_in_scalars<const N: usize, const S: usize>(
+    system: &ErasedSystem<'_, N>,
     at: &Solution<N, S>,
     derivatives: &mut Derivatives<N, S>,
 ) {
@@ -251,17 +257,17 @@ fn differentiate_plainly<const N: usize, const S: usize>(
     }
 }
 
-/// The derivatives of all stages, by the instructions of the processor; whether they are found.
+/// The derivatives of all stages, with SIMD dispatch. Returns whether this succeeded.
 struct Differentiate<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     at: &'a Solution<N, S>,
     derivatives: &'a mut Derivatives<N, S>,
 }
 
-/// Bytes up to which a matrix is evaluated at all stages at once: a thread has a stack of two million.
+/// Largest matrix, in bytes, that is evaluated at all stages at once: a thread has a stack of two million.
 const SIDE_BY_SIDE: usize = 1 << 16;
 
-/// Bytes of a matrix of all stages.
+/// Bytes of a matrix for all stages.
 const fn bytes<Y: Convertible<N>, const N: usize, const S: usize, const FUSED: bool>() -> usize {
     size_of::<<Y::In<Lanes<S, FUSED>> as Collocation<N, Lanes<S, FUSED>>>::PointMatrix>()
 }
@@ -273,7 +279,7 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Differentiate<'
     fn run<const FUSED: bool>(self) -> bool {
         let Self { system, at, derivatives } = self;
         if const { N <= LOOPED } {
-            // An array overlaps nothing, so far as the compiler knows: it makes vectors of the loop over the stages.
+            // A local array cannot alias, so that the compiler vectorizes the loop over the stages.
             let mut matrices = [[[[0.0; S]; N]; N]; 4];
             put_all::<N, S, Lane<FUSED>, _>(&mut matrices, &system.convert(), at);
             derivatives.copy_from_slice(&matrices);
@@ -319,18 +325,18 @@ fn put<D: Matrix<N, T>, T: AtStages<S>, const N: usize, const S: usize>(
 
 /// Derivatives of the equations with respect to the time, the length of the step and the parameters.
 struct Explicit<const N: usize, const S: usize> {
-    /// Those of `L_v` and `L_q + f` at fixed positions and velocities, along each direction.
+    /// Derivatives of `L_v` and `L_q + f` at fixed positions and velocities, along each direction.
     slopes: [[Stages<N, S>; 2]; TOGETHER],
-    /// Those of positions and momenta at the stages with respect to the length, at fixed velocities and forces.
+    /// Derivatives of positions and momenta at the stages with respect to the length, at fixed velocities and forces.
     moved: [Stages<N, S>; 2],
     /// The same at the end.
     moved_end: [SVector<f64, N>; 2],
 }
 
-/// Those at the stages; none where neither varies in any direction.
+/// Evaluates these derivatives at the stages; `None` if time, length and parameters do not vary.
 ///
 /// # Errors
-/// Those of [`Variation::varying_system`], for the step from the time `t`.
+/// As [`Variation::varying_system`], for the step from the time `t`.
 fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize, const STAGES: usize>(
     system: &S,
     at: &Solution<N, STAGES>,
@@ -360,10 +366,11 @@ fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize, const STAGES: usi
     Ok(Some(Explicit { slopes, moved, moved_end }))
 }
 
-/// Turns variations of the node at which a step began into those of the node reached; false, and anything in them, where the equations do not determine them.
+/// Maps tangent vectors at the start of a step to those at its end. Returns false, with unspecified vectors, if the
+/// equations are singular.
 struct Vary<'a, const N: usize, const S: usize> {
     derivatives: &'a Derivatives<N, S>,
-    /// Room for the columns of the matrix and the right sides.
+    /// Buffer for the columns of the matrix and the right sides.
     equations: &'a mut [Stages<N, S>],
     h: f64,
     explicit: Option<Explicit<N, S>>,
@@ -384,7 +391,7 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
                 *column = self::column::<N, S, FUSED>([momentum_dq, mass, force_dq, force_dv], &weights, [l, j]);
             }
         }
-        // What forces change by where the velocities of the stages do not.
+        // Changes of the forces at fixed stage velocities.
         let mut forces = [[[0.0; S]; N]; TOGETHER];
         for (direction, variation) in variations.iter().enumerate() {
             let [mut momentum, mut force] = explicit.as_ref().map_or([[[0.0; S]; N]; 2], |of| of.slopes[direction]);
@@ -422,8 +429,8 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
     }
 }
 
-/// The column of the matrix for the velocity of the coordinate l at the stage j: its entry i is
-/// `δ_ij M_i + h a_ij (C_i − B_j) − h² Σ_m a_im a_mj K_m`.
+/// The column of the matrix for the velocity of coordinate l at stage j. Its entry i is `δ_ij M_i + h a_ij (C_i − B_j)
+/// − h² Σ_m a_im a_mj K_m`.
 #[inline(always)]
 fn column<const N: usize, const S: usize, const FUSED: bool>(
     [momentum_dq, mass, force_dq, force_dv]: [&[Stages<N, S>; N]; 4],
@@ -491,7 +498,7 @@ fn integrals<const N: usize, const S: usize, const FUSED: bool>(x: &Stages<N, S>
     integrals
 }
 
-/// What the momenta that follow from the forces change by beyond L_v: the right side of the equations.
+/// The right side of the equations: the change of the momenta by the forces minus the change of L_v.
 #[inline(always)]
 fn missing<const N: usize, const S: usize, const FUSED: bool>(
     p: &SVector<f64, N>,
@@ -508,11 +515,11 @@ fn missing<const N: usize, const S: usize, const FUSED: bool>(
     missing
 }
 
-/// The entry of a column of the diagonal is its pivot unless another is so many times larger.
+/// A diagonal entry is the pivot unless another one exceeds it by this factor.
 const FAVOURED: f64 = 4.0;
 
-/// What the rows of each coordinate are multiplied by to be comparable, whatever its unit is: `1/√M_kk`, by which the mass matrix has no entry above 1 where it is
-/// positive; of a diagonal that is zero the largest entry of the row.
+/// Scale factors that make rows comparable in any units: `1/√M_kk`, so that a positive mass matrix has no entry above
+/// 1; for a zero diagonal, the inverse of the largest entry of the row.
 #[cold]
 fn comparable<const N: usize, const S: usize>(mass: &[Stages<N, S>; N]) -> [f64; N] {
     let mut weights = [1.0; N];
@@ -528,14 +535,15 @@ fn comparable<const N: usize, const S: usize>(mass: &[Stages<N, S>; N]) -> [f64;
     weights
 }
 
-/// Solves equations whose columns come first, then their right sides, which become the solutions: elimination of every row but the pivot's, with partial pivoting among
-/// rows that the mass matrix makes comparable. Whether all solutions are finite: not where the matrix is singular.
+/// Solves equations whose columns precede their right sides. Eliminates all rows but the pivot's, with partial pivoting
+/// among rows scaled by the mass matrix; the right sides become the solutions. Returns whether all are finite, which is
+/// false for a singular matrix.
 #[inline(always)]
 fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
     equations: &mut [Stages<N, S>],
     mass: &[Stages<N, S>; N],
 ) -> bool {
-    // 1 for rows that have no pivot yet, else 0.
+    // 1 for rows without a pivot so far, else 0.
     let mut free = [[1.0; S]; N];
     let mut pivots = [[(0, 0); S]; N];
     let mut scales = [[0.0; S]; N];
@@ -557,7 +565,7 @@ fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
             factors[row][at] = 0.0;
             for other in rest {
                 let pivotal = other[row][at];
-                // A copy overlaps nothing, so far as the compiler knows: it makes vectors of the loop.
+                // A copy cannot alias, so that the compiler vectorizes the loop.
                 let mut eliminated = *other;
                 for k in 0..N {
                     for i in 0..S {
@@ -582,7 +590,7 @@ fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
     are_finite
 }
 
-/// The place of the pivot of a column; none where the rows that are left have nothing in it.
+/// The pivot position of a column; `None` if the remaining rows are zero there.
 #[inline(always)]
 fn pivot<const N: usize, const S: usize>(
     column: &Stages<N, S>,
@@ -603,7 +611,7 @@ fn pivot<const N: usize, const S: usize>(
     if largest > 0.0 && FAVOURED * sizes[l][j] >= largest { Some(diagonal) } else { compared(&sizes, diagonal, mass) }
 }
 
-/// The same in comparable rows, where in their own units another one is larger.
+/// The pivot among scaled rows, if in their own units another one is larger.
 #[cold]
 fn compared<const N: usize, const S: usize>(
     sizes: &Stages<N, S>,

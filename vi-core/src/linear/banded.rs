@@ -4,22 +4,22 @@ use super::{Matrix, is_kept, row_by_row};
 use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
-/// A matrix whose entries stand at most W places from the diagonal; D = 2 W + 1. Diagonal matrices have D = 1.
+/// A matrix with entries at most W places from the diagonal; D = 2 W + 1. Diagonal matrices have D = 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Banded<const N: usize, const D: usize, T> {
-    /// Row i, column i + k − W at `[i][k]`; what would stand outside the matrix is zero.
+    /// Row i, column i + k − W at `[i][k]`; entries outside the matrix are zero.
     pub rows: [[T; D]; N],
 }
 
 impl<const N: usize, const D: usize, T: Real> Banded<N, D, T> {
     const WIDTH: usize = D / 2;
 
-    /// The factors of the elimination in place: below the diagonal those of the rows, on it the reciprocals of the pivots.
+    /// The factors in place: row multipliers below the diagonal, reciprocals of the pivots on it.
     #[inline]
     fn factors(mut self) -> Self {
         let (w, rows, mut kept) = (Self::WIDTH, &mut self.rows, true);
         for i in 0..N {
-            // The last unknown passes on to all others.
+            // A NaN in the last unknown reaches all others.
             let reciprocal = if i + 1 == N && !kept { T::real(f64::NAN) } else { rows[i][w].recip() };
             rows[i][w] = reciprocal;
             let pivot_row = rows[i];

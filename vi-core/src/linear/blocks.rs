@@ -1,10 +1,10 @@
-//! Block-diagonal matrices: bodies that do not feel each other within a step.
+//! Block-diagonal matrices: bodies without mutual coupling within a step.
 
 use super::{Matrix, dense};
 use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
-/// A matrix of blocks of at most B rows, whose rows need not stand together.
+/// A matrix of blocks of at most B rows, which need not be contiguous.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blocks<const N: usize, const B: usize, T> {
     /// The rows of each block, ascending.
@@ -14,7 +14,7 @@ pub struct Blocks<const N: usize, const B: usize, T> {
 }
 
 impl<const N: usize, const B: usize, T: Real> Blocks<N, B, T> {
-    /// A block, filled up to B rows with those of the unit matrix.
+    /// A block, extended to B rows by those of the unit matrix.
     #[inline]
     fn block(&self, members: &[usize]) -> SMatrix<T, B, B> {
         SMatrix::from_fn(|i, j| match members.get(i) {
@@ -45,7 +45,7 @@ impl<const N: usize, const B: usize, T: Real> Blocks<N, B, T> {
 }
 
 impl<const N: usize, const B: usize, T: Real> Matrix<N, T> for Blocks<N, B, T> {
-    /// The inverse of each block, row by row where its own rows stood.
+    /// The inverse of each block, in the layout of the blocks.
     type Inverse = Self;
 
     #[inline]

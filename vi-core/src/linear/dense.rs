@@ -1,5 +1,5 @@
-//! Dense matrices: closed forms without a branch up to N = 3, elimination beyond. N is a constant, so that one of these is left in
-//! the program.
+//! Dense matrices: branch-free closed forms up to N = 3, elimination beyond. N is a constant, so that the program
+//! contains only one of these.
 
 use super::{Matrix, is_kept};
 use crate::real::Real;
@@ -23,7 +23,7 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
         let (mut x, determinant) = self.quotient(rhs);
         if const { N <= 3 } {
             let reciprocal = determinant.recip();
-            // Not a number where the determinant overflowed, or is too small to hold all its digits.
+            // NaN if the determinant overflowed, or is too small to hold all its digits.
             let lost = determinant * reciprocal * T::zero();
             for column in 0..M {
                 for row in 0..N {
@@ -115,7 +115,7 @@ fn cramer_3<T: Real, const N: usize, const M: usize>(
     (x, a[(0, 0)] * c0 + a[(0, 1)] * c1 + a[(0, 2)] * c2)
 }
 
-/// Gaussian elimination in the order of the rows; with pivoting where digits would be lost.
+/// Gaussian elimination in the order of the rows; with pivoting if digits would be lost.
 #[inline]
 pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
     a: SMatrix<T, N, N>,
@@ -124,7 +124,7 @@ pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
     in_order(a, b).unwrap_or_else(|| pivoted(a, b))
 }
 
-/// `None` where a pivot is lost.
+/// `None` if a pivot is lost.
 #[inline]
 fn in_order<T: Real, const N: usize, const M: usize>(
     mut a: SMatrix<T, N, N>,
@@ -141,7 +141,7 @@ fn in_order<T: Real, const N: usize, const M: usize>(
     kept.then(|| substitute(&a, b))
 }
 
-/// With partial pivoting of rows that are made comparable.
+/// With partial pivoting of scaled rows.
 #[cold]
 pub(super) fn pivoted<T: Real, const N: usize, const M: usize>(
     mut a: SMatrix<T, N, N>,
@@ -177,7 +177,7 @@ fn eliminate_column<T: Real, const N: usize, const M: usize>(
     }
 }
 
-/// Back substitution in what is above the diagonal.
+/// Back substitution in the upper triangle.
 #[inline]
 fn substitute<T: Real, const N: usize, const M: usize>(
     a: &SMatrix<T, N, N>,
@@ -192,13 +192,13 @@ fn substitute<T: Real, const N: usize, const M: usize>(
     b
 }
 
-/// Rounds of scaling, each of which takes the square root of how far a row or column is from its length: ratios of 10⁴⁰ become ratios
-/// of 1.5.
+/// Rounds of scaling. Each takes the square root of the ratio of a row or column to its target: ratios of 10⁴⁰ become
+/// ratios of 1.5.
 const ROUNDS: usize = 8;
 
-/// What rows are multiplied by to be comparable, whatever the units of rows and columns are: with columns multiplied likewise, the
-/// largest entry of each row and of each column is about 1 (D. Ruiz, A scaling algorithm to equilibrate both rows and columns norms
-/// in matrices, 2001).
+/// Scale factors that make rows comparable, in any units of rows and columns. With columns scaled likewise, the largest
+/// entry of each row and of each column is about 1 (D. Ruiz, A scaling algorithm to equilibrate both rows and columns
+/// norms in matrices, 2001).
 pub(super) fn weights<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> [f64; N] {
     let (mut rows, mut columns) = ([1.0_f64; N], [1.0_f64; N]);
     for _ in 0..ROUNDS {
@@ -220,7 +220,7 @@ pub(super) fn weights<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> [f64; N]
     rows
 }
 
-/// Swaps the row with the largest entry of `column`, in comparable rows, onto the diagonal; which row, where it was another one.
+/// Swaps the row with the largest scaled entry of `column` onto the diagonal; returns its index if it was another row.
 pub(super) fn pivot<T: Real, const N: usize>(
     a: &mut SMatrix<T, N, N>,
     weights: &mut [f64; N],

@@ -1,19 +1,19 @@
-//! Small linear systems `A X = B`, each solved by the structure of A.
+//! Small linear systems `A X = B`, solved by the structure of A.
 //!
-//! In: a matrix A of N × N in one of the forms below and M right-hand sides as the columns of B. Out: X, whose entries are
-//! not finite where A is singular. The generator knows the zero pattern of A and chooses the form:
+//! A is an N × N matrix in one of the forms below, and the columns of B are M right-hand sides. The entries of X are
+//! not finite if A is singular. The generator knows the zero pattern of A and chooses the form:
 //!
-//! | form | A | by |
+//! | form | A | solver |
 //! |---|---|---|
-//! | `SMatrix` | dense | closed form for N ≤ 3; else elimination, with pivoting where digits would be lost |
-//! | [`Symmetric`] | dense and symmetric, N ≥ 4 | `L D Lᵀ`; where a pivot is not positive, elimination as of dense ones |
+//! | `SMatrix` | dense | closed form for N ≤ 3; beyond, elimination, with pivoting to avoid loss of digits |
+//! | [`Symmetric`] | dense and symmetric, N ≥ 4 | `L D Lᵀ`; if a pivot is not positive, dense elimination |
 //! | [`Tridiagonal`] | neighbours only | elimination of two rows at a time, from both ends at once |
-//! | [`Banded`] | up to a few places from the diagonal | elimination inside the band |
-//! | [`Blocks`] | blocks that do not touch each other | each block for itself |
+//! | [`Banded`] | entries near the diagonal | elimination inside the band |
+//! | [`Blocks`] | disjoint blocks | each block separately |
 //!
-//! The matrices are mass matrices plus terms of order h: elimination in the order of the rows is stable for almost all of them,
-//! in whatever units their rows and columns are. Where a pivot is lost nevertheless, the solution by [`Tridiagonal`] and [`Banded`]
-//! is not a number, nor is that in closed form where the determinant leaves the range of the numbers; [`solve`] then pivots.
+//! The matrices are mass matrices plus terms of order h. Elimination in the order of the rows is stable for almost all
+//! of them, in any units of their rows and columns. If it loses a pivot, the solution by [`Tridiagonal`] and [`Banded`]
+//! is NaN, as is the closed form if the determinant is out of range; [`solve`] then pivots.
 
 mod banded;
 mod blocks;
@@ -32,36 +32,37 @@ use crate::real::Real;
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
-/// Keeps the compiler from making vectors across the rows of a loop: it would gather their numbers from memory, one by one. Those of a row stand side by side.
+/// Prevents vectorization across the rows of a loop, which would gather numbers from memory one by one. The numbers of
+/// a row are contiguous.
 #[inline(always)]
 pub(crate) fn row_by_row() {
     core::hint::black_box(());
 }
 
-/// A square matrix in the form that its zero pattern allows.
+/// A square matrix in the form of its zero pattern.
 pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
-    /// What is kept of A to solve with it many times.
+    /// Factors of A for repeated solves.
     type Inverse: Copy + Debug + Send + Sync;
 
-    /// The X with `A X = rhs`; not finite where A is singular.
+    /// Solves `A X = rhs`; not finite if A is singular.
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M>;
-    /// The solution as numerators and one denominator, the determinant where A is solved by Cramer's rule, else 1.
+    /// The solution as numerators and one denominator: the determinant if A is solved by Cramer's rule, otherwise 1.
     #[inline]
     fn quotient<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> (SMatrix<T, N, M>, T) {
         (self.solve(rhs), T::one())
     }
-    /// The X with `A X = rhs` for a caller who measures what it leaves: where A is singular, or its determinant out of range, X is
-    /// anything.
+    /// Solves `A X = rhs` for a caller who checks the residual: if A is singular, or its determinant out of range, X is
+    /// unspecified.
     #[inline(always)]
     fn solve_unchecked<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
         let (numerators, determinant) = self.quotient(rhs);
         numerators * determinant.recip()
     }
-    /// A, ready to solve with many times.
+    /// Factors A for repeated solves.
     fn inverse(&self) -> Self::Inverse;
-    /// The x with `A x = rhs`, from the inverse of A.
+    /// Solves `A x = rhs` by the factors of A.
     fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N>;
-    /// The same for S right-hand sides side by side: row i holds entry i of each, and becomes that of their solutions.
+    /// The same for S right-hand sides at once: row i holds entry i of each. Overwrites them by the solutions.
     #[inline(always)]
     fn apply_to_rows<const S: usize>(inverse: &Self::Inverse, rows: &mut [[T; S]; N]) {
         for column in 0..S {
@@ -75,15 +76,15 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     fn entry(&self, row: usize, column: usize) -> T;
     /// `A x`.
     fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N>;
-    /// A with its zeros.
+    /// A as a dense matrix.
     #[inline]
     fn dense(&self) -> SMatrix<T, N, N> {
         SMatrix::from_fn(|row, column| self.entry(row, column))
     }
 }
 
-/// The X with `matrix · X = rhs`; `None` where it is not finite. Where elimination without pivoting loses a matrix that is
-/// regular, or digits of X, elimination with pivoting gives X.
+/// Solves `matrix · X = rhs`; `None` if the solution is not finite. If elimination without pivoting fails for a regular
+/// matrix, or loses digits of X, elimination with pivoting solves it.
 #[inline]
 #[must_use]
 pub fn solve<T: Real, const N: usize, const M: usize>(
@@ -98,18 +99,18 @@ fn is_finite<T: Real, const N: usize, const M: usize>(solution: &SMatrix<T, N, M
     solution.iter().all(|entry| entry.is_finite())
 }
 
-/// How many times what an elimination takes from an entry of the diagonal may be larger than that entry, or the products in a
-/// determinant larger than the determinant: so many roundings are lost. Both are ratios that no units of rows and columns change,
-/// and that stay below 1 in a positive definite matrix.
+/// Largest allowed ratio of the subtracted terms to a diagonal entry, or of the products in a determinant to the
+/// determinant: the number of roundings lost. Both ratios are independent of the units of rows and columns, and stay
+/// below 1 in a positive definite matrix.
 const GROWTH: f64 = 1024.0;
 
-/// Whether an entry of the diagonal keeps its digits when `eliminated` is taken from it.
+/// Whether a diagonal entry keeps its digits when `eliminated` is subtracted from it.
 #[inline(always)]
 fn is_kept<T: Real>(entry: T, eliminated: T) -> bool {
     eliminated.abs().is_at_most(entry.abs() * T::real(GROWTH))
 }
 
-/// Sign of the determinant, by elimination with partial pivoting: −1, 0 or 1; 0 where an entry is not a number.
+/// Sign of the determinant, by elimination with partial pivoting: −1, 0 or 1; 0 if an entry is NaN.
 #[must_use]
 pub fn determinant_sign<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> i8 {
     let mut a = *matrix;

@@ -1,7 +1,7 @@
-//! Dense matrices of a size that is known at run time, factored in place.
+//! Dense matrices of a size known at run time, factored in place.
 //!
-//! In: A of n × n. Out: `P A = L U` with partial pivoting; then x with `A x = b`, not finite where A is singular. Allocates when it is
-//! made, and never again.
+//! `P A = L U` with partial pivoting gives x with `A x = b`, not finite if A is singular. Only the constructor
+//! allocates.
 
 use nalgebra::DMatrix;
 
@@ -9,17 +9,17 @@ use nalgebra::DMatrix;
 #[derive(Clone, Debug)]
 pub(crate) struct Pivoted {
     factors: DMatrix<f64>,
-    /// Row that was exchanged with each.
+    /// Pivot row of each column.
     rows: Vec<usize>,
 }
 
 impl Pivoted {
-    /// Room for matrices of `size` rows.
+    /// Allocates for matrices of `size` rows.
     pub(crate) fn new(size: usize) -> Self {
         Self { factors: DMatrix::zeros(size, size), rows: vec![0; size] }
     }
 
-    /// Factors a matrix of the size that there is room for.
+    /// Factors a matrix of the allocated size.
     pub(crate) fn factor(&mut self, matrix: &DMatrix<f64>) {
         self.factors.copy_from(matrix);
         let size = self.rows.len();
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn what_was_multiplied_is_solved_for() {
-        // The first pivot is zero, and the rows are in other units.
+        // The first pivot is zero, and the rows have different units.
         let matrix = DMatrix::from_row_slice(3, 3, &[0.0, 2.0, 1.0, 3.0, -1.0, 4.0, 500.0, 100.0, -700.0]);
         let x = DVector::from_row_slice(&[1.0, -2.0, 3.0]);
         let mut b = &matrix * &x;

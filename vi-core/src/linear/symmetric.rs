@@ -4,7 +4,7 @@ use super::{Matrix, dense};
 use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
-/// A symmetric matrix, given whole.
+/// A symmetric matrix with all its entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Symmetric<const N: usize, T>(pub SMatrix<T, N, N>);
 
@@ -12,7 +12,7 @@ pub struct Symmetric<const N: usize, T>(pub SMatrix<T, N, N>);
 type Factors<const N: usize, T> = SMatrix<T, N, N>;
 
 impl<const N: usize, T: Real> Symmetric<N, T> {
-    /// The factors; `None` where a pivot is not positive, and elimination without pivoting not stable.
+    /// The factors; `None` if a pivot is not positive, so that elimination without pivoting is unstable.
     #[inline]
     fn factors(&self) -> Option<Factors<N, T>> {
         let mut a = self.0;
@@ -26,7 +26,7 @@ impl<const N: usize, T: Real> Symmetric<N, T> {
                 a[(column, row)] = a[(row, column)];
                 a[(row, column)] *= reciprocal;
             }
-            // Column by column, so that the rows inside one column are independent of each other.
+            // Column by column, so that the rows inside one column are independent.
             for k in column + 1..N {
                 let above = a[(column, k)];
                 for row in k..N {

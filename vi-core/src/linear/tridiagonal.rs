@@ -1,15 +1,15 @@
-//! Tridiagonal matrices, eliminated two rows at a time and from both ends at once: a row waits for half as many quotients as
-//! there are rows before it, and the two halves do not wait for each other.
+//! Tridiagonal matrices, eliminated two rows at a time and from both ends at once. This halves the number of sequential
+//! quotients, and the two halves are independent.
 //!
 //! ```text
 //! lower_i x_{i−1} + diagonal_i x_i + upper_i x_{i+1} = b_i        lower_0 = upper_{N−1} = 0
 //! rows i, j = i + 1 from above, with y_i = b_i − lower_i y_{i−1}:
-//! d = diagonal_i − lower_i upper_{i−1} z     ρ = 1/(d diagonal_j − upper_i lower_j)     z = d ρ, which the next two take
+//! d = diagonal_i − lower_i upper_{i−1} z     ρ = 1/(d diagonal_j − upper_i lower_j)     z = d ρ, for the next two rows
 //! y_i ← (diagonal_j y_i − upper_i b_j) ρ     y_j = (d b_j − lower_j y_i) ρ
 //! x_i = y_i + upper_i ρ upper_j x_{j+1}      x_j = y_j − d ρ upper_j x_{j+1}
 //! ```
 //!
-//! and mirrored from below. One row or two in the middle close the elimination.
+//! and mirrored from below. One or two rows in the middle close the elimination.
 
 use super::{GROWTH, Matrix, is_kept};
 use crate::real::Real;
@@ -18,28 +18,28 @@ use nalgebra::{SMatrix, SVector};
 /// A matrix of three diagonals, entry i of each in row i.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tridiagonal<const N: usize, T> {
-    /// Left of the diagonal; the first is zero.
+    /// Subdiagonal; the first entry is zero.
     pub lower: [T; N],
     /// The diagonal.
     pub diagonal: [T; N],
-    /// Right of the diagonal; the last is zero.
+    /// Superdiagonal; the last entry is zero.
     pub upper: [T; N],
 }
 
-/// The matrix, eliminated.
+/// The factored matrix.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<const N: usize, T> {
     matrix: Tridiagonal<N, T>,
-    /// d and ρ of two rows, in the order of their elimination; of the rows in the middle the reciprocals.
+    /// d and ρ of two rows, in the order of their elimination; for the middle rows, the reciprocals.
     pivots: [T; N],
-    /// What a row takes of the unknown that is known before it.
+    /// Coefficient of the next unknown in each row.
     weights: [T; N],
 }
 
-/// How far the elimination from one end has come: what the next two rows take of the last two.
+/// State of the elimination from one end: the data that the next two rows need from the last two.
 #[derive(Clone, Copy)]
 struct Front<const M: usize, T> {
-    /// What the last row has of the next one.
+    /// Coefficient of the next unknown in the last row.
     beyond: T,
     /// z.
     corner: T,
@@ -59,7 +59,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
     const PAIRS: usize = N.saturating_sub(1) / 2;
     const ABOVE: usize = Self::PAIRS / 2;
     const BELOW: usize = Self::PAIRS - Self::ABOVE;
-    /// The rows in the middle, the second of which may be the first.
+    /// The middle rows, which may be one row twice.
     const MIDDLE: [usize; 2] = [2 * Self::ABOVE, N - 1 - 2 * Self::BELOW];
 
     /// The rows of a pair.
@@ -68,7 +68,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
         if FROM_ABOVE { [2 * step, 2 * step + 1] } else { [N - 1 - 2 * step, N - 2 - 2 * step] }
     }
 
-    /// What a row has of the one before it in the order of elimination, and of the one after it.
+    /// The coefficients of the previous and of the next row, in the order of elimination.
     #[inline(always)]
     fn beside<const FROM_ABOVE: bool>(&self, row: usize) -> [T; 2] {
         if FROM_ABOVE { [self.lower[row], self.upper[row]] } else { [self.upper[row], self.lower[row]] }
@@ -85,9 +85,9 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
         let ([near, far], product) = ([self.diagonal[i], self.diagonal[j]], before * front.beyond);
         let (straight, across, eliminated) = (near * far, after * back, product * front.corner);
         let first = near - eliminated;
-        // Of the corner at once, which is waited for.
+        // The corner comes last, because the computation waits for it.
         let reciprocal = ((straight - across) - far * product * front.corner).recip();
-        // Two rows that are nearly one lose digits, too.
+        // Two nearly equal rows lose digits, too.
         let ratio = (straight.abs() + across.abs()) * reciprocal.abs();
         let kept = is_kept(near, eliminated) & ratio.is_at_most(T::real(GROWTH));
         (front.beyond, front.corner) = (beyond, first * reciprocal);
@@ -113,7 +113,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
         }
     }
 
-    /// The matrix eliminated, and right-hand sides on the way: they wait for less than the pivots do.
+    /// Factors the matrix and eliminates right-hand sides at once: they finish soon after the pivots.
     #[inline]
     fn eliminate<const M: usize>(&self, x: &mut SMatrix<T, N, M>) -> ([T; N], [T; N]) {
         let (mut pivots, mut weights) = ([T::zero(); N], [T::zero(); N]);
@@ -149,14 +149,14 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
         let eliminated = self.upper[last] * below.beyond * below.corner;
         kept &= is_kept(self.diagonal[last], eliminated);
         pivots[last] = (pivot - eliminated).recip();
-        // Everything passes through the middle.
+        // The middle affects every unknown.
         if !(kept && all_kept) {
             pivots[last] = T::real(f64::NAN);
         }
         (pivots, weights)
     }
 
-    /// The middle, and from there all others.
+    /// Solves for the middle, and from there for all others.
     #[inline]
     fn outward<const M: usize>(&self, (pivots, weights): (&[T; N], &[T; N]), x: &mut SMatrix<T, N, M>) {
         let [first, last] = Self::MIDDLE;

@@ -1,22 +1,21 @@
-//! What a run does where no energy-preserving step exists.
+//! Step bounds, and the fallback if no energy-preserving step exists.
 //!
-//! In: the typed reason why there is none, and what the user chose. Out: that error; or fixed steps of the momentum
-//! equation alone, until an energy-preserving step exists again. Steps exist while the step density D keeps its sign, and
-//! follow the law `h |D|^(1/3) = C`. So the fixed steps have
+//! [`Fallback::Stop`] returns the typed error. [`Fallback::FixedSteps`] takes fixed steps of the momentum equation
+//! alone, until an energy-preserving step exists again. Steps exist while the step density D keeps its sign, and follow
+//! the law `h |D|^(1/3) = C`. Therefore the fixed steps use
 //!
 //! ```text
 //! length  h_f = h of the last energy-preserving step, or the bound that the next one would have broken
-//! end     D has its sign again, and the law asks for h_f in the next interval, or for less: C/|D|^(1/3) ≤ h_f
-//! energy  E stays, with the work done since; only where no step has this energy, E is seeded anew with
+//! end     D has its sign again, and the law requires h_f in the next interval, or less: C/|D|^(1/3) ≤ h_f
+//! energy  E changes by the work only; if no step has this energy, E is seeded anew with
 //!         −D3 L_d − g_d⁺ of the last fixed interval
 //! ```
 //!
-//! Without force, fixed steps keep `E + h² D/12` to order h⁴. They leave at (h_f, D_0) and return at about the same, so
-//! that E is back; an interval with D instead of D_0 is off by `h_f² (D_0 − D)/12`, and then
-//! `H − E = h_f² (D/24 + D_0/12)` has the sign of D: the step with the energy of before exists.
-//! Near D = 0 each step is longer than the last by a growing factor; the fixed steps begin when it exceeds `GROWTH`,
-//! about half a step before the zero, so that h_f is not the length of a last leap.
-//! AFTER A SWITCH q, p and t go on without a jump.
+//! Without force, fixed steps preserve `E + h² D/12` to order h⁴. They begin at (h_f, D_0) and end at about the same,
+//! so that E returns. An interval with D instead of D_0 is off by `h_f² (D_0 − D)/12`. Then `H − E = h_f² (D/24 +
+//! D_0/12)` has the sign of D, so that the step with the previous energy exists. Near D = 0 each step is longer than
+//! the last by a growing factor. Fixed steps begin when it exceeds `GROWTH`, about half a step before the zero, which
+//! keeps h_f below the length of that last step. Across a switch q, p and t are continuous.
 
 use super::{Memory, Method};
 use crate::error::StepError;
@@ -25,35 +24,35 @@ use crate::real::Scalar;
 use crate::run::Run;
 use crate::state::StepKind;
 
-/// A step may be longer or shorter than the last one by this factor at most.
+/// Largest factor between the lengths of two consecutive steps.
 pub(crate) const RATIO: f64 = 3.0;
-/// With the fallback a step may be longer than the last by this factor at most: where D falls linearly to zero, the step
-/// law gives it at the distance of 0.7 h.
+/// Largest growth factor of a step with the fallback: for D falling linearly to zero, the step law reaches it at the
+/// distance of 0.7 h.
 pub(crate) const GROWTH: f64 = 1.5;
 
-/// What an energy-preserving run does if no energy-preserving step exists, or none within its bounds.
+/// The reaction of an energy-preserving run if no energy-preserving step exists, or none within its bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Fallback {
-    /// The step is an error, and the run ends.
+    /// Returns the error and ends the run.
     #[default]
     Stop,
-    /// Fixed steps until D has its sign back and an energy-preserving step exists.
+    /// Takes fixed steps until D has its sign back and an energy-preserving step exists.
     FixedSteps,
 }
 
-/// How often a run has changed its method, and what that cost.
+/// Counters and energy changes of the switches between energy-preserving and fixed steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Switches<T = f64> {
-    /// How often fixed steps began.
+    /// Number of switches to fixed steps.
     pub count: u64,
-    /// How often they ended in an energy-preserving step.
+    /// Number of returns to energy-preserving steps.
     pub returns: u64,
-    /// How often the energy was seeded anew for that.
+    /// Number of returns with a reseeded energy.
     pub reseeds: u64,
-    /// Fixed steps taken.
+    /// Number of fixed steps.
     pub fixed_steps: u64,
     /// Sum of the jumps of the discrete energy.
     pub energy_change: T,
@@ -62,7 +61,7 @@ pub struct Switches<T = f64> {
 }
 
 impl<T: Scalar> Switches<T> {
-    /// Counts the energy that was seeded anew, by so much more.
+    /// Counts a reseeded energy and its change.
     pub(crate) fn reseed(&mut self, gap: T) {
         self.reseeds += 1;
         self.energy_change += gap;
@@ -120,13 +119,13 @@ impl<T: Scalar> StepBounds<T> {
     }
 }
 
-/// What a run whose steps find their length does if no such step exists, and how often it did.
+/// Options and counters of a run whose steps find their length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Control<T = f64> {
     pub(crate) bounds: Option<StepBounds<T>>,
     pub(crate) fallback: Fallback,
-    /// The fixed steps under way.
+    /// The current fixed steps.
     pub(crate) phase: Option<Phase<T>>,
     pub(crate) switches: Switches<T>,
     /// How the last step was found.
@@ -140,7 +139,7 @@ impl<T: Scalar> Control<T> {
         Self { bounds: None, fallback, phase: None, switches: Switches::default(), kind }
     }
 
-    /// The error if a step of the length `found` is beyond the bounds.
+    /// The error if a step of the length `found` violates the bounds.
     #[inline]
     pub(crate) fn check_bounds(&self, t: T, found: T) -> Result<(), StepError> {
         match &self.bounds {
@@ -149,24 +148,24 @@ impl<T: Scalar> Control<T> {
         }
     }
 
-    /// Whether a step is so much longer than the last one that D is about to vanish, and the user wants no such step.
+    /// Whether the user excludes this step because its growth shows that D is about to vanish.
     #[inline]
     pub(crate) fn runs_away(&self, last: T, found: T) -> bool {
         self.fallback == Fallback::FixedSteps && found > last * T::real(GROWTH)
     }
 
-    /// The longest that the step after one of the length `last` can be, by the factor that is allowed or as a fixed step of the bound.
+    /// Upper bound of the step after one of the length `last`, by the allowed factor or as a fixed step of the bound.
     pub(crate) fn longest(&self, last: T) -> T {
         let shortest = self.bounds.as_ref().map_or(T::zero(), |bounds| bounds.h_min);
         shortest.max(last * T::real(RATIO))
     }
 
-    /// Discrete energy of the last step, less the energy that the node carries.
+    /// Discrete energy of the last step minus the energy of the node.
     pub(crate) fn gap(&self) -> T {
         self.phase.as_ref().map_or(T::zero(), |phase| phase.gap)
     }
 
-    /// Whether a step can follow: a file may hold anything.
+    /// Checks stored data. A file may contain any numbers.
     ///
     /// # Errors
     /// [`StepError::NonFinite`], [`StepError::InvalidInput`].
@@ -184,7 +183,7 @@ impl<T: Scalar> Control<T> {
 pub trait Controlled<T>: Memory {
     /// Its options and counters.
     fn control(&self) -> &Control<T>;
-    /// The same, to be changed.
+    /// Its options and counters, mutably.
     fn control_mut(&mut self) -> &mut Control<T>;
 }
 
@@ -193,24 +192,25 @@ pub(crate) trait Alternating<T: Scalar> {
     /// The step law is `h |D|^(1/POWER) = constant`.
     const POWER: f64;
     /// A step.
-    type Found;
+    type StepSolution;
 
     fn control(&self) -> &Control<T>;
     /// Time of the node.
     fn t(&self) -> T;
     /// Length of the last step, and D there.
     fn last(&self) -> [T; 2];
-    /// The energy-preserving step within the bounds, of the energy that the node carries and `gap`, and its length.
-    fn preserving(&self, gap: T) -> Result<(Self::Found, T), StepError>;
-    /// The step of a given length; the discrete energy there less that of the node; and D in the middle of the step after it, extrapolated.
-    fn fixed(&self, h: T) -> Result<(Self::Found, [T; 2]), StepError>;
-    fn control_of(found: &mut Self::Found) -> &mut Control<T>;
+    /// The energy-preserving step within the bounds for the energy of the node plus `gap`, and its length.
+    fn preserving(&self, gap: T) -> Result<(Self::StepSolution, T), StepError>;
+    /// The step of a given length; its discrete energy minus that of the node; and the extrapolated D at the middle of
+    /// the step after it.
+    fn fixed(&self, h: T) -> Result<(Self::StepSolution, [T; 2]), StepError>;
+    fn control_of(found: &mut Self::StepSolution) -> &mut Control<T>;
 
     /// The next step: energy-preserving, or fixed if there is none and the user allows it.
     ///
     /// # Errors
-    /// Why there is neither.
-    fn next(&self) -> Result<Self::Found, StepError> {
+    /// The reason why both fail.
+    fn next(&self) -> Result<Self::StepSolution, StepError> {
         if let Some(phase) = self.control().phase {
             return self.next_in(phase);
         }
@@ -236,9 +236,10 @@ pub(crate) trait Alternating<T: Scalar> {
         Ok(found)
     }
 
-    /// The step after a fixed one: energy-preserving if one exists, by the energy of before or, else, by that of the last step; else fixed.
+    /// The step after a fixed one: energy-preserving by the previous energy, otherwise by that of the last step,
+    /// otherwise fixed.
     #[cold]
-    fn next_in(&self, phase: Phase<T>) -> Result<Self::Found, StepError> {
+    fn next_in(&self, phase: Phase<T>) -> Result<Self::StepSolution, StepError> {
         if !phase.is_over(Self::POWER) {
             return self.fixed_in(phase);
         }
@@ -259,7 +260,7 @@ pub(crate) trait Alternating<T: Scalar> {
     }
 
     /// A fixed step of a phase.
-    fn fixed_in(&self, phase: Phase<T>) -> Result<Self::Found, StepError> {
+    fn fixed_in(&self, phase: Phase<T>) -> Result<Self::StepSolution, StepError> {
         let (mut found, [gap, density_next]) = self.fixed(phase.h)?;
         let control = Self::control_of(&mut found);
         control.kind = StepKind::FixedStep;
@@ -274,13 +275,16 @@ where
     M: Method<S, N, T, Memory: Controlled<T>>,
     S: Lagrangian<N, T> + Copy,
 {
-    /// What to do if no energy-preserving step exists; [`Fallback::Stop`] is the default. An error of the last step is forgotten.
+    /// Sets the reaction if no energy-preserving step exists; [`Fallback::Stop`] is the default. The run clears an
+    /// error of the last step.
     ///
-    /// With [`Fallback::FixedSteps`] the errors [`StepError::NoForwardStep`], [`StepError::NoForwardGaussStep`], [`StepError::DegenerateStep`],
-    /// [`StepError::StepRatio`], [`StepError::StepBounds`], [`StepError::NotConverged`] and [`StepError::StagesUnsettled`] do not end the run. It continues with fixed
-    /// steps while D has lost its sign or the step law asks for longer ones. Then it keeps the energy that it had before, or, if no step has that energy, the discrete
-    /// energy of the last fixed step. A step longer than the last by more than a factor of 1.5 is not taken either: D is about to vanish. [`Run::step_kind`] says how
-    /// the last step was found, and [`Run::switches`] what the switches cost.
+    /// With [`Fallback::FixedSteps`] the errors [`StepError::NoForwardStep`], [`StepError::NoForwardGaussStep`],
+    /// [`StepError::DegenerateStep`], [`StepError::StepRatio`], [`StepError::StepBounds`], [`StepError::NotConverged`]
+    /// and [`StepError::StagesUnsettled`] do not end the run. It continues with fixed steps while D has the wrong sign
+    /// or the step law requires longer ones. Then it preserves the previous energy or, if no step has that energy, the
+    /// discrete energy of the last fixed step. It also replaces a step that exceeds the last one by more than a factor
+    /// of 1.5, because D is about to vanish. [`Run::step_kind`] returns the kind of the last step, and
+    /// [`Run::switches`] the counters.
     #[must_use]
     pub fn with_fallback(mut self, fallback: Fallback) -> Self {
         self.memory.control_mut().fallback = fallback;
@@ -288,10 +292,11 @@ where
         self
     }
 
-    /// Refuses steps shorter than `h_min` or longer than `h_max`, in units of time, with [`StepError::StepBounds`], or, with the fallback, replaces them by fixed steps
-    /// of the bound. `h_min = 0` bounds from above alone. An error of the last step is forgotten.
+    /// Sets bounds of the step length, in units of time. A step shorter than `h_min` or longer than `h_max` is
+    /// [`StepError::StepBounds`], or, with the fallback, a fixed step of the bound.
     ///
-    /// The first step differs from the given one by a factor of 3 at most: bounds that leave no such step end the run at once.
+    /// `h_min = 0` bounds from above only. The run clears an error of the last step. The first step differs from the
+    /// given length by a factor of at most 3; bounds that exclude all of these end the run at once.
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] unless `0 ≤ h_min ≤ h_max`, with `h_max` positive and finite.
@@ -303,41 +308,41 @@ where
         Ok(self)
     }
 
-    /// How the last step was found.
+    /// The kind of the last step.
     pub fn step_kind(&self) -> StepKind<T> {
         self.memory.control().kind
     }
 
-    /// How often the run has switched to fixed steps and back, and what that cost.
+    /// Counters of the switches to fixed steps and back, with their energy changes.
     pub fn switches(&self) -> Switches<T> {
         self.memory.control().switches
     }
 }
 
-/// Fixed steps under way.
+/// A phase of fixed steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Phase<T> {
     /// Their length.
     pub(crate) h: T,
-    /// Whether the energy-preserving step would be shorter than they are, rather than longer or absent.
+    /// Whether the energy-preserving step would be shorter than these, rather than longer or absent.
     pub(crate) shorter: bool,
     /// Length of the last energy-preserving step.
     pub(crate) law_h: T,
     /// D of its interval.
     pub(crate) law_density: T,
-    /// D in the middle of the next interval, extrapolated.
+    /// D at the middle of the next interval, extrapolated.
     pub(crate) density_next: T,
-    /// Discrete energy of the last fixed interval less the energy that the node carries.
+    /// Discrete energy of the last fixed interval minus the energy of the node.
     pub(crate) gap: T,
 }
 
 impl<T: Scalar> Phase<T> {
-    /// The fixed steps that begin instead of a step that failed, where the user allows them: after one of the length `h`, in an interval of the density
-    /// `density`.
+    /// The phase of fixed steps that replaces a failed step, if the user allows it. `h` is the length and `density` the
+    /// density of the last interval.
     ///
     /// # Errors
-    /// The failure, where they are not allowed, or would fail too.
+    /// The failure, if fixed steps are not allowed or would fail too.
     pub(crate) fn instead_of(
         failure: StepError,
         fallback: Fallback,
@@ -374,8 +379,8 @@ impl<T: Scalar> Phase<T> {
         }
     }
 
-    /// Whether the step law asks for the fixed length in the next interval, or one beyond on the side of the
-    /// energy-preserving steps. The law is `h |D|^(1/power) = constant`.
+    /// Whether the step law `h |D|^(1/power) = constant` requires the fixed length in the next interval, or one beyond
+    /// it on the side of the energy-preserving steps.
     pub(crate) fn is_over(&self, power: f64) -> bool {
         let ratio = self.law_density.to_f64() / self.density_next.to_f64();
         let h = self.law_h.to_f64() * ratio.powf(power.recip());
@@ -387,7 +392,7 @@ impl<T: Scalar> Phase<T> {
 /// The step of a method that finds its length.
 pub(super) const FORWARD: &str = "the step h of a method that only goes forward in time";
 
-/// A step must lead forward.
+/// Checks that a step leads forward.
 pub(crate) fn check_forward<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
     let value = h.to_f64();
     if value.is_normal() && value > 0.0 {

@@ -1,18 +1,20 @@
 //! Composition: fixed steps of order 4, 6 and 8 from a symmetric rule of order 2.
 //!
-//! In: a system whose rule is symmetric (midpoint, trapezoidal), and weights `γ_i` with `Σ γ_i = 1`. One step is the fixed steps `γ_1 h, γ_2 h, …` one after the other.
+//! The system needs a symmetric rule (midpoint, trapezoidal). With weights `γ_i` of sum 1, one step consists of the
+//! fixed steps `γ_1 h, γ_2 h, …`:
 //!
 //! ```text
 //! Φ_h = φ_{γ_s h} ∘ … ∘ φ_{γ_1 h}        γ_i = γ_{s+1−i}
 //! ```
 //!
-//! A composition keeps what its substeps keep: symplecticity, symmetry, conserved momenta. Above order 2 some weights have to be negative. Such substeps go backwards in
-//! time, and amplify damped modes. A midpoint composition of `a = −c v` is unstable in bands of `c h`, the first of which begin at 1.13 (triple jump), 3.02 (Suzuki 4),
-//! 2.73 (Kahan–Li 6) and 3.30 (Kahan–Li 8). Beyond them it is no approximation. The section "Compositions and damping" of `vi-lab stability` shows the factor of a step,
-//! and the bands.
+//! A composition inherits symplecticity, symmetry and conserved momenta from its substeps. Above order 2 some weights
+//! must be negative. These negative substeps amplify damped modes. A midpoint composition of `a = −c v` is unstable in
+//! bands of `c h`, the first of which begin at 1.13 (triple jump), 3.02 (Suzuki 4), 2.73 (Kahan–Li 6) and 3.30
+//! (Kahan–Li 8). Beyond them it does not approximate the solution. The section "Compositions and damping" of `vi-lab
+//! stability` shows the growth factor of a step and the bands.
 //!
-//! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section V.3; Kahan and Li, Mathematics of Computation
-//! 66 (1997) 1089.
+//! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section V.3; Kahan and Li, Mathematics of
+//! Computation 66 (1997) 1089.
 
 use super::fixed::check_steps;
 use super::{Memory, Method, Problem, Report};
@@ -32,7 +34,7 @@ use nalgebra::SVector;
 pub struct Composition {
     /// Its name.
     pub name: &'static str,
-    /// Its order, of a symmetric rule of order 2.
+    /// Its order, for a symmetric rule of order 2.
     pub order: u32,
     /// The weights `γ_i`, whose sum is 1.
     pub weights: &'static [f64],
@@ -45,7 +47,7 @@ impl Composition {
         order: 4,
         weights: &[1.351_207_191_959_657_8, -1.702_414_383_919_315_5, 1.351_207_191_959_657_8],
     };
-    /// Suzuki's fractal of order 4, five substeps.
+    /// Suzuki's fractal composition of order 4, five substeps.
     pub const SUZUKI_4: Self = Self {
         name: "Suzuki 4",
         order: 4,
@@ -57,7 +59,7 @@ impl Composition {
             0.414_490_771_794_375_7,
         ],
     };
-    /// Kahan and Li's of order 6, nine substeps.
+    /// Kahan and Li's composition of order 6, nine substeps.
     pub const KAHAN_LI_6: Self = Self {
         name: "Kahan–Li 6",
         order: 6,
@@ -73,7 +75,7 @@ impl Composition {
             0.392_161_444_007_314_1,
         ],
     };
-    /// Kahan and Li's of order 8, seventeen substeps.
+    /// Kahan and Li's composition of order 8, seventeen substeps.
     pub const KAHAN_LI_8: Self = Self {
         name: "Kahan–Li 8",
         order: 8,
@@ -97,7 +99,7 @@ impl Composition {
             0.130_202_483_088_890_07,
         ],
     };
-    /// All of them, by order and number of substeps.
+    /// All compositions, by order and number of substeps.
     pub const ALL: [Self; 4] = [Self::TRIPLE_JUMP_4, Self::SUZUKI_4, Self::KAHAN_LI_6, Self::KAHAN_LI_8];
 
     /// Lengths of the substeps of a step of the length h.
@@ -106,7 +108,7 @@ impl Composition {
     }
 }
 
-/// What a composition remembers: each substep is predicted from the same substep of earlier steps.
+/// Memory of a composition: each substep is extrapolated from the same substep of earlier steps.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -117,11 +119,11 @@ pub struct Substeps<const N: usize, T = f64>(pub(crate) Vec<Steps<N, T>>);
 
 impl<const N: usize, T: Scalar> Memory for Substeps<N, T> {}
 
-/// A step that was found.
+/// A solved step.
 #[derive(Clone, Debug)]
-pub struct Found<const N: usize, T = f64> {
+pub struct CompositionSolution<const N: usize, T = f64> {
     after: Node<N, T>,
-    /// The substeps after it.
+    /// The updated memory of the substeps.
     substeps: Vec<Steps<N, T>>,
 }
 
@@ -132,9 +134,9 @@ where
 {
     type Prepared = Vec<Corrector<S::Jacobian, N, T>>;
     type Memory = Substeps<N, T>;
-    /// The substeps before the last step: the next one is written there.
+    /// The old memory of the substeps, reused as a buffer for the next step.
     type Cache = Vec<Steps<N, T>>;
-    type Step = Found<N, T>;
+    type Step = CompositionSolution<N, T>;
     type Left = StepError;
     type DenseOutput = Hermite<N, T>;
 
@@ -167,7 +169,7 @@ where
         substeps.clone_from(&memory.0);
         let mut last = None;
         for (substep, corrector) in substeps.iter_mut().zip(prepared) {
-            // Before the first step the velocities of the substeps are not known: each follows the one before.
+            // Before the first step, each substep starts from the velocity of the one before.
             if let Some(v) = last.filter(|_| substep.is_new()) {
                 *substep = Steps::new(substep.h, v);
             }
@@ -183,7 +185,7 @@ where
             substep.push(&solved);
             last = Some(solved.v);
         }
-        Ok(Found { after, substeps })
+        Ok(CompositionSolution { after, substeps })
     }
 
     fn recover(
@@ -251,7 +253,7 @@ where
         if !is_of_scheme || substeps.next().is_some() {
             #[allow(clippy::cast_precision_loss)] // a few substeps
             let value = memory.0.len() as f64;
-            let allowed = "those of the scheme that the run is restarted with";
+            let allowed = "those of the composition of the restarted run";
             return Err(StepError::InvalidInput { input: "the substeps of a checkpoint", allowed, value });
         }
         memory.0.iter().try_for_each(|substep| check_steps(substep, substep.h, t))
@@ -263,7 +265,7 @@ where
     S: FixedStepping<N, T>,
     T: Scalar,
 {
-    /// Velocities of the substeps of the last step, one after the other. Before the first step the velocity that belongs to the momenta.
+    /// Velocities of the substeps of the last step, in order. Before the first step, the velocity of the momenta.
     pub fn velocities(&self) -> impl Iterator<Item = SVector<T, N>> + '_ {
         self.memory.0.iter().map(Steps::v)
     }

@@ -1,4 +1,4 @@
-//! Steps of order 2 whose length keeps the discrete energy.
+//! Steps of order 2 whose length preserves the discrete energy.
 //!
 //! One step solves, in the unknowns `(v, h)` with q1 = q0 + h v, t1 = t0 + h, h > 0,
 //!
@@ -7,8 +7,9 @@
 //!  D1 L_d + g_d⁻ = E0       E1 = −D3 L_d − g_d⁺
 //! ```
 //!
-//! p1 and E1 are carried as p0 and E0 plus their increments, every sum compensated. The pair `(v, −h)` of the last step always solves these equations, and is no step.
-//! How they are solved is in [`crate::energy_preserving`]. AFTER A STEP both residuals were measured at the (v, h) that was taken, and are at the rounding floor.
+//! The node carries p1 and E1 as p0 and E0 plus their increments, with compensated sums. The pair `(v, −h)` of the last
+//! step also solves these equations, but is not a step. [`crate::energy_preserving`] solves them. Every accepted (v, h)
+//! satisfies both equations to rounding.
 //!
 //! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
 
@@ -16,8 +17,8 @@ use super::bounds::{Alternating, FORWARD, check_forward};
 use super::{Method, Problem, Report};
 use crate::called::Called;
 use crate::condition::Condition;
-use crate::energy_preserving::course::{After, Lengths, Search};
 use crate::energy_preserving::interval::Last;
+use crate::energy_preserving::lengths::{After, Lengths, Search};
 use crate::energy_preserving::predicted::Predicted;
 use crate::energy_preserving::start;
 use crate::error::StepError;
@@ -28,19 +29,19 @@ use crate::state::{Numbers, State, Step};
 use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
-/// Steps of order 2 whose length keeps the discrete energy. See the [module](self).
+/// Steps of order 2 whose length preserves the discrete energy. See the [module](self).
 ///
-/// A run from a state starts with a step of the length h, and keeps the discrete energy of that step.
+/// A run from a state starts with a step of the length h, and preserves the discrete energy of that step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnergyPreserving;
 
-/// A step that was found.
+/// A solved step.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant)] // inlined on the hot path, which makes the small one
-pub enum Found<const N: usize, T = f64> {
-    /// From a guess of the highest order.
+pub enum EnergySolution<const N: usize, T = f64> {
+    /// Solved from a guess of the highest order.
     Predicted(Predicted<N, T>),
-    /// In any other way: the run after it.
+    /// Solved otherwise: the run after the step.
     After(After<N, T>),
 }
 
@@ -48,7 +49,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     type Prepared = ();
     type Memory = Lengths<N, T>;
     type Cache = ();
-    type Step = Found<N, T>;
+    type Step = EnergySolution<N, T>;
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
@@ -73,13 +74,18 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     #[inline(always)]
-    fn attempt(&self, at: Problem<'_, S, (), N, T>, memory: &Lengths<N, T>, (): &mut ()) -> Result<Found<N, T>, ()> {
+    fn attempt(
+        &self,
+        at: Problem<'_, S, (), N, T>,
+        memory: &Lengths<N, T>,
+        (): &mut (),
+    ) -> Result<EnergySolution<N, T>, ()> {
         let Problem { system, node, .. } = at;
         if memory.is_common()
             && let Some(predicted) = memory.predicted(system, node, memory.prediction.guess_highest())
             && node.advanced::<S>(predicted.step.h, &predicted.step.v, &predicted.increment).is_finite()
         {
-            return Ok(Found::Predicted(predicted));
+            return Ok(EnergySolution::Predicted(predicted));
         }
         Err(())
     }
@@ -90,21 +96,27 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         memory: &Lengths<N, T>,
         (): &mut (),
         (): (),
-    ) -> Result<Found<N, T>, StepError> {
+    ) -> Result<EnergySolution<N, T>, StepError> {
         let after = Search { system: &Called(*at.system), node: at.node, lengths: memory }.next();
-        after.map(Found::After).map_err(|failure| explained(failure, at.system, at.node, memory))
+        after.map(EnergySolution::After).map_err(|failure| explained(failure, at.system, at.node, memory))
     }
 
     #[inline(always)]
-    fn take(&self, _h: T, (node, memory): (&mut Node<N, T>, &mut Lengths<N, T>), (): &mut (), step: Found<N, T>) {
+    fn take(
+        &self,
+        _h: T,
+        (node, memory): (&mut Node<N, T>, &mut Lengths<N, T>),
+        (): &mut (),
+        step: EnergySolution<N, T>,
+    ) {
         match &step {
-            Found::Predicted(predicted) => {
+            EnergySolution::Predicted(predicted) => {
                 let step = &predicted.step;
                 *node = node.advanced::<S>(step.h, &step.v, &predicted.increment);
                 memory.last = memory.last.followed(step);
                 memory.prediction.push_common(predicted);
             }
-            Found::After(after) => (*node, *memory) = (after.node, after.lengths),
+            EnergySolution::After(after) => (*node, *memory) = (after.node, after.lengths),
         }
     }
 
@@ -190,7 +202,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 }
 
-/// A failure with the expression that is not finite.
+/// Adds the expression that is not finite to a failure.
 fn explained<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
     failure: StepError,
     system: &S,
@@ -200,7 +212,8 @@ fn explained<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
     failure.explained(system, node, memory.last.h, &memory.last.v)
 }
 
-/// Starts other than a state. Each returns a run at the end of a first interval, with the p1 and E1 of its slot derivatives.
+/// Starts other than a state. Each returns a run at the end of a first interval, with p1 and E1 from its slot
+/// derivatives.
 impl EnergyPreserving {
     /// The midpoint start: `(t0, q0, v0)` is the *middle* of the first interval, of length `h0`. For the midpoint rule
     ///
@@ -208,11 +221,12 @@ impl EnergyPreserving {
     /// t1 = t0 + h0/2      q1 = q0 + (h0/2) v0      p1 = L_v + (h0/2)(L_q + f)      E1 = H0 − (h0/2)(L_t − f·v)
     /// ```
     ///
-    /// Explicit, and without the paper's bias of `h0² D/8` in the energy: every midpoint lies on `H = H0` to rounding.
+    /// This start is explicit and avoids the paper's bias of `h0² D/8` in the energy: every midpoint lies on `H = H0`
+    /// to rounding.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for an h0 that is not positive and finite; [`StepError::NonFinite`] if an input is not finite or the system has no value there;
-    /// [`StepError::Singular`].
+    /// [`StepError::InvalidInput`] for an h0 that is not positive and finite; [`StepError::NonFinite`] if an input is
+    /// not finite or the system has no value there; [`StepError::Singular`].
     pub fn from_midpoint<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
         system: S,
         t0: T,
@@ -227,11 +241,12 @@ impl EnergyPreserving {
         after(system, start, h0, v)
     }
 
-    /// The paper's start: the first interval by its ends `(t0, q0)` and `(t1, q1)`, q1 from an accurate solution.
-    /// `p1 = D4 L_d + f_d⁺`, `E1 = −D3 L_d − g_d⁺`.
+    /// The paper's start: the first interval from its ends `(t0, q0)` and `(t1, q1)`, with q1 from an accurate
+    /// solution. `p1 = D4 L_d + f_d⁺`, `E1 = −D3 L_d − g_d⁺`.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for a t1 − t0 that is not positive and finite; otherwise as [`EnergyPreserving::from_midpoint`].
+    /// [`StepError::InvalidInput`] for a t1 − t0 that is not positive and finite; otherwise as
+    /// [`EnergyPreserving::from_midpoint`].
     pub fn from_points<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
         system: S,
         (t0, q0): (T, impl Numbers<N, T>),
@@ -241,7 +256,7 @@ impl EnergyPreserving {
         check_forward("the interval t1 − t0", h)?;
         let v = (q1 - q).map(|distance| distance / h);
         let mut run = after(system, Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero()), h, v)?;
-        // The end is the point given, not the start plus h v with its roundings.
+        // The end is the given point; q0 + h v would add rounding errors.
         let node = &mut run.node;
         (node.t, node.t_low, node.q, node.q_low) = (t1, T::zero(), q1, SVector::zeros());
         Ok(run)
@@ -268,7 +283,7 @@ impl EnergyPreserving {
     }
 }
 
-/// The run at the end of the step `(v, h)` from the place of `start`.
+/// The run at the end of the step `(v, h)` from `start`.
 fn after<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
     system: S,
     start: Node<N, T>,
@@ -292,20 +307,20 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S
         self.memory.last.density
     }
 
-    /// Takes one step and returns it with its interval, its density and how it was found.
+    /// Takes one step and returns it with its interval, its density and its kind.
     ///
     /// # Errors
-    /// Those of [`Run::step`].
+    /// As [`Run::step`].
     pub fn detailed_step(&mut self) -> Result<Step<N, T>, StepError> {
         self.step().map(|_| self.last_step())
     }
 
-    /// An iterator of [`Run::detailed_step`]; it never ends.
+    /// Iterates over [`Run::detailed_step`] without end.
     pub fn detailed_steps(&mut self) -> impl Iterator<Item = Result<Step<N, T>, StepError>> + '_ {
         core::iter::from_fn(|| Some(self.detailed_step()))
     }
 
-    /// The last step: its interval, and how it was found. Before the first step the interval from which the run starts.
+    /// The last step with its interval and kind. Before the first step, the initial interval.
     pub fn last_step(&self) -> Step<N, T> {
         let Self { node, memory, .. } = self;
         let Last { v, h, density, iterations, measured, .. } = memory.last;
@@ -325,7 +340,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S
         }
     }
 
-    /// Condition numbers of the equations that the last step solved. Allocates.
+    /// Condition numbers of the equations of the last step. Allocates.
     pub fn condition(&self) -> Condition {
         let Last { v, h, previous, .. } = &self.memory.last;
         let mut start = self.node;

@@ -1,48 +1,51 @@
-//! Energy-preserving steps of order 2S: Gauss steps whose length keeps the discrete energy.
+//! Energy-preserving steps of order 2S: Gauss steps whose length preserves the discrete energy.
 //!
-//! One step solves, in the stages and h > 0,
+//! One step solves, for the stages and h > 0,
 //!
 //! ```text
 //! Q_i = q0 + h Σ a_ij V_j        L_v(T_i, Q_i, V_i) = p0 + h Σ a_ij (L_q + f)_j        E0(h) = E
 //! E0(h) = Σ b_i En_i − h Σ b_i (1 − c_i) (f·v − L_t)_i        E ← E + h Σ b_i (f·v − L_t)_i
 //! ```
 //!
-//! so that the discrete energy of every step is that of the first one, and the work done since. The length follows from `H − E0(h) = C_s h^2s D_s`, D_s the step density
-//! ([`crate::gauss::density`]): `h D_s^(1/(2s+1))` is constant up to O(h²) without force, and a step exists while D_s keeps its sign. A shift D_* adds
-//! `C_s D_* h^(2s+1)/(2s+1)` to L_d. Then D_s + D_* has to keep its sign, and the run keeps
+//! The discrete energy of every step is then that of the first one, plus the work done since. The length follows from
+//! `H − E0(h) = C_s h^2s D_s` with the step density D_s ([`crate::gauss::density`]). Without force `h D_s^(1/(2s+1))`
+//! is constant up to O(h²), and a step exists while D_s keeps its sign. A shift D_* adds `C_s D_* h^(2s+1)/(2s+1)` to
+//! L_d. Then D_s + D_* must keep its sign, and the run preserves
 //!
 //! ```text
 //! E' = E − C_s h^2s D_*
 //! ```
 //!
-//! The unknown is ln h: `ln[(H − E0(h))/(H − E)]` is nearly a line of slope 2s in it, and the last step backwards, which solves the equations too, does not exist. A step
-//! is one `Search` over the solution of Gauss steps of any length.
+//! The unknown is ln h: `ln[(H − E0(h))/(H − E)]` is nearly a line of slope 2s in it. It also excludes the last step
+//! backwards, which solves the same equations. A step is one `Search` over the solutions of Gauss steps of any length.
 //!
-//! If no step exists, a run with `Fallback::FixedSteps` takes fixed Gauss steps of the last length until an energy-preserving one exists again. E stays, with the work
-//! done, and fixed steps end when the step law `h |D|^(1/(2s+1)) = C` asks for their length or a shorter one: with D_0 the density at which they began,
+//! If no step exists, a run with `Fallback::FixedSteps` takes fixed Gauss steps of the last length until an
+//! energy-preserving one exists again. E changes by the work only. Fixed steps end when the step law `h |D|^(1/(2s+1))
+//! = C` requires their length or a shorter one. With D_0 the density at their start,
 //!
 //! ```text
 //! H − E = C_s h_f^2s (2s D_0 + D)/(2s + 1)        D = D_s + D_*
 //! ```
 //!
-//! to leading order without force, which has the sign of D if D has that of D_0. Only if no step has the energy of before, E becomes the discrete energy of the last
-//! fixed step.
+//! to leading order without force, with the sign of D if D has that of D_0. If no step has the previous energy, E
+//! becomes the discrete energy of the last fixed step.
 //!
-//! AFTER A STEP its stages and its energy were measured at the numbers that were taken, and are at the rounding floor. Theory and measurements: `docs/theory.md`.
+//! The stages and the energy of every accepted step are at the rounding floor. Theory and measurements:
+//! `docs/theory.md`.
 
 use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, RATIO, check_forward};
-use super::gauss::{Gauss, LastStages, Motion};
+use super::gauss::{Gauss, GaussOutput, LastStages};
 use super::length::{Search, Trial};
 use super::{Memory, Method, Problem, Report};
 use crate::collocation::Collocation;
 use crate::error::StepError;
-use crate::gauss::course::Course;
 use crate::gauss::density::{power, step_density};
 use crate::gauss::energies::{bounded_energies, energies};
+use crate::gauss::fixed_point::Convergence;
+use crate::gauss::history::StepHistory;
 use crate::gauss::newton::Newton;
 use crate::gauss::solve::{Start, Step};
 use crate::gauss::stages::{Stages, at};
-use crate::gauss::sweep::Convergence;
 use crate::lagrangian::Lagrangian;
 use crate::newton::{FLOOR, roundings};
 use crate::node::Node;
@@ -55,16 +58,17 @@ use vi_dispatch::Instructions;
 
 /// Energy-preserving steps of order 2 STAGES, with 1 to 3 stages: `EnergyPreservingGauss::<2>`. See the [module](self).
 ///
-/// A run from a state starts with a step of the length h, and keeps the discrete energy of that step, which differs from H at the state by `C_s h^2s D_s`.
+/// A run from a state starts with a step of the length h, and preserves the discrete energy of that step. It differs
+/// from H at the state by `C_s h^2s D_s`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnergyPreservingGauss<const STAGES: usize>;
 
-/// What a run remembers: stages, and what lengths are predicted from.
+/// The memory of a run: stages, and data for the prediction of lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lengths<const N: usize, const S: usize> {
     pub(crate) stages: LastStages<N, S>,
-    pub(crate) course: Course,
+    pub(crate) course: StepHistory,
 }
 
 impl<const N: usize, const S: usize> Memory for Lengths<N, S> {}
@@ -79,7 +83,7 @@ impl<const N: usize, const S: usize> Controlled<f64> for Lengths<N, S> {
     }
 }
 
-/// A step of some length, its stages solved.
+/// A step of some length with solved stages.
 #[derive(Clone, Copy, Debug)]
 struct Tried<const N: usize, const S: usize> {
     step: Step<N, S>,
@@ -87,7 +91,7 @@ struct Tried<const N: usize, const S: usize> {
     residual: f64,
     /// `E1 − E0`.
     work: f64,
-    /// The size of the terms of E0.
+    /// Sum of the absolute terms of E0.
     size: f64,
 }
 
@@ -105,56 +109,56 @@ impl<const N: usize, const S: usize> Trial for Tried<N, S> {
     }
 }
 
-/// A step that was found, with all that follows from it.
+/// A solved step, with its energies and density.
 #[derive(Clone, Copy, Debug)]
-pub struct Found<const N: usize, const S: usize> {
+pub struct EnergyGaussSolution<const N: usize, const S: usize> {
     step: Step<N, S>,
-    /// What the energy of the node gains.
+    /// Increment of the energy of the node.
     gain: f64,
-    course: Course,
+    course: StepHistory,
 }
 
 /// Buffers for stiff steps.
 type Cache<const N: usize, const S: usize> = Option<Box<Newton<N, S>>>;
 
-/// Part of the terms of an energy that its rounding may be: one that is known to fewer digits is not kept.
+/// Largest accepted rounding error of an energy, relative to its terms. With fewer digits the energy is not preserved.
 const KNOWN: f64 = 1e-10;
-/// Times that the step is halved along which the step density is measured.
+/// Most halvings of the step for the measurement of the step density.
 const HALVINGS: u32 = 16;
-/// Part of the terms of the energy that a step may miss it by there.
+/// Largest energy error of that measurement, relative to the terms of the energy.
 const HELD: f64 = 0.01;
 
-/// A run at a node: what a step is found from.
-struct Here<'a, S, const N: usize, const K: usize> {
+/// A run at a node: the inputs of the search for a step.
+struct SearchContext<'a, S, const N: usize, const K: usize> {
     system: &'a S,
     instructions: Instructions,
     node: &'a Node<N>,
     stages: &'a LastStages<N, K>,
-    course: &'a Course,
+    course: &'a StepHistory,
 }
 
-impl<S, const N: usize, const K: usize> Clone for Here<'_, S, N, K> {
+impl<S, const N: usize, const K: usize> Clone for SearchContext<'_, S, N, K> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S, const N: usize, const K: usize> Copy for Here<'_, S, N, K> {}
+impl<S, const N: usize, const K: usize> Copy for SearchContext<'_, S, N, K> {}
 
 impl<const K: usize> EnergyPreservingGauss<K> {
-    /// The order, which is the slope of `ln (H − E0)` over ln h to leading order.
+    /// The order: to leading order the slope of `ln (H − E0)` over ln h.
     #[allow(clippy::cast_precision_loss)]
     const ORDER: f64 = 2.0 * K as f64;
 
-    /// The least `|H − E|` that tells a length, if energies are rounded by so much.
+    /// The smallest `|H − E|` that determines a length, for energies with this rounding error.
     fn least_excess(rounding: f64) -> f64 {
-        // The length is known to this part of itself, so that the numbers of its step are.
+        // Relative accuracy of the length that the numbers of its step need.
         const PARTS: f64 = 1000.0;
         PARTS * rounding / Self::ORDER
     }
 }
 
-impl<'a, S, const N: usize, const K: usize> Here<'a, S, N, K>
+impl<'a, S, const N: usize, const K: usize> SearchContext<'a, S, N, K>
 where
     S: Collocation<N> + Convertible<N>,
 {
@@ -163,13 +167,14 @@ where
         Self { system, instructions: *prepared, node, stages: &memory.stages, course: &memory.course }
     }
 
-    /// The stages of the step of length h, by those of the last one.
+    /// The stages of the step of length h, extrapolated from the last one.
     fn guess(&self, h: f64) -> Stages<N, K> {
         let LastStages { stages, convergence, h: last, .. } = self.stages;
         if convergence.has_begun() { at(&stages.data.0, |c| 1.0 + c * (h / last)) } else { stages.data.0 }
     }
 
-    /// The step of length h, by the stages of another from the same node, else by those of the last step.
+    /// Solves the step of length h, guessed from another step from the same node if there is one, otherwise from the
+    /// last step.
     ///
     /// # Errors
     /// Those of a Gauss step; [`StepError::NonFinite`] if its energy is not finite.
@@ -182,11 +187,12 @@ where
                 at(&other.step.stages, |c| ratio * c)
             },
         );
-        let before = &Convergence { sweeps: 0, ..last.convergence };
+        let before = &Convergence { iterations: 0, ..last.convergence };
         let start = Start { node, h, stages: &stages, are_last: false, before, pause: last.pause };
-        let swept = if last.pause.is_over() { start.swept(system, instructions).map_err(Some) } else { Err(None) };
-        // Lengths differ from step to step, and each has its own linearization.
-        let step = swept.or_else(|left| start.with_care(system, instructions, (left.as_ref(), None), cache))?;
+        let by_fixed_point =
+            if last.pause.is_over() { start.by_fixed_point(system, instructions).map_err(Some) } else { Err(None) };
+        // Lengths differ from step to step, so each has its own linearization.
+        let step = by_fixed_point.or_else(|left| start.recover(system, instructions, (left.as_ref(), None), cache))?;
         let energies = energies(system, node, h, step.stages, node.energy);
         let residual = energies.start - node.energy_low - power::<K>(h) * course.shift;
         if !residual.is_finite() {
@@ -195,20 +201,20 @@ where
         Ok(Tried { step: Step { linearization: None, ..step }, residual, work: energies.work, size: energies.size })
     }
 
-    /// What rounding moves the energy of a trial by at most, by running error analysis, in ulps of 1.
+    /// Rounding-error bound of the energy of a trial by running error analysis, in units of `ε`.
     #[cold]
     fn rounding_of(&self, trial: &Tried<N, K>) -> f64 {
         bounded_energies(self.system, self.node, trial.h(), trial.step.stages, self.node.energy).start.ulps()
     }
 
-    /// Whether the energy of a trial is the one to keep, as far as its arithmetic can tell.
+    /// Whether the energy of a trial equals the preserved one within its rounding error.
     ///
     /// # Errors
-    /// [`StepError::DegenerateStep`] if it is, and `H − E` is too small to tell the length.
+    /// [`StepError::DegenerateStep`] if it does, but `H − E` is too small to determine the length.
     #[cold]
     fn is_kept(&self, trial: &Tried<N, K>) -> Result<bool, StepError> {
         let rounding = f64::EPSILON * self.rounding_of(trial);
-        // At a turning point H may be zero, while the energies of the motion are not.
+        // At a turning point H may be zero although the energies of the trajectory are not.
         let size = trial.size.max(self.course.largest_size);
         if !(trial.residual.abs() <= FLOOR * rounding && rounding <= KNOWN * size) {
             return Ok(false);
@@ -217,36 +223,37 @@ where
         if self.course.excess.abs() < least { Err(self.degenerate()) } else { Ok(true) }
     }
 
-    /// The error if `H − E` tells no length.
+    /// The error if `H − E` does not determine a length.
     fn degenerate(&self) -> StepError {
         let h = self.course.h();
         StepError::DegenerateStep { t: self.node.t, h, density: self.course.excess / power::<K>(h) }
     }
 
-    /// The error if no step leads forward.
+    /// The error if no forward step exists.
     #[cold]
     fn no_step(&self) -> StepError {
         let Self { system, node, course, .. } = *self;
-        let told = || course.told_density::<K>() - course.shift;
+        let told = || course.initial_density::<K>() - course.shift;
         let density = step_density::<S, N, K>(system, &node.state()).unwrap_or_else(|_| told());
-        let Course { excess, shift, largest, .. } = *course;
+        let StepHistory { excess, shift, largest, .. } = *course;
         let largest = largest.max(density.abs());
         StepError::NoForwardGaussStep { t: node.t, h: course.h(), stages: K, excess, density, shift, largest }
     }
 
-    /// The step that keeps the energy, within the bounds, with the slope of its energy over its length, and the iterations of all lengths that were tried.
+    /// The energy-preserving step within the bounds, the slope of its energy over its length, and the iterations of all
+    /// trials.
     fn found(&self, cache: &mut Cache<N, K>) -> Result<(Tried<N, K>, f64, u32), StepError> {
         let Self { node, course, .. } = *self;
         let (t, last) = (node.t, course.h());
-        let Course { excess, size, largest_size, shift, .. } = *course;
+        let StepHistory { excess, size, largest_size, shift, .. } = *course;
         if excess.abs() < EnergyPreservingGauss::<K>::least_excess(f64::EPSILON * size) {
             return Err(self.degenerate());
         }
-        // A motion that has only gained speed so far has not shown how large its energies are.
+        // A trajectory that has only gained speed so far does not show the size of its energies.
         if size < largest_size {
             check_shift::<K>(t, last, shift, largest_size)?;
         }
-        // Past a change of sign lies another root.
+        // Beyond a sign change of D lies another root.
         if course.density().is_some_and(|density| excess * density < 0.0) {
             return Err(self.no_step());
         }
@@ -255,7 +262,7 @@ where
         let search = Search {
             solve: &|h, beside| {
                 let tried = self.tried(h, beside, &mut cache.borrow_mut())?;
-                iterations.set(iterations.get() + tried.step.convergence.sweeps);
+                iterations.set(iterations.get() + tried.step.convergence.iterations);
                 Ok(tried)
             },
             is_rounding: &|trial| self.is_kept(trial),
@@ -280,8 +287,8 @@ where
         Ok((step, slope, iterations.get()))
     }
 
-    /// What follows from a step: the energies at its end.
-    fn after(&self, trial: &Tried<N, K>) -> Result<Found<N, K>, StepError> {
+    /// Computes the energies at the end of a step.
+    fn after(&self, trial: &Tried<N, K>) -> Result<EnergyGaussSolution<N, K>, StepError> {
         let Self { system, node, .. } = *self;
         let mut course = *self.course;
         let step = trial.step;
@@ -295,13 +302,13 @@ where
         let mean = 0.5 * (course.excess + measured[0]) - trial.residual;
         course.push(step.h, mean / power::<K>(step.h));
         course.set_excess(measured);
-        Ok(Found { step, gain, course })
+        Ok(EnergyGaussSolution { step, gain, course })
     }
 }
 
 /// The search for the next step, with the buffers for stiff steps.
 struct Searching<'a, S, const N: usize, const K: usize> {
-    here: Here<'a, S, N, K>,
+    here: SearchContext<'a, S, N, K>,
     cache: RefCell<&'a mut Cache<N, K>>,
 }
 
@@ -310,7 +317,7 @@ where
     S: Collocation<N> + Convertible<N>,
 {
     const POWER: f64 = EnergyPreservingGauss::<K>::ORDER + 1.0;
-    type Found = Found<N, K>;
+    type StepSolution = EnergyGaussSolution<N, K>;
 
     fn control(&self) -> &Control {
         &self.here.course.control
@@ -321,16 +328,16 @@ where
     }
 
     fn last(&self) -> [f64; 2] {
-        [self.here.course.h(), self.here.course.told_density::<K>()]
+        [self.here.course.h(), self.here.course.initial_density::<K>()]
     }
 
-    fn preserving(&self, gap: f64) -> Result<(Found<N, K>, f64), StepError> {
+    fn preserving(&self, gap: f64) -> Result<(EnergyGaussSolution<N, K>, f64), StepError> {
         let (mut node, mut course) = (*self.here.node, *self.here.course);
         if gap != 0.0 {
             node.add_energy(gap);
             course.set_excess(measured(self.here.system, &node)?);
         }
-        let here = Here { node: &node, course: &course, ..self.here };
+        let here = SearchContext { node: &node, course: &course, ..self.here };
         let (trial, slope, iterations) = here.found(&mut self.cache.borrow_mut())?;
         let mut found = here.after(&trial)?;
         found.gain += gap;
@@ -342,19 +349,19 @@ where
         Ok((found, trial.h()))
     }
 
-    fn fixed(&self, h: f64) -> Result<(Found<N, K>, [f64; 2]), StepError> {
+    fn fixed(&self, h: f64) -> Result<(EnergyGaussSolution<N, K>, [f64; 2]), StepError> {
         let trial = self.here.tried(h, None, &mut self.cache.borrow_mut())?;
-        let last = self.here.course.told_density::<K>();
+        let last = self.here.course.initial_density::<K>();
         let mut found = self.here.after(&trial)?;
         found.course.residual = 0.0;
         found.course.forget_lengths();
-        found.course.iterations = trial.step.convergence.sweeps;
-        let density = found.course.told_density::<K>();
+        found.course.iterations = trial.step.convergence.iterations;
+        let density = found.course.initial_density::<K>();
         // The next interval has the same length.
         Ok((found, [trial.residual, density + (density - last)]))
     }
 
-    fn control_of(found: &mut Found<N, K>) -> &mut Control {
+    fn control_of(found: &mut EnergyGaussSolution<N, K>) -> &mut Control {
         &mut found.course.control
     }
 }
@@ -362,7 +369,7 @@ where
 /// `H − E'` at a node, and the size of the terms of H.
 ///
 /// # Errors
-/// Those of [`State::velocity`]; [`StepError::NonFinite`] if H is not finite.
+/// As [`State::velocity`]; [`StepError::NonFinite`] if H is not finite.
 fn measured<S: Lagrangian<N>, const N: usize>(system: &S, node: &Node<N>) -> Result<[f64; 2], StepError> {
     let State { t, .. } = node.state();
     let NodeEnergy { total, size } = energy_at(system, &node.state())?;
@@ -391,7 +398,8 @@ fn energy_at<S: Lagrangian<N>, const N: usize>(
     Ok(NodeEnergy { total, size: v.dot(p).abs() + total.abs() })
 }
 
-/// Refuses a shift that adds more to the energy of a step of the length h than `size`, the size of the terms of the energy along the motion.
+/// Rejects a shift that adds more to the energy of a step of the length h than `size`, the size of the energy terms
+/// along the trajectory.
 ///
 /// # Errors
 /// [`StepError::ShiftTooLarge`].
@@ -404,12 +412,12 @@ fn check_shift<const K: usize>(t: f64, h: f64, shift: f64, size: f64) -> Result<
     Err(StepError::ShiftTooLarge { t, h, shift, part, size, shorter })
 }
 
-/// The memory before the first step, which keeps the energy of the node.
+/// The memory before the first step, which preserves the energy of the node.
 fn begun<S, const N: usize, const K: usize>(system: &S, node: &Node<N>, h: f64) -> Result<Lengths<N, K>, StepError>
 where
     S: Collocation<N>,
 {
-    let mut course = Course::new(h, EnergyPreservingGauss::<K>::ORDER);
+    let mut course = StepHistory::new(h, EnergyPreservingGauss::<K>::ORDER);
     let stages = LastStages::constant(system, node, h)?;
     course.set_excess(measured(system, node)?);
     Ok(Lengths { stages, course })
@@ -422,9 +430,9 @@ where
     type Prepared = Instructions;
     type Memory = Lengths<N, STAGES>;
     type Cache = Cache<N, STAGES>;
-    type Step = Found<N, STAGES>;
+    type Step = EnergyGaussSolution<N, STAGES>;
     type Left = StepError;
-    type DenseOutput = Motion<N, STAGES>;
+    type DenseOutput = GaussOutput<N, STAGES>;
 
     const FINDS_LENGTH: bool = true;
 
@@ -450,15 +458,15 @@ where
         node.energy = 0.0;
         let mut memory = begun(system, node, h)?;
         let at = Problem { system, prepared: &Instructions::detected(), node, h };
-        let first = Here::of(at, &memory).tried(h, None, &mut None)?;
+        let first = SearchContext::of(at, &memory).tried(h, None, &mut None)?;
         node.energy = first.residual;
-        // The stages of the first step are known.
+        // The start has already solved the stages of the first step.
         memory.stages.stages = SMatrix::from_array_storage(ArrayStorage(first.step.stages));
         memory.course.set_excess(measured(system, node)?);
         Ok(memory)
     }
 
-    /// Every step is a search, compiled once.
+    /// The search of a step, compiled once.
     #[inline(never)]
     fn attempt(
         &self,
@@ -466,7 +474,7 @@ where
         memory: &Self::Memory,
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, StepError> {
-        Searching { here: Here::of(at, memory), cache: RefCell::new(cache) }.next()
+        Searching { here: SearchContext::of(at, memory), cache: RefCell::new(cache) }.next()
     }
 
     fn recover(
@@ -499,7 +507,7 @@ where
     ) -> Result<(Node<N>, Self::Memory), StepError> {
         check_forward("the step h", h)?;
         let at = Problem { system, prepared: &Instructions::detected(), node, h };
-        let Tried { step, residual, work, .. } = Here::of(at, memory).tried(h, None, &mut None)?;
+        let Tried { step, residual, work, .. } = SearchContext::of(at, memory).tried(h, None, &mut None)?;
         let mut after = *node;
         after.advance(h, &step.increment.velocity, &step.increment.momentum);
         after.add_energy(work);
@@ -561,7 +569,7 @@ where
         node: &Node<N>,
         h: f64,
         memory: &Self::Memory,
-    ) -> Result<Motion<N, STAGES>, StepError> {
+    ) -> Result<GaussOutput<N, STAGES>, StepError> {
         memory.stages.dense_output(system, before, node, h)
     }
 
@@ -590,8 +598,9 @@ where
 }
 
 impl<const STAGES: usize> EnergyPreservingGauss<STAGES> {
-    /// A run of `system` from `state` that keeps `energy`, in units of L, with a first step of about the length `h`: up to a factor of 3 from it. H at the state differs
-    /// from that energy by `C_s h^2s D_s`; a step that belongs to `E = H` itself has no length.
+    /// A run of `system` from `state` that preserves `energy`, in units of L. The first step has about the length `h`,
+    /// up to a factor of 3. H at the state differs from that energy by `C_s h^2s D_s`; for `E = H` itself no step
+    /// length exists.
     ///
     /// # Errors
     /// As [`integrate`](crate::run::Start::integrate); [`StepError::NonFinite`] for an energy that is not finite.
@@ -611,16 +620,17 @@ impl<const STAGES: usize> EnergyPreservingGauss<STAGES> {
     }
 }
 
-/// Options of a run, and what only such a run knows.
+/// Options and results that only such a run has.
 impl<S, const N: usize, const STAGES: usize> Run<EnergyPreservingGauss<STAGES>, S, N>
 where
     S: Collocation<N> + Convertible<N>,
 {
-    /// Adds `shift`, in the units of the step density, to the step density of every step: a step exists while `D_s + shift` keeps its sign. The run keeps
-    /// E' = E − C_s h^2s D_*, [`Run::shifted_energy`], to rounding; momenta and the order stay. With zero it is a run without a shift. The larger the shift, the closer
-    /// to fixed steps. An error of the last step is forgotten.
+    /// Adds `shift`, in the units of the step density, to the step density of every step: a step exists while `D_s +
+    /// shift` keeps its sign.
     ///
-    /// The length of the last step, or the first one, stays what it is.
+    /// The run preserves E' = E − C_s h^2s D_*, [`Run::shifted_energy`], to rounding. Momenta and the order stay. Zero
+    /// means no shift. A larger shift makes the steps more uniform. The run clears an error of the last step. The
+    /// length of the last or the first step stays.
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] for a shift that is not finite.
@@ -639,18 +649,21 @@ where
         Ok(self)
     }
 
-    /// [`Run::with_shift`] with twice the largest `|D_s|` that fixed steps meet over `duration` from here, in units of time: a period of the motion, or a few. The steps
-    /// are then within a factor of `3^(1/(2s+1))` of each other while the motion stays like that. The fixed steps have the first length, halved until their energy holds
-    /// to a hundredth of its terms.
+    /// [`Run::with_shift`] with twice the largest `|D_s|` of fixed steps over `duration` from here, in units of time:
+    /// one or a few periods.
+    ///
+    /// Step lengths then stay within a factor of `3^(1/(2s+1))` of each other as long as the motion does not change.
+    /// The fixed steps have the first length, halved until their energy error is below a hundredth of the energy terms.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for a duration that is not positive and finite, or over which no fixed steps hold the energy; [`StepError::ShiftTooLarge`] for a first
-    /// step that is too long for this shift; those of Gauss steps and of [`step_density`].
+    /// [`StepError::InvalidInput`] for a duration that is not positive and finite, or over which no fixed steps
+    /// preserve the energy; [`StepError::ShiftTooLarge`] if the first step is too long for this shift; those of Gauss
+    /// steps and of [`step_density`].
     pub fn with_shift_from(mut self, duration: f64) -> Result<Self, StepError> {
         check_forward("the duration over which the step density is measured", duration)?;
         let mut h = self.memory.course.h();
         for _ in 0..HALVINGS {
-            if let Some(Met { density, scale, size }) = self.met_along(h, duration)? {
+            if let Some(Maxima { density, scale, size }) = self.met_along(h, duration)? {
                 let shift = 2.0 * density;
                 check_shift::<STAGES>(self.node.t, self.memory.course.h(), shift, scale)?;
                 let course = &mut self.memory.course;
@@ -660,27 +673,31 @@ where
             h *= 0.5;
         }
         let input = "the duration over which the step density is measured";
-        Err(StepError::InvalidInput { input, allowed: "one over which fixed steps hold the energy", value: duration })
+        Err(StepError::InvalidInput {
+            input,
+            allowed: "one over which fixed steps preserve the energy",
+            value: duration,
+        })
     }
 
-    /// The stages of a step of the length h from here, whose energy does not matter.
+    /// The stages of a step of the length h from here, regardless of its energy.
     ///
     /// # Errors
     /// Those of a Gauss step; [`StepError::NonFinite`] if its energy is not finite.
     pub(crate) fn stages_of(&self, h: f64) -> Result<Stages<N, STAGES>, StepError> {
         let Self { system, prepared, node, memory, .. } = self;
         let at = Problem { system, prepared, node, h };
-        Ok(Here::of(at, memory).tried(h, None, &mut None)?.step.stages)
+        Ok(SearchContext::of(at, memory).tried(h, None, &mut None)?.step.stages)
     }
 
-    /// What fixed steps of the length h meet over `duration` from here; `None` if their energy does not hold.
-    fn met_along(&self, h: f64, duration: f64) -> Result<Option<Met>, StepError> {
+    /// Maxima along fixed steps of the length h over `duration` from here; `None` if their energy error is too large.
+    fn met_along(&self, h: f64, duration: f64) -> Result<Option<Maxima>, StepError> {
         let system = &self.system;
         let mut steps = Starts::at_state(*system, self.node.state()).integrate(Gauss::<STAGES>, h)?;
         let end = self.node.t + duration;
         let density = |state: &State<N>| step_density::<S, N, STAGES>(system, state).map(f64::abs);
         let mut before = energy_at(system, &steps.state())?;
-        let mut met = Met { density: density(&steps.state())?, scale: 0.0, size: before.size };
+        let mut met = Maxima { density: density(&steps.state())?, scale: 0.0, size: before.size };
         let mut kinetic = 0.0;
         let mut count = 0.0;
         let mut largest_missed = 0.0_f64;
@@ -703,12 +720,12 @@ where
             met.scale = (kinetic / count).max(after.total.abs());
             before = after;
         }
-        // The energy of a start from rest may be zero: what is missed is judged by the whole motion.
+        // The energy of a start from rest may be zero, so the whole trajectory sets the scale of the energy error.
         Ok((largest_missed <= HELD * met.size).then_some(met))
     }
 
-    /// What is kept, E' = E − C_s h^2s D_*: without a shift the discrete energy E. It changes by the work of forces and with an explicit time alone. During fixed steps
-    /// it is what was kept before them, with the work done since.
+    /// The preserved quantity, E' = E − C_s h^2s D_*; without a shift the discrete energy E. It changes only by the
+    /// work of forces and by an explicit time. During fixed steps it is the previous value plus the work done since.
     pub fn shifted_energy(&self) -> f64 {
         self.node.energy
     }
@@ -718,17 +735,19 @@ where
         self.memory.course.shift
     }
 
-    /// Step density D_s of the last step, without the shift, by its energy: the mean of `H − E` at both ends over `C_s h^2s`. Before the first step, of its start.
+    /// Step density D_s of the last step, without the shift, from its energy: the mean of `H − E` at both ends over
+    /// `C_s h^2s`. Before the first step, at its start.
     pub fn density(&self) -> f64 {
-        self.memory.course.told_density::<STAGES>() - self.memory.course.shift
+        self.memory.course.initial_density::<STAGES>() - self.memory.course.shift
     }
 }
 
-/// What a motion meets.
-struct Met {
+/// Maxima along a trajectory.
+struct Maxima {
     /// The largest `|D_s|`.
     density: f64,
-    /// The larger of the mean of `|v·p|` and of `|H|` at the end: whatever constant V has, one of them tells how large energies are.
+    /// The larger of the mean of `|v·p|` and of `|H|` at the end: one of them shows the size of the energies for any
+    /// constant in V.
     scale: f64,
     /// The largest `|v·p| + |H|`.
     size: f64,

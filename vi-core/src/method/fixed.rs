@@ -7,19 +7,20 @@
 //!  p1 = D4 L_d + f_d⁺       as p0 plus its increment; for the midpoint rule p1 = p0 + h (L_q + f)
 //! ```
 //!
-//! `momentum::steps` predicts v from the last steps, corrects it and measures its residual. A linear step of a few coordinates is one matrix. If that does not solve the
-//! step, Newton's iteration continues to the rounding floor. If that fails, v is followed from the velocity that belongs to p by continuation in h. AFTER A STEP its
-//! residual was measured at the v that was taken, and is at the rounding floor.
+//! `momentum::steps` extrapolates v from the last steps, corrects it and evaluates the residual. A linear step of a few
+//! coordinates is one matrix product. If this does not reach the rounding floor, Newton iteration continues. If that
+//! fails, continuation in h follows v from the velocity of p. Every accepted v satisfies the equation to rounding.
 //!
-//! Beyond a certain h the equation has several roots. [`FixedStep`] takes the one that Newton's iteration reaches from the velocity of the last steps;
-//! [`Connected`] the one that is connected with h = 0. With `L = v·Mv/2 − V(q)` and the midpoint rule the derivative of the equation is `M + (h²/4) ∇²V`: the root is
-//! the only one for `h < 2/√(−V''_min/m)`. Beyond, roots appear and vanish in pairs.
+//! Beyond a certain h the equation has several roots. [`FixedStep`] takes the one that Newton iteration reaches from
+//! the velocities of the last steps; [`Connected`] takes the one that is connected with h = 0. With `L = v·Mv/2 − V(q)`
+//! and the midpoint rule the Jacobian is `M + (h²/4) ∇²V`, and the root is unique for `h < 2/√(−V''_min/m)`. Beyond,
+//! roots appear and vanish in pairs.
 
 use super::{Memory, Method, Problem, Report};
 use crate::branch::Branch;
 use crate::called::Called;
 use crate::error::StepError;
-use crate::momentum::steps::{Corrector, Solved, Steps};
+use crate::momentum::steps::{Corrector, MomentumStep, Steps};
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::run::{Hermite, Run};
@@ -32,10 +33,10 @@ use nalgebra::SVector;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FixedStep;
 
-/// The same, each step on the branch that is connected with h = 0: [`FixedStep::connected`].
+/// Fixed steps of order 2 on the branch that is connected with h = 0: [`FixedStep::connected`].
 ///
-/// A step depends on the state alone. It takes 20 to 40 times as long as one of [`FixedStep`], in sixteen parts or more. If the branch ends before h, the step is
-/// [`StepError::NotConverged`].
+/// A step depends on the state alone. It costs 20 to 40 times as much as one of [`FixedStep`], in sixteen parts or
+/// more. If the branch ends before h, the step returns [`StepError::NotConverged`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Connected;
 
@@ -47,7 +48,7 @@ impl FixedStep {
     }
 }
 
-/// What fixed steps remember: the last velocities, and the residual of the last step.
+/// Memory of fixed steps: the last velocities, and the residual of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -69,11 +70,11 @@ impl<const N: usize, T: Scalar> Memory for Velocities<N, T> {
     }
 }
 
-/// A step that was found.
+/// A solved step.
 #[derive(Clone, Copy, Debug)]
-pub struct Found<const N: usize, T = f64> {
-    solved: Solved<N, T>,
-    /// A literal where it is inlined: then the compiler sees that only the newest velocity changes.
+pub struct FixedSolution<const N: usize, T = f64> {
+    solved: MomentumStep<N, T>,
+    /// A constant at inlined call sites, so that the compiler sees that only the newest velocity changes.
     is_common: bool,
 }
 
@@ -81,7 +82,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     type Prepared = Corrector<S::Jacobian, N, T>;
     type Memory = Velocities<N, T>;
     type Cache = ();
-    type Step = Found<N, T>;
+    type Step = FixedSolution<N, T>;
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
@@ -107,13 +108,13 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
         at: Problem<'_, S, Self::Prepared, N, T>,
         memory: &Velocities<N, T>,
         (): &mut (),
-    ) -> Result<Found<N, T>, ()> {
+    ) -> Result<FixedSolution<N, T>, ()> {
         let Problem { system, prepared, node, h } = at;
         if memory.steps.is_common::<S>()
             && let Some(solved) = memory.steps.common(system, node, prepared)
             && node.stays_finite(h, &solved.v, &solved.increment)
         {
-            return Ok(Found { solved, is_common: true });
+            return Ok(FixedSolution { solved, is_common: true });
         }
         Err(())
     }
@@ -124,10 +125,10 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
         memory: &Velocities<N, T>,
         (): &mut (),
         (): (),
-    ) -> Result<Found<N, T>, StepError> {
+    ) -> Result<FixedSolution<N, T>, StepError> {
         let Problem { system, prepared, node, .. } = at;
         let steps = &memory.steps;
-        // A common step that was not at the floor has been corrected as often as it is worth.
+        // A common step above the floor has already had all corrections that pay off.
         let is_corrected = steps.is_common::<S>() && !S::CLOSED_FORM;
         let corrected =
             if is_corrected { None } else { steps.corrected(&Called(*system), node, prepared, steps.guess()) };
@@ -135,7 +136,13 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     }
 
     #[inline(always)]
-    fn take(&self, h: T, (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>), (): &mut (), step: Found<N, T>) {
+    fn take(
+        &self,
+        h: T,
+        (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>),
+        (): &mut (),
+        step: FixedSolution<N, T>,
+    ) {
         take(h, node, memory, &step);
     }
 
@@ -183,12 +190,12 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     }
 }
 
-/// Only what differs from [`FixedStep`]: steps are not predicted.
+/// Only the differences to [`FixedStep`]: steps are not extrapolated.
 impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Connected {
     type Prepared = ();
     type Memory = Velocities<N, T>;
     type Cache = ();
-    type Step = Found<N, T>;
+    type Step = FixedSolution<N, T>;
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
@@ -211,7 +218,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         _at: Problem<'_, S, (), N, T>,
         _memory: &Velocities<N, T>,
         (): &mut (),
-    ) -> Result<Found<N, T>, ()> {
+    ) -> Result<FixedSolution<N, T>, ()> {
         Err(())
     }
 
@@ -221,11 +228,17 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         memory: &Velocities<N, T>,
         (): &mut (),
         (): (),
-    ) -> Result<Found<N, T>, StepError> {
+    ) -> Result<FixedSolution<N, T>, StepError> {
         found(at, memory, None, Branch::Connected)
     }
 
-    fn take(&self, h: T, (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>), (): &mut (), step: Found<N, T>) {
+    fn take(
+        &self,
+        h: T,
+        (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>),
+        (): &mut (),
+        step: FixedSolution<N, T>,
+    ) {
         take(h, node, memory, &step);
     }
 
@@ -287,8 +300,8 @@ impl<const N: usize, T: Scalar> Velocities<N, T> {
         Report { residual: self.steps.measured().roundings(), iterations: self.iterations }
     }
 
-    /// Discrete energy of the last interval; none if it is not finite, since forces may be finite where L is not. Evaluated from v: the stored nodes would bring the
-    /// cancellation of `(q1 − q0)/h`.
+    /// Discrete energy of the last interval; `None` if it is not finite, since forces may be finite although L is not.
+    /// Evaluated from v, because the stored nodes would add the cancellation of `(q1 − q0)/h`.
     fn discrete_energy<S: FixedStepping<N, T>>(&self, system: &S, node: &Node<N, T>, h: T) -> Option<T> {
         let v = self.steps.v();
         let energy = (!self.steps.is_new()).then(|| {
@@ -304,7 +317,7 @@ impl<const N: usize, T: Scalar> Velocities<N, T> {
     }
 }
 
-/// Whether stored steps have the length h and are finite.
+/// Checks that stored steps have the length h and are finite.
 ///
 /// # Errors
 /// [`StepError::InvalidInput`], [`StepError::NonFinite`].
@@ -318,8 +331,13 @@ pub(super) fn check_steps<const N: usize, T: Scalar>(steps: &Steps<N, T>, h: T, 
 }
 
 #[inline(always)]
-fn take<const N: usize, T: Scalar>(h: T, node: &mut Node<N, T>, memory: &mut Velocities<N, T>, step: &Found<N, T>) {
-    let Found { solved, is_common } = step;
+fn take<const N: usize, T: Scalar>(
+    h: T,
+    node: &mut Node<N, T>,
+    memory: &mut Velocities<N, T>,
+    step: &FixedSolution<N, T>,
+) {
+    let FixedSolution { solved, is_common } = step;
     if *is_common {
         memory.steps.push_common(solved);
     } else {
@@ -329,25 +347,26 @@ fn take<const N: usize, T: Scalar>(h: T, node: &mut Node<N, T>, memory: &mut Vel
     memory.iterations = solved.iterations;
 }
 
-/// The step that corrections found, else the one of a search.
+/// The corrected step, or a step by the full solver.
 fn found<S: FixedStepping<N, T>, P, const N: usize, T: Scalar>(
     at: Problem<'_, S, P, N, T>,
     memory: &Velocities<N, T>,
-    corrected: Option<Solved<N, T>>,
+    corrected: Option<MomentumStep<N, T>>,
     branch: Branch,
-) -> Result<Found<N, T>, StepError> {
+) -> Result<FixedSolution<N, T>, StepError> {
     let Problem { system, node, h, .. } = at;
     let searched = || memory.steps.searched(&Called(*system), node, branch);
     let found = corrected.map_or_else(searched, Ok).and_then(|solved| {
         let mut after = *node;
         after.advance(h, &solved.v, &solved.increment);
-        after.check_finite(node.t).map(|()| Found { solved, is_common: false })
+        after.check_finite(node.t).map(|()| FixedSolution { solved, is_common: false })
     });
     found.map_err(|failure| failure.explained(system, node, h, &memory.steps.v()))
 }
 
 impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Run<FixedStep, S, N, T> {
-    /// Velocity `(q1 − q0)/h` of the last interval, without its cancellation. Before the first step the velocity that belongs to the momenta.
+    /// Velocity `(q1 − q0)/h` of the last interval, without its cancellation. Before the first step, the velocity of
+    /// the momenta.
     pub fn v(&self) -> SVector<T, N> {
         self.memory.steps.v()
     }

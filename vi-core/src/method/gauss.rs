@@ -7,22 +7,23 @@
 //! q1  = q0 + h Σ b_i V_i         p1 = p0 + h Σ b_i (L_q + f)_i        E1 = Σ b_i En_i − h Σ b_i c_i (L_t − f·v)_i
 //! ```
 //!
-//! En_i the energy at a stage. It is the variational integrator of the discrete Lagrangian `L_d = h Σ b_i L_i`: symplectic without force, time-symmetric, and it keeps
-//! momenta of cyclic coordinates bit for bit. S = 1 is the midpoint rule (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.3 and VI.6.2). The equations
-//! of the stages and their solution are in [`crate::gauss`].
+//! with En_i the energy at a stage. It is the variational integrator of the discrete Lagrangian `L_d = h Σ b_i L_i`:
+//! symplectic without force and time-symmetric. It preserves momenta of cyclic coordinates bit for bit. S = 1 is the
+//! midpoint rule (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.3 and VI.6.2). [`crate::gauss`]
+//! solves the stage equations.
 //!
-//! AFTER A STEP the residual of its stages was measured, and is at the rounding floor.
+//! The stages of every accepted step satisfy their equations to rounding.
 
 use super::{Memory, Method, Problem, Report};
 use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::gauss::energies::energies;
+use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
 use crate::gauss::newton::{Linearization, Newton};
-use crate::gauss::points::Rare;
-use crate::gauss::solve::{Solved, Start, Step, constant, long, sweeping};
+use crate::gauss::points::ErasedSystem;
+use crate::gauss::solve::{StageSolution, Start, Step, constant, fixed_point_iteration, long};
 use crate::gauss::stages::LOOPED;
-use crate::gauss::sweep::{Convergence, Increment, Pause};
-use crate::gauss::{Polynomial, Slots};
+use crate::gauss::{CollocationPolynomial, Slots};
 use crate::node::Node;
 use crate::run::{DenseOutput, Hermite, Run};
 use crate::state::State;
@@ -39,45 +40,46 @@ pub struct Gauss<const STAGES: usize>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C, align(64))]
 pub struct LastStages<const N: usize, const S: usize> {
-    /// Velocities at the stages of the last step, forces there of a separable system: a column a coordinate. Before the first step those of the node. First and aligned:
-    /// a vector of eight numbers then lies in one line of the cache.
+    /// Velocities at the stages of the last step, or the forces there for a separable system; one column per
+    /// coordinate. Before the first step, values at the node. The first field is aligned, so that a vector of eight
+    /// numbers fits one cache line.
     pub(crate) stages: SMatrix<f64, S, N>,
-    /// The node before the last step; that of the run if the step is not known by the parameters that the system has.
+    /// The start node of the last step, or the current node if the parameters have changed since.
     pub(crate) before: Node<N>,
     /// Length of the last step.
     pub(crate) h: f64,
     pub(crate) convergence: Convergence,
     pub(crate) pause: Pause,
-    /// Where the equations of the next stiff step are linearized; `None` if it takes its own linearization.
+    /// Linearization point of the next stiff step; `None` if it linearizes anew.
     pub(crate) linearization: Option<Linearization<N>>,
 }
 
 impl<const N: usize, const S: usize> Memory for LastStages<N, S> {}
 
 impl<const N: usize, const S: usize> LastStages<N, S> {
-    /// Before the first step of the length h: stages that are all like the node.
+    /// Stages equal to the node, before the first step of the length h.
     ///
     /// # Errors
-    /// Those of [`State::velocity`].
+    /// As [`State::velocity`].
     pub(crate) fn constant<Y: Collocation<N>>(system: &Y, node: &Node<N>, h: f64) -> Result<Self, StepError> {
         let stages = SMatrix::from_array_storage(ArrayStorage(constant(system, node)?));
         let (convergence, pause) = (Convergence::NONE, Pause::NONE);
         Ok(Self { stages, before: *node, h, convergence, pause, linearization: None })
     }
 
-    /// Whether the step is known that led to the node: by other parameters its stages mean nothing.
+    /// Whether the stages belong to the step that led to the node. After a change of parameters they do not.
     pub(crate) fn has_step(&self, node: &Node<N>) -> bool {
         self.convergence.has_begun() && self.before != *node
     }
 
-    /// What the next step, which is as long, is solved from.
+    /// The initial data of the next step of equal length.
     #[inline(always)]
     fn start<'a>(&'a self, node: &'a Node<N>) -> Start<'a, N, S> {
         let (before, pause) = (&self.convergence, self.pause);
         Start { node, h: self.h, stages: &self.stages.data.0, are_last: before.has_begun(), before, pause }
     }
 
-    /// Moves to the end of a step.
+    /// Advances to the end of a step.
     #[inline(always)]
     pub(crate) fn take(&mut self, node: &mut Node<N>, step: &Step<N, S>) {
         self.h = step.h;
@@ -89,41 +91,47 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         self.linearization = step.linearization;
     }
 
-    /// Moves to the end of a step that fixed-point iteration solved.
+    /// Advances to the end of a step that fixed-point iteration solved.
     #[inline(always)]
-    fn take_solved(&mut self, node: &mut Node<N>, solved: &Solved<N, S>) {
-        let Increment { velocity, momentum } = &solved.increment;
+    fn take_solved(&mut self, node: &mut Node<N>, solved: &StageSolution<N, S>) {
+        let StageIncrement { velocity, momentum } = &solved.increment;
         self.before = *node;
         node.advance(self.h, velocity, momentum);
         self.stages = SMatrix::from_array_storage(ArrayStorage(solved.stages));
-        self.convergence = solved.sweeps.convergence;
+        self.convergence = solved.iteration.convergence;
         self.pause = Pause::NONE;
         self.linearization = None;
     }
 
-    /// Discrete energy of the last step, if it is known and finite.
+    /// Discrete energy of the last step, if its stages are stored and it is finite.
     fn discrete_energy<Y: Collocation<N> + Convertible<N>>(&self, system: &Y, node: &Node<N>) -> Option<f64> {
         let energy = energies(system, &self.before, self.h, self.stages.data.0, 0.0).end;
         (self.has_step(node) && energy.is_finite()).then_some(energy)
     }
 
-    /// The motion over the last step, or over one of the length h whose stages are not known.
+    /// Dense output of the last step, or of a step of the length h without stored stages.
     pub(crate) fn dense_output<Y: Collocation<N> + Convertible<N>>(
         &self,
         system: &Y,
         before: &State<N>,
         node: &Node<N>,
         h: f64,
-    ) -> Result<Motion<N, S>, StepError> {
+    ) -> Result<GaussOutput<N, S>, StepError> {
         if self.has_step(node) {
-            let motion = Polynomial::over(&Rare::of(system), &self.before, self.h, self.stages.data.0, *before);
-            Ok(Motion::Collocation(motion))
+            let motion = CollocationPolynomial::over(
+                &ErasedSystem::of(system),
+                &self.before,
+                self.h,
+                self.stages.data.0,
+                *before,
+            );
+            Ok(GaussOutput::Collocation(motion))
         } else {
-            Hermite::between(system, before, &node.state(), h).map(Motion::Hermite)
+            Hermite::between(system, before, &node.state(), h).map(GaussOutput::Hermite)
         }
     }
 
-    /// Whether stored stages are finite.
+    /// Checks that the stored stages are finite.
     ///
     /// # Errors
     /// [`StepError::NonFinite`].
@@ -140,7 +148,7 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
     }
 }
 
-/// The next step of a run, taken inside the dispatched function.
+/// Takes the next step of a run inside the dispatched function.
 struct Advancing<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     node: &'a mut Node<N>,
@@ -148,12 +156,12 @@ struct Advancing<'a, Y, const N: usize, const S: usize> {
 }
 
 impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Advancing<'_, Y, N, S> {
-    type Output = Result<(), Option<Solved<N, S>>>;
+    type Output = Result<(), Option<StageSolution<N, S>>>;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Self::Output {
         let Self { system, node, memory } = self;
-        let solved = sweeping::<_, N, S, FUSED>(system, &memory.start(node));
+        let solved = fixed_point_iteration::<_, N, S, FUSED>(system, &memory.start(node));
         if solved.is_step(node, memory.h) {
             memory.take_solved(node, &solved);
             return Ok(());
@@ -170,8 +178,8 @@ where
     type Memory = LastStages<N, STAGES>;
     type Cache = Option<Box<Newton<N, STAGES>>>;
     type Step = Step<N, STAGES>;
-    type Left = Option<Solved<N, STAGES>>;
-    type DenseOutput = Motion<N, STAGES>;
+    type Left = Option<StageSolution<N, STAGES>>;
+    type DenseOutput = GaussOutput<N, STAGES>;
 
     #[allow(clippy::cast_possible_truncation)] // 16 stages at most
     fn order(&self) -> u32 {
@@ -195,7 +203,7 @@ where
         if !memory.pause.is_over() {
             return Err(None);
         }
-        memory.start(at.node).swept(at.system, *at.prepared).map_err(Some)
+        memory.start(at.node).by_fixed_point(at.system, *at.prepared).map_err(Some)
     }
 
     #[inline(always)]
@@ -211,7 +219,7 @@ where
             return Err(None);
         }
         if !S::SIDE_BY_SIDE {
-            let solved = memory.start(node).plainly(&Rare::of(system), None);
+            let solved = memory.start(node).in_scalars(&ErasedSystem::of(system), None);
             if !solved.is_step(node, memory.h) {
                 return Err(Some(solved));
             }
@@ -232,7 +240,7 @@ where
         left: Self::Left,
     ) -> Result<Step<N, STAGES>, StepError> {
         let last = memory.linearization;
-        memory.start(at.node).with_care(at.system, *at.prepared, (left.as_ref(), last), cache)
+        memory.start(at.node).recover(at.system, *at.prepared, (left.as_ref(), last), cache)
     }
 
     fn take(
@@ -273,12 +281,12 @@ where
         node: &Node<N>,
         h: f64,
         memory: &Self::Memory,
-    ) -> Result<Motion<N, STAGES>, StepError> {
+    ) -> Result<GaussOutput<N, STAGES>, StepError> {
         memory.dense_output(system, before, node, h)
     }
 
     fn report(&self, memory: &Self::Memory) -> Report {
-        Report { residual: memory.convergence.change, iterations: memory.convergence.sweeps }
+        Report { residual: memory.convergence.change, iterations: memory.convergence.iterations }
     }
 
     fn discrete_energy(&self, system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {
@@ -307,16 +315,16 @@ where
     }
 }
 
-/// The motion over a Gauss step.
+/// Dense output of a Gauss step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion<const N: usize, const S: usize> {
-    /// Over a step of the run.
-    Collocation(Polynomial<N, S>),
-    /// Over a step of another length, the stages of which are not kept.
+pub enum GaussOutput<const N: usize, const S: usize> {
+    /// A step with stored stages.
+    Collocation(CollocationPolynomial<N, S>),
+    /// A step without stored stages, of another length.
     Hermite(Hermite<N>),
 }
 
-impl<const N: usize, const S: usize> DenseOutput<N> for Motion<N, S> {
+impl<const N: usize, const S: usize> DenseOutput<N> for GaussOutput<N, S> {
     fn since_start(self) -> Self {
         match self {
             Self::Collocation(polynomial) => Self::Collocation(polynomial.since_start()),

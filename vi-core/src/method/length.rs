@@ -1,70 +1,73 @@
-//! Which length a step has: the smallest root of `φ(h) = −residual(h)/excess`, φ(0) = −1.
+//! The search for a step length: the smallest root of `φ(h) = −residual(h)/excess`, φ(0) = −1.
 //!
-//! In: a function that solves the step of any length, a predicted length and the last one. Out: the step whose residual is rounding: by secants in ln h,
+//! The caller provides a function that solves the step of any length, a predicted length and the last one. The search
+//! first uses secants in ln h,
 //!
 //! ```text
 //! y(h) = ln(1 + φ(h))        ln h ← ln h − y/slope        slope = order + O(h), that of the step before
 //! ```
 //!
-//! else the bracket of the smallest root and bisection. Between two lengths φ can rise above zero and fall again, if the step density is about to vanish: a maximum below
-//! zero is followed to its top. Compiled once for each type of a trial, since the function is behind a pointer.
+//! then a bracket of the smallest root and bisection. If the step density is about to vanish, φ can rise above zero and
+//! fall again between two lengths. The search therefore follows a maximum below zero to its top. The function is behind
+//! a pointer, so that this module is compiled once per trial type.
 
 use crate::error::{Residuals, StepError};
 use crate::newton::FLOOR;
 
-/// Lengths that secants try.
+/// Most lengths of the secant iteration.
 const TRIALS: u32 = 8;
-/// Roundings of the residual at which no better length is looked for.
+/// Residual, in units of its rounding-error bound, at which the iteration stops.
 const SOLVED: f64 = 0.5;
-/// Largest factor between two lengths that secants try.
+/// Largest factor between two lengths of the secant iteration.
 const FACTOR: f64 = 1.5;
-/// Roundings by which two residuals differ that tell a slope to three digits.
-const TOLD: f64 = 1e4;
-/// Lengths at which φ is looked at for a bracket, in geometric progression: 1.15 from one to the next.
+/// Difference of two residuals, in rounding units, that determines a slope to three digits.
+const DISTINCT: f64 = 1e4;
+/// Sample lengths for a bracket, in geometric progression with the factor 1.15.
 const POINTS: u32 = 32;
 const BISECTIONS: u32 = 60;
-/// Sections of a maximum: each leaves 0.62 of it.
+/// Golden sections of a maximum; each leaves 0.62 of the interval.
 const SECTIONS: u32 = 40;
 
 /// A step of some length.
 pub(crate) trait Trial: Clone {
     /// Its length.
     fn h(&self) -> f64;
-    /// By how much the length is missed.
+    /// Residual of the length equation.
     fn residual(&self) -> f64;
-    /// The size of what the residual is a sum of.
+    /// Sum of the absolute terms of the residual.
     fn size(&self) -> f64;
-    /// The residual in roundings of that size.
+    /// The residual in units of the rounding error of that size.
     fn roundings(&self) -> f64 {
         self.residual().abs() / (f64::EPSILON * self.size() + f64::MIN_POSITIVE)
     }
 }
 
-/// Solves the step of a length, guessed by that of another length.
+/// Solves the step of a length, with another trial as a guess.
 pub(crate) type Solve<'a, T> = &'a dyn Fn(f64, Option<&T>) -> Result<T, StepError>;
 
 /// A search for a length.
 pub(crate) struct Search<'a, T> {
-    /// The step of length h, guessed by that of another length; by the last one where there is none.
+    /// Solves the step of length h, with another trial as a guess; with the last step if there is none.
     pub(crate) solve: Solve<'a, T>,
-    /// Whether the residual of a trial is what its arithmetic loses; an error if such a residual tells no length.
+    /// Whether the residual of a trial is within its rounding error; an error if such a residual does not determine the
+    /// length.
     pub(crate) is_rounding: &'a dyn Fn(&T) -> Result<bool, StepError>,
     pub(crate) t: f64,
     pub(crate) predicted: f64,
     pub(crate) last: f64,
     /// The largest factor between this step and the last one.
     pub(crate) ratio: f64,
-    /// The residual of a step of no length.
+    /// The residual in the limit h = 0.
     pub(crate) excess: f64,
-    /// Roundings of a residual that do not count as a change of its sign.
+    /// Rounding units of a residual that do not count as a change of its sign.
     pub(crate) noise: f64,
-    /// Slope of `ln (1 + φ)` over `ln h`, and what it is to leading order.
+    /// Slope of `ln (1 + φ)` over `ln h`, and its leading-order value.
     pub(crate) slope: f64,
     pub(crate) order: f64,
 }
 
 impl<T: Trial> Search<'_, T> {
-    /// The step by secants, and the slope there; none where they do not lead to one.
+    /// The step by secants, and its slope; `None` if they do not converge.
     pub(crate) fn root(&self) -> Option<(T, f64)> {
         let mut h = self.predicted;
         let mut best = (self.solve)(h, None).ok()?;
@@ -86,9 +89,9 @@ impl<T: Trial> Search<'_, T> {
                 break;
             }
             let next = (self.solve)(h, Some(&best)).ok()?;
-            if (next.residual() - last).abs() > TOLD * f64::EPSILON * next.size() {
+            if (next.residual() - last).abs() > DISTINCT * f64::EPSILON * next.size() {
                 let measured = ((-next.residual() / self.excess).ln_1p() - y) / factor.ln();
-                // Beyond the smallest root energies fall again.
+                // Beyond the smallest root the energies fall again.
                 if measured.is_nan() || measured <= 0.0 {
                     return None;
                 }
@@ -106,17 +109,18 @@ impl<T: Trial> Search<'_, T> {
         is_root.then_some((best, slope))
     }
 
-    /// φ of a trial, below zero as long as its residual may be rounding.
+    /// φ of a trial, below zero as long as its residual may be a rounding error.
     fn height(&self, trial: &T) -> f64 {
         let height = -trial.residual() / self.excess;
         if trial.roundings() <= self.noise { height.min(-f64::MIN_POSITIVE) } else { height }
     }
 
-    /// The step of the smallest length; `None` if φ stays below zero up to the square of [`Search::ratio`], which is wide enough to tell a step beyond that factor from
-    /// none.
+    /// The step of the smallest length. `None` if φ stays below zero up to the square of [`Search::ratio`]; this range
+    /// separates a step beyond the ratio from no step at all.
     ///
     /// # Errors
-    /// [`StepError::StepRatio`], [`StepError::NotConverged`]; that of a length within the factor which has no solution.
+    /// [`StepError::StepRatio`], [`StepError::NotConverged`]; the error of a length within the ratio without a
+    /// solution.
     #[cold]
     pub(crate) fn smallest(&self) -> Result<Option<T>, StepError> {
         let reach = self.ratio * self.ratio;
@@ -147,7 +151,7 @@ impl<T: Trial> Search<'_, T> {
         Ok(None)
     }
 
-    /// A step between two lengths at which φ is not negative.
+    /// A step between two lengths with φ ≥ 0.
     fn top(&self, earlier: &T, later: &T) -> Option<T> {
         let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
         let (mut low, mut high) = (earlier.h(), later.h());

@@ -1,7 +1,8 @@
-//! Methods: how the next step is found.
+//! Methods: solvers of the next step.
 //!
-//! In: a system, a node, a length h and the [`Method::Memory`] of the steps before. Out: a step. Finding a step changes nothing; [`Method::take`] moves to its end.
-//! [`Run`](crate::run::Run) takes steps, keeps the failure, and has states at given times, events and checkpoints for all methods.
+//! A method solves a step from a system, a node, a length h and the [`Method::Memory`] of the last steps.
+//! [`Method::solve`] changes nothing; [`Method::take`] advances to the end of the step. [`Run`](crate::run::Run) takes
+//! steps and keeps the failure. It adds output at given times, events and checkpoints for all methods.
 //!
 //! | file | method |
 //! |---|---|
@@ -9,10 +10,10 @@
 //! | `composition` | [`Composition`]: fixed steps of order 4, 6, 8 |
 //! | `gauss` | [`Gauss`]: collocation at S Gauss points, order 2S |
 //! | `transformed` | [`InTransformedTime`]: Gauss steps of constant length in transformed time |
-//! | `energy` | [`EnergyPreserving`]: steps of order 2 whose length keeps the discrete energy |
+//! | `energy` | [`EnergyPreserving`]: steps of order 2 whose length preserves the discrete energy |
 //! | `energy_gauss` | [`EnergyPreservingGauss`]: the same with Gauss steps, order 2S |
-//! | `bounds` | bounds of a step length, and fixed steps where no energy-preserving step exists |
-//! | `length` | which length a step has: a search over a pure solve |
+//! | `bounds` | bounds of a step length, and fixed steps if no energy-preserving step exists |
+//! | `length` | the search for the step length |
 
 pub mod bounds;
 pub mod composition;
@@ -38,14 +39,14 @@ use crate::run::DenseOutput;
 use crate::state::State;
 use core::fmt::Debug;
 
-/// What a step depends on beside the memory of a run.
+/// Inputs of a step, except the memory of the run.
 #[derive(Debug)]
 pub struct Problem<'a, S, P, const N: usize, T = f64> {
     /// The system.
     pub system: &'a S,
-    /// What is the same in every step of this length.
+    /// Data shared by all steps of this length.
     pub prepared: &'a P,
-    /// The node before the step.
+    /// The start node of the step.
     pub node: &'a Node<N, T>,
     /// Length of the step, in the unit of the method. A method that finds its length ignores it.
     pub h: T,
@@ -59,7 +60,7 @@ impl<S, P, const N: usize, T: Copy> Clone for Problem<'_, S, P, N, T> {
 
 impl<S, P, const N: usize, T: Copy> Copy for Problem<'_, S, P, N, T> {}
 
-/// What a run carries between two steps beside its node.
+/// Data that a run carries between steps, beside its node.
 pub trait Memory: Clone + Debug {
     /// A copy that shares no memory with this one.
     ///
@@ -69,23 +70,23 @@ pub trait Memory: Clone + Debug {
         self.clone()
     }
 
-    /// What a checkpoint stores: finite numbers alone, so that a text format without infinities can hold it.
+    /// The data of a checkpoint: finite numbers only, so that a text format without infinities can store it.
     #[must_use]
     fn stored(&self) -> Self {
         self.clone()
     }
 }
 
-/// How well the last step was solved, and by how much work.
+/// Residual and cost of the last step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
-    /// Largest residual of the equations of the step, in roundings. Zero before the first step.
+    /// Largest residual of the step, in units of its rounding-error bound. Zero before the first step.
     pub residual: f64,
     /// Newton or fixed-point iterations.
     pub iterations: u32,
 }
 
-/// A way to take steps of a system S of N coordinates, in the numbers T.
+/// A method of stepping a system S of N coordinates over the numbers T.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot integrate `{S}`",
     label = "this method needs something that `{S}` does not have",
@@ -93,23 +94,23 @@ pub struct Report {
     note = "a method in transformed time needs the clause `time_scale = …;`"
 )]
 pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
-    /// What follows from the system and h alone. A checkpoint does not store it.
+    /// Data that depends on the system and h only. A checkpoint does not store it.
     type Prepared: Clone + Debug;
-    /// What the next step is guessed from. A checkpoint stores it.
+    /// Data for the guess of the next step. A checkpoint stores it.
     type Memory: Memory;
-    /// Buffers that are kept to be reused. No result depends on them.
+    /// Reusable buffers. No result depends on them.
     type Cache: Clone + Debug + Default;
-    /// A step that was found.
+    /// A solved step.
     type Step;
-    /// What an attempt got to that did not find one.
+    /// The result of a failed attempt.
     type Left;
-    /// The motion between the nodes of a step.
+    /// Dense output of a step.
     type DenseOutput: DenseOutput<N, T> + 'static;
 
-    /// Whether [`Method::solve`] finds the length of the step itself.
+    /// Whether [`Method::solve`] finds the step length itself.
     const FINDS_LENGTH: bool = false;
 
-    /// Name of the rule, if it is not the first one that the system is declared with. A checkpoint stores it.
+    /// Name of the rule, unless it is the first rule of the system. A checkpoint stores it.
     fn rule(&self) -> Option<&'static str> {
         None
     }
@@ -117,7 +118,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
     /// The order p: the error of a step is O(h^(p+1)).
     fn order(&self) -> u32;
 
-    /// Checks the length that a run is given.
+    /// Checks the given step length.
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] for one that is zero, subnormal or not finite.
@@ -125,19 +126,19 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         check_step(h)
     }
 
-    /// What is the same in every step of the length h.
+    /// Prepares the data shared by all steps of the length h.
     fn prepare(&self, system: &S, h: T) -> Self::Prepared;
 
-    /// The memory before the first step. Sets the energy of the node, if the method keeps one.
+    /// The memory before the first step. Sets the energy of the node if the method preserves one.
     ///
     /// # Errors
-    /// Why no run can begin there.
+    /// The reason why no run can begin there.
     fn begin(&self, system: &S, node: &mut Node<N, T>, h: T) -> Result<Self::Memory, StepError>;
 
-    /// The hot path to a step, inlined into the loop over steps.
+    /// Solves a step on the hot path, inlined into the loop over steps.
     ///
     /// # Errors
-    /// What it got to, for [`Method::recover`].
+    /// The result of the failed attempt, for [`Method::recover`].
     fn attempt(
         &self,
         at: Problem<'_, S, Self::Prepared, N, T>,
@@ -145,10 +146,10 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, Self::Left>;
 
-    /// The cold path to a step.
+    /// Solves a step on the cold path.
     ///
     /// # Errors
-    /// Why there is no step.
+    /// The reason why the step failed.
     fn recover(
         &self,
         at: Problem<'_, S, Self::Prepared, N, T>,
@@ -157,10 +158,10 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         left: Self::Left,
     ) -> Result<Self::Step, StepError>;
 
-    /// The next step. Changes nothing.
+    /// Solves the next step. Changes nothing.
     ///
     /// # Errors
-    /// Why there is no step.
+    /// The reason why the step failed.
     fn solve(
         &self,
         at: Problem<'_, S, Self::Prepared, N, T>,
@@ -170,12 +171,13 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         self.attempt(at, memory, cache).or_else(|left| self.recover(at, memory, cache, left))
     }
 
-    /// [`Method::attempt`], and [`Method::take`] if it found a step.
+    /// [`Method::attempt`], then [`Method::take`] on success.
     ///
-    /// A method overrides it to do both inside one dispatched function: a step that is returned by a wide store and copied by narrow ones stalls the next wide load.
+    /// A method overrides it to do both inside one dispatched function: a step that is returned by a wide store and
+    /// copied by narrow ones stalls the next wide load.
     ///
     /// # Errors
-    /// What the attempt got to. Nothing has changed then.
+    /// The result of the failed attempt. Node and memory have then not changed.
     #[inline(always)]
     fn advance(
         &self,
@@ -190,13 +192,13 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         Ok(())
     }
 
-    /// Moves to the end of a step. Cannot fail: [`Method::solve`] has checked what can.
+    /// Advances to the end of a step. Cannot fail: [`Method::solve`] has checked every condition.
     fn take(&self, h: T, run: (&mut Node<N, T>, &mut Self::Memory), cache: &mut Self::Cache, step: Self::Step);
 
-    /// The node and the memory after one step of the length h in time. Further steps have the length `next` of the run.
+    /// The node and the memory after one step of the length h in time. Later steps have the length `next` of the run.
     ///
     /// # Errors
-    /// Why there is no step.
+    /// The reason why the step failed.
     fn step_of(
         &self,
         system: &S,
@@ -217,7 +219,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
     /// The memory for steps of another length from a node.
     ///
     /// # Errors
-    /// Why no step can start there.
+    /// The reason why no step can start there.
     fn with_length(
         &self,
         system: &S,
@@ -226,10 +228,11 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         h: T,
     ) -> Result<Self::Memory, StepError>;
 
-    /// The memory after the system has changed from the first to the second, h the step of the run. A method that keeps an energy adds to it what the change brings.
+    /// The memory after a change of the system from the first to the second; h is the step of the run. A method that
+    /// preserves an energy adds the change of H to it.
     ///
     /// # Errors
-    /// Why the run cannot continue with the new system.
+    /// The reason why the run cannot continue with the new system.
     fn with_system(
         &self,
         systems: [&S; 2],
@@ -238,10 +241,10 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError>;
 
-    /// The memory for a run that continues from another state, to which the node is moved.
+    /// The memory for a run that continues from another state. The node is already there.
     ///
     /// # Errors
-    /// Why no run can begin there.
+    /// The reason why no run can begin there.
     fn with_state(
         &self,
         system: &S,
@@ -254,10 +257,10 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         self.begin(system, node, h)
     }
 
-    /// The motion over the last step, from `before` to the node.
+    /// Dense output of the last step, from `before` to the node.
     ///
     /// # Errors
-    /// Why no velocity belongs to the momenta at its ends.
+    /// The reason why no velocity has the momenta at one of its ends.
     fn dense_output(
         &self,
         system: &S,
@@ -267,28 +270,28 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         memory: &Self::Memory,
     ) -> Result<Self::DenseOutput, StepError>;
 
-    /// Length of a step in time. If the method finds it, that of the last step.
+    /// Length of a step in time; that of the last step if the method finds it.
     fn length(&self, h: T, _memory: &Self::Memory) -> T {
         h
     }
 
-    /// The longest that the next step can be in time, with the sign of h.
+    /// Upper bound of the next step length in time, with the sign of h.
     fn longest(&self, h: T, _memory: &Self::Memory) -> T {
         h
     }
 
-    /// How well the last step was solved.
+    /// Residual and cost of the last step.
     fn report(&self, memory: &Self::Memory) -> Report;
 
-    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step; `None` if there is none.
+    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step, if there is one.
     fn discrete_energy(&self, _system: &S, _node: &Node<N, T>, _h: T, _memory: &Self::Memory) -> Option<T> {
         None
     }
 
-    /// Whether a run can continue from a stored memory: a file may hold anything.
+    /// Checks whether a run can continue from a stored memory. A file may contain any numbers.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The first invalid number.
     fn check(&self, _memory: &Self::Memory, _h: T, _t: T) -> Result<(), StepError> {
         Ok(())
     }

@@ -1,23 +1,28 @@
-//! Gauss steps of constant length in transformed time, `dt = g(t, q) dτ`: steps of order 2S that follow the motion.
+//! Gauss steps of constant length in transformed time, `dt = g(t, q) dτ`: steps of order 2S that adapt to the motion.
 //!
-//! A step is Gauss collocation of the Hamiltonian `K = g (H − E)` in extended phase space, where t is a coordinate and −E its momentum: with Δτ constant, h is short
-//! if g is small. With `H = V·P − L` at a stage and F = L_q + f,
+//! A step is Gauss collocation of the Hamiltonian `K = g (H − E)` in extended phase space, where t is a coordinate and
+//! −E its momentum. With constant Δτ, h is short if g is small. With `H = V·P − L` at a stage and F = L_q + f,
 //!
 //! ```text
 //! t' = g        q' = g v        p' = g F − (H − E) ∂g/∂q        E' = g (f·v − L_t) + (H − E) ∂g/∂t        L_v = p
 //! ```
 //!
-//! all four collocated. Along the motion H = E: E starts as H of the first state, and is constant if the system is autonomous, has no force and g no time in it. The
-//! map is symplectic in extended phase space without force, time-symmetric, and keeps the momenta of symmetries that g shares, as the angular momentum for g(r)
-//! (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, VIII.2.1; Leimkuhler and Reich, *Simulating Hamiltonian Dynamics*, chapter 9).
+//! all four collocated. Along the motion H = E. E starts as H of the first state, and is constant if the system is
+//! autonomous, has no force and g does not depend on t. Without force the map is symplectic in extended phase space. It
+//! is time-symmetric, and preserves the momenta of symmetries of g, such as the angular momentum for g(r) (Hairer,
+//! Lubich, Wanner, *Geometric Numerical Integration*, VIII.2.1; Leimkuhler and Reich, *Simulating Hamiltonian
+//! Dynamics*, chapter 9).
 //!
-//! AFTER A STEP the residual of its stages was measured, and is at the rounding floor; g is positive and finite at all of them, and at the state reached.
+//! The stages of every accepted step satisfy their equations to rounding, and g is positive and finite at all of them
+//! and at the end.
 
 use super::{Gauss, Method, Problem, Report, check_step};
 use crate::collocation::TimeScale;
 use crate::error::{Residuals, StepError};
 use crate::gauss::newton::Newton;
-use crate::gauss::transformed::{After, LastRates, Polynomial, Solved, Start, check_time_scale, time_scale};
+use crate::gauss::transformed::{
+    After, LastRates, Start, TransformedPolynomial, TransformedStages, check_time_scale, time_scale,
+};
 use crate::node::Node;
 use crate::run::Run;
 use crate::state::State;
@@ -31,16 +36,16 @@ use vi_dispatch::Instructions;
 pub struct InTransformedTime<M>(M);
 
 impl<const STAGES: usize> Gauss<STAGES> {
-    /// The same steps of constant length in transformed time, for systems with the clause `time_scale = …;`.
+    /// Takes the same steps at constant length in transformed time, for systems with the clause `time_scale = …;`.
     #[must_use]
     pub fn in_transformed_time(self) -> InTransformedTime<Self> {
         InTransformedTime(self)
     }
 }
 
-/// Trials of Δτ for a step of a given length in time.
+/// Most trials of Δτ for a step of a given length in time.
 const TRIALS: u32 = 60;
-/// Roundings of the length by which such a step may miss it, if they are more than one of the time: the length is a quadrature.
+/// Largest error of such a length, in its roundings, if they exceed one of the time: the length is a quadrature.
 const MISSED: f64 = 16.0;
 
 impl<S, const N: usize, const STAGES: usize> Method<S, N> for InTransformedTime<Gauss<STAGES>>
@@ -51,10 +56,10 @@ where
     type Memory = LastRates<N, STAGES>;
     type Cache = Option<Box<Newton<N, STAGES>>>;
     type Step = After<N, STAGES>;
-    type Left = Option<Solved<N, STAGES>>;
-    type DenseOutput = Polynomial<N, STAGES>;
+    type Left = Option<TransformedStages<N, STAGES>>;
+    type DenseOutput = TransformedPolynomial<N, STAGES>;
 
-    // Nothing bounds how g changes from one step to the next.
+    // No bound of the change of g from step to step is known.
     const FINDS_LENGTH: bool = true;
 
     #[allow(clippy::cast_possible_truncation)] // 16 stages at most
@@ -93,7 +98,7 @@ where
         if !memory.pause.is_over() {
             return Err(None);
         }
-        Start { system, node, dtau: h, last: memory }.swept(*prepared).map_err(Some)
+        Start { system, node, dtau: h, last: memory }.by_fixed_point(*prepared).map_err(Some)
     }
 
     fn recover(
@@ -104,7 +109,7 @@ where
         left: Self::Left,
     ) -> Result<Self::Step, StepError> {
         let Problem { system, node, h, .. } = at;
-        Start { system, node, dtau: h, last: memory }.with_care(left.as_ref(), cache)
+        Start { system, node, dtau: h, last: memory }.recover(left.as_ref(), cache)
     }
 
     #[inline(always)]
@@ -118,7 +123,8 @@ where
         (*node, *memory) = (step.node, step.rates);
     }
 
-    /// Newton's iteration on `t(Δτ) = t0 + h`, whose derivative is g at the end, halved if it leaves what is known to hold Δτ. Each trial solves a step.
+    /// Newton iteration on `t(Δτ) = t0 + h`, whose derivative is g at the end, with bisection if it leaves the bracket
+    /// of Δτ. Each trial solves a step.
     fn step_of(
         &self,
         system: &S,
@@ -132,7 +138,7 @@ where
         let prepared = Instructions::detected();
         let mut cache = None;
         let missed = f64::EPSILON * (MISSED * h.abs()).max(t.abs());
-        // None is tried that is longer than twice what is known to be too short.
+        // No trial exceeds twice the longest Δτ known to be too short.
         let [mut low, mut high] = [0.0, f64::INFINITY];
         let mut length = (h / g).abs().min(next.abs());
         let mut residuals = Residuals::new();
@@ -207,8 +213,8 @@ where
         node: &Node<N>,
         _h: f64,
         memory: &Self::Memory,
-    ) -> Result<Polynomial<N, STAGES>, StepError> {
-        Ok(Polynomial::of(system, node.energy, memory, *before))
+    ) -> Result<TransformedPolynomial<N, STAGES>, StepError> {
+        Ok(TransformedPolynomial::of(system, node.energy, memory, *before))
     }
 
     fn length(&self, _dtau: f64, memory: &Self::Memory) -> f64 {
@@ -220,7 +226,7 @@ where
     }
 
     fn report(&self, memory: &Self::Memory) -> Report {
-        Report { residual: memory.convergence.change, iterations: memory.convergence.sweeps }
+        Report { residual: memory.convergence.change, iterations: memory.convergence.iterations }
     }
 
     fn discrete_energy(&self, _system: &S, node: &Node<N>, _dtau: f64, memory: &Self::Memory) -> Option<f64> {
@@ -241,11 +247,11 @@ where
         self.h
     }
 
-    /// `H − E` at the state reached last, in the units of L: by so much the step misses the energy of the motion. It stays small and does
-    /// not drift, while `K = g (H − E)` is zero along the motion.
+    /// `H − E` at the last state, in the units of L: the energy error of the steps. It stays small and does not drift,
+    /// while `K = g (H − E)` is zero along the motion.
     ///
     /// # Errors
-    /// [`StepError::Singular`] or [`StepError::NotConverged`] if no velocity belongs to the momenta.
+    /// [`StepError::Singular`] or [`StepError::NotConverged`] if no velocity has the momenta.
     pub fn excess(&self) -> Result<f64, StepError> {
         Ok(self.energy()? - self.node.energy)
     }

@@ -1,14 +1,14 @@
-//! A step whose equations are linear, as one matrix.
+//! A linear step as one matrix product.
 //!
-//! In: an autonomous system of up to [`LARGEST`] coordinates whose L is quadratic and whose f is linear, and h. Out: the velocity of a
-//! step and what it adds to p,
+//! The system is autonomous with up to [`LARGEST`] coordinates, quadratic L and linear f. For a given h, the velocity
+//! of a step and its momentum increment are
 //!
 //! ```text
-//! v       = Q q + P p + c        the columns of Q, P, R, S are the answers of the equations to unit vectors, c and d those to zero
+//! v       = Q q + P p + c        the columns of Q, P, R, S solve the equations for unit vectors, c and d for zero
 //! p1 − p0 = R q + S p + d
 //! ```
 //!
-//! two products that wait for nothing, instead of an evaluation, a solution and another evaluation one after the other.
+//! These two products are independent. They replace an evaluation, a solution and another evaluation in sequence.
 
 use crate::linear::Matrix;
 use crate::node::Node;
@@ -16,10 +16,10 @@ use crate::real::{Real, Scalar};
 use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
-/// Coordinates that a system with a closed form has at most.
+/// Largest number of coordinates with a closed form.
 const LARGEST: usize = 3;
 
-/// The matrix of a linear step. Room for the largest one: a matrix of N × N would be large where it is not used.
+/// The matrix of a linear step, with the size of the largest one: a matrix of N × N would be large if it is not used.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosedForm<T> {
     velocity: Affine<T>,
@@ -56,7 +56,7 @@ impl<T: Real> Affine<T> {
 }
 
 impl<T: Scalar> ClosedForm<T> {
-    /// That of a system with a step h, by the inverse of its A.
+    /// The closed form of a system with a step h, by the inverse of its A.
     pub(crate) fn of<const N: usize, S: FixedStepping<N, T>>(
         system: &S,
         h: T,
@@ -69,7 +69,7 @@ impl<T: Scalar> ClosedForm<T> {
         };
         let zeros = SVector::zeros();
         let constant = answer(zeros, zeros);
-        // So large that the constant is below the rounding of the rest, and a power of two.
+        // A power of two that is so large that the constant is below the rounding of the rest.
         let large = T::real(f64::from(1_u32 << 30)) * T::real(f64::from(1_u32 << 30));
         let mut form = [Affine::zeros(); 2];
         for j in 0..N {
@@ -87,7 +87,7 @@ impl<T: Scalar> ClosedForm<T> {
         Self { velocity, increment }
     }
 
-    /// The velocity of the step from this node, and what it adds to p.
+    /// The velocity of the step from this node, and the momentum increment.
     #[inline(always)]
     pub(crate) fn step<const N: usize>(&self, node: &Node<N, T>) -> (SVector<T, N>, SVector<T, N>) {
         (self.velocity.at(node), self.increment.at(node))

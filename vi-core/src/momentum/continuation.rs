@@ -1,9 +1,9 @@
-//! The momentum equation followed from h = 0, where its root is the velocity that belongs to p.
+//! Continuation of the momentum equation from h = 0, where its root is the velocity of p.
 //!
-//! In: a node, a step h and a guess of the velocity at h = 0. Out: the root v(h) on the branch that is connected with
-//! h = 0: followed in parts of h that double after a success and halve after a failure. Where the branch ends, at a
-//! singular derivative of the equation, no part is small enough and the step has no such root. On the way there the
-//! determinant of the derivative keeps its sign, and beyond the turn it has the other one.
+//! From a node, a step h and a guess of the velocity at h = 0 follows the root v(h) on the branch that is connected
+//! with h = 0. The parts of h double after a success and halve after a failure. The branch ends at a singular Jacobian:
+//! then no part is small enough and the step has no such root. The determinant keeps its sign up to the turning point
+//! and has the other sign beyond.
 
 use super::newton;
 use crate::error::{Residuals, StepError};
@@ -14,35 +14,35 @@ use crate::real::Scalar;
 use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
-/// How the branch is followed: by which parts of h, and how close to the last root the next one must be.
+/// Parameters of the continuation: the parts of h, and the allowed distance between two roots.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
     largest_part: f64,
-    /// Smallest part of h by which continuation goes on before it gives up.
+    /// Smallest part of h before the continuation fails.
     least_part: f64,
-    /// Newton iterations above the rounding floor from one root to the next; more, and it may belong to another branch.
+    /// Newton iterations above the rounding floor from one root to the next; more may lead to another branch.
     iterations: u32,
-    /// Whether the determinant of the derivative must keep its sign.
+    /// Whether the determinant must keep its sign.
     signed: bool,
 }
 
 impl Pace {
-    /// To find a root where Newton's iteration from the guess found none: the branch is left where the iteration leaps.
+    /// Finds a root after Newton iteration from the guess has failed. May change the branch.
     const RESCUE: Self = Self { largest_part: 1.0, least_part: 1.0 / 64.0, iterations: u32::MAX, signed: false };
-    /// To stay on the branch.
+    /// Stays on the branch.
     pub(crate) const CLOSE: Self =
         Self { largest_part: 1.0 / 16.0, least_part: 1.0 / 65536.0, iterations: 3, signed: true };
 }
 
-/// A velocity, and the iterations that it took.
+/// A velocity, and the number of iterations.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reached<const N: usize, T> {
+pub(crate) struct BranchPoint<const N: usize, T> {
     pub(crate) v: SVector<T, N>,
     pub(crate) iterations: u32,
 }
 
-/// The root that Newton's iteration reaches from `guess`; where it fails, the root at `h` on the branch connected with
-/// h = 0, where v is near `start`.
+/// The root that Newton iteration reaches from `guess`; if it fails, the root at `h` on the branch connected with h =
+/// 0, where v is near `start`.
 ///
 /// # Errors
 /// As [`solve`].
@@ -53,9 +53,9 @@ pub(crate) fn nearest<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     h: T,
     guess: SVector<T, N>,
     start: SVector<T, N>,
-) -> Result<Reached<N, T>, StepError> {
+) -> Result<BranchPoint<N, T>, StepError> {
     match newton::solve(system, node, h, guess) {
-        Ok(root) => Ok(Reached { v: root.u, iterations: root.iterations }),
+        Ok(root) => Ok(BranchPoint { v: root.u, iterations: root.iterations }),
         Err(_) => solve(system, node, h, start, Pace::RESCUE),
     }
 }
@@ -63,7 +63,7 @@ pub(crate) fn nearest<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
 /// The root at `h` on the branch connected with h = 0.
 ///
 /// # Errors
-/// [`StepError::NotConverged`] where the branch ends before h; [`StepError::NonFinite`], [`StepError::Singular`].
+/// [`StepError::NotConverged`] if the branch ends before h; [`StepError::NonFinite`], [`StepError::Singular`].
 #[cold]
 pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
@@ -71,7 +71,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     h: T,
     guess: SVector<T, N>,
     pace: Pace,
-) -> Result<Reached<N, T>, StepError> {
+) -> Result<BranchPoint<N, T>, StepError> {
     let mut v = newton::velocity(system, node, [guess, node.p])?;
     let sign = |h: T, v: &SVector<T, N>| {
         if pace.signed { linear::determinant_sign(&system.momentum_equation(node, h, v).jacobian.dense()) } else { 1 }
@@ -89,11 +89,11 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
             }
             _ if part > pace.least_part => part /= 2.0,
             _ => {
-                // What the last root leaves of the whole step. Where the iteration stalled on the way, what it left there.
+                // The residual of the last root in the whole step, or the residual of the stalled iteration.
                 let residual = newton::residual(system, node, h, &v);
                 let failure = match root {
                     Ok(root) => Failure::Stalled { iterations: spent, residual, residuals: root.residuals },
-                    // On the way to the last root the Jacobian loses its inverse: there is no root beyond.
+                    // Toward the last root the Jacobian becomes singular, so that no root exists beyond.
                     Err(Failure::Singular) if residual.is_finite() => {
                         Failure::Stalled { iterations: spent, residual, residuals: Residuals::new() }
                     }
@@ -107,5 +107,5 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
             }
         }
     }
-    Ok(Reached { v, iterations: spent })
+    Ok(BranchPoint { v, iterations: spent })
 }

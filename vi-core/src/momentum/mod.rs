@@ -1,13 +1,13 @@
-//! The momentum equation `−D2 L_d − f_d⁻ = p0`, the step h given.
+//! Solvers of the momentum equation `−D2 L_d − f_d⁻ = p0` for a given step h.
 //!
-//! In: a node, h, and the velocities of the steps before. Out: the velocity v that solves it, every residual measured.
+//! From a node, h, and the velocities of the last steps follows the velocity v that solves it to rounding.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
-//! | `steps` | steps of one length: predicted, corrected, measured |
-//! | `closed_form` | a linear step as one matrix |
-//! | `newton` | the equation for Newton's iteration |
-//! | `continuation` | the root followed from h = 0 |
+//! | `steps` | steps of one length: extrapolated, corrected, checked |
+//! | `closed_form` | a linear step as one matrix product |
+//! | `newton` | the equation for Newton iteration |
+//! | `continuation` | continuation of the root from h = 0 |
 
 pub(crate) mod closed_form;
 pub(crate) mod continuation;

@@ -1,7 +1,7 @@
-//! The momentum equation for Newton's iteration, the step h given.
+//! The momentum equation of a given step h, for Newton iteration.
 //!
-//! In: a node, h and a guess of v. Out: the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor
-//! ([`FixedStepping::momentum_rounding`]). AFTER IT the matrix A at the root has an inverse.
+//! From a node, h and a guess follows the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor
+//! ([`FixedStepping::momentum_rounding`]). The matrix A at the root is regular.
 
 use crate::error::StepError;
 use crate::linear::{self, Matrix};
@@ -18,7 +18,7 @@ struct Momentum<'a, const N: usize, T, S> {
     h: T,
 }
 
-/// The equation at some velocity, with what its rounding is measured in.
+/// The equation at some velocity, with its rounding-error bounds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Evaluated<const N: usize, T, J> {
     equation: MomentumEquation<N, T, J>,
@@ -56,7 +56,7 @@ impl<const N: usize, T: Scalar, S: FixedStepping<N, T>> Equations<T> for Momentu
     }
 }
 
-/// The largest residual of the momentum equation at `(v, h)`, in roundings.
+/// The largest residual of the momentum equation at `(v, h)`, over its rounding-error bound.
 pub(crate) fn residual<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
@@ -67,7 +67,7 @@ pub(crate) fn residual<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     worst(&at.equation.residual, &at.scale)
 }
 
-/// The velocity that solves the momentum equation at `h`, from a guess.
+/// Solves the momentum equation at `h` for the velocity, from a guess.
 pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
@@ -77,7 +77,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     newton::solve(&Momentum { system, node, h }, guess)
 }
 
-/// The velocity that belongs to the momenta of a node: the root at h = 0.
+/// The velocity of the momenta of a node: the root at h = 0.
 ///
 /// # Errors
 /// [`StepError::Singular`], [`StepError::NonFinite`] or [`StepError::NotConverged`] from the last guess.
@@ -89,7 +89,7 @@ pub(crate) fn velocity<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     let [first, second] = guesses;
     let root = solve(system, node, T::zero(), first).or_else(|_| solve(system, node, T::zero(), second));
     root.map(|root| root.u).map_err(|failure| {
-        // At h = 0 the derivative is the mass matrix, but where a slope of L or f has no bound.
+        // At h = 0 the derivative is the mass matrix, unless a derivative of L or f is infinite.
         let is_infinite = matches!(failure, Failure::InfiniteJacobian);
         let matrix = if is_infinite { "derivative of the momentum equation" } else { "mass matrix" };
         failure.at(node.t.to_f64(), 0.0, matrix)

@@ -1,26 +1,25 @@
-//! Momentum steps of one length, one after the other.
+//! Sequences of momentum steps of one length.
 //!
-//! In: a node, the step h, the velocities of the steps before. Out: the velocity v that solves the momentum equation
-//! `r(v) = −D2 L_d − f_d⁻ − p0 = 0`, and what the momenta gain. A step is predicted, corrected, and measured:
+//! From a node, the step h and the velocities of the last steps follows the velocity v that solves the momentum
+//! equation `r(v) = −D2 L_d − f_d⁻ − p0 = 0`, and the momentum increment. A step is extrapolated, corrected and
+//! checked:
 //!
 //! ```text
 //! guess      v0 extrapolated over the last steps (`predictor`)
-//! correct    v = v0 − A⁻¹ r(v0)                A = ∂r/∂v at v0; where A is constant, its inverse is computed once per run
-//! measure    r(v) and p1 − p0, by one evaluation at v
-//! accept     where each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its terms
-//! else       two more corrections, each measured; then Newton's iteration to the rounding floor (`newton`)
+//! correct    v = v0 − A⁻¹ r(v0)                A = ∂r/∂v at v0; if A is constant, its inverse is computed once per run
+//! evaluate   r(v) and p1 − p0, by one evaluation at v
+//! accept     if each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its terms
+//! otherwise  two more corrections, each checked; then Newton iteration to the rounding floor (`newton`)
 //! ```
 //!
-//! The next step needs v, not what r(v) is: that is compared while the next step is under way.
+//! The acceptance test is off the critical path: the next step needs v only, so that both overlap.
 //!
-//! What an accepted step leaves of its equation is a few roundings, yet it may have a sign, and would add up. So it is carried to
-//! the next step, which solves `r(v) + remainder = 0`, to half of those roundings: over many steps remainders cancel, as in a
+//! The residual of an accepted step is a few roundings, but it may have a constant sign and add up. The next step
+//! therefore solves `r(v) + remainder = 0`, to half of those roundings. Over many steps the remainders cancel, as in a
 //! compensated sum.
-//!
-//! AFTER A STEP the residual was measured at the velocity that was taken.
 
 use super::closed_form::ClosedForm;
-use super::continuation::{self, Reached};
+use super::continuation::{self, BranchPoint};
 use crate::branch::Branch;
 use crate::error::StepError;
 use crate::linear::Matrix;
@@ -31,24 +30,24 @@ use crate::real::{Real, Scalar};
 use crate::stepping::{FixedStepping, MomentumResidual};
 use nalgebra::SVector;
 
-/// Corrections that may follow a guess.
+/// Most corrections of a guess.
 const CORRECTIONS: u32 = 3;
-/// Roundings that a row may leave with what is carried to it.
+/// Accepted residual of a row including its carried remainder, in roundings.
 const REMAINING: f64 = 2.0;
 
-/// How a step is corrected. It depends on the system, its parameters and h alone.
+/// The corrector of a step. It depends on the system, its parameters and h alone.
 #[derive(Clone, Copy, Debug)]
 pub enum Corrector<J: Matrix<N, T>, const N: usize, T: Real> {
-    /// The whole step is one matrix; A is constant.
+    /// The whole step is one matrix product; A is constant.
     ClosedForm(ClosedForm<T>, J::Inverse),
-    /// By the inverse of A, which is constant.
+    /// The inverse of a constant A.
     Inverse(J::Inverse),
-    /// By A where the guess is.
+    /// A at the guess.
     Newton,
 }
 
 impl<J: Matrix<N, T>, const N: usize, T: Scalar> Corrector<J, N, T> {
-    /// That of steps of length h.
+    /// The corrector of steps of length h.
     pub(crate) fn of<S: FixedStepping<N, T, Jacobian = J>>(system: &S, h: T) -> Self {
         if !S::CONSTANT_JACOBIAN {
             return Self::Newton;
@@ -61,7 +60,7 @@ impl<J: Matrix<N, T>, const N: usize, T: Scalar> Corrector<J, N, T> {
         }
     }
 
-    /// What solves `A x = residual`.
+    /// Solves `A x = residual`.
     #[inline(always)]
     fn correction(&self, jacobian: &J, residual: &SVector<T, N>) -> SVector<T, N> {
         match self {
@@ -71,27 +70,28 @@ impl<J: Matrix<N, T>, const N: usize, T: Scalar> Corrector<J, N, T> {
     }
 }
 
-/// What a step left of its equation.
+/// The residual of a step, and its scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
     serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
 )]
-pub(crate) struct Measured<const N: usize, T> {
+pub(crate) struct StepResidual<const N: usize, T> {
     /// r(v).
     residual: SVector<T, N>,
-    /// What a rounding of each row is ε times of.
+    /// Scale of each row: one rounding is ε times this.
     scale: SVector<T, N>,
 }
 
-impl<const N: usize, T: Scalar> Measured<N, T> {
+impl<const N: usize, T: Scalar> StepResidual<N, T> {
     /// Before the first step.
     fn none() -> Self {
         Self { residual: SVector::zeros(), scale: SVector::zeros() }
     }
 
-    /// Whether each row is at most [`FLOOR`](crate::newton::FLOOR) roundings, and with what is carried to it half as many.
+    /// Whether each row is within [`FLOOR`](crate::newton::FLOOR) roundings, and within half as many including its
+    /// remainder.
     #[inline(always)]
     fn is_at_floor(&self, carried: &SVector<T, N>) -> bool {
         are_at_floor(&self.residual, carried, &self.scale, REMAINING)
@@ -103,23 +103,23 @@ impl<const N: usize, T: Scalar> Measured<N, T> {
     }
 }
 
-/// A momentum step that was found.
+/// A solved momentum step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Solved<const N: usize, T> {
+pub(crate) struct MomentumStep<const N: usize, T> {
     /// The velocity.
     pub(crate) v: SVector<T, N>,
-    /// What the momenta gain.
+    /// The momentum increment.
     pub(crate) increment: SVector<T, N>,
-    /// Corrections that it took.
+    /// Number of corrections.
     pub(crate) iterations: u32,
-    measured: Measured<N, T>,
-    /// What is left for the next step to make up for.
+    measured: StepResidual<N, T>,
+    /// Remainder for the next step.
     remainder: SVector<T, N>,
-    /// Whether the guess was of use.
+    /// Whether the guess was usable.
     predicted: bool,
 }
 
-/// Momentum steps of one length; see the [module](self).
+/// A sequence of momentum steps of one length; see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -130,44 +130,45 @@ pub struct Steps<const N: usize, T> {
     pub(crate) h: T,
     predictor: Predictor<N, T>,
     remainder: SVector<T, N>,
-    measured: Measured<N, T>,
-    /// Whether a step was taken.
+    measured: StepResidual<N, T>,
+    /// Whether a step has been taken.
     begun: bool,
-    /// Whether the parameters have changed since. One value of three in place of these two made a step of Kepler's problem a tenth longer.
+    /// Whether the parameters have changed since. Merging the two flags into one enum slows a step of Kepler's problem
+    /// by a tenth.
     changed: bool,
 }
 
 impl<const N: usize, T: Scalar> Steps<N, T> {
-    /// Before the first step, with a guess of its velocity.
+    /// Starts from a guess of the first velocity.
     pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
-        let (predictor, measured) = (Predictor::new(guess), Measured::none());
+        let (predictor, measured) = (Predictor::new(guess), StepResidual::none());
         Self { h, predictor, remainder: SVector::zeros(), measured, begun: false, changed: false }
     }
 
-    /// The same, every number passed through `convert`.
+    /// Passes every number through `convert`.
     pub(crate) fn map(self, convert: impl Fn(T) -> T + Copy) -> Self {
-        let Measured { residual, scale } = self.measured;
+        let StepResidual { residual, scale } = self.measured;
         Self {
             h: convert(self.h),
             predictor: self.predictor.map(convert),
             remainder: self.remainder.map(convert),
-            measured: Measured { residual: residual.map(convert), scale: scale.map(convert) },
+            measured: StepResidual { residual: residual.map(convert), scale: scale.map(convert) },
             begun: self.begun,
             changed: self.changed,
         }
     }
 
-    /// Steps of another length, of which the last velocity is the first guess; what the last step left was measured.
+    /// The sequence for another length. The last velocity is the first guess, and the last residual stays.
     pub(crate) fn with_length(&self, h: T) -> Self {
         Self { measured: self.measured, ..Self::new(h, self.v()) }
     }
 
-    /// The steps of the same system with other parameters.
+    /// The sequence for the same system with other parameters.
     pub(crate) fn with_other_parameters(self) -> Self {
         Self { changed: true, ..self }
     }
 
-    /// Whether there was no step yet.
+    /// Whether no step has been taken yet.
     pub(crate) fn is_new(&self) -> bool {
         !self.begun
     }
@@ -182,45 +183,45 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         self.predictor.newest()
     }
 
-    /// What the last step left of its equation.
-    pub(crate) fn measured(&self) -> &Measured<N, T> {
+    /// Residual of the last step.
+    pub(crate) fn measured(&self) -> &StepResidual<N, T> {
         &self.measured
     }
 
     /// Whether every number is finite.
     pub(crate) fn is_finite(&self) -> bool {
-        let Measured { residual, scale } = &self.measured;
+        let StepResidual { residual, scale } = &self.measured;
         let vectors = [&self.remainder, residual, scale];
         self.predictor.is_finite() && vectors.into_iter().flat_map(|u| u.iter()).all(|entry| entry.is_finite())
     }
 
-    /// Whether the step is the common one: by one matrix, or from a guess of the highest order.
+    /// Whether the next step is common: by one matrix product, or from a guess of the highest order.
     #[inline(always)]
     pub(crate) fn is_common<S: FixedStepping<N, T>>(&self) -> bool {
         S::CLOSED_FORM || self.predictor.is_highest()
     }
 
-    /// The common step from `node`: by one matrix, or by corrections of a guess of the highest order. `None` where these do not solve
-    /// it.
+    /// The common step from `node`: by one matrix product, or by corrections of a guess of the highest order. `None` if
+    /// these do not converge.
     #[inline(always)]
     pub(crate) fn common<S: FixedStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
         corrector: &Corrector<S::Jacobian, N, T>,
-    ) -> Option<Solved<N, T>> {
+    ) -> Option<MomentumStep<N, T>> {
         match corrector {
             Corrector::ClosedForm(form, _) if S::CLOSED_FORM => self.by_matrix(system, node, form),
             _ => self.corrected(system, node, corrector, self.predictor.guess_highest()),
         }
     }
 
-    /// The velocity that the last steps give.
+    /// The extrapolated velocity.
     pub(crate) fn guess(&self) -> SVector<T, N> {
         self.predictor.guess()
     }
 
-    /// The step from `node` by corrections of v; `None` where three do not solve it.
+    /// The step from `node` by corrections of v; `None` after three without convergence.
     #[inline(always)]
     pub(crate) fn corrected<S: FixedStepping<N, T>>(
         &self,
@@ -228,8 +229,8 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         node: &Node<N, T>,
         corrector: &Corrector<S::Jacobian, N, T>,
         mut v: SVector<T, N>,
-    ) -> Option<Solved<N, T>> {
-        // So that the compiler sees which one it is.
+    ) -> Option<MomentumStep<N, T>> {
+        // A known variant, for the optimizer.
         let corrector = if S::CONSTANT_JACOBIAN { corrector } else { &Corrector::Newton };
         for iterations in 1..=CORRECTIONS {
             let solved = self.corrected_once(system, node, corrector, &mut v, iterations);
@@ -240,7 +241,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         None
     }
 
-    /// The step from `node` after a correction of v, where its residual is at the floor then.
+    /// The step from `node` after one correction of v, if its residual is then at the floor.
     #[inline(always)]
     fn corrected_once<S: FixedStepping<N, T>>(
         &self,
@@ -249,14 +250,14 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         corrector: &Corrector<S::Jacobian, N, T>,
         v: &mut SVector<T, N>,
         iterations: u32,
-    ) -> Option<Solved<N, T>> {
+    ) -> Option<MomentumStep<N, T>> {
         let equation = system.momentum_equation(node, self.h, v);
         *v -= corrector.correction(&equation.jacobian, &(equation.residual + self.remainder));
         let MomentumResidual { residual, scale, increment } = system.momentum_residual(node, self.h, v);
-        // Long functions have computed the scales of their terms; short ones are inlined, and compute them where they are needed: where
-        // momenta vanish, and what they are sums of does not.
+        // Long functions have computed the scales of their terms. Short ones are inlined and compute them on request,
+        // if momenta vanish but their terms do not.
         let first = if S::INLINED { momentum_scale(node, &increment) } else { scale };
-        let mut measured = Measured { residual, scale: first };
+        let mut measured = StepResidual { residual, scale: first };
         if !measured.is_at_floor(&self.remainder) {
             measured.scale = scale;
             if !(S::INLINED && measured.is_at_floor(&self.remainder)) {
@@ -264,56 +265,56 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
             }
         }
         let remainder = residual + self.remainder;
-        Some(Solved { v: *v, increment, iterations, measured, remainder, predicted: true })
+        Some(MomentumStep { v: *v, increment, iterations, measured, remainder, predicted: true })
     }
 
-    /// The step by one matrix, where that solves it to rounding.
+    /// The step by one matrix product, if that solves it to rounding.
     #[inline(always)]
     fn by_matrix<S: FixedStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
         form: &ClosedForm<T>,
-    ) -> Option<Solved<N, T>> {
+    ) -> Option<MomentumStep<N, T>> {
         let (v, increment) = form.step(node);
         let at = system.momentum_residual(node, self.h, &v);
-        let measured = Measured { residual: at.residual, scale: momentum_scale(node, &increment) };
-        let lost = Measured { residual: increment - at.increment, ..measured };
+        let measured = StepResidual { residual: at.residual, scale: momentum_scale(node, &increment) };
+        let lost = StepResidual { residual: increment - at.increment, ..measured };
         let remainder = SVector::zeros();
         let solved = measured.is_at_floor(&remainder) && lost.is_at_floor(&remainder);
-        solved.then_some(Solved { v, increment, iterations: 0, measured, remainder, predicted: true })
+        solved.then_some(MomentumStep { v, increment, iterations: 0, measured, remainder, predicted: true })
     }
 
-    /// The step from `node` by Newton's iteration, or by continuation.
+    /// The step from `node` by Newton iteration, or by continuation.
     ///
     /// # Errors
-    /// Those of Newton's iteration and of the continuation.
+    /// Those of Newton iteration and of the continuation.
     #[cold]
     pub(crate) fn searched<S: FixedStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
         branch: Branch,
-    ) -> Result<Solved<N, T>, StepError> {
+    ) -> Result<MomentumStep<N, T>, StepError> {
         let (h, start) = (self.h, self.v());
-        let Reached { v, iterations } = match branch {
+        let BranchPoint { v, iterations } = match branch {
             Branch::Nearest => continuation::nearest(system, node, h, start, start)?,
             Branch::Connected => continuation::solve(system, node, h, start, continuation::Pace::CLOSE)?,
         };
         let MomentumResidual { residual, increment, .. } = system.momentum_residual(node, h, &v);
-        let measured = Measured { residual, scale: system.momentum_rounding(node, h, &v) };
-        Ok(Solved { v, increment, iterations, measured, remainder: SVector::zeros(), predicted: false })
+        let measured = StepResidual { residual, scale: system.momentum_rounding(node, h, &v) };
+        Ok(MomentumStep { v, increment, iterations, measured, remainder: SVector::zeros(), predicted: false })
     }
 
-    /// Takes a common step.
+    /// Records a common step.
     #[inline(always)]
-    pub(crate) fn push_common(&mut self, solved: &Solved<N, T>) {
+    pub(crate) fn push_common(&mut self, solved: &MomentumStep<N, T>) {
         self.predictor.push_highest(solved.v);
         self.keep(solved);
     }
 
-    /// Takes any step.
-    pub(crate) fn push(&mut self, solved: &Solved<N, T>) {
+    /// Records any step.
+    pub(crate) fn push(&mut self, solved: &MomentumStep<N, T>) {
         if solved.predicted {
             self.predictor.push(solved.v);
         } else {
@@ -323,7 +324,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     }
 
     #[inline(always)]
-    fn keep(&mut self, solved: &Solved<N, T>) {
+    fn keep(&mut self, solved: &MomentumStep<N, T>) {
         self.remainder = solved.remainder;
         self.measured = solved.measured;
         self.begun = true;
@@ -331,7 +332,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     }
 }
 
-/// What a rounding of each row is ε times of, at least.
+/// Lower bound of the scale of each row.
 #[inline(always)]
 fn momentum_scale<const N: usize, T: Scalar>(node: &Node<N, T>, increment: &SVector<T, N>) -> SVector<T, N> {
     let mut scale = *increment;

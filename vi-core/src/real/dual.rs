@@ -1,8 +1,9 @@
-//! Dual numbers a + b ε with ε² = 0: derivatives that owe nothing to the symbolic ones.
+//! Dual numbers a + b ε with ε² = 0: automatic differentiation, independent of the symbolic derivatives.
 //!
-//! In: a function that is generic over [`Real`]. Out, for `x = a + b ε`: `f(x) = f(a) + f'(a) b ε`, differentiated
-//! operation by operation. b is a number, or several side by side ([`Slopes`]): derivatives in several directions by one evaluation.
-//! `Dual<Dual<f64>>` gives second derivatives. Source: Griewank and Walther, Evaluating Derivatives, chapter 3.
+//! For a function that is generic over [`Real`] and `x = a + b ε`, the result is `f(x) = f(a) + f'(a) b ε`,
+//! differentiated operation by operation. b is a number, or several ([`Slopes`]) for derivatives in several directions
+//! by one evaluation. `Dual<Dual<f64>>` gives second derivatives. Source: Griewank and Walther, Evaluating Derivatives,
+//! chapter 3.
 
 use crate::real::Real;
 use core::array;
@@ -10,7 +11,7 @@ use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use nalgebra::SVector;
 
-/// A value and its derivative by one variable, or by several.
+/// A value and its derivative with respect to one variable, or to several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<T, D = T> {
     /// The value.
@@ -19,19 +20,19 @@ pub struct Dual<T, D = T> {
     pub slope: D,
 }
 
-/// W derivatives of a number T, side by side.
+/// W derivatives of a number T.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<T, const W: usize>(pub [T; W]);
 
-/// Derivatives of numbers T: what is added, and multiplied by such numbers.
+/// Derivatives of numbers T, which add and multiply by such numbers.
 pub trait Slope<T>:
     Copy + Debug + PartialEq + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self>
 {
-    /// The derivative of what does not change.
+    /// The derivative of a constant.
     fn zero() -> Self;
-    /// Whether all are zero.
+    /// Whether all derivatives are zero.
     fn is_zero(&self) -> bool;
-    /// Whether all are finite.
+    /// Whether all derivatives are finite.
     fn is_finite(self) -> bool;
     /// `factor · self`.
     #[must_use]
@@ -39,7 +40,8 @@ pub trait Slope<T>:
     /// `self / divisor`.
     #[must_use]
     fn over(self, divisor: T) -> Self;
-    /// `derivative · self`; zero where self is zero: what does not change has no slope, not even by a function whose own slope is infinite there.
+    /// `derivative · self`; zero if self is zero: a constant has no slope, not even through a function with an infinite
+    /// one.
     #[must_use]
     fn chain(self, derivative: T) -> Self;
 }
@@ -108,7 +110,7 @@ impl<T: Real, const W: usize> Neg for Slopes<T, W> {
 }
 
 impl<T: Real> Dual<T> {
-    /// The variable itself.
+    /// The variable itself, with slope one.
     #[must_use]
     pub fn variable(value: T) -> Self {
         Self { value, slope: T::one() }
@@ -116,7 +118,7 @@ impl<T: Real> Dual<T> {
 }
 
 impl<T: Real, D: Slope<T>> Dual<T, D> {
-    /// A number that does not change.
+    /// A constant.
     #[must_use]
     pub fn fixed(value: T) -> Self {
         Self { value, slope: D::zero() }
@@ -128,12 +130,12 @@ impl<T: Real, D: Slope<T>> Dual<T, D> {
     }
 }
 
-/// A vector that does not change.
+/// A constant vector.
 pub(crate) fn lift<T: Real, const N: usize>(vector: &SVector<T, N>) -> SVector<Dual<T>, N> {
     vector.map(Dual::fixed)
 }
 
-/// A vector that changes in a direction.
+/// A vector with derivatives along a direction.
 pub(crate) fn along<T: Real, const N: usize>(vector: &SVector<T, N>, direction: &SVector<T, N>) -> SVector<Dual<T>, N> {
     vector.zip_map(direction, |value, slope| Dual { value, slope })
 }
@@ -143,7 +145,7 @@ pub(crate) fn unit<T: Real, const N: usize>(index: usize) -> SVector<T, N> {
     SVector::from_fn(|row, _| if row == index { T::one() } else { T::zero() })
 }
 
-/// How fast each entry changes.
+/// Derivatives of each entry.
 pub(crate) fn slopes<T: Real, const N: usize>(vector: &SVector<Dual<T>, N>) -> SVector<T, N> {
     vector.map(|entry| entry.slope)
 }
@@ -290,8 +292,8 @@ impl<T: Real, D: Slope<T>> Real for Dual<T, D> {
     fn pow(self, exponent: Self) -> Self {
         let value = self.value.pow(exponent.value);
         let by_base = self.slope.chain(exponent.value * self.value.pow(exponent.value - T::one()));
-        // A fixed exponent needs no logarithm, which a base below zero does not have.
-        // Neither does x^y ln x at x = 0, which is 0 as x^y is.
+        // A fixed exponent needs no logarithm, which does not exist for a negative base. At x = 0, x^y ln x is 0 like
+        // x^y, and needs none either.
         if exponent.slope.is_zero() || value.is_zero() {
             return Self { value, slope: by_base };
         }
@@ -327,7 +329,7 @@ mod tests {
     use super::*;
     use crate::real::{Lane, Lanes, Rounded, Series};
 
-    /// Value, slope, and the slope of the slope of what is zero where a base is.
+    /// Value, slope and second derivative of an expression that is zero if a base is.
     fn parts(derivatives: u8, base: f64) -> [f64; 3] {
         type Second = Dual<Dual<f64>>;
         let number = |value| Second { value: Dual { value, slope: 2.0 }, slope: Dual { value: 3.0, slope: 4.0 } };

@@ -1,22 +1,22 @@
-//! The number that loops over trajectories compute with.
+//! The number type of loops over trajectories.
 //!
-//! In: formulas generic over [`Real`]. Out: the same in `f64`, one trajectory at a time, without a branch or a call in
-//! what can do without, so that the compiler widens the loop around it to as many lanes as the processor has. An explicit
-//! vector type would choose its instructions when it is compiled, before the processor is known.
+//! Formulas generic over [`Real`] compute in `f64`, one trajectory at a time. They avoid branches and calls, so that
+//! the compiler vectorizes the surrounding loop for the processor's lanes. An explicit vector type would fix its
+//! instructions at compile time, before the processor is known.
 //!
-//! The compiler may not round once where the formula rounds twice. So a product is kept as its two factors until it is
-//! known what it is added to, and `a b + c` is one instruction where the processor has it. What is a product and what is
-//! not is known when the formula is compiled: nothing of it is left in the program.
+//! The compiler may not fuse operations on its own. A product therefore stays a pair of factors until an addition
+//! follows, and `a b + c` is one instruction if the processor has it. Which values are products is known at compile
+//! time and costs nothing at run time.
 
 use super::{Real, sine};
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// One lane: a number whose sine and cosine have no slow path. `FUSED`: whether products are added in one instruction.
+/// One lane: a number whose sine and cosine have no slow path. `FUSED`: whether to use fused multiply-add.
 #[derive(Clone, Copy, Debug)]
 pub struct Lane<const FUSED: bool> {
     /// The number, or its first factor.
     value: f64,
-    /// Its second factor: 1 where it is no product, so that reading it asks nothing.
+    /// Its second factor; 1 for a plain number, so that reading it needs no branch.
     factor: f64,
     product: bool,
 }
@@ -29,7 +29,7 @@ impl<const FUSED: bool> Lane<FUSED> {
         Self { value, factor: 1.0, product: false }
     }
 
-    /// `a b + c`, rounded once where the processor can.
+    /// `a b + c`, rounded once if the processor supports it.
     #[must_use]
     #[inline(always)]
     pub fn multiply_add(a: f64, b: f64, c: f64) -> f64 {
@@ -149,7 +149,7 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
     fn cos(self) -> Self {
         self.sin_cos().1
     }
-    /// Not a number for angles that only the library reduces: the trajectory takes that step by itself.
+    /// NaN for angles that only the library reduces: the trajectory takes that step alone.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let angle = self.get();
@@ -160,7 +160,7 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
     }
     #[inline(always)]
     fn zero_where(self, base: Self, _derivatives: u8) -> Self {
-        // A choice between numbers, and no branch.
+        // A select, without a branch.
         Self::new(if base.get() == 0.0 { 0.0 } else { self.get() })
     }
     #[inline(always)]

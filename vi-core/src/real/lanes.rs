@@ -1,17 +1,18 @@
-//! Several numbers that one formula computes with at once.
+//! Several numbers per operation: SIMD lanes inside one formula.
 //!
-//! In: formulas generic over [`Real`]. Out: the same of W numbers side by side, so that every operation of a long formula, in loops over coordinates too,
-//! becomes vector instructions. [`Lane`](super::Lane) leaves that to a loop around the formula, which the compiler widens where the formula is short.
+//! Formulas generic over [`Real`] compute with W numbers at once, so that every operation of a long formula, also in
+//! loops over coordinates, becomes a vector instruction. [`Lane`](super::Lane) is for short formulas: there the
+//! compiler vectorizes the surrounding loop.
 
 use super::{Real, sine};
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// W numbers. `FUSED`: whether the processor adds products in one instruction; sines use it.
+/// W numbers. `FUSED`: whether sines use fused multiply-add.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const W: usize, const FUSED: bool>(pub [f64; W]);
 
 impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
-    /// A function of each.
+    /// Applies a function to each.
     #[inline(always)]
     fn each(self, function: impl Fn(f64) -> f64) -> Self {
         let mut all = self;
@@ -23,7 +24,7 @@ impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
         all
     }
 
-    /// A function of pairs.
+    /// Applies a function to each pair.
     #[inline(always)]
     fn pairs(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
         let mut all = self;
@@ -35,7 +36,7 @@ impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
         all
     }
 
-    /// Whether all of them are so.
+    /// Whether a predicate holds for all of them.
     #[inline(always)]
     fn all(self, is_so: impl Fn(f64) -> bool) -> bool {
         self.0.into_iter().fold(true, |all, number| all & is_so(number))
@@ -123,7 +124,7 @@ impl<const W: usize, const FUSED: bool> Real for Lanes<W, FUSED> {
     fn cos(self) -> Self {
         self.sin_cos().1
     }
-    /// Not a number for angles that only the library reduces, as of [`Lane`](super::Lane).
+    /// NaN for angles that only the library reduces, as with [`Lane`](super::Lane).
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let mut sines = self;
@@ -156,7 +157,7 @@ impl<const W: usize, const FUSED: bool> Real for Lanes<W, FUSED> {
         }
         all
     }
-    /// The first of them: where lanes are read one by one, it is not by this.
+    /// The first lane; code that needs every lane does not use this.
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self.0.first().copied().unwrap_or(f64::NAN)

@@ -1,23 +1,23 @@
-//! Numbers that carry a bound of their rounding: running error analysis.
+//! Numbers that carry a rounding-error bound: running error analysis.
 //!
-//! In: a formula generic over [`Real`]. Out: its value, and how far rounding can have moved it, to first order and in units of
-//! half an ulp of 1, when it was evaluated in any of the numbers that steps are taken with. With `z = x ∘ y`,
+//! A formula generic over [`Real`] returns its value and a first-order bound of its rounding error. The bound is in
+//! units of half an ulp of 1, and holds for any number type of the steppers. With `z = x ∘ y`,
 //!
 //! ```text
 //! e(x ± y) = e(x) + e(y) + |z|          e(x y) = |x| e(y) + |y| e(x) + |z|          e(f(x)) = |f'(x)| e(x) + 2 |z|
 //! ```
 //!
-//! so that what cancels inside a formula stays in the bound: a residual below it is zero as far as the arithmetic can tell.
-//! Library functions are taken to be right to an ulp. A kink or a jump (`abs`, `sign`) is taken where the value is.
-//! It runs on rare paths, and each operation is a call: the formulas of a system stay short in the program.
+//! so that cancellation inside a formula stays in the bound: a residual below it is zero to rounding. Library functions
+//! are assumed accurate to an ulp. A kink or a jump (`abs`, `sign`) uses the side of the value. The type is for cold
+//! paths, and each operation is a call, which keeps the formulas of a system small in the program.
 //!
 //! Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.3.
 
 use super::Real;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number with a bound of its rounding, by running error analysis (Higham, Accuracy and Stability of Numerical Algorithms,
-/// section 3.3).
+/// A number with a rounding-error bound, by running error analysis (Higham, Accuracy and Stability of Numerical
+/// Algorithms, section 3.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded {
     value: f64,
@@ -26,33 +26,33 @@ pub struct Rounded {
 }
 
 impl Rounded {
-    /// A number that is exact.
+    /// An exact number.
     #[must_use]
     pub fn exact(value: f64) -> Self {
         Self { value, error: 0.0 }
     }
 
-    /// A number that is the nearest of its kind to the one that is meant.
+    /// The nearest representable number to an exact one.
     #[must_use]
     pub fn nearest(value: f64) -> Self {
         Self { value, error: value.abs() }
     }
 
-    /// The bound of its rounding, in units of half an ulp of 1.
+    /// The rounding-error bound, in units of half an ulp of 1.
     #[must_use]
     pub fn error(self) -> f64 {
         self.error
     }
 
-    /// The same in ulps of 1: what a residual is one rounding of, times ε.
+    /// The rounding-error bound, in ulps of 1: times ε it is one rounding of a residual.
     #[must_use]
     pub fn ulps(self) -> f64 {
         0.5 * self.error
     }
 
-    /// What an operation makes of operands whose errors come to `carried`.
+    /// The result of an operation whose operands contribute the error `carried`.
     fn rounding(value: f64, carried: f64, ulps: f64) -> Self {
-        // Below the smallest normal number a rounding is as large as there.
+        // Subnormal numbers have the rounding error of the smallest normal one.
         Self { value, error: carried + ulps * value.abs() + f64::MIN_POSITIVE }
     }
 
@@ -63,13 +63,13 @@ impl Rounded {
     }
 }
 
-/// `a b`, and 0 where one of them is: an infinite slope does not matter where there is no error, nor does any error of a factor
-/// beside zero.
+/// `a b`, and 0 if one factor is 0: an infinite slope does not matter without an error, nor any error next to a zero
+/// factor.
 fn product(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
-/// Radians by which an angle may be wrong for its sine to have the most of its digits.
+/// Largest error of an angle, in radians, for which its sine keeps most of its digits.
 const HARDLY_KNOWN: f64 = 1e-6;
 /// Half an ulp of 1.
 const UNIT: f64 = 0.5 * f64::EPSILON;
@@ -135,14 +135,14 @@ impl num_traits::One for Rounded {
 impl Real for Rounded {
     const EPSILON: f64 = f64::EPSILON;
 
-    /// A constant or a parameter, which is what its number is.
+    /// A constant or a parameter counts as exact.
     fn real(value: f64) -> Self {
         Self::exact(value)
     }
     fn recip(self) -> Self {
         Self::exact(1.0) / self
     }
-    /// Its slope is infinite at zero, how far it changes is not: `√(x + e) − √x = e/(√(x + e) + √x)`.
+    /// The slope is infinite at zero, but the change is finite: `√(x + e) − √x = e/(√(x + e) + √x)`.
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         let farthest = (self.value + UNIT * self.error).sqrt();
@@ -161,7 +161,8 @@ impl Real for Rounded {
     fn cos(self) -> Self {
         self.sin_cos().1
     }
-    /// Of an angle that is hardly known the bound is not a number, and nothing that it enters is a rounding: of stages that went astray anything would be.
+    /// The bound is NaN for an angle with a large error. Otherwise the residual of diverged stages would count as
+    /// rounding.
     fn sin_cos(self) -> (Self, Self) {
         if UNIT * self.error > HARDLY_KNOWN {
             return [self.value.sin(), self.value.cos()].map(|value| Self { value, error: f64::NAN }).into();
@@ -209,7 +210,7 @@ impl Real for Rounded {
     fn pow(self, exponent: Self) -> Self {
         let value = self.value.powf(exponent.value);
         if self.value == 0.0 {
-            // There is no slope, but a farthest value.
+            // There is no slope, but a largest value.
             let farthest = (UNIT * self.error).powf(exponent.value);
             return Self::rounding(value, if self.error == 0.0 { 0.0 } else { farthest / UNIT }, 2.0);
         }

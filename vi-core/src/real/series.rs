@@ -1,20 +1,20 @@
-//! Truncated power series `c_0 + c_1 τ + … `: derivatives of any order of what a formula is along a motion.
+//! Truncated power series `c_0 + c_1 τ + … `: derivatives of any order of a formula along a trajectory.
 //!
-//! In: a formula generic over [`Real`], and its arguments as series in τ. Out: the series of its value, exact to the last term that is
-//! kept; [`Series::derivative`] gives the derivatives at τ = 0. A function f with `f' = g` is the solution of `u' = g x'`, found by as
-//! many integrations as there are terms, each of which makes one more of them right:
+//! A formula generic over [`Real`], with arguments as series in τ, returns the series of its value, exact to the last
+//! stored term; [`Series::derivative`] returns the derivatives at τ = 0. A function f with `f' = g` solves `u' = g x'`,
+//! by as many integrations as there are terms, each of which adds one correct term:
 //!
 //! ```text
 //! u ← f(x_0) + ∫ g(u, x) x' dτ
 //! ```
 //!
-//! Source: Griewank and Walther, Evaluating Derivatives, chapter 13. Functions of what does not change are constants, even where their
-//! slope is infinite.
+//! Source: Griewank and Walther, Evaluating Derivatives, chapter 13. Functions of constants are constants, even if
+//! their slope is infinite.
 
 use super::Real;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Terms of a series, the constant one among them: derivatives up to order six, which steps of three stages need.
+/// Terms of a series, including the constant: derivatives up to order six, which steps of three stages need.
 const TERMS: usize = 7;
 
 /// A truncated power series.
@@ -24,7 +24,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// A number that does not change.
+    /// A constant.
     #[must_use]
     pub fn fixed(value: f64) -> Self {
         Self::from_fn(|k| if k == 0 { value } else { 0.0 })
@@ -63,7 +63,7 @@ impl Series {
         Self::from_fn(|k| if k == 0 { 0.0 } else { self.terms[k - 1] / real(k) })
     }
 
-    /// The derivative by τ; its last term is lost.
+    /// The derivative with respect to τ; it has no last term.
     fn slope(&self) -> Self {
         Self::from_fn(|k| self.term(k + 1) * real(k + 1))
     }
@@ -234,7 +234,7 @@ impl Real for Series {
         (self * self + other * other).sqrt()
     }
     fn pow(self, exponent: Self) -> Self {
-        // A fixed exponent needs no logarithm, which a base below zero does not have.
+        // A fixed exponent needs no logarithm, which does not exist for a negative base.
         if exponent.is_fixed() {
             self.function(self.value().powf(exponent.value()), |u| exponent * u / self)
         } else {
@@ -244,7 +244,8 @@ impl Real for Series {
     fn max(self, other: Self) -> Self {
         if self.value() >= other.value() { self } else { other }
     }
-    /// Of a base that does not change the limit holds along the motion; else as many terms are known as derivatives.
+    /// For a constant base the limit holds along the trajectory; otherwise only the first `derivatives` terms are
+    /// known.
     fn zero_where(self, base: Self, derivatives: u8) -> Self {
         if base.value() != 0.0 {
             return self;

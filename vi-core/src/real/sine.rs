@@ -1,25 +1,24 @@
-//! Sine and cosine without a branch or a call, so that a loop over trajectories becomes vector instructions.
+//! Sine and cosine without a branch or a call, so that a loop over trajectories vectorizes.
 //!
-//! In: an angle x in radians, |x| ≤ [`LARGEST`]. Out: sin x and cos x, within 0.8 ulp. With n the integer nearest to
+//! For an angle x in radians, |x| ≤ [`LARGEST`], sin x and cos x are accurate to 0.8 ulp. With n the integer nearest to
 //! x · 2/π, the reduced angle `x − n π/2 = y + y_low` is in [−π/4, π/4] up to rounding,
 //!
 //! ```text
 //! sin y = y − y³ S(y²)      cos y = 1 − y²/2 + y⁴ C(y²)
 //! ```
 //!
-//! and n mod 4 says which of the two is which, and their signs. π/2 is subtracted in three parts (Cody and Waite), the
+//! and n mod 4 determines the exchange of both and their signs. π/2 is subtracted in three parts (Cody and Waite), the
 //! first two of 33 bits, so that their products with n are exact; the polynomials are those of fdlibm.
 
 use core::ops::{Add, BitXor, Mul, Neg, Shl, Sub};
 use wide::{f64x2, f64x4, u64x2, u64x4};
 
-/// Largest angle that is reduced here, in radians: up to it n has 16 bits. Beyond, and for what is not a number, ask the
-/// library.
+/// Largest reducible angle, in radians: up to it n has 16 bits. Beyond, and for NaN, use the library.
 pub const LARGEST: f64 = 1.0e5;
 
 /// π/2 as the sum of three numbers, the first two with 33 bits.
 const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
-/// Adding this number rounds to an integer, which then stands in the lowest bits: 1.5 · 2⁵².
+/// Adding this number rounds to an integer, stored in the lowest bits: 1.5 · 2⁵².
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
 
 const S: [f64; 6] = [
@@ -39,23 +38,23 @@ const C: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// A number, or several side by side.
+/// A number, or a vector of numbers.
 pub trait Vector: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
     /// Their bits.
     type Bits: Copy + Shl<u32, Output = Self::Bits> + BitXor<Output = Self::Bits>;
 
-    /// The same number everywhere.
+    /// The same number in every lane.
     fn splat(value: f64) -> Self;
     /// `self · b + c` in one operation.
     #[must_use]
     fn fused(self, b: Self, c: Self) -> Self;
     /// The bits.
     fn bits(self) -> Self::Bits;
-    /// The numbers whose bits are these.
+    /// The numbers with these bits.
     fn from_bits(bits: Self::Bits) -> Self;
-    /// The highest bit, as it is.
+    /// The sign bit, in place.
     fn highest(bits: Self::Bits) -> Self::Bits;
-    /// `bits` where `odd` is an odd number, else none.
+    /// `bits` if `odd` is odd, otherwise zero.
     fn where_odd(odd: Self::Bits, bits: Self::Bits) -> Self::Bits;
 }
 
@@ -87,8 +86,8 @@ impl_vector! {
     f64x4, u64x4, f64x4::splat, core::ops::Sub::sub;
 }
 
-/// Sine and cosine of x, in this order, for |x| ≤ [`LARGEST`]. `FUSED` where the code is compiled for a processor that
-/// multiplies and adds in one instruction; elsewhere that would be a call.
+/// Sine and cosine of x, in this order, for |x| ≤ [`LARGEST`]. `FUSED` requires code compiled for a processor with
+/// fused multiply-add; elsewhere each of them would be a call.
 #[inline(always)]
 #[must_use]
 pub fn sin_cos<V: Vector, const FUSED: bool>(x: V) -> (V, V) {
@@ -96,14 +95,14 @@ pub fn sin_cos<V: Vector, const FUSED: bool>(x: V) -> (V, V) {
     let (quarter, n) = (shifted.bits(), shifted - V::splat(ROUNDING));
     let (y, y_low) = reduced::<V, FUSED>(x, n);
     let (s, c) = (sine::<V, FUSED>(y, y_low).bits(), cosine::<V, FUSED>(y, y_low).bits());
-    // An exchange written with `if` becomes a jump, and angles of any size make that a gamble.
+    // An exchange written with `if` becomes a jump, which the processor mispredicts for varying angles.
     let exchange = V::where_odd(quarter, s ^ c);
-    // The second bit of n, and of n + 1, moved to where the sign of a number is.
+    // The second bit of n, and of n + 1, moved to the sign bit.
     let second = quarter << 62;
     (V::from_bits(s ^ exchange ^ V::highest(second)), V::from_bits(c ^ exchange ^ V::highest(second ^ (quarter << 63))))
 }
 
-/// The same of several angles, up to four at a time.
+/// The same for several angles, up to four at a time.
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_each<const K: usize, const FUSED: bool>(angles: [f64; K]) -> [(f64, f64); K] {
@@ -132,7 +131,7 @@ fn multiply_add<V: Vector, const FUSED: bool>(a: V, b: V, c: V) -> V {
     if FUSED { a.fused(b, c) } else { a * b + c }
 }
 
-/// The polynomial of degree 5 in z; terms are paired, so that they do not wait for each other.
+/// The polynomial of degree 5 in z; paired terms shorten the dependency chain.
 #[inline(always)]
 fn polynomial<V: Vector, const FUSED: bool>(c: &[f64; 6], z: V) -> V {
     let square = z * z;
@@ -148,7 +147,7 @@ fn reduced<V: Vector, const FUSED: bool>(x: V, n: V) -> (V, V) {
     let (rest, part) = (multiply_add::<V, FUSED>(n, V::splat(-first), x), n * V::splat(second));
     let (most, last) = (rest - part, n * V::splat(third));
     let y = most - last;
-    // What rounding took from both differences, beside the path that the result waits for.
+    // Rounding errors of both differences, off the critical path.
     (y, ((most - y) - last) + ((rest - most) - part))
 }
 
@@ -156,7 +155,7 @@ fn reduced<V: Vector, const FUSED: bool>(x: V, n: V) -> (V, V) {
 fn sine<V: Vector, const FUSED: bool>(y: V, y_low: V) -> V {
     let z = y * y;
     let low = multiply_add::<V, FUSED>(V::splat(0.5) * z, y_low, -y_low);
-    // Subtracted, because then sin(−0) = −0.
+    // A difference, so that sin(−0) = −0.
     y - multiply_add::<V, FUSED>(z * y, polynomial::<V, FUSED>(&S, z), low)
 }
 
@@ -193,7 +192,7 @@ mod tests {
 
     /// Numbers of double precision between a and b.
     fn distance(a: f64, b: f64) -> u64 {
-        // Of one sign, numbers are ordered as their bits; across zero they are nowhere near.
+        // Numbers of one sign are ordered as their bits; across zero they are far apart.
         if a.is_sign_negative() == b.is_sign_negative() { a.to_bits().abs_diff(b.to_bits()) } else { u64::MAX }
     }
 
@@ -240,7 +239,7 @@ mod tests {
             agree::<3, false>([x[0], x[1], x[2]]);
             agree::<5, false>([x[0], x[1], x[2], x[3], x[4]]);
         }
-        // Without the instruction vectors are not fused, whatever they are told.
+        // Without the instruction, vectors are never fused.
         #[cfg(target_feature = "fma")]
         all.windows(4).for_each(|x| agree::<4, true>([x[0], x[1], x[2], x[3]]));
     }

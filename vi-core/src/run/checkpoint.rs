@@ -1,8 +1,9 @@
-//! Checkpoints: everything that a run carries, with the system that it is of.
+//! Checkpoints: the complete data of a run and its system.
 //!
-//! In: a run between two steps. Out: a [`Checkpoint`], which the feature `serde` stores in any format that keeps numbers exactly (`serde_json` with its feature
-//! `float_roundtrip`), and the run again. AFTER A RESTART every number of every further step, and every error, is bit for bit that of the run that was not
-//! interrupted, on a processor with the same instructions. An error is not stored: the restarted run meets it again.
+//! A [`Checkpoint`] holds a run between two steps. The feature `serde` stores it in any format that keeps numbers
+//! exactly (`serde_json` with its feature `float_roundtrip`). After a restart every number and every error of later
+//! steps is bit for bit that of the uninterrupted run, on a processor with the same instructions. Errors are not
+//! stored: the restarted run meets them again.
 
 use super::Run;
 use crate::error::StepError;
@@ -11,7 +12,7 @@ use crate::method::{Memory as _, Method};
 use crate::node::Node;
 use crate::real::Scalar;
 
-/// A run between two steps, and the system and rule that it is of.
+/// A run between two steps, with its system and rule.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -23,15 +24,15 @@ use crate::real::Scalar;
 )]
 pub struct Checkpoint<Y, const N: usize, T = f64> {
     system: String,
-    /// None for the first rule that the system is declared with.
+    /// `None` for the first rule of the system.
     #[cfg_attr(feature = "serde", serde(default))]
     rule: Option<String>,
-    /// Names and values, in the order in which they are declared.
+    /// Names and values, in the order of their declaration.
     parameters: Vec<(String, T)>,
     run: Stored<Y, N, T>,
 }
 
-/// What a run carries from step to step.
+/// The data that a run carries from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -48,7 +49,7 @@ pub struct Stored<Y, const N: usize, T = f64> {
 }
 
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Run<M, S, N, T> {
-    /// Everything that the run carries, and the name and parameters of its system. Allocates.
+    /// Stores the data of the run, and the name and parameters of its system. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<M::Memory, N, T> {
         let named = S::PARAMETERS.iter().enumerate();
         Checkpoint {
@@ -59,11 +60,11 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
-    /// The run that was at `checkpoint`, bit for bit.
+    /// Resumes the run of `checkpoint`, bit for bit.
     ///
     /// # Errors
-    /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and [`StepError::InvalidInput`] for one that no
-    /// run of this method can have left.
+    /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`]
+    /// and [`StepError::InvalidInput`] for data that no run of this method can produce.
     pub fn restart(system: S, method: M, checkpoint: Checkpoint<M::Memory, N, T>) -> Result<Self, StepError> {
         let Stored { node, h, memory } = checkpoint.run_of(&system, method.rule())?;
         method.check_length(h)?;
@@ -75,7 +76,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 }
 
 impl<Y, const N: usize, T: Scalar> Checkpoint<Y, N, T> {
-    /// What is stored, if it is of this system by this rule with these parameters.
+    /// Returns the stored data, if system, rule and parameters agree.
     fn run_of<S: Lagrangian<N, T>>(self, system: &S, rule: Option<&'static str>) -> Result<Stored<Y, N, T>, StepError> {
         let other = |parameter, stored, given| StepError::OtherSystem { system: S::NAME, parameter, stored, given };
         let names = self.parameters.iter().map(|(name, _)| name.as_str());

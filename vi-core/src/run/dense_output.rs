@@ -1,14 +1,14 @@
-//! The motion between the two nodes of a step.
+//! Dense output: q and p between the two nodes of a step, as polynomials. Velocities are their derivatives.
 //!
-//! In: a step that was taken. Out: q and p at any time of it, as polynomials; velocities are their derivatives. A step of one stage has the Hermite cubics through its
-//! ends,
+//! A step of one stage uses the Hermite cubics through its ends,
 //!
 //! ```text
 //! q(t0 + θh) = q0 + θ (Δq + (1 − θ) ((1 − θ) (h v0 − Δq) − θ (h v1 − Δq)))        Δq = q1 − q0
 //! ```
 //!
-//! and the same of p with `dp/dt = L_q + f`: order 3, which is more than the step has. A Gauss step has its collocation polynomials, of order S + 1
-//! (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.2). AT BOTH ENDS the polynomials agree with the nodes, to rounding.
+//! and the same for p with `dp/dt = L_q + f`. Their order 3 exceeds that of the step. A Gauss step uses its collocation
+//! polynomials, of order S + 1 (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.2). At both ends the
+//! polynomials agree with the nodes to rounding.
 
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -16,13 +16,14 @@ use crate::real::{Real, Scalar};
 use crate::state::State;
 use nalgebra::SVector;
 
-/// The motion over a step.
+/// Dense output of a step.
 pub trait DenseOutput<const N: usize, T = f64> {
-    /// Time, coordinates and momenta at the time `t`. Beyond the step the polynomials continue.
+    /// The state at the time `t`. The polynomials extrapolate beyond the step.
     fn state(&self, t: T) -> State<N, T>;
-    /// The derivative of the coordinates with respect to time at the time `t`.
+    /// The time derivative of the coordinates at the time `t`.
     fn velocity(&self, t: T) -> SVector<T, N>;
-    /// The same motion as a function of the time since the start of the step: far from zero the time itself is too coarse.
+    /// The same dense output as a function of the time since the start of the step. Far from zero, t itself has too few
+    /// digits.
     #[doc(hidden)]
     #[must_use]
     fn since_start(self) -> Self
@@ -30,7 +31,7 @@ pub trait DenseOutput<const N: usize, T = f64> {
         Self: Sized;
 }
 
-/// Cubics through the ends of a step.
+/// Hermite cubics through the ends of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hermite<const N: usize, T = f64> {
     t: T,
@@ -39,21 +40,22 @@ pub struct Hermite<const N: usize, T = f64> {
     p: Cubic<N, T>,
 }
 
-/// A cubic over the step, by its values and slopes at both ends.
+/// A cubic over the step, from its values and slopes at both ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cubic<const N: usize, T> {
     start: SVector<T, N>,
     change: SVector<T, N>,
-    /// What the slope at either end has beyond the change, times h.
+    /// Slope at either end times h, minus the change over the step.
     first: SVector<T, N>,
     last: SVector<T, N>,
 }
 
 impl<const N: usize, T: Scalar> Hermite<N, T> {
-    /// The motion of `system` from one state to another. The step between them has the length `h` if the times can differ by it, else their difference.
+    /// The cubics of `system` from one state to another. The step length is `h` if it agrees with the difference of the
+    /// times to rounding, otherwise that difference.
     ///
     /// # Errors
-    /// Those of [`State::velocity`] at both.
+    /// As [`State::velocity`] at both ends.
     pub(crate) fn between<S: Lagrangian<N, T>>(
         system: &S,
         before: &State<N, T>,
@@ -96,14 +98,14 @@ impl<const N: usize, T: Real> Cubic<N, T> {
         Self { start, change, first, last }
     }
 
-    /// The value at a part of the step.
+    /// The value at a fraction of the step.
     fn at(&self, part: T) -> SVector<T, N> {
         let rest = T::one() - part;
         let bend = self.first * rest - self.last * part;
         self.start + (self.change + bend * rest) * part
     }
 
-    /// The derivative with respect to the part.
+    /// The derivative with respect to that fraction.
     fn slope(&self, part: T) -> SVector<T, N> {
         let two = T::real(2.0);
         let rest = T::one() - part;

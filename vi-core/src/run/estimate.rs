@@ -1,23 +1,27 @@
-//! How accurate the steps of a run are: the error of one step, measured.
+//! Measurement errors of steps.
 //!
-//! In: a run. Out: the error of q and of h·v in a step, for each coordinate; by an [`ErrorMonitor`], the largest relative error along the run and the time at which
-//! it was. A step is a pure function, so its error is measured: against two steps of half the length from the same node. With p the order of the method,
+//! For each coordinate this module measures the error of q and of h·v in one step. An [`ErrorMonitor`] reports the
+//! largest relative error along the run and its time. A step is a pure function, so comparison with two steps of half
+//! the length from the same node measures its error. With p the order of the method,
 //!
 //! ```text
 //! error = |one step − two half steps| · 2^p/(2^p − 1)
 //! ```
 //!
-//! The error of a coordinate is relative to its own excursion: the largest `|q_i − q_i(start)|` and `|h v_i|` so far. So it has no unit, and neither a large coordinate
-//! nor the choice of an origin hides the error of a small one. A coordinate counts if it moves by more than [`VISIBLE`] roundings of its own value, and if its
-//! `|p_i v_i|` exceeds `(4096 ε)²` of the largest one. Below that its excursion is rounding that the other coordinates cause, and so would be its error.
+//! The error of a coordinate is relative to its own excursion: the largest `|q_i − q_i(start)|` and `|h v_i|` so far.
+//! It has no unit, and neither a large coordinate nor the choice of an origin hides the error of a small one. A
+//! coordinate counts if it moves by more than [`VISIBLE`] ulps of its own value, and if its `|p_i v_i|` exceeds `(4096
+//! ε)²` of the largest one. Smaller excursions are rounding errors that the other coordinates cause.
 //!
-//! THE FIRST STRETCH ends when every counted coordinate that has turned back at all has covered four times its excursion, and after [`STRETCH`] steps at most. Until then
-//! excursions grow: the largest error is relative to the excursions at the time of the question. After it a measured value stays.
+//! The first stretch ends when every counted coordinate with a turning point has covered four times its excursion, or
+//! after [`STRETCH`] steps. Until then excursions grow, so the largest error is relative to the excursions at the time
+//! of the query. Later measurements are final.
 //!
-//! A monitor measures every step at first. Then it divides the run into windows, each an eighth of the steps so far and [`WINDOW`] steps at most, and measures one
-//! step of each: the one with the largest indicator `h |Δ(Δp_i/h)|/|p_i − p_i(start)|`, the change of the mean force. So it finds peaks that are shorter than a window.
-//! A measurement takes the time of about two steps (eight in transformed time): 3 % of the steps of a run of 5000, 1.1 % of a long one. The indicator takes about 60
-//! instructions a step of one coordinate, 90 of two. A run without a monitor pays nothing.
+//! A monitor first measures every step. Then it divides the run into windows of an eighth of the steps so far, at most
+//! [`WINDOW`] steps. In each window it measures the step with the largest indicator `h |Δ(Δp_i/h)|/|p_i − p_i(start)|`,
+//! the change of the mean force. This finds peaks that are shorter than a window. One measurement costs about two
+//! steps (eight in transformed time). A run of 5000 steps measures 3 % of them, a long run 1.1 %. The indicator costs
+//! about 60 instructions a step for one coordinate, 90 for two. A run without a monitor has no extra cost.
 
 use super::{Run, Start};
 use crate::error::StepError;
@@ -28,22 +32,23 @@ use crate::real::Scalar;
 use crate::state::State;
 use nalgebra::SVector;
 
-/// Roundings of a coordinate that it has to move by to count.
+/// A coordinate counts if it moves by more ulps than this.
 const VISIBLE: f64 = 64.0;
-/// Roundings to which a coordinate, compared with the others by the root of `|p_i v_i|`, has to amount to count.
+/// A coordinate counts if the root of its `|p_i v_i|`, relative to the others, exceeds this many `ε`.
 const FAINT: f64 = 4096.0;
 /// The longest window between two measurements, in steps: about 1 % of their time.
 const WINDOW: u64 = 200;
-/// The most steps of the first stretch.
+/// Most steps of the first stretch.
 const STRETCH: u64 = 4096;
 /// Steps after which errors are judged by the excursions so far, even if no coordinate has turned back.
 const JUDGED: u64 = 64;
 /// A coordinate that covers more than this part of its excursion has turned back.
 const TURNED: f64 = 1.001;
-/// Excursions that a coordinate covers in the first stretch: two full oscillations from a turning point.
+/// Excursions per coordinate in the first stretch: two full oscillations from a turning point.
 const COVERED: f64 = 4.0;
 
-/// The error of one step, for each coordinate. Infinite if its half steps have no solution: then the step is too long to be measured.
+/// The error of one step, for each coordinate. Infinite if its half steps have no solution, because the step is too
+/// long to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalError<const N: usize> {
     /// Error of the coordinates.
@@ -52,8 +57,8 @@ pub struct LocalError<const N: usize> {
     pub hv: SVector<f64, N>,
 }
 
-/// What a measurement finds.
-struct Measured<const N: usize> {
+/// Result of a measurement.
+struct Measurement<const N: usize> {
     /// The larger error of q and h·v.
     error: SVector<f64, N>,
     of: LocalError<N>,
@@ -62,7 +67,7 @@ struct Measured<const N: usize> {
     action: SVector<f64, N>,
 }
 
-impl<const N: usize> Measured<N> {
+impl<const N: usize> Measurement<N> {
     fn unknown() -> Self {
         let infinite = SVector::repeat(f64::INFINITY);
         let of = LocalError { q: infinite, hv: infinite };
@@ -70,29 +75,31 @@ impl<const N: usize> Measured<N> {
     }
 }
 
-/// Measures the step between two nodes. Half steps are guessed from `memory`.
+/// Measures the step between two nodes. The half steps start from guesses by `memory`.
 #[inline(never)]
 fn measured<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     run: &Run<M, S, N, T>,
     memory: &M::Memory,
     [before, after]: [&Node<N, T>; 2],
-) -> Measured<N> {
+) -> Measurement<N> {
     let fresh = || {
-        // Stages of a long step can guess a half step so badly that its iteration diverges.
+        // Stages of a long step can give a guess from which the iteration of a half step diverges.
         let mut node = *before;
         let memory = run.method.begin(&run.system, &mut node, run.h)?;
         compared(run, &memory, [before, after])
     };
-    compared(run, memory, [before, after]).or_else(|_| fresh()).unwrap_or_else(|_| Measured::unknown())
+    compared(run, memory, [before, after]).or_else(|_| fresh()).unwrap_or_else(|_| Measurement::unknown())
 }
 
+/// Compares the step with two half steps.
+///
 /// # Errors
-/// Why a half step or a velocity has no solution.
+/// The reason why a half step or a velocity has no solution.
 fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     run: &Run<M, S, N, T>,
     memory: &M::Memory,
     [before, after]: [&Node<N, T>; 2],
-) -> Result<Measured<N>, StepError> {
+) -> Result<Measurement<N>, StepError> {
     let Run { method, system, h: of_run, .. } = run;
     let h = duration(before, after);
     let half = h * T::real(0.5);
@@ -103,17 +110,17 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let halved = 2.0_f64.powi(i32::try_from(method.order()).unwrap_or(i32::MAX));
     let factor = halved / (halved - 1.0);
     let length = h.to_f64();
-    // The low parts are what the method carries beyond the digits of a number.
+    // The low parts carry the digits beyond the precision of a number.
     let q = (after.q - end.q) + (after.q_low - end.q_low);
     let q = q.map(|entry| known(factor * entry.to_f64()));
     let hv = (v - better).map(|entry| known(factor * length * entry.to_f64()));
     let displacement = v.map(|entry| (length * entry.to_f64()).abs());
     let action = v.zip_map(&after.p, |v, p| (v.to_f64() * p.to_f64()).abs());
     let error = q.zip_map(&hv, f64::max);
-    Ok(Measured { error, of: LocalError { q, hv }, displacement, action })
+    Ok(Measurement { error, of: LocalError { q, hv }, displacement, action })
 }
 
-/// The size of an error; infinite for one that is not a number.
+/// The size of an error; infinite for NaN.
 fn known(error: f64) -> f64 {
     if error.is_nan() { f64::INFINITY } else { error.abs() }
 }
@@ -124,23 +131,23 @@ fn duration<const N: usize, T: Scalar>(before: &Node<N, T>, after: &Node<N, T>) 
 }
 
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Run<M, S, N, T> {
-    /// The error of the next step, for each coordinate in its own unit. The run stays where it is.
+    /// The error of the next step, for each coordinate in its own unit. The run does not change.
     ///
     /// # Errors
-    /// That of the next step. If it exists and its half steps do not, its error is infinite.
+    /// That of the next step. If only its half steps fail, its error is infinite.
     pub fn local_error(&self) -> Result<LocalError<N>, StepError> {
         let mut ahead = self.clone();
         ahead.single_step()?;
         Ok(measured(self, &self.memory, [&self.node, &ahead.node]).of)
     }
 
-    /// The same run with a monitor of its errors, which changes no bit of its steps. See the [module](crate::run::ErrorMonitor).
+    /// Adds an error monitor, which changes no bit of the steps. See the [module](crate::run::ErrorMonitor).
     pub fn monitored(self) -> Monitored<M, S, N, T> {
         Monitored { monitor: ErrorMonitor::new(&self), run: self, limit: f64::INFINITY }
     }
 }
 
-/// A step that may be measured.
+/// A candidate for a measurement.
 #[derive(Clone, Debug)]
 struct Candidate<M, const N: usize, T> {
     before: Node<N, T>,
@@ -149,10 +156,11 @@ struct Candidate<M, const N: usize, T> {
     indicator: T,
 }
 
-/// The largest relative error of a step, and the time at which the step began.
+/// The largest relative error of a step, and the time at which that step began.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
-    /// The error of q and h·v in one step, relative to the excursion of the coordinate: the largest entry. Infinite if the half steps of a step have no solution.
+    /// Error of q and h·v in one step, relative to the excursion of the coordinate: the largest entry. Infinite if the
+    /// half steps of a step have no solution.
     pub estimate: f64,
     /// Time at which the step began.
     pub t: f64,
@@ -166,10 +174,11 @@ impl ErrorEstimate {
     }
 }
 
-/// Watches the steps of a run, and keeps the largest relative error. See [`Run::monitored`] and `docs/choosing.md`.
+/// Monitors the steps of a run, and keeps the largest relative error. See [`Run::monitored`] and `docs/choosing.md`.
 ///
-/// Relative: to the largest `|q_i − q_i(start)|` and `|h v_i|` of the coordinate so far. The monitor measures the steps at which the momenta change their increments
-/// most, by half steps: all of the first sixteen, then fewer and fewer down to one of 200.
+/// Errors are relative to the largest `|q_i − q_i(start)|` and `|h v_i|` of the coordinate so far. The monitor
+/// measures, by half steps, those steps in which the momentum increments change most: the first sixteen, then ever
+/// fewer, down to one of 200.
 #[derive(Clone, Debug)]
 pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
     start: State<N, T>,
@@ -183,10 +192,10 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     momentum: SVector<T, N>,
     candidate: Option<Candidate<M::Memory, N, T>>,
     steps: u64,
-    /// Number of steps after which the window ends.
+    /// Step number at which the window ends.
     due: u64,
     stretch: Option<Stretch<N, T>>,
-    /// Largest `|p_i v_i|` and `|h v_i|` of measured steps.
+    /// Largest `|p_i v_i|` and `|h v_i|` of the measured steps.
     action: SVector<f64, N>,
     displacement: SVector<f64, N>,
     largest: ErrorEstimate,
@@ -196,15 +205,15 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
 /// The first stretch of a run.
 #[derive(Clone, Debug)]
 struct Stretch<const N: usize, T> {
-    /// Length of the way of each coordinate.
+    /// Path length of each coordinate.
     way: SVector<T, N>,
-    /// The largest error of each coordinate, in its unit, and the time of its step.
+    /// The largest error of each coordinate, in its unit, and the time of that step.
     errors: SVector<f64, N>,
     times: SVector<f64, N>,
 }
 
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> ErrorMonitor<M, S, N, T> {
-    /// A monitor of a run from the node at which the run is.
+    /// A monitor that starts at the current node of a run.
     pub fn new(run: &Run<M, S, N, T>) -> Self {
         let (node, zeros, none) = (run.node, SVector::zeros(), SVector::zeros());
         Self {
@@ -225,7 +234,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
-    /// Takes notice of the step that the run has just taken.
+    /// Records the step that the run has just taken.
     #[inline]
     pub fn watch(&mut self, run: &Run<M, S, N, T>) {
         let node = &run.node;
@@ -243,11 +252,13 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             let change = (force - self.force[i]) * self.weights[i];
             let size = force * self.weights[i];
             self.force[i] = force;
-            // An impulse changes the force in its own step and in the next one as much: a quarter more decides for its own.
+            // An impulse changes the force in its own step and in the next one equally: a quarter more decides for its
+            // own step.
             let (change, size) = (change * change, size * size);
             indicator += change + T::real(0.25) * if size < change { size } else { change };
         }
-        // The increments of a shortened step are small. A damped motion has longer and longer steps: their errors grow while its momenta decay.
+        // A shortened step has small increments. The steps of a damped motion grow: their errors increase while its momenta
+        // decay.
         indicator *= if M::FINDS_LENGTH { h * h * h * h * h * h } else { h * h };
         if let Some(stretch) = &mut self.stretch {
             stretch.way += (node.q - self.last.q).map(T::abs);
@@ -262,7 +273,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
-    /// Forgets a jump of the state: the next step begins at the node of the run.
+    /// Skips a jump of the state: the next step begins at the current node of the run.
     pub fn resume(&mut self, run: &Run<M, S, N, T>) {
         self.close(run);
         // A jump is no excursion.
@@ -272,7 +283,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.force = SVector::zeros();
     }
 
-    /// The largest relative error of a step so far, and where it was. Measures the step that is due next, so that a short run is told too.
+    /// The largest relative error of a step so far, and its time. Also measures the candidate of the open window, so
+    /// that short runs have a result.
     pub fn largest(&self, run: &Run<M, S, N, T>) -> ErrorEstimate {
         if self.candidate.is_none() {
             return self.found();
@@ -282,7 +294,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         closed.found()
     }
 
-    /// Steps that were measured.
+    /// Number of measured steps.
     pub fn measurements(&self) -> u64 {
         self.measurements
     }
@@ -290,12 +302,12 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// The error of the next step of the run, relative to the excursions so far.
     ///
     /// # Errors
-    /// That of the step.
+    /// Those of the step.
     pub fn error_estimate(&self, run: &Run<M, S, N, T>) -> Result<f64, StepError> {
         let mut ahead = run.clone();
         ahead.single_step()?;
         let mut monitor = self.clone();
-        // The step counts in the excursions.
+        // The excursions include this step.
         monitor.watch(&ahead);
         let found = measured(run, &run.memory, [&run.node, &ahead.node]);
         monitor.add(&found);
@@ -320,7 +332,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.candidate = Some(Candidate { before, after, memory, indicator });
     }
 
-    /// Measures the step of the window with the largest indicator, and begins the next window.
+    /// Measures the step with the largest indicator, and begins the next window.
     #[cold]
     #[inline(never)]
     fn close(&mut self, run: &Run<M, S, N, T>) {
@@ -353,12 +365,12 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
-    fn add(&mut self, found: &Measured<N>) {
+    fn add(&mut self, found: &Measurement<N>) {
         self.action = self.action.zip_map(&found.action, f64::max);
         self.displacement = self.displacement.zip_map(&found.displacement, f64::max);
     }
 
-    /// Whether every counted coordinate has turned back and covered its excursion several times, or never turned.
+    /// Whether every counted coordinate has turned back and covered its excursion several times, or has never turned.
     fn has_turned(&self) -> bool {
         let Some(stretch) = &self.stretch else { return true };
         let mut has_turned = false;
@@ -392,7 +404,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
-    /// The largest of errors of coordinates, relative to their excursions.
+    /// The largest error over all coordinates, relative to their excursions.
     fn relative(&self, errors: &SVector<f64, N>, times: &SVector<f64, N>) -> ErrorEstimate {
         let mut largest = ErrorEstimate { estimate: 0.0, t: self.last.t.to_f64(), coordinate: 0 };
         for i in 0..N {
@@ -415,7 +427,7 @@ fn larger<T: Scalar>(a: T, b: T) -> T {
     if b > a { b } else { a }
 }
 
-/// A run with a monitor of its errors: [`Run::monitored`].
+/// A run with an error monitor: [`Run::monitored`].
 #[derive(Clone, Debug)]
 pub struct Monitored<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
     run: Run<M, S, N, T>,
@@ -424,17 +436,18 @@ pub struct Monitored<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
 }
 
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Monitored<M, S, N, T> {
-    /// Ends the run with [`StepError::Tolerance`] if the error of a measured step exceeds `limit`: ten times the tolerance, for instance. The first steps
-    /// are not judged: until a coordinate has turned back, or 64 steps have been taken, excursions are too small for it.
+    /// Ends the run with [`StepError::Tolerance`] if a measured error exceeds `limit`, for example ten times the
+    /// tolerance. The first steps are not judged, because excursions are still small: until a coordinate has turned
+    /// back, or for 64 steps.
     #[must_use]
     pub fn with_limit(self, limit: f64) -> Self {
         Self { limit, ..self }
     }
 
-    /// Takes one step and returns the state reached.
+    /// Takes one step and returns its end state.
     ///
     /// # Errors
-    /// Those of [`Run::step`]. [`StepError::Tolerance`] if a limit is set and the error of a step measured so far exceeds it: the state reached stays, and a
+    /// As [`Run::step`]. [`StepError::Tolerance`] if a measured error exceeds the limit: the last state stays, and a
     /// further call returns the same error.
     #[inline]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
@@ -445,11 +458,13 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Ok(self.run.state())
     }
 
+    /// Checks the limit.
+    ///
     /// # Errors
     /// [`StepError::Tolerance`] beyond the limit.
     #[inline]
     fn check(&self) -> Result<(), StepError> {
-        // The first errors are relative to excursions that still grow.
+        // Errors of the first steps are relative to excursions that still grow.
         if self.monitor.largest.estimate <= self.limit || !self.monitor.judges() {
             return Ok(());
         }
@@ -457,7 +472,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Err(StepError::Tolerance { t, estimate, tolerance: self.limit })
     }
 
-    /// The largest relative error of a step so far, and where it was.
+    /// The largest relative error of a step so far, and its time.
     pub fn largest(&self) -> ErrorEstimate {
         self.monitor.largest(&self.run)
     }
@@ -465,12 +480,12 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// The error of the next step, relative to the excursions so far.
     ///
     /// # Errors
-    /// That of the step.
+    /// Those of the step.
     pub fn error_estimate(&self) -> Result<f64, StepError> {
         self.monitor.error_estimate(&self.run)
     }
 
-    /// Steps that were measured.
+    /// Number of measured steps.
     pub fn measurements(&self) -> u64 {
         self.monitor.measurements()
     }
@@ -480,10 +495,10 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         &self.run
     }
 
-    /// Changes the run: `monitored.change(|run| run.set_state(state))`. Steps that it takes meanwhile are not measured, and a jump of its state is no
-    /// excursion.
+    /// Changes the run: `monitored.change(|run| run.set_state(state))`. Steps that it takes meanwhile are not
+    /// measured, and a jump of its state is no excursion.
     pub fn change<R>(&mut self, change: impl FnOnce(&mut Run<M, S, N, T>) -> R) -> R {
-        // What is measured belongs to the system of before.
+        // Open measurements belong to the system before the change.
         self.monitor.close(&self.run);
         let outcome = change(&mut self.run);
         self.monitor.resume(&self.run);
@@ -508,7 +523,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
     /// Takes steps up to the time t, as [`Run::until`] does.
     ///
     /// # Errors
-    /// Those of [`Run::until`] and of [`Monitored::step`].
+    /// As [`Run::until`] and [`Monitored::step`].
     pub fn until(&mut self, t: f64) -> Result<State<N>, StepError> {
         self.run.check_ahead(t)?;
         loop {
@@ -527,24 +542,27 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
     }
 }
 
-/// A tolerance in place of a step length: `start.integrate(method, Tolerance(1e-9))`.
+/// A tolerance instead of a step length: `start.integrate(method, Tolerance(1e-9))`.
 ///
-/// The run then has the constant step for which the largest relative error of a step over the first stretch is the tolerance: at least 0.4 of it, if
-/// such steps exist. If steps stop existing before the tolerance is reached, the run has half of the longest length that exists. The stretch lasts until the coordinates have turned back twice or more, and 4096 steps at most. A symplectic method keeps its step: a motion that
-/// becomes faster later exceeds the tolerance, which [`Run::monitored`] reports. The global error is larger: about the tolerance times the number of steps, or more.
+/// The run then has a constant step. Its largest relative error over the first stretch is at most the tolerance, and at
+/// least 0.4 of it if such steps exist. If steps stop existing before the tolerance is reached, the run uses half of
+/// the longest length that exists. The stretch lasts until the coordinates have turned back twice or more, at most 4096
+/// steps. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
+/// [`Run::monitored`] reports it. The global error is larger: about the tolerance times the number of steps, or more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance(pub f64);
 
-/// What determines the length of a step: a number, or a [`Tolerance`].
+/// A step length: a number, or a [`Tolerance`].
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a step length of a system in `{T}`",
     label = "write a step length such as `0.1`, or `Tolerance(1e-9)`"
 )]
 pub trait Length<T: Scalar> {
-    /// The length of the steps of a run from a start by a method.
+    /// The step length of a run from a start by a method.
     ///
     /// # Errors
-    /// [`StepError::Tolerance`] if no length has the tolerance, [`StepError::InvalidInput`] for one below a rounding (2.2e-16 in `f64`) or not below 1; the error of the shortest steps tried.
+    /// [`StepError::Tolerance`] if no length meets the tolerance; [`StepError::InvalidInput`] for a tolerance below a
+    /// rounding (2.2e-16 in `f64`) or not below 1; the error of the shortest steps tried.
     fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
         self,
         start: &Start<S, N, T>,
@@ -563,18 +581,18 @@ impl<T: Scalar> Length<T> for T {
     }
 }
 
-/// Lengths that are tried.
+/// Most trial lengths.
 const TRIALS: u32 = 60;
-/// Largest factor between two of them.
+/// Largest factor between two trial lengths.
 const FACTOR: f64 = 8.0;
-/// The error that a trial aims at, and the least that it accepts, as parts of the tolerance.
+/// The error target of a trial, and the least accepted error, relative to the tolerance.
 const AIM: f64 = 0.7;
 const LEAST: f64 = 0.4;
 /// Shortest step that is tried while none exists, in units of the first guess.
 const SHORTEST: f64 = 1e-9;
 /// Longest step, in units of the first guess.
 const LONGEST: f64 = 1e4;
-/// Trials in a row that shorten the step without reducing the error: it is rounding.
+/// Consecutive shorter trials without a smaller error, after which rounding dominates.
 const STALLED: u32 = 3;
 
 impl<T: Scalar> Length<T> for Tolerance {
@@ -585,12 +603,12 @@ impl<T: Scalar> Length<T> for Tolerance {
     ) -> Result<T, StepError> {
         let Self(tolerance) = self;
         if !(tolerance >= T::EPSILON && tolerance < 1.0) {
-            let allowed = "between a rounding of its numbers and 1";
+            let allowed = "between an ulp and 1";
             return Err(StepError::InvalidInput { input: "the tolerance", allowed, value: tolerance });
         }
         let guess = guess(start)?;
         let mut h = guess;
-        // The longest length that is accurate enough, and the shortest that is not.
+        // The longest accepted length, and the shortest rejected one.
         let (mut low, mut high) = (0.0_f64, f64::INFINITY);
         let mut least = f64::INFINITY;
         let mut stalled = 0;
@@ -616,7 +634,7 @@ impl<T: Scalar> Length<T> for Tolerance {
                 if h < high {
                     (high, is_edge) = (h, estimate.is_infinite());
                 }
-                // Where rounding ends the error of every method.
+                // Below this, rounding dominates the error of every method.
                 let is_rounding = estimate < T::EPSILON.sqrt() && estimate > 0.7 * least;
                 stalled = if is_rounding { stalled + 1 } else { 0 };
                 if stalled >= STALLED && low == 0.0 {
@@ -645,7 +663,7 @@ impl<T: Scalar> Length<T> for Tolerance {
     }
 }
 
-/// A length between two.
+/// A length between two lengths.
 fn bisected(low: f64, high: f64) -> f64 {
     if low == 0.0 {
         high / FACTOR
@@ -656,10 +674,10 @@ fn bisected(low: f64, high: f64) -> f64 {
     }
 }
 
-/// The largest relative error of steps of the length h over the first stretch.
+/// The largest relative error over the first stretch with steps of the length h.
 ///
 /// # Errors
-/// Why a step does not exist.
+/// The reason why a step fails.
 fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     start: &Start<S, N, T>,
     method: &M,
@@ -691,7 +709,7 @@ fn ends_motion(failure: &StepError) -> bool {
 /// A tenth of the shortest time scale of a coordinate: the longest of `|q|/|v|`, `|v|/|a|` and `√(|q|/|a|)`.
 ///
 /// # Errors
-/// If no velocity belongs to the momenta.
+/// Those of a velocity without a solution.
 fn guess<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Start<S, N, T>) -> Result<f64, StepError> {
     let Start { system, state } = start;
     let v = state.velocity(system)?;

@@ -1,20 +1,22 @@
-//! States at which functions of the motion change their sign.
+//! States at sign changes of event functions.
 //!
-//! In: a run, functions g(t, q, v), a time to end at. Out: the states at which one of them changes its sign, in the order of the run.
+//! For event functions g(t, q, v) and an end time, the search returns the states at which a function changes sign, in
+//! order.
 //!
 //! ```text
 //! sign       zero counts as positive: g RISES if it goes from below zero to zero or above, and FALLS if it goes from zero or above to below
 //! side       the sign that g has next (`side`): at the start of a search, at its end, and after each event
-//! event      the side after an instant is not the sign before it
-//! instant    the times that differ by at most the resolution of time, four roundings of t, and no more than a millionth of a step
+//! event      the side after an instant differs from the sign before it
+//! instant    times that differ by at most the time resolution: four roundings of t, and at most a millionth of a step
 //! ```
 //!
-//! A function that only touches zero has the same side as before, so that is no event. Two searches that meet at a node agree on the side there:
-//! exactly one of them reports an event at their seam. AFTER AN EVENT g has not left its old side, to a rounding of its arguments, and it does with the
-//! next longer length of the step: a ball is not below its floor, even if it is stopped there. Rising and falling are meant in the direction of the run.
+//! A function that only touches zero keeps its side, so there is no event. Two searches that meet at a node agree on
+//! the side there, so that exactly one of them reports an event at their common end. At the returned state g has its
+//! old side, to a rounding of its arguments, and leaves it at the next longer step length: a ball is never below its
+//! floor, even if the run stops there. Rising and falling refer to the direction of the run.
 
 use super::Run;
-use super::search::{Ahead, Reached, Searched, Watched};
+use super::search::{Ahead, Searched, StepEnd, Watched};
 use super::side::{Node, ROUNDING, Side};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -24,7 +26,7 @@ use crate::state::State;
 use core::fmt;
 use nalgebra::SVector;
 
-/// Where a motion is: the argument of functions of events.
+/// Time, coordinates and velocities: the argument of event functions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment<const N: usize, T = f64> {
     /// Time.
@@ -35,7 +37,7 @@ pub struct Moment<const N: usize, T = f64> {
     pub v: SVector<T, N>,
 }
 
-/// In which direction a function passes zero.
+/// The direction of a zero crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Direction {
     Rising,
@@ -43,15 +45,15 @@ enum Direction {
     Both,
 }
 
-/// A function of the motion, and the direction in which it passes zero. The function has to be the same for the same arguments.
+/// An event function, and its crossing direction. The function must return the same value for the same arguments.
 ///
-/// A function in dual numbers gives the event a derivative: `Event::smooth_rising(|m| m.q[1] - Dual::fixed(0.2))`.
+/// A function of dual numbers gives the event a derivative: `Event::smooth_rising(|m| m.q[1] - Dual::fixed(0.2))`.
 pub struct Event<const N: usize> {
     g: Function<N>,
     direction: Direction,
 }
 
-/// A function of an event in some numbers.
+/// An event function over the numbers T.
 type In<const N: usize, T> = Box<dyn Fn(&Moment<N, T>) -> T>;
 
 /// The function of an event.
@@ -63,17 +65,17 @@ enum Function<const N: usize> {
 }
 
 impl<const N: usize> Event<N> {
-    /// Where `g` goes from below zero to zero or above.
+    /// An event at which `g` goes from below zero to zero or above.
     pub fn rising(g: impl Fn(&Moment<N>) -> f64 + 'static) -> Self {
         Self { g: Function::Plain(Box::new(g)), direction: Direction::Rising }
     }
 
-    /// Where `g` goes from zero or above to below.
+    /// An event at which `g` goes from zero or above to below.
     pub fn falling(g: impl Fn(&Moment<N>) -> f64 + 'static) -> Self {
         Self { g: Function::Plain(Box::new(g)), direction: Direction::Falling }
     }
 
-    /// Where `g` rises or falls.
+    /// An event at which `g` rises or falls.
     pub fn crossing(g: impl Fn(&Moment<N>) -> f64 + 'static) -> Self {
         Self { g: Function::Plain(Box::new(g)), direction: Direction::Both }
     }
@@ -93,7 +95,7 @@ impl<const N: usize> Event<N> {
         Self { g: Function::Dual(Box::new(g)), direction: Direction::Both }
     }
 
-    /// The function.
+    /// Evaluates the function.
     pub(super) fn at(&self, moment: &Moment<N>) -> f64 {
         match &self.g {
             Function::Plain(g) => g(moment),
@@ -104,12 +106,12 @@ impl<const N: usize> Event<N> {
         }
     }
 
-    /// Whether the function is in dual numbers.
+    /// Whether the function takes dual numbers.
     pub(crate) fn has_derivative(&self) -> bool {
         matches!(self.g, Function::Dual(_))
     }
 
-    /// How fast the function changes with a moment that does; `None` if it is not in dual numbers.
+    /// Rate of change of the function along a dual moment; `None` if it does not take dual numbers.
     pub(crate) fn slope(&self, moment: &Moment<N, Dual<f64>>) -> Option<f64> {
         match &self.g {
             Function::Plain(_) => None,
@@ -117,7 +119,7 @@ impl<const N: usize> Event<N> {
         }
     }
 
-    /// The function, if it is finite.
+    /// Evaluates the function and checks that the value is finite.
     ///
     /// # Errors
     /// [`StepError::NonFinite`] otherwise.
@@ -127,7 +129,7 @@ impl<const N: usize> Event<N> {
         if value.is_finite() { Ok(value) } else { Err(lost) }
     }
 
-    /// By how much the value changes if each argument changes by a rounding.
+    /// Rounding error of the value: its change if each argument changes by a rounding.
     pub(super) fn rounding(&self, moment: &Moment<N>, value: f64) -> f64 {
         let mut changed = *moment;
         let mut sum = 0.0;
@@ -144,13 +146,13 @@ impl<const N: usize> Event<N> {
             argument(&mut changed, Some(x + ROUNDING * x.abs()));
             let difference = (self.at(&changed) - value).abs();
             argument(&mut changed, Some(x));
-            // Beyond the domain of the function a rounding does not lead.
+            // A rounding does not leave the domain of the function.
             sum += if difference.is_finite() { difference } else { 0.0 };
         }
         sum
     }
 
-    /// Whether the event is one in this direction.
+    /// Whether the event includes crossings in this direction.
     pub(super) fn admits(&self, is_rising: bool) -> bool {
         match self.direction {
             Direction::Rising => is_rising,
@@ -159,7 +161,7 @@ impl<const N: usize> Event<N> {
         }
     }
 
-    /// Whether the event is one in this direction only.
+    /// Whether the event includes crossings in this direction only.
     fn admits_only(&self, is_rising: bool) -> bool {
         self.admits(is_rising) && !self.admits(!is_rising)
     }
@@ -173,7 +175,7 @@ impl<const N: usize> fmt::Debug for Event<N> {
 
 /// One event or several.
 pub trait Events<const N: usize> {
-    /// All of them.
+    /// All events.
     fn all(&self) -> &[Event<N>];
 }
 
@@ -208,12 +210,12 @@ impl<const N: usize, E: Events<N> + ?Sized> Events<N> for &E {
 }
 
 impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
-    /// Goes on to the first event, or to the time `until` if there is none before. The run ends there: its state is the one returned. All events of that
-    /// instant are in the crossing; see [`Crossing`].
+    /// Takes steps to the first event, or to the time `until` if there is none before. The run ends at the returned
+    /// state. The crossing contains all events of that instant; see [`Crossing`].
     ///
     /// # Errors
-    /// As [`Run::until`], [`StepError::NonFinite`] for a function that is not finite, and [`StepError::CannotLeave`] if the run begins at a
-    /// zero of an event of one direction and the motion leads through it again at that instant.
+    /// As [`Run::until`]; [`StepError::NonFinite`] for a function that is not finite; [`StepError::CannotLeave`] if the
+    /// run begins at a zero of a one-directional event whose function passes zero again at that instant.
     pub fn next_event(&mut self, events: impl Events<N>, until: f64) -> Result<Option<Crossing<N>>, StepError> {
         Crossings::new(self, events, until).stop()
     }
@@ -221,15 +223,15 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     /// [`Run::next_event`] for one event.
     ///
     /// # Errors
-    /// As there.
+    /// As [`Run::next_event`].
     pub fn until_event(&mut self, event: Event<N>, end: f64) -> Result<Option<Crossing<N>>, StepError> {
         self.next_event(event, end)
     }
 
-    /// Goes on to where `g` rises, or to the time `end`: [`Run::next_event`] for [`Event::rising`].
+    /// Takes steps until `g` rises, or to the time `end`: [`Run::next_event`] for [`Event::rising`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Run::next_event`].
     pub fn until_rising(
         &mut self,
         g: impl Fn(&Moment<N>) -> f64 + 'static,
@@ -238,10 +240,10 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
         self.next_event(Event::rising(g), end)
     }
 
-    /// Goes on to where `g` falls, or to the time `end`: [`Run::next_event`] for [`Event::falling`].
+    /// Takes steps until `g` falls, or to the time `end`: [`Run::next_event`] for [`Event::falling`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Run::next_event`].
     pub fn until_falling(
         &mut self,
         g: impl Fn(&Moment<N>) -> f64 + 'static,
@@ -250,43 +252,43 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
         self.next_event(Event::falling(g), end)
     }
 
-    /// The events up to the time `until`, in their order: an iterator that takes steps as it needs them. The run keeps its own steps, except for the last, which ends
-    /// at `until`.
+    /// Iterates over the events up to the time `until` and takes steps on demand. The run keeps its own steps, except
+    /// for the last, which ends at `until`.
     pub fn events<'a>(&'a mut self, events: impl Events<N> + 'a, until: f64) -> Crossings<'a, N> {
         Crossings::new(self, events, until)
     }
 }
 
-/// One of the events that were met at an instant.
+/// One event of an instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Met {
-    /// The index of the event among those that were asked for.
+    /// Index of the event in the list given.
     pub event: usize,
     /// Whether the function was below zero before.
     pub is_rising: bool,
 }
 
-/// The events that were met at one instant.
+/// The events of one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing<const N: usize> {
-    /// The events, by their index.
+    /// The events, in the order of their indices.
     pub events: Vec<Met>,
     /// The state there.
     pub state: State<N>,
     /// The velocity there.
     pub v: SVector<f64, N>,
-    /// Length of the step that leads there from the node before it.
+    /// Length of the step from the previous node to this state.
     pub length: f64,
 }
 
 impl<const N: usize> Crossing<N> {
-    /// Whether the event of this index was met.
+    /// Whether this instant includes the event of this index.
     #[must_use]
     pub fn is_of(&self, event: usize) -> bool {
         self.direction(event).is_some()
     }
 
-    /// Whether the function of the event of this index was rising; `None` if the event was not met.
+    /// Whether the function of the event of this index rose; `None` if the event did not occur.
     #[must_use]
     pub fn direction(&self, event: usize) -> Option<bool> {
         self.events.iter().find(|met| met.event == event).map(|met| met.is_rising)
@@ -295,14 +297,15 @@ impl<const N: usize> Crossing<N> {
 
 /// The events of a run; see [`Run::events`].
 ///
-/// An item is a [`Crossing`], or the error of the step that fails. After an error the run is at its last good node, and the iterator ends.
+/// An item is a [`Crossing`], or the error of the failed step. After an error the run is at its last good node, and the
+/// iterator ends.
 pub struct Crossings<'a, const N: usize> {
     run: Box<dyn Searched<N> + 'a>,
     wanted: Box<dyn Events<N> + 'a>,
     until: f64,
-    /// What is known of each function; nothing before the first step.
+    /// The state of each function; empty before the first step.
     watched: Vec<Watched>,
-    /// What was found in the step that was searched, the last first.
+    /// Results of the last searched step, in reverse order.
     found: Vec<Result<Crossing<N>, StepError>>,
     is_over: bool,
 }
@@ -317,10 +320,10 @@ impl<'a, const N: usize> Crossings<'a, N> {
         Self { run, wanted: Box::new(wanted), until, watched: Vec::new(), found: Vec::new(), is_over: false }
     }
 
-    /// Goes on to the first crossing.
+    /// Takes steps to the first crossing.
     ///
     /// # Errors
-    /// Those of the steps, and [`StepError::CannotLeave`].
+    /// Errors of the steps, and [`StepError::CannotLeave`].
     pub(super) fn stop(mut self) -> Result<Option<Crossing<N>>, StepError> {
         if self.run.take(self.until)? {
             return Ok(None);
@@ -341,7 +344,7 @@ impl<'a, const N: usize> Crossings<'a, N> {
         }
     }
 
-    /// On which side of zero each function is at the start of the search.
+    /// The side of each function at the start of the search.
     fn start(&mut self) -> Result<Vec<Side>, StepError> {
         let mut node = Node::of(self.run.node())?;
         let sides = self.wanted.all().iter().map(|event| node.side(event)).collect::<Result<Vec<_>, _>>()?;
@@ -349,7 +352,7 @@ impl<'a, const N: usize> Crossings<'a, N> {
         Ok(sides)
     }
 
-    /// The next crossing, or none before the end; with `is_first` no further one is wanted.
+    /// The next crossing; `None` if there is none before the end. With `is_first` the search stops at it.
     fn advance(&mut self, is_first: bool) -> Result<Option<Crossing<N>>, StepError> {
         while self.found.is_empty() {
             if self.run.take(self.until)? {
@@ -385,8 +388,8 @@ impl<const N: usize> fmt::Debug for Crossings<'_, N> {
     }
 }
 
-impl<const N: usize> Reached<N> {
-    /// Where the motion is there.
+impl<const N: usize> StepEnd<N> {
+    /// The moment of this crossing.
     pub(super) fn moment(&self) -> Moment<N> {
         Moment { t: self.state.t, q: self.state.q, v: self.v }
     }

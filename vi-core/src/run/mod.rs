@@ -1,21 +1,22 @@
 //! Runs: one type for all methods.
 //!
-//! In: a system at a state ([`Start`]), a [`Method`], a step length. Out: states, step after step, at given times or at events; or the typed error of the step that
-//! fails. AFTER AN ERROR the run holds the last good state, and returns that error again until it is changed: its parameters, its state or an option.
+//! A run starts from a system at a state ([`Start`]), a [`Method`] and a step length. It returns states step by step,
+//! at given times or at events, or the typed error of a failed step. After an error the run holds the last good state.
+//! It returns the same error until its parameters, its state or an option change.
 //!
-//! | file | what it adds to a step |
+//! | file | contents |
 //! |---|---|
-//! | `dense_output` | the motion between the two nodes of a step, as polynomials |
+//! | `dense_output` | polynomials between the two nodes of a step |
 //! | `times` | states at given times |
 //! | `solution` | states with times and energies, as CSV |
-//! | `events` | states at which functions of the motion change their sign |
-//! | `search` | the search of one step for them |
-//! | `side` | the side of zero on which a function is at a node |
-//! | `estimate` | the error of a step, measured; a step length from a tolerance |
-//! | `checkpoint` | everything that a run carries, to be stored and resumed bit for bit |
+//! | `events` | states at sign changes of event functions |
+//! | `search` | event search within one step |
+//! | `side` | sign of an event function just after a node |
+//! | `estimate` | measured error of a step; a step length from a tolerance |
+//! | `checkpoint` | stored runs that resume bit for bit |
 //!
-//! A STATE AT A TIME t is reached by a last step that is exactly as long as is left. It is as accurate as a node, of the full order of the method. States at several
-//! times and at events that are recorded are computed beside the run, which keeps its own steps bit for bit.
+//! A state at a time t is the end of a last step of exactly the remaining length. It has the full order of the method.
+//! The run computes output at several times and recorded events on a copy, and keeps its own steps bit for bit.
 
 mod checkpoint;
 mod dense_output;
@@ -42,7 +43,7 @@ use crate::state::{Numbers, State};
 use core::hint::black_box;
 use nalgebra::SVector;
 
-/// A system at a state, from which any number of runs can start.
+/// A system at a state, the start of any number of runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start<S, const N: usize, T = f64> {
     /// The system.
@@ -51,7 +52,7 @@ pub struct Start<S, const N: usize, T = f64> {
     pub state: State<N, T>,
 }
 
-/// Where runs of a system start: every system has these functions.
+/// Starts of runs, for every system.
 pub trait Starts<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// The system at time t with coordinates q and velocities v, in the units of the system.
     fn at(self, t: T, q: impl Numbers<N, T>, v: impl Numbers<N, T>) -> Start<Self, N, T> {
@@ -67,13 +68,14 @@ pub trait Starts<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
 impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Real> Starts<N, T> for S {}
 
 impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Start<S, N, T> {
-    /// A run from here by a method with the step h, in units of time, or with the step that has a [`Tolerance`]. A negative h goes backwards in time. A method that
-    /// finds its own lengths begins with about h.
+    /// Starts a run by a method with the step h, in units of time, or with the step of a [`Tolerance`].
+    ///
+    /// A negative h integrates backwards in time. A method that finds its own step lengths begins with about h.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, [`StepError::NonFinite`] for such a state, [`StepError::Singular`] or
-    /// [`StepError::NotConverged`] if no velocity belongs to its momenta; those of the method;
-    /// [`StepError::Tolerance`] if no step has the tolerance.
+    /// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, [`StepError::NonFinite`] for such a
+    /// state, [`StepError::Singular`] or [`StepError::NotConverged`] if no velocity has its momenta,
+    /// [`StepError::Tolerance`] if no step has the tolerance; errors of the method.
     pub fn integrate<M: Method<S, N, T>>(self, method: M, h: impl Length<T>) -> Result<Run<M, S, N, T>, StepError> {
         let h = h.length(&self, &method)?;
         let Self { system, state } = self;
@@ -99,21 +101,22 @@ pub struct Run<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
 }
 
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Run<M, S, N, T> {
-    /// The run at a node.
+    /// Resumes a run at a node.
     pub(crate) fn resumed(method: M, system: S, (node, h, memory): (Node<N, T>, T, M::Memory)) -> Self {
         let prepared = method.prepare(&system, h);
         Self { method, system, prepared, node, h, memory, cache: M::Cache::default(), failure: None }
     }
 
-    /// Takes one step and returns the state reached.
+    /// Takes one step and returns its end state.
     ///
     /// # Errors
-    /// Why there is no step. The run holds the last good state, and a further call returns the same error.
+    /// The reason why the step failed. The run holds the last good state, and a further call returns the same error.
     #[inline(always)]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
         let Self { method, system, prepared, node, h, memory, cache, .. } = self;
         if let Err(left) = method.advance(system, prepared, *h, (node, memory), cache) {
-            // Values, not references: the address of one field that leaves this function keeps the whole run in memory (double well: 29 ns a step instead of 23).
+            // Values, not references: one escaping field address keeps the whole run in memory (double well: 29 ns a
+            // step instead of 23).
             let problem = (self.method.clone(), self.system, self.prepared.clone(), self.h);
             let before = (node.map(black_box), memory.apart(), core::mem::take(&mut self.cache), self.failure);
             let (node, memory, cache, failure) = cold_step(problem, before, left);
@@ -128,30 +131,30 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Ok(self.node.state())
     }
 
-    /// Takes one step of the length h in time. The length of further steps stays, and so does the energy that an energy-preserving run keeps. If it
-    /// succeeds, an error of the step before is forgotten: a shorter step may pass the place where a longer one failed.
+    /// Takes one step of the length h in time. The length of later steps and the preserved energy do not change. If it
+    /// succeeds, the run continues from an error too: a shorter step may pass the place where a longer one failed.
     ///
     /// # Errors
-    /// Those of a step; the run stays what it was and can continue. [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, or negative
-    /// if the method only goes forward.
+    /// Those of a step, and the run does not change. [`StepError::InvalidInput`] for an h that is zero, subnormal or
+    /// not finite, or that is negative although the method only steps forward.
     pub fn step_of(&mut self, h: T) -> Result<State<N, T>, StepError> {
         (self.node, self.memory) = self.method.step_of(&self.system, (&self.node, &self.memory), [h, self.h])?;
         self.failure = None;
         Ok(self.node.state())
     }
 
-    /// The state reached last.
+    /// The last state.
     #[inline]
     pub fn state(&self) -> State<N, T> {
         self.node.state()
     }
 
-    /// The node reached last: the state with the low parts of its sums, and the energy that the method keeps.
+    /// The last node: the state with the low parts of its sums, and the preserved energy.
     pub fn node(&self) -> &Node<N, T> {
         &self.node
     }
 
-    /// Time of the state reached last.
+    /// Time of the last state.
     pub fn t(&self) -> T {
         self.node.t
     }
@@ -166,12 +169,12 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         &self.method
     }
 
-    /// Length of a step in time: the one given, or that of the last step if the method finds it.
+    /// Length of a step in time: the given one, or that of the last step if the method finds it.
     pub fn h(&self) -> T {
         self.method.length(self.h, &self.memory)
     }
 
-    /// Largest residual of the equations of the last step, in roundings. Zero before the first step.
+    /// Largest residual of the last step, in units of its rounding-error bound. Zero before the first step.
     pub fn residual(&self) -> f64 {
         self.method.report(&self.memory).residual
     }
@@ -181,46 +184,52 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.method.report(&self.memory).iterations
     }
 
-    /// Velocity at the state reached last, by its momenta.
+    /// Velocity at the last state, from its momenta.
     ///
     /// # Errors
-    /// Those of [`State::velocity`].
+    /// As [`State::velocity`].
     pub fn velocity(&self) -> Result<SVector<T, N>, StepError> {
         self.state().velocity(&self.system)
     }
 
-    /// Energy `H = v·∂L/∂v − L` at the state reached last, in the units of L.
+    /// Energy `H = v·∂L/∂v − L` at the last state, in the units of L.
     ///
     /// # Errors
-    /// Those of [`State::energy`].
+    /// As [`State::energy`].
     pub fn energy(&self) -> Result<T, StepError> {
         self.state().energy(&self.system)
     }
 
-    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step, which energy-preserving runs keep. [`Run::energy`], the energy at the node, is another number.
+    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step, which energy-preserving runs preserve. It differs from
+    /// [`Run::energy`].
     ///
-    /// `None` before the first step, of a composition, and if it is not finite. Of Gauss steps also after [`Run::step_of`] and [`Run::set_parameters`].
+    /// `None` before the first step, for compositions, and if it is not finite. For Gauss steps also after
+    /// [`Run::step_of`] and [`Run::set_parameters`].
     pub fn discrete_energy(&self) -> Option<T> {
         self.method.discrete_energy(&self.system, &self.node, self.h, &self.memory)
     }
 
-    /// The motion over the last step, which began at `before`.
+    /// Dense output of the last step, which began at `before`.
     ///
     /// # Errors
-    /// [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] if no velocity belongs to the momenta at its ends.
+    /// [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] if no velocity has the momenta
+    /// at one of its ends.
     pub fn dense_output(&self, before: &State<N, T>) -> Result<M::DenseOutput, StepError> {
         self.method.dense_output(&self.system, before, &self.node, self.h(), &self.memory)
     }
 
-    /// Changes parameters of the system from the node reached last on. Coordinates and momenta stay; an error of the last step is forgotten.
+    /// Changes parameters of the system from the last node on. Coordinates and momenta stay; the run clears an error of
+    /// the last step.
     ///
-    /// The energy that an energy-preserving run keeps gains `H_new − H_old` at the node. After the change, [`Run::discrete_energy`] and [`Run::dense_output`]
-    /// of the last step are by the new parameters, or `None` and cubic for Gauss steps. The last step has no derivative any more: call
-    /// [`vary`](crate::derivatives::Differentiable::vary) before.
+    /// The energy of an energy-preserving run increases by `H_new − H_old` at the node. Afterwards
+    /// [`Run::discrete_energy`] and [`Run::dense_output`] of the last step use the new parameters; for Gauss steps they
+    /// are `None` and cubic. The last step then has no derivative: call
+    /// [`vary`](crate::derivatives::Differentiable::vary) first.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for a parameter that is not finite; [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] if the new
-    /// system has no velocity or no energy at the node. The parameters are then what they were.
+    /// [`StepError::InvalidInput`] for a parameter that is not finite; [`StepError::Singular`],
+    /// [`StepError::NotConverged`] or [`StepError::NonFinite`] if the new system has no velocity or no energy at the
+    /// node. The parameters then keep their values.
     pub fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
         let system = changed(&self.system, change)?;
         let mut node = self.node;
@@ -230,12 +239,13 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Ok(())
     }
 
-    /// Continues from another state: after an impact, or in another frame. An error of the last step is forgotten.
+    /// Continues from another state, for example after an impact or in another frame. The run clears an error of the
+    /// last step.
     ///
-    /// The energy that an energy-preserving run keeps gains `H(state) − H(node)`.
+    /// The energy of an energy-preserving run increases by `H(state) − H(node)`.
     ///
     /// # Errors
-    /// Those of a new run from there. The run is then what it was.
+    /// Those of a new run from that state. The run then does not change.
     pub fn set_state(&mut self, state: State<N, T>) -> Result<(), StepError> {
         let mut node = self.node;
         self.memory = self.method.with_state(&self.system, &mut node, self.h, &self.memory, state)?;
@@ -243,7 +253,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Ok(())
     }
 
-    /// [`Run::step`] outside of a loop: a step is inlined wherever it stands, and one more copy of it serves all these places.
+    /// [`Run::step`] outside of loops. The inlined step has one copy per call site; this shared copy keeps the code
+    /// small.
     #[doc(hidden)]
     #[inline(never)]
     pub fn single_step(&mut self) -> Result<State<N, T>, StepError> {
@@ -251,7 +262,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     }
 }
 
-/// A step that the hot path did not find: node, memory, cache and failure after it.
+/// Takes a step on the cold path. Returns node, memory, cache and failure.
 #[cold]
 #[inline(never)]
 #[allow(clippy::type_complexity)] // the fields of a run, each for itself
@@ -283,7 +294,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     }
 }
 
-/// A system with changed parameters.
+/// Applies a change of parameters to a copy of the system.
 ///
 /// # Errors
 /// [`StepError::InvalidInput`] for a parameter that is not finite.

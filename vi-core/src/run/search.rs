@@ -1,11 +1,11 @@
-//! The search of one step for events.
+//! Event search within one step.
 //!
-//! In: a node, the step after it, functions and the sign that each had last. Out: the crossings of that step, in order.
+//! For a node, its step, and the last sign of each function, the search returns the crossings of that step in order.
 //!
 //! ```text
-//! samples    each function at both nodes, at SAMPLES − 1 points of the dense output between them, and at extrema that are nearer to zero
-//! bracket    the dense output between two samples of different sign, then steps of exact length, to neighbouring lengths (`solve::bracket`)
-//! instant    at the first such length: the side of every function
+//! samples    each function at both nodes, at SAMPLES − 1 points of the dense output between them, and at extrema nearer to zero
+//! bracket    between two samples of different sign: the dense output, then steps of exact length, to neighbouring lengths (`solve::bracket`)
+//! instant    the side of every function at the first such length
 //! ```
 
 use super::events::{Crossing, Event, Met, Moment};
@@ -21,26 +21,26 @@ use nalgebra::SVector;
 
 /// Parts into which a step is divided.
 const SAMPLES: u32 = 8;
-/// Iterations that find an extremum of the dense output.
+/// Iterations of the search for an extremum of the dense output.
 const ITERATIONS: u32 = 60;
 
-/// A run from one node on, type-erased: the search is compiled once, and not for each method of each system.
-pub(super) trait Motion<const N: usize> {
+/// A type-erased run from one node on. The search is then compiled once, not once per method and system.
+pub(super) trait ErasedRun<const N: usize> {
     /// Length of a step.
     fn step_length(&self) -> f64;
     /// The end of a step of this length.
-    fn reached(&self, length: f64) -> Result<Reached<N>, StepError>;
-    /// The run from there on.
-    fn apart(&self, length: f64) -> Result<Box<dyn Motion<N> + '_>, StepError>;
+    fn reached(&self, length: f64) -> Result<StepEnd<N>, StepError>;
+    /// The run after a step of this length.
+    fn run_after(&self, length: f64) -> Result<Box<dyn ErasedRun<N> + '_>, StepError>;
 }
 
 /// The end of a step.
-pub(super) struct Reached<const N: usize> {
+pub(super) struct StepEnd<const N: usize> {
     pub(super) state: State<N>,
     pub(super) v: SVector<f64, N>,
 }
 
-/// The run after a step of a length; a length below the smallest of a step is none.
+/// The run after a step of this length; a subnormal length is no step.
 fn moved<M, S, const N: usize>(run: &Run<M, S, N>, length: f64) -> Result<Run<M, S, N>, StepError>
 where
     M: Method<S, N>,
@@ -53,36 +53,36 @@ where
     Ok(aside)
 }
 
-impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Motion<N> for Run<M, S, N> {
+impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> ErasedRun<N> for Run<M, S, N> {
     fn step_length(&self) -> f64 {
         self.h()
     }
 
-    fn reached(&self, length: f64) -> Result<Reached<N>, StepError> {
+    fn reached(&self, length: f64) -> Result<StepEnd<N>, StepError> {
         let end = moved(self, length)?;
-        Ok(Reached { state: end.state(), v: end.velocity()? })
+        Ok(StepEnd { state: end.state(), v: end.velocity()? })
     }
 
-    fn apart(&self, length: f64) -> Result<Box<dyn Motion<N> + '_>, StepError> {
+    fn run_after(&self, length: f64) -> Result<Box<dyn ErasedRun<N> + '_>, StepError> {
         Ok(Box::new(moved(self, length)?))
     }
 }
 
 /// A run that is searched, type-erased.
 pub(super) trait Searched<const N: usize> {
-    /// Takes the step that was looked at. Returns whether the run is at `until`.
+    /// Takes the previewed step. Returns whether the run is at `until`.
     fn take(&mut self, until: f64) -> Result<bool, StepError>;
-    /// Looks at the step after the node of the run, or at the part of it up to `until`.
+    /// Previews the next step, or the part of it up to `until`.
     fn look_ahead(&mut self, until: f64) -> Result<Step<N>, StepError>;
-    /// Goes to a length in the step that was looked at.
+    /// Moves to a length within the previewed step.
     fn stop(&mut self, length: f64) -> Result<(), StepError>;
     /// The run at its node.
-    fn node(&self) -> &dyn Motion<N>;
-    /// The run at the end of the step that was looked at.
-    fn end(&self) -> &dyn Motion<N>;
+    fn node(&self) -> &dyn ErasedRun<N>;
+    /// The run at the end of the previewed step.
+    fn end(&self) -> &dyn ErasedRun<N>;
 }
 
-/// A run, and the run at the end of the step that is searched, with its length.
+/// A run, and the run at the end of the searched step, with its length.
 pub(super) struct Ahead<'a, M: Method<S, N>, S, const N: usize> {
     run: &'a mut Run<M, S, N>,
     end: Option<(Run<M, S, N>, f64)>,
@@ -133,59 +133,59 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Searched<N> for A
         Ok(())
     }
 
-    fn node(&self) -> &dyn Motion<N> {
+    fn node(&self) -> &dyn ErasedRun<N> {
         &*self.run
     }
 
-    fn end(&self) -> &dyn Motion<N> {
+    fn end(&self) -> &dyn ErasedRun<N> {
         self.end.as_ref().map_or(&*self.run, |(end, _)| end)
     }
 }
 
-/// What is known of a function in a search.
+/// State of one function during a search.
 pub(super) struct Watched {
     /// Whether it was positive last.
     is_positive: bool,
-    /// A length after the node at which it had that sign by steps.
+    /// Length after the node at which exact steps confirm that sign.
     sure: f64,
-    /// The function over the step, by lengths.
+    /// Samples of the function over the step, by length.
     samples: Vec<Point>,
-    /// The samples before this one have been looked at.
+    /// Index of the next sample to search.
     next: usize,
-    /// Where it is not finite.
+    /// Length at which it is not finite.
     lost: Option<f64>,
 }
 
 impl Watched {
-    /// A function of which its side is known.
+    /// A function with a known side.
     pub(super) fn new(side: &Side) -> Self {
         Self { is_positive: side.is_positive, sure: side.after, samples: Vec::new(), next: 0, lost: None }
     }
 }
 
-/// A step that is searched.
+/// A searched step.
 pub(super) struct Step<const N: usize> {
-    /// Time of the node before it.
+    /// Start time of the step.
     t: f64,
-    /// Length up to which it is searched.
+    /// Length of the searched part.
     pub(super) length: f64,
     is_last: bool,
-    /// The motion over it, by the time since its start.
+    /// Dense output as a function of the time since the start.
     path: Box<dyn DenseOutput<N>>,
 }
 
-/// A step that is searched, and the run that takes it. Lengths are positive in both directions of time.
+/// A searched step and its run. Lengths are positive in both directions of time.
 struct Search<'a, const N: usize> {
     step: &'a Step<N>,
     run: &'a dyn Searched<N>,
-    /// Length up to which the step is searched.
+    /// Length of the searched part.
     length: f64,
-    /// Where the motion is at both ends.
+    /// Moments at both ends.
     ends: [Moment<N>; 2],
 }
 
 impl<const N: usize> Step<N> {
-    /// The crossings of the step, and the error that ends them; if `is_first`, no crossing after the first.
+    /// The crossings of the step, and the error that ends them. With `is_first`, only the first crossing.
     pub(super) fn crossings(
         &self,
         run: &dyn Searched<N>,
@@ -204,7 +204,7 @@ impl<const N: usize> Step<N> {
         found
     }
 
-    /// Hands over the crossings of the step, until `take` says that this was the last one wanted.
+    /// Passes the crossings of the step to `take`, until it returns that no more are wanted.
     fn search(
         &self,
         run: &dyn Searched<N>,
@@ -235,7 +235,7 @@ impl<const N: usize> Step<N> {
             is_over = first.is_none();
             let sides =
                 search.at(length, |node| wanted.iter().map(|event| node.side(event)).collect::<Result<Vec<_>, _>>())?;
-            // A function that changed its sign before, unseen by its samples, comes first.
+            // An earlier sign change that the samples missed comes first.
             let mut is_unseen = false;
             for (index, side) in sides.iter().enumerate() {
                 let watched = &mut watched[index];
@@ -265,7 +265,7 @@ impl<const N: usize> Step<N> {
                 }
             }
             if !events.is_empty() {
-                let Reached { state, v } = search.reached(length)?;
+                let StepEnd { state, v } = search.reached(length)?;
                 if take(Crossing { events, state, v, length: length.copysign(self.length) }) {
                     return Ok(());
                 }
@@ -279,14 +279,14 @@ impl<const N: usize> Step<N> {
 }
 
 impl<const N: usize> Search<'_, N> {
-    /// The motion after a length, by the dense output.
+    /// The moment after a length, by dense output.
     fn along(&self, length: f64) -> Moment<N> {
         let passed = length.copysign(self.step.length);
         Moment { t: self.step.t + passed, q: self.step.path.state(passed).q, v: self.step.path.velocity(passed) }
     }
 
-    /// The motion after a length, by a step.
-    fn reached(&self, length: f64) -> Result<Reached<N>, StepError> {
+    /// The end of a step of this length.
+    fn reached(&self, length: f64) -> Result<StepEnd<N>, StepError> {
         if length.to_bits() == self.length.to_bits() {
             self.run.end().reached(0.0)
         } else {
@@ -294,7 +294,7 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// Where the motion is after a length, by a step.
+    /// The moment after a length, by a step.
     fn moment(&self, length: f64) -> Result<Moment<N>, StepError> {
         if length.to_bits() == self.length.to_bits() {
             Ok(self.ends[1])
@@ -310,16 +310,16 @@ impl<const N: usize> Search<'_, N> {
         Ok(Point { x, y: event.value(&self.moment(x)?)? })
     }
 
-    /// What is asked of the node after a length.
+    /// Evaluates `ask` at the node after a length.
     fn at<R>(&self, length: f64, ask: impl FnOnce(&mut Node<N>) -> Result<R, StepError>) -> Result<R, StepError> {
         if length.to_bits() == self.length.to_bits() {
             return ask(&mut Node::of(self.run.end())?);
         }
-        let apart = self.run.node().apart(length.copysign(self.step.length))?;
-        ask(&mut Node::of(&*apart)?)
+        let run_after = self.run.node().run_after(length.copysign(self.step.length))?;
+        ask(&mut Node::of(&*run_after)?)
     }
 
-    /// Samples a function over the step, up to where it is not finite.
+    /// Samples a function over the step, up to the first value that is not finite.
     fn sample(&self, event: &Event<N>, watched: &mut Watched) -> Result<(), StepError> {
         let samples = &mut watched.samples;
         samples.clear();
@@ -343,7 +343,7 @@ impl<const N: usize> Search<'_, N> {
         Ok(())
     }
 
-    /// The length at which a function changes its sign next; it may be a change that is taken back within the rounding of the function.
+    /// The length of the next sign change of a function. It may revert within the rounding error of the function.
     fn change(&self, event: &Event<N>, watched: &mut Watched) -> Result<Option<f64>, StepError> {
         while let Some(&sample) = watched.samples.get(watched.next) {
             watched.next += 1;
@@ -356,7 +356,7 @@ impl<const N: usize> Search<'_, N> {
                 watched.sure = sample.x;
                 continue;
             }
-            // Within its rounding the sign of a function says nothing.
+            // Within its rounding error a function has no reliable sign.
             if to.y.abs() <= event.rounding(&moment, to.y)
                 && self.at(to.x, |node| node.side(event))?.is_positive == watched.is_positive
             {
@@ -364,11 +364,11 @@ impl<const N: usize> Search<'_, N> {
             }
             return self.located(event, watched, to).map(Some);
         }
-        // What is not finite is met like a change.
+        // A value that is not finite counts as a change.
         Ok(watched.lost)
     }
 
-    /// The length at which a function changes its sign before `to`.
+    /// The length of the sign change of a function before `to`.
     fn located(&self, event: &Event<N>, watched: &Watched, to: Point) -> Result<f64, StepError> {
         let is_before = |point: Point| point.is_positive() == watched.is_positive;
         let mut from = self.point(event, watched.sure)?;
@@ -400,7 +400,8 @@ impl<const N: usize> Search<'_, N> {
     }
 }
 
-/// Whether the parabola through three neighbours of one sign has an extremum between them that is half as near to zero as they are.
+/// Whether the parabola through three neighbours of one sign has an extremum between them that is less than half as far
+/// from zero.
 fn has_near_extremum(near: &[Point]) -> bool {
     let &[a, b, c] = near else { return false };
     let is_one_sign = a.is_positive() == b.is_positive() && b.is_positive() == c.is_positive();
@@ -414,7 +415,7 @@ fn has_near_extremum(near: &[Point]) -> bool {
     is_one_sign && x.abs() <= 1.0 && bend * sign > 0.0 && value * sign <= 0.5 * nearest
 }
 
-/// The extremum between three neighbours, or a point of the other sign: by golden sections.
+/// The extremum between three neighbours, or a point of the other sign, by golden-section search.
 fn extremum(y: impl Fn(f64) -> f64, near: &[Point]) -> Point {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let at = |x: f64| Point { x, y: y(x) };

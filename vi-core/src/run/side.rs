@@ -1,39 +1,40 @@
-//! The side of zero on which a function of the motion is at a node.
+//! The sign of an event function just after a node, its side.
 //!
-//! In: a node and a function g. Out: the sign that g has next along the motion, and from which length on. Steps from the node of the lengths
-//! δ, 2δ, 4δ, … give g after it; δ is the resolution of time.
+//! For a node and a function g, this module finds the next sign of g along the motion, and the length from which it
+//! holds. Steps from the node of the lengths δ, 2δ, 4δ, … give g after it; δ is the time resolution.
 //!
 //! ```text
 //! rounding    Σ |g(x (1 + ε)) − g(x)| over t, q, v
 //! zero        |g| ≤ rounding, or g has another sign at δ: it passes zero at this instant
-//! side        the sign of g if g is not zero, else that of the first g(2^k δ) beyond its rounding: of the first derivative that is not zero
+//! side        the sign of g if g is not zero, otherwise that of the first g(2^k δ) beyond its rounding: of the first nonzero derivative
 //! ```
 //!
-//! THE SIDE DEPENDS ON THE NODE ALONE: two searches that meet at a node agree on it.
+//! The side depends on the node alone, so that two searches that meet at a node agree on it.
 
 use super::events::{Event, Moment};
-use super::search::Motion;
+use super::search::ErasedRun;
 use super::times::LONGER;
 use crate::error::StepError;
 
-/// Part of a number that rounding may have taken from it: the end of a step is known to a few roundings.
+/// Relative rounding error of the end of a step: a few roundings.
 pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// Part of a step up to which a function is looked at after a node.
+/// Fraction of a step up to which the search for a side extends.
 const LAST: f64 = 0.125;
 
-/// Lengths of steps from a time that differ by less are one: a run carries its time with twice the digits of a number.
+/// The time resolution. Step lengths that differ by less count as equal; a run carries its time with twice the digits
+/// of a number.
 pub(super) fn resolution(t: f64, h: f64) -> f64 {
     f64::EPSILON * f64::EPSILON * t.abs().max(h.abs())
 }
 
-/// Where a function is at a node.
+/// The side of a function at a node.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
-    /// The sign that the function has next; positive if it stays at its rounding.
+    /// Whether the function is positive next. True if it stays within its rounding error.
     pub(super) is_positive: bool,
-    /// Length after the node from which on it has that sign.
+    /// Length after the node from which it has that sign.
     pub(super) after: f64,
-    /// Whether the function is zero at the node, to its rounding.
+    /// Whether the function is zero at the node, to rounding.
     pub(super) is_zero: bool,
     /// Whether the function was on the same side before the node.
     pub(super) is_turned: bool,
@@ -41,27 +42,27 @@ pub(super) struct Side {
     pub(super) value: f64,
 }
 
-/// A node, and the motion shortly after it.
+/// A node, and the moments shortly after it.
 pub(super) struct Node<'a, const N: usize> {
-    motion: &'a dyn Motion<N>,
+    motion: &'a dyn ErasedRun<N>,
     pub(super) moment: Moment<N>,
     /// Length of a step of the run.
     h: f64,
-    /// The difference of two times that are one instant.
+    /// Largest difference of two times of one instant.
     instant: f64,
-    /// Ends of the steps of the lengths `instant · 2^k`; none where a step failed.
+    /// Ends of the steps of the lengths `instant · 2^k`; `None` for a failed step.
     ends: Vec<Option<Moment<N>>>,
 }
 
 impl<'a, const N: usize> Node<'a, N> {
-    pub(super) fn of(motion: &'a dyn Motion<N>) -> Result<Self, StepError> {
+    pub(super) fn of(motion: &'a dyn ErasedRun<N>) -> Result<Self, StepError> {
         let moment = motion.reached(0.0)?.moment();
         let h = motion.step_length();
         let instant = (ROUNDING * moment.t.abs()).min(LONGER * h.abs()).max(resolution(moment.t, h));
         Ok(Self { motion, moment, h, instant, ends: Vec::new() })
     }
 
-    /// The length of a step after the node.
+    /// The k-th length.
     fn length(&self, k: usize) -> f64 {
         #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap)]
         let factor = 2.0_f64.powi(k as i32);
@@ -77,7 +78,7 @@ impl<'a, const N: usize> Node<'a, N> {
         self.ends[k]
     }
 
-    /// On which side of zero a function is.
+    /// The side of a function.
     ///
     /// # Errors
     /// [`StepError::NonFinite`] if it is not finite at the node.
@@ -108,7 +109,7 @@ impl<'a, const N: usize> Node<'a, N> {
         Ok(side)
     }
 
-    /// The motion as long before the node as `after` is after it, to the second order.
+    /// The moment mirrored to the time before the node, to second order.
     fn before(&self, after: &Moment<N>, length: f64) -> Moment<N> {
         let Moment { t, v, .. } = self.moment;
         let passed = length.copysign(self.h);

@@ -5,7 +5,7 @@ use crate::lagrangian::Lagrangian;
 use crate::state::State;
 use core::fmt;
 
-/// States of a run with their times and energies. Printed, it is a table in CSV: `t`, coordinates, momenta, `H`.
+/// States of a run with their times and energies. `Display` prints a CSV table: `t`, coordinates, momenta, `H`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution<const N: usize> {
     /// The times.

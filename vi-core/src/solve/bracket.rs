@@ -1,9 +1,10 @@
-//! Narrows an interval in which a function of one number changes its sign.
+//! Narrows an interval in which a scalar function changes its sign.
 //!
-//! Chandrupatla's method (*Adv. Eng. Softw.* 28, 1997): inverse quadratic interpolation if the three last points allow it, bisection otherwise.
-//! Three evaluations at least halve the interval, so that flat functions and functions that jump end too. Zero counts as positive.
+//! Chandrupatla's method (*Adv. Eng. Softw.* 28, 1997): inverse quadratic interpolation if the three last points allow
+//! it, bisection otherwise. At least every third evaluation halves the interval, so that flat and discontinuous
+//! functions terminate too. Zero counts as positive.
 
-/// Evaluations after which the interval has halved, or the next one bisects it.
+/// Evaluations within which the interval must halve; otherwise the next one bisects it.
 const PATIENCE: u32 = 3;
 
 /// A point and the value of the function there.
@@ -20,8 +21,10 @@ impl Point {
     }
 }
 
-/// Two neighbouring points between which the function `y` changes its sign, the one on the side of `from` first. The ends have values of different
-/// sign; the first evaluation is at `guess` if that lies between them. Points are neighbours if no number lies between them, or if they are at most `resolution` apart.
+/// Two neighbouring points between which the function `y` changes its sign, the one on the side of `from` first.
+///
+/// The ends have values of different sign. The first evaluation is at `guess` if that lies between them. Points are
+/// neighbours if no number lies between them, or if they are at most `resolution` apart.
 ///
 /// # Errors
 /// Those of `y`.
@@ -55,7 +58,8 @@ pub(crate) fn narrowed<E>(
     }
 }
 
-/// The root by inverse quadratic interpolation through the newest point, the other end and the point that the newest one replaced, at least one neighbour away from both ends; not a number if the points do not allow it.
+/// The root by inverse quadratic interpolation through the newest point, the other end and the replaced point, at least
+/// one neighbour away from both ends; NaN if the points do not allow it.
 fn interpolated([one, two, three]: [Point; 3], resolution: f64) -> f64 {
     let place = (one.x - two.x) / (three.x - two.x);
     let value = (one.y - two.y) / (three.y - two.y);

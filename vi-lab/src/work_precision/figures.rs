@@ -328,7 +328,7 @@ mod tests {
         };
         // A run that ended early, and one with a large error.
         let why = without(|run| run.setting > 0.1 || run.setting < 0.05).uncompared().expect("nothing is compared");
-        assert!(why.contains("ended early; at h₀ = 0.2000: no energy-preserving step leads forward"), "{why}");
+        assert!(why.contains("ended early; at h₀ = 0.2000: no energy-preserving step exists past"), "{why}");
         let lost = without(|run| run.setting < 0.05);
         let of_agreement = |composed| Findings { agreement: Agreement { composed, ..found.agreement }, ..lost.clone() };
         let why = of_agreement(0.3).uncompared().expect("nothing is compared");
@@ -344,8 +344,8 @@ mod tests {
         assert_eq!(
             found.missing(),
             [
-                "1 of the 4 runs of energy-preserving ended early; at h₀ = 0.2000: no energy-preserving step leads forward \
-                 from t = 1.000000000 (last h = 1.000e-1, H − E = 0.000e0, step density D = -1.000e0).",
+                "1 of the 4 runs of energy-preserving ended early; at h₀ = 0.2000: no energy-preserving step exists past \
+                 t = 1.000000000 (last h = 1.000e-1, H − E = 0.000e0, step density D = -1.000e0).",
                 "1 of the 4 runs of energy-preserving have an error above 2."
             ]
         );

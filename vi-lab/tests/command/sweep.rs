@@ -220,7 +220,7 @@ fn an_item_is_the_run_alone_and_a_failure_is_recorded() {
         let is_failed = line.contains("no forward step");
         failed += usize::from(is_failed);
         assert_eq!(
-            (status, errors.contains("no energy-preserving step leads forward")),
+            (status, errors.contains("no energy-preserving step exists past")),
             (Some(i32::from(is_failed)), is_failed)
         );
         if is_failed {

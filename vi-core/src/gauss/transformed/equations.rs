@@ -1,6 +1,6 @@
-//! The stages of a step in transformed time.
+//! The stage equations of a step in transformed time.
 //!
-//! In: the equations of motion, `dt = g dτ` and H at the stages. Out: velocities, times, energies, and what they change by,
+//! The equations of motion, `dt = g dτ` and H at the stages determine velocities, times, energies and their rates,
 //!
 //! ```text
 //! T_i = t0 + Σ_j first_ij w_j g_j                 w_j = Δτ b_j
@@ -9,14 +9,14 @@
 //! L_v(T_i, Q_i, V_i) = p0 + Σ_j first_ij w_j P'_j         P' = g (L_q + f) − (H − E) ∂g/∂q
 //! ```
 //!
-//! A sweep evaluates everything at (T, Q, V, E), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from P', and moves T, Q and E
-//! by the new g, V and E'.
+//! One iteration evaluates everything at (T, Q, V, E), corrects V by `M⁻¹ (P − L_v)` with the momenta P from P', and
+//! moves T, Q and E by the new g, V and E'.
 
+use super::super::fixed_point::{Equations, StageIncrement, VELOCITY};
 use super::super::newton::Newton;
 use super::super::stages::{
     Roundings, Stages, change, constant_mass, growth, product, roundings, scaled, set, stage, weights,
 };
-use super::super::sweep::{Equations, Increment, VELOCITY};
 use super::super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::linear::Matrix;
@@ -24,7 +24,7 @@ use crate::node::Node;
 use crate::real::{Lane, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// What a step is found from: velocities, and what time and energy change by, at its stages.
+/// The unknowns of a step: velocities, and the rates of time and energy at its stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rates<const N: usize, const S: usize> {
     pub(crate) velocity: Stages<N, S>,
@@ -49,27 +49,27 @@ where
     system: &'a Y,
     node: &'a Node<N>,
     dtau: f64,
-    /// M, where it is constant.
+    /// M, if it is constant.
     mass: Option<Y::Mass>,
-    /// The motion by `h = g Δτ`, g that of the middle, linearized, where sweeps do not contract: what g changes by is left to the iteration, since
-    /// it is no faster than the motion that it follows.
+    /// The motion with `h = g Δτ`, with g at the middle, linearized, if fixed-point iteration does not contract. The
+    /// linearization omits the changes of g, because g is no faster than the motion that it follows.
     newton: Option<&'a Newton<N, S>>,
-    /// What positions, times and energies follow from.
+    /// Rates that determine positions, times and energies.
     rates: Rates<N, S>,
     clock: Clock<S>,
-    /// Velocities, times and energies at which the equations were evaluated last.
+    /// Velocities, times and energies of the last evaluation.
     velocity: Stages<N, S>,
     evaluated: Clock<S>,
-    /// `dp/dτ` there.
+    /// `dp/dτ` of the last evaluation.
     force: Stages<N, S>,
-    /// The largest H, and v·p, there: what an energy is a sum of.
+    /// The largest H, and v·p, of the last evaluation: the terms of an energy.
     energy_scale: f64,
-    /// The largest `|H − E|` there.
+    /// The largest `|H − E|` of the last evaluation.
     excess: f64,
     roundings: AllRoundings<N>,
 }
 
-/// Roundings of all that changes.
+/// Ulps of all changing quantities.
 pub(crate) struct AllRoundings<const N: usize> {
     position: Roundings<N>,
     velocity: Roundings<N>,
@@ -125,7 +125,7 @@ where
         product::<S, FUSED>(first, &scaled(&weights, of), &[low; S])
     }
 
-    /// Moves times and energies by the rates at hand.
+    /// Moves times and energies by the current rates.
     #[inline(always)]
     fn advance_clock(&mut self) {
         let time = self.integral(&self.rates.g, self.node.t_low);
@@ -136,7 +136,7 @@ where
         }
     }
 
-    /// Where the rates at hand lead.
+    /// The positions by the current rates.
     #[inline(always)]
     fn positions(&self) -> Stages<N, S> {
         let mut x = [[0.0; S]; N];
@@ -149,10 +149,11 @@ where
         x
     }
 
-    /// Evaluates the equations at the positions x, calls `keep` with each mass matrix, and returns what is missing in the momenta.
+    /// Evaluates the equations at the positions x, calls `keep` with each mass matrix, and returns the residuals of the
+    /// momenta.
     #[inline(always)]
     fn evaluate(&mut self, x: &Stages<N, S>, mut keep: impl FnMut(usize, &Y::Mass)) -> Stages<N, S> {
-        // Arrays of this function do not overlap, so far as the compiler knows: it makes vectors of their loops.
+        // Local arrays cannot alias, so that the compiler vectorizes their loops.
         let velocity = self.rates.velocity;
         let clock = self.clock;
         let x = *x;
@@ -197,7 +198,7 @@ where
         missing
     }
 
-    /// Adds corrections to the velocities, and follows the rates.
+    /// Adds corrections to the velocities, and updates times and energies.
     #[inline(always)]
     fn moved(&mut self, correction: &Stages<N, S>) -> Stages<N, S> {
         for k in 0..N {
@@ -246,7 +247,7 @@ where
         correction
     }
 
-    /// `dp/dτ` where the rates at hand lead.
+    /// `dp/dτ` by the current rates.
     pub(crate) fn momentum_rates(&mut self) -> Stages<N, S> {
         let x = self.positions();
         self.evaluate(&x, |_, _| {});
@@ -264,13 +265,13 @@ where
         sum
     }
 
-    /// What time and energy gain over the step, by the evaluation of the last sweep.
+    /// Increments of time and energy over the step, from the last evaluation.
     #[inline(always)]
     pub(crate) fn gains(&self) -> [f64; 2] {
         [self.quadrature(&self.rates.g), self.quadrature(&self.rates.energy)]
     }
 
-    /// The rates at hand: what is extrapolated to the next step.
+    /// The current rates, for the extrapolation of the next step.
     #[inline(always)]
     pub(crate) fn rates(&self) -> Rates<N, S> {
         self.rates
@@ -282,13 +283,13 @@ where
         [self.excess, self.energy_scale]
     }
 
-    /// Velocities at which the last sweep evaluated.
+    /// Velocities of the last evaluation.
     #[inline(always)]
     pub(crate) fn velocity(&self) -> Stages<N, S> {
         self.velocity
     }
 
-    /// Times and energies at which the last sweep evaluated.
+    /// Times and energies of the last evaluation.
     #[inline(always)]
     pub(crate) fn evaluated(&self) -> Clock<S> {
         self.evaluated
@@ -311,7 +312,7 @@ where
     }
 
     #[inline(always)]
-    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
         let correction = match self.newton {
             Some(newton) => newton.correction(&self.evaluate(x, |_, _| {})),
             None if Y::CONSTANT_MASS => self.by_constant_mass(x),
@@ -321,8 +322,8 @@ where
     }
 
     #[inline(always)]
-    fn increment(&self) -> Increment<N> {
-        let mut increment = Increment { velocity: SVector::zeros(), momentum: SVector::zeros() };
+    fn increment(&self) -> StageIncrement<N> {
+        let mut increment = StageIncrement { velocity: SVector::zeros(), momentum: SVector::zeros() };
         for k in 0..N {
             increment.velocity[k] = self.quadrature(&scaled(&self.rates.g, &self.velocity[k])) / self.dtau;
             increment.momentum[k] = self.quadrature(&self.force[k]);
@@ -340,7 +341,7 @@ where
         Some(self.velocity)
     }
 
-    /// With those of velocities, of times, which count as positions, and of energies.
+    /// Changes of velocities, of times (with the ulps of positions) and of energies.
     #[inline(always)]
     fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
         let after = AllRoundings {

@@ -1,36 +1,37 @@
-//! The equations of a Gauss step in transformed time, and their solution. [`InTransformedTime`](crate::method::InTransformedTime) is the method.
+//! The stage equations of a step in transformed time, and their solver.
+//! [`InTransformedTime`](crate::method::InTransformedTime) is the method.
 //!
 //! | file | part of a step |
 //! |---|---|
-//! | `equations` | the equations of the stages, solved by fixed-point iteration, else by simplified Newton iterations |
-//! | `rates` | what is remembered of the last step, from which the next one is guessed |
-//! | `path` | the motion between the nodes of a step |
-//! | `rounding` | whether stages that stall are solved, by running error analysis |
-//! | `variation` | how a solved step varies |
+//! | `equations` | the stage equations, for fixed-point iteration and simplified Newton iteration |
+//! | `rates` | memory of the last step, for the guess of the next one |
+//! | `polynomial` | dense output |
+//! | `rounding` | residuals of stalled stages, by running error analysis |
+//! | `variation` | derivatives of a step |
 
 mod equations;
-mod path;
+mod polynomial;
 mod rates;
 mod rounding;
 mod variation;
 
+use super::fixed_point::{self, Equations, FixedPointResult, StageIncrement};
 use super::newton::{Linearization, Newton};
-use super::points::Rare;
+use super::points::ErasedSystem;
 use super::solve::lost_force;
 use super::stages::{Stages, stage};
-use super::sweep::{self, Equations, Increment, Sweeps};
 use crate::collocation::{Collocation, TimeScale};
 use crate::error::StepError;
 use crate::node::Node;
 use crate::real::{Lane, Real, Rounded};
 use crate::stepping::Convertible;
 use equations::{Clock, Rates, Scaled};
-pub use path::Polynomial;
+pub use polynomial::TransformedPolynomial;
 pub(crate) use rates::time_scale;
 pub use rates::{After, LastRates};
 use vi_dispatch::{Instructions, Loop};
 
-/// What a step of the length Δτ is solved from.
+/// Initial data of a step of the length Δτ.
 #[derive(Debug)]
 pub(crate) struct Start<'a, Y, const N: usize, const S: usize> {
     pub(crate) system: &'a Y,
@@ -51,36 +52,36 @@ impl<Y, const N: usize, const S: usize> Start<'_, Y, N, S>
 where
     Y: TimeScale<N> + Convertible<N>,
 {
-    /// The run after the step that fixed-point iteration finds; else the stages that it leads to.
+    /// The run after the step by fixed-point iteration.
     ///
     /// # Errors
-    /// These stages.
+    /// The stages of the failed iteration.
     #[inline(always)]
-    pub(crate) fn swept(self, instructions: Instructions) -> Result<After<N, S>, Solved<N, S>> {
-        let solved = if Y::SIDE_BY_SIDE { instructions.run(Sweeping(self)) } else { self.plainly(None) };
+    pub(crate) fn by_fixed_point(self, instructions: Instructions) -> Result<After<N, S>, TransformedStages<N, S>> {
+        let solved = if Y::SIDE_BY_SIDE { instructions.run(FixedPoint(self)) } else { self.in_scalars(None) };
         let after = self.last.after(self.node, self.dtau, &solved);
         let is_step =
-            solved.is_at_floor() && after.is_sound(self.system) && after.goes_on((self.node, self.last), &solved);
+            solved.is_at_floor() && after.is_sound(self.system) && after.can_continue((self.node, self.last), &solved);
         if is_step { Ok(after) } else { Err(solved) }
     }
 
-    /// The run after a step that fixed-point iteration did not bring to the rounding of its positions, or was not tried on, or whose g is not positive.
+    /// The run after a step, if fixed-point iteration failed or was skipped, or g is not positive.
     ///
     /// # Errors
     /// [`StepError::StagesUnsettled`], [`StepError::TimeScale`], [`StepError::NonFinite`].
     #[cold]
-    pub(crate) fn with_care(
+    pub(crate) fn recover(
         self,
-        swept: Option<&Solved<N, S>>,
+        by_fixed_point: Option<&TransformedStages<N, S>>,
         cache: &mut Option<Box<Newton<N, S>>>,
     ) -> Result<After<N, S>, StepError> {
-        if let Some(swept) = swept {
-            // Plain numbers have sines and cosines of every angle; lanes lose large ones.
+        if let Some(by_fixed_point) = by_fixed_point {
+            // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
             let plain;
-            let solved = if swept.increment.is_finite() {
-                swept
+            let solved = if by_fixed_point.increment.is_finite() {
+                by_fixed_point
             } else {
-                plain = self.plainly(None);
+                plain = self.in_scalars(None);
                 &plain
             };
             if let Some(after) = self.accepted(solved, self.last.after(self.node, self.dtau, solved)) {
@@ -88,28 +89,28 @@ where
             }
         }
         let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
-        newton.linearize(&Rare::of(self.system), self.middle());
-        let solved = self.plainly(Some(newton));
+        newton.linearize(&ErasedSystem::of(self.system), self.middle());
+        let solved = self.in_scalars(Some(newton));
         let mut after = self.last.after(self.node, self.dtau, &solved);
         after.rates.pause = self.last.pause.after_newton();
         self.accepted(&solved, after).ok_or_else(|| self.failure_of(&solved, &after, newton.stiffness()))
     }
 
-    /// The run after a solved step, with the number by which the step is judged: the last change of its stages, or, if that stalls, their residual by running error
-    /// analysis. `None` if that is more than rounding, or the run cannot continue.
-    fn accepted(&self, solved: &Solved<N, S>, mut after: After<N, S>) -> Option<After<N, S>> {
+    /// The run after a solved step, with its acceptance criterion: the last change of its stages or, if that stalls,
+    /// their residual by running error analysis. `None` if that exceeds rounding, or the run cannot continue.
+    fn accepted(&self, solved: &TransformedStages<N, S>, mut after: After<N, S>) -> Option<After<N, S>> {
         let Self { system, node, dtau, last } = *self;
-        if !solved.is_at_floor() && !solved.sweeps.are_given_up {
+        if !solved.is_at_floor() && !solved.iteration.are_given_up {
             after.rates.convergence.change = rounding::residual(&system.convert::<Rounded>(), node, dtau, solved);
         }
         let is_step = after.rates.convergence.is_at_floor() && after.is_sound(system);
-        (is_step && after.goes_on((node, last), solved)).then_some(after)
+        (is_step && after.can_continue((node, last), solved)).then_some(after)
     }
 
-    /// Why a step was not solved.
-    fn failure_of(&self, solved: &Solved<N, S>, after: &After<N, S>, stiffness: f64) -> StepError {
+    /// The reason why a step failed.
+    fn failure_of(&self, solved: &TransformedStages<N, S>, after: &After<N, S>, stiffness: f64) -> StepError {
         let Self { system, node, dtau, last } = *self;
-        let stages = (0..S).map(|i| (solved.clock.time[i], stage(&solved.sweeps.positions, i)));
+        let stages = (0..S).map(|i| (solved.clock.time[i], stage(&solved.iteration.positions, i)));
         for (t, q) in stages.chain([(after.node.t, after.node.q)]) {
             let is_known = t.is_finite() && q.iter().all(|q: &f64| q.is_finite());
             if is_known && let Err(failure) = check_time_scale(t, time_scale(system, t, &q)) {
@@ -119,14 +120,14 @@ where
         if let Some(failure) = lost_force(system, node, last.h) {
             return failure;
         }
-        if after.rates.convergence.is_at_floor() && !after.goes_on((node, last), solved) {
+        if after.rates.convergence.is_at_floor() && !after.can_continue((node, last), solved) {
             return StepError::TimeScale { t: node.t, g: solved.rates.g[0] };
         }
         let h = time_scale(system, node.t, &node.q) * dtau;
-        solved.sweeps.convergence.unsettled(&solved.increment, [node.t, h], stiffness)
+        solved.iteration.convergence.not_converged(&solved.increment, [node.t, h], stiffness)
     }
 
-    /// The point in the middle of the step, about which its equations are linearized.
+    /// The linearization point at the middle of the step.
     fn middle(&self) -> Linearization<N> {
         let Self { system, node, dtau, last } = *self;
         let rates = last.guess::<false>(dtau);
@@ -138,50 +139,50 @@ where
         Linearization { h, t: node.t + 0.5 * h, q, v, iterations: None }
     }
 
-    /// The stages in plain numbers. Not inlined: if vectors do not solve a step, its speed does not matter.
+    /// The stages in scalar numbers. Not inlined: speed does not matter after SIMD iteration has failed.
     #[inline(never)]
-    fn plainly(&self, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
+    fn in_scalars(&self, newton: Option<&Newton<N, S>>) -> TransformedStages<N, S> {
         let Self { system, node, dtau, last } = *self;
         solved::<f64, Y, N, S, false>(system, node, dtau, last, newton)
     }
 }
 
 /// A solved step.
-pub struct Solved<const N: usize, const S: usize> {
-    pub(crate) increment: Increment<N>,
-    /// What time and energy gain.
+pub struct TransformedStages<const N: usize, const S: usize> {
+    pub(crate) increment: StageIncrement<N>,
+    /// Increments of time and energy.
     gains: [f64; 2],
-    /// The largest `|H − E|` at its stages, and the size of the terms of H there.
+    /// The largest `|H − E|` at its stages, and the size of the terms of H.
     excess: [f64; 2],
-    /// What the next step is extrapolated from.
+    /// Rates for the extrapolation of the next step.
     rates: Rates<N, S>,
-    /// Velocities, times and energies at which the last sweep evaluated.
+    /// Velocities, times and energies of the last evaluation.
     velocity: Stages<N, S>,
     clock: Clock<S>,
-    sweeps: Sweeps<N, S>,
+    iteration: FixedPointResult<N, S>,
 }
 
-impl<const N: usize, const S: usize> Solved<N, S> {
-    /// Whether the stages are at the rounding of their positions.
+impl<const N: usize, const S: usize> TransformedStages<N, S> {
+    /// Whether the stages are at the rounding floor of their positions.
     fn is_at_floor(&self) -> bool {
-        self.sweeps.convergence.is_at_floor()
+        self.iteration.convergence.is_at_floor()
     }
 }
 
-/// The stages by the instructions of the processor.
-struct Sweeping<'a, Y, const N: usize, const S: usize>(Start<'a, Y, N, S>);
+/// Iterates the stages with SIMD dispatch.
+struct FixedPoint<'a, Y, const N: usize, const S: usize>(Start<'a, Y, N, S>);
 
-impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Sweeping<'_, Y, N, S> {
-    type Output = Solved<N, S>;
+impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for FixedPoint<'_, Y, N, S> {
+    type Output = TransformedStages<N, S>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Solved<N, S> {
+    fn run<const FUSED: bool>(self) -> TransformedStages<N, S> {
         let Self(Start { system, node, dtau, last }) = self;
         solved::<Lane<FUSED>, _, N, S, FUSED>(&system.convert::<Lane<FUSED>>(), node, dtau, last, None)
     }
 }
 
-/// The stages, the equations evaluated in the numbers T; by fixed-point iteration, else by Newton's.
+/// The stages, with equations evaluated over the numbers T, by fixed-point iteration, then by Newton iteration.
 #[inline(always)]
 fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,
@@ -189,22 +190,22 @@ fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(
     dtau: f64,
     last: &LastRates<N, S>,
     newton: Option<&Newton<N, S>>,
-) -> Solved<N, S>
+) -> TransformedStages<N, S>
 where
     T: Real,
     Y: Collocation<N, T>,
 {
     let rates = last.guess::<FUSED>(dtau);
     let mut equations = Scaled::<T, Y, N, S, FUSED>::new(system, node, dtau, rates, newton);
-    let sweeps = sweep::solve(&mut equations, &last.convergence);
-    Solved {
+    let iteration = fixed_point::solve(&mut equations, &last.convergence);
+    TransformedStages {
         increment: equations.increment(),
         gains: equations.gains(),
         excess: equations.excess(),
         rates: equations.rates(),
         velocity: equations.velocity(),
         clock: equations.evaluated(),
-        sweeps,
+        iteration,
     }
 }
 

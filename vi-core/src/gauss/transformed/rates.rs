@@ -1,15 +1,16 @@
-//! What a run in transformed time remembers of its last step.
+//! Memory of the last step in transformed time.
 //!
-//! In: a run, a solved step. Out: the run after it, and the rates from which the next step starts: the polynomials of the last one, continued.
+//! After a solved step this module updates the run, and extrapolates the rates for the next step from the polynomials
+//! of the last one.
 
 use super::equations::Rates;
-use super::{Solved, check_time_scale};
+use super::{TransformedStages, check_time_scale};
 use crate::collocation::{ScaledPoint, TimeScale};
 use crate::compensated;
 use crate::error::StepError;
+use crate::gauss::fixed_point::{Convergence, Pause};
 use crate::gauss::polynomial::{coefficients, polynomials, sum};
 use crate::gauss::stages::{extrapolated, set};
-use crate::gauss::sweep::{Convergence, Pause};
 use crate::gauss::tableau::{DEGREE, Tableau};
 use crate::method::Memory;
 use crate::node::Node;
@@ -25,9 +26,10 @@ pub struct LastRates<const N: usize, const S: usize> {
     pub(crate) h: f64,
     /// The largest size of the terms of H, `|v·p| + |H|`, at the stages so far.
     pub(crate) size: f64,
-    /// Velocities at the stages of the last step, a column a coordinate. Before the first step those of the node.
+    /// Velocities at the stages of the last step, one column per coordinate. Before the first step, the velocities at
+    /// the node.
     pub(crate) velocities: SMatrix<f64, S, N>,
-    /// The same of g and of dE/dτ, a column each.
+    /// The rates g and dE/dτ, one column each.
     pub(crate) clock: SMatrix<f64, S, 2>,
     pub(crate) convergence: Convergence,
     pub(crate) pause: Pause,
@@ -43,10 +45,10 @@ pub struct After<const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> LastRates<N, S> {
-    /// Before the first step from a node: rates that are all like the node.
+    /// Rates equal to those at the node, before the first step.
     ///
     /// # Errors
-    /// [`StepError::NonFinite`], [`StepError::TimeScale`], those of [`State::velocity`].
+    /// [`StepError::NonFinite`], [`StepError::TimeScale`]; as [`State::velocity`].
     pub(crate) fn constant<Y: TimeScale<N>>(system: &Y, node: &Node<N>, dtau: f64) -> Result<Self, StepError> {
         node.check_finite(node.t)?;
         let State { t, q, .. } = node.state();
@@ -69,7 +71,7 @@ impl<const N: usize, const S: usize> LastRates<N, S> {
         Rates { velocity: self.velocities.data.0, g, energy }
     }
 
-    /// Rates at the stages of the next step: the polynomials of the last one, further on.
+    /// Rates at the stages of the next step, extrapolated from the last one.
     #[inline(always)]
     pub(crate) fn guess<const FUSED: bool>(&self, dtau: f64) -> Rates<N, S> {
         if !self.convergence.has_begun() {
@@ -83,7 +85,8 @@ impl<const N: usize, const S: usize> LastRates<N, S> {
         Rates { velocity: extrapolated::<N, S, FUSED>(&velocity), g, energy }
     }
 
-    /// The same where the next step is of another length: by so much further on, but not far; else the rates of the last stage.
+    /// The same for a next step of another length: extrapolated up to a limited distance; beyond, the rates of the last
+    /// stage.
     #[cold]
     fn guess_of_another_length(&self, dtau: f64) -> Rates<N, S> {
         let c = const { &Tableau::<S>::VALUES.c };
@@ -107,8 +110,8 @@ impl<const N: usize, const S: usize> LastRates<N, S> {
 
     /// The run after a step of the length Δτ from a node.
     #[inline(always)]
-    pub(crate) fn after(&self, node: &Node<N>, dtau: f64, solved: &Solved<N, S>) -> After<N, S> {
-        let Solved { increment, gains: [h, energy], rates, sweeps, .. } = solved;
+    pub(crate) fn after(&self, node: &Node<N>, dtau: f64, solved: &TransformedStages<N, S>) -> After<N, S> {
+        let TransformedStages { increment, gains: [h, energy], rates, iteration, .. } = solved;
         let mut node = *node;
         compensated::add_rounded(&mut node.t, &mut node.t_low, *h);
         compensated::add_vector(&mut node.q, &mut node.q_low, &(increment.velocity * dtau));
@@ -117,11 +120,11 @@ impl<const N: usize, const S: usize> LastRates<N, S> {
         let velocities = SMatrix::from_array_storage(ArrayStorage(rates.velocity));
         let clock = SMatrix::from_array_storage(ArrayStorage([rates.g, rates.energy]));
         let size = self.size.max(solved.excess[1]);
-        let convergence = sweeps.convergence;
+        let convergence = iteration.convergence;
         After { node, rates: Self { taken: dtau, h: *h, size, velocities, clock, convergence, pause: Pause::NONE } }
     }
 
-    /// Whether a run can continue from stored rates.
+    /// Checks whether a run can continue from stored rates.
     ///
     /// # Errors
     /// [`StepError::NonFinite`].
@@ -134,17 +137,17 @@ impl<const N: usize, const S: usize> LastRates<N, S> {
 }
 
 impl<const N: usize, const S: usize> After<N, S> {
-    /// Whether the step changes the time, both parts of whose sum hold twice the digits of a number, and keeps the energy. K = g (H − E) is nearly kept: if g almost
-    /// vanishes, H − E grows, and the motion turns back as at a wall.
+    /// Whether the step changes the time, whose two parts hold twice the digits of a number, and preserves the energy.
+    /// K = g (H − E) is nearly constant: if g almost vanishes, H − E grows, and the trajectory would be reflected.
     #[inline(always)]
-    pub(crate) fn goes_on(&self, before: (&Node<N>, &LastRates<N, S>), solved: &Solved<N, S>) -> bool {
+    pub(crate) fn can_continue(&self, before: (&Node<N>, &LastRates<N, S>), solved: &TransformedStages<N, S>) -> bool {
         let (node, rates) = before;
         let [excess, size] = solved.excess;
         let is_lost = excess > size && excess > LOST * rates.size;
         !is_lost && self.rates.h.abs() > 0.25 * f64::EPSILON * f64::EPSILON * node.t.abs()
     }
 
-    /// Whether it is finite, and g positive at all stages and at the node.
+    /// Whether everything is finite, and g positive at all stages and at the node.
     #[inline(always)]
     pub(crate) fn is_sound<Y: TimeScale<N>>(&self, system: &Y) -> bool {
         let is_positive = |g: f64| g > 0.0 && g.is_finite();
@@ -154,13 +157,13 @@ impl<const N: usize, const S: usize> After<N, S> {
     }
 }
 
-/// g at a place.
+/// g at a state.
 #[inline(always)]
 pub(crate) fn time_scale<Y: TimeScale<N>, const N: usize>(system: &Y, t: f64, q: &SVector<f64, N>) -> f64 {
     system.scaled_point(t, q, &SVector::zeros()).g
 }
 
-/// Part of the largest terms of H from which an excess `|H − E|` is no small error.
+/// Excess `|H − E|`, relative to the largest terms of H, that invalidates a step.
 const LOST: f64 = 0.1;
-/// Lengths of the last step by which its polynomials guess ahead at most.
+/// Longest extrapolation, in lengths of the last step.
 const FARTHEST: f64 = 2.0;

@@ -14,8 +14,8 @@
 //! δT_i = δt0 + Σ_j δ(Δτ a_ij g_j)         δQ_i = δq0 + Σ_j δ(Δτ a_ij g_j V_j)         δE_i = δE0 + Σ_j δ(Δτ a_ij E'_j)
 //! ```
 
+use super::super::fixed_point::Equations;
 use super::super::stages::{stage, weights};
-use super::super::sweep::Equations;
 use super::super::tableau::Tableau;
 use super::equations::Scaled;
 use super::rates::LastRates;
@@ -38,10 +38,10 @@ where
     S: TimeScale<N> + Convertible<N>,
 {
     const KEEPS_ENERGY: bool = true;
-    /// Also through g.
+    /// Steps also depend on the time through g.
     const DEPENDS_ON_TIME: bool = true;
 
-    /// Allocates: the equations of all stages are one matrix.
+    /// Allocates the joint matrix of all stages.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         if run.memory.taken.to_bits() != run.h.to_bits() {
             return Err(not_last(before.t));
@@ -49,7 +49,7 @@ where
         vary(run, before, variations)
     }
 
-    /// Δτ varies so that the step has the given length in time.
+    /// Δτ varies so that the step keeps the given length in time.
     fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let mut after = run.clone();
         after.step_of(length)?;
@@ -74,7 +74,7 @@ where
     }
 }
 
-/// Turns tangent vectors at the node `before` into those at the node of a run after its last step.
+/// Maps tangent vectors at the node `before` to those at the node of a run after its last step.
 fn vary<S, const N: usize, const STAGES: usize>(
     run: &Run<InTransformedTime<Gauss<STAGES>>, S, N>,
     before: &Node<N>,
@@ -127,7 +127,7 @@ struct Linearized<const N: usize, const S: usize> {
     g: [f64; S],
     energy_rate: [f64; S],
     momentum_rate: [SVector<f64, N>; S],
-    /// Of each stage: a row for each of (L_v, P', g, E'), a column for each of (T, Q, V, E).
+    /// For each stage, a row for each of (L_v, P', g, E') and a column for each of (T, Q, V, E).
     derivatives: Vec<DMatrix<f64>>,
 }
 
@@ -147,7 +147,7 @@ impl<const N: usize, const S: usize> Linearized<N, S> {
     {
         let rates = last.rates();
         let dtau = last.taken;
-        // The energy at the start of the step: `set_parameters` may have changed that of `before`.
+        // The energy at the start of the step, because `set_parameters` may have changed that of `before`.
         let gain = Scaled::<f64, Y, N, S, false>::new(system, before, dtau, rates, None).quadrature(&rates.energy);
         let start = Node { energy: node.energy - gain, energy_low: node.energy_low, ..*before };
         let mut equations = Scaled::<f64, Y, N, S, false>::new(system, &start, dtau, rates, None);
@@ -352,5 +352,5 @@ where
     point.momentum.iter().copied().chain(rates).chain([g, g * power + excess * g_dt]).collect()
 }
 
-/// Relative distance up to which the stages lead to the node: above rounding, and below any other step.
+/// Relative distance within which the stages lead to the node: above rounding, and below any other step.
 const NEAR: f64 = 1e-10;

@@ -53,8 +53,8 @@ pub(super) fn blocks<const N: usize, const B: usize>(
     Blocks { members, rows: core::array::from_fn(|i| core::array::from_fn(|place| at(i, place))) }
 }
 
-/// How far the solutions by a form of `a` are from those of `a` by elimination with pivoting, for one and for two
-/// right-hand sides, and by the inverse for one and for two side by side; and its product with a vector from nalgebra's.
+/// Largest difference of the solutions by a form of `a` from those of `a` by elimination with pivoting. Covers one and
+/// two right-hand sides, directly and by the inverse, and the product with a vector against nalgebra.
 fn off<const N: usize, F: Matrix<N, f64>>(a: &SMatrix<f64, N, N>, form: &F, seed: &mut u32) -> f64 {
     assert_eq!(form.dense(), *a);
     let two = SMatrix::<f64, N, 2>::from_fn(|_, _| next(seed));
@@ -151,7 +151,7 @@ fn block_diagonal_matrices() {
         let together = |i: usize, j: usize| members.iter().any(|block| block.contains(&i) && block.contains(&j));
         worst::<N, _>(together, false, |a| blocks::<N, B>(a, members))
     }
-    // Blocks in closed form and by elimination, filled up or not, of rows that stand together or do not.
+    // Blocks in closed form and by elimination, filled up or not, of contiguous rows or not.
     for off in [
         of::<1, 1>(&[&[0]]),
         of::<2, 1>(&[&[0], &[1]]),
@@ -166,7 +166,7 @@ fn block_diagonal_matrices() {
     }
 }
 
-/// No way of solving gives numbers only.
+/// Checks that no solver returns finite numbers only.
 fn lost<const N: usize, F: Matrix<N, f64>>(form: &F) {
     let rhs = SVector::<f64, N>::repeat(1.0);
     assert!(!form.solve(&rhs).iter().all(|entry| entry.is_finite()), "{form:?}");
@@ -205,7 +205,7 @@ fn singular_matrices_have_no_solution() {
     lost(&Symmetric(SMatrix::<f64, 6, 6>::from_fn(free)));
 }
 
-/// Each row's unknown is its neighbour's right-hand side: nothing on the diagonal, regular for an even N.
+/// An antidiagonal of pairs: a zero diagonal, regular for even N.
 fn swapping<const N: usize>() -> SMatrix<f64, N, N> {
     SMatrix::from_fn(|i, j| f64::from(u8::from(i.abs_diff(j) == 1)))
 }
@@ -247,7 +247,7 @@ fn an_indefinite_symmetric_matrix_is_solved_with_pivoting() {
     }
 }
 
-/// How far the solution of `a x = b` is off where elimination alone loses digits, and gives nothing out.
+/// Error of the solution of `a x = b` for a matrix whose elimination without pivoting loses digits and returns NaN.
 fn off_where_lost<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
     let x = SMatrix::<f64, N, 2>::from_fn(|row, column| [4.0, -1.0, 3.0, 2.0, -2.0, 5.0][(row + 2 * column) % 6]);
     let (rhs, three, five) = (a * x, tridiagonal(a), banded::<N, 5>(a));

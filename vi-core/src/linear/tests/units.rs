@@ -113,7 +113,7 @@ fn a_determinant_out_of_range_is_not_needed() {
         let found = solve(&a, &(a * y)).unwrap_or_else(|| panic!("{N} masses of {size:e} are regular"));
         (found - y).amax()
     }
-    // In the last of each three the determinant has some digits left.
+    // In the last of each three the determinant still has some digits.
     for off in [
         off::<2>(1e-30),
         off::<2>(1e30),

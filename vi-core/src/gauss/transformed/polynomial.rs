@@ -1,13 +1,14 @@
-//! The motion over a step in transformed time: its collocation polynomials.
+//! Dense output of a step in transformed time: its collocation polynomials.
 //!
-//! In: what time, positions and momenta change by at the stages. Out: q and p at any time of the step. With θ the part of the step in transformed
-//! time and x = 2θ − 1, all three are polynomials of θ,
+//! From the rates of time, positions and momenta at the stages follow q and p at any time of the step. With θ the
+//! fraction of the step in transformed time and x = 2θ − 1, all three are polynomials of θ,
 //!
 //! ```text
 //! t(θ) = t0 + Δτ Σ_k g_k I_k(θ)        q(θ) = q0 + Δτ Σ_k (g v)_k I_k(θ)        p(θ) = p0 + Δτ Σ_k (dp/dτ)_k I_k(θ)
 //! ```
 //!
-//! and θ follows from t, which grows where g is positive. Coefficients and I_k are those of a Gauss step in time.
+//! and θ follows from t, which increases with θ because g is positive. Coefficients and I_k are those of a Gauss step
+//! in time.
 
 use super::super::polynomial::{coefficients, integrals, polynomials, sum};
 use super::super::stages::{Stages, scaled};
@@ -19,10 +20,10 @@ use crate::run::DenseOutput;
 use crate::state::State;
 use nalgebra::SVector;
 
-/// The motion over a step of S stages.
+/// Dense output of a step of S stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Polynomial<const N: usize, const S: usize> {
-    /// Where the step began.
+pub struct TransformedPolynomial<const N: usize, const S: usize> {
+    /// The state at the start of the step.
     start: State<N>,
     dtau: f64,
     /// Coefficients of `dt/dτ`, `dq/dτ` and `dp/dτ` in Legendre polynomials.
@@ -31,14 +32,14 @@ pub struct Polynomial<const N: usize, const S: usize> {
     momentum: Stages<N, S>,
 }
 
-/// Iterations after which a part of a step is known.
+/// Most iterations for the fraction of a step.
 const ITERATIONS: u32 = 60;
 
-impl<const N: usize, const S: usize> Polynomial<N, S> {
-    /// The motion over the last step, from `start` to a node with this energy.
+impl<const N: usize, const S: usize> TransformedPolynomial<N, S> {
+    /// Dense output of the last step, from `start` to a node with this energy.
     pub(crate) fn of<Y: Collocation<N>>(system: &Y, energy: f64, last: &LastRates<N, S>, start: State<N>) -> Self {
         let rates = last.rates();
-        // E is the one from which the step came to that of the node.
+        // The energy at the start of the step, from that of the node.
         let mut node = Node::new(start, energy);
         node.energy -=
             Scaled::<f64, Y, N, S, false>::new(system, &node, last.taken, rates, None).quadrature(&rates.energy);
@@ -48,15 +49,15 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
         Self { start, dtau: last.taken, time: coefficients(&[rates.g]), position, momentum }
     }
 
-    /// The time at a part of the step, and its derivative by the part.
+    /// The time at a fraction of the step, and its derivative.
     fn time(&self, part: f64) -> [f64; 2] {
         let passed = sum(&self.time, &integrals::<S>(part))[0];
         let g = sum(&self.time, &polynomials::<S>(part))[0];
         [self.start.t + self.dtau * passed, self.dtau * g]
     }
 
-    /// The part of the step that is over at the time t: by Newton's iteration, halved where it leaves what is known to hold the part.
-    /// Beyond the ends time goes on as there.
+    /// The fraction of the step at the time t: Newton iteration with bisection outside of the bracket. Beyond the ends
+    /// the time continues linearly.
     fn part(&self, t: f64) -> f64 {
         for end in [0.0, 1.0] {
             let [time, slope] = self.time(end);
@@ -86,7 +87,7 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
     }
 }
 
-impl<const N: usize, const S: usize> DenseOutput<N> for Polynomial<N, S> {
+impl<const N: usize, const S: usize> DenseOutput<N> for TransformedPolynomial<N, S> {
     fn since_start(self) -> Self {
         Self { start: State { t: 0.0, ..self.start }, ..self }
     }

@@ -1,40 +1,41 @@
-//! What energy-preserving Gauss steps remember beside their stages: lengths, energies, step densities, and the options of the run.
+//! Memory of energy-preserving Gauss steps beside their stages: lengths, energies, step densities, and the options of
+//! the run.
 
 use super::density::power;
 use crate::error::StepError;
 use crate::method::bounds::{Control, check_forward};
 
-/// What a run remembers beside its node and its stages.
+/// Memory of a run beside its node and its stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Course {
+pub(crate) struct StepHistory {
     /// Length of the last step.
     h: f64,
-    /// `(H − E) √(h₋ h₊)` at the last nodes between two steps, the newest first; how many there are.
+    /// `(H − E) √(h₋ h₊)` at the last nodes between two steps, the newest first, and their count.
     products: [f64; 3],
     known: usize,
-    /// Change of `ln (H − E0)` by that of ln h.
+    /// Slope of `ln (H − E0)` over ln h.
     pub(crate) slope: f64,
     /// `H − E'` at the node.
     pub(crate) excess: f64,
     /// The size of the terms of H there.
     pub(crate) size: f64,
-    /// The largest size met.
+    /// The largest size so far.
     pub(crate) largest_size: f64,
-    /// `D_s + D_*` of the last two steps, the newest first; none before the first step.
+    /// `D_s + D_*` of the last two steps, the newest first; `None` before the first step.
     pub(crate) densities: Option<[f64; 2]>,
-    /// The largest `|D_s|` met.
+    /// The largest `|D_s|` so far.
     pub(crate) largest: f64,
     /// D_*.
     pub(crate) shift: f64,
-    /// What the last step leaves of its energy, in roundings.
+    /// Energy residual of the last step, over its rounding-error bound.
     pub(crate) residual: f64,
-    /// Fixed-point iterations of the last step, over all lengths that were tried.
+    /// Fixed-point iterations of the last step, over all trial lengths.
     pub(crate) iterations: u32,
     pub(crate) control: Control,
 }
 
-impl Course {
+impl StepHistory {
     /// Before the first step, which has about the length h.
     pub(crate) fn new(h: f64, slope: f64) -> Self {
         Self {
@@ -59,8 +60,8 @@ impl Course {
         self.h
     }
 
-    /// The length of the next step. By the step law `(H − E) √(h₋ h₊)` is nearly constant from node to node, and is extrapolated. The length of the
-    /// last one where this leads too far.
+    /// The predicted length of the next step. By the step law `(H − E) √(h₋ h₊)` is nearly constant from node to node,
+    /// so that it can be extrapolated. Falls back to the last length if the extrapolation is too far from it.
     pub(crate) fn predicted_length(&self) -> f64 {
         let [a, b, c] = self.products;
         let product = match self.known {
@@ -76,7 +77,7 @@ impl Course {
 
     /// Adds the length of a step from the node, and its density.
     pub(crate) fn push(&mut self, h: f64, density: f64) {
-        // The length with which a run starts is no step.
+        // The initial length is not a step.
         if self.densities.is_some() {
             let [a, b, _] = self.products;
             self.products = [self.excess * (self.h * h).sqrt(), a, b];
@@ -87,7 +88,7 @@ impl Course {
         self.largest = self.largest.max((density - self.shift).abs());
     }
 
-    /// Sets what was measured at a node: `H − E'` and the size of the terms of H.
+    /// Sets the measurements at a node: `H − E'` and the size of the terms of H.
     pub(crate) fn set_excess(&mut self, [excess, size]: [f64; 2]) {
         self.excess = excess;
         self.size = size;
@@ -99,17 +100,17 @@ impl Course {
         self.densities.map(|[density, _]| density)
     }
 
-    /// The same, before the first step of its start, as the energy of S stages tells it.
-    pub(crate) fn told_density<const S: usize>(&self) -> f64 {
+    /// `D_s + D_*` at the start, before the first step, from the energy of S stages.
+    pub(crate) fn initial_density<const S: usize>(&self) -> f64 {
         self.density().unwrap_or(self.excess / power::<S>(self.h))
     }
 
-    /// Starts the extrapolation of lengths anew, from the last one.
+    /// Restarts the extrapolation of lengths from the last one.
     pub(crate) fn forget_lengths(&mut self) {
         self.known = 0;
     }
 
-    /// Whether a step can follow: what a file says may be anything.
+    /// Checks stored data. A file may contain any numbers.
     pub(crate) fn check(&self, t: f64) -> Result<(), StepError> {
         let Self { slope, excess, size, largest_size, densities, largest, shift, residual, .. } = *self;
         let [last, before] = densities.unwrap_or_default();

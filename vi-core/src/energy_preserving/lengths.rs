@@ -1,17 +1,17 @@
-//! How a step is found from the steps before it.
+//! The solution of a step from the memory of the last steps.
 //!
-//! In: a node, and what is remembered of the steps before ([`Lengths`]). Out: the node and the memory after the next step: predicted; else searched; else of a given
-//! length, if the user allows it (`Fallback`). Nothing changes on the way.
+//! From a node and its [`Lengths`] follow the node and the memory after the next step: by extrapolation, otherwise by a
+//! search, otherwise at a given length if the user allows it (`Fallback`). No state changes.
 
 use super::bracket;
-use super::equations::{self, Elimination, EnergyStep, Measured, NoStep};
+use super::equations::{self, Elimination, EnergyStep, NoStep, RowResiduals};
 use super::guess;
 use super::interval::Last;
 use super::predicted::{Predicted, Prediction};
 use crate::error::StepError;
 use crate::method::Memory;
 use crate::method::bounds::{Alternating, Control, Controlled, Phase, RATIO, check_forward};
-use crate::momentum::continuation::{self, Reached};
+use crate::momentum::continuation::{self, BranchPoint};
 use crate::momentum::newton;
 use crate::node::Node;
 use crate::real::Scalar;
@@ -20,7 +20,7 @@ use crate::stepping::{EnergyStepping, Increment};
 use crate::vector::VelocityStep;
 use nalgebra::SVector;
 
-/// What energy-preserving steps remember, and the options of their run.
+/// Memory of energy-preserving steps, and the options of their run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -33,7 +33,7 @@ use nalgebra::SVector;
 pub struct Lengths<const N: usize, T = f64> {
     pub(crate) last: Last<N, T>,
     pub(crate) prediction: Prediction<N, T>,
-    /// Written on the cold path alone: after a step of another kind no guess is of the highest order.
+    /// Written on the cold path only: after a step of another kind no guess has the highest order.
     pub(crate) control: Control<T>,
 }
 
@@ -50,11 +50,11 @@ impl<const N: usize, T: Scalar> Controlled<T> for Lengths<N, T> {
 impl<const N: usize, T: Scalar> Memory for Lengths<N, T> {
     fn stored(&self) -> Self {
         let mut stored = *self;
-        // The change of v only extrapolates it: if it has overflowed, the guess does without.
+        // The change of v only extrapolates it; without a finite one the guess skips it.
         if !stored.last.change.iter().all(|entry| entry.is_finite()) {
             stored.last.change = SVector::zeros();
         }
-        stored.last.measured = Measured::of(stored.last.measured.roundings());
+        stored.last.measured = RowResiduals::of(stored.last.measured.roundings());
         stored
     }
 }
@@ -67,18 +67,18 @@ pub struct After<const N: usize, T = f64> {
 }
 
 impl<const N: usize, T: Scalar> Lengths<N, T> {
-    /// After the interval `last`, without fallback and bounds.
+    /// Memory after the interval `last`, without fallback and bounds.
     pub(crate) fn new(last: Last<N, T>) -> Self {
         Self { last, prediction: Prediction::new(last.v, last.h), control: Control::new() }
     }
 
-    /// Whether the next step is the common one, from guesses of the highest order.
+    /// Whether the next step is common: from guesses of the highest order.
     #[inline(always)]
     pub(crate) fn is_common(&self) -> bool {
         self.control.phase.is_none() && self.prediction.is_highest()
     }
 
-    /// Whether a step can follow: a file may hold anything.
+    /// Checks stored data. A file may contain any numbers.
     ///
     /// # Errors
     /// [`StepError::NonFinite`], [`StepError::InvalidInput`].
@@ -98,7 +98,7 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
         self.control.phase.as_ref().map_or(node.energy, |phase| node.energy + (node.energy_low + phase.gap))
     }
 
-    /// The next step from a trial, if it has not to be searched.
+    /// The next step from a trial, if it needs no search.
     #[inline(always)]
     pub(crate) fn predicted<S: EnergyStepping<N, T>>(
         &self,
@@ -113,7 +113,7 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
         allowed.then_some(predicted)
     }
 
-    /// Lets the next step follow the velocity at hand as if the last one had the length and the density of `interval`.
+    /// Continues after the current velocity as if the last step had the length and the density of `interval`.
     pub(crate) fn resume_after(&mut self, interval: &Last<N, T>) {
         let v = self.last.v;
         self.last = Last { v, previous: interval.h, change: SVector::zeros(), is_step: false, ..*interval };
@@ -121,7 +121,7 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
     }
 }
 
-/// A search for the step that follows, if it is not the common one.
+/// A search for an uncommon next step.
 pub(crate) struct Search<'a, S, const N: usize, T> {
     pub(crate) system: &'a S,
     pub(crate) node: &'a Node<N, T>,
@@ -130,7 +130,7 @@ pub(crate) struct Search<'a, S, const N: usize, T> {
 
 impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Search<'_, S, N, T> {
     const POWER: f64 = 3.0;
-    type Found = After<N, T>;
+    type StepSolution = After<N, T>;
 
     fn control(&self) -> &Control<T> {
         &self.lengths.control
@@ -167,23 +167,23 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Sear
     fn fixed(&self, h: T) -> Result<(After<N, T>, [T; 2]), StepError> {
         let Self { system, node, lengths: Lengths { last, .. } } = *self;
         let guess = last.v + last.slope() * ((last.h + h) * T::real(0.5));
-        let Reached { v, iterations } = continuation::nearest(system, node, h, guess, last.v)?;
+        let BranchPoint { v, iterations } = continuation::nearest(system, node, h, guess, last.v)?;
         let equations = system.extended_system(node, h, &v);
         let t = node.t.to_f64();
         let singular = StepError::Singular { t, matrix: "derivative of the momentum equation" };
         let infinite = StepError::NonFinite { t, quantity: "step density", expression: None };
         let density = Elimination::finite(&equations).ok_or(singular)?.density().ok_or(infinite)?;
-        // Of the equation that was solved: next to the smallest numbers the rows of both differ in what underflows.
+        // Residual of the solved equation: near the smallest numbers the rows of both differ by underflow.
         let residual = newton::residual(system, node, h, &v);
-        // The energy row e = c + v·r is what the kept energy lacks of the discrete energy of this interval.
+        // The energy row e = c + v·r is the discrete energy of this interval minus the preserved energy.
         let gap = equations.energy_residual + v.dot(&equations.momentum.residual);
-        // Forces may be finite where L is not: there is no energy to continue with.
+        // Forces may be finite although L is not: then there is no energy to continue with.
         if !gap.is_finite() {
             return Err(StepError::NonFinite { t, quantity: "energy", expression: None });
         }
-        let step = EnergyStep { v, h, density, iterations, measured: Measured::of(residual) };
+        let step = EnergyStep { v, h, density, iterations, measured: RowResiduals::of(residual) };
         let mut after = self.after(node, &step)?;
-        // A given length predicts none.
+        // A given length predicts no other.
         after.lengths.prediction = Prediction::new(v, h);
         let density_next = after.lengths.last.density_next();
         Ok((after, [gap, density_next]))
@@ -195,7 +195,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Sear
 }
 
 impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Search<'_, S, N, T> {
-    /// One fixed step of the length h, after which the run continues as it was: with its energy, its length, its fallback.
+    /// One fixed step of the length h, after which energy, length and fallback of the run are as before.
     ///
     /// # Errors
     /// Those of a fixed step.
@@ -221,7 +221,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Search<'_, S, N, T> {
         let Self { system, lengths: Lengths { last, control, .. }, .. } = *self;
         let ratio = T::real(RATIO);
         let range = (last.h / ratio, last.h * ratio);
-        // At the smallest root D has the sign that it had: past a change of sign lies another root.
+        // At the smallest root D has the same sign as before: another root lies beyond a sign change.
         let forward = |step: &EnergyStep<N, T>| step.density.to_f64() * last.density.to_f64() > 0.0;
         let step = match equations::solve(system, node, guess::predict(system, node, last), range) {
             Ok(step) if forward(&step) => step,
