@@ -4,13 +4,13 @@
 
 use crate::support::scenes::{self, Scene, each_system};
 use vi_core::collocation::Collocation;
-use vi_core::run::{Length, LocalError, Monitored};
+use vi_core::run::{Event, Length, LocalError, Monitored};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
-    Composition, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Method, SVector, Start, Starts, State,
-    StepError, Tolerance,
+    Composition, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Method, Run, SVector, Start, Starts, State,
+    StepError, Tolerance, lagrangian,
 };
-use vi_systems::{DoublePendulum, HarmonicOscillator, Kepler};
+use vi_systems::{DoublePendulum, HarmonicOscillator, Kepler, Pendulum};
 
 /// Steps of a run.
 const STEPS: u32 = 60;
@@ -255,6 +255,100 @@ fn a_length_is_a_number_or_a_tolerance_of_any_precision() {
     assert!(matches!(h(single, FixedStep, Tolerance(1e-9)), Err(StepError::InvalidInput { .. })));
     // At rest nothing is off.
     assert!(h(HarmonicOscillator::default().at(0.0, [0.0], [0.0]), FixedStep, Tolerance(1e-9)).is_ok());
+}
+
+lagrangian! {
+    /// An oscillator, pushed once at t = `at` for a time of width s.
+    struct Pushed {
+        param s = 0.05, at = 30.37;
+        coord x;
+        L = dot(x)^2 / 2 - x^2 / 2;
+        force x = exp(-((t - at) / s)^2) / s;
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn neither_shortened_steps_nor_repeated_times_hide_an_error() {
+    let monitored = || Pushed::default().at(0.0, [1.0], [0.0]).integrate(FixedStep, 0.02).expect("a start").monitored();
+    let mut whole = monitored();
+    whole.until(40.0).expect("steps");
+    let expected = whole.largest();
+    // Before the push the steps have an error of 3.3e-7.
+    assert!(expected.estimate > 1e-5 && (expected.t - 30.37).abs() < 0.1, "{expected:?}");
+    for grid in [0.021, 0.025, 0.2, 0.205] {
+        let mut run = monitored();
+        for k in 1..=(40.0 / grid) as u32 {
+            let t = f64::from(k) * grid;
+            run.until(t).expect("steps");
+            run.until(t).expect("a run that is there");
+        }
+        // Measured: 0.91 to 1.04 of it.
+        let found = run.largest();
+        let ratio = found.estimate / expected.estimate;
+        assert!((found.t - 30.37).abs() < 0.1 && (0.85..1.15).contains(&ratio), "{grid}: {found:?} for {expected:?}");
+    }
+}
+
+#[test]
+fn a_jump_is_no_excursion() {
+    let start = Pendulum::default().at(0.0, [1.0], [0.0]);
+    let largest = |turns: f64| {
+        let mut run = start.integrate(FixedStep, 0.1).expect("a start").monitored();
+        run.step().expect("a step");
+        let jump = |run: &mut Run<FixedStep, Pendulum, 1>| {
+            let state = run.state();
+            run.set_state(State { q: state.q.add_scalar(turns * core::f64::consts::TAU), ..state })
+        };
+        run.change(jump).expect("a state");
+        run.until(20.0).expect("steps");
+        run.largest()
+    };
+    let [stays, jumps] = [0.0, 1e4].map(largest);
+    assert!(stays.estimate > 1e-5 && (jumps.estimate / stays.estimate - 1.0).abs() < 1e-3, "{stays:?} {jumps:?}");
+}
+
+#[test]
+fn steps_to_an_event_are_measured() {
+    let monitored =
+        || Pendulum::default().at(0.0, [1.0], [0.0]).integrate(FixedStep, 0.1).expect("a start").monitored();
+    let (mut plain, mut stopped) = (monitored(), monitored());
+    plain.until(20.0).expect("steps");
+    let mut crossings = 0;
+    while stopped.next_event(Event::falling(|m| m.q[0]), 20.0).expect("steps").is_some() {
+        crossings += 1;
+    }
+    // The period is 6.7: it falls through zero at 1.7, 8.4 and 15.1.
+    let [plain, found] = [plain.largest(), stopped.largest()];
+    assert!(crossings == 3 && stopped.t() == 20.0, "{crossings}");
+    // Measured: the same to 2 %.
+    assert!((found.estimate / plain.estimate - 1.0).abs() < 0.05, "{found:?} {plain:?}");
+    let mut limited = monitored().with_limit(0.1 * plain.estimate);
+    let error = limited.next_event(Event::rising(|m| m.q[0] - 5.0), 1e9).expect_err("a limit");
+    assert!(matches!(error, StepError::Tolerance { .. }) && limited.t() < 20.0, "{error}");
+}
+
+#[test]
+fn a_tolerance_holds_on_a_motion_that_never_turns() {
+    // A hyperbolic orbit from far away: its steps are short enough for the pericentre, which comes after 50 units of time.
+    let start = Kepler::default().at(0.0, [103.0, 1.0], [-2.0, 0.0]);
+    let run = start.integrate(Gauss::<8>, Tolerance(1e-9)).expect("a length");
+    assert!(run.h() > 0.0 && run.h().is_finite());
+    // A motion past whose end the energy-preserving method has no step, of any length.
+    let start = Pendulum::default().at(0.0, [0.0], [7.0]);
+    let mut run = start.integrate(EnergyPreserving, Tolerance(1e-5)).expect("a length").monitored();
+    let error = run.until(10.0).expect_err("no step over the top");
+    assert!(matches!(error, StepError::NoForwardStep { .. }), "{error}");
+    let found = run.largest().estimate;
+    assert!(found > 1e-6 && found < 2e-5, "{found:e}");
+}
+
+#[test]
+fn a_limit_judges_an_orbit_that_is_lost() {
+    let mut run = falling().integrate(Gauss::<8>, 0.1).expect("a start").monitored().with_limit(1e-8);
+    let error = run.until(6.0).expect_err("a step beyond the limit");
+    let StepError::Tolerance { t, .. } = error else { panic!("{error}") };
+    assert!(t < 0.35 && (run.energy().expect("H") + 2.18).abs() < 1e-6, "{error}");
 }
 
 #[test]

@@ -22,6 +22,23 @@ fn a_step_that_is_subnormal_is_refused() {
 }
 
 #[test]
+fn an_angle_without_digits_is_no_step() {
+    for g in [1e17, 1e20, 1e50, 1e100, 1e200, 1e300] {
+        // Cold stages, and those of a slow pendulum. The squares of the linearization overflow above 1e154.
+        let strong = Pendulum { g, ..Pendulum::default() };
+        let cold = strong.at(0.0, [1.0], [0.0]).integrate(Gauss::<8>, 0.05).expect("a start").step();
+        let mut run = Pendulum::default().at(0.0, [1.0], [0.0]).integrate(Gauss::<8>, 0.05).expect("a start");
+        run.step().expect("a step");
+        run.set_parameters(|system| system.g = g).expect("parameters");
+        let (state, warm) = (run.state(), run.step());
+        for outcome in [cold, warm] {
+            assert!(matches!(outcome, Err(StepError::StagesUnsettled { .. })), "g = {g:e}: {outcome:?}");
+        }
+        assert_eq!(run.state(), state);
+    }
+}
+
+#[test]
 fn without_a_mass_there_is_no_step() {
     // A pendulum of zero length has a singular mass matrix, moving or at rest.
     let system = Pendulum { l: 0.0, ..Pendulum::default() };

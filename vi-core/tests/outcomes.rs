@@ -140,7 +140,7 @@ fn an_error_ends_with_advice() {
         ),
         (
             bounds,
-            "; allow 2.498e-1 by `with_step_bounds`, or continue with steps of the bound by `with_fallback(Fallback::FixedSteps)`",
+            "; allow 2.497e-1 by `with_step_bounds`, or continue with steps of the bound by `with_fallback(Fallback::FixedSteps)`",
         ),
     ];
     for (error, advice) in all {

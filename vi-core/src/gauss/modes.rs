@@ -88,13 +88,14 @@ impl<const S: usize> Modal<S> {
         Self(dot)
     }
 
-    /// The reciprocal; not finite for zero.
+    /// The reciprocal; not finite for zero, or if the square overflows: zero would end an iteration as if solved.
     pub(crate) fn recip(&self) -> Self {
         let Self(of) = self;
         let mut reciprocal = [0.0; S];
         for i in 0..Self::PAIRS {
             let k = Self::IMAGINARY + i;
             let square = of[i] * of[i] + of[k] * of[k];
+            let square = if square.is_finite() { square } else { f64::NAN };
             reciprocal[i] = of[i] / square;
             reciprocal[k] = -of[k] / square;
         }

@@ -32,6 +32,9 @@ pub(crate) struct Start<'a, const N: usize, const S: usize> {
     pub(crate) pause: Pause,
 }
 
+/// Positions beyond this have an ulp of 2e-6: as angles they are hardly known.
+const HUGE: f64 = 1e10;
+
 /// A solved step.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<const N: usize, const S: usize> {
@@ -102,10 +105,17 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// error analysis.
     fn residual(&self, system: &ErasedSystem<'_, N>, solved: &StageSolution<N, S>) -> f64 {
         let StageSolution { iteration, velocities, .. } = solved;
-        if iteration.convergence.is_at_floor() || iteration.are_given_up {
-            return iteration.convergence.change;
+        let change = iteration.convergence.change;
+        if iteration.are_given_up {
+            return change;
         }
-        rounding::residual(system, self.node, self.h, &iteration.positions, velocities.as_ref())
+        let residual = || rounding::residual(system, self.node, self.h, &iteration.positions, velocities.as_ref());
+        if !iteration.convergence.is_at_floor() {
+            return residual();
+        }
+        // The sine of a huge angle has no digits, although the angle has all of them.
+        let is_huge = iteration.positions.iter().flatten().any(|q| q.abs() > HUGE);
+        if is_huge && residual().is_nan() { f64::NAN } else { change }
     }
 
     /// The stages in scalar numbers. Not inlined: one copy serves all systems of N coordinates.

@@ -217,7 +217,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     /// As [`Run::until`]; [`StepError::NonFinite`] for a function that is not finite; [`StepError::CannotLeave`] if the
     /// run begins at a zero of a one-directional event whose function passes zero again at that instant.
     pub fn next_event(&mut self, events: impl Events<N>, until: f64) -> Result<Option<Crossing<N>>, StepError> {
-        Crossings::new(self, events, until).stop()
+        Crossings::new(self, events, until, |_| Ok(())).stop()
     }
 
     /// [`Run::next_event`] for one event.
@@ -253,9 +253,9 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     }
 
     /// Iterates over the events up to the time `until` and takes steps on demand. The run keeps its own steps, except
-    /// for the last, which ends at `until`.
+    /// for the last, which ends at `until`. If the iterator is dropped after an event, the run is at the node before it.
     pub fn events<'a>(&'a mut self, events: impl Events<N> + 'a, until: f64) -> Crossings<'a, N> {
-        Crossings::new(self, events, until)
+        Crossings::new(self, events, until, |_| Ok(()))
     }
 }
 
@@ -311,12 +311,18 @@ pub struct Crossings<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Crossings<'a, N> {
-    pub(super) fn new<M, S>(run: &'a mut Run<M, S, N>, wanted: impl Events<N> + 'a, until: f64) -> Self
+    /// The crossings of a run; `watch` is called after each of its steps, and its error ends them.
+    pub(super) fn new<M, S>(
+        run: &'a mut Run<M, S, N>,
+        wanted: impl Events<N> + 'a,
+        until: f64,
+        watch: impl FnMut(&Run<M, S, N>) -> Result<(), StepError> + 'a,
+    ) -> Self
     where
         M: Method<S, N>,
         S: Lagrangian<N> + Copy,
     {
-        let run = Box::new(Ahead::new(run));
+        let run = Box::new(Ahead::new(run, watch));
         Self { run, wanted: Box::new(wanted), until, watched: Vec::new(), found: Vec::new(), is_over: false }
     }
 

@@ -82,23 +82,28 @@ pub(super) trait Searched<const N: usize> {
     fn end(&self) -> &dyn ErasedRun<N>;
 }
 
-/// A run, and the run at the end of the searched step, with its length.
-pub(super) struct Ahead<'a, M: Method<S, N>, S, const N: usize> {
+/// A run, and the run at the end of the searched step, with its length. `watch` is called after each step.
+pub(super) struct Ahead<'a, W, M: Method<S, N>, S, const N: usize> {
     run: &'a mut Run<M, S, N>,
     end: Option<(Run<M, S, N>, f64)>,
+    watch: W,
 }
 
-impl<'a, M: Method<S, N>, S, const N: usize> Ahead<'a, M, S, N> {
-    pub(super) fn new(run: &'a mut Run<M, S, N>) -> Self {
-        Self { run, end: None }
+impl<'a, W, M: Method<S, N>, S, const N: usize> Ahead<'a, W, M, S, N> {
+    pub(super) fn new(run: &'a mut Run<M, S, N>, watch: W) -> Self {
+        Self { run, end: None, watch }
     }
 }
 
-impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Searched<N> for Ahead<'_, M, S, N> {
+impl<W, M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Searched<N> for Ahead<'_, W, M, S, N>
+where
+    W: FnMut(&Run<M, S, N>) -> Result<(), StepError>,
+{
     fn take(&mut self, until: f64) -> Result<bool, StepError> {
         self.run.check_ahead(until)?;
         if let Some((end, _)) = self.end.take() {
             *self.run = end;
+            (self.watch)(self.run)?;
         }
         let is_at_end = self.run.time_to(until) == 0.0;
         if is_at_end {
@@ -130,7 +135,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Searched<N> for A
             Some((end, step)) if length.to_bits() == step.to_bits() => end,
             _ => moved(self.run, length)?,
         };
-        Ok(())
+        (self.watch)(self.run)
     }
 
     fn node(&self) -> &dyn ErasedRun<N> {
