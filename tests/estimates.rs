@@ -278,8 +278,7 @@ fn neither_shortened_steps_nor_repeated_times_hide_an_error() {
     assert!(expected.estimate > 1e-5 && (expected.t - 30.37).abs() < 0.1, "{expected:?}");
     for grid in [0.021, 0.025, 0.2, 0.205] {
         let mut run = monitored();
-        for k in 1..=(40.0 / grid) as u32 {
-            let t = f64::from(k) * grid;
+        for t in (1..).map(|k| f64::from(k) * grid).take_while(|t| *t < 40.0) {
             run.until(t).expect("steps");
             run.until(t).expect("a run that is there");
         }
@@ -320,7 +319,7 @@ fn steps_to_an_event_are_measured() {
     }
     // The period is 6.7: it falls through zero at 1.7, 8.4 and 15.1.
     let [plain, found] = [plain.largest(), stopped.largest()];
-    assert!(crossings == 3 && stopped.t() == 20.0, "{crossings}");
+    assert_eq!((crossings, stopped.t()), (3, 20.0));
     // Measured: the same to 2 %.
     assert!((found.estimate / plain.estimate - 1.0).abs() < 0.05, "{found:?} {plain:?}");
     let mut limited = monitored().with_limit(0.1 * plain.estimate);

@@ -2,7 +2,7 @@
 //!
 //! A run starts from a system at a state ([`Start`]), a [`Method`] and a step length. It returns states step by step,
 //! at given times or at events, or the typed error of a failed step. After an error the run holds the last good state.
-//! It returns the same error until its parameters, its state or an option change.
+//! It returns the same error until its parameters, its state or an option change, or a step of another length succeeds.
 //!
 //! | file | contents |
 //! |---|---|
