@@ -66,6 +66,16 @@ pub struct Flow<const N: usize, T = f64> {
     pub power: T,
 }
 
+/// The declaration of a system in words, and its text.
+pub trait Described {
+    /// Documentation of the system.
+    const ABOUT: &'static str;
+    /// Documentation of each parameter, in the order of [`Lagrangian::PARAMETERS`].
+    const PARAMETERS_ABOUT: &'static [&'static str];
+    /// The body of its `lagrangian!`, as tokens.
+    const DEFINITION: &'static str;
+}
+
 /// The parameters of a system, by name; [`Lagrangian::PARAMETERS`] lists them.
 pub trait Parameters<T: Real = f64> {
     /// The parameter of this name, for reading and writing.

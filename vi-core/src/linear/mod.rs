@@ -40,7 +40,7 @@ pub(crate) fn row_by_row() {
 }
 
 /// A square matrix in the form of its zero pattern.
-pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
+pub trait Matrix<const N: usize, T: Real>: Copy + Send + Sync + Debug + PartialEq {
     /// Factors of A for repeated solves.
     type Inverse: Copy + Debug + Send + Sync;
 

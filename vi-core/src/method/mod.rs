@@ -61,7 +61,7 @@ impl<S, P, const N: usize, T: Copy> Clone for Problem<'_, S, P, N, T> {
 impl<S, P, const N: usize, T: Copy> Copy for Problem<'_, S, P, N, T> {}
 
 /// Data that a run carries between steps, beside its node.
-pub trait Memory: Clone + Debug {
+pub trait Memory: Clone + Debug + Send + Sync {
     /// A copy that shares no memory with this one.
     ///
     /// A small memory passes each number through `black_box`, so that a loop over steps keeps its own numbers in registers. A large one is cloned.
@@ -93,19 +93,19 @@ pub struct Report {
     note = "`FixedStep`, `Composition`, `EnergyPreserving` need the clause `discretize midpoint;`, `Gauss` and `EnergyPreservingGauss` take every system",
     note = "a method in transformed time needs the clause `time_scale = …;`"
 )]
-pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
+pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Sync {
     /// Data that depends on the system and h only. A checkpoint does not store it.
-    type Prepared: Clone + Debug;
+    type Prepared: Clone + Debug + Send + Sync;
     /// Data for the guess of the next step. A checkpoint stores it.
     type Memory: Memory;
     /// Reusable buffers. No result depends on them.
-    type Cache: Clone + Debug + Default;
+    type Cache: Clone + Debug + Default + Send + Sync;
     /// A solved step.
     type Step;
     /// The result of a failed attempt.
     type Left;
     /// Dense output of a step.
-    type DenseOutput: DenseOutput<N, T> + 'static;
+    type DenseOutput: DenseOutput<N, T> + Send + Sync + 'static;
 
     /// Whether [`Method::solve`] finds the step length itself.
     const FINDS_LENGTH: bool = false;

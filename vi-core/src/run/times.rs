@@ -73,7 +73,8 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] if it cannot.
-    pub(crate) fn check_ahead(&self, t: f64) -> Result<(), StepError> {
+    #[doc(hidden)]
+    pub fn check_ahead(&self, t: f64) -> Result<(), StepError> {
         if t.is_finite() && self.time_to(t) * self.h().signum() >= 0.0 {
             return Ok(());
         }
@@ -83,7 +84,11 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
 
     /// Takes one step toward the time `t`. It ends at `t` if the next one would end beyond; the return value says
     /// whether it did.
-    pub(crate) fn approach(&mut self, t: f64) -> Result<bool, StepError> {
+    ///
+    /// # Errors
+    /// As [`Run::until`].
+    #[doc(hidden)]
+    pub fn approach(&mut self, t: f64) -> Result<bool, StepError> {
         let left = self.time_to(t);
         if left == 0.0 {
             self.set_time(t);

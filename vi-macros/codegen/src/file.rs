@@ -17,10 +17,12 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
 }
 
 fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
+    let definition = tokens.to_string();
     // A system with mistakes expands to its errors and writes no file.
     let (items, error) = match crate::compile(tokens) {
         Ok(derivations) => {
-            let items = crate::items(&derivations);
+            let mut items = crate::items(&derivations);
+            items.extend(crate::emit::structure::described(&derivations.own.model, &definition));
             let name = derivations.own.model.name.to_string();
             let written = folder.map_or(Ok(()), |folder| write(&name, &derivations, folder));
             (items, written.err().map(|reason| quote!(::core::compile_error! { #reason })))

@@ -19,7 +19,7 @@ mod names;
 mod pieces;
 mod scope;
 mod stepping;
-mod structure;
+pub(crate) mod structure;
 
 use crate::derived::{Derivations, Derived};
 use crate::discrete::{ByRule, DiscreteSystem};

@@ -3,7 +3,7 @@
 use super::formula::number;
 use super::{Source, Steps, conditions, limit};
 use crate::limits::PARAMETERS;
-use crate::model::Parameter;
+use crate::model::{Model, Parameter};
 use crate::rules::{GAUSS, RULES};
 use crate::syntax::{self, Discretization, Expression, Kind, System};
 use num_traits::ToPrimitive;
@@ -111,6 +111,36 @@ pub(super) fn parameters(source: &Source) -> TokenStream {
             }
         }
     }
+}
+
+/// The declaration in words, and its text.
+pub(crate) fn described(model: &Model, definition: &str) -> TokenStream {
+    let name = &model.name;
+    let conditions = conditions(&model.attributes);
+    let about = words(&model.attributes);
+    let parameters = model.parameters.iter().map(|parameter| words(&parameter.attributes));
+    quote! {
+        #(#conditions)*
+        impl ::vi_core::lagrangian::Described for #name {
+            const ABOUT: &'static ::core::primitive::str = #about;
+            const PARAMETERS_ABOUT: &'static [&'static ::core::primitive::str] = &[#(#parameters),*];
+            const DEFINITION: &'static ::core::primitive::str = #definition;
+        }
+    }
+}
+
+/// The text of doc comments.
+fn words(attributes: &[Attribute]) -> String {
+    let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
+        syn::Meta::NameValue(syn::MetaNameValue {
+            path,
+            value: syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }),
+            ..
+        }) if path.is_ident("doc") => Some(text.value()),
+        _ => None,
+    });
+    let lines: Vec<String> = lines.map(|line| line.strip_prefix(' ').unwrap_or(&line).to_owned()).collect();
+    lines.join("\n")
 }
 
 /// The implementation of `Convertible`: the system in another numeric type.

@@ -1,29 +1,25 @@
 //! The description of a run: an integrator with its options, and the initial state.
 //!
-//! In: the request of a command line or a scene. Out: a [`Plan`].
+//! In: the request of a command line, a scene or Python. Out: a [`Plan`].
 
-use clap::ValueEnum;
 use vi_core::lagrangian::Lagrangian;
 use vi_core::run::Length;
 use vi_core::{Composition, Start as Begun, StepError, Tolerance};
 
 /// The integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// The variational integrator with a given step
+    /// The variational integrator with a given step.
     Fixed,
-    /// Five fixed steps composed to order 4, by Suzuki
-    #[value(name = "suzuki-4")]
+    /// Five fixed steps composed to order 4.
     Suzuki4,
-    /// Nine fixed steps composed to order 6, by Kahan and Li
-    #[value(name = "kahan-li-6")]
+    /// Nine fixed steps composed to order 6.
     KahanLi6,
-    /// Seventeen fixed steps composed to order 8, by Kahan and Li
-    #[value(name = "kahan-li-8")]
+    /// Seventeen fixed steps composed to order 8.
     KahanLi8,
-    /// Gauss collocation, of order 2S for --stages S
+    /// Gauss collocation, of order 2S with S stages.
     Gauss,
-    /// The integrator that solves for its own step and preserves the discrete energy
+    /// The integrator that solves for its own step and preserves the discrete energy.
     Energy,
 }
 
@@ -37,6 +33,9 @@ pub const DEFAULT_STAGES: usize = 8;
 pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 
 impl Method {
+    /// All integrators.
+    pub const ALL: [Self; 6] = [Self::Fixed, Self::Suzuki4, Self::KahanLi6, Self::KahanLi8, Self::Gauss, Self::Energy];
+
     /// The scheme of a composition.
     #[must_use]
     pub fn scheme(self) -> Option<Composition> {
@@ -47,10 +46,48 @@ impl Method {
             Self::Fixed | Self::Gauss | Self::Energy => None,
         }
     }
+}
 
-    /// Its name on the command line.
+/// The first interval of the energy-preserving integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// The first interval begins at the initial state.
+    State,
+    /// The initial state is the midpoint of the first interval.
+    Midpoint,
+    /// The first interval ends at the exact solution at t0 + h, as in the paper.
+    Points,
+}
+
+impl Start {
+    /// All starts.
+    pub const ALL: [Self; 3] = [Self::State, Self::Midpoint, Self::Points];
+}
+
+/// A choice by name, in a command line, a scene or Python.
+pub trait Named: Copy + 'static {
+    /// All values.
+    const VALUES: &'static [Self];
+
+    /// The name.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    fn name(self) -> &'static str;
+
+    /// The value in words.
+    #[must_use]
+    fn about(self) -> &'static str;
+
+    /// The value of this name, if there is one.
+    #[must_use]
+    fn named(name: &str) -> Option<Self> {
+        Self::VALUES.iter().copied().find(|value| value.name() == name)
+    }
+}
+
+impl Named for Method {
+    const VALUES: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
         match self {
             Self::Fixed => "fixed",
             Self::Suzuki4 => "suzuki-4",
@@ -60,15 +97,37 @@ impl Method {
             Self::Energy => "energy",
         }
     }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Fixed => "The variational integrator with a given step",
+            Self::Suzuki4 => "Five fixed steps composed to order 4, by Suzuki",
+            Self::KahanLi6 => "Nine fixed steps composed to order 6, by Kahan and Li",
+            Self::KahanLi8 => "Seventeen fixed steps composed to order 8, by Kahan and Li",
+            Self::Gauss => "Gauss collocation, of order 2S for --stages S",
+            Self::Energy => "The integrator that solves for its own step and preserves the discrete energy",
+        }
+    }
 }
 
-/// The first interval of the energy-preserving integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Start {
-    /// The initial state is the midpoint of the first interval
-    Midpoint,
-    /// The first interval ends at the exact solution at t0 + h, as in the paper
-    Points,
+impl Named for Start {
+    const VALUES: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::State => "state",
+            Self::Midpoint => "midpoint",
+            Self::Points => "points",
+        }
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::State => "The first interval begins at the initial state",
+            Self::Midpoint => "The initial state is the midpoint of the first interval",
+            Self::Points => "The first interval ends at the exact solution at t0 + h, as in the paper",
+        }
+    }
 }
 
 /// The shift D_* of the step density.
@@ -103,8 +162,10 @@ pub struct Plan {
     pub t: f64,
     /// Initial coordinates.
     pub q: Vec<f64>,
-    /// Initial velocities.
+    /// Initial velocities; unused with momenta.
     pub v: Vec<f64>,
+    /// Initial momenta, in place of the velocities.
+    pub p: Option<Vec<f64>>,
 }
 
 impl Plan {
@@ -112,13 +173,19 @@ impl Plan {
     #[must_use]
     pub fn new(method: Method, h: f64, PhasePoint { t, q, v }: PhasePoint) -> Self {
         let (start, shift, tolerance) = (Start::Midpoint, None, None);
-        Self { method, start, stages: None, shift, fallback: false, dtau: None, h, tolerance, t, q, v }
+        Self { method, start, stages: None, shift, fallback: false, dtau: None, h, tolerance, t, q, v, p: None }
     }
 
     /// What determines the length of a step.
     #[must_use]
     pub fn length(&self) -> StepLength {
         self.tolerance.map_or(StepLength::Given(self.h), StepLength::Found)
+    }
+
+    /// The stages of Gauss steps; `None` for other methods.
+    #[must_use]
+    pub fn gauss_stages(&self) -> Option<usize> {
+        (self.method == Method::Gauss).then(|| self.stages.unwrap_or(DEFAULT_STAGES))
     }
 
     /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); `None` for

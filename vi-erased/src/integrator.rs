@@ -1,0 +1,249 @@
+//! Integrators that are built for a system.
+//!
+//! In: the type of a system. Out: for each method an [`Integrator`], which starts its runs. Gauss and fixed steps are
+//! optimised for the system; the others take [`Called`] systems, which build in a third of the time and differ by
+//! rounding.
+
+use crate::plan::{Method, Plan, Shift, Start};
+use crate::simulation::{Erasable, Runnable, ShiftedEnergy, Simulation, erased};
+use crate::start;
+use vi_core::collocation::Collocation;
+use vi_core::method::Controlled;
+use vi_core::run::Length as _;
+use vi_core::stepping::EnergyStepping;
+use vi_core::{
+    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime, Run,
+    Starts, State, StepError,
+};
+
+/// Starts a run of a plan from a state.
+type Begin<S, const N: usize> = fn(S, &Plan, State<N>) -> Result<Box<dyn Simulation>, StepError>;
+/// Restarts a stored run.
+#[cfg(feature = "checkpoints")]
+type Restart<S> = fn(S, &str) -> Result<Box<dyn Simulation>, String>;
+
+/// An integrator that is built for a system.
+#[derive(Clone, Copy)]
+pub struct Integrator<S, const N: usize> {
+    /// Its method.
+    pub method: Method,
+    /// Stages of Gauss steps.
+    pub stages: Option<usize>,
+    /// Whether its steps have constant length in transformed time.
+    pub is_transformed: bool,
+    pub(crate) begin: Begin<S, N>,
+    #[cfg(feature = "checkpoints")]
+    pub(crate) restart: Restart<S>,
+}
+
+impl<S, const N: usize> Integrator<S, N> {
+    /// Whether it takes the steps of a plan.
+    pub(crate) fn is_of(&self, plan: &Plan) -> bool {
+        let stages = plan.energy_stages().or(plan.gauss_stages());
+        self.method == plan.method && self.stages == stages && self.is_transformed == plan.dtau.is_some()
+    }
+}
+
+/// Integrators of several words of [`kind!`](crate::kind).
+#[must_use]
+pub fn all<S, const N: usize, const K: usize>(of: [Vec<Integrator<S, N>>; K]) -> Vec<Integrator<S, N>> {
+    of.into_iter().flatten().collect()
+}
+
+/// Reads a stored run of the method M.
+#[cfg(feature = "checkpoints")]
+fn restarted<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
+    system: S,
+    method: M,
+    stored: &str,
+) -> Result<Box<dyn Simulation>, String> {
+    let stored = serde_json::from_str(stored).map_err(|error| error.to_string())?;
+    let run = Run::restart(system, method, stored).map_err(|error| error.to_string())?;
+    Ok(erased(run))
+}
+
+/// An integrator by a method that needs no further options.
+macro_rules! integrator {
+    ($kind:expr, $stages:expr, $is_transformed:expr, $system:expr, $method:expr, $begin:expr) => {
+        Integrator {
+            method: $kind,
+            stages: $stages,
+            is_transformed: $is_transformed,
+            begin: $begin,
+            #[cfg(feature = "checkpoints")]
+            restart: |system, stored| restarted($system(system), $method, stored),
+        }
+    };
+}
+
+/// Fixed steps of order 2, and their compositions of order 4, 6, 8.
+#[must_use]
+pub fn by_rule<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>>
+where
+    FixedStep: Erasable<S, N>,
+    Composition: Erasable<S, N>,
+{
+    let fixed = integrator!(
+        Method::Fixed,
+        None,
+        false,
+        |system| system,
+        FixedStep,
+        |system: S, plan: &Plan, state: State<N>| {
+            Ok(erased(system.at_state(state).integrate(FixedStep, plan.length())?))
+        }
+    );
+    macro_rules! composed {
+        ($kind:expr, $scheme:expr) => {
+            integrator!($kind, None, false, |system| system, $scheme, |system: S, plan: &Plan, state: State<N>| {
+                Ok(erased(system.at_state(state).integrate($scheme, plan.length())?))
+            })
+        };
+    }
+    vec![
+        fixed,
+        composed!(Method::Suzuki4, Composition::SUZUKI_4),
+        composed!(Method::KahanLi6, Composition::KAHAN_LI_6),
+        composed!(Method::KahanLi8, Composition::KAHAN_LI_8),
+    ]
+}
+
+/// Gauss steps of so many stages.
+#[must_use]
+pub fn gauss<S: Runnable<N>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
+where
+    Gauss<STAGES>: Erasable<S, N>,
+{
+    integrator!(
+        Method::Gauss,
+        Some(STAGES),
+        false,
+        |system| system,
+        Gauss::<STAGES>,
+        |system: S, plan: &Plan, state: State<N>| {
+            Ok(erased(system.at_state(state).integrate(Gauss::<STAGES>, plan.length())?))
+        }
+    )
+}
+
+/// Gauss steps in transformed time.
+#[must_use]
+pub fn transformed<S: Runnable<N>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
+where
+    Called<S>: Runnable<N>,
+    InTransformedTime<Gauss<STAGES>>: Erasable<Called<S>, N>,
+{
+    integrator!(
+        Method::Gauss,
+        Some(STAGES),
+        true,
+        Called,
+        Gauss::<STAGES>.in_transformed_time(),
+        |system: S, plan: &Plan, state: State<N>| {
+            // Otherwise they would be built for every system.
+            if !<S as Collocation<N>>::SCALES_TIME {
+                return Err(StepError::NoTimeScale { system: S::NAME });
+            }
+            let dtau = plan.dtau.unwrap_or(plan.h);
+            Ok(erased(Called(system).at_state(state).integrate(Gauss::<STAGES>.in_transformed_time(), dtau)?))
+        }
+    )
+}
+
+/// Energy-preserving steps of order 2.
+#[must_use]
+pub fn energy<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Integrator<S, N>
+where
+    EnergyPreserving: Erasable<S, N, Memory: Controlled<f64>>,
+{
+    integrator!(
+        Method::Energy,
+        None,
+        false,
+        |system| system,
+        EnergyPreserving,
+        |system: S, plan: &Plan, state: State<N>| {
+            let h = plan.length().length(&system.at_state(state), &EnergyPreserving)?;
+            let State { t, q, .. } = state;
+            let v = || state.velocity(&system);
+            let run = match plan.start {
+                Start::State => system.at_state(state).integrate(EnergyPreserving, h)?,
+                Start::Midpoint => EnergyPreserving::from_midpoint(system, t, q, v()?, h)?,
+                Start::Points => {
+                    EnergyPreserving::from_points(system, (t, q), start::second_point(&system, t, q, v()?, h)?)?
+                }
+            };
+            Ok(erased(run.with_fallback(fallback(plan))))
+        }
+    )
+}
+
+/// Energy-preserving Gauss steps of so many stages.
+#[must_use]
+pub fn energy_gauss<S: Runnable<N>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
+where
+    Called<S>: Runnable<N>,
+    EnergyPreservingGauss<STAGES>: Erasable<Called<S>, N, Memory: Controlled<f64>>,
+{
+    integrator!(
+        Method::Energy,
+        Some(STAGES),
+        false,
+        Called,
+        EnergyPreservingGauss::<STAGES>,
+        |system: S, plan: &Plan, state: State<N>| {
+            let run = Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.length())?;
+            let run = match plan.shift {
+                None => run,
+                Some(Shift::Of(shift)) => run.with_shift(shift)?,
+                Some(Shift::Over(time)) => run.with_shift_from(time)?,
+            };
+            Ok(erased(run.with_fallback(fallback(plan))))
+        }
+    )
+}
+
+/// The action if there is no energy-preserving step.
+fn fallback(plan: &Plan) -> Fallback {
+    if plan.fallback { Fallback::FixedSteps } else { Fallback::Stop }
+}
+
+/// Each iteration evaluates the equation with its Jacobian, and then the residual.
+const OF_A_CORRECTION: u64 = 2;
+
+macro_rules! erasable {
+    ([$($generics:tt)*] $method:ty, $system:ty, $evaluations:expr $(; $($items:tt)*)?) => {
+        impl<S, $($generics)*> Erasable<$system, N> for $method
+        where
+            $system: Runnable<N>,
+            $method: crate::simulation::Supported<$system, N>,
+        {
+            const EVALUATIONS: u64 = $evaluations;
+            $($($items)*)?
+        }
+    };
+}
+
+erasable!([const N: usize] FixedStep, S, OF_A_CORRECTION);
+erasable!([const N: usize] Composition, S, OF_A_CORRECTION);
+erasable!([const N: usize, const STAGES: usize] Gauss<STAGES>, S, STAGES as u64);
+erasable!([const N: usize, const STAGES: usize] InTransformedTime<Gauss<STAGES>>, S, STAGES as u64);
+erasable!([const N: usize, const STAGES: usize] EnergyPreservingGauss<STAGES>, S, STAGES as u64;
+    fn shifted_energy(run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
+        let shift = run.shift();
+        (shift != 0.0).then(|| ShiftedEnergy { energy: run.shifted_energy(), shift })
+    }
+);
+
+impl<S: EnergyStepping<N> + Runnable<N>, const N: usize> Erasable<S, N> for EnergyPreserving
+where
+    EnergyPreserving: crate::simulation::Supported<S, N>,
+{
+    const EVALUATIONS: u64 = OF_A_CORRECTION;
+
+    fn sampled_energy(run: &Run<Self, S, N>) -> Result<(f64, f64), StepError> {
+        let v = run.v();
+        let (t, q) = run.node().midpoint(-run.h(), &v);
+        Ok((t, run.system().energy(t, &q, &v)))
+    }
+}

@@ -1,0 +1,67 @@
+//! Mechanical systems and their runs, type-erased.
+//!
+//! In: a system that `lagrangian!` declares, and the integrators that are wanted of it ([`kind!`]). Out: a
+//! [`System`], and for a [`Plan`] a [`Simulation`]. Both are `Send`, and know neither the type of the system nor its
+//! number of coordinates. The compiler instantiates everything generic once per system and integrator, where a program
+//! calls [`kind!`]; loops over steps are inside, without virtual calls.
+//!
+//! | module | product |
+//! |---|---|
+//! | [`plan`] | the description of a run |
+//! | [`integrator`] | an integrator that is built for a system |
+//! | [`system`] | a system with its parameters |
+//! | [`simulation`] | a started run |
+//! | [`section`] | events of a run, type-erased |
+
+pub mod integrator;
+pub mod plan;
+pub mod section;
+pub mod simulation;
+pub mod start;
+pub mod system;
+
+pub use integrator::Integrator;
+pub use plan::{Method, PhasePoint, Plan};
+pub use simulation::{Row, Rows, Simulation};
+pub use system::{System, Typed};
+
+/// A system with its default parameters, and the integrators that are built for it:
+/// `kind!(Pendulum, { fixed; gauss 4, 8; energy })`.
+///
+/// | word | integrator |
+/// |---|---|
+/// | `fixed` | fixed steps of order 2, and their compositions of order 4, 6, 8 |
+/// | `gauss 4, 8` | Gauss steps of 4 and of 8 stages |
+/// | `transformed 4, 8` | the same in transformed time, for a system with a `time_scale` |
+/// | `energy` | energy-preserving steps of order 2 |
+/// | `energy 2, 3` | energy-preserving Gauss steps of 2 and of 3 stages |
+///
+/// `fixed` and `energy` without stages need the clause `discretize midpoint;`.
+#[macro_export]
+macro_rules! kind {
+    ($system:ty, { $($method:ident $($stages:literal),*);* $(;)? }) => {
+        $crate::system::erased::<$system, _>($crate::integrator::all([
+            $($crate::integrators!($method $($stages),*)),*
+        ]))
+    };
+}
+
+#[doc(hidden)]
+#[macro_export]
+macro_rules! integrators {
+    (fixed) => {
+        $crate::integrator::by_rule()
+    };
+    (energy) => {
+        vec![$crate::integrator::energy()]
+    };
+    (gauss $($stages:literal),+) => {
+        vec![$($crate::integrator::gauss::<_, _, $stages>()),+]
+    };
+    (transformed $($stages:literal),+) => {
+        vec![$($crate::integrator::transformed::<_, _, $stages>()),+]
+    };
+    (energy $($stages:literal),+) => {
+        vec![$($crate::integrator::energy_gauss::<_, _, $stages>()),+]
+    };
+}

@@ -1,0 +1,90 @@
+//! Events of a run, type-erased.
+//!
+//! In: a coordinate or velocity with a value, a period, or any function of time, coordinates and velocities. Out: an
+//! [`Event`] of a system with N coordinates.
+
+use std::sync::Arc;
+use vi_core::run::{Event, Moment};
+
+/// The direction in which a function crosses zero, along the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+    /// Either.
+    Both,
+}
+
+/// A function of time, coordinates and velocities.
+pub type Watch = Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>;
+
+/// A surface that a motion crosses, in a direction.
+#[derive(Clone)]
+pub enum Section {
+    /// A coordinate crosses this value.
+    Coordinate {
+        /// Which coordinate.
+        index: usize,
+        /// Its value.
+        at: f64,
+        /// Rising, falling, or both.
+        direction: Direction,
+    },
+    /// A velocity crosses this value.
+    Velocity {
+        /// Of which coordinate.
+        index: usize,
+        /// Its value.
+        at: f64,
+        /// Rising, falling, or both.
+        direction: Direction,
+    },
+    /// The time is `start` plus a whole number of periods.
+    Period {
+        /// Time of the first one.
+        start: f64,
+        /// From one to the next.
+        period: f64,
+    },
+    /// A function crosses zero.
+    Function(Watch, Direction),
+}
+
+impl Section {
+    /// A function that changes sign at the section.
+    fn value(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        match self {
+            Self::Coordinate { index, at, .. } => q[*index] - at,
+            Self::Velocity { index, at, .. } => v[*index] - at,
+            Self::Period { start, period } => {
+                let passed = (t - start) / period;
+                // Within half a period of zero, so that late crossings are as accurate as early ones.
+                let is_odd = if passed.round() % 2.0 == 0.0 { 1.0 } else { -1.0 };
+                is_odd * (core::f64::consts::PI * (passed - passed.round())).sin()
+            }
+            Self::Function(g, _) => g(t, q, v),
+        }
+    }
+
+    fn direction(&self) -> Direction {
+        match self {
+            Self::Coordinate { direction, .. } | Self::Velocity { direction, .. } | Self::Function(_, direction) => {
+                *direction
+            }
+            Self::Period { .. } => Direction::Both,
+        }
+    }
+
+    /// The event that the function crosses zero in the direction of the section.
+    pub(crate) fn event<const N: usize>(&self) -> Event<N> {
+        let section = self.clone();
+        let g = move |moment: &Moment<N>| section.value(moment.t, moment.q.as_slice(), moment.v.as_slice());
+        match self.direction() {
+            Direction::Rising => Event::rising(g),
+            Direction::Falling => Event::falling(g),
+            Direction::Both => Event::crossing(g),
+        }
+    }
+}

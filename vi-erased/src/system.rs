@@ -1,0 +1,258 @@
+//! A type-erased system with any number of coordinates.
+//!
+//! In: the type of a system, and its integrators. Out: a [`System`], whose functions and runs take slices.
+
+use crate::integrator::Integrator;
+use crate::plan::{Method, PhasePoint, Plan};
+use crate::simulation::{Runnable, Simulation, vector};
+use core::any::Any;
+use std::sync::Arc;
+use vi_core::lagrangian::Described;
+use vi_core::{SVector, State, StepError};
+
+/// A function of a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// L(t, q, v).
+    Lagrangian,
+    /// `v·∂L/∂v − L` at (t, q, v).
+    Energy,
+    /// The same at (t, q, p).
+    Hamiltonian,
+    /// `∂L/∂v` at (t, q, v).
+    Momentum,
+    /// The generalized force at (t, q, v).
+    Force,
+    /// The acceleration at (t, q, v).
+    Acceleration,
+    /// The velocity at (t, q, p).
+    Velocity,
+}
+
+/// A system with its parameters.
+pub trait System: Send + Sync {
+    /// Name of the type.
+    fn name(&self) -> &'static str;
+    /// Documentation of the declaration.
+    fn about(&self) -> &'static str;
+    /// Its declaration, as tokens.
+    fn definition(&self) -> &'static str;
+    /// Names of the coordinates.
+    fn coordinates(&self) -> Vec<&'static str>;
+    /// Names and values of the parameters.
+    fn parameters(&self) -> Vec<(&'static str, f64)>;
+    /// Documentation of each parameter.
+    fn parameters_about(&self) -> &'static [&'static str];
+    /// Sets a parameter; false if there is none with this name.
+    fn set(&mut self, name: &str, value: f64) -> bool;
+    /// A system of the same type with the same parameters.
+    fn copy(&self) -> Box<dyn System>;
+    /// The system, to read its type.
+    fn as_any(&self) -> &dyn Any;
+    /// Method, stages, and whether in transformed time, of each integrator.
+    fn integrators(&self) -> Vec<(Method, Option<usize>, bool)>;
+    /// Whether L and f are both independent of time.
+    fn is_autonomous(&self) -> bool;
+    /// Whether the energy of a motion is constant: L and f are autonomous, and there is no force.
+    fn conserves_energy(&self) -> bool;
+    /// A function at as many points as there are times; `q` and `v`, or momenta, have N numbers for each. Appends to
+    /// `out`, N numbers for each point if the function is a vector.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] of the first point without a
+    /// value.
+    fn evaluate(&self, of: Quantity, points: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError>;
+    /// Starts a run.
+    ///
+    /// # Errors
+    /// The error of the integrators for the initial state. [`StepError::InvalidInput`] for wrong numbers of coordinates
+    /// or velocities, and for stages that are not built; [`StepError::NoRule`] for a method that needs a rule which the
+    /// system does not have.
+    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
+    /// The run of a plan as [`Simulation::checkpoint`] stored it.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    #[cfg(feature = "checkpoints")]
+    fn restart(&self, plan: &Plan, stored: &str) -> Result<Box<dyn Simulation>, String>;
+}
+
+impl dyn System + '_ {
+    /// Whether an integrator of this method is built.
+    #[must_use]
+    pub fn has(&self, method: Method) -> bool {
+        self.integrators().iter().any(|(built, ..)| *built == method)
+    }
+
+    /// H at a point.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for a point with another number of coordinates, here and below.
+    pub fn energy(&self, at: &PhasePoint) -> Result<f64, StepError> {
+        Ok(self.values(Quantity::Energy, at)?[0])
+    }
+
+    /// Momenta ∂L/∂v at a point.
+    ///
+    /// # Errors
+    /// As [`System::energy`].
+    pub fn momentum(&self, at: &PhasePoint) -> Result<Vec<f64>, StepError> {
+        self.values(Quantity::Momentum, at)
+    }
+
+    fn values(&self, of: Quantity, at: &PhasePoint) -> Result<Vec<f64>, StepError> {
+        let PhasePoint { t, q, v } = at;
+        let n = self.coordinates().len();
+        for (values, input) in [(q, "number of coordinates"), (v, "number of velocities")] {
+            if values.len() != n {
+                #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
+                let value = values.len() as f64;
+                return Err(StepError::InvalidInput { input, allowed: "that of the system", value });
+            }
+        }
+        let mut out = Vec::new();
+        self.evaluate(of, [core::slice::from_ref(t), q, v], &mut out)?;
+        Ok(out)
+    }
+}
+
+/// A system of a known type.
+#[derive(Clone)]
+pub struct Typed<S, const N: usize> {
+    /// The system.
+    pub system: S,
+    integrators: Arc<[Integrator<S, N>]>,
+}
+
+impl<S: Runnable<N> + Described + Default, const N: usize> Typed<S, N> {
+    /// The system with its default parameters.
+    #[must_use]
+    pub fn new(integrators: Vec<Integrator<S, N>>) -> Self {
+        Self { system: S::default(), integrators: integrators.into() }
+    }
+}
+
+/// The system with its default parameters, type-erased.
+#[must_use]
+pub fn erased<S: Runnable<N> + Described + Default, const N: usize>(
+    integrators: Vec<Integrator<S, N>>,
+) -> Box<dyn System> {
+    Box::new(Typed::new(integrators))
+}
+
+impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
+    /// The integrator of a plan.
+    ///
+    /// # Errors
+    /// As [`System::begin`].
+    fn integrator(&self, plan: &Plan) -> Result<&Integrator<S, N>, StepError> {
+        let found = self.integrators.iter().find(|integrator| integrator.is_of(plan));
+        let is_by_rule = |method: Method| !matches!(method, Method::Gauss | Method::Energy);
+        found.ok_or_else(|| {
+            let stages = plan.energy_stages().or(plan.gauss_stages());
+            match stages {
+                #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
+                Some(stages) => StepError::InvalidInput {
+                    input: "number of stages",
+                    allowed: "one that is built",
+                    value: stages as f64,
+                },
+                None if is_by_rule(plan.method) || plan.method == Method::Energy => {
+                    StepError::NoRule { system: S::NAME }
+                }
+                None => {
+                    StepError::InvalidInput { input: "number of stages", allowed: "one that is built", value: f64::NAN }
+                }
+            }
+        })
+    }
+}
+
+impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
+    fn name(&self) -> &'static str {
+        S::NAME
+    }
+
+    fn about(&self) -> &'static str {
+        S::ABOUT
+    }
+
+    fn definition(&self) -> &'static str {
+        S::DEFINITION
+    }
+
+    fn coordinates(&self) -> Vec<&'static str> {
+        S::COORDINATES.to_vec()
+    }
+
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        S::PARAMETERS.iter().enumerate().map(|(index, name)| (*name, self.system.parameter(index))).collect()
+    }
+
+    fn parameters_about(&self) -> &'static [&'static str] {
+        S::PARAMETERS_ABOUT
+    }
+
+    fn set(&mut self, name: &str, value: f64) -> bool {
+        self.system.parameter_mut(name).map(|parameter| *parameter = value).is_some()
+    }
+
+    fn copy(&self) -> Box<dyn System> {
+        Box::new(self.clone())
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn integrators(&self) -> Vec<(Method, Option<usize>, bool)> {
+        self.integrators.iter().map(|of| (of.method, of.stages, of.is_transformed)).collect()
+    }
+
+    fn is_autonomous(&self) -> bool {
+        S::AUTONOMOUS
+    }
+
+    fn conserves_energy(&self) -> bool {
+        S::AUTONOMOUS && !S::FORCED
+    }
+
+    fn evaluate(&self, of: Quantity, [t, q, v]: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError> {
+        let system = &self.system;
+        for ((&t, q), v) in t.iter().zip(q.chunks_exact(N)).zip(v.chunks_exact(N)) {
+            let (q, v) = (SVector::<f64, N>::from_column_slice(q), SVector::<f64, N>::from_column_slice(v));
+            let number = match of {
+                Quantity::Lagrangian => system.lagrangian(t, &q, &v),
+                Quantity::Energy => system.energy(t, &q, &v),
+                Quantity::Hamiltonian => State { t, q, p: v }.energy(system)?,
+                _ => {
+                    let vector = match of {
+                        Quantity::Momentum => system.momentum(t, &q, &v),
+                        Quantity::Force => system.force(t, &q, &v),
+                        Quantity::Acceleration => system.acceleration(t, &q, &v)?,
+                        _ => system.flow(t, &q, &v)?.v,
+                    };
+                    out.extend_from_slice(vector.as_slice());
+                    continue;
+                }
+            };
+            out.push(number);
+        }
+        Ok(())
+    }
+
+    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
+        let q = vector(&plan.q, "number of coordinates")?;
+        let state = match &plan.p {
+            Some(p) => State { t: plan.t, q, p: vector(p, "number of momenta")? },
+            None => State::at(&self.system, plan.t, q, vector::<N>(&plan.v, "number of velocities")?),
+        };
+        (self.integrator(plan)?.begin)(self.system, plan, state)
+    }
+
+    #[cfg(feature = "checkpoints")]
+    fn restart(&self, plan: &Plan, stored: &str) -> Result<Box<dyn Simulation>, String> {
+        let integrator = self.integrator(plan).map_err(|error| error.to_string())?;
+        (integrator.restart)(self.system, stored)
+    }
+}
