@@ -10,7 +10,7 @@ use vi_codegen::inspect::{self, Line, report};
 use vi_python::pyo3;
 
 /// The sources of the crates that a compiled system needs, and a number that changes with them.
-mod sources {
+mod embedded {
     include!(concat!(env!("OUT_DIR"), "/sources.rs"));
 }
 
@@ -48,7 +48,7 @@ fn explain(definition: &str, stages: Option<usize>) -> PyResult<Explained> {
 #[pyfunction]
 #[pyo3(crate = "vi_python::pyo3")]
 fn sources() -> &'static [(&'static str, &'static str)] {
-    sources::FILES
+    embedded::FILES
 }
 
 #[pymodule(gil_used = false)]
@@ -56,6 +56,6 @@ fn sources() -> &'static [(&'static str, &'static str)] {
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(pyo3::wrap_pyfunction!(explain, module)?)?;
     module.add_function(pyo3::wrap_pyfunction!(sources, module)?)?;
-    module.add("sources_digest", sources::DIGEST)?;
+    module.add("sources_digest", embedded::DIGEST)?;
     vi_python::populate(module, vi_python_ready::systems())
 }

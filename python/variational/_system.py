@@ -21,8 +21,6 @@ from ._run import Run
 class Parameter:
     """A parameter of a system. An array is returned as a copy that cannot be written: assign the whole array."""
 
-    __slots__ = ("__doc__", "default", "length", "name", "start")
-
     def __init__(self, name: str, start: int, length: int | None, default: Any, about: str):
         self.name, self.start, self.length, self.default = name, start, length, default
         self.__doc__ = about or f"Parameter {name}."

@@ -355,27 +355,35 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
         }
     }
 
-    /// Takes steps by `step` until it returns true or `most` are taken; `see` gets the run after each. Returns whether
-    /// `step` did.
-    #[inline(always)]
+    /// Takes steps toward the time `end`, where the last of them ends, or to the first node at `past` or later; at most
+    /// `most`. Adds each `every`th node to `rows`, as `taken` counts. Returns whether it is there.
+    ///
+    /// All loops are this one: the step is inlined into it, and takes most of the compiler's time.
+    #[inline(never)]
     fn advance_while(
         &mut self,
+        [end, past]: [f64; 2],
         most: u64,
-        mut step: impl FnMut(&mut Run<M, S, N>) -> Result<bool, StepError>,
-        mut see: impl FnMut(&Run<M, S, N>),
+        every: u64,
+        taken: &mut u64,
+        rows: &mut Rows,
     ) -> Result<bool, StepError> {
         // A local copy of the run: behind a pointer its numbers would go through memory in every step.
         let mut run = self.run.clone();
         let mut outcome = Ok(false);
-        let mut taken = 0;
+        let mut left = most;
         while let Ok(false) = outcome
-            && taken < most
+            && left > 0
         {
-            outcome = step(&mut run);
-            if outcome.is_ok() {
-                taken += 1;
+            outcome = run.approach(end);
+            if let Ok(is_there) = &mut outcome {
+                *is_there |= run.t() >= past;
+                left -= 1;
+                *taken += 1;
                 self.evaluations += M::EVALUATIONS * u64::from(run.iterations());
-                see(&run);
+                if taken.is_multiple_of(every) {
+                    rows.push(&run.state());
+                }
                 if let Some(monitor) = &mut self.monitor {
                     monitor.watch(&run);
                 }
@@ -384,6 +392,11 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
         self.run = run;
         self.shortened = None;
         outcome
+    }
+
+    /// A time that no step reaches.
+    fn never(&self) -> f64 {
+        f64::INFINITY.copysign(self.run.h())
     }
 
     fn met(&self, crossing: &Crossing<N>) -> Met {
@@ -511,9 +524,8 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
 
     fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
         let mut taken = 0;
-        let is_there = |run: &Run<M, S, N>| run.t() >= end;
-        if !is_there(&self.run) {
-            self.advance_while(most, |run| run.step().map(|_| is_there(run)), |_| taken += 1)?;
+        if self.run.t() < end {
+            self.advance_while([self.never(), end], most, u64::MAX, &mut taken, &mut Rows::default())?;
         }
         Ok(taken)
     }
@@ -530,16 +542,8 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
             self.run.check_ahead(end)?;
         }
         let before = *taken;
-        let see = |run: &Run<M, S, N>| {
-            *taken += 1;
-            if taken.is_multiple_of(every) {
-                rows.push(&run.state());
-            }
-        };
-        let outcome = match end {
-            Some(end) => self.advance_while(most, |run| run.approach(end), see),
-            None => self.advance_while(most, |run| run.step().map(|_| false), see),
-        };
+        let end = end.unwrap_or_else(|| self.never());
+        let outcome = self.advance_while([end, f64::INFINITY], most, every, taken, rows);
         let is_over = outcome != Ok(false);
         if is_over && *taken > before && !taken.is_multiple_of(every) {
             rows.push(&self.run.state());

@@ -168,6 +168,10 @@ impl Run {
         let mut dense = dense.then(|| Dense::new(self.n));
         let (mut taken, mut stretch) = (0, Stretch::new());
         let error = loop {
+            // The time of a node is rounded, so that the run itself may find that it lies behind.
+            if until == Some(run.t()) {
+                break None;
+            }
             let few = stretch.steps().min(most - taken);
             let outcome = py.detach(|| match &mut dense {
                 None => run.record(until, few, every, &mut taken, &mut rows),
