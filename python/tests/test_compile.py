@@ -41,6 +41,38 @@ def test_a_double_pendulum(warm_cache):
         double.integrate([1.0, 0.5], h=50.0, method="fixed").steps(100)
 
 
+CHAIN = """
+struct Chain {
+    param m[3] = 1.0;
+    param k = 5.0;
+    coord x[3];
+    let stretch[i in 1..3] = x[i] - x[i - 1];
+    L = sum(i in 0..3, m[i] * dot(x[i])^2 / 2) - k * (x[0]^2 + x[2]^2 + sum(i in 1..3, stretch[i]^2)) / 2;
+}
+"""
+
+
+def test_arrays_of_parameters(warm_cache):
+    Chain = vi.compile(CHAIN)
+    chain = Chain(m=[1.0, 2.0, 3.0])
+    assert chain.m.tolist() == [1.0, 2.0, 3.0]
+    assert Chain().m.tolist() == [1.0, 1.0, 1.0]
+    with pytest.raises(ValueError, match="read-only"):
+        chain.m[0] = 1.0
+    with pytest.raises(ValueError, match="m must have 3 entries"):
+        chain.m = [1.0, 2.0]
+    chain.m = 2.0
+    assert chain.m.tolist() == [2.0, 2.0, 2.0]
+    assert pickle.loads(pickle.dumps(chain)) == chain
+    run = chain.integrate([0.1, 0.0, 0.0], h=0.1)
+    run.set(m=[1.0, 2.0, 4.0])
+    assert run.system.m.tolist() == [1.0, 2.0, 4.0]
+    assert run.copy().tangent(3, ["m", "k"])["m"].shape == (6, 3)
+    assert run.copy().gradient(3, q=[1.0, 0.0, 0.0], wrt=["m"])["m"].shape == (3,)
+    many = chain.ensemble([0.1, 0.0, 0.0], h=0.1, until=1.0, parameters={"m": np.ones((4, 3))})
+    assert many.q.shape == (4, 3)
+
+
 def test_the_cache_is_fast(warm_cache):
     vi.compile(SPRING.format(2.0))
     code = (

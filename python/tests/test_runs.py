@@ -16,8 +16,8 @@ def test_shapes_and_ends(kepler):
     assert sol.q.flags.c_contiguous
     assert np.array_equal(sol["x"], sol.q[:, 0])
     assert np.array_equal(sol["dot(y)"], sol.v[:, 1])
-    # Measured: 1.9e-12.
-    assert np.ptp(sol.energy) < 1e-9
+    # Measured: 3.3e-16.
+    assert np.ptp(sol.energy) < 1e-15
     assert len(kepler.steps(10, every=5)) == 3
     assert len(kepler.steps(11, every=5)) == 4
     assert len(kepler.steps(0)) == 1
@@ -34,7 +34,8 @@ def test_backwards(kepler):
     q = kepler.q
     kepler.until(2.0)
     back = vi.Kepler().integrate(kepler.q, p=kepler.p, t=2.0, h=-0.05)
-    np.testing.assert_allclose(back.until(0.0).q[-1], q, atol=1e-12)
+    # Measured: 1.8e-16.
+    np.testing.assert_allclose(back.until(0.0).q[-1], q, rtol=0.0, atol=1e-15)
 
 
 def test_dense_output_backwards(kepler):
@@ -92,7 +93,7 @@ def test_energy_is_preserved_and_a_missing_step_is_an_exception():
         run.steps(1000)
     error = caught.value
     assert isinstance(error, vi.StepError)
-    assert error.density < 0.0
+    assert error.fields == {"t": error.t, "h": error.h, "excess": error.excess, "density": error.density}
     assert error.t == error.solution.t[-1] == run.t
     assert "fallback" not in error.reason
     again = pickle.loads(pickle.dumps(error))
@@ -209,21 +210,31 @@ def test_a_run_is_pickled_bit_for_bit(options):
         assert (run.t, run.h) == (other.t, other.h)
 
 
-@pytest.mark.parametrize("options", RUNS[:-1])
-def test_tangents_are_derivatives(options):
-    def end(m, x):
-        run = vi.Kepler(**{NAME: m}).integrate([x, 0.0], p=[0.0, 2.0], **options)
-        run.steps(20)
+# Rounding moves the ends of energy-preserving steps with stages, and so limits differences.
+DIFFERENCES = [(options, 1e-4 if options.get("method") == "energy" else 1e-6) for options in RUNS[:-2]]
+DIFFERENCES += [({"method": "energy", "stages": 2, "h": 0.05}, 1e-4), ({"dtau": 0.1}, 1e-6)]
+
+
+@pytest.mark.parametrize(("options", "d"), DIFFERENCES)
+def test_tangents_are_derivatives(options, d):
+    def end(mu, x):
+        run = vi.Kepler(mu=mu).integrate([x, 0.0], p=[0.0, 2.0], **options)
+        run.steps(10)
         return np.concatenate([run.q, run.p])
 
-    NAME = vi.Kepler.parameters[0]
-    m, d = getattr(vi.Kepler(), NAME), 1e-6
-    found = vi.Kepler().integrate([0.4, 0.0], p=[0.0, 2.0], **options).tangent(20, [NAME])
-    np.testing.assert_allclose(found[NAME], (end(m + d, 0.4) - end(m - d, 0.4)) / (2 * d), rtol=1e-5, atol=1e-7)
-    np.testing.assert_allclose(found["q"][:, 0], (end(m, 0.4 + d) - end(m, 0.4 - d)) / (2 * d), rtol=1e-5, atol=1e-7)
-    if options["method"] != "energy":
-        # Steps of given length are symplectic. Measured: 2e-14.
-        assert np.linalg.det(np.hstack([found["q"], found["p"]])) == pytest.approx(1.0, abs=1e-12)
+    found = vi.Kepler().integrate([0.4, 0.0], p=[0.0, 2.0], **options).tangent(10, ["mu"])
+    of_mu = (end(1.0 + d, 0.4) - end(1.0 - d, 0.4)) / (2 * d)
+    of_x = (end(1.0, 0.4 + d) - end(1.0, 0.4 - d)) / (2 * d)
+    # Measured: at most 3.0e-6, the error of the differences.
+    np.testing.assert_allclose(found["mu"], of_mu, rtol=0.0, atol=5e-6)
+    np.testing.assert_allclose(found["q"][:, 0], of_x, rtol=0.0, atol=5e-6)
+
+
+@pytest.mark.parametrize("options", RUNS[:5])
+def test_steps_of_given_length_are_symplectic(options):
+    tangent = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], **options).tangent(100)
+    # Measured: 2e-14.
+    assert np.linalg.det(np.hstack([tangent["q"], tangent["p"]])) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_long_tangents_are_products(kepler):

@@ -93,9 +93,9 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
     ... }
     ... ''')  # doctest: +SKIP
 
-    `methods` lists the integrators to build: "fixed; gauss 4, 8; energy; energy 2". The default is "fixed; gauss 8",
-    without "fixed" for a system without the clause `discretize`, and with "transformed 8" for one with a
-    `time_scale`. It needs cargo, https://rustup.rs; the first build takes about a minute, later ones seconds, and a
+    `methods` lists the integrators to build: "fixed; compositions; gauss 4, 8; energy; energy 2". The default is
+    "fixed; gauss 8", without "fixed" for a system without the clause `discretize`, and with "transformed 8" for one
+    with a `time_scale`. It needs cargo, https://rustup.rs; the first build takes about a minute, later ones seconds, and a
     system that was compiled before milliseconds.
 
     Raises CompileError.
@@ -151,9 +151,11 @@ def _methods(methods: str | None, code: str) -> str:
     for part in filter(None, (part.strip() for part in methods.split(";"))):
         word, _, rest = part.partition(" ")
         stages = [stage.strip() for stage in rest.split(",")] if rest.strip() else []
-        most = {"fixed": 0, "energy": 3, "gauss": 16, "transformed": 16}.get(word)
+        most = {"fixed": 0, "compositions": 0, "energy": 3, "gauss": 16, "transformed": 16}.get(word)
         if most is None:
-            raise CompileError(f"there is no method {word!r}: methods are fixed, gauss 8, transformed 8, energy, energy 2")
+            raise CompileError(
+                f"there is no method {word!r}: methods are fixed, compositions, gauss 8, transformed 8, energy, energy 2"
+            )
         if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):
             limits = f"stages from 1 to {most}" if most else "no stages"
             raise CompileError(f"{word} has {limits}, not {rest!r}")
@@ -167,6 +169,16 @@ def _methods(methods: str | None, code: str) -> str:
     if not found:
         raise CompileError('methods has no method: write for example "fixed; gauss 8"')
     return "; ".join(found)
+
+
+def _words(methods: str) -> str:
+    """The integrators in the words of Rust's macro: its `fixed` has the compositions."""
+    words = methods.split("; ")
+    if "compositions" in words:
+        words = ["fixed", *(word for word in words if word not in ("fixed", "compositions"))]
+    else:
+        words = ["fixed_2" if word == "fixed" else word for word in words]
+    return "; ".join(words)
 
 
 def _checked(definition: str) -> str:
@@ -191,7 +203,7 @@ def _build(definition: str, name: str, library: str, built: Path, methods: str, 
             # Another process may have built it meanwhile.
             if not built.exists():
                 workspace = _workspace(folder)
-                text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=methods)
+                text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=_words(methods))
                 (workspace / "compiled" / "src" / "lib.rs").write_text(text, encoding="utf-8")
                 _cargo(cargo, workspace, folder / "target", verbose)
                 part = built.with_suffix(".part")
