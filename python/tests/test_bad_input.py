@@ -75,6 +75,8 @@ TABLE = [
     (lambda: begun(stages=10**30), ValueError, "no integrator"),
     (lambda: begun(method="fixed", stages=4), ValueError, "no stages"),
     (lambda: begun(shift=1.0), ValueError, 'method="energy"'),
+    (lambda: begun(method="energy", shift_from=-1.0), vi.InvalidInput, "shift_from must be ahead"),
+    (lambda: begun(method="energy", shift_from=1e9), vi.InvalidInput, "at most 1e\\+06 steps"),
     (lambda: begun().until(-1.0), vi.InvalidInput, "ahead of the run"),
     (lambda: begun().until(np.inf), vi.InvalidInput, "t must be finite"),
     (lambda: begun().at([2.0, 1.0]), ValueError, "ascending"),

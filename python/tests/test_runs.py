@@ -44,6 +44,12 @@ def test_dense_output_backwards(kepler):
     np.testing.assert_allclose(back(end.t), end.y, atol=1e-10)
 
 
+def test_dense_output_of_no_step(kepler):
+    sol = kepler.steps(0, dense=True)
+    assert np.array_equal(sol(0.0), sol.y[:, 0])
+    assert sol([0.0, 0.0]).shape == (4, 2)
+
+
 def test_output_at_times_keeps_the_steps(kepler):
     aside = kepler.copy()
     sol = kepler.at([0.01, 0.2, 1.234])

@@ -89,7 +89,11 @@ class Solution:
             raise ValueError(
                 f"t = {float(np.ravel(outside)[0])!r} is outside of the solution, from {float(first)!r} to {float(last)!r}"
             )
-        q, p, v = self._dense(np.ascontiguousarray(times.reshape(-1)))
+        if len(self._dense) == 0:
+            # A run that took no step.
+            q, p, v = (np.repeat(of[:1], times.size, axis=0) for of in (self.q, self.p, self.v))
+        else:
+            q, p, v = self._dense(np.ascontiguousarray(times.reshape(-1)))
         return (q, p, v) if times.ndim else (q[0], p[0], v[0])
 
     def __getitem__(self, name: str) -> Array:

@@ -262,6 +262,10 @@ class System:
         return self.explain().equations()
 
 
+_MOST = 1e6
+"""Steps over which a shift is measured: no signal interrupts them."""
+
+
 class _Request:
     """Method and options of a run, as `_core` reads them."""
 
@@ -313,6 +317,8 @@ def _request(
             raise _invalid(name, "finite and not zero", value)
     if request.tolerance is not None and not 0.0 < request.tolerance < np.inf:
         raise _invalid("tolerance", "positive and finite", request.tolerance)
+    if request.shift_from is not None and request.h is not None and not 0.0 < request.shift_from / request.h <= _MOST:
+        raise _invalid("shift_from", f"ahead, and at most {_MOST:g} steps of h", request.shift_from)
     return request
 
 

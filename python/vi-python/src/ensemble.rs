@@ -4,7 +4,7 @@
 //! the calling thread looks for Ctrl-C.
 
 use crate::failure::{instance, wrong};
-use crate::rows::{check_memory, to_python};
+use crate::rows::{check_memory, record_some, to_python};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -108,9 +108,13 @@ impl Ensemble<'_> {
         let (system, plan) = (self.plan)(index)?;
         let outcome = system.begin(&plan).and_then(|mut run| match &self.output {
             Output::End(end) => to_the_end(&mut *run, *end, is_stopped, &mut rows),
-            Output::Times(times) => times.chunks(256).try_for_each(|some| {
-                if is_stopped.load(Ordering::Relaxed) { Ok(()) } else { run.record_at(some, &mut rows) }
-            }),
+            Output::Times(times) => {
+                let mut left = &times[..];
+                while !left.is_empty() && !is_stopped.load(Ordering::Relaxed) {
+                    record_some(&mut *run, &mut left, &mut rows)?;
+                }
+                Ok(())
+            }
         });
         // Every run has the same number of rows, so that they form an array.
         let wanted = self.rows_of_each();

@@ -3,7 +3,7 @@
 use crate::dense::Dense;
 use crate::events::{Description, Raised, sections};
 use crate::failure::{Raise as _, busy, instance, wrong};
-use crate::rows::{check_memory, to_python, vector};
+use crate::rows::{check_memory, record_some, steps_to, to_python, vector};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, TryLockError};
@@ -198,18 +198,10 @@ impl Run {
         let mut rows = Rows::default();
         let mut left = &times[..];
         let error = loop {
-            let Some(first) = left.first() else { break None };
-            let near = left.iter().take_while(|t| steps_to(run, **t) <= NEAR).take(256).count();
-            let outcome = py.detach(|| {
-                if near > 0 {
-                    run.record_at(&left[..near], &mut rows)
-                } else {
-                    // Far times: most of the steps before them, so that signals are heard.
-                    let most = (steps_to(run, *first) / 4).min(NEAR);
-                    run.record(None, most, u64::MAX, &mut 0, &mut Rows::default()).map(drop)
-                }
-            });
-            left = &left[near..];
+            if left.is_empty() {
+                break None;
+            }
+            let outcome = py.detach(|| record_some(run, &mut left, &mut rows));
             py.check_signals()?;
             if let Err(error) = outcome {
                 break Some(instance(py, &error)?);
@@ -344,8 +336,6 @@ impl Run {
 
 /// Steps of a derivative between two looks at signals.
 const DERIVED: u64 = 4096;
-/// Steps to output times between two looks at signals.
-const NEAR: u64 = 8192;
 
 /// The derivatives after two stretches, by the chain rule. Rows are directions: the state first, then parameters.
 fn chained(first: &[Vec<f64>], second: &[Vec<f64>]) -> Vec<Vec<f64>> {
@@ -362,12 +352,6 @@ fn chained(first: &[Vec<f64>], second: &[Vec<f64>]) -> Vec<Vec<f64>> {
         row.iter_mut().zip(own).for_each(|(sum, entry)| *sum += entry);
     }
     rows
-}
-
-/// Steps of the present length to a time; 0 if it is not ahead.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
-fn steps_to(run: &dyn Simulation, end: f64) -> u64 {
-    ((end - run.t()) / run.h()).ceil() as u64
 }
 
 /// Adds the state of the run.
