@@ -38,7 +38,7 @@ def test_a_double_pendulum(warm_cache):
     assert np.array_equal(run.step().q, again.step().q)
     assert type(again.system) is Double
     with pytest.raises(vi.StepError):
-        double.integrate([1.0, 0.5], h=50.0, method="fixed").steps(100)
+        double.integrate([1.0, 0.5], h=50.0).steps(100)
 
 
 CHAIN = """

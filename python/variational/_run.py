@@ -144,8 +144,8 @@ class Run:
         _check_on_error(on_error)
         system = self.system
         if callback is None:
-            rows, error, polynomials = self._run.advance(end, steps, every, bool(dense))
-            return _finished(Solution(system, *rows, error=error, dense=polynomials), on_error)
+            (t, q, p), error, polynomials = self._run.advance(end, steps, every, bool(dense))
+            return _finished(Solution(system, t, q, p, error, polynomials), on_error)
         if dense:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
         if not callable(callback):
@@ -180,8 +180,8 @@ class Run:
             if np.any(np.diff(wanted) * direction < 0.0):
                 order = "ascending" if direction > 0 else "descending, since h is negative"
                 raise ValueError(f"times must be {order}")
-        rows, error, _ = self._run.at(wanted)
-        return _finished(Solution(self.system, *rows, error=error), on_error)
+        (t, q, p), error, _ = self._run.at(wanted)
+        return _finished(Solution(self.system, t, q, p, error), on_error)
 
     def events(self, events: Watched | Iterable[Watched], until: float, *, on_error: str = "raise") -> Events:
         """Takes steps to the time `until`, and returns the events on the way, located to rounding."""
@@ -194,10 +194,10 @@ class Run:
     def _events(self, events: Any, until: float, is_first: bool, on_error: str) -> Events:
         _check_on_error(on_error)
         end = number(until, "until")
-        rows, error, met = self._run.events(descriptions(events, self._cls), end, is_first)
+        (t, q, p), error, met = self._run.events(descriptions(events, self._cls), end, is_first)
         which = np.array([index for index, _ in met], dtype=np.intp)
         rising = np.array([rises for _, rises in met], dtype=np.bool_)
-        return _finished(Events(self.system, *rows, error=error, which=which, rising=rising), on_error)
+        return _finished(Events(self.system, t, q, p, error, which, rising), on_error)
 
     def set(self, **parameters: Any) -> Run:
         """Changes parameters from here on. Coordinates and momenta stay."""

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import Array, array, finite
 from ._names import course
@@ -155,7 +155,14 @@ class Events(Solution):
     """The events of a run: a row for each, `which` of the given events it is, and whether its function `rising`."""
 
     def __init__(
-        self, system: System, t: Array, q: Array, p: Array, error: StepError | None, which: Array, rising: Array
+        self,
+        system: System,
+        t: Array,
+        q: Array,
+        p: Array,
+        error: StepError | None,
+        which: NDArray[np.intp],
+        rising: NDArray[np.bool_],
     ):
         super().__init__(system, t, q, p, error)
         self.which = which
