@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,7 @@ _MOST = 1e6
 """Steps over which a shift is measured: no signal interrupts them."""
 
 
-@dataclass
+@dataclass(slots=True)
 class Request:
     """Method and options of a run, as `_core` reads them."""
 
@@ -49,10 +50,9 @@ def checked(
     """
     if (h is None) + (tolerance is None) + (dtau is None) != 2:
         raise TypeError("give one of h, tolerance and dtau: h=0.05 is a step of this length")
-    built = {method for method, *_ in cls.integrators}
-    if method not in built:
-        known = ", ".join(f'"{name}"' for name in sorted(built))
-        close = meant(method, built) if isinstance(method, str) else ""
+    if method not in cls._methods:
+        known = ", ".join(f'"{name}"' for name in cls._methods)
+        close = meant(method, cls._methods) if isinstance(method, str) else ""
         raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}")
     if method != "energy" and (shift is not None or shift_from is not None or fallback):
         raise ValueError('shift, shift_from and fallback are options of method="energy"')
@@ -71,9 +71,9 @@ def checked(
         fallback=bool(fallback),
     )
     for name, value in (("h", request.h), ("dtau", request.dtau)):
-        if value is not None and (value == 0.0 or not np.isfinite(value)):
+        if value is not None and (value == 0.0 or not math.isfinite(value)):
             raise _invalid(name, "finite and not zero", value)
-    if request.tolerance is not None and not 0.0 < request.tolerance < np.inf:
+    if request.tolerance is not None and not 0.0 < request.tolerance < math.inf:
         raise _invalid("tolerance", "positive and finite", request.tolerance)
     if request.shift_from is not None and request.h is not None and not 0.0 < request.shift_from / request.h <= _MOST:
         raise _invalid("shift_from", f"ahead, and at most {_MOST:g} steps of h", request.shift_from)

@@ -62,6 +62,7 @@ class System:
 
     _kind: ClassVar[Any] = None
     _defaults: ClassVar[Array]
+    _methods: ClassVar[tuple[str, ...]] = ()
     coordinates: ClassVar[tuple[str, ...]] = ()
     """Names of the coordinates."""
     parameters: ClassVar[tuple[str, ...]] = ()

@@ -32,6 +32,13 @@ pub(crate) fn check_memory(rows: u64, numbers: usize) -> PyResult<()> {
     Vec::<f64>::new().try_reserve_exact(total).map_err(|_| too_many(rows))
 }
 
+/// Rows with memory for as many as are expected, but for a few only: the run may end early.
+pub(crate) fn reserved(expected: u64, n: usize) -> Rows {
+    let count = usize::try_from(expected.min(FEW / n as u64)).unwrap_or(0) + 2;
+    let [t, q, p] = [count, count * n, count * n].map(Vec::with_capacity);
+    Rows { t, q, p }
+}
+
 /// The entries of a contiguous vector.
 ///
 /// # Errors

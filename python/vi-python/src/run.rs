@@ -3,7 +3,7 @@
 use crate::dense::Dense;
 use crate::events::{Description, Raised, sections};
 use crate::failure::{Raise as _, busy, instance, wrong};
-use crate::rows::{check_memory, record_some, steps_to, to_python, vector};
+use crate::rows::{check_memory, record_some, reserved, steps_to, to_python, vector};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, TryLockError};
@@ -163,7 +163,7 @@ impl Run {
             // Collocation polynomials hold up to 17 values of each coordinate and momentum.
             check_memory(expected, 40 * self.n)?;
         }
-        let mut rows = Rows::default();
+        let mut rows = reserved(expected / every, self.n);
         push_state(run, &mut rows);
         let mut dense = dense.then(|| Dense::new(self.n));
         let (mut taken, mut stretch) = (0, Stretch::new());
