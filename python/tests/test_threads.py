@@ -67,6 +67,7 @@ LONG = {
     "tangent": lambda: long_run().tangent(10**12),
     "gradient": lambda: long_run().gradient(10**12, q=[1.0, 0.0]),
     "ensemble": lambda: vi.Kepler().ensemble(np.tile([0.4, 0.0], (64, 1)), [0.0, 2.0], h=0.01, until=1e10),
+    "short steps": lambda: vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=1e-9).step(0.1).at([9.0]),
     "ensemble at": lambda: vi.Kepler().ensemble([0.4, 0.0], [0.0, 2.0], h=0.01, times=[1.0, 1e10]),
 }
 

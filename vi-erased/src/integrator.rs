@@ -82,16 +82,9 @@ pub fn fixed<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Integrator
 where
     FixedStep: Erasable<S, N>,
 {
-    integrator!(
-        Method::Fixed,
-        None,
-        false,
-        |system| system,
-        FixedStep,
-        |system: S, plan: &Plan, state: State<N>| {
-            Ok(erased(system.at_state(state).integrate(FixedStep, plan.length())?))
-        }
-    )
+    integrator!(Method::Fixed, None, false, |system| system, FixedStep, |system: S, plan: &Plan, state: State<N>| {
+        Ok(erased(system.at_state(state).integrate(FixedStep, plan.length())?))
+    })
 }
 
 /// Fixed steps of order 2, and their compositions of order 4, 6, 8.

@@ -375,7 +375,9 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
         while let Ok(false) = outcome
             && left > 0
         {
-            outcome = run.approach(end);
+            // Steps without an upper bound would each be taken on a copy, to see whether they end beyond.
+            let is_free = end.is_infinite() && run.longest().is_infinite();
+            outcome = if is_free { run.single_step().map(|_| false) } else { run.approach(end) };
             if let Ok(is_there) = &mut outcome {
                 *is_there |= run.t() >= past;
                 left -= 1;
@@ -552,6 +554,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
     }
 
     fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError> {
+        self.shortened = None;
         for state in self.run.states_at(times.iter().copied()) {
             rows.push(&state?);
         }
