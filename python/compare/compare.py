@@ -260,11 +260,12 @@ def events():
         return f"{np.abs(times - exact).max():.1e}"
 
     h = vi.Pendulum().integrate([2.0], tolerance=TOLERANCE).h
-    times, seconds = best(lambda: vi.Pendulum().integrate([2.0], h=h).events(vi.Event("θ"), until=end).t)
-    rows.append(["variational, Event", error(times), shown(seconds)])
+    for name, step in (("h", h), ("h/2", h / 2)):
+        times, seconds = best(lambda: vi.Pendulum().integrate([2.0], h=step).events(vi.Event("θ"), until=end).t)
+        rows.append([f"variational, Event, {name}", error(times), shown(seconds)])
     g = lambda t, q, v: q[0]  # noqa: E731
     times, seconds = best(lambda: vi.Pendulum().integrate([2.0], h=h).events(g, until=end).t)
-    rows.append(["variational, function", error(times), shown(seconds)])
+    rows.append(["variational, function, h", error(times), shown(seconds)])
 
     def theirs():
         zero = lambda t, y: y[0]  # noqa: E731
