@@ -208,8 +208,8 @@ fn fallback(plan: &Plan) -> Fallback {
     if plan.fallback { Fallback::FixedSteps } else { Fallback::Stop }
 }
 
-/// Each iteration evaluates the equation with its Jacobian, and then the residual.
-const OF_A_CORRECTION: u64 = 2;
+/// Evaluations of an iteration by a rule: the equation with its Jacobian, then the residual.
+pub const OF_A_CORRECTION: u64 = 2;
 
 macro_rules! erasable {
     ([$($generics:tt)*] $method:ty, $system:ty, $evaluations:expr $(; $($items:tt)*)?) => {

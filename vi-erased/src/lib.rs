@@ -22,7 +22,7 @@ pub mod system;
 
 pub use integrator::Integrator;
 pub use plan::{Method, PhasePoint, Plan};
-pub use simulation::{Row, Rows, Simulation};
+pub use simulation::{Row, Rows, Simulation, Steps};
 pub use system::{System, Typed};
 
 /// A system with its default parameters, and the integrators that are built for it:

@@ -95,19 +95,14 @@ impl<D: DenseOutput<N> + Send + Sync, const N: usize> StepOutput for Output<D, N
     }
 }
 
-/// A started run.
-pub trait Simulation: Send + Sync {
+/// The nodes of a run, one after the other.
+pub trait Steps {
     /// Time of the last node.
     fn t(&self) -> f64;
     /// Coordinates of the last node.
     fn q(&self) -> &[f64];
     /// Momenta of the last node.
     fn p(&self) -> &[f64];
-    /// Velocities of the last node.
-    ///
-    /// # Errors
-    /// The momenta have no velocity.
-    fn velocity(&self) -> Result<Vec<f64>, StepError>;
     /// Length of the last step; before the first one the requested length.
     fn h(&self) -> f64;
     /// H, the energy at the last node, from its coordinates and momenta.
@@ -118,7 +113,48 @@ pub trait Simulation: Send + Sync {
     /// E, the discrete energy of the interval that ends at the last node; `None` without such an interval.
     fn discrete_energy(&self) -> Option<f64>;
     /// E', conserved by steps with a shift, and that shift; `None` for other methods.
-    fn shifted_energy(&self) -> Option<ShiftedEnergy>;
+    fn shifted_energy(&self) -> Option<ShiftedEnergy> {
+        None
+    }
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// The error of the integrator.
+    fn advance(&mut self) -> Result<(), StepError>;
+    /// Takes one step toward the time `end`, which lies ahead. A step beyond it is shortened to end at `end` exactly,
+    /// and has no discrete energy.
+    ///
+    /// # Errors
+    /// The error of the integrator.
+    fn advance_to(&mut self, end: f64) -> Result<(), StepError>;
+    /// Measures errors of the steps from here on. It costs a few per cent of their time and changes no bit of them.
+    fn monitor(&mut self) {}
+    /// The largest error of a step since [`Steps::monitor`], relative to the excursion of its coordinate.
+    fn largest_error(&self) -> Option<ErrorEstimate> {
+        None
+    }
+
+    /// The last node with its energies.
+    fn row(&self) -> Row {
+        Row {
+            t: self.t(),
+            q: self.q().to_vec(),
+            p: self.p().to_vec(),
+            energy: self.energy().ok(),
+            discrete_energy: self.discrete_energy(),
+            shifted_energy: self.shifted_energy().map(|of| of.energy),
+            h: self.h(),
+        }
+    }
+}
+
+/// A started run.
+pub trait Simulation: Steps + Send + Sync {
+    /// Velocities of the last node.
+    ///
+    /// # Errors
+    /// The momenta have no velocity.
+    fn velocity(&self) -> Result<Vec<f64>, StepError>;
     /// Evaluations of the equations by the steps so far: iterations times their evaluations.
     fn evaluations(&self) -> u64;
     /// Values of the parameters, in the order of their declaration.
@@ -135,22 +171,11 @@ pub trait Simulation: Send + Sync {
     /// # Errors
     /// As [`Run::set_state`]; [`StepError::InvalidInput`] for another number of coordinates or momenta.
     fn set_state(&mut self, t: f64, q: &[f64], p: &[f64]) -> Result<(), StepError>;
-    /// Takes one step.
-    ///
-    /// # Errors
-    /// The error of the integrator.
-    fn advance(&mut self) -> Result<(), StepError>;
     /// Takes one step of the length h in time.
     ///
     /// # Errors
     /// As [`Run::step_of`].
     fn advance_of(&mut self, h: f64) -> Result<(), StepError>;
-    /// Takes one step toward the time `end`, which lies ahead. A step beyond it is shortened to end at `end` exactly,
-    /// and has no discrete energy.
-    ///
-    /// # Errors
-    /// The error of the integrator.
-    fn advance_to(&mut self, end: f64) -> Result<(), StepError>;
     /// Takes steps until a node at `end` or later, at most `most`; returns their number.
     ///
     /// # Errors
@@ -190,10 +215,6 @@ pub trait Simulation: Send + Sync {
     /// # Errors
     /// As [`Run::dense_output`].
     fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError>;
-    /// Measures errors of the steps from here on. It costs a few per cent of their time and changes no bit of them.
-    fn monitor(&mut self);
-    /// The largest error of a step since [`Simulation::monitor`], relative to the excursion of its coordinate.
-    fn largest_error(&self) -> Option<ErrorEstimate>;
     /// The error of the next step: of q and of h·v, one after the other.
     ///
     /// # Errors
@@ -228,20 +249,6 @@ pub trait Simulation: Send + Sync {
 }
 
 impl dyn Simulation + '_ {
-    /// The last node with its energies.
-    #[must_use]
-    pub fn row(&self) -> Row {
-        Row {
-            t: self.t(),
-            q: self.q().to_vec(),
-            p: self.p().to_vec(),
-            energy: self.energy().ok(),
-            discrete_energy: self.discrete_energy(),
-            shifted_energy: self.shifted_energy().map(|of| of.energy),
-            h: self.h(),
-        }
-    }
-
     /// Takes `steps` steps.
     ///
     /// # Errors
@@ -409,7 +416,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     }
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S, N> {
     fn t(&self) -> f64 {
         self.run.t()
     }
@@ -420,10 +427,6 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
 
     fn p(&self) -> &[f64] {
         self.run.node().p.as_slice()
-    }
-
-    fn velocity(&self) -> Result<Vec<f64>, StepError> {
-        Ok(self.run.velocity()?.as_slice().to_vec())
     }
 
     fn h(&self) -> f64 {
@@ -441,6 +444,51 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
 
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
         M::shifted_energy(&self.run)
+    }
+
+    fn advance(&mut self) -> Result<(), StepError> {
+        self.run.single_step()?;
+        self.shortened = None;
+        self.count();
+        Ok(())
+    }
+
+    fn advance_to(&mut self, end: f64) -> Result<(), StepError> {
+        let (left, h) = (self.run.time_to(end), self.run.h());
+        let rounding = (f64::EPSILON * end.abs()).min(ROUNDED * h.abs());
+        let is_beyond = |left: f64| left * h.signum() < -rounding;
+        if is_beyond(left - self.run.longest()) {
+            // Steps that solve for their length must be taken to know it.
+            let ahead = if M::FINDS_LENGTH { Some(self.run.after_a_step()?) } else { None };
+            let Some(ahead) = ahead.filter(|ahead| !is_beyond(ahead.time_to(end))) else {
+                self.run.end_at(end)?;
+                self.shortened = Some(left);
+                self.count();
+                return Ok(());
+            };
+            self.run = ahead;
+            self.count();
+        } else {
+            self.advance()?;
+        }
+        if self.run.time_to(end).abs() <= rounding {
+            self.run.set_time(end);
+        }
+        Ok(())
+    }
+
+    fn monitor(&mut self) {
+        self.monitor = Some(Box::new(ErrorMonitor::new(&self.run)));
+    }
+
+    fn largest_error(&self) -> Option<ErrorEstimate> {
+        self.monitor.as_ref().map(|monitor| monitor.largest(&self.run))
+    }
+}
+
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated<M, S, N> {
+    fn velocity(&self) -> Result<Vec<f64>, StepError> {
+        Ok(self.run.velocity()?.as_slice().to_vec())
     }
 
     fn evaluations(&self) -> u64 {
@@ -471,41 +519,10 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
         Ok(())
     }
 
-    fn advance(&mut self) -> Result<(), StepError> {
-        self.run.single_step()?;
-        self.shortened = None;
-        self.count();
-        Ok(())
-    }
-
     fn advance_of(&mut self, h: f64) -> Result<(), StepError> {
         self.run.step_of(h)?;
         self.shortened = Some(h);
         self.count();
-        Ok(())
-    }
-
-    fn advance_to(&mut self, end: f64) -> Result<(), StepError> {
-        let (left, h) = (self.run.time_to(end), self.run.h());
-        let rounding = (f64::EPSILON * end.abs()).min(ROUNDED * h.abs());
-        let is_beyond = |left: f64| left * h.signum() < -rounding;
-        if is_beyond(left - self.run.longest()) {
-            // Steps that solve for their length must be taken to know it.
-            let ahead = if M::FINDS_LENGTH { Some(self.run.after_a_step()?) } else { None };
-            let Some(ahead) = ahead.filter(|ahead| !is_beyond(ahead.time_to(end))) else {
-                self.run.end_at(end)?;
-                self.shortened = Some(left);
-                self.count();
-                return Ok(());
-            };
-            self.run = ahead;
-            self.count();
-        } else {
-            self.advance()?;
-        }
-        if self.run.time_to(end).abs() <= rounding {
-            self.run.set_time(end);
-        }
         Ok(())
     }
 
@@ -579,14 +596,6 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
 
     fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError> {
         Ok(Box::new(Output(self.run.dense_output(&state(t, q, p)?)?)))
-    }
-
-    fn monitor(&mut self) {
-        self.monitor = Some(Box::new(ErrorMonitor::new(&self.run)));
-    }
-
-    fn largest_error(&self) -> Option<ErrorEstimate> {
-        self.monitor.as_ref().map(|monitor| monitor.largest(&self.run))
     }
 
     fn local_error(&self) -> Result<[Vec<f64>; 2], StepError> {
