@@ -20,7 +20,10 @@ pub enum Direction {
 
 /// A function of time, coordinates and velocities.
 #[derive(Clone)]
-pub struct Watch(Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>);
+pub struct Watch(Arc<Function>);
+
+/// A function of t, q, v.
+type Function = dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync;
 
 impl Watch {
     /// The function `g(t, q, v)`.

@@ -155,7 +155,7 @@ pub trait Simulation: Steps + Send + Sync {
     /// # Errors
     /// The momenta have no velocity.
     fn velocity(&self) -> Result<Vec<f64>, StepError>;
-    /// Evaluations of the equations by the steps so far: iterations times their evaluations.
+    /// Evaluations of the equations by the steps so far, from their iterations.
     fn evaluations(&self) -> u64;
     /// Values of the parameters, in the order of their declaration.
     fn parameters(&self) -> Vec<f64>;
@@ -291,8 +291,8 @@ fn state<const N: usize>(t: f64, q: &[f64], p: &[f64]) -> Result<State<N>, StepE
 
 /// A method whose runs are erased: what its rows and its evaluations are.
 pub trait Erasable<S: Runnable<N>, const N: usize>: Supported<S, N> {
-    /// Evaluations of the equations in one iteration.
-    const EVALUATIONS: u64;
+    /// Evaluations of the equations in the last step of a run.
+    fn evaluations(run: &Run<Self, S, N>) -> u64;
 
     /// Time and H at which H is most accurate.
     ///
@@ -340,6 +340,8 @@ impl<Y: serde::Serialize + serde::de::DeserializeOwned> Storable for Y {}
 pub(crate) struct Simulated<M: Method<S, N>, S, const N: usize> {
     run: Run<M, S, N>,
     evaluations: u64,
+    /// Whether rows have E', even for a shift of zero.
+    is_shifted: bool,
     /// Length of the last step, if it was shortened.
     shortened: Option<f64>,
     monitor: Option<Box<ErrorMonitor<M, S, N>>>,
@@ -350,13 +352,21 @@ const ROUNDED: f64 = 1e-9;
 
 /// The same run, type-erased.
 pub fn erased<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(run: Run<M, S, N>) -> Box<dyn Simulation> {
-    Box::new(Simulated { run, evaluations: 0, shortened: None, monitor: None })
+    erased_with(run, false)
+}
+
+/// The same, with E' in its rows if `is_shifted`.
+pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
+    run: Run<M, S, N>,
+    is_shifted: bool,
+) -> Box<dyn Simulation> {
+    Box::new(Simulated { run, evaluations: 0, is_shifted, shortened: None, monitor: None })
 }
 
 impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     /// Takes notice of the last step.
     fn count(&mut self) {
-        self.evaluations += M::EVALUATIONS * u64::from(self.run.iterations());
+        self.evaluations += M::evaluations(&self.run);
         if let Some(monitor) = &mut self.monitor {
             monitor.watch(&self.run);
         }
@@ -364,7 +374,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
 
     /// Takes steps by `step` until it returns true or `most` are taken; `see` gets the run after each. Returns whether
     /// `step` did.
-    #[inline(always)]
+    #[inline]
     fn advance_while(
         &mut self,
         most: u64,
@@ -381,7 +391,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
             outcome = step(&mut run);
             if outcome.is_ok() {
                 taken += 1;
-                self.evaluations += M::EVALUATIONS * u64::from(run.iterations());
+                self.evaluations += M::evaluations(&run);
                 see(&run);
                 if let Some(monitor) = &mut self.monitor {
                     monitor.watch(&run);
@@ -443,7 +453,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S
     }
 
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
-        M::shifted_energy(&self.run)
+        M::shifted_energy(&self.run).filter(|of| self.is_shifted || of.shift != 0.0)
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
