@@ -6,6 +6,7 @@ use core::fmt;
 ///
 /// The integrator still holds the last good state, and a further call returns the same error.
 #[derive(Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum StepError {
     /// No energy-preserving step exists past this point. This is a property of the method, not of the solver.
@@ -377,6 +378,7 @@ impl core::error::Error for StepError {}
 ///
 /// They show whether the iteration stalled, wandered or was cut short.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "Vec<f64>"))]
 pub struct Residuals {
     /// The newest residual is last. Unused entries are zero.
     kept: [f64; Self::KEPT],
@@ -406,6 +408,13 @@ impl Residuals {
     /// The residuals, the oldest first.
     pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
         self.kept.iter().copied().skip(Self::KEPT - self.count)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Residuals> for Vec<f64> {
+    fn from(residuals: Residuals) -> Self {
+        residuals.iter().collect()
     }
 }
 

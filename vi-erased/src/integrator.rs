@@ -76,6 +76,17 @@ macro_rules! integrator {
     };
 }
 
+/// Fixed steps of order 2.
+#[must_use]
+pub fn fixed<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Integrator<S, N>
+where
+    FixedStep: Erasable<S, N>,
+{
+    integrator!(Method::Fixed, None, false, |system| system, FixedStep, |system: S, plan: &Plan, state: State<N>| {
+        Ok(erased(system.at_state(state).integrate(FixedStep, plan.length())?))
+    })
+}
+
 /// Fixed steps of order 2, and their compositions of order 4, 6, 8.
 #[must_use]
 pub fn by_rule<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>>
@@ -83,16 +94,6 @@ where
     FixedStep: Erasable<S, N>,
     Composition: Erasable<S, N>,
 {
-    let fixed = integrator!(
-        Method::Fixed,
-        None,
-        false,
-        |system| system,
-        FixedStep,
-        |system: S, plan: &Plan, state: State<N>| {
-            Ok(erased(system.at_state(state).integrate(FixedStep, plan.length())?))
-        }
-    );
     macro_rules! composed {
         ($kind:expr, $scheme:expr) => {
             integrator!($kind, None, false, |system| system, $scheme, |system: S, plan: &Plan, state: State<N>| {
@@ -101,7 +102,7 @@ where
         };
     }
     vec![
-        fixed,
+        fixed(),
         composed!(Method::Suzuki4, Composition::SUZUKI_4),
         composed!(Method::KahanLi6, Composition::KAHAN_LI_6),
         composed!(Method::KahanLi8, Composition::KAHAN_LI_8),

@@ -84,7 +84,9 @@ fn a_new_crate_has_what_it_needs() {
     assert!(Path::new(path).join("Cargo.toml").is_file(), "{path}");
     assert!(read("python/src/lib.rs").contains("fn my_own(") && read("src/lib.rs").contains("vi_erased::kind!"));
     let written = ["Cargo.toml", "pyproject.toml", "README.md", "python/Cargo.toml", "python/src/lib.rs"].map(read);
-    assert!(written.iter().all(|text| !["NAME", "MODULE", "LIBRARIES", "PACKAGE"].iter().any(|word| text.contains(word))));
+    assert!(
+        written.iter().all(|text| !["NAME", "MODULE", "LIBRARIES", "PACKAGE"].iter().any(|word| text.contains(word)))
+    );
     // Existing files are not overwritten.
     let (status, _, errors) = run(&lab(), &["new", name.to_str().expect("text")]);
     assert_eq!((status, errors), (Some(2), format!("error: {} already exists\n", name.display())));

@@ -1,0 +1,106 @@
+//! Embeds the sources of the crates that a compiled system needs.
+//!
+//! In: the crates of this repository. Out: `sources.rs` with their files, without tests, under a workspace manifest
+//! that has only them.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+/// The folders of the crates, in the repository.
+const CRATES: [&str; 7] =
+    ["vi-core", "vi-macros", "vi-macros/expr", "vi-macros/codegen", "vi-dispatch", "vi-erased", "python/vi-python"];
+
+/// The crate of a compiled system, which `variational.compile` writes.
+const COMPILED: &str = "compiled";
+
+fn main() {
+    let here = PathBuf::from(env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
+    let root = here.parent().expect("the repository");
+    let mut files = vec![
+        ("Cargo.toml".to_owned(), workspace(&read(&root.join("Cargo.toml")), &read(&here.join("Cargo.toml")))),
+        ("Cargo.lock".to_owned(), read(&here.join("Cargo.lock"))),
+    ];
+    for folder in CRATES {
+        let path = root.join(folder);
+        println!("cargo::rerun-if-changed={}", path.join("src").display());
+        files.push((format!("{folder}/Cargo.toml"), manifest(&read(&path.join("Cargo.toml")))));
+        walk(&path.join("src"), &format!("{folder}/src"), &mut files);
+    }
+    for manifest in [root.join("Cargo.toml"), here.join("Cargo.toml"), here.join("Cargo.lock")] {
+        println!("cargo::rerun-if-changed={}", manifest.display());
+    }
+    println!("cargo::rerun-if-changed=build.rs");
+    files.sort();
+    let mut text = "pub(super) const FILES: &[(&str, &str)] = &[\n".to_owned();
+    for (path, content) in &files {
+        writeln!(text, "({path:?}, {content:?}),").expect("a string");
+    }
+    let digest = files.iter().fold(OFFSET, |sum, (path, content)| hash(hash(sum, path), content));
+    writeln!(text, "];\npub(super) const DIGEST: &str = \"{digest:016x}\";").expect("a string");
+    let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets it"));
+    fs::write(out.join("sources.rs"), text).expect("the output folder is writable");
+}
+
+/// The start of FNV-1a.
+const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
+
+/// FNV-1a of a text and its end.
+fn hash(sum: u64, text: &str) -> u64 {
+    text.bytes().chain([0]).fold(sum, |sum, byte| (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The Rust files below a folder.
+fn walk(folder: &Path, name: &str, files: &mut Vec<(String, String)>) {
+    for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
+        let path = entry.expect("an entry").path();
+        let name = format!("{name}/{}", path.file_name().expect("an entry has a name").to_string_lossy());
+        if path.is_dir() {
+            walk(&path, &name, files);
+        } else if path.extension().is_some_and(|kind| kind == "rs") {
+            files.push((name, read(&path)));
+        }
+    }
+}
+
+/// The sections of a manifest, as their header and text.
+fn sections(manifest: &str) -> Vec<(&str, String)> {
+    let mut sections = vec![("", String::new())];
+    for line in manifest.lines().filter(|line| !line.trim_start().starts_with('#')) {
+        if line.starts_with('[') {
+            sections.push((line, String::new()));
+        }
+        if let Some((_, text)) = sections.last_mut() {
+            *text += line;
+            text.push('\n');
+        }
+    }
+    sections
+}
+
+/// The manifest of a crate without tests and benchmarks.
+fn manifest(text: &str) -> String {
+    let is_kept =
+        |header: &str| !["[dev-dependencies", "[[test", "[[bench"].iter().any(|start| header.starts_with(start));
+    sections(text).into_iter().filter(|(header, _)| is_kept(header)).map(|(_, text)| text).collect()
+}
+
+/// The workspace of a compiled system: versions and lints of the repository, profiles of this crate.
+fn workspace(repository: &str, this: &str) -> String {
+    let members: Vec<String> = CRATES.iter().chain(&[COMPILED]).map(|name| format!("{name:?}")).collect();
+    let mut text = format!("[workspace]\nmembers = [{}]\nresolver = \"3\"\n", members.join(", "));
+    let of = |manifest: &str, is_kept: fn(&str) -> bool| -> String {
+        sections(manifest).into_iter().filter(|(header, _)| is_kept(header)).map(|(_, text)| text).collect()
+    };
+    text += &of(repository, |header| {
+        ["[workspace.package", "[workspace.dependencies", "[workspace.lints"].iter().any(|start| header.starts_with(start))
+    });
+    text += &of(this, |header| header.starts_with("[profile.") && !header.contains("-python-ready") && !header.contains(".variational-"));
+    // One unit is as fast to compile as several, and its steps are faster.
+    write!(text, "[profile.release.package.{COMPILED}]\nopt-level = 3\ncodegen-units = 1\n").expect("a string");
+    text
+}

@@ -1,0 +1,61 @@
+//! The module `variational._core`: the ready systems, the mathematics of any system as text, and the sources for
+//! `variational.compile`.
+
+#![forbid(unsafe_code)]
+
+use proc_macro2::TokenStream;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use vi_codegen::inspect::{self, Line, report};
+use vi_python::pyo3;
+
+/// The sources of the crates that a compiled system needs, and a number that changes with them.
+mod embedded {
+    include!(concat!(env!("OUT_DIR"), "/sources.rs"));
+}
+
+/// Title, text, and sections of the mathematics of a system. Each line of a section is (left, right) in LaTeX, or
+/// ("", words).
+type Explained = (String, String, Vec<(&'static str, Vec<(String, String)>)>);
+
+/// The mathematics of a definition, with the equations of a Gauss step if its stages are given.
+///
+/// Raises ValueError for a mistake, with its line.
+#[pyfunction]
+#[pyo3(crate = "vi_python::pyo3", signature = (definition, stages=None))]
+fn explain(definition: &str, stages: Option<usize>) -> PyResult<Explained> {
+    const FILE: &str = "definition";
+    let tokens: TokenStream = syn::parse_str(definition)
+        .map_err(|error| PyValueError::new_err(report::unreadable(FILE, definition, &error)))?;
+    let explained = match stages {
+        None => inspect::explain(tokens),
+        Some(stages) => inspect::explain_gauss(tokens, stages),
+    };
+    let explained = explained.map_err(|error| PyValueError::new_err(report::report(FILE, definition, &error)))?;
+    let text = explained.text();
+    let line = |line| match line {
+        Line::Equation { left_latex, right_latex, .. } => (left_latex, right_latex),
+        Line::Words { text, .. } => (String::new(), text),
+    };
+    let sections = explained.sections.into_iter().map(|section| {
+        let lines = section.lines.into_iter().map(line).collect();
+        (section.title, lines)
+    });
+    Ok((explained.title, text, sections.collect()))
+}
+
+/// Path and text of each source file that a compiled system needs.
+#[pyfunction]
+#[pyo3(crate = "vi_python::pyo3")]
+fn sources() -> &'static [(&'static str, &'static str)] {
+    embedded::FILES
+}
+
+#[pymodule(gil_used = false)]
+#[pyo3(crate = "vi_python::pyo3")]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(pyo3::wrap_pyfunction!(explain, module)?)?;
+    module.add_function(pyo3::wrap_pyfunction!(sources, module)?)?;
+    module.add("sources_digest", embedded::DIGEST)?;
+    vi_python::populate(module, vi_python_ready::systems())
+}

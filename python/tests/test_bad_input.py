@@ -1,0 +1,154 @@
+"""Bad input is a Python exception that names what is wrong."""
+
+import numpy as np
+import pytest
+
+import variational as vi
+
+START = {"q": [0.4, 0.0], "v": [0.0, 2.0], "h": 0.05}
+
+
+def begun(**options):
+    return vi.Kepler().integrate(**{**START, **options})
+
+
+TABLE = [
+    # Names.
+    (lambda: vi.Pendulum(lenght=1.0), TypeError, "no parameter 'lenght'"),
+    (lambda: vi.Pendulum(1.0), TypeError, "positional"),
+    (lambda: setattr(vi.Pendulum(), "lenght", 1.0), AttributeError, "lenght"),
+    (lambda: vi.System(), TypeError, "vi.systems"),
+    (lambda: begun(method="gaus"), ValueError, "did you mean 'gauss'"),
+    (lambda: begun(method=7), ValueError, "no method 7"),
+    (lambda: begun(method="lanes"), ValueError, "no method 'lanes'"),
+    (lambda: begun().until(1.0)["z"], KeyError, "it has x, y"),
+    (lambda: begun().until(1.0)[0], TypeError, "name of a coordinate"),
+    (lambda: begun().events("z", 1.0), KeyError, "no coordinate 'z'"),
+    (lambda: begun().tangent(3, ["nothing"]), TypeError, "no parameter 'nothing'"),
+    (lambda: begun().until(1.0, on_error="ignore"), ValueError, "on_error"),
+    # Shapes.
+    (lambda: begun(q=[0.4]), ValueError, r"q must have 2 entries \(x, y\)"),
+    (lambda: begun(q=[[0.4, 0.0]]), ValueError, "q must have 2 entries"),
+    (lambda: begun(v=[]), ValueError, "v must have 2 entries"),
+    (lambda: begun(v=None, p=[1.0]), ValueError, "p must have 2 entries"),
+    (lambda: begun(p=[0.0, 2.0]), TypeError, "one of v and p"),
+    (lambda: vi.Kepler().energy(0.0, [1.0], [1.0, 2.0]), ValueError, "last axis of q"),
+    (lambda: vi.Kepler().energy(0.0, 1.0, [1.0, 2.0]), ValueError, "last axis of q"),
+    (lambda: vi.Kepler().energy(0.0, np.ones((2, 2)), np.ones((3, 2))), ValueError, "do not broadcast"),
+    (lambda: vi.Kepler().rhs(0.0, [1.0]), ValueError, "y must have 4 entries"),
+    (lambda: begun().at([[1.0]]), ValueError, "list of times"),
+    (lambda: begun().gradient(3, q=[1.0]), ValueError, "q must have 2 entries"),
+    (lambda: begun().set_state(q=[1.0]), ValueError, "q must have 2 entries"),
+    # Types.
+    (lambda: begun(q="ab"), TypeError, "q must be real numbers"),
+    (lambda: begun(q=[1.0, 1j]), TypeError, "q must be real numbers"),
+    (lambda: begun(q=[[1.0], [1.0, 2.0]]), TypeError, "q must be real numbers"),
+    (lambda: begun(q=[None, 1.0]), TypeError, "q must be real numbers"),
+    (lambda: begun(h="0.1"), TypeError, "h must be a real number"),
+    (lambda: begun(t=[0.0, 1.0]), TypeError, "t must be a real number"),
+    (lambda: begun(stages=8.0), TypeError, "stages must be an integer"),
+    (lambda: begun(stages=True), TypeError, "stages must be an integer"),
+    (lambda: begun().steps(1.5), TypeError, "must be an integer"),
+    (lambda: begun().step("x"), TypeError, "h must be a real number"),
+    (lambda: begun().until("x"), TypeError, "t must be a real number"),
+    (lambda: begun().until(1.0, callback=3), TypeError, "callback must be a function"),
+    (lambda: begun().events(7, 1.0), TypeError, "events must be"),
+    (lambda: begun().events([7], 1.0), TypeError, "an event must be"),
+    (lambda: begun().events([], 1.0), ValueError, "at least one event"),
+    (lambda: begun().events(vi.Event("x", "0"), 1.0), TypeError, "at must be a real number"),
+    (lambda: begun().events(vi.Event("x", direction="up"), 1.0), TypeError, "direction must be"),
+    (lambda: begun().events(vi.Period(0.0), 1.0), ValueError, "period must be positive"),
+    # Numbers.
+    (lambda: vi.Pendulum(l=np.nan), vi.InvalidInput, "l must be finite"),
+    (lambda: begun(q=[np.nan, 0.0]), vi.InvalidInput, r"q\[0\] must be finite"),
+    (lambda: begun(v=[0.0, np.inf]), vi.InvalidInput, r"v\[1\] must be finite"),
+    (lambda: begun(t=np.nan), vi.InvalidInput, "t must be finite"),
+    (lambda: begun(h=0.0), vi.InvalidInput, "h must be finite and not zero"),
+    (lambda: begun(h=np.nan), vi.InvalidInput, "h must be finite and not zero"),
+    (lambda: begun(h=1e-320), vi.InvalidInput, "must be"),
+    (lambda: begun(h=None, tolerance=-1.0), vi.InvalidInput, "tolerance must be positive"),
+    (lambda: begun(h=None), TypeError, "one of h, tolerance and dtau"),
+    (lambda: begun(tolerance=1e-9), TypeError, "one of h, tolerance and dtau"),
+    (lambda: vi.Pendulum().integrate([1.0], dtau=0.1), ValueError, "Pendulum has no integrator"),
+    (lambda: begun(stages=5), ValueError, "stages=4"),
+    (lambda: begun(stages=0), ValueError, "at least 1"),
+    (lambda: begun(stages=10**30), ValueError, "no integrator"),
+    (lambda: begun(method="fixed", stages=4), ValueError, "no stages"),
+    (lambda: begun(shift=1.0), ValueError, 'method="energy"'),
+    (lambda: begun(method="energy", shift_from=-1.0), vi.InvalidInput, "shift_from must be ahead"),
+    (lambda: begun(method="energy", shift_from=1e9), vi.InvalidInput, "at most 1e\\+06 steps"),
+    (lambda: begun().until(-1.0), vi.InvalidInput, "ahead of the run"),
+    (lambda: begun().until(np.inf), vi.InvalidInput, "t must be finite"),
+    (lambda: begun().at([2.0, 1.0]), ValueError, "ascending"),
+    (lambda: begun().at([-1.0]), vi.InvalidInput, "must be"),
+    (lambda: begun().at([np.nan]), vi.InvalidInput, "finite"),
+    (lambda: begun().events("x", np.nan), vi.InvalidInput, "until must be finite"),
+    (lambda: begun().events("x", -1.0), vi.InvalidInput, "ahead"),
+    (lambda: begun().step(0.0), vi.InvalidInput, "must be"),
+    (lambda: begun().step(np.nan), vi.InvalidInput, "must be"),
+    (lambda: begun().until(1.0, every=0), ValueError, "every must be an integer from 1"),
+    (lambda: begun().steps(-1), ValueError, "from 0"),
+    (lambda: begun().steps(2**64), ValueError, "from 0"),
+    (lambda: begun().set_state(q=[np.nan, 0.0]), vi.InvalidInput, "finite"),
+    (lambda: begun().gradient(3), TypeError, "give q or p"),
+    (lambda: begun().until(1.0)(0.5), ValueError, "dense=True"),
+    (lambda: begun().until(1.0, dense=True)(1.5), ValueError, "outside of the solution"),
+    (lambda: begun().until(1.0, dense=True)(np.nan), vi.InvalidInput, "finite"),
+    (lambda: begun().until(1.0, dense=True, callback=print), ValueError, "do not go together"),
+    # Counts that do not fit into memory.
+    (lambda: begun().steps(10**18), MemoryError, "every=k"),
+    (lambda: begun().until(1e300), MemoryError, "every=k"),
+    (lambda: begun().steps(10**13, dense=True, every=10**13), MemoryError, "do not fit"),
+    # Ensembles.
+    (lambda: vi.Kepler().ensemble([0.4, 0.0], h=0.1), TypeError, "one of until and times"),
+    (lambda: vi.Kepler().ensemble([0.4], h=0.1, until=1.0), ValueError, r"q must have the shape \(M, 2\)"),
+    (lambda: vi.Kepler().ensemble(np.ones((2, 2)), np.ones((3, 2)), h=0.1, until=1.0), ValueError, "same number"),
+    (lambda: vi.Kepler().ensemble([np.nan, 0.0], h=0.1, until=1.0), vi.InvalidInput, "finite"),
+    (lambda: vi.Kepler().ensemble([0.4, 0.0], h=0.1, until=1.0, parameters={"a": 1}), TypeError, "no parameter"),
+    (lambda: vi.Kepler().ensemble([0.4, 0.0], h=0.1, until=1.0, threads=0), ValueError, "threads"),
+    (lambda: vi.Kepler().ensemble([0.4, 0.0], h=0.1, until=1.0, stages=5), ValueError, "stages=4"),
+    # Definitions.
+    (lambda: vi.compile(3), TypeError, "must be a text"),
+    (lambda: vi.compile("struct A { coord x; L = dot(x)^2; }", methods="rk4"), vi.CompileError, "no method 'rk4'"),
+    (lambda: vi.compile("struct A { coord x; L = dot(x)^2; }", methods="fixed"), vi.CompileError, "discretize"),
+    (lambda: vi.compile("struct A { coord x; L = dot(x)^2; }", methods="gauss 99"), vi.CompileError, "1 to 16"),
+    (lambda: vi.compile("struct A { coord x; L = dot(x)^2; }", methods=" "), vi.CompileError, "no method"),
+    (lambda: vi.compile(""), vi.CompileError, "error"),
+    (lambda: vi.compile("struct {"), vi.CompileError, "error"),
+    (lambda: vi.compile('struct A { coord x; L = "'), vi.CompileError, "error"),
+]
+
+
+@pytest.mark.parametrize("index", range(len(TABLE)))
+def test_bad_input(index, monkeypatch, tmp_path):
+    monkeypatch.setenv("VARIATIONAL_CACHE", str(tmp_path))
+    call, exception, words = TABLE[index]
+    with pytest.raises(exception, match=words):
+        call()
+
+
+def test_a_wrong_change_changes_nothing():
+    p = vi.Pendulum()
+    before = repr(p)
+    with pytest.raises(vi.InvalidInput):
+        p.set(m=3.0, l=np.inf)
+    assert repr(p) == before
+
+
+def test_integers_and_booleans_are_numbers():
+    run = vi.Kepler().integrate(np.array([1, 0]), [0, 1], h=np.float32(0.25), t=0)
+    assert run.q.tolist() == [1.0, 0.0]
+    assert run.h == 0.25
+
+
+def test_a_single_coordinate_may_be_a_number():
+    assert vi.Pendulum().integrate(1.0, h=0.1).q.tolist() == [1.0]
+
+
+def test_arguments_are_not_kept():
+    q = np.array([0.4, 0.0])
+    run = vi.Kepler().integrate(q, [0.0, 2.0], h=0.1)
+    q[0] = 7.0
+    assert run.q[0] == 0.4
+    run.q[0] = 9.0
+    assert run.q[0] == 0.4

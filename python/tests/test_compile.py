@@ -1,0 +1,142 @@
+"""Systems from text."""
+
+import os
+import pickle
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import variational as vi
+
+DOUBLE = """
+/// Two pendula, one hanging from the other.
+struct Double {
+    /// Length of the upper rod.
+    param l1 = 1.0;
+    param l2 = 1.0, m1 = 1.0, m2 = 1.0, g = 9.81;
+    coord a, b;
+    L = (m1 + m2) * l1^2 * dot(a)^2 / 2 + m2 * l2^2 * dot(b)^2 / 2
+        + m2 * l1 * l2 * dot(a) * dot(b) * cos(a - b) + (m1 + m2) * g * l1 * cos(a) + m2 * g * l2 * cos(b);
+    discretize midpoint;
+}
+"""
+SPRING = "struct Spring {{ param k = {}; coord x; L = dot(x)^2 / 2 - k * x^2 / 2; discretize midpoint; }}"
+
+
+def test_a_double_pendulum(warm_cache):
+    Double = vi.compile(DOUBLE)
+    assert Double.__name__ == "Double"
+    assert "Length of the upper rod." in Double.__doc__
+    double = Double(l1=0.7)
+    run = double.integrate([1.0, 0.5], h=0.01)
+    ready = vi.DoublePendulum(l1=0.7).integrate([1.0, 0.5], h=0.01)
+    np.testing.assert_allclose(run.until(1.0).q, ready.until(1.0).q, atol=1e-12)
+    again = pickle.loads(pickle.dumps(run))
+    assert np.array_equal(run.step().q, again.step().q)
+    assert type(again.system) is Double
+    with pytest.raises(vi.StepError):
+        double.integrate([1.0, 0.5], h=50.0, method="fixed").steps(100)
+
+
+CHAIN = """
+struct Chain {
+    param m[3] = 1.0;
+    param k = 5.0;
+    coord x[3];
+    let stretch[i in 1..3] = x[i] - x[i - 1];
+    L = sum(i in 0..3, m[i] * dot(x[i])^2 / 2) - k * (x[0]^2 + x[2]^2 + sum(i in 1..3, stretch[i]^2)) / 2;
+}
+"""
+
+
+def test_arrays_of_parameters(warm_cache):
+    Chain = vi.compile(CHAIN)
+    chain = Chain(m=[1.0, 2.0, 3.0])
+    assert chain.m.tolist() == [1.0, 2.0, 3.0]
+    assert Chain().m.tolist() == [1.0, 1.0, 1.0]
+    with pytest.raises(ValueError, match="read-only"):
+        chain.m[0] = 1.0
+    with pytest.raises(ValueError, match="m must have 3 entries"):
+        chain.m = [1.0, 2.0]
+    chain.m = 2.0
+    assert chain.m.tolist() == [2.0, 2.0, 2.0]
+    assert pickle.loads(pickle.dumps(chain)) == chain
+    run = chain.integrate([0.1, 0.0, 0.0], h=0.1)
+    run.set(m=[1.0, 2.0, 4.0])
+    assert run.system.m.tolist() == [1.0, 2.0, 4.0]
+    assert run.copy().tangent(3, ["m", "k"])["m"].shape == (6, 3)
+    assert run.copy().gradient(3, q=[1.0, 0.0, 0.0], wrt=["m"])["m"].shape == (3,)
+    many = chain.ensemble([0.1, 0.0, 0.0], h=0.1, until=1.0, parameters={"m": np.ones((4, 3))})
+    assert many.q.shape == (4, 3)
+
+
+def test_the_cache_is_fast(warm_cache):
+    vi.compile(SPRING.format(2.0))
+    code = (
+        "import time, variational as vi; began = time.perf_counter(); "
+        f"vi.compile({SPRING.format(2.0)!r}); print(time.perf_counter() - began)"
+    )
+    took = float(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
+    # Measured: 2 ms.
+    assert took < 0.1
+
+
+def test_no_rule_and_a_time_scale(warm_cache):
+    text = "struct Planet { coord x, y; let r = sqrt(x^2 + y^2); L = (dot(x)^2 + dot(y)^2)/2 + 1/r; time_scale = r^(3/2); }"
+    Planet = vi.compile(text)
+    assert Planet.integrators == (("gauss", 8, False), ("gauss", 8, True))
+    sol = Planet().integrate([0.4, 0.0], [0.0, 2.0], dtau=0.2).until(2 * np.pi)
+    np.testing.assert_allclose(sol.q[-1], [0.4, 0.0], atol=1e-10)
+    with pytest.raises(ValueError, match="no method 'fixed'; it has \"gauss\""):
+        Planet().integrate([0.4, 0.0], h=0.1, method="fixed")
+
+
+def test_a_mistake_is_reported_with_its_line(monkeypatch, tmp_path):
+    monkeypatch.setenv("VARIATIONAL_CACHE", str(tmp_path))
+    began = time.perf_counter()
+    with pytest.raises(vi.CompileError, match="did you mean `mass`") as caught:
+        vi.compile("struct O {\n    param mass = 1.0;\n    coord x;\n    L = mas * dot(x)^2 / 2;\n}")
+    assert "definition:4:9" in str(caught.value)
+    assert time.perf_counter() - began < 1.0
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_cargo(monkeypatch, tmp_path):
+    monkeypatch.setenv("VARIATIONAL_CACHE", str(tmp_path))
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    with pytest.raises(vi.CompileError, match=r"https://rustup\.rs"):
+        vi.compile(SPRING.format(3.0))
+
+
+def test_a_cache_that_cannot_be_written(monkeypatch, tmp_path):
+    file = tmp_path / "file"
+    file.write_text("")
+    monkeypatch.setenv("VARIATIONAL_CACHE", str(file))
+    with pytest.raises(vi.CompileError, match="VARIATIONAL_CACHE"):
+        vi.compile(SPRING.format(4.0))
+
+
+def test_two_processes_at_once(warm_cache):
+    """Both compile the same system and one of their own; one build at a time, and each library is whole."""
+    code = "import sys, variational as vi\nfor k in sys.argv[1:]:\n    print(vi.compile({!r}.format(k))().k)"
+    command = [sys.executable, "-c", code.format(SPRING)]
+    both = [
+        subprocess.Popen([*command, *of], stdout=subprocess.PIPE, text=True)
+        for of in (["5.5", "6.5"], ["5.5", "7.5"])
+    ]
+    outputs = [process.communicate(timeout=200)[0].split() for process in both]
+    assert outputs == [["5.5", "6.5"], ["5.5", "7.5"]]
+
+
+def test_an_interrupted_build_is_taken_up(warm_cache):
+    command = [sys.executable, "-c", f"import variational as vi; vi.compile({SPRING.format(8.5)!r})"]
+    process = subprocess.Popen(command, start_new_session=True)
+    time.sleep(1.5)
+    if process.poll() is None:
+        os.killpg(process.pid, 9)
+    process.wait()
+    assert vi.compile(SPRING.format(8.5))().k == 8.5

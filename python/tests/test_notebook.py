@@ -1,0 +1,46 @@
+"""A notebook shows formulas and figures, and declares systems."""
+
+import math
+import re
+
+import pytest
+
+nbformat = pytest.importorskip("nbformat")
+nbclient = pytest.importorskip("nbclient")
+pytest.importorskip("ipykernel")
+pytest.importorskip("matplotlib")
+
+CELLS = [
+    "%matplotlib inline\nimport variational as vi\npendulum = vi.Pendulum(l=0.5)\npendulum",
+    "pendulum.explain()",
+    "pendulum.integrate(q=[1.0], h=0.05).until(10.0).plot();",
+]
+
+
+def executed(cells):
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+    nbclient.NotebookClient(book, timeout=240, kernel_name="python3").execute()
+    return [[output.get("data", output) for output in cell.outputs] for cell in book.cells]
+
+
+def test_formulas_and_figures():
+    system, explanation, figure = executed(CELLS)
+    assert any(data.get("text/latex", "").startswith("$$") for data in system)
+    assert any("text/markdown" in data for data in explanation)
+    assert any("image/png" in data for data in figure)
+
+
+def test_a_cell_declares_a_system(warm_cache):
+    spring = "struct Spring {\n    param k = 4.0;\n    coord x;\n    L = dot(x)^2/2 - k*x^2/2;\n}"
+    *_, result, mistake = executed(
+        [
+            "%load_ext variational",
+            f"%%lagrangian gauss 8\n{spring}",
+            "float(Spring(k=9.0).integrate(q=[1.0], h=0.1).until(1.0).q[-1, 0])",
+            f"%%lagrangian\n{spring.replace('k*x', 'kk*x')}",
+        ]
+    )
+    value = float(re.search(r"-?\d\.\d+", result[0]["text/plain"])[0])
+    # Measured: 4e-16.
+    assert value == pytest.approx(math.cos(3.0), abs=1e-13)
+    assert "definition:" in str(mistake)

@@ -1,0 +1,289 @@
+"""Runs: output, events, changes on the way, derivatives, errors, checkpoints."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import variational as vi
+
+
+def test_shapes_and_ends(kepler):
+    sol = kepler.until(1.03)
+    assert sol.t[-1] == kepler.t == 1.03
+    assert sol.q.shape == sol.p.shape == sol.v.shape == (22, 2)
+    assert sol.q.flags.c_contiguous
+    assert np.array_equal(sol["x"], sol.q[:, 0])
+    assert np.array_equal(sol["dot(y)"], sol.v[:, 1])
+    # Measured: 3.3e-16.
+    assert np.ptp(sol.energy) < 1e-15
+    assert len(kepler.steps(10, every=5)) == 3
+    assert len(kepler.steps(11, every=5)) == 4
+    assert len(kepler.steps(0)) == 1
+    assert kepler.until(kepler.t).t.tolist() == [kepler.t]
+
+
+def test_repr(kepler):
+    assert repr(kepler).startswith("<Run of Kepler(")
+    assert "by gauss, stages=8: t = 0, h = 0.05>" in repr(kepler)
+    assert repr(kepler.until(1.0)).endswith("21 rows, t = 0 to 1>")
+
+
+def test_backwards(kepler):
+    q = kepler.q
+    kepler.until(2.0)
+    back = vi.Kepler().integrate(kepler.q, p=kepler.p, t=2.0, h=-0.05)
+    # Measured: 1.8e-16.
+    np.testing.assert_allclose(back.until(0.0).q[-1], q, rtol=0.0, atol=1e-15)
+
+
+def test_dense_output_backwards(kepler):
+    end = kepler.until(2.0)
+    back = vi.Kepler().integrate(kepler.q, p=kepler.p, t=2.0, h=-0.05).until(0.0, dense=True)
+    np.testing.assert_allclose(back(end.t), end.y, atol=1e-10)
+
+
+def test_dense_output_of_no_step(kepler):
+    sol = kepler.steps(0, dense=True)
+    assert np.array_equal(sol(0.0), sol.y[:, 0])
+    assert sol([0.0, 0.0]).shape == (4, 2)
+
+
+def test_output_at_times_keeps_the_steps(kepler):
+    aside = kepler.copy()
+    sol = kepler.at([0.01, 0.2, 1.234])
+    assert sol.t.tolist() == [0.01, 0.2, 1.234]
+    aside.steps(24)
+    assert np.array_equal(kepler.q, aside.q)
+    far = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.05, stages=4)
+    near = far.copy()
+    end = far.at([2000.0]).q[-1]
+    near.until(1999.0)
+    assert np.abs(end - near.at([2000.0]).q[-1]).max() < 1e-6
+
+
+def test_a_callback_sees_each_row_and_changes_the_run():
+    run = vi.Pendulum().integrate([1.0], h=0.05)
+    seen = []
+
+    def callback(run):
+        seen.append(run.t)
+        run.set(g=run.system.g * 1.01)
+
+    sol = run.until(1.0, every=2, callback=callback)
+    assert seen == sol.t[1:].tolist()
+    assert run.system.g == pytest.approx(vi.Pendulum().g * 1.01 ** len(seen))
+    stopped = run.steps(100, callback=lambda run: run.t > 1.2)
+    assert run.t == pytest.approx(1.25)
+    assert len(stopped) == 6
+
+    def wrong(run):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        run.steps(10, callback=wrong)
+
+
+def test_a_callback_does_not_change_the_numbers(kepler):
+    aside = kepler.copy()
+    assert np.array_equal(kepler.until(1.03, callback=lambda run: None).q, aside.until(1.03).q)
+
+
+def test_energy_is_preserved_and_a_missing_step_is_an_exception():
+    run = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.005, method="energy")
+    energies = [run.step().discrete_energy for _ in range(100)]
+    assert np.ptp(energies) < 1e-14
+    run = vi.DoubleWell().integrate([1.001], h=0.01, method="energy")
+    with pytest.raises(vi.NoForwardStep, match="fallback=True") as caught:
+        run.steps(1000)
+    error = caught.value
+    assert isinstance(error, vi.StepError)
+    assert error.fields == {"t": error.t, "h": error.h, "excess": error.excess, "density": error.density}
+    assert error.t == error.solution.t[-1] == run.t
+    assert "fallback" not in error.reason
+    again = pickle.loads(pickle.dumps(error))
+    assert (type(again), again.fields, str(again)) == (type(error), error.fields, str(error))
+    assert len(again.solution) == len(error.solution)
+    sol = run.steps(1000, on_error="return")
+    assert (sol.success, sol.status) == (False, -1)
+    assert sol.message == str(sol.error)
+    on = vi.DoubleWell().integrate([1.001], h=0.01, method="energy", fallback=True)
+    assert on.steps(1000).success
+
+
+def test_a_shift_goes_on():
+    run = vi.Pendulum().integrate([1.0], [6.0], h=0.01, method="energy", stages=2, shift_from=5.0)
+    run.steps(500)
+    assert run.shift > 0.0
+    start = run.shifted_energy
+    run.steps(500)
+    assert run.shifted_energy == pytest.approx(start, rel=1e-13)
+    assert vi.Pendulum().integrate([1.0], h=0.01).shift is None
+
+
+def test_a_tolerance_finds_the_step():
+    run = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], tolerance=1e-9).monitor()
+    run.until(20.0)
+    assert 0.0 < run.h < 1.0
+    assert 1e-12 < run.error_estimate.estimate < 1e-8
+    assert run.error_estimate.coordinate in ("x", "y")
+    assert run.local_error().q.shape == (2,)
+
+
+def test_steps_of_a_given_length(kepler):
+    kepler.step(0.01)
+    assert (kepler.t, kepler.h) == (0.01, 0.01)
+    kepler.step()
+    assert kepler.h == 0.05
+
+
+def test_several_events_of_one_search(kepler):
+    def apart(t, q, v):
+        return q[0] ** 2 + q[1] ** 2 - 1.0
+
+    events = kepler.events(["y", vi.Event("dot(x)", direction=-1), vi.Period(1.0), apart], until=20.0)
+    assert set(events.which) == {0, 1, 2, 3}
+    assert np.all(np.diff(events.t) >= 0.0)
+    assert np.abs(events.of(0)["y"]).max() < 1e-15
+    assert np.abs(events.of(1)["dot(x)"]).max() < 1e-13
+    np.testing.assert_allclose(events.of(2).t, np.arange(1.0, len(events.of(2)) + 1), atol=1e-13)
+    assert not events.of(1).rising.any()
+
+
+def test_a_run_stops_at_an_event():
+    run = vi.Pendulum().integrate([0.5], h=0.05)
+    angle = vi.Pendulum.coordinates[0]
+    impact = run.next_event(vi.Event(angle), until=10.0)
+    assert len(impact) == 1
+    assert run.t == impact.t[0]
+    before = run.v[0]
+    run.set_state(v=-0.8 * run.v)
+    assert run.v[0] == pytest.approx(-0.8 * before, rel=1e-15)
+    assert len(run.next_event(angle, until=run.t + 1e-3)) == 0
+
+
+def test_exceptions_of_event_functions_come_out(kepler):
+    def wrong(t, q, v):
+        raise KeyError("mine")
+
+    for search in (kepler.events, kepler.next_event):
+        with pytest.raises(KeyError, match="mine"):
+            search(wrong, until=50.0)
+    with pytest.raises(TypeError):
+        kepler.events(lambda t, q, v: "text", until=50.0)
+    with pytest.raises(vi.NonFinite):
+        kepler.events(lambda t, q, v: np.nan, until=50.0)
+    with pytest.raises(RuntimeError, match=r"run\.copy"):
+        kepler.events(lambda t, q, v: kepler.t, until=50.0)
+    assert kepler.step().t > 0.0
+
+
+def test_parameters_change_on_the_way():
+    run = vi.Pendulum().integrate([1.0], h=0.01)
+    run.set(l=2.0, g=1.0)
+    assert (run.system.l, run.system.g) == (2.0, 1.0)
+    run.system.l = 5.0
+    assert run.system.l == 2.0
+    with pytest.raises(vi.InvalidInput):
+        run.set(l=np.nan)
+    with pytest.raises(TypeError, match="did you mean 'l'"):
+        run.set(ll=1.0)
+
+
+RUNS = [
+    {"method": "fixed", "h": 0.01},
+    {"method": "suzuki-4", "h": 0.01},
+    {"method": "kahan-li-8", "h": 0.01},
+    {"method": "gauss", "h": 0.05},
+    {"method": "gauss", "stages": 4, "h": 0.05},
+    {"method": "energy", "h": 0.01},
+    {"method": "energy", "stages": 2, "h": 0.01},
+    {"dtau": 0.1},
+]
+
+
+@pytest.mark.parametrize("options", RUNS)
+def test_a_run_is_pickled_bit_for_bit(options):
+    run = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], **options)
+    run.steps(10)
+    others = [pickle.loads(run.checkpoint()), copy.copy(run), copy.deepcopy(run), run.copy()]
+    run.steps(100)
+    for other in others:
+        other.steps(100)
+        assert np.array_equal(run.q, other.q)
+        assert np.array_equal(run.p, other.p)
+        assert (run.t, run.h) == (other.t, other.h)
+
+
+# Rounding moves the ends of energy-preserving steps with stages, and so limits differences.
+DIFFERENCES = [(options, 1e-4 if options.get("method") == "energy" else 1e-6) for options in RUNS[:-2]]
+DIFFERENCES += [({"method": "energy", "stages": 2, "h": 0.05}, 1e-4), ({"dtau": 0.1}, 1e-6)]
+
+
+@pytest.mark.parametrize(("options", "d"), DIFFERENCES)
+def test_tangents_are_derivatives(options, d):
+    def end(mu, x):
+        run = vi.Kepler(mu=mu).integrate([x, 0.0], p=[0.0, 2.0], **options)
+        run.steps(10)
+        return np.concatenate([run.q, run.p])
+
+    found = vi.Kepler().integrate([0.4, 0.0], p=[0.0, 2.0], **options).tangent(10, ["mu"])
+    of_mu = (end(1.0 + d, 0.4) - end(1.0 - d, 0.4)) / (2 * d)
+    of_x = (end(1.0, 0.4 + d) - end(1.0, 0.4 - d)) / (2 * d)
+    # Measured: at most 3.0e-6, the error of the differences.
+    np.testing.assert_allclose(found["mu"], of_mu, rtol=0.0, atol=5e-6)
+    np.testing.assert_allclose(found["q"][:, 0], of_x, rtol=0.0, atol=5e-6)
+
+
+@pytest.mark.parametrize("options", RUNS[:5])
+def test_steps_of_given_length_are_symplectic(options):
+    tangent = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], **options).tangent(100)
+    # Measured: 2e-14.
+    assert np.linalg.det(np.hstack([tangent["q"], tangent["p"]])) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_long_tangents_are_products(kepler):
+    """Beyond 4096 steps the derivatives are chained."""
+    name = vi.Kepler.parameters[0]
+    start = kepler.copy()
+    whole = kepler.tangent(6000, [name])
+    first = start.tangent(3000, [name])
+    second = start.tangent(3000, [name])
+    product = np.hstack([second["q"], second["p"]])
+    np.testing.assert_allclose(whole["q"], product @ first["q"], rtol=1e-8)
+    np.testing.assert_allclose(whole[name], product @ first[name] + second[name], rtol=1e-8)
+
+
+@pytest.mark.parametrize("steps", [30, 5000])
+def test_gradients_are_rows_of_tangents(kepler, steps):
+    name = vi.Kepler.parameters[0]
+    aside = kepler.copy()
+    tangent = aside.tangent(steps, [name])
+    gradient = kepler.gradient(steps, q=[1.0, 0.5], p=[0.0, 2.0], wrt=[name])
+    slope = np.array([1.0, 0.5, 0.0, 2.0])
+    np.testing.assert_allclose(gradient["q"], slope @ tangent["q"], rtol=1e-8)
+    np.testing.assert_allclose(gradient["p"], slope @ tangent["p"], rtol=1e-8)
+    np.testing.assert_allclose(gradient[name], slope @ tangent[name], rtol=1e-8)
+    assert np.array_equal(kepler.q, aside.q)
+
+
+def test_tables_and_plots(kepler):
+    pandas = pytest.importorskip("pandas")
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    sol = kepler.until(1.0)
+    frame = sol.to_dataframe()
+    assert isinstance(frame, pandas.DataFrame)
+    assert list(frame.columns) == ["t", "x", "y", "dot(x)", "dot(y)", "p_x", "p_y", "energy"]
+    above, below = sol.plot()
+    assert [line.get_label() for line in above.lines] == ["x", "y"]
+    assert len(below.lines) == 1
+
+
+def test_solutions_are_pickled(kepler):
+    sol = kepler.until(1.0, dense=True)
+    again = pickle.loads(pickle.dumps(sol))
+    assert np.array_equal(again.q, sol.q)
+    with pytest.raises(ValueError, match="dense=True"):
+        again(0.5)

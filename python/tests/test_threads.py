@@ -1,0 +1,125 @@
+"""Threads, signals, forks, memory."""
+
+import gc
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import variational as vi
+
+
+def long_run():
+    return vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.01, method="fixed")
+
+
+def test_python_runs_while_a_run_advances():
+    run = long_run()
+    worker = threading.Thread(target=lambda: run.steps(10_000_000, every=10_000_000))
+    worker.start()
+    ticks = 0
+    while worker.is_alive():
+        ticks += 1
+        time.sleep(0.005)
+    worker.join()
+    assert ticks > 10
+
+
+def test_a_run_in_two_threads_is_refused():
+    run = long_run()
+    worker = threading.Thread(target=lambda: run.steps(10_000_000, every=10_000_000))
+    worker.start()
+    time.sleep(0.02)
+    for use in (run.step, lambda: run.t, lambda: run.steps(3), run.copy):
+        with pytest.raises(RuntimeError, match=r"another thread.*run\.copy\(\)"):
+            use()
+    worker.join()
+    assert run.step().t > 1.0
+
+
+def test_runs_of_several_threads_are_independent():
+    found = [None] * 8
+
+    def work(index):
+        found[index] = long_run().steps(20_000, every=20_000).q[-1]
+
+    workers = [threading.Thread(target=work, args=(index,)) for index in range(8)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert all(np.array_equal(q, found[0]) for q in found)
+
+
+LONG = {
+    "steps": lambda: long_run().steps(10**12, every=10**12),
+    "until": lambda: long_run().until(1e10, every=10**12),
+    "at": lambda: long_run().at([1e10]),
+    "events": lambda: long_run().events(vi.Event("x", 100.0), until=1e10),
+    "functions": lambda: long_run().events(lambda t, q, v: 1.0, until=1e10),
+    "callback": lambda: long_run().until(1e7, callback=lambda run: None),
+    "tangent": lambda: long_run().tangent(10**12),
+    "gradient": lambda: long_run().gradient(10**12, q=[1.0, 0.0]),
+    "ensemble": lambda: vi.Kepler().ensemble(np.tile([0.4, 0.0], (64, 1)), [0.0, 2.0], h=0.01, until=1e10),
+    "ensemble at": lambda: vi.Kepler().ensemble([0.4, 0.0], [0.0, 2.0], h=0.01, times=[1.0, 1e10]),
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_ctrl_c_ends_it(name):
+    timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    began = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        LONG[name]()
+    # Measured: 0.3 to 0.6 s.
+    assert time.perf_counter() - began < 5.0
+
+
+def _child(connection):
+    many = vi.Pendulum().ensemble([[1.0], [0.5]], h=0.05, until=1.0)
+    connection.send(many.q.tolist())
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_ensembles_in_a_forked_process():
+    here = vi.Pendulum().ensemble([[1.0], [0.5]], h=0.05, until=1.0)
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe()
+    process = context.Process(target=_child, args=(theirs,))
+    process.start()
+    assert ours.poll(30)
+    assert ours.recv() == here.q.tolist()
+    process.join()
+    assert process.exitcode == 0
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+def test_nothing_leaks():
+    pendulum = vi.Pendulum()
+
+    def calls(count):
+        for _ in range(count):
+            run = pendulum.integrate([1.0], h=0.05)
+            run.steps(3)
+            run.events(vi.Event(vi.Pendulum.coordinates[0]), 0.3)
+            try:
+                run.until(-1.0)
+            except vi.InvalidInput:
+                pass
+
+    def resident():
+        gc.collect()
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE")
+
+    calls(2_000)
+    before = resident()
+    calls(10_000)
+    # Measured: 0 to 0.3 MB; a leak of 100 bytes a call would be 4 MB.
+    assert resident() - before < 2e6

@@ -1,0 +1,38 @@
+"""Variational integrators of mechanical systems, generated from a Lagrangian.
+
+>>> import variational as vi
+>>> pendulum = vi.Pendulum(l=0.5)
+>>> sol = pendulum.integrate(q=[1.0], v=[0.0], h=0.05).until(10.0)
+>>> sol.t.shape, sol.q.shape
+((201,), (201, 1))
+
+Ready systems are in `vi.systems`. `vi.compile` makes a system from the text of its Lagrangian.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import _core
+from ._binding import _bind
+from ._cell import load_ipython_extension
+from ._compile import CompileError, compile, warm
+from ._ensemble import Ensemble
+from ._errors import *  # noqa: F403
+from ._errors import __all__ as _error_names
+from ._events import Event, Period
+from ._explanation import Explanation
+from ._run import LocalError, Run
+from ._solution import Events, Solution
+from ._stubs import stubs
+from ._system import System
+
+__version__ = "0.1.0"
+
+systems: list[str] = _bind(_core, globals(), __name__)
+"""Names of the ready systems."""
+
+__all__ = [
+    "CompileError", "Ensemble", "Event", "Events", "Explanation", "LocalError", "Period", "Run", "Solution", "System",
+    "compile", "load_ipython_extension", "stubs", "systems", "warm", *_error_names, *systems,
+]  # fmt: skip

@@ -1,0 +1,555 @@
+"""Variational integrators of mechanical systems, generated from a Lagrangian."""
+
+from typing import Any
+
+from numpy.typing import ArrayLike, NDArray
+from numpy import float64
+
+from ._cell import load_ipython_extension as load_ipython_extension
+from ._compile import CompileError as CompileError, compile as compile, warm as warm
+from ._ensemble import Ensemble as Ensemble
+from ._events import Event as Event, Period as Period
+from ._explanation import Explanation as Explanation
+from ._run import LocalError as LocalError, Run as Run
+from ._solution import Events as Events, Solution as Solution
+from ._stubs import stubs as stubs
+from ._system import System as System
+
+__version__: str
+systems: list[str]
+
+class StepError(ArithmeticError):
+    """A step failed. The numbers of the failure are attributes."""
+
+    reason: str
+    fields: dict[str, Any]
+    solution: Solution | None
+
+class NoForwardStep(StepError):
+    """No energy-preserving step exists past this point."""
+
+    t: float
+    h: float
+    excess: float
+    density: float
+
+class NoForwardGaussStep(StepError):
+    """No energy-preserving step with stages exists past this point."""
+
+    t: float
+    h: float
+    stages: int
+    excess: float
+    density: float
+    shift: float
+    largest: float
+
+class ShiftTooLarge(StepError):
+    """The shift of the step density outweighs the energy."""
+
+    t: float
+    h: float
+    shift: float
+    part: float
+    size: float
+    shorter: float
+
+class DegenerateStep(StepError):
+    """The step density vanishes, so that the step length is not determined."""
+
+    t: float
+    h: float
+    density: float
+
+class StepRatio(StepError):
+    """The length of the only forward step differs too much from that of the last step."""
+
+    t: float
+    previous: float
+    found: float
+
+class StepBounds(StepError):
+    """The step that solves the equations is shorter or longer than allowed."""
+
+    t: float
+    found: float
+    h_min: float
+    h_max: float
+
+class NotConverged(StepError):
+    """The Newton iteration ended above the rounding floor."""
+
+    t: float
+    h: float
+    iterations: int
+    residual: float
+    residuals: list[float]
+
+class StagesUnsettled(StepError):
+    """The stages of a Gauss step did not converge."""
+
+    t: float
+    h: float
+    iterations: int
+    change: float
+    contraction: float
+    stiffness: float
+
+class TimeScale(StepError):
+    """The time scale g of dt = g dτ is not positive, not finite, or too small."""
+
+    t: float
+    g: float
+
+class NoTimeScale(StepError):
+    """The method steps in transformed time, but the system has no time scale."""
+
+    system: str
+
+class NoRule(StepError):
+    """The method needs a quadrature rule, but the system declares none."""
+
+    system: str
+
+class Ambiguous(StepError):
+    """Two velocities have the same momenta."""
+
+    t: float
+
+class Singular(StepError):
+    """A matrix to invert is singular."""
+
+    t: float
+    matrix: str
+
+class NonFinite(StepError):
+    """A quantity is infinite or not a number."""
+
+    t: float
+    quantity: str
+    expression: str | None
+
+class CannotLeave(StepError):
+    """The trajectory cannot leave the zero of an event."""
+
+    t: float
+    event: int
+    value: float
+    within: float
+
+class NoDerivative(StepError):
+    """The step has no derivative."""
+
+    t: float
+    because: str
+
+class UnknownParameter(StepError):
+    """The system has no parameter of the given name."""
+
+    system: str
+    parameters: list[str]
+
+class OtherSystem(StepError):
+    """The checkpoint belongs to another system, or to other parameters."""
+
+    system: str
+    parameter: str | None
+    stored: float
+    given: float
+
+class Tolerance(StepError):
+    """The error of a step exceeds the tolerance."""
+
+    t: float
+    estimate: float
+    tolerance: float
+
+class InvalidInput(StepError, ValueError):
+    """An input is outside of its allowed range."""
+
+    input: str
+    allowed: str
+    value: float
+
+class ChargedParticle(System):
+    """Charged particle in the field B = (0, 0, b + s x), with the vector potential A = (0, b x + s x²/2, 0) and an
+    electric potential κ z²/2 that confines it to the plane.
+
+    L depends on the velocity beyond the kinetic energy: `L_qv` is not zero. y is cyclic: p_y = m ẏ + e A_y is
+    conserved bit for bit. For s = 0 the projection is a circle of radius m v/(e b) with angular velocity e b/m.
+    Source: Jackson, Classical Electrodynamics, section 12.1.
+    """
+
+    @property
+    def m(self) -> float: ...
+    @m.setter
+    def m(self, value: float) -> None: ...
+    @property
+    def e(self) -> float: ...
+    @e.setter
+    def e(self, value: float) -> None: ...
+    @property
+    def b(self) -> float: ...
+    @b.setter
+    def b(self, value: float) -> None: ...
+    @property
+    def s(self) -> float: ...
+    @s.setter
+    def s(self, value: float) -> None: ...
+    @property
+    def kappa(self) -> float: ...
+    @kappa.setter
+    def kappa(self, value: float) -> None: ...
+    def __init__(self, *, m: float = ..., e: float = ..., b: float = ..., s: float = ..., kappa: float = ...) -> None: ...
+
+class DampedOscillator(System):
+    """Damped harmonic oscillator, m a + c v + k x = 0.
+
+    With ω = √(k/m) and ζ = c/(2 √(k m)), the energy-preserving step grows as h ≈ h0 e^{ζ ω t} and ends after about
+    1/(ζ ω h0) steps. Source: Sharma, Patil, Woolsey, section 5.2.
+    """
+
+    @property
+    def m(self) -> float: ...
+    @m.setter
+    def m(self, value: float) -> None: ...
+    @property
+    def k(self) -> float: ...
+    @k.setter
+    def k(self, value: float) -> None: ...
+    @property
+    def c(self) -> float: ...
+    @c.setter
+    def c(self, value: float) -> None: ...
+    def __init__(self, *, m: float = ..., k: float = ..., c: float = ...) -> None: ...
+
+class DoublePendulum(System):
+    """Double pendulum in absolute angles; θ1 = θ2 = 0 hangs down.
+
+    The mass matrix depends on the configuration. Released from (2, 2) rad, the energy-preserving step ends at
+    t = 4.025. Source: Landau and Lifshitz, Mechanics, section 5.
+    """
+
+    @property
+    def m1(self) -> float: ...
+    @m1.setter
+    def m1(self, value: float) -> None: ...
+    @property
+    def m2(self) -> float: ...
+    @m2.setter
+    def m2(self, value: float) -> None: ...
+    @property
+    def l1(self) -> float: ...
+    @l1.setter
+    def l1(self, value: float) -> None: ...
+    @property
+    def l2(self) -> float: ...
+    @l2.setter
+    def l2(self, value: float) -> None: ...
+    @property
+    def g(self) -> float: ...
+    @g.setter
+    def g(self, value: float) -> None: ...
+    def __init__(self, *, m1: float = ..., m2: float = ..., l1: float = ..., l2: float = ..., g: float = ...) -> None: ...
+
+class DoubleWell(System):
+    """Particle in the double well V = (q⁴ − q²)/2.
+
+    Minima at q = ±1/√2 with V = −1/8, a barrier of height 0 at q = 0. Librations about one minimum have E < 0.
+    Above the barrier the step density vanishes along the motion, and the energy-preserving step ends there. Source:
+    Sharma, Patil, Woolsey, section 5.1.
+    """
+
+    @property
+    def m(self) -> float: ...
+    @m.setter
+    def m(self, value: float) -> None: ...
+    def __init__(self, *, m: float = ...) -> None: ...
+
+class DoubleWellDuffing(System):
+    """Double-well Duffing oscillator, a + c v − x + x³ = A cos ω t.
+
+    With these parameters the motion is chaotic, and the energy-preserving step ends at t ≈ 7.98 for every h0.
+    Source: Guckenheimer and Holmes, Nonlinear Oscillations, section 2.2.
+    """
+
+    @property
+    def c(self) -> float: ...
+    @c.setter
+    def c(self, value: float) -> None: ...
+    @property
+    def amplitude(self) -> float: ...
+    @amplitude.setter
+    def amplitude(self, value: float) -> None: ...
+    @property
+    def omega(self) -> float: ...
+    @omega.setter
+    def omega(self, value: float) -> None: ...
+    def __init__(self, *, c: float = ..., amplitude: float = ..., omega: float = ...) -> None: ...
+
+class FpuChain(System):
+    """Chain of Fermi, Pasta, Ulam and Tsingou: 16 masses between two walls; q[i] is the displacement from rest.
+
+    Each of the 17 springs, including those at the walls, has the force k r + α r² + β r³ at the elongation r. For α
+    = β = 0 the frequencies are 2 √(k/m) sin(π j/34), j = 1 … 16. Started in the lowest mode, the chain does not
+    reach thermal equilibrium: the energy returns to that mode. The Jacobian of a step is tridiagonal. Source:
+    Fermi, Pasta, Ulam, Studies of nonlinear problems I, Los Alamos report LA-1940 (1955), with α = 1/4.
+    """
+
+    @property
+    def m(self) -> float: ...
+    @m.setter
+    def m(self, value: float) -> None: ...
+    @property
+    def k(self) -> float: ...
+    @k.setter
+    def k(self, value: float) -> None: ...
+    @property
+    def alpha(self) -> float: ...
+    @alpha.setter
+    def alpha(self, value: float) -> None: ...
+    @property
+    def beta(self) -> float: ...
+    @beta.setter
+    def beta(self, value: float) -> None: ...
+    def __init__(self, *, m: float = ..., k: float = ..., alpha: float = ..., beta: float = ...) -> None: ...
+
+class HardDuffing(System):
+    """Hard Duffing oscillator, a + c v + α x + β x³ = A cos ω t.
+
+    The drive is in the force, not in L: the two choices have different step densities (`docs/mathematics.md`).
+    Source: Guckenheimer and Holmes, Nonlinear Oscillations, section 2.2.
+    """
+
+    @property
+    def alpha(self) -> float: ...
+    @alpha.setter
+    def alpha(self, value: float) -> None: ...
+    @property
+    def beta(self) -> float: ...
+    @beta.setter
+    def beta(self, value: float) -> None: ...
+    @property
+    def c(self) -> float: ...
+    @c.setter
+    def c(self, value: float) -> None: ...
+    @property
+    def amplitude(self) -> float: ...
+    @amplitude.setter
+    def amplitude(self, value: float) -> None: ...
+    @property
+    def omega(self) -> float: ...
+    @omega.setter
+    def omega(self, value: float) -> None: ...
+    def __init__(self, *, alpha: float = ..., beta: float = ..., c: float = ..., amplitude: float = ..., omega: float = ...) -> None: ...
+
+class HarmonicOscillator(System):
+    """Harmonic oscillator, m a + k x = 0.
+
+    The exact motion is x(t) = x(0) cos ω t + (v(0)/ω) sin ω t with ω = √(k/m). The frequency ω̃ of the midpoint
+    rule satisfies tan(ω̃ h/2) = ω h/2. Source: Goldstein, Classical Mechanics, chapter 6.
+    """
+
+    @property
+    def m(self) -> float: ...
+    @m.setter
+    def m(self, value: float) -> None: ...
+    @property
+    def k(self) -> float: ...
+    @k.setter
+    def k(self, value: float) -> None: ...
+    def __init__(self, *, m: float = ..., k: float = ...) -> None: ...
+
+class HenonHeiles(System):
+    """Hénon–Heiles system, V = (x² + y²)/2 + λ (x² y − y³/3).
+
+    Bounded below E = 1/6 for λ = 1; regular at small energies, chaotic near the bound.
+    Source: Hénon and Heiles, Astronomical Journal 69 (1964) 73.
+    """
+
+    @property
+    def lambda_(self) -> float: ...
+    @lambda_.setter
+    def lambda_(self, value: float) -> None: ...
+    def __init__(self, *, lambda_: float = ...) -> None: ...
+
+class Kepler(System):
+    """Plane Kepler problem, a = −μ r/|r|³.
+
+    Conserved: energy, angular momentum x v_y − y v_x. Started at the pericentre of an orbit of eccentricity e, the
+    energy-preserving integrator runs for e ≤ 0.785 and cannot run for e ≥ √(5/8).
+    Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section I.2.
+    """
+
+    @property
+    def mu(self) -> float: ...
+    @mu.setter
+    def mu(self, value: float) -> None: ...
+    def __init__(self, *, mu: float = ...) -> None: ...
+
+class NPendulum(System):
+    """Four equal pendula, each hanging from the one above, in absolute angles; θ = 0 hangs down.
+
+    Link i carries all masses from i on. So its square has the weight N − i, and the pair (i, j) with j < i has the
+    weight N − i times the cosine of the angle between the links. The mass matrix is full and depends on the
+    configuration; the motion is chaotic at large angles. For N = 2 it is the double pendulum with equal masses and
+    rods. Source: Landau and Lifshitz, Mechanics, section 5, continued.
+    """
+
+    @property
+    def m(self) -> float: ...
+    @m.setter
+    def m(self, value: float) -> None: ...
+    @property
+    def l(self) -> float: ...
+    @l.setter
+    def l(self, value: float) -> None: ...
+    @property
+    def g(self) -> float: ...
+    @g.setter
+    def g(self, value: float) -> None: ...
+    def __init__(self, *, m: float = ..., l: float = ..., g: float = ...) -> None: ...
+
+class OuterSolarSystem(System):
+    """Sun, Jupiter, Saturn, Uranus, Neptune and Pluto, in this order, with mutual attraction.
+
+    Lengths in astronomical units, times in days, masses relative to the Sun's; the mass of the Sun includes the
+    inner planets. Conserved: energy, momentum, angular momentum. Jupiter has a period of 4333 days, Pluto of 90
+    600. Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section I.2.3 and table 2.2.
+    """
+
+    @property
+    def g(self) -> float: ...
+    @g.setter
+    def g(self, value: float) -> None: ...
+    @property
+    def m0(self) -> float: ...
+    @m0.setter
+    def m0(self, value: float) -> None: ...
+    @property
+    def m1(self) -> float: ...
+    @m1.setter
+    def m1(self, value: float) -> None: ...
+    @property
+    def m2(self) -> float: ...
+    @m2.setter
+    def m2(self, value: float) -> None: ...
+    @property
+    def m3(self) -> float: ...
+    @m3.setter
+    def m3(self, value: float) -> None: ...
+    @property
+    def m4(self) -> float: ...
+    @m4.setter
+    def m4(self, value: float) -> None: ...
+    @property
+    def m5(self) -> float: ...
+    @m5.setter
+    def m5(self, value: float) -> None: ...
+    def __init__(self, *, g: float = ..., m0: float = ..., m1: float = ..., m2: float = ..., m3: float = ..., m4: float = ..., m5: float = ...) -> None: ...
+
+class ParametricPendulum(System):
+    """Parametric pendulum, a = −(1 + ε cos ω t) sin θ.
+
+    L depends on time, and no force can replace this dependence without changing the energy. With ε = 0.5, ω = 2 the
+    energy-preserving step ends at t = 0.870. Source: Landau and Lifshitz, Mechanics, section 27.
+    """
+
+    @property
+    def epsilon(self) -> float: ...
+    @epsilon.setter
+    def epsilon(self, value: float) -> None: ...
+    @property
+    def omega(self) -> float: ...
+    @omega.setter
+    def omega(self, value: float) -> None: ...
+    def __init__(self, *, epsilon: float = ..., omega: float = ...) -> None: ...
+
+class Pendulum(System):
+    """Plane pendulum, m l² a = −m g l sin θ; θ = 0 hangs down.
+
+    Librations run with the energy-preserving integrator; rotations end when the step density vanishes. Source:
+    Goldstein, Classical Mechanics, chapter 1.
+    """
+
+    @property
+    def m(self) -> float: ...
+    @m.setter
+    def m(self, value: float) -> None: ...
+    @property
+    def l(self) -> float: ...
+    @l.setter
+    def l(self, value: float) -> None: ...
+    @property
+    def g(self) -> float: ...
+    @g.setter
+    def g(self, value: float) -> None: ...
+    def __init__(self, *, m: float = ..., l: float = ..., g: float = ...) -> None: ...
+
+class RotatingHoop(System):
+    """Bead on a hoop of radius r that turns with the angular velocity Ω; θ = 0 is the bottom.
+
+    The conserved quantity is the Jacobi integral v·L_v − L, not kinetic plus potential energy. Above Ω² = g/r the
+    bottom is unstable and the bead rests at cos θ = g/(r Ω²). Source: Goldstein, Classical Mechanics, chapter 2.
+    """
+
+    @property
+    def m(self) -> float: ...
+    @m.setter
+    def m(self, value: float) -> None: ...
+    @property
+    def r(self) -> float: ...
+    @r.setter
+    def r(self, value: float) -> None: ...
+    @property
+    def Ω(self) -> float: ...
+    @Ω.setter
+    def Ω(self, value: float) -> None: ...
+    @property
+    def g(self) -> float: ...
+    @g.setter
+    def g(self, value: float) -> None: ...
+    def __init__(self, *, m: float = ..., r: float = ..., Ω: float = ..., g: float = ...) -> None: ...
+
+class SphericalPendulum(System):
+    """Spherical pendulum; θ from the vertical down, φ about it.
+
+    φ is cyclic: its momentum m l² sin²θ φ̇ is conserved bit for bit. The coordinates are singular at θ = 0 and π.
+    Source: Goldstein, Classical Mechanics, chapter 1.
+    """
+
+    @property
+    def m(self) -> float: ...
+    @m.setter
+    def m(self, value: float) -> None: ...
+    @property
+    def l(self) -> float: ...
+    @l.setter
+    def l(self, value: float) -> None: ...
+    @property
+    def g(self) -> float: ...
+    @g.setter
+    def g(self, value: float) -> None: ...
+    def __init__(self, *, m: float = ..., l: float = ..., g: float = ...) -> None: ...
+
+class ThreeBody(System):
+    """Three bodies in a plane with mutual attraction; the constant of gravitation is 1.
+
+    Conserved: energy, momentum, angular momentum. Equal masses can follow one another on a stable figure-eight
+    orbit. Source: Chenciner and Montgomery, Annals of Mathematics 152 (2000) 881; initial state computed by C.
+    Simó.
+    """
+
+    @property
+    def m0(self) -> float: ...
+    @m0.setter
+    def m0(self, value: float) -> None: ...
+    @property
+    def m1(self) -> float: ...
+    @m1.setter
+    def m1(self, value: float) -> None: ...
+    @property
+    def m2(self) -> float: ...
+    @m2.setter
+    def m2(self, value: float) -> None: ...
+    def __init__(self, *, m0: float = ..., m1: float = ..., m2: float = ...) -> None: ...

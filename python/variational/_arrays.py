@@ -1,0 +1,93 @@
+"""Arguments as arrays of floats, with messages that name the argument."""
+
+from __future__ import annotations
+
+import operator
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._errors import _invalid
+
+Array = NDArray[np.float64]
+
+
+def array(value: ArrayLike, name: str) -> Array:
+    """The argument as an array of floats.
+
+    Raises TypeError for values that are not real numbers.
+    """
+    if type(value) is np.ndarray and value.dtype == np.float64:
+        return value
+    try:
+        found = np.asarray(value)
+        if found.dtype.kind not in "fiub":
+            # Lists of unequal lengths are objects; texts and complex numbers would be converted silently.
+            raise TypeError
+        return found.astype(np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{name} must be real numbers in a list or an array, not {_shown(value)}") from None
+
+
+def vector(value: ArrayLike, size: int, name: str, coordinates: tuple[str, ...]) -> Array:
+    """The argument as a contiguous vector of this size with finite entries."""
+    found = array(value, name)
+    if found.shape != (size,):
+        if found.ndim == 0 and size == 1:
+            found = found.reshape(1)
+        else:
+            wanted = ", ".join(coordinates)
+            raise ValueError(f"{name} must have {size} {_entries(size)} ({wanted}), not the shape {found.shape}")
+    finite(found, name)
+    return np.ascontiguousarray(found)
+
+
+def finite(values: Array, name: str) -> None:
+    """Raises InvalidInput if an entry is infinite or not a number."""
+    if not np.isfinite(values).all():
+        index = tuple(int(i) for i in np.argwhere(~np.isfinite(values))[0])
+        place = name + (f"[{', '.join(map(str, index))}]" if index else "")
+        raise _invalid(place, "finite", float(values[index]))
+
+
+def number(value: Any, name: str) -> float:
+    """The argument as a finite float."""
+    found = real(value, name)
+    if not np.isfinite(found):
+        raise _invalid(name, "finite", found)
+    return found
+
+
+def real(value: Any, name: str) -> float:
+    """The argument as a float."""
+    if type(value) is float:
+        return value
+    try:
+        if isinstance(value, (str, bytes, complex)):
+            raise TypeError
+        if np.ndim(value) != 0:
+            raise TypeError
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{name} must be a real number, not {_shown(value)}") from None
+
+
+def count(value: Any, name: str, least: int = 0) -> int:
+    """The argument as an integer from `least` to 2⁶⁴ − 1."""
+    try:
+        found = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be an integer, not {_shown(value)}") from None
+    if not least <= found < 2**64:
+        raise ValueError(f"{name} must be an integer from {least} to 2**64 - 1, not {found}")
+    return found
+
+
+def _entries(count: int) -> str:
+    return "entry" if count == 1 else "entries"
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,96 @@
+"""Python classes for the systems of a compiled module."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any
+
+import numpy as np
+
+from ._names import spelled
+from ._system import Parameter, System
+
+CONTRACT = 1
+"""The version of the interface to compiled modules."""
+
+
+def _bind(module: Any, namespace: dict[str, Any] | None = None, name: str | None = None) -> list[str]:
+    """Adds the classes of its systems to a compiled module, or to another namespace; returns their names.
+
+    Raises ImportError for a module of another version.
+    """
+    if getattr(module, "_contract", None) != CONTRACT:
+        raise ImportError(
+            f"{module.__name__} was built for another version of variational: build it again, "
+            "or install the version that it was built for"
+        )
+    name = name or module.__name__
+    # maturin makes a package `mine` around a module `mine.mine` that has no Python files.
+    outer, _, inner = name.rpartition(".")
+    name = outer if outer == inner and outer else name
+    target = vars(module) if namespace is None else namespace
+    classes = [class_of(kind, name) for kind in module._kinds]
+    target.update({cls.__name__: cls for cls in classes})
+    if namespace is None:
+        module.__all__ = [cls.__name__ for cls in classes]
+    return sorted(cls.__name__ for cls in classes)
+
+
+def class_of(kind: Any, module: str) -> type[System]:
+    """The class of a system."""
+    fields = _parameters(kind)
+    signature = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=field.default, annotation=_type(field))
+        for name, field in fields.items()
+    ]
+    coordinates = tuple(spelled(name) for name in kind.coordinates)
+    members = {
+        "__slots__": (),
+        "__doc__": _documentation(kind, coordinates, fields),
+        "__module__": module,
+        "__signature__": inspect.Signature(signature),
+        "_kind": kind,
+        "_defaults": np.array([default for _, default, _ in kind.parameters]),
+        "coordinates": coordinates,
+        "parameters": tuple(fields),
+        "integrators": tuple(kind.integrators),
+        "definition": kind.definition,
+        **fields,
+    }
+    return type(kind.name, (System,), members)
+
+
+def _parameters(kind: Any) -> dict[str, Parameter]:
+    """The parameters by their names in Python. `m[0]`, `m[1]`, … are one array."""
+    groups: dict[str, list[tuple[int, float, str, bool]]] = {}
+    for index, (name, default, about) in enumerate(kind.parameters):
+        name, _, is_entry = name.partition("[")
+        groups.setdefault(name, []).append((index, default, about, bool(is_entry)))
+    fields: dict[str, Parameter] = {}
+    for name, entries in groups.items():
+        start, default, about, is_array = entries[0]
+        defaults = tuple(default for _, default, _, _ in entries)
+        field = spelled(name)
+        while hasattr(System, field) or field in fields:
+            field += "_"
+        fields[field] = Parameter(
+            field, start, len(entries) if is_array else None, defaults if is_array else default, about.strip()
+        )
+    return fields
+
+
+def _documentation(kind: Any, coordinates: tuple[str, ...], fields: dict[str, Parameter]) -> str:
+    lines = [inspect.cleandoc(kind.about), "", f"Coordinates: {', '.join(coordinates)}."]
+    if fields:
+        lines += ["", "Parameters", "----------"]
+    for name, field in fields.items():
+        kind_of = "float" if field.length is None else f"array of {field.length}"
+        lines.append(f"{name} : {kind_of}, default {field.default}")
+        about = inspect.cleandoc(field.__doc__ or "")
+        if about != f"Parameter {name}.":
+            lines += [f"    {line}".rstrip() for line in about.splitlines()]
+    return "\n".join(lines)
+
+
+def _type(field: Parameter) -> Any:
+    return float if field.length is None else tuple[float, ...]

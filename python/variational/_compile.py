@@ -1,0 +1,290 @@
+"""Systems from text.
+
+`compile` writes a crate into the user's cache, builds it with cargo, and loads it. The library is kept by a hash of
+everything that it depends on; later it is loaded without cargo.
+
+    <cache>/<version>/workspace   sources of the library, and the crate of the system
+                      target      what cargo built
+                      modules     the libraries of systems
+                      lock        held during a build
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+from importlib.machinery import ExtensionFileLoader
+from pathlib import Path
+from typing import Any
+
+from . import _core
+from ._binding import CONTRACT, _bind
+from ._lock import locked
+from ._system import System
+
+_SUFFIX = ".pyd" if os.name == "nt" else ".abi3.so"
+_LIBRARY = {"win32": "compiled.dll", "darwin": "libcompiled.dylib"}.get(sys.platform, "libcompiled.so")
+
+_MANIFEST = """\
+[package]
+name = "compiled"
+version.workspace = true
+edition.workspace = true
+publish = false
+
+[lib]
+crate-type = ["cdylib"]
+
+[dependencies]
+vi-core.workspace = true
+vi-python = { path = "../python/vi-python" }
+"""
+
+# The linker of macOS must leave the symbols of Python to the process.
+_CARGO_CONFIG = """\
+[target.'cfg(target_os = "macos")']
+rustflags = ["-C", "link-arg=-undefined", "-C", "link-arg=dynamic_lookup"]
+"""
+
+_BEFORE = "#![allow(warnings)]\nvi_core::lagrangian! {\n"
+_AFTER = "\n}}\nvi_python::module!(@inner {library}, {name}, {{ {methods} }});\n"
+
+_SPRING = "struct Spring { param k = 1.0; coord x; L = dot(x)^2 / 2 - k * x^2 / 2; discretize midpoint; }"
+
+
+class CompileError(Exception):
+    """A system cannot be compiled: a mistake in its definition with its line, or what is missing on this machine."""
+
+    __module__ = "variational"
+
+
+def cache() -> Path:
+    """The folder of compiled systems: `$VARIATIONAL_CACHE`, or a folder in the user's cache."""
+    given = os.environ.get("VARIATIONAL_CACHE")
+    if given:
+        return Path(given).absolute()
+    if os.name == "nt":
+        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return base / "variational"
+
+
+_loaded: dict[str, type[System]] = {}
+
+
+def compile(definition: str, *, methods: str | None = None, verbose: bool = False) -> type[System]:
+    """The class of the system that a text in the language of `lagrangian!` declares.
+
+    >>> Spring = compile('''
+    ... struct Spring {
+    ...     param k = 1.0;
+    ...     coord x;
+    ...     L = dot(x)^2/2 - k*x^2/2;
+    ...     discretize midpoint;
+    ... }
+    ... ''')  # doctest: +SKIP
+
+    `methods` lists the integrators to build: "fixed; compositions; gauss 4, 8; energy; energy 2". The default is
+    "fixed; gauss 8", without "fixed" for a system without the clause `discretize`, and with "transformed 8" for one
+    with a `time_scale`. It needs cargo, https://rustup.rs; the first build takes about a minute, later ones seconds, and a
+    system that was compiled before milliseconds.
+
+    Raises CompileError.
+    """
+    if not isinstance(definition, str):
+        raise TypeError(f"the definition must be a text, not {type(definition).__name__}")
+    if methods is not None and not isinstance(methods, str):
+        raise TypeError(f'methods must be a text such as "fixed; gauss 8", not {type(methods).__name__}')
+    code = _without_comments(definition)
+    methods = _methods(methods, code)
+    key = "\0".join([definition, methods, str(CONTRACT), _core.sources_digest, sysconfig.get_platform()])
+    digest = hashlib.sha256(key.encode()).hexdigest()[:20]
+    if digest not in _loaded:
+        library = f"s_{digest}"
+        built = _folder() / "modules" / (library + _SUFFIX)
+        if not built.exists():
+            name = _checked(definition)
+            _build(definition, name, library, built, methods, verbose)
+        cls = _load(library, built)
+        cls._source = (definition, methods)  # type: ignore[attr-defined]
+        _loaded[digest] = cls
+    return _loaded[digest]
+
+
+def warm(verbose: bool = True) -> None:
+    """Builds what all systems share, so that the next `compile` takes seconds."""
+    compile(_SPRING, verbose=verbose)
+
+
+def clean() -> None:
+    """Deletes the cache of compiled systems. A program that uses one of them must not run."""
+    shutil.rmtree(cache(), ignore_errors=True)
+
+
+def _folder() -> Path:
+    return cache() / _core.sources_digest
+
+
+def _without_comments(definition: str) -> str:
+    return re.sub(r"//[^\n]*|/\*.*?\*/", "", definition, flags=re.DOTALL)
+
+
+def _methods(methods: str | None, code: str) -> str:
+    """The integrators to build, in one spelling.
+
+    Raises CompileError for a wrong word, and for a method that the definition does not allow.
+    """
+    has_rule = re.search(r"\bdiscretize\b", code) is not None
+    has_scale = re.search(r"\btime_scale\b", code) is not None
+    if methods is None:
+        return "; ".join(["fixed"] * has_rule + ["gauss 8"] + ["transformed 8"] * has_scale)
+    found = []
+    for part in filter(None, (part.strip() for part in methods.split(";"))):
+        word, _, rest = part.partition(" ")
+        stages = [stage.strip() for stage in rest.split(",")] if rest.strip() else []
+        most = {"fixed": 0, "compositions": 0, "energy": 3, "gauss": 16, "transformed": 16}.get(word)
+        if most is None:
+            raise CompileError(
+                f"there is no method {word!r}: methods are fixed, compositions, gauss 8, transformed 8, energy, energy 2"
+            )
+        if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):
+            limits = f"stages from 1 to {most}" if most else "no stages"
+            raise CompileError(f"{word} has {limits}, not {rest!r}")
+        if word in ("gauss", "transformed") and not stages:
+            raise CompileError(f'{word} needs its stages, such as "{word} 8"')
+        if not stages and not has_rule:
+            raise CompileError(f"the method {word} needs the clause `discretize midpoint;` in the definition")
+        if word == "transformed" and not has_scale:
+            raise CompileError("the method transformed needs the clause `time_scale = …;` in the definition")
+        found.append(f"{word} {', '.join(str(int(stage)) for stage in stages)}".strip())
+    if not found:
+        raise CompileError('methods has no method: write for example "fixed; gauss 8"')
+    return "; ".join(found)
+
+
+def _words(methods: str) -> str:
+    """The integrators in the words of Rust's macro: its `fixed` has the compositions."""
+    words = methods.split("; ")
+    if "compositions" in words:
+        words = ["fixed", *(word for word in words if word not in ("fixed", "compositions"))]
+    else:
+        words = ["fixed_2" if word == "fixed" else word for word in words]
+    return "; ".join(words)
+
+
+def _checked(definition: str) -> str:
+    """The name of the system. Mistakes are found here in milliseconds, by the compiler that is part of `_core`."""
+    try:
+        name, _, _ = _core.explain(definition)
+    except ValueError as mistake:
+        raise CompileError(str(mistake)) from None
+    return name
+
+
+def _build(definition: str, name: str, library: str, built: Path, methods: str, verbose: bool) -> None:
+    cargo = shutil.which("cargo") or shutil.which("cargo", path=str(Path.home() / ".cargo" / "bin"))
+    if cargo is None:
+        raise CompileError(
+            "cargo was not found: install Rust from https://rustup.rs, or use a ready system of variational.systems"
+        )
+    folder = _folder()
+    try:
+        built.parent.mkdir(parents=True, exist_ok=True)
+        with locked(folder / "lock"):
+            # Another process may have built it meanwhile.
+            if not built.exists():
+                workspace = _workspace(folder)
+                text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=_words(methods))
+                (workspace / "compiled" / "src" / "lib.rs").write_text(text, encoding="utf-8")
+                _cargo(cargo, workspace, folder / "target", verbose)
+                part = built.with_suffix(".part")
+                shutil.copyfile(folder / "target" / "release" / _LIBRARY, part)
+                os.replace(part, built)
+    except OSError as error:
+        raise CompileError(
+            f"the cache {folder} cannot be written: {error}; set VARIATIONAL_CACHE to another folder"
+        ) from error
+
+
+def _workspace(folder: Path) -> Path:
+    """The sources, written once. A folder that is there is whole, since it was renamed into place."""
+    workspace = folder / "workspace"
+    if not workspace.exists():
+        part = folder / "workspace.part"
+        shutil.rmtree(part, ignore_errors=True)
+        files = {
+            **dict(_core.sources()),
+            "compiled/Cargo.toml": _MANIFEST,
+            "compiled/src/lib.rs": "",
+            ".cargo/config.toml": _CARGO_CONFIG,
+        }
+        for name, text in files.items():
+            path = part / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8", newline="\n")
+        os.replace(part, workspace)
+    return workspace
+
+
+def _cargo(cargo: str, workspace: Path, target: Path, verbose: bool) -> None:
+    """Builds the crate. Its environment is always the same: otherwise all is built again."""
+    kept = ("CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_SOURCE_", "CARGO_REGISTRY_")
+    environment = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.startswith(("CARGO", "PYO3_", "RUSTFLAGS")) or name.startswith(kept)
+    }
+    environment |= {"CARGO_TERM_COLOR": "never", "PYO3_NO_PYTHON": "1", "PYO3_BUILD_EXTENSION_MODULE": "1"}
+    command = [cargo, "build", "--release", "--package", "compiled", "--target-dir", str(target)]
+    outcome = subprocess.run(
+        command if verbose else [*command, "--quiet"],
+        cwd=workspace,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stderr=None if verbose else subprocess.PIPE,
+        encoding="utf-8",
+        errors="replace",
+    )
+    if outcome.returncode != 0:
+        raise CompileError(_reason(outcome.stderr or "cargo failed; its messages are above"))
+
+
+def _reason(messages: str) -> str:
+    """The messages of cargo, with lines of the definition."""
+    if re.search(r"failed to download|Could not resolve|failed to fetch|network failure|offline", messages, re.IGNORECASE):
+        return (
+            "cargo cannot download the crates that it needs: run `python -m variational warm` once with a network\n"
+            + messages.strip()
+        )
+    if re.search(r"linker `?[\w.-]+`? not found|link\.exe` not found", messages):
+        return "Rust found no linker: install a C compiler (gcc, clang, or Visual Studio's C++ tools)\n" + messages.strip()
+    lines_before = _BEFORE.count("\n")
+    messages = re.sub(
+        r"compiled[/\\]src[/\\]lib\.rs:(\d+):", lambda found: f"definition:{int(found[1]) - lines_before}:", messages
+    )
+    ends = ("error: could not compile", "warning: build failed", "For more information about")
+    return "\n".join(line for line in messages.splitlines() if not line.startswith(ends)).strip()
+
+
+def _load(library: str, built: Path) -> type[System]:
+    """The class in a library."""
+    loader = ExtensionFileLoader(library, str(built))
+    spec = importlib.util.spec_from_file_location(library, str(built), loader=loader)
+    assert spec is not None
+    try:
+        module: Any = importlib.util.module_from_spec(spec)
+        loader.exec_module(module)
+    except ImportError as error:
+        built.unlink(missing_ok=True)
+        raise CompileError(f"the library of the system cannot be loaded, and was deleted: {error}") from error
+    (name,) = _bind(module, None, "variational.compiled")
+    return getattr(module, name)

@@ -1,0 +1,167 @@
+"""Many runs of one system on all cores."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._arrays import Array, array, count, finite, number
+from ._names import course
+
+if TYPE_CHECKING:
+    from ._errors import StepError
+    from ._system import System
+
+
+class Ensemble:
+    """The states of M runs: `t` (M,), `q`, `p`, `v` (M, N), or with an axis of K times after M.
+
+    `errors` has for each run None, or the exception that ended it; `parameters` the parameters that differ.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        t: Array,
+        q: Array,
+        p: Array,
+        errors: list[StepError | None],
+        values: Array,
+        parameters: dict[str, Array],
+    ):
+        self.system = system
+        self.t = t
+        self.q = q
+        self.p = p
+        self.errors = errors
+        self.parameters = parameters
+        self._values = values
+
+    def _evaluate(self, of: str, is_vector: bool) -> Array:
+        out = np.full(self.q.shape if is_vector else self.t.shape, np.nan)
+        many = len(self.errors)
+        same = bool((self._values == self._values[:1]).all()) if many else True
+        # All runs at once if they have the same parameters, otherwise one by one.
+        for rows in [slice(None)] if same else range(many):
+            is_there = np.isfinite(self.t[rows])
+            if np.any(is_there):
+                system = self.system._of(self._values[0 if same else rows])
+                found = system._at(of, self.t[rows][is_there], self.q[rows][is_there], self.p[rows][is_there], is_vector)
+                part = out[rows]
+                if np.ndim(self.t[rows]) == 0:
+                    out[rows] = found[0]
+                else:
+                    part[is_there] = found
+        return out
+
+    @cached_property
+    def v(self) -> Array:
+        """Velocities."""
+        return self._evaluate("velocity", True)
+
+    @cached_property
+    def energy(self) -> Array:
+        """The energy H."""
+        return self._evaluate("hamiltonian", False)
+
+    @property
+    def success(self) -> bool:
+        """Whether all runs reached their end."""
+        return all(error is None for error in self.errors)
+
+    def __getitem__(self, name: str) -> Array:
+        """A coordinate, `ensemble["x"]`, or its velocity, `ensemble["dot(x)"]`."""
+        is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
+        return (self.v if is_velocity else self.q)[..., index]
+
+    __iter__ = None  # type: ignore[assignment]
+
+    def __len__(self) -> int:
+        return len(self.errors)
+
+    def __repr__(self) -> str:
+        failed = sum(error is not None for error in self.errors)
+        return f"<Ensemble of {len(self)} runs of {type(self.system).__name__}, {failed} failed>"
+
+
+def ensemble(
+    system: System,
+    request: Any,
+    q: ArrayLike,
+    v: ArrayLike | None,
+    until: float | None,
+    times: ArrayLike | None,
+    t: float,
+    parameters: Mapping[str, ArrayLike],
+    threads: int | None,
+) -> Ensemble:
+    """Runs many; see `System.ensemble`."""
+    cls, n = type(system), len(system.coordinates)
+    if (until is None) == (times is None):
+        raise TypeError("give one of until and times")
+    states = {"q": _states(q, "q", cls), "v": np.zeros(n) if v is None else _states(v, "v", cls)}
+    given = {}
+    for name, value in parameters.items():
+        given[name] = (cls._parameter(name), _values(cls._parameter(name), value))
+    sizes = {name: len(values) for name, values in states.items() if values.ndim == 2}
+    sizes |= {name: len(values) for name, (_, values) in given.items() if values.ndim == 2}
+    if len(set(sizes.values()) - {1}) > 1:
+        listed = ", ".join(f"{name} has {size}" for name, size in sizes.items())
+        raise ValueError(f"all must have the same number of runs: {listed}")
+    many = next((size for size in sizes.values() if size != 1), 1)
+    values = np.tile(system._values, (many, 1))
+    for parameter, of in given.values():
+        values[:, parameter.start : parameter.start + of.shape[-1]] = of
+    rows = {name: np.ascontiguousarray(np.broadcast_to(of, (many, n))) for name, of in states.items()}
+    end = None if until is None else number(until, "until")
+    listed_times = None
+    if times is not None:
+        wanted = array(times, "times")
+        if wanted.ndim != 1:
+            raise ValueError(f"times must be a list of times, not of shape {wanted.shape}")
+        finite(wanted, "times")
+        listed_times = wanted.tolist()
+    limit = _threads(threads)
+    (ts, qs, ps), errors = system._kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit)
+    shape = (many,) if listed_times is None else (many, len(listed_times))
+    differing = {name: of[..., 0] if parameter.length is None else of for name, (parameter, of) in given.items()}
+    return Ensemble(
+        system.copy(), ts.reshape(shape), qs.reshape(*shape, n), ps.reshape(*shape, n), errors, values, differing
+    )
+
+
+def _states(value: ArrayLike, name: str, cls: type[System]) -> Array:
+    found = array(value, name)
+    n = len(cls.coordinates)
+    if found.ndim not in (1, 2) or found.shape[-1] != n:
+        names = ", ".join(cls.coordinates)
+        raise ValueError(f"{name} must have the shape (M, {n}) or ({n},), of {names}, not {found.shape}")
+    finite(found, name)
+    return found
+
+
+def _values(parameter: Any, value: ArrayLike) -> Array:
+    """The values of a parameter: (M, 1) for a number, (M, K) for an array; (1, …) for all runs."""
+    found = array(value, parameter.name)
+    finite(found, parameter.name)
+    length = parameter.length or 1
+    if parameter.length is None and found.ndim <= 1:
+        return found.reshape(-1, 1)
+    if parameter.length is not None and found.ndim in (1, 2) and found.shape[-1] == length:
+        return found.reshape(-1, length)
+    wanted = "(M,)" if parameter.length is None else f"(M, {length})"
+    raise ValueError(f"{parameter.name} must have the shape {wanted}, not {found.shape}")
+
+
+def _threads(threads: int | None) -> int:
+    """A number of threads: by default one for each core that this process may use."""
+    if threads is not None:
+        return min(count(threads, "threads", 1), 1024)
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,138 @@
+"""The reasons why a step fails, as exceptions of one family for all modules."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ._solution import Solution
+
+
+class StepError(ArithmeticError):
+    """A step failed. The numbers of the failure are attributes.
+
+    `reason` is the message without advice, `fields` has all attributes, and `solution` the rows up to the failure if
+    a run was under way.
+    """
+
+    __module__ = "variational"
+
+    reason: str
+    fields: dict[str, Any]
+    solution: Solution | None
+
+    def __init__(self, message: str = "", reason: str | None = None, fields: Mapping[str, Any] | None = None):
+        super().__init__(message)
+        self.reason = message if reason is None else reason
+        self.fields = dict(fields or {})
+        self.solution = None
+        self.__dict__.update(self.fields)
+
+    def __reduce__(self):
+        return (type(self), (str(self), self.reason, self.fields), {"solution": self.solution})
+
+
+FIELDS: dict[str, dict[str, str]] = {
+    "NoForwardStep": {"t": "float", "h": "float", "excess": "float", "density": "float"},
+    "NoForwardGaussStep": {
+        "t": "float", "h": "float", "stages": "int", "excess": "float", "density": "float", "shift": "float",
+        "largest": "float",
+    },
+    "ShiftTooLarge": {
+        "t": "float", "h": "float", "shift": "float", "part": "float", "size": "float", "shorter": "float",
+    },
+    "DegenerateStep": {"t": "float", "h": "float", "density": "float"},
+    "StepRatio": {"t": "float", "previous": "float", "found": "float"},
+    "StepBounds": {"t": "float", "found": "float", "h_min": "float", "h_max": "float"},
+    "NotConverged": {
+        "t": "float", "h": "float", "iterations": "int", "residual": "float", "residuals": "list[float]",
+    },
+    "StagesUnsettled": {
+        "t": "float", "h": "float", "iterations": "int", "change": "float", "contraction": "float",
+        "stiffness": "float",
+    },
+    "TimeScale": {"t": "float", "g": "float"},
+    "NoTimeScale": {"system": "str"},
+    "NoRule": {"system": "str"},
+    "Ambiguous": {"t": "float"},
+    "Singular": {"t": "float", "matrix": "str"},
+    "NonFinite": {"t": "float", "quantity": "str", "expression": "str | None"},
+    "CannotLeave": {"t": "float", "event": "int", "value": "float", "within": "float"},
+    "NoDerivative": {"t": "float", "because": "str"},
+    "UnknownParameter": {"system": "str", "parameters": "list[str]"},
+    "OtherSystem": {"system": "str", "parameter": "str | None", "stored": "float", "given": "float"},
+    "Tolerance": {"t": "float", "estimate": "float", "tolerance": "float"},
+    "InvalidInput": {"input": "str", "allowed": "str", "value": "float"},
+}  # fmt: skip
+"""The exceptions, and the types of their attributes."""
+
+ABOUT: dict[str, str] = {
+    "NoForwardStep": "No energy-preserving step exists past this point.",
+    "NoForwardGaussStep": "No energy-preserving step with stages exists past this point.",
+    "ShiftTooLarge": "The shift of the step density outweighs the energy.",
+    "DegenerateStep": "The step density vanishes, so that the step length is not determined.",
+    "StepRatio": "The length of the only forward step differs too much from that of the last step.",
+    "StepBounds": "The step that solves the equations is shorter or longer than allowed.",
+    "NotConverged": "The Newton iteration ended above the rounding floor.",
+    "StagesUnsettled": "The stages of a Gauss step did not converge.",
+    "TimeScale": "The time scale g of dt = g dτ is not positive, not finite, or too small.",
+    "NoTimeScale": "The method steps in transformed time, but the system has no time scale.",
+    "NoRule": "The method needs a quadrature rule, but the system declares none.",
+    "Ambiguous": "Two velocities have the same momenta.",
+    "Singular": "A matrix to invert is singular.",
+    "NonFinite": "A quantity is infinite or not a number.",
+    "CannotLeave": "The trajectory cannot leave the zero of an event.",
+    "NoDerivative": "The step has no derivative.",
+    "UnknownParameter": "The system has no parameter of the given name.",
+    "OtherSystem": "The checkpoint belongs to another system, or to other parameters.",
+    "Tolerance": "The error of a step exceeds the tolerance.",
+    "InvalidInput": "An input is outside of its allowed range.",
+}
+
+_BESIDE_ENERGY = 'continue with fallback=True, or with method="gauss"'
+
+ADVICE: dict[str, str] = {
+    "NoForwardStep": _BESIDE_ENERGY + ' or "fixed" and h={h:.3g}; with stages=1 and shift_from=duration, steps exist',
+    "StepRatio": _BESIDE_ENERGY + ' or "fixed" and h={previous:.3g}; with stages=1 and shift_from=duration, steps exist',
+    "DegenerateStep": _BESIDE_ENERGY + ' or "fixed" and h={h:.3g}',
+    "StepBounds": _BESIDE_ENERGY,
+    "NoForwardGaussStep": 'use shift={twice:.3e}, which exceeds the largest |D| so far, fallback=True, or method="gauss" with h={h:.3g}',
+    "ShiftTooLarge": "start with h={shorter:.1g} or shorter",
+    "NotConverged": "take a step shorter than h={h:.3g}",
+    "StagesUnsettled": "take a step shorter than h={h:.3g}",
+    "TimeScale": "take a shorter dtau, or write a time_scale that stays well above zero",
+    "NoTimeScale": "write the clause `time_scale = …;` in its definition, or use h= in place of dtau=",
+    "NoRule": 'add `discretize midpoint;` to its definition, or use method="gauss"',
+    "Ambiguous": "write a Lagrangian with one branch",
+    "CannotLeave": "set the velocity toward the zero to zero with run.set_state, or search without event {event}",
+    "OtherSystem": "restart with the parameters of the checkpoint",
+    "Tolerance": "take a shorter h, a method of higher order, or a larger tolerance",
+}
+"""What to do, in the words of this package."""
+
+__all__ = ["StepError", *FIELDS]
+
+for _name in FIELDS:
+    globals()[_name] = type(
+        _name,
+        (StepError, ValueError) if _name == "InvalidInput" else (StepError,),
+        {"__module__": "variational", "__doc__": ABOUT[_name], "__annotations__": dict(FIELDS[_name])},
+    )
+
+
+def _exception(variant: str, reason: str, fields: Mapping[str, Any]) -> StepError:
+    """The exception of a failed step: Rust calls this with the name and the fields of its error."""
+    message = reason
+    numbers = {**fields, "twice": 2.0 * fields.get("largest", 0.0), "h": abs(fields.get("h", 0.0))}
+    if variant == "NotConverged" and numbers["h"] == 0.0:
+        message += "; start from the momenta of a velocity, or take a shorter h"
+    elif variant in ADVICE:
+        message += "; " + ADVICE[variant].format_map(numbers)
+    return globals().get(variant, StepError)(message, reason, fields)
+
+
+def _invalid(input: str, allowed: str, value: float) -> StepError:
+    """The exception of an input that this package finds wrong."""
+    message = f"{input} must be {allowed}, not {value!r}"
+    return InvalidInput(message, message, {"input": input, "allowed": allowed, "value": value})  # type: ignore[name-defined]  # noqa: F821

@@ -1,0 +1,30 @@
+"""The mathematics of a system, for reading and for Jupyter."""
+
+from __future__ import annotations
+
+
+class Explanation:
+    """The mathematics of a system: `text`, and `sections` of (left, right) in LaTeX; words have an empty left side."""
+
+    def __init__(self, title: str, text: str, sections: list[tuple[str, list[tuple[str, str]]]]):
+        self.title = title
+        self.text = text
+        self.sections = sections
+
+    def __repr__(self) -> str:
+        return self.text
+
+    def equations(self) -> str:
+        """The equations of the first section that has some, in LaTeX."""
+        for _, lines in self.sections:
+            rows = [f"{left} &= {right}" for left, right in lines if left]
+            if rows:
+                return "$$\\begin{aligned}" + " \\\\ ".join(rows) + "\\end{aligned}$$"
+        return ""
+
+    def _repr_markdown_(self) -> str:
+        parts = [f"### {self.title}"]
+        for title, lines in self.sections:
+            parts.append(f"**{title}**")
+            parts += [f"$${left} = {right}$$" if left else f"- {right}" for left, right in lines]
+        return "\n\n".join(parts)

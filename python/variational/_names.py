@@ -1,0 +1,39 @@
+"""Names of coordinates and parameters in Python.
+
+Python's tokenizer normalizes names (NFKC): ϕ, ϵ and µ become φ, ε and μ. A parameter `lambda` becomes `lambda_`.
+"""
+
+from __future__ import annotations
+
+import difflib
+import keyword
+import re
+import unicodedata
+from collections.abc import Iterable
+
+
+def spelled(name: str) -> str:
+    """A declared name as Python spells it."""
+    name = unicodedata.normalize("NFKC", name)
+    return name + "_" if keyword.iskeyword(name) else name
+
+
+def course(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, int]:
+    """Whether "x" or "dot(x)" names a velocity, and the index of the coordinate.
+
+    Raises KeyError for another name.
+    """
+    if not isinstance(name, str):
+        raise TypeError(f'{system} has rows by the name of a coordinate, such as ["{coordinates[0]}"], not by {name!r}')
+    inner = re.fullmatch(r"\s*dot\((.*)\)\s*", name)
+    found = unicodedata.normalize("NFKC", (inner[1] if inner else name).strip())
+    if found not in coordinates:
+        known = ", ".join([*coordinates, *(f"dot({name})" for name in coordinates)])
+        raise KeyError(f"{system} has no coordinate {found!r}{meant(found, coordinates)}; it has {known}")
+    return inner is not None, coordinates.index(found)
+
+
+def meant(name: str, known: Iterable[str]) -> str:
+    """`, did you mean …?` if a known name is close."""
+    close = difflib.get_close_matches(name, list(known), n=1)
+    return f", did you mean {close[0]!r}?" if close else ""

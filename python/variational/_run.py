@@ -1,0 +1,329 @@
+"""Runs: they take steps, and change on the way."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._arrays import Array, array, count, finite, number, real, vector
+from ._events import Watched, descriptions
+from ._solution import Events, Solution
+
+if TYPE_CHECKING:
+    from ._system import System
+
+
+class LocalError(NamedTuple):
+    """The error of one step: of the coordinates, and of the velocities times its length."""
+
+    q: Array
+    hv: Array
+
+
+class ErrorEstimate(NamedTuple):
+    """The largest error of a step, relative to the excursion of its coordinate."""
+
+    estimate: float
+    t: float
+    coordinate: str
+
+
+class Run:
+    """A run. It holds the last node: time `t`, coordinates `q`, momenta `p`.
+
+    `step`, `steps`, `until`, `at` and `events` continue from there.
+    """
+
+    __slots__ = ("_cls", "_run")
+
+    def __init__(self, cls: type[System], run: Any):
+        self._cls = cls
+        self._run = run
+
+    @property
+    def t(self) -> float:
+        """Time of the last node."""
+        return self._run.t
+
+    @property
+    def q(self) -> Array:
+        """Coordinates of the last node."""
+        return self._run.q
+
+    @property
+    def p(self) -> Array:
+        """Momenta of the last node."""
+        return self._run.p
+
+    @property
+    def v(self) -> Array:
+        """Velocities of the last node."""
+        return self._run.v
+
+    @property
+    def h(self) -> float:
+        """Length of the last step; before the first one the requested length."""
+        return self._run.h
+
+    @property
+    def energy(self) -> float:
+        """The energy H at the last node."""
+        return self._run.energy
+
+    @property
+    def discrete_energy(self) -> float | None:
+        """The discrete energy of the last step, which energy-preserving steps preserve; None without such a step."""
+        return self._run.discrete_energy
+
+    @property
+    def shifted_energy(self) -> float | None:
+        """The energy that steps with a shift preserve; None for other steps."""
+        found = self._run.shifted_energy
+        return None if found is None else found[0]
+
+    @property
+    def shift(self) -> float | None:
+        """The shift of the step density; None without a shift."""
+        found = self._run.shifted_energy
+        return None if found is None else found[1]
+
+    @property
+    def system(self) -> System:
+        """A copy of the system with the present parameters. `set` changes those of the run."""
+        return self._cls._of(self._run.parameters)
+
+    def __repr__(self) -> str:
+        method, stages, is_transformed = self._run.integrator
+        name = method + (f", stages={stages}" if stages else "") + (", transformed time" if is_transformed else "")
+        return f"<Run of {self.system!r} by {name}: t = {self.t:g}, h = {self.h:g}>"
+
+    def step(self, h: float | None = None) -> Run:
+        """Takes one step, of the length h if given, and returns the run."""
+        self._run.step(None if h is None else real(h, "h"))
+        return self
+
+    def until(
+        self,
+        t: float,
+        every: int = 1,
+        *,
+        dense: bool = False,
+        callback: Callable[[Run], Any] | None = None,
+        on_error: str = "raise",
+    ) -> Solution:
+        """Takes steps to the time t, where the last of them ends.
+
+        Returns the start, each `every`th node, and the end. With `dense=True` the solution is a function of time.
+        After each `every`th step it calls `callback(run)`, which may change the run, and which ends it by returning
+        True. A failed step raises StepError, whose attribute `solution` has the rows so far; with
+        `on_error="return"` the solution is returned, and has the exception as `error`.
+        """
+        end = number(t, "t")
+        return self._advance(end, None, every, dense, callback, on_error)
+
+    def steps(
+        self,
+        count: int,
+        every: int = 1,
+        *,
+        dense: bool = False,
+        callback: Callable[[Run], Any] | None = None,
+        on_error: str = "raise",
+    ) -> Solution:
+        """Takes so many steps; the rest as `until`."""
+        return self._advance(None, _count(count, "the number of steps"), every, dense, callback, on_error)
+
+    def _advance(
+        self, end: float | None, steps: int | None, every: int, dense: bool, callback: Any, on_error: str
+    ) -> Solution:
+        every = _count(every, "every", 1)
+        _check_on_error(on_error)
+        system = self.system
+        if callback is None:
+            rows, error, polynomials = self._run.advance(end, steps, every, bool(dense))
+            return _finished(Solution(system, *rows, error, polynomials), on_error)
+        if dense:
+            raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
+        if not callable(callback):
+            raise TypeError(f"callback must be a function of the run, not {callback!r}")
+        parts, left, error = [], steps, None
+        # At most `every` steps at a time, so that the callback sees each row.
+        while error is None and (left is None or left > 0) and (end is None or self.t != end):
+            few = every if left is None else min(every, left)
+            rows, error, _ = self._run.advance(end, few, few, False)
+            parts.append(rows)
+            if left is not None:
+                left -= few
+            if error is None and callback(self) is True:
+                break
+        if not parts:
+            rows, error, _ = self._run.advance(end, steps, every, False)
+            parts.append(rows)
+        # Each part begins with the row that ends the one before.
+        columns = [np.concatenate([parts[0][i], *(part[i][1:] for part in parts[1:])]) for i in range(3)]
+        return _finished(Solution(system, *columns, error), on_error)
+
+    def at(self, times: ArrayLike, *, on_error: str = "raise") -> Solution:
+        """The states at times in the order of the run, as accurate as nodes. The run keeps its own steps."""
+        _check_on_error(on_error)
+        wanted = array(times, "times")
+        if wanted.ndim > 1:
+            raise ValueError(f"times must be a list of times, not of shape {wanted.shape}")
+        wanted = np.ascontiguousarray(wanted.reshape(-1))
+        finite(wanted, "times")
+        if wanted.size:
+            direction = np.sign(self.h)
+            if np.any(np.diff(wanted) * direction < 0.0):
+                order = "ascending" if direction > 0 else "descending, since h is negative"
+                raise ValueError(f"times must be {order}")
+        rows, error, _ = self._run.at(wanted)
+        return _finished(Solution(self.system, *rows, error), on_error)
+
+    def events(self, events: Watched | Iterable[Watched], until: float, *, on_error: str = "raise") -> Events:
+        """Takes steps to the time `until`, and returns the events on the way, located to rounding."""
+        return self._events(events, until, False, on_error)
+
+    def next_event(self, events: Watched | Iterable[Watched], until: float, *, on_error: str = "raise") -> Events:
+        """Takes steps to the first event, where the run stops, or to the time `until`: then no row is returned."""
+        return self._events(events, until, True, on_error)
+
+    def _events(self, events: Any, until: float, is_first: bool, on_error: str) -> Events:
+        _check_on_error(on_error)
+        end = number(until, "until")
+        rows, error, met = self._run.events(descriptions(events, self._cls), end, is_first)
+        which = np.array([index for index, _ in met], dtype=np.intp)
+        rising = np.array([rises for _, rises in met], dtype=np.bool_)
+        return _finished(Events(self.system, *rows, error, which, rising), on_error)
+
+    def set(self, **parameters: Any) -> Run:
+        """Changes parameters from here on. Coordinates and momenta stay."""
+        cls = self._cls
+        changes = [(cls._parameter(name), value) for name, value in parameters.items()]
+        pairs = [(parameter.indices, parameter.numbers(value).tolist()) for parameter, value in changes]
+        self._run.set_parameters([pair for indices, values in pairs for pair in zip(indices, values)])
+        return self
+
+    def set_state(
+        self,
+        *,
+        t: float | None = None,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        p: ArrayLike | None = None,
+    ) -> Run:
+        """Continues from another state, for example after an impact. What is not given stays; without v the momenta
+        stay."""
+        if v is not None and p is not None:
+            raise TypeError("give one of v and p, not both")
+        names = self._cls.coordinates
+        t = self.t if t is None else number(t, "t")
+        q = self.q if q is None else vector(q, len(names), "q", names)
+        if v is not None:
+            p = self.system.momentum(t, q, vector(v, len(names), "v", names))
+        p = self.p if p is None else vector(p, len(names), "p", names)
+        self._run.set_state(t, q, p)
+        return self
+
+    def tangent(self, steps: int, wrt: Sequence[str] = ()) -> dict[str, Array]:
+        """Takes steps, and returns the derivatives of (q, p) at their end, exact to rounding.
+
+        The matrices "q" and "p" (2N, N) are with respect to the start; each name in `wrt` adds the derivative with
+        respect to this parameter: (2N,), or (2N, K) for an array.
+        """
+        n = len(self._cls.coordinates)
+        names, indices = self._wrt(wrt)
+        columns = self._run.tangent(_count(steps, "the number of steps"), indices).T
+        found = {"q": columns[:, :n].copy(), "p": columns[:, n : 2 * n].copy()}
+        return {**found, **self._split(columns[:, 2 * n :], names)}
+
+    def gradient(
+        self, steps: int, *, q: ArrayLike | None = None, p: ArrayLike | None = None, wrt: Sequence[str] = ()
+    ) -> dict[str, Array]:
+        """Takes steps, and returns the gradient of a function of their end by one backward pass.
+
+        q and p are the derivatives of that function with respect to (q, p) at the end. The result has its gradients
+        with respect to "q" and "p" at the start, and to each parameter in `wrt`.
+        """
+        names_of, n = self._cls.coordinates, len(self._cls.coordinates)
+        if q is None and p is None:
+            raise TypeError("give q or p: the derivatives of the function at the end")
+        slope = [np.zeros(n) if x is None else vector(x, n, name, names_of) for x, name in ((q, "q"), (p, "p"))]
+        names, indices = self._wrt(wrt)
+        found = self._run.gradient(_count(steps, "the number of steps"), np.concatenate(slope), indices)
+        return {"q": found[:n].copy(), "p": found[n : 2 * n].copy(), **self._split(found[2 * n :], names)}
+
+    def _wrt(self, wrt: Sequence[str]) -> tuple[list[str], list[int]]:
+        names = [wrt] if isinstance(wrt, str) else list(wrt)
+        parameters = [self._cls._parameter(name) for name in names]
+        return names, [index for parameter in parameters for index in parameter.indices]
+
+    def _split(self, columns: Array, names: list[str]) -> dict[str, Array]:
+        """The last axis by parameters."""
+        found, start = {}, 0
+        for name in names:
+            parameter = self._cls._parameter(name)
+            part = columns[..., start : start + len(parameter.indices)]
+            start += len(parameter.indices)
+            found[name] = part.copy() if parameter.length is not None else part[..., 0].copy()
+        return found
+
+    def local_error(self) -> LocalError:
+        """The error of the next step, by half steps. The run does not change."""
+        return LocalError(*self._run.local_error())
+
+    def monitor(self) -> Run:
+        """Measures errors of the steps from here on, for `error_estimate`. It changes no bit of them."""
+        self._run.monitor()
+        return self
+
+    @property
+    def error_estimate(self) -> ErrorEstimate | None:
+        """The largest error of a step since `monitor()`, relative to the excursion of its coordinate."""
+        found = self._run.largest_error
+        if found is None:
+            return None
+        estimate, t, index = found
+        return ErrorEstimate(estimate, t, self._cls.coordinates[index])
+
+    def __copy__(self) -> Run:
+        return Run(self._cls, self._run.copy())
+
+    def __deepcopy__(self, memo: Any) -> Run:
+        return self.__copy__()
+
+    def copy(self) -> Run:
+        """The same run once more: both continue alike, bit for bit."""
+        return self.__copy__()
+
+    def checkpoint(self) -> bytes:
+        """Everything that the run carries, for `pickle.loads`, which restarts it bit for bit."""
+        return pickle.dumps(self)
+
+    def __reduce__(self) -> Any:
+        return (_restarted, (self.system, self._run.integrator, self._run.checkpoint()))
+
+
+def _restarted(system: System, integrator: tuple[str, int | None, bool], stored: str) -> Run:
+    return Run(type(system), system._kind.restart(system._values, integrator, stored))
+
+
+def _finished(solution: Any, on_error: str) -> Any:
+    """The solution, or its exception."""
+    error = solution.error
+    if error is not None:
+        if on_error == "raise":
+            error.solution = solution
+            raise error
+    return solution
+
+
+def _check_on_error(on_error: str) -> None:
+    if on_error not in ("raise", "return"):
+        raise ValueError(f'on_error must be "raise" or "return", not {on_error!r}')
+
+
+_count = count

@@ -1,0 +1,173 @@
+"""The rows of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._arrays import Array, array, finite
+from ._names import course
+
+if TYPE_CHECKING:
+    from ._errors import StepError
+    from ._system import System
+
+
+class Solution:
+    """The rows of a run: `t` (K,), `q`, `p`, `v` (K, N), `energy` (K,).
+
+    `sol["x"]` and `sol["dot(x)"]` are the values of a coordinate and of its velocity. Names and shapes of
+    `scipy.integrate.solve_ivp` are there too: `y` = (q, v) of shape (2N, K), `success`, `status`, `message`, and with
+    `dense=True` the call `sol(t)`.
+    """
+
+    def __init__(
+        self, system: System, t: Array, q: Array, p: Array, error: StepError | None = None, dense: Any = None
+    ):
+        self.system = system
+        self.t = t
+        self.q = q
+        self.p = p
+        self.error = error
+        self._dense = dense
+
+    @cached_property
+    def v(self) -> Array:
+        """Velocities."""
+        return self.system.velocity(self.t, self.q, self.p)
+
+    @cached_property
+    def energy(self) -> Array:
+        """The energy H."""
+        return np.asarray(self.system._at("hamiltonian", self.t, self.q, self.p, False, "p"))
+
+    @property
+    def y(self) -> Array:
+        """(q, v), of shape (2N, K) as in scipy."""
+        return np.concatenate([self.q, self.v], axis=-1).T
+
+    @property
+    def success(self) -> bool:
+        """Whether the run reached its end."""
+        return self.error is None
+
+    @property
+    def status(self) -> int:
+        """0 if the run reached its end, otherwise -1."""
+        return 0 if self.success else -1
+
+    @property
+    def message(self) -> str:
+        """Why the run ended."""
+        return "The run reached its end." if self.error is None else str(self.error)
+
+    @property
+    def sol(self) -> Solution | None:
+        """The solution itself if it has dense output: scipy's name."""
+        return None if self._dense is None else self
+
+    def __call__(self, t: ArrayLike) -> Array:
+        """(q, v) at times between the first and the last row: shape (2N,) at one time, (2N, K) at K times."""
+        q, _, v = self.states(t)
+        return np.concatenate([q, v], axis=-1).T
+
+    def states(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        """q, p and v at times between the first and the last row, by dense output: shape (N,) or (K, N)."""
+        if self._dense is None:
+            raise ValueError("this solution has no dense output: call until or steps with dense=True")
+        times = array(t, "t")
+        finite(times, "t")
+        if times.ndim > 1:
+            raise ValueError(f"t must be one time or a list of times, not of shape {times.shape}")
+        first, last = sorted((self.t[0], self.t[-1]))
+        if times.size and (times.min() < first or times.max() > last):
+            outside = times[(times < first) | (times > last)] if times.ndim else times
+            raise ValueError(
+                f"t = {float(np.ravel(outside)[0])!r} is outside of the solution, from {float(first)!r} to {float(last)!r}"
+            )
+        if len(self._dense) == 0:
+            # A run that took no step.
+            q, p, v = (np.repeat(of[:1], times.size, axis=0) for of in (self.q, self.p, self.v))
+        else:
+            q, p, v = self._dense(np.ascontiguousarray(times.reshape(-1)))
+        return (q, p, v) if times.ndim else (q[0], p[0], v[0])
+
+    def __getitem__(self, name: str) -> Array:
+        """A coordinate, `sol["x"]`, or its velocity, `sol["dot(x)"]`."""
+        is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
+        return (self.v if is_velocity else self.q)[..., index]
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    # `sol["x"]` would otherwise make a solution a sequence of its names.
+    __iter__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        name = type(self).__name__
+        if not len(self):
+            return f"<{name} of {self.system!r}: no rows>"
+        failed = "" if self.error is None else f", ended by {type(self.error).__name__}"
+        rows = "1 row" if len(self) == 1 else f"{len(self)} rows"
+        return f"<{name} of {self.system!r}: {rows}, t = {self.t[0]:g} to {self.t[-1]:g}{failed}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Dense output is not pickled: it belongs to the compiled module.
+        return {**self.__dict__, "_dense": None}
+
+    def _columns(self) -> Iterator[tuple[str, Array]]:
+        names = self.system.coordinates
+        yield "t", self.t
+        for label, values in (("{}", self.q), ("dot({})", self.v), ("p_{}", self.p)):
+            for index, name in enumerate(names):
+                yield label.format(name), values[:, index]
+        yield "energy", self.energy
+
+    def to_dataframe(self) -> Any:
+        """The rows as a pandas DataFrame with the columns t, q, dot(q), p_q and energy."""
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_dataframe needs pandas: pip install pandas") from None
+        return pandas.DataFrame(dict(self._columns()))
+
+    def plot(self, axes: Any = None) -> Any:
+        """Plots the coordinates and the energy error over time; returns the two axes of matplotlib."""
+        try:
+            import matplotlib.pyplot as plt
+        except ImportError:
+            raise ImportError("plot needs matplotlib: pip install matplotlib") from None
+        if axes is None:
+            _, axes = plt.subplots(2, 1, sharex=True, layout="constrained")
+        above, below = axes
+        for index, name in enumerate(self.system.coordinates):
+            above.plot(self.t, self.q[:, index], label=name)
+        if len(self.system.coordinates) <= 10:
+            above.legend(loc="upper right")
+        above.set_ylabel("coordinates")
+        if len(self):
+            below.plot(self.t, self.energy - self.energy[0])
+        below.set(xlabel="t", ylabel="H - H(start)")
+        return axes
+
+
+class Events(Solution):
+    """The events of a run: a row for each, `which` of the given events it is, and whether its function `rising`."""
+
+    def __init__(
+        self, system: System, t: Array, q: Array, p: Array, error: StepError | None, which: Array, rising: Array
+    ):
+        super().__init__(system, t, q, p, error)
+        self.which = which
+        self.rising = rising
+
+    def of(self, index: int) -> Events:
+        """The rows of one of the given events."""
+        rows = self.which == index
+        return Events(
+            self.system, self.t[rows], self.q[rows], self.p[rows], self.error, self.which[rows], self.rising[rows]
+        )

@@ -1,0 +1,338 @@
+"""Mechanical systems: their parameters and functions, and how runs begin."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._arrays import Array, array, finite, number, real, vector
+from ._ensemble import Ensemble, ensemble
+from ._errors import _invalid
+from ._explanation import Explanation
+from ._names import meant
+from ._run import Run
+
+
+class Parameter:
+    """A parameter of a system. An array is returned as a copy that cannot be written: assign the whole array."""
+
+    def __init__(self, name: str, start: int, length: int | None, default: Any, about: str):
+        self.name, self.start, self.length, self.default = name, start, length, default
+        self.__doc__ = about or f"Parameter {name}."
+
+    @property
+    def indices(self) -> range:
+        """Its places among the numbers of the system."""
+        return range(self.start, self.start + (1 if self.length is None else self.length))
+
+    def __get__(self, system: System | None, owner: type | None = None) -> Any:
+        if system is None:
+            return self
+        if self.length is None:
+            return float(system._values[self.start])
+        values = system._values[self.start : self.start + self.length].copy()
+        values.flags.writeable = False
+        return values
+
+    def __set__(self, system: System, value: ArrayLike) -> None:
+        numbers = self.numbers(value)
+        system._values[self.start : self.start + len(numbers)] = numbers
+
+    def numbers(self, value: ArrayLike) -> Array:
+        """A value of this parameter as an array; one number stands for all entries of an array."""
+        if self.length is None:
+            return np.array([number(value, self.name)])
+        found = array(value, self.name)
+        if found.shape not in ((), (self.length,)):
+            raise ValueError(f"{self.name} must have {self.length} entries, not the shape {found.shape}")
+        finite(found, self.name)
+        return np.broadcast_to(found, (self.length,))
+
+
+class System:
+    """A mechanical system with its parameters: the base of the classes of all systems."""
+
+    __slots__ = ("_values",)
+    __hash__ = None  # type: ignore[assignment]
+
+    _kind: ClassVar[Any] = None
+    _defaults: ClassVar[Array]
+    coordinates: ClassVar[tuple[str, ...]] = ()
+    """Names of the coordinates."""
+    parameters: ClassVar[tuple[str, ...]] = ()
+    """Names of the parameters."""
+    integrators: ClassVar[tuple[tuple[str, int | None, bool], ...]] = ()
+    """Method, stages, and whether in transformed time, of each integrator that is built."""
+    definition: ClassVar[str] = ""
+    """The text of the declaration."""
+
+    def __init__(self, **parameters: Any):
+        if self._kind is None:
+            raise TypeError("System is the base of all systems: use one of vi.systems, or vi.compile")
+        self._values = self._defaults.copy()
+        self.set(**parameters)
+
+    def set(self, **parameters: Any) -> System:
+        """Sets parameters, and returns the system. If one is wrong, none is set."""
+        changes = [(self._parameter(name), value) for name, value in parameters.items()]
+        for parameter, numbers in [(parameter, parameter.numbers(value)) for parameter, value in changes]:
+            self._values[parameter.start : parameter.start + len(numbers)] = numbers
+        return self
+
+    @classmethod
+    def _parameter(cls, name: str) -> Parameter:
+        if name not in cls.parameters:
+            known = ", ".join(cls.parameters) or "none"
+            raise TypeError(f"{cls.__name__} has no parameter {name!r}{meant(name, cls.parameters)}; it has {known}")
+        return cls.__dict__[name]
+
+    def __repr__(self) -> str:
+        values = (f"{name}={_shown(getattr(self, name))}" for name in self.parameters)
+        return f"{type(self).__name__}({', '.join(values)})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, System):
+            return NotImplemented
+        return type(self) is type(other) and np.array_equal(self._values, other._values)
+
+    def __copy__(self) -> System:
+        return type(self)._of(self._values)
+
+    def __deepcopy__(self, memo: Any) -> System:
+        return self.__copy__()
+
+    def copy(self) -> System:
+        """A system with the same parameters."""
+        return self.__copy__()
+
+    def __reduce__(self) -> Any:
+        cls = type(self)
+        # A compiled system is known by its text. It is compiled again if it is not in the cache.
+        source = getattr(cls, "_source", None)
+        return (_unpickled, (cls.__module__, cls.__qualname__, cls.definition, source, self._values.tolist()))
+
+    @classmethod
+    def _of(cls, values: ArrayLike) -> System:
+        """The system with these numbers."""
+        system = cls.__new__(cls)
+        system._values = np.array(values, dtype=np.float64)
+        return system
+
+    def lagrangian(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Any:
+        """L(t, q, v). q and v have the shape (..., N); leading axes broadcast."""
+        return self._at("lagrangian", t, q, v, False)
+
+    def energy(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Any:
+        """The energy v·∂L/∂v − L at (t, q, v)."""
+        return self._at("energy", t, q, v, False)
+
+    def momentum(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
+        """The momenta p = ∂L/∂v at (t, q, v)."""
+        return self._at("momentum", t, q, v, True)
+
+    def velocity(self, t: ArrayLike, q: ArrayLike, p: ArrayLike) -> Array:
+        """The velocities of the momenta p at (t, q)."""
+        return self._at("velocity", t, q, p, True, "p")
+
+    def force(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
+        """The generalized force at (t, q, v)."""
+        return self._at("force", t, q, v, True)
+
+    def acceleration(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
+        """The acceleration at (t, q, v)."""
+        return self._at("acceleration", t, q, v, True)
+
+    def rhs(self, t: float, y: ArrayLike) -> Array:
+        """dy/dt of y = (q, v), for `scipy.integrate.solve_ivp`. y has the shape (2N,) or (2N, K)."""
+        n = len(self.coordinates)
+        y = array(y, "y")
+        if y.shape[:1] != (2 * n,):
+            raise ValueError(f"y must have {2 * n} entries, q and v, not the shape {y.shape}")
+        return np.concatenate([y[n:], self.acceleration(t, y[:n].T, y[n:].T).T])
+
+    def _at(self, of: str, t: ArrayLike, q: ArrayLike, v: ArrayLike, is_vector: bool, second: str = "v") -> Any:
+        n = len(self.coordinates)
+        t, q, v = array(t, "t"), array(q, "q"), array(v, second)
+        for x, name in ((q, "q"), (v, second)):
+            if x.shape[-1:] != (n,):
+                names = ", ".join(self.coordinates)
+                raise ValueError(f"the last axis of {name} must have length {n} ({names}), not the shape {x.shape}")
+        if t.ndim == 0 and q.ndim == 1 and v.ndim == 1:
+            shape: tuple[int, ...] = ()
+            points = (t.reshape(1), np.ascontiguousarray(q)[None], np.ascontiguousarray(v)[None])
+        else:
+            try:
+                shape = np.broadcast_shapes(t.shape, q.shape[:-1], v.shape[:-1])
+            except ValueError:
+                raise ValueError(
+                    f"t, q and {second} do not broadcast: their shapes are {t.shape}, {q.shape} and {v.shape}"
+                ) from None
+            times = np.ascontiguousarray(np.broadcast_to(t, shape)).reshape(-1)
+            points = (times, *(np.ascontiguousarray(np.broadcast_to(x, (*shape, n))).reshape(-1, n) for x in (q, v)))
+        out = self._kind.evaluate(self._values, of, *points)
+        if is_vector:
+            return out.reshape((*shape, n))
+        return out.reshape(shape) if shape else float(out[0])
+
+    def integrate(
+        self,
+        q: ArrayLike,
+        v: ArrayLike | None = None,
+        *,
+        p: ArrayLike | None = None,
+        t: float = 0.0,
+        h: float | None = None,
+        tolerance: float | None = None,
+        dtau: float | None = None,
+        method: str = "gauss",
+        stages: int | None = None,
+        shift: float | None = None,
+        shift_from: float | None = None,
+        fallback: bool = False,
+    ) -> Run:
+        """Starts a run at (t, q, v), or at (t, q, p) with momenta p. Without both it starts at rest.
+
+        Parameters
+        ----------
+        h : float
+            Length of a step; negative steps go back in time. For method="energy" the length of the first step.
+        tolerance : float
+            In place of h: the largest error of a step, relative to the excursion of its coordinate.
+        dtau : float
+            In place of h: length of a step in transformed time, for a system with a `time_scale`.
+        method : str
+            "gauss", "fixed", "suzuki-4", "kahan-li-6", "kahan-li-8" or "energy".
+        stages : int
+            Stages of Gauss steps, whose order is twice that number; of energy-preserving steps.
+        shift, shift_from : float
+            The shift of the step density of energy-preserving steps, or the duration over which it is measured.
+        fallback : bool
+            Whether to take fixed steps if no energy-preserving step exists.
+        """
+        n = len(self.coordinates)
+        request = _request(type(self), h, tolerance, dtau, method, stages, shift, shift_from, fallback)
+        if v is not None and p is not None:
+            raise TypeError("give one of v and p, not both")
+        q = vector(q, n, "q", self.coordinates)
+        v = None if v is None else vector(v, n, "v", self.coordinates)
+        p = None if p is None else vector(p, n, "p", self.coordinates)
+        if p is None and v is None:
+            v = np.zeros(n)
+        return Run(type(self), self._kind.begin(self._values, request, number(t, "t"), q, v, p))
+
+    def ensemble(
+        self,
+        q: ArrayLike,
+        v: ArrayLike | None = None,
+        *,
+        until: float | None = None,
+        times: ArrayLike | None = None,
+        t: float = 0.0,
+        h: float | None = None,
+        tolerance: float | None = None,
+        dtau: float | None = None,
+        method: str = "gauss",
+        stages: int | None = None,
+        shift: float | None = None,
+        shift_from: float | None = None,
+        fallback: bool = False,
+        parameters: Mapping[str, ArrayLike] | None = None,
+        threads: int | None = None,
+    ) -> Ensemble:
+        """Many runs on all cores, with the options of `integrate`.
+
+        q and v have the shape (M, N), or (N,) for all runs; `parameters={"l": lengths}` has a value (M,) for each.
+        Returns the states at the time `until`, of shape (M, N), or at K times, of shape (M, K, N). A failed run has
+        NaN from there on, and its exception in `errors`.
+        """
+        request = _request(type(self), h, tolerance, dtau, method, stages, shift, shift_from, fallback)
+        return ensemble(self, request, q, v, until, times, number(t, "t"), parameters or {}, threads)
+
+    def explain(self, stages: int | None = None) -> Explanation:
+        """The mathematics of the system: L, the discrete Lagrangian, the equations of a step. With stages, those of a
+        Gauss step."""
+        return Explanation(*_core.explain(self.definition, stages))
+
+    def _repr_latex_(self) -> str:
+        return self.explain().equations()
+
+
+_MOST = 1e6
+"""Steps over which a shift is measured: no signal interrupts them."""
+
+
+class _Request:
+    """Method and options of a run, as `_core` reads them."""
+
+    __slots__ = ("dtau", "fallback", "h", "method", "shift", "shift_from", "stages", "tolerance")
+
+
+def _request(
+    cls: type[System],
+    h: float | None,
+    tolerance: float | None,
+    dtau: float | None,
+    method: str,
+    stages: int | None,
+    shift: float | None,
+    shift_from: float | None,
+    fallback: bool,
+) -> _Request:
+    """The options of a run, checked."""
+    if (h is None) + (tolerance is None) + (dtau is None) != 2:
+        raise TypeError("give one of h, tolerance and dtau: h=0.05 is a step of this length")
+    built = {method for method, *_ in cls.integrators}
+    if method not in built:
+        known = ", ".join(f'"{name}"' for name in sorted(built))
+        close = meant(method, built) if isinstance(method, str) else ""
+        raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}")
+    if method != "energy" and (shift is not None or shift_from is not None or fallback):
+        raise ValueError('shift, shift_from and fallback are options of method="energy"')
+    if shift is not None and shift_from is not None:
+        raise TypeError("give one of shift and shift_from, not both")
+    if stages is not None and method not in ("gauss", "energy"):
+        raise ValueError(f"method={method!r} has no stages: leave out stages=")
+    request = _Request()
+    request.method, request.fallback = method, bool(fallback)
+    if stages is not None:
+        if isinstance(stages, bool) or not isinstance(stages, (int, np.integer)):
+            raise TypeError(f"stages must be an integer, not {stages!r}")
+        if stages < 1:
+            raise ValueError(f"stages must be at least 1, not {stages}")
+        stages = min(int(stages), 2**32)
+    request.stages = stages
+    request.h = None if h is None else real(h, "h")
+    request.tolerance = None if tolerance is None else real(tolerance, "tolerance")
+    request.dtau = None if dtau is None else real(dtau, "dtau")
+    request.shift = None if shift is None else number(shift, "shift")
+    request.shift_from = None if shift_from is None else number(shift_from, "shift_from")
+    for name in ("h", "dtau"):
+        value = getattr(request, name)
+        if value is not None and (value == 0.0 or not np.isfinite(value)):
+            raise _invalid(name, "finite and not zero", value)
+    if request.tolerance is not None and not 0.0 < request.tolerance < np.inf:
+        raise _invalid("tolerance", "positive and finite", request.tolerance)
+    if request.shift_from is not None and request.h is not None and not 0.0 < request.shift_from / request.h <= _MOST:
+        raise _invalid("shift_from", f"ahead, and at most {_MOST:g} steps of h", request.shift_from)
+    return request
+
+
+def _unpickled(module: str, name: str, definition: str, source: Any, values: list[float]) -> System:
+    if source is not None:
+        from ._compile import compile
+
+        cls = compile(source[0], methods=source[1])
+    else:
+        cls = getattr(importlib.import_module(module), name)
+    if cls.definition != definition:
+        raise ValueError(f"{name} had another definition when it was pickled")
+    return cls._of(values)
+
+
+def _shown(value: Any) -> str:
+    return f"{value:g}" if np.ndim(value) == 0 else np.array2string(np.asarray(value), separator=", ")

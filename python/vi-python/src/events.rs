@@ -1,0 +1,111 @@
+//! Events from Python: coordinates and velocities with values, periods, and Python functions.
+//!
+//! In: their descriptions. Out: the [`Section`]s of a search. A Python function that raises makes its event NaN, which
+//! ends the search; the exception is kept. One more function, of constant value, looks for Ctrl-C.
+
+use crate::failure::wrong;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use vi_erased::section::{Direction, Section, Watch};
+
+/// An event as Python describes it.
+#[derive(FromPyObject)]
+pub(crate) enum Description {
+    /// Whether of a velocity, the index of the coordinate, the value, and the direction.
+    Value(bool, usize, f64, i32),
+    /// The time of the first one, and the period.
+    Period(f64, f64),
+    /// A function g(t, q, v), and the direction.
+    Function(Py<PyAny>, i32),
+}
+
+/// The exception that a function raised.
+#[derive(Clone, Default)]
+pub(crate) struct Raised(Arc<Mutex<Option<PyErr>>>);
+
+impl Raised {
+    /// Takes the exception.
+    pub(crate) fn take(&self) -> Option<PyErr> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// Keeps the first exception.
+    fn keep(&self, error: PyErr) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    }
+
+    fn is_some(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+}
+
+/// Evaluations between two looks at signals.
+const PATIENCE: u32 = 1 << 14;
+
+/// The sections of these events for a system with n coordinates, the one that looks for signals last, and whether
+/// there are Python functions among them.
+///
+/// # Errors
+/// `ValueError` for an index beyond the coordinates.
+pub(crate) fn sections(events: Vec<Description>, n: usize, raised: &Raised) -> PyResult<(Vec<Section>, bool)> {
+    let mut sections = Vec::with_capacity(events.len() + 1);
+    let mut has_functions = false;
+    for event in events {
+        sections.push(match event {
+            Description::Value(_, index, ..) if index >= n => {
+                return Err(wrong(format!("there is no coordinate {index}: the system has {n}")));
+            }
+            Description::Value(true, index, at, to) => Section::Velocity { index, at, direction: direction(to) },
+            Description::Value(false, index, at, to) => Section::Coordinate { index, at, direction: direction(to) },
+            Description::Period(start, period) => Section::Period { start, period },
+            Description::Function(g, to) => {
+                has_functions = true;
+                function(g, to, raised.clone())
+            }
+        });
+    }
+    sections.push(signals(raised.clone()));
+    Ok((sections, has_functions))
+}
+
+fn direction(of: i32) -> Direction {
+    match of {
+        1.. => Direction::Rising,
+        0 => Direction::Both,
+        _ => Direction::Falling,
+    }
+}
+
+/// A Python function as an event.
+fn function(g: Py<PyAny>, to: i32, raised: Raised) -> Section {
+    let watch = move |t: f64, q: &[f64], v: &[f64]| {
+        if raised.is_some() {
+            return f64::NAN;
+        }
+        Python::attach(|py| {
+            let arguments = (t, PyArray1::from_slice(py, q), PyArray1::from_slice(py, v));
+            let value = g.bind(py).call1(arguments).and_then(|value| value.extract::<f64>());
+            value.unwrap_or_else(|error| {
+                raised.keep(error);
+                f64::NAN
+            })
+        })
+    };
+    Section::Function(Watch::new(watch), direction(to))
+}
+
+/// A constant function that looks for signals.
+fn signals(raised: Raised) -> Section {
+    let count = AtomicU32::new(0);
+    let watch = move |_: f64, _: &[f64], _: &[f64]| {
+        if count.fetch_add(1, Ordering::Relaxed).is_multiple_of(PATIENCE)
+            && let Err(error) = Python::attach(|py| py.check_signals())
+        {
+            raised.keep(error);
+        }
+        if raised.is_some() { f64::NAN } else { 1.0 }
+    };
+    Section::Function(Watch::new(watch), Direction::Rising)
+}

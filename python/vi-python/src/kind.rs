@@ -1,0 +1,188 @@
+//! The pyclass of a system's type.
+
+use crate::ensemble::{Ensemble, Output};
+use crate::failure::{Raise as _, wrong};
+use crate::request::Request;
+use crate::rows::{matrix, vector};
+use crate::run::Run;
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use vi_erased::System;
+use vi_erased::plan::{Method, Named as _, PhasePoint, Plan};
+use vi_erased::system::Quantity;
+
+/// A system's type.
+#[pyclass(frozen, module = "variational._core")]
+pub struct Kind {
+    of: Box<dyn System>,
+    n: usize,
+    parameters: Vec<(&'static str, f64)>,
+}
+
+impl Kind {
+    /// The type of a system; its parameters are the defaults.
+    pub(crate) fn new(of: Box<dyn System>) -> Self {
+        Self { n: of.coordinates().len(), parameters: of.parameters(), of }
+    }
+
+    /// The system with these parameters.
+    fn with(&self, values: &[f64]) -> PyResult<Box<dyn System>> {
+        let count = self.parameters.len();
+        if values.len() != count {
+            return Err(wrong(format!("{} has {count} parameters, not {}", self.of.name(), values.len())));
+        }
+        let mut system = self.of.copy();
+        for ((name, _), value) in self.parameters.iter().zip(values) {
+            system.set(name, *value);
+        }
+        Ok(system)
+    }
+}
+
+#[pymethods]
+impl Kind {
+    #[getter]
+    fn name(&self) -> &'static str {
+        self.of.name()
+    }
+
+    #[getter]
+    fn about(&self) -> &'static str {
+        self.of.about()
+    }
+
+    #[getter]
+    fn definition(&self) -> &'static str {
+        self.of.definition()
+    }
+
+    #[getter]
+    fn coordinates(&self) -> Vec<&'static str> {
+        self.of.coordinates()
+    }
+
+    /// Name, default and documentation of each parameter.
+    #[getter]
+    fn parameters(&self) -> Vec<(&'static str, f64, &'static str)> {
+        let about = self.of.parameters_about().iter().copied().chain(core::iter::repeat(""));
+        self.parameters.iter().zip(about).map(|((name, default), about)| (*name, *default, about)).collect()
+    }
+
+    /// Method, stages, and whether in transformed time, of each integrator.
+    #[getter]
+    fn integrators(&self) -> Vec<(&'static str, Option<usize>, bool)> {
+        self.of.integrators().into_iter().map(|(method, stages, transformed)| (method.name(), stages, transformed)).collect()
+    }
+
+    #[getter]
+    fn is_autonomous(&self) -> bool {
+        self.of.is_autonomous()
+    }
+
+    #[getter]
+    fn conserves_energy(&self) -> bool {
+        self.of.conserves_energy()
+    }
+
+    /// A function at points: t (K,), q and v (K, N). Returns (K,) numbers, or (K·N,) for a vector.
+    fn evaluate<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray1<'py, f64>,
+        of: &str,
+        t: PyReadonlyArray1<'py, f64>,
+        q: PyReadonlyArray2<'py, f64>,
+        v: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let quantity = match of {
+            "lagrangian" => Quantity::Lagrangian,
+            "energy" => Quantity::Energy,
+            "hamiltonian" => Quantity::Hamiltonian,
+            "momentum" => Quantity::Momentum,
+            "force" => Quantity::Force,
+            "acceleration" => Quantity::Acceleration,
+            "velocity" => Quantity::Velocity,
+            _ => return Err(wrong(format!("there is no function {of:?}"))),
+        };
+        let system = self.with(parameters.as_slice()?)?;
+        let count = t.len();
+        let (t, q, v) = (vector(&t, count, "t")?, matrix(&q, [count, self.n], "q")?, matrix(&v, [count, self.n], "v")?);
+        let mut out = Vec::new();
+        py.detach(|| system.evaluate(quantity, [&t, &q, &v], &mut out)).raise(py)?;
+        Ok(PyArray1::from_vec(py, out))
+    }
+
+    /// Starts a run from velocities, or from momenta.
+    #[pyo3(signature = (parameters, request, t, q, v=None, p=None))]
+    #[allow(clippy::too_many_arguments)] // Python's keywords
+    fn begin<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray1<'py, f64>,
+        request: Request,
+        t: f64,
+        q: PyReadonlyArray1<'py, f64>,
+        v: Option<PyReadonlyArray1<'py, f64>>,
+        p: Option<PyReadonlyArray1<'py, f64>>,
+    ) -> PyResult<Run> {
+        let system = self.with(parameters.as_slice()?)?;
+        let q = vector(&q, self.n, "q")?;
+        let v = v.map_or_else(|| Ok(vec![0.0; self.n]), |v| vector(&v, self.n, "v"))?;
+        let p = p.map(|p| vector(&p, self.n, "p")).transpose()?;
+        let plan = Plan { p, ..request.plan(&*system, t, q, v)? };
+        // A tolerance or a measured shift takes thousands of steps.
+        let run = py.detach(|| system.begin(&plan)).raise(py)?;
+        Ok(Run::new(run, (plan.method, plan.energy_stages().or(plan.gauss_stages()), plan.dtau.is_some())))
+    }
+
+    /// Restarts a stored run.
+    fn restart(
+        &self,
+        parameters: PyReadonlyArray1<'_, f64>,
+        integrator: (String, Option<usize>, bool),
+        stored: &str,
+    ) -> PyResult<Run> {
+        let (method, stages, is_transformed) = integrator;
+        let method = Method::named(&method).ok_or_else(|| wrong(format!("there is no method {method:?}")))?;
+        let start = PhasePoint { t: 0.0, q: vec![0.0; self.n], v: vec![0.0; self.n] };
+        let plan = Plan { stages, dtau: is_transformed.then_some(1.0), ..Plan::new(method, 1.0, start) };
+        let run = self.with(parameters.as_slice()?)?.restart(&plan, stored).map_err(wrong)?;
+        Ok(Run::new(run, (method, stages, is_transformed)))
+    }
+
+    /// Runs from many states over threads: the state at the time `until`, or the states at times, of each. Returns the
+    /// rows of all runs, and for each run `None` or the exception that ended it.
+    #[pyo3(signature = (parameters, request, t, q, v, until=None, times=None, threads=None))]
+    #[allow(clippy::too_many_arguments, clippy::type_complexity)] // Python's keywords
+    fn ensemble<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray2<'py, f64>,
+        request: Request,
+        t: f64,
+        q: PyReadonlyArray2<'py, f64>,
+        v: PyReadonlyArray2<'py, f64>,
+        until: Option<f64>,
+        times: Option<Vec<f64>>,
+        threads: Option<usize>,
+    ) -> PyResult<(Bound<'py, PyAny>, Vec<Option<Bound<'py, PyAny>>>)> {
+        let many = q.shape()[0];
+        let output = match (until, times) {
+            (None, Some(times)) => Output::Times(times),
+            (Some(end), None) => Output::End(end),
+            _ => return Err(wrong("give one of until and times")),
+        };
+        // Finds wrong options once, before the threads start.
+        request.plan(&*self.of, t, vec![0.0; self.n], vec![0.0; self.n])?;
+        let parameters = matrix(&parameters, [many, self.parameters.len()], "parameters")?;
+        let (q, v) = (matrix(&q, [many, self.n], "q")?, matrix(&v, [many, self.n], "v")?);
+        let count = self.parameters.len();
+        let plan = |index: usize| {
+            let of = |values: &[f64]| values[index * self.n..(index + 1) * self.n].to_vec();
+            let system = self.with(&parameters[index * count..(index + 1) * count])?;
+            let plan = request.plan(&*system, t, of(&q), of(&v))?;
+            Ok((system, plan))
+        };
+        Ensemble { n: self.n, many, output, plan: &plan }.run(py, threads)
+    }
+}

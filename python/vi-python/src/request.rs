@@ -1,0 +1,63 @@
+//! A plan from Python's arguments.
+
+use crate::failure::wrong;
+use pyo3::prelude::*;
+use vi_erased::plan::{DEFAULT_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start};
+use vi_erased::System;
+
+/// Method and options of a run. Python has checked their names.
+#[derive(Clone, Debug, FromPyObject)]
+pub(crate) struct Request {
+    method: String,
+    stages: Option<usize>,
+    h: Option<f64>,
+    tolerance: Option<f64>,
+    dtau: Option<f64>,
+    shift: Option<f64>,
+    shift_from: Option<f64>,
+    fallback: bool,
+}
+
+impl Request {
+    /// The plan of a run of this system from a state with velocities.
+    ///
+    /// # Errors
+    /// `ValueError` for a method or stages that are not built, with those that are.
+    pub(crate) fn plan(&self, system: &dyn System, t: f64, q: Vec<f64>, v: Vec<f64>) -> PyResult<Plan> {
+        let method = Method::named(&self.method).ok_or_else(|| wrong(format!("there is no method {:?}", self.method)))?;
+        let h = self.h.or(self.dtau).unwrap_or(f64::NAN);
+        let plan = Plan {
+            start: Start::State,
+            stages: self.stages,
+            shift: self.shift_from.map(Shift::Over).or(self.shift.map(Shift::Of)),
+            fallback: self.fallback,
+            dtau: self.dtau,
+            tolerance: self.tolerance,
+            ..Plan::new(method, h, PhasePoint { t, q, v })
+        };
+        let plan = Plan { stages: stages(&plan, system), ..plan };
+        let wanted = (method, plan.energy_stages().or(plan.gauss_stages()), plan.dtau.is_some());
+        let built = system.integrators();
+        if built.contains(&wanted) {
+            return Ok(plan);
+        }
+        let names: Vec<_> = built.into_iter().map(name).collect();
+        Err(wrong(format!("{} has no integrator {}; it has {}", system.name(), name(wanted), names.join(", "))))
+    }
+}
+
+/// The stages of a plan: if none are given, the default if it is built, else the most that are built.
+fn stages(plan: &Plan, system: &dyn System) -> Option<usize> {
+    if plan.stages.is_some() || plan.method != Method::Gauss {
+        return plan.stages;
+    }
+    let built = system.integrators().into_iter().filter(|of| of.0 == Method::Gauss && of.2 == plan.dtau.is_some());
+    let built: Vec<usize> = built.filter_map(|of| of.1).collect();
+    if built.contains(&DEFAULT_STAGES) { None } else { built.into_iter().max() }
+}
+
+/// An integrator in the words of Python.
+pub(crate) fn name((method, stages, is_transformed): (Method, Option<usize>, bool)) -> String {
+    let stages = stages.map_or(String::new(), |stages| format!(", stages={stages}"));
+    format!("method=\"{}\"{stages}{}", method.name(), if is_transformed { ", dtau=…" } else { "" })
+}

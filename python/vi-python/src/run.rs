@@ -1,0 +1,410 @@
+//! The pyclass of a run.
+
+use crate::dense::Dense;
+use crate::events::{Description, Raised, sections};
+use crate::failure::{Raise as _, busy, instance, wrong};
+use crate::rows::{check_memory, record_some, steps_to, to_python, vector};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::time::{Duration, Instant};
+use vi_core::StepError;
+use vi_erased::plan::{Method, Named as _};
+use vi_erased::simulation::Met;
+use vi_erased::{Rows, Simulation};
+
+/// A run. A lock, not the borrow checker of pyo3, guards it: its message is for Python's users.
+#[pyclass(frozen, module = "variational._core")]
+pub struct Run {
+    of: Mutex<Box<dyn Simulation>>,
+    n: usize,
+    integrator: (Method, Option<usize>, bool),
+}
+
+/// Rows, the exception that ended the run if any, and more.
+type Recorded<'py, T> = PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyAny>>, T)>;
+
+impl Run {
+    pub(crate) fn new(of: Box<dyn Simulation>, integrator: (Method, Option<usize>, bool)) -> Self {
+        Self { n: of.q().len(), of: Mutex::new(of), integrator }
+    }
+
+    /// The run, if no other thread uses it.
+    fn lock(&self) -> PyResult<MutexGuard<'_, Box<dyn Simulation>>> {
+        match self.of.try_lock() {
+            Ok(run) => Ok(run),
+            Err(TryLockError::Poisoned(run)) => Ok(run.into_inner()),
+            Err(TryLockError::WouldBlock) => Err(busy()),
+        }
+    }
+
+    /// Checks the indices of parameters.
+    fn check_parameters(run: &dyn Simulation, mut indices: impl Iterator<Item = usize>) -> PyResult<()> {
+        let count = run.parameters().len();
+        match indices.find(|index| *index >= count) {
+            Some(index) => Err(wrong(format!("there is no parameter {index}: the system has {count}"))),
+            None => Ok(()),
+        }
+    }
+}
+
+#[pymethods]
+impl Run {
+    #[getter]
+    fn t(&self) -> PyResult<f64> {
+        Ok(self.lock()?.t())
+    }
+
+    #[getter]
+    fn h(&self) -> PyResult<f64> {
+        Ok(self.lock()?.h())
+    }
+
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_slice(py, self.lock()?.q()))
+    }
+
+    #[getter]
+    fn p<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_slice(py, self.lock()?.p()))
+    }
+
+    #[getter]
+    fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_vec(py, self.lock()?.velocity().raise(py)?))
+    }
+
+    #[getter]
+    fn energy(&self, py: Python<'_>) -> PyResult<f64> {
+        self.lock()?.energy().raise(py)
+    }
+
+    #[getter]
+    fn discrete_energy(&self) -> PyResult<Option<f64>> {
+        Ok(self.lock()?.discrete_energy())
+    }
+
+    /// The energy that steps with a shift preserve, and the shift.
+    #[getter]
+    fn shifted_energy(&self) -> PyResult<Option<(f64, f64)>> {
+        Ok(self.lock()?.shifted_energy().map(|of| (of.energy, of.shift)))
+    }
+
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_vec(py, self.lock()?.parameters()))
+    }
+
+    #[getter]
+    fn evaluations(&self) -> PyResult<u64> {
+        Ok(self.lock()?.evaluations())
+    }
+
+    /// Method, stages, and whether in transformed time.
+    #[getter]
+    fn integrator(&self) -> (&'static str, Option<usize>, bool) {
+        let (method, stages, is_transformed) = self.integrator;
+        (method.name(), stages, is_transformed)
+    }
+
+    fn copy(&self) -> PyResult<Self> {
+        Ok(Self { of: Mutex::new(self.lock()?.copy()), n: self.n, integrator: self.integrator })
+    }
+
+    fn set_parameters(&self, py: Python<'_>, change: Vec<(usize, f64)>) -> PyResult<()> {
+        let mut run = self.lock()?;
+        Self::check_parameters(&**run, change.iter().map(|(index, _)| *index))?;
+        run.set_parameters(&change).raise(py)
+    }
+
+    fn set_state(
+        &self,
+        py: Python<'_>,
+        t: f64,
+        q: PyReadonlyArray1<'_, f64>,
+        p: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<()> {
+        let (q, p) = (vector(&q, self.n, "q")?, vector(&p, self.n, "p")?);
+        self.lock()?.set_state(t, &q, &p).raise(py)
+    }
+
+    /// Takes one step.
+    #[pyo3(signature = (h=None))]
+    fn step(&self, py: Python<'_>, h: Option<f64>) -> PyResult<()> {
+        let mut run = self.lock()?;
+        match h {
+            None => run.advance(),
+            Some(h) => run.advance_of(h),
+        }
+        .raise(py)
+    }
+
+    /// Takes steps to a time or so many steps. Returns the start, every `every`th node and the end, the exception that
+    /// ended the run if any, and dense output if asked for.
+    #[pyo3(signature = (until=None, steps=None, every=1, dense=false))]
+    fn advance<'py>(
+        &self,
+        py: Python<'py>,
+        until: Option<f64>,
+        steps: Option<u64>,
+        every: u64,
+        dense: bool,
+    ) -> Recorded<'py, Option<Dense>> {
+        let mut guard = self.lock()?;
+        let run: &mut dyn Simulation = &mut **guard;
+        let most = steps.unwrap_or(u64::MAX);
+        if every == 0 {
+            return Err(wrong("every must be at least 1"));
+        }
+        let expected = steps.unwrap_or_else(|| until.map_or(0, |end| steps_to(run, end)));
+        check_memory(expected / every, 1 + 2 * self.n)?;
+        if dense {
+            // Collocation polynomials hold up to 17 values of each coordinate and momentum.
+            check_memory(expected, 40 * self.n)?;
+        }
+        let mut rows = Rows::default();
+        push_state(run, &mut rows);
+        let mut dense = dense.then(|| Dense::new(self.n));
+        let (mut taken, mut stretch) = (0, Stretch::new());
+        let error = loop {
+            // The time of a node is rounded, so that the run itself may find that it lies behind.
+            if until == Some(run.t()) {
+                break None;
+            }
+            let few = stretch.steps().min(most - taken);
+            let outcome = py.detach(|| match &mut dense {
+                None => run.record(until, few, every, &mut taken, &mut rows),
+                Some(dense) => record_dense(run, until, few, every, &mut taken, &mut rows, dense),
+            });
+            match outcome {
+                Ok(true) => break None,
+                Ok(false) if taken >= most => break None,
+                Ok(false) => py.check_signals()?,
+                Err(error) => break Some(instance(py, &error)?),
+            }
+        };
+        if rows.t.last().map(|t| t.to_bits()) != Some(run.t().to_bits()) {
+            push_state(run, &mut rows);
+        }
+        Ok((to_python(py, rows, self.n)?, error, dense))
+    }
+
+    /// States at times, which are in the order of the run.
+    fn at<'py>(&self, py: Python<'py>, times: PyReadonlyArray1<'py, f64>) -> Recorded<'py, ()> {
+        let times = vector(&times, times.len(), "times")?;
+        let mut guard = self.lock()?;
+        let run: &mut dyn Simulation = &mut **guard;
+        let mut rows = Rows::default();
+        let mut left = &times[..];
+        let error = loop {
+            if left.is_empty() {
+                break None;
+            }
+            let outcome = py.detach(|| record_some(run, &mut left, &mut rows));
+            py.check_signals()?;
+            if let Err(error) = outcome {
+                break Some(instance(py, &error)?);
+            }
+        };
+        Ok((to_python(py, rows, self.n)?, error, ()))
+    }
+
+    /// Events up to a time, or only the first. Returns a row for each, the exception that ended the run if any, and for
+    /// each row the index of the event and whether its function rises.
+    fn events<'py>(
+        &self,
+        py: Python<'py>,
+        events: Vec<Description>,
+        until: f64,
+        is_first: bool,
+    ) -> Recorded<'py, Vec<(usize, bool)>> {
+        let raised = Raised::default();
+        let (sections, has_functions) = sections(events, self.n, &raised)?;
+        let mut guard = self.lock()?;
+        let run: &mut dyn Simulation = &mut **guard;
+        let (mut rows, mut met) = (Rows::default(), Vec::new());
+        let mut take = |of: Met| {
+            for event in of.events {
+                rows.t.push(of.row.t);
+                rows.q.extend_from_slice(&of.row.q);
+                rows.p.extend_from_slice(&of.row.p);
+                met.push(event);
+            }
+            true
+        };
+        let mut search = || {
+            if is_first {
+                run.next_crossing(&sections, until).map(|found| {
+                    found.map(&mut take);
+                })
+            } else {
+                run.cross(&sections, until, &mut take)
+            }
+        };
+        // Python functions attach to the interpreter in every call, which is cheap while it is attached.
+        let outcome = if has_functions { search() } else { py.detach(search) };
+        if let Some(error) = raised.take() {
+            return Err(error);
+        }
+        let error = outcome.err().map(|error| instance(py, &error)).transpose()?;
+        Ok((to_python(py, rows, self.n)?, error, met))
+    }
+
+    /// Takes steps. Returns the derivatives of (q, p) at their end: a row for each coordinate, momentum, and parameter
+    /// of these indices at the start.
+    fn tangent<'py>(
+        &self,
+        py: Python<'py>,
+        steps: u64,
+        parameters: Vec<usize>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mut guard = self.lock()?;
+        let run: &mut dyn Simulation = &mut **guard;
+        Self::check_parameters(run, parameters.iter().copied())?;
+        let few = steps.min(DERIVED);
+        let mut rows = py.detach(|| run.tangent(few, &parameters)).raise(py)?;
+        let mut taken = few;
+        while taken < steps {
+            py.check_signals()?;
+            let few = (steps - taken).min(DERIVED);
+            let next = py.detach(|| run.tangent(few, &parameters)).raise(py)?;
+            rows = chained(&rows, &next);
+            taken += few;
+        }
+        Ok(PyArray2::from_vec2(py, &rows)?)
+    }
+
+    /// Takes steps. Returns the gradient of slope·(q, p) at their end with respect to the start and the parameters of
+    /// these indices.
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        steps: u64,
+        slope: PyReadonlyArray1<'py, f64>,
+        parameters: Vec<usize>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mut slope = vector(&slope, 2 * self.n, "the slope")?;
+        let mut guard = self.lock()?;
+        Self::check_parameters(&**guard, parameters.iter().copied())?;
+        // The run at the start of each stretch; the pass goes back from the last.
+        let (mut starts, mut taken) = (Vec::new(), 0);
+        while taken < steps {
+            let few = (steps - taken).min(DERIVED);
+            starts.push((guard.copy(), few));
+            let run: &mut dyn Simulation = &mut **guard;
+            py.detach(|| run.advance_by(few)).raise(py)?;
+            py.check_signals()?;
+            taken += few;
+        }
+        let mut sums = vec![0.0; parameters.len()];
+        for (mut start, few) in starts.into_iter().rev() {
+            let found = py.detach(|| start.gradient(few, &slope, &parameters)).raise(py)?;
+            py.check_signals()?;
+            let (state, of_parameters) = found.split_at(2 * self.n);
+            slope.copy_from_slice(state);
+            sums.iter_mut().zip(of_parameters).for_each(|(sum, part)| *sum += part);
+        }
+        slope.extend(sums);
+        Ok(PyArray1::from_vec(py, slope))
+    }
+
+    /// The error of the next step: of q, and of h·v.
+    fn local_error<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray1<f64>>; 2]> {
+        let error = self.lock()?.local_error().raise(py)?;
+        Ok(error.map(|of| PyArray1::from_vec(py, of)))
+    }
+
+    /// Measures errors of the steps from here on.
+    fn monitor(&self) -> PyResult<()> {
+        self.lock()?.monitor();
+        Ok(())
+    }
+
+    /// The largest relative error of a step since `monitor`, the time at which that step began, and the index of the
+    /// coordinate; `None` without a monitor.
+    #[getter]
+    fn largest_error(&self) -> PyResult<Option<(f64, f64, usize)>> {
+        Ok(self.lock()?.largest_error().map(|of| (of.estimate, of.t, of.coordinate)))
+    }
+
+    /// Everything that the run carries, as text.
+    fn checkpoint(&self) -> PyResult<String> {
+        self.lock()?.checkpoint().map_err(wrong)
+    }
+}
+
+/// Steps of a derivative between two looks at signals.
+const DERIVED: u64 = 4096;
+
+/// The derivatives after two stretches, by the chain rule. Rows are directions: the state first, then parameters.
+fn chained(first: &[Vec<f64>], second: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let size = first.first().map_or(0, Vec::len);
+    let along = |row: &Vec<f64>| {
+        let mut sum = vec![0.0; size];
+        for (part, direction) in row.iter().zip(second) {
+            sum.iter_mut().zip(direction).for_each(|(sum, entry)| *sum += part * entry);
+        }
+        sum
+    };
+    let mut rows: Vec<Vec<f64>> = first.iter().map(along).collect();
+    for (row, own) in rows.iter_mut().zip(second).skip(size) {
+        row.iter_mut().zip(own).for_each(|(sum, entry)| *sum += entry);
+    }
+    rows
+}
+
+/// Adds the state of the run.
+fn push_state(run: &dyn Simulation, rows: &mut Rows) {
+    rows.t.push(run.t());
+    rows.q.extend_from_slice(run.q());
+    rows.p.extend_from_slice(run.p());
+}
+
+/// [`Simulation::record`] with dense output of each step.
+fn record_dense(
+    run: &mut dyn Simulation,
+    until: Option<f64>,
+    most: u64,
+    every: u64,
+    taken: &mut u64,
+    rows: &mut Rows,
+    dense: &mut Dense,
+) -> Result<bool, StepError> {
+    for _ in 0..most {
+        let (t, q, p) = (run.t(), run.q().to_vec(), run.p().to_vec());
+        let before = *taken;
+        let is_over = run.record(until, 1, every, taken, rows)?;
+        if *taken > before {
+            dense.push(t, run.step_output(t, &q, &p)?);
+        }
+        if is_over {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Steps between two looks at signals: about a twentieth of a second.
+struct Stretch {
+    steps: u64,
+    begun: Instant,
+}
+
+impl Stretch {
+    fn new() -> Self {
+        Self { steps: 512, begun: Instant::now() }
+    }
+
+    /// The steps of the next stretch.
+    fn steps(&mut self) -> u64 {
+        let took = self.begun.elapsed();
+        if took < Duration::from_millis(25) {
+            self.steps = (2 * self.steps).min(1 << 22);
+        } else if took > Duration::from_millis(100) {
+            self.steps = (self.steps / 2).max(1);
+        }
+        self.begun = Instant::now();
+        self.steps
+    }
+}
