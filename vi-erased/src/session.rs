@@ -161,6 +161,8 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
     }
 
     fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {
+        // What is measured belongs to the system of before.
+        self.resume();
         self.run.set_parameters(|system| {
             for (index, value) in change {
                 if let Some(place) = S::PARAMETERS.get(*index).and_then(|name| system.parameter_mut(name)) {
