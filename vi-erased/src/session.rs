@@ -8,6 +8,8 @@ use crate::section::Section;
 use crate::simulation::{Erasable, Met, Runnable, Simulated, Simulation, met, vector};
 #[cfg(feature = "derivatives")]
 use vi_core::Method;
+#[cfg(feature = "derivatives")]
+use vi_core::derivatives::{Covector, Objective, Tangent, Variation, gradient};
 use vi_core::run::DenseOutput;
 use vi_core::{Run, State, StepError};
 
@@ -121,7 +123,8 @@ pub trait Session {
     #[cfg(feature = "checkpoints")]
     fn checkpoint(&self) -> Result<String, String>;
     /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
-    /// parameters of these indices at the start: one vector of (q, p) for each.
+    /// parameters of these indices at the start: one vector of (q, p) for each. The energy that a run keeps varies with
+    /// the start where the run began; later it stays.
     ///
     /// # Errors
     /// As [`Tangent::step`](vi_core::derivatives::Tangent::step).
@@ -265,22 +268,18 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
 
     #[cfg(feature = "derivatives")]
     fn tangent(&mut self, steps: u64, parameters: &[usize]) -> Result<Vec<Vec<f64>>, StepError> {
-        let mut variations = vi_core::derivatives::Variation::of_state();
-        variations.extend(parameters.iter().map(|index| of_parameter(*index)));
-        let mut tangent = vi_core::derivatives::Tangent::from_start(self.run.clone(), variations)?;
+        let mut tangent = self.varied(parameters)?;
         for _ in 0..steps {
             tangent.step()?;
         }
         self.run = tangent.run().clone();
         self.resume();
-        let of_node = |of: &vi_core::derivatives::Variation<N>| of.q.iter().chain(&of.p).copied().collect();
+        let of_node = |of: &Variation<N>| of.q.iter().chain(&of.p).copied().collect();
         Ok(tangent.variations().iter().map(of_node).collect())
     }
 
     #[cfg(feature = "derivatives")]
     fn gradient(&mut self, steps: u64, slope: &[f64], parameters: &[usize]) -> Result<Vec<f64>, StepError> {
-        use vi_core::derivatives::{Covector, Objective};
-
         struct AtTheEnd<const N: usize> {
             steps: u64,
             slope: Covector<N>,
@@ -301,21 +300,42 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
             Some((q, p)) => state::<N>(0.0, q, p)?,
             None => state::<N>(0.0, slope, &[])?,
         };
-        let parameters = parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
-        let objective = AtTheEnd { steps, slope: Covector { q, p, ..Covector::zero() }, parameters };
-        let found = vi_core::derivatives::gradient(&self.run, steps, 1024, &objective)?;
+        let names = parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
+        let objective = AtTheEnd { steps, slope: Covector { q, p, ..Covector::zero() }, parameters: names };
+        let found = gradient(&self.run, steps, KEPT, &objective)?;
+        let mut of: Vec<f64> =
+            self.varied(parameters)?.variations().iter().map(|direction| found.start.of(direction)).collect();
+        for of_a_step in &found.parameters {
+            of[2 * N..].iter_mut().zip(of_a_step).for_each(|(sum, slope)| *sum += slope);
+        }
         (0..steps).try_for_each(|_| self.run.single_step().map(drop))?;
         self.resume();
-        let count = objective.parameters.len();
-        let sums = (0..count).map(|index| found.parameters.iter().map(|of_a_step| of_a_step[index]).sum::<f64>());
-        Ok(found.start.q.iter().chain(&found.start.p).copied().chain(sums).collect())
+        Ok(of)
     }
 }
 
-/// The direction of a parameter, by its index.
+/// Steps whose states a gradient keeps at least.
 #[cfg(feature = "derivatives")]
-fn of_parameter<const N: usize>(index: usize) -> vi_core::derivatives::Variation<N> {
-    let mut parameters = vec![0.0; index + 1];
-    parameters[index] = 1.0;
-    vi_core::derivatives::Variation { parameters, ..vi_core::derivatives::Variation::zero() }
+const KEPT: usize = 1024;
+
+#[cfg(feature = "derivatives")]
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
+    /// The run with the directions of the coordinates, the momenta, and the parameters of these indices. Where it
+    /// began, the energy that it keeps varies with them; later that stays.
+    ///
+    /// # Errors
+    /// As [`Tangent::from_start`].
+    fn varied(&self, parameters: &[usize]) -> Result<Tangent<M, S, N>, StepError> {
+        let of_parameter = |index: &usize| {
+            let mut parameters = vec![0.0; index + 1];
+            parameters[*index] = 1.0;
+            Variation { parameters, ..Variation::zero() }
+        };
+        let directions = Variation::of_state().into_iter().chain(parameters.iter().map(of_parameter)).collect();
+        if self.begins {
+            Tangent::from_start(self.run.clone(), directions)
+        } else {
+            Ok(Tangent::new(self.run.clone(), directions))
+        }
+    }
 }

@@ -238,6 +238,8 @@ impl<Y: serde::Serialize + serde::de::DeserializeOwned> Storable for Y {}
 pub(crate) struct Simulated<M: Method<S, N>, S, const N: usize> {
     pub(crate) run: Run<M, S, N>,
     evaluations: u64,
+    /// Whether the run is where it began: the energy that it keeps follows from its state.
+    pub(crate) begins: bool,
     /// Whether rows have E', even for a shift of zero.
     is_shifted: bool,
     /// Length of the last step, if it was shortened.
@@ -258,12 +260,14 @@ pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
     run: Run<M, S, N>,
     is_shifted: bool,
 ) -> Box<dyn Simulation> {
-    Box::new(Simulated { run, evaluations: 0, is_shifted, shortened: None, monitor: None })
+    let begins = run.iterations() == 0;
+    Box::new(Simulated { run, evaluations: 0, begins, is_shifted, shortened: None, monitor: None })
 }
 
 impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     /// Takes notice of the last step.
     pub(crate) fn count(&mut self) {
+        self.begins = false;
         self.evaluations += M::evaluations(&self.run);
         if let Some(monitor) = &mut self.monitor {
             monitor.watch(&self.run);
@@ -283,12 +287,14 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
             }
         }
         self.run = run;
+        self.begins = false;
         self.shortened = None;
         outcome
     }
 
     /// Forgets a jump of the run.
     pub(crate) fn resume(&mut self) {
+        self.begins = false;
         self.shortened = None;
         if let Some(monitor) = &mut self.monitor {
             monitor.resume(&self.run);
