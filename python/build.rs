@@ -97,9 +97,13 @@ fn workspace(repository: &str, this: &str) -> String {
         sections(manifest).into_iter().filter(|(header, _)| is_kept(header)).map(|(_, text)| text).collect()
     };
     text += &of(repository, |header| {
-        ["[workspace.package", "[workspace.dependencies", "[workspace.lints"].iter().any(|start| header.starts_with(start))
+        ["[workspace.package", "[workspace.dependencies", "[workspace.lints"]
+            .iter()
+            .any(|start| header.starts_with(start))
     });
-    text += &of(this, |header| header.starts_with("[profile.") && !header.contains("-python-ready") && !header.contains(".variational-"));
+    text += &of(this, |header| {
+        header.starts_with("[profile.") && !header.contains("-python-ready") && !header.contains(".variational-")
+    });
     // One unit is as fast to compile as several, and its steps are faster.
     write!(text, "[profile.release.package.{COMPILED}]\nopt-level = 3\ncodegen-units = 1\n").expect("a string");
     text

@@ -53,7 +53,7 @@ def steps(name: str, **options) -> None:
         one = run(**options)
         for _ in range(few):
             one.step()
-            one.q, one.t
+            _ = one.q, one.t
 
     row(f"{name}: no node kept", 1e9 / STEPS * shortest(lambda: run(**options).steps(STEPS, every=STEPS)), "ns a step")
     row(f"{name}: every node kept", 1e9 / STEPS * shortest(lambda: run(**options).steps(STEPS)), "ns a step")
@@ -81,9 +81,8 @@ def ensembles() -> None:
     q = np.column_stack([np.linspace(0.4, 0.9, 10_000), np.zeros(10_000)])
     for threads in (1, 2):
         for method, h in (("gauss", 0.1), ("fixed", 0.005)):
-            took = shortest(
-                lambda: vi.Kepler().ensemble(q, [0.0, 1.2], h=h, until=20.0, method=method, threads=threads), 2
-            )
+            options = {"h": h, "until": 20.0, "method": method, "threads": threads}
+            took = shortest(lambda options=options: vi.Kepler().ensemble(q, [0.0, 1.2], **options), 2)
             row(f"10 000 orbits to t = 20, {method} h = {h}, {threads} threads", took, "s")
 
 

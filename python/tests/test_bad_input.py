@@ -98,6 +98,7 @@ TABLE = [
     # Counts that do not fit into memory.
     (lambda: begun().steps(10**18), MemoryError, "every=k"),
     (lambda: begun().until(1e300), MemoryError, "every=k"),
+    (lambda: begun(h=1e-12).step(0.1).until(9.0), MemoryError, "every=k"),
     (lambda: begun().steps(10**13, dense=True, every=10**13), MemoryError, "do not fit"),
     # Ensembles.
     (lambda: vi.Kepler().ensemble([0.4, 0.0], h=0.1), TypeError, "one of until and times"),

@@ -11,8 +11,6 @@ Ready systems are in `vi.systems`. `vi.compile` makes a system from the text of 
 
 from __future__ import annotations
 
-from typing import Any
-
 from . import _core
 from ._binding import _bind
 from ._cell import load_ipython_extension

@@ -54,6 +54,7 @@ def class_of(kind: Any, module: str) -> type[System]:
         "coordinates": coordinates,
         "parameters": tuple(fields),
         "integrators": tuple(kind.integrators),
+        "_methods": tuple(dict.fromkeys(method for method, *_ in kind.integrators)),
         "definition": kind.definition,
         **fields,
     }

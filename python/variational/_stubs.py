@@ -38,12 +38,12 @@ class StepError(ArithmeticError):
     solution: Solution | None
 '''
 
-_MODULE = '''\
+_MODULE = """\
 from numpy.typing import ArrayLike, NDArray
 from numpy import float64
 
 from variational import System
-'''
+"""
 
 
 def stubs(module: Any = None) -> str:

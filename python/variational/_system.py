@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Array, array, finite, number, real, vector
+from ._arrays import Array, array, finite, number, vector
 from ._ensemble import Ensemble, ensemble
-from ._errors import _invalid
 from ._explanation import Explanation
 from ._names import meant
+from ._request import checked
 from ._run import Run
 
 
@@ -62,6 +62,7 @@ class System:
 
     _kind: ClassVar[Any] = None
     _defaults: ClassVar[Array]
+    _methods: ClassVar[tuple[str, ...]] = ()
     coordinates: ClassVar[tuple[str, ...]] = ()
     """Names of the coordinates."""
     parameters: ClassVar[tuple[str, ...]] = ()
@@ -164,7 +165,7 @@ class System:
                 raise ValueError(f"the last axis of {name} must have length {n} ({names}), not the shape {x.shape}")
         if t.ndim == 0 and q.ndim == 1 and v.ndim == 1:
             shape: tuple[int, ...] = ()
-            points = (t.reshape(1), np.ascontiguousarray(q)[None], np.ascontiguousarray(v)[None])
+            points: tuple[Array, ...] = (t.reshape(1), np.ascontiguousarray(q)[None], np.ascontiguousarray(v)[None])
         else:
             try:
                 shape = np.broadcast_shapes(t.shape, q.shape[:-1], v.shape[:-1])
@@ -215,7 +216,7 @@ class System:
             Whether to take fixed steps if no energy-preserving step exists.
         """
         n = len(self.coordinates)
-        request = _request(type(self), h, tolerance, dtau, method, stages, shift, shift_from, fallback)
+        request = checked(type(self), h, tolerance, dtau, method, stages, shift, shift_from, fallback)
         if v is not None and p is not None:
             raise TypeError("give one of v and p, not both")
         q = vector(q, n, "q", self.coordinates)
@@ -250,7 +251,7 @@ class System:
         Returns the states at the time `until`, of shape (M, N), or at K times, of shape (M, K, N). A failed run has
         NaN from there on, and its exception in `errors`.
         """
-        request = _request(type(self), h, tolerance, dtau, method, stages, shift, shift_from, fallback)
+        request = checked(type(self), h, tolerance, dtau, method, stages, shift, shift_from, fallback)
         return ensemble(self, request, q, v, until, times, number(t, "t"), parameters or {}, threads)
 
     def explain(self, stages: int | None = None) -> Explanation:
@@ -260,66 +261,6 @@ class System:
 
     def _repr_latex_(self) -> str:
         return self.explain().equations()
-
-
-_MOST = 1e6
-"""Steps over which a shift is measured: no signal interrupts them."""
-
-
-class _Request:
-    """Method and options of a run, as `_core` reads them."""
-
-    __slots__ = ("dtau", "fallback", "h", "method", "shift", "shift_from", "stages", "tolerance")
-
-
-def _request(
-    cls: type[System],
-    h: float | None,
-    tolerance: float | None,
-    dtau: float | None,
-    method: str,
-    stages: int | None,
-    shift: float | None,
-    shift_from: float | None,
-    fallback: bool,
-) -> _Request:
-    """The options of a run, checked."""
-    if (h is None) + (tolerance is None) + (dtau is None) != 2:
-        raise TypeError("give one of h, tolerance and dtau: h=0.05 is a step of this length")
-    built = {method for method, *_ in cls.integrators}
-    if method not in built:
-        known = ", ".join(f'"{name}"' for name in sorted(built))
-        close = meant(method, built) if isinstance(method, str) else ""
-        raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}")
-    if method != "energy" and (shift is not None or shift_from is not None or fallback):
-        raise ValueError('shift, shift_from and fallback are options of method="energy"')
-    if shift is not None and shift_from is not None:
-        raise TypeError("give one of shift and shift_from, not both")
-    if stages is not None and method not in ("gauss", "energy"):
-        raise ValueError(f"method={method!r} has no stages: leave out stages=")
-    request = _Request()
-    request.method, request.fallback = method, bool(fallback)
-    if stages is not None:
-        if isinstance(stages, bool) or not isinstance(stages, (int, np.integer)):
-            raise TypeError(f"stages must be an integer, not {stages!r}")
-        if stages < 1:
-            raise ValueError(f"stages must be at least 1, not {stages}")
-        stages = min(int(stages), 2**32)
-    request.stages = stages
-    request.h = None if h is None else real(h, "h")
-    request.tolerance = None if tolerance is None else real(tolerance, "tolerance")
-    request.dtau = None if dtau is None else real(dtau, "dtau")
-    request.shift = None if shift is None else number(shift, "shift")
-    request.shift_from = None if shift_from is None else number(shift_from, "shift_from")
-    for name in ("h", "dtau"):
-        value = getattr(request, name)
-        if value is not None and (value == 0.0 or not np.isfinite(value)):
-            raise _invalid(name, "finite and not zero", value)
-    if request.tolerance is not None and not 0.0 < request.tolerance < np.inf:
-        raise _invalid("tolerance", "positive and finite", request.tolerance)
-    if request.shift_from is not None and request.h is not None and not 0.0 < request.shift_from / request.h <= _MOST:
-        raise _invalid("shift_from", f"ahead, and at most {_MOST:g} steps of h", request.shift_from)
-    return request
 
 
 def _unpickled(module: str, name: str, definition: str, source: Any, values: list[float]) -> System:

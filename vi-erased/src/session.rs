@@ -239,6 +239,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
     }
 
     fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError> {
+        self.shortened = None;
         for state in self.run.states_at(times.iter().copied()) {
             rows.push(&state?);
         }

@@ -111,7 +111,8 @@ impl Ensemble<'_> {
             Output::Times(times) => {
                 let mut left = &times[..];
                 while !left.is_empty() && !is_stopped.load(Ordering::Relaxed) {
-                    record_some(&mut *run, &mut left, &mut rows)?;
+                    let h = run.h();
+                    record_some(&mut *run, h, &mut left, &mut rows)?;
                 }
                 Ok(())
             }

@@ -71,7 +71,11 @@ impl Kind {
     /// Method, stages, and whether in transformed time, of each integrator.
     #[getter]
     fn integrators(&self) -> Vec<(&'static str, Option<usize>, bool)> {
-        self.of.integrators().into_iter().map(|(method, stages, transformed)| (method.name(), stages, transformed)).collect()
+        self.of
+            .integrators()
+            .into_iter()
+            .map(|(method, stages, transformed)| (method.name(), stages, transformed))
+            .collect()
     }
 
     #[getter]
@@ -85,6 +89,7 @@ impl Kind {
     }
 
     /// A function at points: t (K,), q and v (K, N). Returns (K,) numbers, or (K·N,) for a vector.
+    #[allow(clippy::too_many_arguments)] // Python's keywords
     fn evaluate<'py>(
         &self,
         py: Python<'py>,

@@ -16,6 +16,10 @@
 //! | `failure`, `fields` | errors as Python exceptions with their fields |
 
 #![forbid(unsafe_code)]
+// pyo3 passes arrays by value.
+#![allow(clippy::needless_pass_by_value)]
+// A method is not general enough over the lifetime of the interpreter.
+#![allow(clippy::redundant_closure_for_method_calls)]
 
 mod dense;
 mod ensemble;

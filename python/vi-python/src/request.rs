@@ -2,8 +2,8 @@
 
 use crate::failure::wrong;
 use pyo3::prelude::*;
-use vi_erased::plan::{DEFAULT_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start};
 use vi_erased::System;
+use vi_erased::plan::{DEFAULT_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start};
 
 /// Method and options of a run. Python has checked their names.
 #[derive(Clone, Debug, FromPyObject)]
@@ -24,7 +24,8 @@ impl Request {
     /// # Errors
     /// `ValueError` for a method or stages that are not built, with those that are.
     pub(crate) fn plan(&self, system: &dyn System, t: f64, q: Vec<f64>, v: Vec<f64>) -> PyResult<Plan> {
-        let method = Method::named(&self.method).ok_or_else(|| wrong(format!("there is no method {:?}", self.method)))?;
+        let method =
+            Method::named(&self.method).ok_or_else(|| wrong(format!("there is no method {:?}", self.method)))?;
         let h = self.h.or(self.dtau).unwrap_or(f64::NAN);
         let plan = Plan {
             start: Start::State,

@@ -7,7 +7,7 @@ use vi_core::StepError;
 use vi_erased::{Rows, Simulation};
 
 /// Arrays t (K), q (K, N), p (K, N), which take over the memory of the rows.
-pub(crate) fn to_python<'py>(py: Python<'py>, rows: Rows, n: usize) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn to_python(py: Python<'_>, rows: Rows, n: usize) -> PyResult<Bound<'_, PyAny>> {
     let count = rows.t.len();
     let t = PyArray1::from_vec(py, rows.t);
     let q = PyArray1::from_vec(py, rows.q).reshape([count, n])?;
@@ -30,6 +30,13 @@ pub(crate) fn check_memory(rows: u64, numbers: usize) -> PyResult<()> {
     // A vector doubles when it grows, so that old and new entries exist at the same time.
     let total = total.checked_add(total / 2).ok_or_else(|| too_many(rows))?;
     Vec::<f64>::new().try_reserve_exact(total).map_err(|_| too_many(rows))
+}
+
+/// Rows with memory for as many as are expected, but for a few only: the run may end early.
+pub(crate) fn reserved(expected: u64, n: usize) -> Rows {
+    let count = usize::try_from(expected.min(FEW / n as u64)).unwrap_or(0) + 2;
+    let [t, q, p] = [count, count * n, count * n].map(Vec::with_capacity);
+    Rows { t, q, p }
 }
 
 /// The entries of a contiguous vector.
@@ -57,27 +64,32 @@ pub(crate) fn matrix(array: &PyReadonlyArray2<'_, f64>, shape: [usize; 2], name:
     }
 }
 
-/// Steps of the present length to a time; 0 if it is not ahead.
+/// Steps of the length h to a time; 0 if it is not ahead.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
-pub(crate) fn steps_to(run: &dyn Simulation, end: f64) -> u64 {
-    ((end - run.t()) / run.h()).ceil() as u64
+pub(crate) fn steps_to(run: &dyn Simulation, h: f64, end: f64) -> u64 {
+    ((end - run.t()) / h).ceil() as u64
 }
 
 /// Steps to output times between two looks at signals.
 const NEAR: u64 = 8192;
 
 /// Adds the states at some of the times, and removes them from the front of `times`. If the first of them is far, it
-/// only takes steps toward it.
+/// only takes steps toward it. h is the length of a step.
 ///
 /// # Errors
 /// The error of the failed step.
-pub(crate) fn record_some(run: &mut dyn Simulation, times: &mut &[f64], rows: &mut Rows) -> Result<(), StepError> {
-    let near = times.iter().take(256).take_while(|t| steps_to(run, **t) <= NEAR).count();
+pub(crate) fn record_some(
+    run: &mut dyn Simulation,
+    h: f64,
+    times: &mut &[f64],
+    rows: &mut Rows,
+) -> Result<(), StepError> {
+    let near = times.iter().take(256).take_while(|t| steps_to(run, h, **t) <= NEAR).count();
     let (now, later) = times.split_at(near);
     *times = later;
     match (now, later) {
         ([], [far, ..]) => {
-            let most = (steps_to(run, *far) / 4).min(NEAR);
+            let most = (steps_to(run, h, *far) / 4).min(NEAR);
             run.record(None, most, u64::MAX, &mut 0, &mut Rows::default()).map(drop)
         }
         _ => run.record_at(now, rows),

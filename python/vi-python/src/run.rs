@@ -3,9 +3,10 @@
 use crate::dense::Dense;
 use crate::events::{Description, Raised, sections};
 use crate::failure::{Raise as _, busy, instance, wrong};
-use crate::rows::{check_memory, record_some, steps_to, to_python, vector};
+use crate::rows::{check_memory, record_some, reserved, steps_to, to_python, vector};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 use vi_core::StepError;
@@ -19,6 +20,9 @@ pub struct Run {
     of: Mutex<Box<dyn Simulation>>,
     n: usize,
     integrator: (Method, Option<usize>, bool),
+    /// Bits of the length of a step before steps of other lengths, which the run reports in its place; 0 if there are
+    /// none.
+    usual: AtomicU64,
 }
 
 /// Rows, the exception that ended the run if any, and more.
@@ -26,7 +30,7 @@ type Recorded<'py, T> = PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyAny>>, 
 
 impl Run {
     pub(crate) fn new(of: Box<dyn Simulation>, integrator: (Method, Option<usize>, bool)) -> Self {
-        Self { n: of.q().len(), of: Mutex::new(of), integrator }
+        Self { n: of.q().len(), of: Mutex::new(of), integrator, usual: AtomicU64::new(0) }
     }
 
     /// The run, if no other thread uses it.
@@ -35,6 +39,14 @@ impl Run {
             Ok(run) => Ok(run),
             Err(TryLockError::Poisoned(run)) => Ok(run.into_inner()),
             Err(TryLockError::WouldBlock) => Err(busy()),
+        }
+    }
+
+    /// The length of the next steps, to estimate their number.
+    fn length(&self, run: &dyn Simulation) -> f64 {
+        match self.usual.load(Ordering::Relaxed) {
+            0 => run.h(),
+            bits => f64::from_bits(bits),
         }
     }
 
@@ -109,7 +121,8 @@ impl Run {
     }
 
     fn copy(&self) -> PyResult<Self> {
-        Ok(Self { of: Mutex::new(self.lock()?.copy()), n: self.n, integrator: self.integrator })
+        let usual = AtomicU64::new(self.usual.load(Ordering::Relaxed));
+        Ok(Self { of: Mutex::new(self.lock()?.copy()), n: self.n, integrator: self.integrator, usual })
     }
 
     fn set_parameters(&self, py: Python<'_>, change: Vec<(usize, f64)>) -> PyResult<()> {
@@ -133,11 +146,13 @@ impl Run {
     #[pyo3(signature = (h=None))]
     fn step(&self, py: Python<'_>, h: Option<f64>) -> PyResult<()> {
         let mut run = self.lock()?;
-        match h {
+        let usual = self.length(&**run).to_bits();
+        let outcome = match h {
             None => run.advance(),
             Some(h) => run.advance_of(h),
-        }
-        .raise(py)
+        };
+        self.usual.store(if h.is_some() { usual } else { 0 }, Ordering::Relaxed);
+        outcome.raise(py)
     }
 
     /// Takes steps to a time or so many steps. Returns the start, every `every`th node and the end, the exception that
@@ -157,15 +172,16 @@ impl Run {
         if every == 0 {
             return Err(wrong("every must be at least 1"));
         }
-        let expected = steps.unwrap_or_else(|| until.map_or(0, |end| steps_to(run, end)));
+        let expected = steps.unwrap_or_else(|| until.map_or(0, |end| steps_to(run, self.length(run), end)));
         check_memory(expected / every, 1 + 2 * self.n)?;
         if dense {
             // Collocation polynomials hold up to 17 values of each coordinate and momentum.
             check_memory(expected, 40 * self.n)?;
         }
-        let mut rows = Rows::default();
+        let mut rows = reserved(expected / every, self.n);
         push_state(run, &mut rows);
         let mut dense = dense.then(|| Dense::new(self.n));
+        self.usual.store(0, Ordering::Relaxed);
         let (mut taken, mut stretch) = (0, Stretch::new());
         let error = loop {
             // The time of a node is rounded, so that the run itself may find that it lies behind.
@@ -195,13 +211,14 @@ impl Run {
         let times = vector(&times, times.len(), "times")?;
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
+        let h = self.length(run);
         let mut rows = Rows::default();
         let mut left = &times[..];
         let error = loop {
             if left.is_empty() {
                 break None;
             }
-            let outcome = py.detach(|| record_some(run, &mut left, &mut rows));
+            let outcome = py.detach(|| record_some(run, h, &mut left, &mut rows));
             py.check_signals()?;
             if let Err(error) = outcome {
                 break Some(instance(py, &error)?);
@@ -253,12 +270,7 @@ impl Run {
 
     /// Takes steps. Returns the derivatives of (q, p) at their end: a row for each coordinate, momentum, and parameter
     /// of these indices at the start.
-    fn tangent<'py>(
-        &self,
-        py: Python<'py>,
-        steps: u64,
-        parameters: Vec<usize>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn tangent<'py>(&self, py: Python<'py>, steps: u64, parameters: Vec<usize>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
         Self::check_parameters(run, parameters.iter().copied())?;
@@ -362,6 +374,7 @@ fn push_state(run: &dyn Simulation, rows: &mut Rows) {
 }
 
 /// [`Simulation::record`] with dense output of each step.
+#[allow(clippy::too_many_arguments)] // those of `record`
 fn record_dense(
     run: &mut dyn Simulation,
     until: Option<f64>,

@@ -1,0 +1,10 @@
+"""The compiled part: the ready systems, and the mathematics of a definition."""
+
+from typing import Any
+
+_contract: int
+_kinds: list[Any]
+sources_digest: str
+
+def explain(definition: str, stages: int | None = None) -> tuple[str, str, list[tuple[str, list[tuple[str, str]]]]]: ...
+def sources() -> list[tuple[str, str]]: ...
