@@ -7,6 +7,8 @@
 use crate::section::Section;
 use crate::simulation::{Erasable, Met, Runnable, Simulated, Simulation, met, vector};
 #[cfg(feature = "derivatives")]
+use core::cell::{Cell, RefCell};
+#[cfg(feature = "derivatives")]
 use vi_core::Method;
 #[cfg(feature = "derivatives")]
 use vi_core::derivatives::{Covector, Objective, Tangent, Variation, gradient};
@@ -124,19 +126,31 @@ pub trait Session {
     fn checkpoint(&self) -> Result<String, String>;
     /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
     /// parameters of these indices at the start: one vector of (q, p) for each. The energy that a run keeps varies with
-    /// the start where the run began; later it stays.
+    /// the start where the run began; later it stays. `goes_on` is called before each step; `None` if it is false, and the
+    /// run stays where it was.
     ///
     /// # Errors
     /// As [`Tangent::step`](vi_core::derivatives::Tangent::step).
     #[cfg(feature = "derivatives")]
-    fn tangent(&mut self, steps: u64, parameters: &[usize]) -> Result<Vec<Vec<f64>>, StepError>;
+    fn tangent(
+        &mut self,
+        steps: u64,
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<f64>>>, StepError>;
     /// Takes steps, and returns the gradient of `slope·(q, p)` at their end by q, p, and the parameters of these
     /// indices, by one backward pass.
     ///
     /// # Errors
     /// As [`gradient`](vi_core::derivatives::gradient).
     #[cfg(feature = "derivatives")]
-    fn gradient(&mut self, steps: u64, slope: &[f64], parameters: &[usize]) -> Result<Vec<f64>, StepError>;
+    fn gradient(
+        &mut self,
+        steps: u64,
+        slope: &[f64],
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError>;
 }
 
 impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
@@ -268,42 +282,48 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
     }
 
     #[cfg(feature = "derivatives")]
-    fn tangent(&mut self, steps: u64, parameters: &[usize]) -> Result<Vec<Vec<f64>>, StepError> {
+    fn tangent(
+        &mut self,
+        steps: u64,
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<f64>>>, StepError> {
         let mut tangent = self.varied(parameters)?;
         for _ in 0..steps {
+            if !goes_on() {
+                return Ok(None);
+            }
             tangent.step()?;
         }
         self.run = tangent.run().clone();
         self.resume();
         let of_node = |of: &Variation<N>| of.q.iter().chain(&of.p).copied().collect();
-        Ok(tangent.variations().iter().map(of_node).collect())
+        Ok(Some(tangent.variations().iter().map(of_node).collect()))
     }
 
     #[cfg(feature = "derivatives")]
-    fn gradient(&mut self, steps: u64, slope: &[f64], parameters: &[usize]) -> Result<Vec<f64>, StepError> {
-        struct AtTheEnd<const N: usize> {
-            steps: u64,
-            slope: Covector<N>,
-            parameters: Vec<&'static str>,
-        }
-
-        impl<M: Method<S, N>, S, const N: usize> Objective<M, S, N> for AtTheEnd<N> {
-            fn parameters(&self) -> &[&str] {
-                &self.parameters
-            }
-
-            fn slope(&self, step: u64, _state: &State<N>) -> Covector<N> {
-                if step == self.steps { self.slope } else { Covector::zero() }
-            }
-        }
-
+    fn gradient(
+        &mut self,
+        steps: u64,
+        slope: &[f64],
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError> {
         let State { q, p, .. } = match slope.split_at_checked(N) {
             Some((q, p)) => state::<N>(0.0, q, p)?,
             None => state::<N>(0.0, slope, &[])?,
         };
-        let names = parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
-        let objective = AtTheEnd { steps, slope: Covector { q, p, ..Covector::zero() }, parameters: names };
-        let found = gradient(&self.run, steps, KEPT, &objective)?;
+        let objective = AtTheEnd {
+            steps,
+            slope: Covector { q, p, ..Covector::zero() },
+            parameters: parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect(),
+            goes_on: RefCell::new(goes_on),
+            is_stopped: Cell::new(false),
+        };
+        let found = match gradient(&self.run, steps, KEPT, &objective) {
+            Err(_) if objective.is_stopped.get() => return Ok(None),
+            found => found?,
+        };
         let mut of: Vec<f64> =
             self.varied(parameters)?.variations().iter().map(|direction| found.start.of(direction)).collect();
         for of_a_step in &found.parameters {
@@ -311,7 +331,35 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
         }
         (0..steps).try_for_each(|_| self.run.single_step().map(drop))?;
         self.resume();
-        Ok(of)
+        Ok(Some(of))
+    }
+}
+
+/// A linear function of the node at the end.
+#[cfg(feature = "derivatives")]
+struct AtTheEnd<'a, const N: usize> {
+    steps: u64,
+    slope: Covector<N>,
+    parameters: Vec<&'static str>,
+    goes_on: RefCell<&'a mut dyn FnMut() -> bool>,
+    is_stopped: Cell<bool>,
+}
+
+#[cfg(feature = "derivatives")]
+impl<M: Method<S, N>, S: Runnable<N>, const N: usize> Objective<M, S, N> for AtTheEnd<'_, N> {
+    fn prepare(&self, _step: u64, run: &mut Run<M, S, N>) -> Result<(), StepError> {
+        let goes_on = (self.goes_on.borrow_mut())();
+        self.is_stopped.set(!goes_on);
+        let because = "the pass was stopped";
+        if goes_on { Ok(()) } else { Err(StepError::NoDerivative { t: run.t(), because }) }
+    }
+
+    fn parameters(&self) -> &[&str] {
+        &self.parameters
+    }
+
+    fn slope(&self, step: u64, _state: &State<N>) -> Covector<N> {
+        if step == self.steps { self.slope } else { Covector::zero() }
     }
 }
 
