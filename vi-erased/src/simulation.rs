@@ -127,7 +127,7 @@ pub trait Simulation: Steps + Session + Send + Sync {
     /// one, since H deviates by h²D/8 at their nodes.
     ///
     /// # Errors
-    /// As [`Simulation::energy`].
+    /// As [`Steps::energy`].
     fn sampled_energy(&self) -> Result<(f64, f64), StepError>;
 }
 
