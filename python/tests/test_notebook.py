@@ -17,20 +17,21 @@ CELLS = [
 ]
 
 
-def executed(cells):
+def executed(cells, folder):
     book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
-    nbclient.NotebookClient(book, timeout=240, kernel_name="python3").execute()
+    resources = {"metadata": {"path": str(folder)}}
+    nbclient.NotebookClient(book, timeout=240, kernel_name="python3", resources=resources).execute()
     return [[output.get("data", output) for output in cell.outputs] for cell in book.cells]
 
 
-def test_formulas_and_figures():
-    system, explanation, figure = executed(CELLS)
+def test_formulas_and_figures(tmp_path):
+    system, explanation, figure = executed(CELLS, tmp_path)
     assert any(data.get("text/latex", "").startswith("$$") for data in system)
     assert any("text/markdown" in data for data in explanation)
     assert any("image/png" in data for data in figure)
 
 
-def test_a_cell_declares_a_system(warm_cache):
+def test_a_cell_declares_a_system(warm_cache, tmp_path):
     spring = "struct Spring {\n    param k = 4.0;\n    coord x;\n    L = dot(x)^2/2 - k*x^2/2;\n}"
     *_, result, mistake = executed(
         [
@@ -38,7 +39,8 @@ def test_a_cell_declares_a_system(warm_cache):
             f"%%lagrangian gauss 8\n{spring}",
             "float(Spring(k=9.0).integrate(q=[1.0], h=0.1).until(1.0).q[-1, 0])",
             f"%%lagrangian\n{spring.replace('k*x', 'kk*x')}",
-        ]
+        ],
+        tmp_path,
     )
     value = float(re.search(r"-?\d\.\d+", result[0]["text/plain"])[0])
     # Measured: 4e-16.

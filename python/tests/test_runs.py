@@ -41,7 +41,8 @@ def test_backwards(kepler):
 def test_dense_output_backwards(kepler):
     end = kepler.until(2.0)
     back = vi.Kepler().integrate(kepler.q, p=kepler.p, t=2.0, h=-0.05).until(0.0, dense=True)
-    np.testing.assert_allclose(back(end.t), end.y, atol=1e-10)
+    # Measured: 2.4e-11.
+    np.testing.assert_allclose(back(end.t), end.y, rtol=0.0, atol=1e-10)
 
 
 def test_dense_output_of_no_step(kepler):
@@ -60,7 +61,8 @@ def test_output_at_times_keeps_the_steps(kepler):
     near = far.copy()
     end = far.at([2000.0]).q[-1]
     near.until(1999.0)
-    assert np.abs(end - near.at([2000.0]).q[-1]).max() < 1e-6
+    # Measured: 1.1e-16.
+    assert np.abs(end - near.at([2000.0]).q[-1]).max() < 1e-15
 
 
 def test_a_callback_sees_each_row_and_changes_the_run():
@@ -93,7 +95,8 @@ def test_a_callback_does_not_change_the_numbers(kepler):
 def test_energy_is_preserved_and_a_missing_step_is_an_exception():
     run = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.005, method="energy")
     energies = [run.step().discrete_energy for _ in range(100)]
-    assert np.ptp(energies) < 1e-14
+    # Measured: 0.
+    assert np.ptp(energies) < 1e-15
     run = vi.DoubleWell().integrate([1.001], h=0.01, method="energy")
     with pytest.raises(vi.NoForwardStep, match="fallback=True") as caught:
         run.steps(1000)
@@ -118,7 +121,8 @@ def test_a_shift_goes_on():
     assert run.shift > 0.0
     start = run.shifted_energy
     run.steps(500)
-    assert run.shifted_energy == pytest.approx(start, rel=1e-13)
+    # Measured: 0.
+    assert run.shifted_energy == pytest.approx(start, rel=1e-15)
     assert vi.Pendulum().integrate([1.0], h=0.01).shift is None
 
 
@@ -126,7 +130,8 @@ def test_a_tolerance_finds_the_step():
     run = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], tolerance=1e-9).monitor()
     run.until(20.0)
     assert 0.0 < run.h < 1.0
-    assert 1e-12 < run.error_estimate.estimate < 1e-8
+    # Measured: 1.7e-9 at another place than where the step was chosen.
+    assert 1e-10 < run.error_estimate.estimate < 2e-9
     assert run.error_estimate.coordinate in ("x", "y")
     assert run.local_error().q.shape == (2,)
 
@@ -145,9 +150,10 @@ def test_several_events_of_one_search(kepler):
     events = kepler.events(["y", vi.Event("dot(x)", direction=-1), vi.Period(1.0), apart], until=20.0)
     assert set(events.which) == {0, 1, 2, 3}
     assert np.all(np.diff(events.t) >= 0.0)
+    # Measured: 2.2e-16, 1.1e-16 and 0.
     assert np.abs(events.of(0)["y"]).max() < 1e-15
-    assert np.abs(events.of(1)["dot(x)"]).max() < 1e-13
-    np.testing.assert_allclose(events.of(2).t, np.arange(1.0, len(events.of(2)) + 1), atol=1e-13)
+    assert np.abs(events.of(1)["dot(x)"]).max() < 1e-15
+    np.testing.assert_allclose(events.of(2).t, np.arange(1.0, len(events.of(2)) + 1), rtol=0.0, atol=1e-14)
     assert not events.of(1).rising.any()
 
 
@@ -239,8 +245,8 @@ def test_tangents_are_derivatives(options, d):
 @pytest.mark.parametrize("options", RUNS[:5])
 def test_steps_of_given_length_are_symplectic(options):
     tangent = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], **options).tangent(100)
-    # Measured: 2e-14.
-    assert np.linalg.det(np.hstack([tangent["q"], tangent["p"]])) == pytest.approx(1.0, abs=1e-12)
+    # Measured: at most 2.4e-14.
+    assert np.linalg.det(np.hstack([tangent["q"], tangent["p"]])) == pytest.approx(1.0, abs=5e-14)
 
 
 def test_long_tangents_are_products(kepler):
@@ -251,8 +257,9 @@ def test_long_tangents_are_products(kepler):
     first = start.tangent(3000, [name])
     second = start.tangent(3000, [name])
     product = np.hstack([second["q"], second["p"]])
-    np.testing.assert_allclose(whole["q"], product @ first["q"], rtol=1e-8)
-    np.testing.assert_allclose(whole[name], product @ first[name] + second[name], rtol=1e-8)
+    # Measured: 4.9e-10, rounding after 6000 steps.
+    np.testing.assert_allclose(whole["q"], product @ first["q"], rtol=1e-9)
+    np.testing.assert_allclose(whole[name], product @ first[name] + second[name], rtol=1e-9)
 
 
 @pytest.mark.parametrize("steps", [30, 5000])
@@ -262,9 +269,10 @@ def test_gradients_are_rows_of_tangents(kepler, steps):
     tangent = aside.tangent(steps, [name])
     gradient = kepler.gradient(steps, q=[1.0, 0.5], p=[0.0, 2.0], wrt=[name])
     slope = np.array([1.0, 0.5, 0.0, 2.0])
-    np.testing.assert_allclose(gradient["q"], slope @ tangent["q"], rtol=1e-8)
-    np.testing.assert_allclose(gradient["p"], slope @ tangent["p"], rtol=1e-8)
-    np.testing.assert_allclose(gradient[name], slope @ tangent[name], rtol=1e-8)
+    # Measured: 2.2e-16 after 30 steps, 4.3e-12 after 5000.
+    np.testing.assert_allclose(gradient["q"], slope @ tangent["q"], rtol=1e-11)
+    np.testing.assert_allclose(gradient["p"], slope @ tangent["p"], rtol=1e-11)
+    np.testing.assert_allclose(gradient[name], slope @ tangent[name], rtol=1e-11)
     assert np.array_equal(kepler.q, aside.q)
 
 

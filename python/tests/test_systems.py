@@ -1,6 +1,7 @@
 """Systems: parameters, functions, mathematics."""
 
 import copy
+import importlib.metadata
 import inspect
 import pickle
 
@@ -75,3 +76,7 @@ def test_mathematics():
     assert "L = " in repr(explanation)
     assert "$$" in explanation._repr_markdown_()
     assert p.explain(stages=2).text != explanation.text
+
+
+def test_versions_agree():
+    assert importlib.metadata.version("variational") == vi.__version__

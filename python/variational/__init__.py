@@ -11,7 +11,14 @@ Ready systems are in `vi.systems`. `vi.compile` makes a system from the text of 
 
 from __future__ import annotations
 
-from . import _core
+try:
+    from . import _core
+except ImportError as error:
+    raise ImportError(
+        "variational._core is missing: this is the source folder of variational. Start Python in another folder, "
+        "or build it here with `maturin develop --release`"
+    ) from error
+
 from ._binding import _bind
 from ._cell import load_ipython_extension
 from ._compile import CompileError, compile, warm

@@ -1,0 +1,78 @@
+"""Exceptions: one class for each variant of the typed error, with its fields."""
+
+import pickle
+import re
+
+import pytest
+
+import variational as vi
+from variational import _core
+from variational._errors import ABOUT, ADVICE, FIELDS, _exception
+
+TYPES = {
+    "f64": "float",
+    "u32": "int",
+    "usize": "int",
+    "&'static str": "str",
+    "Option<&'static str>": "str | None",
+    "&'static [&'static str]": "list[str]",
+    "Residuals": "list[float]",
+}
+
+
+def declared():
+    """The variants of `StepError` in the source of the library."""
+    text = dict(_core.sources())["vi-core/src/error.rs"]
+    body = text[text.index("pub enum StepError {") :]
+    body = body[: body.index("\n}\n")]
+    variants = re.findall(r"^    (\w+) \{\n(.*?)^    \},", body, re.MULTILINE | re.DOTALL)
+    fields = {name: re.findall(r"^        (\w+): (.*),$", inner, re.MULTILINE) for name, inner in variants}
+    return {name: {field: TYPES[kind] for field, kind in inner} for name, inner in fields.items()}
+
+
+def test_there_is_a_class_for_each_variant():
+    assert declared() == FIELDS
+    assert set(ABOUT) == set(FIELDS)
+    assert set(ADVICE) <= set(FIELDS)
+    for name in FIELDS:
+        cls = getattr(vi, name)
+        assert issubclass(cls, vi.StepError)
+        assert issubclass(cls, ValueError) == (name == "InvalidInput")
+    assert issubclass(vi.StepError, ArithmeticError)
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_advice_has_words_of_python(name):
+    values = {"float": 0.5, "int": 3, "str": "x", "str | None": None, "list[str]": ["x"], "list[float]": [1.0]}
+    error = _exception(name, "the reason", {field: values[kind] for field, kind in FIELDS[name].items()})
+    assert type(error) is getattr(vi, name)
+    assert error.reason == "the reason"
+    assert not re.search(r"with_|::|FixedStep|EnergyPreserving", str(error))
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), again.reason, again.fields) == (str(error), error.reason, error.fields)
+
+
+FAILURES = {
+    "NonFinite": lambda: vi.Kepler().integrate([0.0, 0.0], h=0.1).steps(1),
+    "Singular": lambda: vi.Pendulum(m=0.0).integrate([1.0], h=0.1),
+    "StagesUnsettled": lambda: vi.Pendulum().integrate([1.0], [50.0], h=50.0).steps(3),
+    "NotConverged": lambda: vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.5, method="fixed").steps(100),
+    "NoForwardStep": lambda: vi.DoubleWell().integrate([1.001], h=0.01, method="energy").steps(1000),
+    "NoForwardGaussStep": lambda: (
+        vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.05, method="energy", stages=3).until(3.0)
+    ),
+    "StepRatio": lambda: vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.02, method="energy", stages=3).until(3.0),
+    "InvalidInput": lambda: vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.1).until(-1.0),
+}
+
+
+@pytest.mark.parametrize("name", FAILURES)
+def test_fields_have_their_types(name):
+    with pytest.raises(getattr(vi, name)) as caught:
+        FAILURES[name]()
+    types = {"float": float, "int": int, "str": str, "str | None": (str, type(None)), "list[float]": list}
+    assert list(caught.value.fields) == list(FIELDS[name])
+    for field, kind in FIELDS[name].items():
+        value = getattr(caught.value, field)
+        assert isinstance(value, types[kind]), field
+        assert value == caught.value.fields[field]
