@@ -2,6 +2,7 @@
 
 import math
 import re
+from pathlib import Path
 
 import pytest
 
@@ -15,6 +16,9 @@ CELLS = [
     "pendulum.explain()",
     "pendulum.integrate(q=[1.0], h=0.05).until(10.0).plot();",
 ]
+
+
+NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs/python").glob("*.ipynb"))
 
 
 def executed(cells):
@@ -44,3 +48,18 @@ def test_a_cell_declares_a_system(warm_cache):
     # Measured: 4e-16.
     assert value == pytest.approx(math.cos(3.0), abs=1e-13)
     assert "definition:" in str(mistake)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.name)
+def test_notebooks_of_the_documentation(path, tmp_path):
+    pytest.importorskip("scipy")
+    pytest.importorskip("pandas")
+    book = nbformat.read(path, as_version=4)
+    nbformat.validate(book)
+    code = [cell for cell in book.cells if cell.cell_type == "code"]
+    assert all(not cell.outputs and cell.execution_count is None for cell in code), "strip the outputs"
+    resources = {"metadata": {"path": str(tmp_path)}}
+    nbclient.NotebookClient(book, timeout=240, kernel_name="python3", resources=resources).execute()
+    outputs = [output for cell in code for output in cell.outputs]
+    assert sum("image/png" in output.get("data", {}) for output in outputs) == 5
+    assert not [output for output in outputs if output.output_type == "stream" and output.name == "stderr"]
