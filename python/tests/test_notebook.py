@@ -21,20 +21,26 @@ CELLS = [
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs/python").glob("*.ipynb"))
 
 
-def executed(cells):
+def execute(book, folder):
+    """Runs a notebook in a folder: in that of the sources `variational` would be found without its library."""
+    resources = {"metadata": {"path": str(folder)}}
+    nbclient.NotebookClient(book, timeout=240, kernel_name="python3", resources=resources).execute()
+
+
+def executed(cells, folder):
     book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
-    nbclient.NotebookClient(book, timeout=240, kernel_name="python3").execute()
+    execute(book, folder)
     return [[output.get("data", output) for output in cell.outputs] for cell in book.cells]
 
 
-def test_formulas_and_figures():
-    system, explanation, figure = executed(CELLS)
+def test_formulas_and_figures(tmp_path):
+    system, explanation, figure = executed(CELLS, tmp_path)
     assert any(data.get("text/latex", "").startswith("$$") for data in system)
     assert any("text/markdown" in data for data in explanation)
     assert any("image/png" in data for data in figure)
 
 
-def test_a_cell_declares_a_system(warm_cache):
+def test_a_cell_declares_a_system(warm_cache, tmp_path):
     spring = "struct Spring {\n    param k = 4.0;\n    coord x;\n    L = dot(x)^2/2 - k*x^2/2;\n}"
     *_, result, mistake = executed(
         [
@@ -42,7 +48,8 @@ def test_a_cell_declares_a_system(warm_cache):
             f"%%lagrangian gauss 8\n{spring}",
             "float(Spring(k=9.0).integrate(q=[1.0], h=0.1).until(1.0).q[-1, 0])",
             f"%%lagrangian\n{spring.replace('k*x', 'kk*x')}",
-        ]
+        ],
+        tmp_path,
     )
     value = float(re.search(r"-?\d\.\d+", result[0]["text/plain"])[0])
     # Measured: 4e-16.
@@ -58,8 +65,7 @@ def test_notebooks_of_the_documentation(path, tmp_path):
     nbformat.validate(book)
     code = [cell for cell in book.cells if cell.cell_type == "code"]
     assert all(not cell.outputs and cell.execution_count is None for cell in code), "strip the outputs"
-    resources = {"metadata": {"path": str(tmp_path)}}
-    nbclient.NotebookClient(book, timeout=240, kernel_name="python3", resources=resources).execute()
+    execute(book, tmp_path)
     outputs = [output for cell in code for output in cell.outputs]
     assert sum("image/png" in output.get("data", {}) for output in outputs) == 5
     assert not [output for output in outputs if output.output_type == "stream" and output.name == "stderr"]
