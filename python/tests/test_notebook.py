@@ -2,6 +2,7 @@
 
 import math
 import re
+from pathlib import Path
 
 import pytest
 
@@ -17,10 +18,18 @@ CELLS = [
 ]
 
 
-def executed(cells, folder):
-    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs/python").glob("*.ipynb"))
+
+
+def execute(book, folder):
+    """Runs a notebook in a folder: in that of the sources `variational` would be found without its library."""
     resources = {"metadata": {"path": str(folder)}}
     nbclient.NotebookClient(book, timeout=240, kernel_name="python3", resources=resources).execute()
+
+
+def executed(cells, folder):
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+    execute(book, folder)
     return [[output.get("data", output) for output in cell.outputs] for cell in book.cells]
 
 
@@ -46,3 +55,17 @@ def test_a_cell_declares_a_system(warm_cache, tmp_path):
     # Measured: 4e-16.
     assert value == pytest.approx(math.cos(3.0), abs=1e-13)
     assert "definition:" in str(mistake)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.name)
+def test_notebooks_of_the_documentation(path, tmp_path):
+    pytest.importorskip("scipy")
+    pytest.importorskip("pandas")
+    book = nbformat.read(path, as_version=4)
+    nbformat.validate(book)
+    code = [cell for cell in book.cells if cell.cell_type == "code"]
+    assert all(not cell.outputs and cell.execution_count is None for cell in code), "strip the outputs"
+    execute(book, tmp_path)
+    outputs = [output for cell in code for output in cell.outputs]
+    assert sum("image/png" in output.get("data", {}) for output in outputs) == 5
+    assert not [output for output in outputs if output.output_type == "stream" and output.name == "stderr"]
