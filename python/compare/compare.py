@@ -237,7 +237,7 @@ def ten_systems():
         rows.append(row)
         used = (acceleration, attraction) if "attraction" in acceleration.__code__.co_names else (acceleration,)
         codes.append([name, str(lines_of_system(name)), str(lines_of_equations(*used))])
-    head = ["system", "h", "search of h", "variational, h", "h/2", "DOP853", "heyoka 1e-10", "heyoka 2e-16", "compile"]
+    head = ["system", "h", "search of h", "variational, h", "h/2", "DOP853", "heyoka 1e-10", "heyoka 2e-16", "heyoka compiles"]
     table(head, rows)
     print("## Lines of code of a system that is not ready: a Lagrangian with parameters, or accelerations by hand")
     table(["system", "Lagrangian", "accelerations"], codes)
