@@ -8,6 +8,8 @@ are -log10 of the largest error of (q, v) at the end, relative to the largest en
 columns are empty.
 """
 
+# ruff: noqa: B023 - functions in loops are called at once
+
 import inspect
 import math
 import os
@@ -156,7 +158,7 @@ def equations(acceleration, n):
     """The equations for heyoka."""
     q, v = ([hy.expression(f"{name}{i}") for i in range(n)] for name in "qv")
     f = SimpleNamespace(sin=hy.sin, cos=hy.cos, sqrt=hy.sqrt)
-    return list(zip(q, v)) + list(zip(v, map(as_expression, acceleration(hy.time, q, v, f))))
+    return list(zip([*q, *v], [*v, *map(as_expression, acceleration(hy.time, q, v, f))], strict=True))
 
 
 def as_expression(x):
@@ -224,7 +226,7 @@ def ten_systems():
         for step in (h, h / 2):
             sol, seconds = best(lambda: system.integrate(q, v, h=step).until(end, every=never))
             row.append(f"{digits(sol.y[:, -1], reference):.1f}, {shown(seconds)}")
-        options = dict(method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * 1e-2)
+        options = {"method": "DOP853", "rtol": TOLERANCE, "atol": TOLERANCE * 1e-2}
         found, theirs = best(lambda: solve_ivp(rhs(acceleration), (0.0, end), y, **options).y[:, -1])
         row.append(f"{digits(found, reference):.1f}, {shown(theirs)}")
         if hy:
@@ -237,7 +239,8 @@ def ten_systems():
         rows.append(row)
         used = (acceleration, attraction) if "attraction" in acceleration.__code__.co_names else (acceleration,)
         codes.append([name, str(lines_of_system(name)), str(lines_of_equations(*used))])
-    head = ["system", "h", "search of h", "variational, h", "h/2", "DOP853", "heyoka 1e-10", "heyoka 2e-16", "compile"]
+    head = ["system", "h", "search of h", "variational, h", "h/2", "DOP853"]
+    head += ["heyoka 1e-10", "heyoka 2e-16", "heyoka compiles"]
     table(head, rows)
     print("## Lines of code of a system that is not ready: a Lagrangian with parameters, or accelerations by hand")
     table(["system", "Lagrangian", "accelerations"], codes)
@@ -252,7 +255,9 @@ def events():
 
     def error(times):
         times = np.asarray(times)
-        return f"{np.abs(times - exact).max():.1e}" if len(times) == len(exact) else f"{len(times)} of {len(exact)} zeros"
+        if len(times) != len(exact):
+            return f"{len(times)} of {len(exact)} zeros"
+        return f"{np.abs(times - exact).max():.1e}"
 
     h = vi.Pendulum().integrate([2.0], tolerance=TOLERANCE).h
     times, seconds = best(lambda: vi.Pendulum().integrate([2.0], h=h).events(vi.Event("θ"), until=end).t)
@@ -263,7 +268,7 @@ def events():
 
     def theirs():
         zero = lambda t, y: y[0]  # noqa: E731
-        options = dict(method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * 1e-2, events=zero)
+        options = {"method": "DOP853", "rtol": TOLERANCE, "atol": TOLERANCE * 1e-2, "events": zero}
         return solve_ivp(rhs(pendulum), (0.0, end), [2.0, 0.0], **options).t_events[0]
 
     times, seconds = best(theirs)
@@ -303,12 +308,12 @@ def ensemble():
     def error(found):
         return f"{np.abs(found - exact).max():.1e}"
 
-    for options in (dict(h=0.3), dict(h=0.2), dict(h=0.2, threads=1), dict(h=0.1, stages=4)):
+    for options in ({"h": 0.3}, {"h": 0.2}, {"h": 0.2, "threads": 1}, {"h": 0.1, "stages": 4}):
         found, seconds = best(lambda: vi.Kepler().ensemble(q, v, until=end, **options).q, 2.0, 3)
         name = ", ".join(f"{key} = {value}" for key, value in options.items())
         rows.append([f"variational, {name}", error(found), shown(seconds)])
     few = np.arange(0, count, 100)
-    options = dict(method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * 1e-2)
+    options = {"method": "DOP853", "rtol": TOLERANCE, "atol": TOLERANCE * 1e-2}
     begin = time.perf_counter()
     found = [solve_ivp(rhs(kepler), (0.0, end), [*q[i], *v[i]], **options).y[:2, -1] for i in few]
     seconds = (time.perf_counter() - begin) * count / len(few)
@@ -409,8 +414,9 @@ def halo():
     d = system.integrate([x, 0.0, z], [0.0, vy, 0.0], h=half / steps).tangent(2 * steps)
     multipliers = np.linalg.eigvals(np.hstack([d["q"], d["p"]]))
     print(f"\nx = {x:.15f}, z = {z}, v_y = {vy:.15f}, period {2.0 * half:.12f}")
-    print(f"Newton's iteration with tangents: {shown(corrected)}; largest multiplier {np.abs(multipliers).max():.6f},")
-    print(f"product of the largest and the smallest - 1: {np.abs(multipliers).max() * np.abs(multipliers).min() - 1:.1e}")
+    sizes = np.abs(multipliers)
+    print(f"Newton's iteration with tangents: {shown(corrected)}; largest multiplier {sizes.max():.6f},")
+    print(f"product of the largest and the smallest - 1: {sizes.max() * sizes.min() - 1:.1e}")
     q, v, end = [x, 0.0, z], [0.0, vy, 0.0], 2.0 * half
     y = np.array(q + v)
     rows = []
@@ -423,7 +429,7 @@ def halo():
     for steps in (32, 64):
         sol, seconds = best(lambda: system.integrate(q, v, h=end / steps).until(end, every=steps))
         row(f"variational, {steps} steps", sol.y[:, -1], seconds, compiled if steps == 32 else "")
-    options = dict(method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * 1e-2)
+    options = {"method": "DOP853", "rtol": TOLERANCE, "atol": TOLERANCE * 1e-2}
     row("DOP853", *best(lambda: solve_ivp(rhs(rotating), (0.0, end), y, **options).y[:, -1]), "")
     if hy:
         for tolerance in (TOLERANCE, 2.0**-52):
