@@ -5,7 +5,7 @@
 //! rounding.
 
 use crate::plan::{Method, Plan, Shift, Start};
-use crate::simulation::{Erasable, Runnable, ShiftedEnergy, Simulation, erased};
+use crate::simulation::{Erasable, Runnable, ShiftedEnergy, Simulation, Supported, erased, erased_with};
 use crate::start;
 use vi_core::collocation::Collocation;
 use vi_core::method::Controlled;
@@ -199,7 +199,7 @@ where
                 Some(Shift::Of(shift)) => run.with_shift(shift)?,
                 Some(Shift::Over(time)) => run.with_shift_from(time)?,
             };
-            Ok(erased(run.with_fallback(fallback(plan))))
+            Ok(erased_with(run.with_fallback(fallback(plan)), plan.shift.is_some()))
         }
     )
 }
@@ -209,42 +209,74 @@ fn fallback(plan: &Plan) -> Fallback {
     if plan.fallback { Fallback::FixedSteps } else { Fallback::Stop }
 }
 
-/// Each iteration evaluates the equation with its Jacobian, and then the residual.
-const OF_A_CORRECTION: u64 = 2;
+/// Evaluations of an iteration by a rule: the equation with its Jacobian, then the residual.
+pub const OF_A_CORRECTION: u64 = 2;
 
-macro_rules! erasable {
-    ([$($generics:tt)*] $method:ty, $system:ty, $evaluations:expr $(; $($items:tt)*)?) => {
-        impl<S, $($generics)*> Erasable<$system, N> for $method
-        where
-            $system: Runnable<N>,
-            $method: crate::simulation::Supported<$system, N>,
-        {
-            const EVALUATIONS: u64 = $evaluations;
-            $($($items)*)?
-        }
-    };
+/// Evaluations of `steps` steps by a rule. A linear system has a closed form, whose residual is evaluated once.
+fn by_corrections(iterations: u32, steps: usize) -> u64 {
+    (OF_A_CORRECTION * u64::from(iterations)).max(steps as u64)
 }
 
-erasable!([const N: usize] FixedStep, S, OF_A_CORRECTION);
-erasable!([const N: usize] Composition, S, OF_A_CORRECTION);
-erasable!([const N: usize, const STAGES: usize] Gauss<STAGES>, S, STAGES as u64);
-erasable!([const N: usize, const STAGES: usize] InTransformedTime<Gauss<STAGES>>, S, STAGES as u64);
-erasable!([const N: usize, const STAGES: usize] EnergyPreservingGauss<STAGES>, S, STAGES as u64;
-    fn shifted_energy(run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
-        let shift = run.shift();
-        (shift != 0.0).then(|| ShiftedEnergy { energy: run.shifted_energy(), shift })
+impl<S: Runnable<N>, const N: usize> Erasable<S, N> for FixedStep
+where
+    FixedStep: Supported<S, N>,
+{
+    fn evaluations(run: &Run<Self, S, N>) -> u64 {
+        by_corrections(run.iterations(), 1)
     }
-);
+}
+
+impl<S: Runnable<N>, const N: usize> Erasable<S, N> for Composition
+where
+    Composition: Supported<S, N>,
+{
+    fn evaluations(run: &Run<Self, S, N>) -> u64 {
+        by_corrections(run.iterations(), run.method().weights.len())
+    }
+}
 
 impl<S: EnergyStepping<N> + Runnable<N>, const N: usize> Erasable<S, N> for EnergyPreserving
 where
-    EnergyPreserving: crate::simulation::Supported<S, N>,
+    EnergyPreserving: Supported<S, N>,
 {
-    const EVALUATIONS: u64 = OF_A_CORRECTION;
+    fn evaluations(run: &Run<Self, S, N>) -> u64 {
+        by_corrections(run.iterations(), 1)
+    }
 
     fn sampled_energy(run: &Run<Self, S, N>) -> Result<(f64, f64), StepError> {
         let v = run.v();
         let (t, q) = run.node().midpoint(-run.h(), &v);
         Ok((t, run.system().energy(t, &q, &v)))
+    }
+}
+
+impl<S: Runnable<N>, const N: usize, const STAGES: usize> Erasable<S, N> for Gauss<STAGES>
+where
+    Gauss<STAGES>: Supported<S, N>,
+{
+    fn evaluations(run: &Run<Self, S, N>) -> u64 {
+        u64::from(run.iterations()) * STAGES as u64
+    }
+}
+
+impl<S: Runnable<N>, const N: usize, const STAGES: usize> Erasable<S, N> for InTransformedTime<Gauss<STAGES>>
+where
+    InTransformedTime<Gauss<STAGES>>: Supported<S, N>,
+{
+    fn evaluations(run: &Run<Self, S, N>) -> u64 {
+        u64::from(run.iterations()) * STAGES as u64
+    }
+}
+
+impl<S: Runnable<N>, const N: usize, const STAGES: usize> Erasable<S, N> for EnergyPreservingGauss<STAGES>
+where
+    EnergyPreservingGauss<STAGES>: Supported<S, N>,
+{
+    fn evaluations(run: &Run<Self, S, N>) -> u64 {
+        u64::from(run.iterations()) * STAGES as u64
+    }
+
+    fn shifted_energy(run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
+        Some(ShiftedEnergy { energy: run.shifted_energy(), shift: run.shift() })
     }
 }

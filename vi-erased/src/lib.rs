@@ -11,18 +11,24 @@
 //! | [`integrator`] | an integrator that is built for a system |
 //! | [`system`] | a system with its parameters |
 //! | [`simulation`] | a started run |
+//! | `session` | a run in the hands of a program; feature `sessions` |
+//! | [`start`] | an accurate second node |
 //! | [`section`] | events of a run, type-erased |
 
 pub mod integrator;
 pub mod plan;
 pub mod section;
+#[cfg(feature = "sessions")]
+pub mod session;
 pub mod simulation;
 pub mod start;
 pub mod system;
 
 pub use integrator::Integrator;
 pub use plan::{Method, PhasePoint, Plan};
-pub use simulation::{Row, Rows, Simulation};
+#[cfg(feature = "sessions")]
+pub use session::{Rows, Session};
+pub use simulation::{Row, Simulation, Steps};
 pub use system::{System, Typed};
 
 /// A system with its default parameters, and the integrators that are built for it:

@@ -3,6 +3,7 @@
 //! In: a coordinate or velocity with a value, a period, or any function of time, coordinates and velocities. Out: an
 //! [`Event`] of a system with N coordinates.
 
+use core::fmt;
 use std::sync::Arc;
 use vi_core::run::{Event, Moment};
 
@@ -18,10 +19,34 @@ pub enum Direction {
 }
 
 /// A function of time, coordinates and velocities.
-pub type Watch = Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>;
+#[derive(Clone)]
+pub struct Watch(Arc<Function>);
+
+/// A function of t, q, v.
+type Function = dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync;
+
+impl Watch {
+    /// The function `g(t, q, v)`.
+    pub fn new(g: impl Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Arc::new(g))
+    }
+}
+
+impl PartialEq for Watch {
+    /// Whether it is the same function.
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl fmt::Debug for Watch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Watch")
+    }
+}
 
 /// A surface that a motion crosses, in a direction.
-#[derive(Clone)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Section {
     /// A coordinate crosses this value.
     Coordinate {
@@ -64,7 +89,7 @@ impl Section {
                 let is_odd = if passed.round() % 2.0 == 0.0 { 1.0 } else { -1.0 };
                 is_odd * (core::f64::consts::PI * (passed - passed.round())).sin()
             }
-            Self::Function(g, _) => g(t, q, v),
+            Self::Function(g, _) => (g.0)(t, q, v),
         }
     }
 

@@ -7,9 +7,9 @@
 use crate::section::Section;
 use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
-use vi_core::run::{Crossing, DenseOutput, ErrorEstimate, ErrorMonitor};
+use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor};
 use vi_core::stepping::Convertible;
-use vi_core::{Method, Run, SVector, State, StepError};
+use vi_core::{Method, Run, SVector, StepError};
 
 /// A node, its energies, and the length of the step that led to it.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,26 +50,6 @@ impl Row {
     }
 }
 
-/// Nodes of a run, in flat columns.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rows {
-    /// Times.
-    pub t: Vec<f64>,
-    /// Coordinates, node after node.
-    pub q: Vec<f64>,
-    /// Momenta, node after node.
-    pub p: Vec<f64>,
-}
-
-impl Rows {
-    /// Adds a node.
-    pub fn push<const N: usize>(&mut self, state: &State<N>) {
-        self.t.push(state.t);
-        self.q.extend_from_slice(state.q.as_slice());
-        self.p.extend_from_slice(state.p.as_slice());
-    }
-}
-
 /// Events of one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Met {
@@ -79,35 +59,14 @@ pub struct Met {
     pub events: Vec<(usize, bool)>,
 }
 
-/// The motion within one step.
-pub trait StepOutput: Send + Sync {
-    /// Coordinates, momenta and velocities at the time `t`, one after the other.
-    fn at(&self, t: f64) -> [Vec<f64>; 3];
-}
-
-/// Dense output, type-erased.
-struct Output<D, const N: usize>(D);
-
-impl<D: DenseOutput<N> + Send + Sync, const N: usize> StepOutput for Output<D, N> {
-    fn at(&self, t: f64) -> [Vec<f64>; 3] {
-        let State { q, p, .. } = self.0.state(t);
-        [q, p, self.0.velocity(t)].map(|of| of.as_slice().to_vec())
-    }
-}
-
-/// A started run.
-pub trait Simulation: Send + Sync {
+/// The nodes of a run, one after the other.
+pub trait Steps {
     /// Time of the last node.
     fn t(&self) -> f64;
     /// Coordinates of the last node.
     fn q(&self) -> &[f64];
     /// Momenta of the last node.
     fn p(&self) -> &[f64];
-    /// Velocities of the last node.
-    ///
-    /// # Errors
-    /// The momenta have no velocity.
-    fn velocity(&self) -> Result<Vec<f64>, StepError>;
     /// Length of the last step; before the first one the requested length.
     fn h(&self) -> f64;
     /// H, the energy at the last node, from its coordinates and momenta.
@@ -118,116 +77,61 @@ pub trait Simulation: Send + Sync {
     /// E, the discrete energy of the interval that ends at the last node; `None` without such an interval.
     fn discrete_energy(&self) -> Option<f64>;
     /// E', conserved by steps with a shift, and that shift; `None` for other methods.
-    fn shifted_energy(&self) -> Option<ShiftedEnergy>;
-    /// Evaluations of the equations by the steps so far: iterations times their evaluations.
-    fn evaluations(&self) -> u64;
-    /// Values of the parameters, in the order of their declaration.
-    fn parameters(&self) -> Vec<f64>;
-    /// The same run, once more.
-    fn copy(&self) -> Box<dyn Simulation>;
-    /// Sets parameters by their indices.
-    ///
-    /// # Errors
-    /// As [`Run::set_parameters`].
-    fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError>;
-    /// Continues from another state, of coordinates and momenta.
-    ///
-    /// # Errors
-    /// As [`Run::set_state`]; [`StepError::InvalidInput`] for another number of coordinates or momenta.
-    fn set_state(&mut self, t: f64, q: &[f64], p: &[f64]) -> Result<(), StepError>;
+    fn shifted_energy(&self) -> Option<ShiftedEnergy> {
+        None
+    }
     /// Takes one step.
     ///
     /// # Errors
     /// The error of the integrator.
     fn advance(&mut self) -> Result<(), StepError>;
-    /// Takes one step of the length h in time.
-    ///
-    /// # Errors
-    /// As [`Run::step_of`].
-    fn advance_of(&mut self, h: f64) -> Result<(), StepError>;
     /// Takes one step toward the time `end`, which lies ahead. A step beyond it is shortened to end at `end` exactly,
     /// and has no discrete energy.
     ///
     /// # Errors
     /// The error of the integrator.
     fn advance_to(&mut self, end: f64) -> Result<(), StepError>;
+    /// Measures errors of the steps from here on. It costs a few per cent of their time and changes no bit of them.
+    fn monitor(&mut self) {}
+    /// The largest error of a step since [`Steps::monitor`], relative to the excursion of its coordinate.
+    fn largest_error(&self) -> Option<ErrorEstimate> {
+        None
+    }
+}
+
+#[cfg(feature = "sessions")]
+use crate::session::Session;
+
+/// A run is nothing more without the feature.
+#[cfg(not(feature = "sessions"))]
+pub trait Session {}
+#[cfg(not(feature = "sessions"))]
+impl<T> Session for T {}
+
+/// A started run.
+pub trait Simulation: Steps + Session + Send + Sync {
+    /// Evaluations of the equations by the steps so far, from their iterations.
+    fn evaluations(&self) -> u64;
     /// Takes steps until a node at `end` or later, at most `most`; returns their number.
     ///
     /// # Errors
     /// The error of the failed step.
     fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError>;
-    /// Takes steps toward the time `end`, where the last of them ends, if one is given; at most `most`. Adds each
-    /// `every`th node to `rows`, as `taken` counts, and the last one. Returns whether it was the last.
-    ///
-    /// # Errors
-    /// The error of the failed step; [`StepError::InvalidInput`] for an end that is not ahead.
-    fn record(
-        &mut self,
-        end: Option<f64>,
-        most: u64,
-        every: u64,
-        taken: &mut u64,
-        rows: &mut Rows,
-    ) -> Result<bool, StepError>;
-    /// Adds states at the given times to `rows`, as [`Run::states_at`].
-    ///
-    /// # Errors
-    /// As [`Run::states_at`].
-    fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError>;
     /// Advances to the time `end`, and passes each crossing of a section to `take`, in order. A crossing is located by
     /// a step of the exact length h, and has no discrete energy. It ends early where `take` returns false.
     ///
     /// # Errors
     /// The error of the failed step.
     fn cross(&mut self, sections: &[Section], end: f64, take: &mut dyn FnMut(Met) -> bool) -> Result<(), StepError>;
-    /// Advances to the first crossing of a section, or to the time `end`.
-    ///
-    /// # Errors
-    /// As [`Run::next_event`].
-    fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError>;
-    /// Dense output of the last step, which began at this time with these coordinates and momenta.
-    ///
-    /// # Errors
-    /// As [`Run::dense_output`].
-    fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError>;
-    /// Measures errors of the steps from here on. It costs a few per cent of their time and changes no bit of them.
-    fn monitor(&mut self);
-    /// The largest error of a step since [`Simulation::monitor`], relative to the excursion of its coordinate.
-    fn largest_error(&self) -> Option<ErrorEstimate>;
-    /// The error of the next step: of q and of h·v, one after the other.
-    ///
-    /// # Errors
-    /// As [`Run::local_error`].
-    fn local_error(&self) -> Result<[Vec<f64>; 2], StepError>;
     /// Time and H at which H is most accurate: at the node; for energy-preserving steps at the midpoint of the last
     /// one, since H deviates by h²D/8 at their nodes.
     ///
     /// # Errors
-    /// As [`Simulation::energy`].
+    /// As [`Steps::energy`].
     fn sampled_energy(&self) -> Result<(f64, f64), StepError>;
-    /// Everything that the run carries, as text for [`System::restart`](crate::System::restart).
-    ///
-    /// # Errors
-    /// What cannot be written.
-    #[cfg(feature = "checkpoints")]
-    fn checkpoint(&self) -> Result<String, String>;
-    /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
-    /// parameters of these indices at the start: one vector of (q, p) for each.
-    ///
-    /// # Errors
-    /// As [`Tangent::step`](vi_core::derivatives::Tangent::step).
-    #[cfg(feature = "derivatives")]
-    fn tangent(&mut self, steps: u64, parameters: &[usize]) -> Result<Vec<Vec<f64>>, StepError>;
-    /// Takes steps, and returns the gradient of `slope·(q, p)` at their end by q, p, and the parameters of these
-    /// indices, by one backward pass.
-    ///
-    /// # Errors
-    /// As [`gradient`](vi_core::derivatives::gradient).
-    #[cfg(feature = "derivatives")]
-    fn gradient(&mut self, steps: u64, slope: &[f64], parameters: &[usize]) -> Result<Vec<f64>, StepError>;
 }
 
-impl dyn Simulation + '_ {
+impl dyn Steps + '_ {
     /// The last node with its energies.
     #[must_use]
     pub fn row(&self) -> Row {
@@ -240,6 +144,15 @@ impl dyn Simulation + '_ {
             shifted_energy: self.shifted_energy().map(|of| of.energy),
             h: self.h(),
         }
+    }
+}
+
+impl dyn Simulation + '_ {
+    /// The last node with its energies.
+    #[must_use]
+    pub fn row(&self) -> Row {
+        let steps: &dyn Steps = self;
+        steps.row()
     }
 
     /// Takes `steps` steps.
@@ -274,18 +187,10 @@ pub fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVe
     }
 }
 
-/// A state from slices.
-///
-/// # Errors
-/// As [`vector`].
-fn state<const N: usize>(t: f64, q: &[f64], p: &[f64]) -> Result<State<N>, StepError> {
-    Ok(State { t, q: vector(q, "number of coordinates")?, p: vector(p, "number of momenta")? })
-}
-
 /// A method whose runs are erased: what its rows and its evaluations are.
 pub trait Erasable<S: Runnable<N>, const N: usize>: Supported<S, N> {
-    /// Evaluations of the equations in one iteration.
-    const EVALUATIONS: u64;
+    /// Evaluations of the equations in the last step of a run.
+    fn evaluations(run: &Run<Self, S, N>) -> u64;
 
     /// Time and H at which H is most accurate.
     ///
@@ -331,11 +236,15 @@ impl<Y: serde::Serialize + serde::de::DeserializeOwned> Storable for Y {}
 /// A run with a method, and the data for its rows.
 #[derive(Clone)]
 pub(crate) struct Simulated<M: Method<S, N>, S, const N: usize> {
-    run: Run<M, S, N>,
+    pub(crate) run: Run<M, S, N>,
     evaluations: u64,
+    /// Whether the run is where it began: the energy that it keeps follows from its state.
+    pub(crate) begins: bool,
+    /// Whether rows have E', even for a shift of zero.
+    is_shifted: bool,
     /// Length of the last step, if it was shortened.
-    shortened: Option<f64>,
-    monitor: Option<Box<ErrorMonitor<M, S, N>>>,
+    pub(crate) shortened: Option<f64>,
+    pub(crate) monitor: Option<Box<ErrorMonitor<M, S, N>>>,
 }
 
 /// Relative deviation below which a length counts as the step of the run.
@@ -343,80 +252,49 @@ const ROUNDED: f64 = 1e-9;
 
 /// The same run, type-erased.
 pub fn erased<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(run: Run<M, S, N>) -> Box<dyn Simulation> {
-    Box::new(Simulated { run, evaluations: 0, shortened: None, monitor: None })
+    erased_with(run, false)
+}
+
+/// The same, with E' in its rows if `is_shifted`.
+pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
+    run: Run<M, S, N>,
+    is_shifted: bool,
+) -> Box<dyn Simulation> {
+    let begins = run.iterations() == 0;
+    Box::new(Simulated { run, evaluations: 0, begins, is_shifted, shortened: None, monitor: None })
 }
 
 impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     /// Takes notice of the last step.
-    fn count(&mut self) {
-        self.evaluations += M::EVALUATIONS * u64::from(self.run.iterations());
+    pub(crate) fn count(&mut self) {
+        self.begins = false;
+        self.evaluations += M::evaluations(&self.run);
         if let Some(monitor) = &mut self.monitor {
             monitor.watch(&self.run);
         }
     }
 
-    /// Takes steps toward the time `end`, where the last of them ends, or to the first node at `past` or later; at most
-    /// `most`. Adds each `every`th node to `rows`, as `taken` counts. Returns whether it is there.
-    ///
-    /// All loops are this one: the step is inlined into it, and takes most of the compiler's time.
-    #[inline(never)]
-    fn advance_while(
-        &mut self,
-        [end, past]: [f64; 2],
-        most: u64,
-        every: u64,
-        taken: &mut u64,
-        rows: &mut Rows,
-    ) -> Result<bool, StepError> {
+    /// Takes steps while `goes_on`, which gets the run before each step. The only loop over steps: each further one would
+    /// be a copy of the step.
+    pub(crate) fn advance_while(&mut self, goes_on: &mut dyn FnMut(&Run<M, S, N>) -> bool) -> Result<(), StepError> {
         // A local copy of the run: behind a pointer its numbers would go through memory in every step.
         let mut run = self.run.clone();
-        let mut outcome = Ok(false);
-        let mut left = most;
-        while let Ok(false) = outcome
-            && left > 0
-        {
-            // Steps without an upper bound would each be taken on a copy, to see whether they end beyond.
-            let is_free = end.is_infinite() && run.longest().is_infinite();
-            outcome = if is_free { run.single_step().map(|_| false) } else { run.approach(end) };
-            if let Ok(is_there) = &mut outcome {
-                *is_there |= run.t() >= past;
-                left -= 1;
-                *taken += 1;
-                self.evaluations += M::EVALUATIONS * u64::from(run.iterations());
-                if taken.is_multiple_of(every) {
-                    rows.push(&run.state());
-                }
-                if let Some(monitor) = &mut self.monitor {
-                    monitor.watch(&run);
-                }
+        let mut outcome = Ok(());
+        while outcome.is_ok() && goes_on(&run) {
+            outcome = run.step().map(drop);
+            if outcome.is_ok() {
+                self.evaluations += M::evaluations(&run);
             }
         }
         self.run = run;
+        self.begins = false;
         self.shortened = None;
         outcome
     }
 
-    /// A time that no step reaches.
-    fn never(&self) -> f64 {
-        f64::INFINITY.copysign(self.run.h())
-    }
-
-    fn met(&self, crossing: &Crossing<N>) -> Met {
-        let Crossing { events, state, length, .. } = crossing;
-        let row = Row {
-            t: state.t,
-            q: state.q.as_slice().to_vec(),
-            p: state.p.as_slice().to_vec(),
-            energy: state.energy(self.run.system()).ok(),
-            discrete_energy: None,
-            shifted_energy: None,
-            h: *length,
-        };
-        Met { row, events: events.iter().map(|met| (met.event, met.is_rising)).collect() }
-    }
-
     /// Forgets a jump of the run.
-    fn resume(&mut self) {
+    pub(crate) fn resume(&mut self) {
+        self.begins = false;
         self.shortened = None;
         if let Some(monitor) = &mut self.monitor {
             monitor.resume(&self.run);
@@ -424,7 +302,22 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     }
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated<M, S, N> {
+/// A crossing of a run of the system, type-erased.
+pub(crate) fn met<S: Runnable<N>, const N: usize>(system: &S, crossing: &Crossing<N>) -> Met {
+    let Crossing { events, state, length, .. } = crossing;
+    let row = Row {
+        t: state.t,
+        q: state.q.as_slice().to_vec(),
+        p: state.p.as_slice().to_vec(),
+        energy: state.energy(system).ok(),
+        discrete_energy: None,
+        shifted_energy: None,
+        h: *length,
+    };
+    Met { row, events: events.iter().map(|met| (met.event, met.is_rising)).collect() }
+}
+
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S, N> {
     fn t(&self) -> f64 {
         self.run.t()
     }
@@ -435,10 +328,6 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
 
     fn p(&self) -> &[f64] {
         self.run.node().p.as_slice()
-    }
-
-    fn velocity(&self) -> Result<Vec<f64>, StepError> {
-        Ok(self.run.velocity()?.as_slice().to_vec())
     }
 
     fn h(&self) -> f64 {
@@ -455,47 +344,12 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
     }
 
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
-        M::shifted_energy(&self.run)
-    }
-
-    fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    fn parameters(&self) -> Vec<f64> {
-        (0..S::PARAMETERS.len()).map(|index| self.run.system().parameter(index)).collect()
-    }
-
-    fn copy(&self) -> Box<dyn Simulation> {
-        Box::new(self.clone())
-    }
-
-    fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {
-        self.run.set_parameters(|system| {
-            for (index, value) in change {
-                if let Some(place) = S::PARAMETERS.get(*index).and_then(|name| system.parameter_mut(name)) {
-                    *place = *value;
-                }
-            }
-        })
-    }
-
-    fn set_state(&mut self, t: f64, q: &[f64], p: &[f64]) -> Result<(), StepError> {
-        self.run.set_state(state(t, q, p)?)?;
-        self.resume();
-        Ok(())
+        M::shifted_energy(&self.run).filter(|of| self.is_shifted || of.shift != 0.0)
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
         self.run.single_step()?;
         self.shortened = None;
-        self.count();
-        Ok(())
-    }
-
-    fn advance_of(&mut self, h: f64) -> Result<(), StepError> {
-        self.run.step_of(h)?;
-        self.shortened = Some(h);
         self.count();
         Ok(())
     }
@@ -524,70 +378,6 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
         Ok(())
     }
 
-    fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
-        let mut taken = 0;
-        if self.run.t() < end {
-            self.advance_while([self.never(), end], most, u64::MAX, &mut taken, &mut Rows::default())?;
-        }
-        Ok(taken)
-    }
-
-    fn record(
-        &mut self,
-        end: Option<f64>,
-        most: u64,
-        every: u64,
-        taken: &mut u64,
-        rows: &mut Rows,
-    ) -> Result<bool, StepError> {
-        if let Some(end) = end {
-            self.run.check_ahead(end)?;
-        }
-        let before = *taken;
-        let end = end.unwrap_or_else(|| self.never());
-        let outcome = self.advance_while([end, f64::INFINITY], most, every, taken, rows);
-        let is_over = outcome != Ok(false);
-        if is_over && *taken > before && !taken.is_multiple_of(every) {
-            rows.push(&self.run.state());
-        }
-        outcome
-    }
-
-    fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError> {
-        self.shortened = None;
-        for state in self.run.states_at(times.iter().copied()) {
-            rows.push(&state?);
-        }
-        Ok(())
-    }
-
-    fn cross(&mut self, sections: &[Section], end: f64, take: &mut dyn FnMut(Met) -> bool) -> Result<(), StepError> {
-        let mut run = self.run.clone();
-        let events: Vec<_> = sections.iter().map(Section::event).collect();
-        let mut outcome = Ok(());
-        for crossing in run.events(events, end) {
-            match crossing {
-                Ok(crossing) if take(self.met(&crossing)) => {}
-                Ok(_) => break,
-                Err(error) => outcome = Err(error),
-            }
-        }
-        self.run = run;
-        self.resume();
-        outcome
-    }
-
-    fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError> {
-        let events: Vec<_> = sections.iter().map(Section::event).collect();
-        let crossing = self.run.next_event(events, end);
-        self.resume();
-        Ok(crossing?.map(|crossing| self.met(&crossing)))
-    }
-
-    fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError> {
-        Ok(Box::new(Output(self.run.dense_output(&state(t, q, p)?)?)))
-    }
-
     fn monitor(&mut self) {
         self.monitor = Some(Box::new(ErrorMonitor::new(&self.run)));
     }
@@ -595,74 +385,40 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
     fn largest_error(&self) -> Option<ErrorEstimate> {
         self.monitor.as_ref().map(|monitor| monitor.largest(&self.run))
     }
+}
 
-    fn local_error(&self) -> Result<[Vec<f64>; 2], StepError> {
-        let error = self.run.local_error()?;
-        Ok([error.q, error.hv].map(|of| of.as_slice().to_vec()))
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated<M, S, N> {
+    fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
+        let mut taken = 0;
+        let mut goes_on = |run: &Run<M, S, N>| {
+            let goes_on = taken < most && run.t() < end;
+            taken += u64::from(goes_on);
+            goes_on
+        };
+        self.advance_while(&mut goes_on)?;
+        Ok(taken)
+    }
+
+    fn cross(&mut self, sections: &[Section], end: f64, take: &mut dyn FnMut(Met) -> bool) -> Result<(), StepError> {
+        let system = *self.run.system();
+        let events: Vec<_> = sections.iter().map(Section::event).collect();
+        let mut outcome = Ok(());
+        for crossing in self.run.events(events, end) {
+            match crossing {
+                Ok(crossing) if take(met(&system, &crossing)) => {}
+                Ok(_) => break,
+                Err(error) => outcome = Err(error),
+            }
+        }
+        self.resume();
+        outcome
     }
 
     fn sampled_energy(&self) -> Result<(f64, f64), StepError> {
         M::sampled_energy(&self.run)
     }
-
-    #[cfg(feature = "checkpoints")]
-    fn checkpoint(&self) -> Result<String, String> {
-        serde_json::to_string(&self.run.checkpoint()).map_err(|error| error.to_string())
-    }
-
-    #[cfg(feature = "derivatives")]
-    fn tangent(&mut self, steps: u64, parameters: &[usize]) -> Result<Vec<Vec<f64>>, StepError> {
-        let mut variations = vi_core::derivatives::Variation::of_state();
-        variations.extend(parameters.iter().map(|index| of_parameter(*index)));
-        let mut tangent = vi_core::derivatives::Tangent::from_start(self.run.clone(), variations)?;
-        for _ in 0..steps {
-            tangent.step()?;
-        }
-        self.run = tangent.run().clone();
-        self.resume();
-        let of_node = |of: &vi_core::derivatives::Variation<N>| of.q.iter().chain(&of.p).copied().collect();
-        Ok(tangent.variations().iter().map(of_node).collect())
-    }
-
-    #[cfg(feature = "derivatives")]
-    fn gradient(&mut self, steps: u64, slope: &[f64], parameters: &[usize]) -> Result<Vec<f64>, StepError> {
-        use vi_core::derivatives::{Covector, Objective};
-
-        struct AtTheEnd<const N: usize> {
-            steps: u64,
-            slope: Covector<N>,
-            parameters: Vec<&'static str>,
-        }
-
-        impl<M: Method<S, N>, S, const N: usize> Objective<M, S, N> for AtTheEnd<N> {
-            fn parameters(&self) -> &[&str] {
-                &self.parameters
-            }
-
-            fn slope(&self, step: u64, _state: &State<N>) -> Covector<N> {
-                if step == self.steps { self.slope } else { Covector::zero() }
-            }
-        }
-
-        let State { q, p, .. } = match slope.split_at_checked(N) {
-            Some((q, p)) => state::<N>(0.0, q, p)?,
-            None => state::<N>(0.0, slope, &[])?,
-        };
-        let parameters = parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
-        let objective = AtTheEnd { steps, slope: Covector { q, p, ..Covector::zero() }, parameters };
-        let found = vi_core::derivatives::gradient(&self.run, steps, 1024, &objective)?;
-        (0..steps).try_for_each(|_| self.run.single_step().map(drop))?;
-        self.resume();
-        let count = objective.parameters.len();
-        let sums = (0..count).map(|index| found.parameters.iter().map(|of_a_step| of_a_step[index]).sum::<f64>());
-        Ok(found.start.q.iter().chain(&found.start.p).copied().chain(sums).collect())
-    }
-}
-
-/// The direction of a parameter, by its index.
-#[cfg(feature = "derivatives")]
-fn of_parameter<const N: usize>(index: usize) -> vi_core::derivatives::Variation<N> {
-    let mut parameters = vec![0.0; index + 1];
-    parameters[index] = 1.0;
-    vi_core::derivatives::Variation { parameters, ..vi_core::derivatives::Variation::zero() }
 }

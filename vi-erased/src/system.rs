@@ -95,7 +95,7 @@ impl dyn System + '_ {
     /// Momenta ∂L/∂v at a point.
     ///
     /// # Errors
-    /// As [`System::energy`].
+    /// As `energy`.
     pub fn momentum(&self, at: &PhasePoint) -> Result<Vec<f64>, StepError> {
         self.values(Quantity::Momentum, at)
     }

@@ -6,9 +6,9 @@
 
 use crate::Entry;
 use core::marker::PhantomData;
-use vi_core::collocation::Collocation;
-use vi_core::lagrangian::Parameters;
-use vi_core::stepping::{Convertible, EnergyStepping};
+use vi_core::lagrangian::Described;
+use vi_core::stepping::EnergyStepping;
+use vi_erased::simulation::Runnable;
 
 /// A system declared by a program.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ pub trait WithoutRule<const N: usize> {
 
 impl<S, const N: usize> WithRule<N> for &Declared<S>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
+    S: EnergyStepping<N> + Runnable<N> + Described + Default,
 {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
         Entry::new::<S, N>(about, q, v, h)
@@ -46,7 +46,7 @@ where
 
 impl<S, const N: usize> WithoutRule<N> for Declared<S>
 where
-    S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
+    S: Runnable<N> + Described + Default,
 {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
         Entry::with_gauss_only::<S, N>(about, q, v, h)
@@ -57,9 +57,8 @@ where
 #[allow(clippy::needless_borrow, reason = "the calls are those of the macro")]
 mod tests {
     use super::{Declared, WithRule as _, WithoutRule as _};
-    use core::cell::Cell;
     use vi_core::{StepError, lagrangian};
-    use vi_runs::plan::{Method, PhasePoint, Plan};
+    use vi_erased::plan::{Method, PhasePoint, Plan};
 
     lagrangian! {
         struct Alone {
@@ -82,14 +81,13 @@ mod tests {
         assert!(!entry.system.has_rule() && entry.system.step_density(&entry.q, &entry.v).is_none());
         let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
         let by = |method, stages| Plan { stages, ..Plan::new(method, entry.h, start.clone()) };
-        let evaluations = Cell::new(0);
         for (method, stages) in [(Method::Gauss, Some(4)), (Method::Energy, Some(2))] {
-            let mut run = entry.system.begin(&by(method, stages), &evaluations).expect("a start");
+            let mut run = entry.system.begin(&by(method, stages)).expect("a start");
             run.advance_by(10).expect("steps");
             assert!(run.t() > 0.05 && run.q()[0] < 1.0, "{}", run.t());
         }
         for method in [Method::Fixed, Method::KahanLi8, Method::Energy] {
-            let error = entry.system.begin(&by(method, None), &evaluations).err();
+            let error = entry.system.begin(&by(method, None)).err();
             assert_eq!(error, Some(StepError::NoRule { system: "Alone" }));
         }
         let message = StepError::NoRule { system: "Alone" }.to_string();
@@ -104,9 +102,8 @@ mod tests {
         let entry = (&&Declared::<Ruled>::new()).entry("a spring", [1.0], [0.0], 0.01);
         assert!(entry.system.has_rule() && entry.system.step_density(&entry.q, &entry.v).is_some());
         let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
-        let evaluations = Cell::new(0);
-        let mut run = entry.system.begin(&Plan::new(Method::Fixed, entry.h, start), &evaluations).expect("a start");
+        let mut run = entry.system.begin(&Plan::new(Method::Fixed, entry.h, start)).expect("a start");
         run.advance_by(10).expect("steps");
-        assert!(evaluations.get() > 10);
+        assert!(run.evaluations() > 10);
     }
 }

@@ -1,11 +1,12 @@
 //! Entries of a scene as a user writes them.
 //!
-//! In: a value of TOML. Out: a count or a choice, or one line that says what is allowed.
+//! In: a value of TOML or of the command line. Out: a count or a choice, or one line that says what is allowed.
 
-use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use core::fmt;
 use core::marker::PhantomData;
 use serde::de::{self, Deserializer, EnumAccess, Error as _, Expected, Unexpected, VariantAccess as _, Visitor};
+use vi_erased::plan::Named;
 use vi_report::input::{COUNT, whole};
 
 /// The count of an entry of a scene, `1000` or `1e6`.
@@ -39,19 +40,24 @@ impl Visitor<'_> for Count {
 ///
 /// # Errors
 /// The names that there are, at the place of the entry.
-pub(crate) fn choice<'de, D: Deserializer<'de>, T: ValueEnum>(entry: D) -> Result<Option<T>, D::Error> {
+pub(crate) fn choice<'de, D: Deserializer<'de>, T: Named>(entry: D) -> Result<Option<T>, D::Error> {
     entry.deserialize_enum("", &[], Choice(PhantomData)).map(Some)
+}
+
+/// Reads a choice from the command line.
+pub(crate) fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    let values = T::VALUES.iter().map(|value| PossibleValue::new(value.name()).help(value.about()));
+    PossibleValuesParser::new(values).try_map(|name| T::named(&name).ok_or("no such choice"))
 }
 
 /// Reads a choice.
 struct Choice<T>(PhantomData<T>);
 
-impl<'de, T: ValueEnum> Visitor<'de> for Choice<T> {
+impl<'de, T: Named> Visitor<'de> for Choice<T> {
     type Value = T;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let values = T::value_variants().iter().filter_map(ValueEnum::to_possible_value);
-        let names: Vec<String> = values.map(|value| format!("`{}`", value.get_name())).collect();
+        let names: Vec<String> = T::VALUES.iter().map(|value| format!("`{}`", value.name())).collect();
         match names.as_slice() {
             [one, other] => write!(f, "{one} or {other}"),
             names => write!(f, "one of {}", names.join(", ")),
@@ -61,7 +67,7 @@ impl<'de, T: ValueEnum> Visitor<'de> for Choice<T> {
     fn visit_enum<A: EnumAccess<'de>>(self, entry: A) -> Result<T, A::Error> {
         let (name, variant) = entry.variant::<String>()?;
         variant.unit_variant()?;
-        let unknown = |_| A::Error::custom(format!("unknown variant `{name}`, expected {}", &self as &dyn Expected));
-        T::from_str(&name, false).map_err(unknown)
+        let unknown = || A::Error::custom(format!("unknown variant `{name}`, expected {}", &self as &dyn Expected));
+        T::named(&name).ok_or_else(unknown)
     }
 }

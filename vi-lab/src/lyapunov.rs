@@ -6,12 +6,12 @@
 
 use crate::run;
 use clap::Args;
+use vi_erased::plan::Method;
 use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::numbers::short;
 use vi_report::terminal::print;
-use vi_runs::plan::Method;
 
 /// The command line of `vi-lab lyapunov`.
 #[derive(Debug, Args)]

@@ -14,16 +14,29 @@ pub(crate) struct Arguments {
     /// Name of the crate and of its folder
     #[arg(value_name = "NAME")]
     name: PathBuf,
+    /// Also a Python module of the systems, for `pip install .`
+    #[arg(long)]
+    python: bool,
 }
 
 const MANIFEST: &str = include_str!("new/manifest.toml");
 const SYSTEMS: &str = include_str!("new/lib.rs");
 const PROGRAM: &str = include_str!("new/main.rs");
 const README: &str = include_str!("new/README.md");
-const IGNORED: &str = "/target\n";
+const IGNORED: &str = "target\n";
+
+/// What a Python module adds.
+mod python {
+    pub(super) const FEATURES: &str = include_str!("new/python/features.toml");
+    pub(super) const SYSTEMS: &str = include_str!("new/python/systems.rs");
+    pub(super) const MODULE: &str = include_str!("new/python/module.rs");
+    pub(super) const MANIFEST: &str = include_str!("new/python/manifest.toml");
+    pub(super) const PROJECT: &str = include_str!("new/python/pyproject.toml");
+    pub(super) const README: &str = include_str!("new/python/README.md");
+}
 
 /// Writes the crate.
-pub(crate) fn write(Arguments { name: folder }: &Arguments) -> Result<String, Failure> {
+pub(crate) fn write(Arguments { name: folder, python }: &Arguments) -> Result<String, Failure> {
     let name = folder.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     if !is_crate_name(name) {
         let allowed = "letters, digits, - and _, the first a letter";
@@ -35,23 +48,43 @@ pub(crate) fn write(Arguments { name: folder }: &Arguments) -> Result<String, Fa
     if folder.exists() {
         return Err(Failure::Input(format!("{} already exists", folder.display())));
     }
-    let file = |path: PathBuf, text: &str| {
-        fs::write(&path, text).map_err(|error| Failure::File { name: path.display().to_string(), error })
-    };
-    let source = folder.join("src");
-    fs::create_dir_all(&source).map_err(|error| Failure::File { name: source.display().to_string(), error })?;
-    file(folder.join("Cargo.toml"), &MANIFEST.replace("NAME", name).replace("LIBRARIES", &libraries()))?;
-    file(
-        folder.join("README.md"),
-        &README.replace("NAME", name).replace("mine::", &format!("{}::", name.replace('-', "_"))),
-    )?;
-    file(folder.join(".gitignore"), IGNORED)?;
-    file(source.join("lib.rs"), SYSTEMS)?;
-    file(source.join("main.rs"), &PROGRAM.replace("mine::", &format!("{}::", name.replace('-', "_"))))?;
+    for (path, text) in files(name, *python) {
+        let path = folder.join(path);
+        let failed = |error| Failure::File { name: path.display().to_string(), error };
+        path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(&path, text)).map_err(failed)?;
+    }
+    let also = if *python { "\n    pip install ." } else { "" };
     Ok(format!(
-        "{}: a crate with one system\n\n    cd {0} && cargo run --release -- run --plot motion.svg",
+        "{}: a crate with one system\n\n    cd {0} && cargo run --release -- run --plot motion.svg{also}",
         folder.display()
     ))
+}
+
+/// The files of a crate, by their paths.
+fn files(name: &str, with_python: bool) -> Vec<(&'static str, String)> {
+    let module = name.replace('-', "_");
+    let filled = |text: &str| {
+        let text = text.replace("mine::", &format!("{module}::")).replace("fn mine", &format!("fn {module}"));
+        text.replace("NAME", name).replace("MODULE", &module).replace("PACKAGE", &package())
+    };
+    let mut manifest = filled(MANIFEST).replace("LIBRARIES", &libraries(&["vi-core", "vi-lab"]));
+    let (mut readme, mut systems) = (filled(README), SYSTEMS.to_owned());
+    let mut files = vec![("src/main.rs", filled(PROGRAM)), (".gitignore", IGNORED.to_owned())];
+    if with_python {
+        let libraries_of = |names| libraries(names);
+        let of_module = libraries_of(&["vi-erased"]).replace(" }", ", optional = true }");
+        manifest =
+            manifest.replace(&libraries(&["vi-lab"]), &libraries(&["vi-lab"]).replace(" }", ", optional = true }"));
+        manifest = manifest.replace("\n\n# Debug", &format!("\n{of_module}\n\n{}\n# Debug", filled(python::FEATURES)));
+        readme += &filled(python::README);
+        systems += python::SYSTEMS;
+        files.push(("pyproject.toml", filled(python::PROJECT)));
+        let libraries = libraries_of(&["python/vi-python"]);
+        files.push(("python/Cargo.toml", filled(python::MANIFEST).replace("LIBRARIES", &libraries)));
+        files.push(("python/src/lib.rs", filled(python::MODULE)));
+    }
+    files.extend([("Cargo.toml", manifest), ("README.md", readme), ("src/lib.rs", systems)]);
+    files
 }
 
 /// Whether Cargo accepts a name for a crate.
@@ -73,15 +106,27 @@ fn taken(name: &str) -> Option<&'static str> {
     word.starts_with("vi_").then_some("may clash with a dependency: their names begin with vi-")
 }
 
-/// The dependencies in the manifest: paths if the source of this command exists, otherwise versions.
-fn libraries() -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().filter(|root| root.join("vi-core/Cargo.toml").is_file());
-    let line = |name: &str| match root {
-        // Rust and TOML escape backslashes and quotes alike.
-        Some(root) => format!("{name} = {{ path = {:?} }}", root.join(name).display().to_string()),
-        None => format!("{name} = {:?}", env!("CARGO_PKG_VERSION")),
+/// The checkout that this command was built from, if it is there.
+fn checkout() -> Option<&'static Path> {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().filter(|root| root.join("vi-core/Cargo.toml").is_file())
+}
+
+/// What pip installs as the package `variational`.
+fn package() -> String {
+    checkout().map_or_else(|| "variational".to_owned(), |root| root.join("python").display().to_string())
+}
+
+/// The dependencies in a manifest, by their folders: paths if the source of this command exists, otherwise versions.
+fn libraries(folders: &[&str]) -> String {
+    let line = |folder: &&str| {
+        let name = folder.rsplit('/').next().unwrap_or(folder);
+        match checkout() {
+            // Rust and TOML escape backslashes and quotes alike.
+            Some(root) => format!("{name} = {{ path = {:?} }}", root.join(folder).display().to_string()),
+            None => format!("{name} = {{ version = {:?} }}", env!("CARGO_PKG_VERSION")),
+        }
     };
-    [line("vi-core"), line("vi-lab")].join("\n")
+    folders.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]

@@ -69,10 +69,24 @@ fn a_new_crate_has_what_it_needs() {
     let readme = fs::read_to_string(name.join("README.md")).expect("a README");
     assert!(readme.starts_with("# mine\n") && !readme.contains("NAME"));
     let other = folder.join("my-own");
-    let (status, _, errors) = run(&lab(), &["new", other.to_str().expect("text")]);
+    let (status, text, errors) = run(&lab(), &["new", other.to_str().expect("text"), "--python"]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
-    let program = fs::read_to_string(other.join("src/main.rs")).expect("a program");
-    assert!(program.contains("use my_own::SpringPendulum;"), "{program}");
+    assert!(text.ends_with("\n    pip install .\n"), "{text}");
+    let read = |file: &str| fs::read_to_string(other.join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+    assert!(read("src/main.rs").contains("use my_own::SpringPendulum;"));
+    let manifest: toml::Table = read("Cargo.toml").parse().expect("TOML");
+    assert_eq!(manifest["dependencies"]["vi-lab"]["optional"].as_bool(), Some(true));
+    assert_eq!(manifest["bin"][0]["required-features"][0].as_str(), Some("command"));
+    let module: toml::Table = read("python/Cargo.toml").parse().expect("TOML");
+    assert_eq!(module["lib"]["name"].as_str(), Some("my_own"));
+    assert_eq!(module["dependencies"]["systems"]["package"].as_str(), Some("my-own"));
+    let path = module["dependencies"]["vi-python"]["path"].as_str().expect("a path");
+    assert!(Path::new(path).join("Cargo.toml").is_file(), "{path}");
+    assert!(read("python/src/lib.rs").contains("fn my_own(") && read("src/lib.rs").contains("vi_erased::kind!"));
+    let written = ["Cargo.toml", "pyproject.toml", "README.md", "python/Cargo.toml", "python/src/lib.rs"].map(read);
+    assert!(
+        written.iter().all(|text| !["NAME", "MODULE", "LIBRARIES", "PACKAGE"].iter().any(|word| text.contains(word)))
+    );
     // Existing files are not overwritten.
     let (status, _, errors) = run(&lab(), &["new", name.to_str().expect("text")]);
     assert_eq!((status, errors), (Some(2), format!("error: {} already exists\n", name.display())));

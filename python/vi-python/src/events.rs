@@ -8,7 +8,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use vi_erased::section::{Direction, Section};
+use vi_erased::section::{Direction, Section, Watch};
 
 /// An event as Python describes it.
 #[derive(FromPyObject)]
@@ -93,7 +93,7 @@ fn function(g: Py<PyAny>, to: i32, raised: Raised) -> Section {
             })
         })
     };
-    Section::Function(Arc::new(watch), direction(to))
+    Section::Function(Watch::new(watch), direction(to))
 }
 
 /// A constant function that looks for signals.
@@ -107,5 +107,5 @@ fn signals(raised: Raised) -> Section {
         }
         if raised.is_some() { f64::NAN } else { 1.0 }
     };
-    Section::Function(Arc::new(watch), Direction::Rising)
+    Section::Function(Watch::new(watch), Direction::Rising)
 }

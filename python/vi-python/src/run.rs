@@ -274,16 +274,9 @@ impl Run {
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
         Self::check_parameters(run, parameters.iter().copied())?;
-        let few = steps.min(DERIVED);
-        let mut rows = py.detach(|| run.tangent(few, &parameters)).raise(py)?;
-        let mut taken = few;
-        while taken < steps {
-            py.check_signals()?;
-            let few = (steps - taken).min(DERIVED);
-            let next = py.detach(|| run.tangent(few, &parameters)).raise(py)?;
-            rows = chained(&rows, &next);
-            taken += few;
-        }
+        let mut signal = Signal::default();
+        let rows = py.detach(|| run.tangent(steps, &parameters, &mut || signal.is_silent())).raise(py)?;
+        let rows = signal.unless_raised(rows)?;
         Ok(PyArray2::from_vec2(py, &rows)?)
     }
 
@@ -296,29 +289,15 @@ impl Run {
         slope: PyReadonlyArray1<'py, f64>,
         parameters: Vec<usize>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let mut slope = vector(&slope, 2 * self.n, "the slope")?;
+        let slope = vector(&slope, 2 * self.n, "the slope")?;
         let mut guard = self.lock()?;
-        Self::check_parameters(&**guard, parameters.iter().copied())?;
-        // The run at the start of each stretch; the pass goes back from the last.
-        let (mut starts, mut taken) = (Vec::new(), 0);
-        while taken < steps {
-            let few = (steps - taken).min(DERIVED);
-            starts.push((guard.copy(), few));
-            let run: &mut dyn Simulation = &mut **guard;
-            py.detach(|| run.advance_by(few)).raise(py)?;
-            py.check_signals()?;
-            taken += few;
-        }
-        let mut sums = vec![0.0; parameters.len()];
-        for (mut start, few) in starts.into_iter().rev() {
-            let found = py.detach(|| start.gradient(few, &slope, &parameters)).raise(py)?;
-            py.check_signals()?;
-            let (state, of_parameters) = found.split_at(2 * self.n);
-            slope.copy_from_slice(state);
-            sums.iter_mut().zip(of_parameters).for_each(|(sum, part)| *sum += part);
-        }
-        slope.extend(sums);
-        Ok(PyArray1::from_vec(py, slope))
+        let run: &mut dyn Simulation = &mut **guard;
+        Self::check_parameters(run, parameters.iter().copied())?;
+        // The slopes by the parameters of each step are kept.
+        check_memory(steps, parameters.len() + 3)?;
+        let mut signal = Signal::default();
+        let found = py.detach(|| run.gradient(steps, &slope, &parameters, &mut || signal.is_silent())).raise(py)?;
+        Ok(PyArray1::from_vec(py, signal.unless_raised(found)?))
     }
 
     /// The error of the next step: of q, and of h·v.
@@ -347,23 +326,33 @@ impl Run {
 }
 
 /// Steps of a derivative between two looks at signals.
-const DERIVED: u64 = 4096;
+const DERIVED: u32 = 1024;
 
-/// The derivatives after two stretches, by the chain rule. Rows are directions: the state first, then parameters.
-fn chained(first: &[Vec<f64>], second: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let size = first.first().map_or(0, Vec::len);
-    let along = |row: &Vec<f64>| {
-        let mut sum = vec![0.0; size];
-        for (part, direction) in row.iter().zip(second) {
-            sum.iter_mut().zip(direction).for_each(|(sum, entry)| *sum += part * entry);
+/// Looks for Ctrl-C on the way of a derivative.
+#[derive(Default)]
+struct Signal {
+    steps: u32,
+    raised: Option<PyErr>,
+}
+
+impl Signal {
+    /// Whether none has come so far.
+    fn is_silent(&mut self) -> bool {
+        self.steps += 1;
+        if self.steps.is_multiple_of(DERIVED) {
+            self.raised = Python::attach(|py| py.check_signals()).err();
         }
-        sum
-    };
-    let mut rows: Vec<Vec<f64>> = first.iter().map(along).collect();
-    for (row, own) in rows.iter_mut().zip(second).skip(size) {
-        row.iter_mut().zip(own).for_each(|(sum, entry)| *sum += entry);
+        self.raised.is_none()
     }
-    rows
+
+    /// What was found, or the exception.
+    fn unless_raised<T>(self, found: Option<T>) -> PyResult<T> {
+        match (found, self.raised) {
+            (Some(found), None) => Ok(found),
+            (_, Some(raised)) => Err(raised),
+            (None, None) => Err(wrong("the derivative was stopped")),
+        }
+    }
 }
 
 /// Adds the state of the run.

@@ -330,11 +330,11 @@ where
 {
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { system, memory, .. } = run;
-        if !memory.0.iter().all(Steps::has_parameters_of_last) {
+        if !memory.all.iter().all(Steps::has_parameters_of_last) {
             return Err(not_last(before.t));
         }
         let mut node = *before;
-        for substep in &memory.0 {
+        for substep in &memory.all {
             let (h, v) = (substep.h, substep.v());
             vary(system, &node, [h, h / run.h], &v, variations)?;
             let increment = system.momentum_residual(&node, h, &v).increment;

@@ -115,7 +115,17 @@ impl Composition {
     feature = "serde",
     serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
 )]
-pub struct Substeps<const N: usize, T = f64>(pub(crate) Vec<Steps<N, T>>);
+pub struct Substeps<const N: usize, T = f64> {
+    pub(crate) all: Vec<Steps<N, T>>,
+    /// Newton iterations of the last step.
+    iterations: u32,
+}
+
+impl<const N: usize, T> Substeps<N, T> {
+    fn of(all: Vec<Steps<N, T>>) -> Self {
+        Self { all, iterations: 0 }
+    }
+}
 
 impl<const N: usize, T: Scalar> Memory for Substeps<N, T> {}
 
@@ -125,6 +135,7 @@ pub struct CompositionSolution<const N: usize, T = f64> {
     after: Node<N, T>,
     /// The updated memory of the substeps.
     substeps: Vec<Steps<N, T>>,
+    iterations: u32,
 }
 
 impl<S, const N: usize, T> Method<S, N, T> for Composition
@@ -154,7 +165,7 @@ where
 
     fn begin(&self, system: &S, node: &mut Node<N, T>, h: T) -> Result<Substeps<N, T>, StepError> {
         let v = node.state().velocity(system)?;
-        Ok(Substeps(self.lengths(h).map(|h| Steps::new(h, v)).collect()))
+        Ok(Substeps::of(self.lengths(h).map(|h| Steps::new(h, v)).collect()))
     }
 
     fn attempt(
@@ -166,8 +177,9 @@ where
         let Problem { system, prepared, node, .. } = at;
         let mut after = *node;
         let mut substeps = core::mem::take(cache);
-        substeps.clone_from(&memory.0);
+        substeps.clone_from(&memory.all);
         let mut last = None;
+        let mut iterations = 0;
         for (substep, corrector) in substeps.iter_mut().zip(prepared) {
             // Before the first step, each substep starts from the velocity of the one before.
             if let Some(v) = last.filter(|_| substep.is_new()) {
@@ -183,9 +195,10 @@ where
             after.advance(h, &solved.v, &solved.increment);
             after.check_finite(node.t)?;
             substep.push(&solved);
+            iterations += solved.iterations;
             last = Some(solved.v);
         }
-        Ok(CompositionSolution { after, substeps })
+        Ok(CompositionSolution { after, substeps, iterations })
     }
 
     fn recover(
@@ -206,7 +219,8 @@ where
         step: Self::Step,
     ) {
         *node = step.after;
-        *cache = core::mem::replace(&mut memory.0, step.substeps);
+        *cache = core::mem::replace(&mut memory.all, step.substeps);
+        memory.iterations = step.iterations;
     }
 
     fn with_length(
@@ -216,8 +230,8 @@ where
         _node: &Node<N, T>,
         h: T,
     ) -> Result<Substeps<N, T>, StepError> {
-        let substeps = memory.0.iter().zip(self.lengths(h));
-        Ok(Substeps(substeps.map(|(substep, h)| substep.with_length(h)).collect()))
+        let substeps = memory.all.iter().zip(self.lengths(h));
+        Ok(Substeps::of(substeps.map(|(substep, h)| substep.with_length(h)).collect()))
     }
 
     fn with_system(
@@ -228,7 +242,7 @@ where
         memory: &Substeps<N, T>,
     ) -> Result<Substeps<N, T>, StepError> {
         node.state().velocity(after)?;
-        Ok(Substeps(memory.0.iter().map(|substep| substep.with_other_parameters()).collect()))
+        Ok(Substeps::of(memory.all.iter().map(|substep| substep.with_other_parameters()).collect()))
     }
 
     fn dense_output(
@@ -243,20 +257,20 @@ where
     }
 
     fn report(&self, memory: &Substeps<N, T>) -> Report {
-        let residual = memory.0.iter().map(|substep| substep.measured().roundings()).fold(0.0, f64::max);
-        Report { residual, iterations: 0 }
+        let residual = memory.all.iter().map(|substep| substep.measured().roundings()).fold(0.0, f64::max);
+        Report { residual, iterations: memory.iterations }
     }
 
     fn check(&self, memory: &Substeps<N, T>, h: T, t: T) -> Result<(), StepError> {
-        let mut substeps = memory.0.iter();
+        let mut substeps = memory.all.iter();
         let is_of_scheme = self.lengths(h).all(|h| substeps.next().is_some_and(|substep| substep.h == h));
         if !is_of_scheme || substeps.next().is_some() {
             #[allow(clippy::cast_precision_loss)] // a few substeps
-            let value = memory.0.len() as f64;
+            let value = memory.all.len() as f64;
             let allowed = "those of the composition of the restarted run";
             return Err(StepError::InvalidInput { input: "the substeps of a checkpoint", allowed, value });
         }
-        memory.0.iter().try_for_each(|substep| check_steps(substep, substep.h, t))
+        memory.all.iter().try_for_each(|substep| check_steps(substep, substep.h, t))
     }
 }
 
@@ -267,6 +281,6 @@ where
 {
     /// Velocities of the substeps of the last step, in order. Before the first step, the velocity of the momenta.
     pub fn velocities(&self) -> impl Iterator<Item = SVector<T, N>> + '_ {
-        self.memory.0.iter().map(Steps::v)
+        self.memory.all.iter().map(Steps::v)
     }
 }

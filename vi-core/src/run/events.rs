@@ -217,7 +217,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     /// As [`Run::until`]; [`StepError::NonFinite`] for a function that is not finite; [`StepError::CannotLeave`] if the
     /// run begins at a zero of a one-directional event whose function passes zero again at that instant.
     pub fn next_event(&mut self, events: impl Events<N>, until: f64) -> Result<Option<Crossing<N>>, StepError> {
-        Crossings::new(self, events, until, |_| Ok(())).stop()
+        Crossings::new(self, events, until, unwatched).stop()
     }
 
     /// [`Run::next_event`] for one event.
@@ -255,8 +255,14 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     /// Iterates over the events up to the time `until` and takes steps on demand. The run keeps its own steps, except
     /// for the last, which ends at `until`. If the iterator is dropped after an event, the run is at the node before it.
     pub fn events<'a>(&'a mut self, events: impl Events<N> + 'a, until: f64) -> Crossings<'a, N> {
-        Crossings::new(self, events, until, |_| Ok(()))
+        Crossings::new(self, events, until, unwatched)
     }
+}
+
+/// Takes no notice of a step. One function for all searches, so that they are one type.
+#[allow(clippy::unnecessary_wraps, reason = "the type of a function that takes notice")]
+fn unwatched<R>(_: &R) -> Result<(), StepError> {
+    Ok(())
 }
 
 /// One event of an instant.

@@ -84,11 +84,25 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
 
     /// Takes one step toward the time `t`. It ends at `t` if the next one would end beyond; the return value says
     /// whether it did.
+    pub(crate) fn approach(&mut self, t: f64) -> Result<bool, StepError> {
+        self.approach_by(t, Self::step)
+    }
+
+    /// The same outside of loops.
     ///
     /// # Errors
     /// As [`Run::until`].
     #[doc(hidden)]
-    pub fn approach(&mut self, t: f64) -> Result<bool, StepError> {
+    pub fn approach_once(&mut self, t: f64) -> Result<bool, StepError> {
+        self.approach_by(t, Self::single_step)
+    }
+
+    #[inline(always)]
+    fn approach_by(
+        &mut self,
+        t: f64,
+        step: impl FnOnce(&mut Self) -> Result<State<N>, StepError>,
+    ) -> Result<bool, StepError> {
         let left = self.time_to(t);
         if left == 0.0 {
             self.set_time(t);
@@ -101,7 +115,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
         let rounding = (f64::EPSILON * t.abs()).min(LONGER * h.abs());
         let beyond = (self.longest() - left) * direction + rounding;
         if beyond < 0.0 {
-            return self.step().map(|_| false);
+            return step(self).map(|_| false);
         }
         if M::FINDS_LENGTH {
             let ahead = self.after_a_step()?;

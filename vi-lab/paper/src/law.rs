@@ -4,11 +4,11 @@ use super::book::{Book, Verdict};
 use super::unexpected;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{EnergyPreserving, SVector, StepError};
+use vi_erased::start::second_point;
 use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, order, scientific};
 use vi_report::page::math::{id, num, op, row, sqrt, sub, sub_sup};
 use vi_report::table::Table;
-use vi_runs::start::second_point;
 use vi_systems::{DampedOscillator, DoubleWell};
 
 /// Initial steps at which constancy is measured.

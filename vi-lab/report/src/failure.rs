@@ -8,7 +8,7 @@ use core::fmt;
 use std::io;
 use std::path::Path;
 use vi_core::StepError;
-use vi_runs::plan::{Method, Plan};
+use vi_erased::plan::{Method, Plan};
 
 /// The exit status for a closed standard output: that of a command ended by SIGPIPE.
 const UNREAD: u8 = 141;

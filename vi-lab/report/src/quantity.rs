@@ -4,7 +4,7 @@
 //! which sets a system and a plan.
 
 use crate::failure::Failure;
-use vi_runs::plan::Plan;
+use vi_erased::plan::Plan;
 use vi_runs::system::System;
 
 /// A quantity that varies from run to run.

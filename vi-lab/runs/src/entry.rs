@@ -2,11 +2,10 @@
 //!
 //! In: the type of a system, and its start. Out: an [`Entry`], the type erased: there the compiler meets all that is generic over systems.
 
-use crate::kind::{ByRule, GaussOnly};
 use crate::system::{self, System};
-use vi_core::collocation::Collocation;
-use vi_core::lagrangian::Parameters;
-use vi_core::stepping::{Convertible, EnergyStepping};
+use vi_core::lagrangian::Described;
+use vi_core::stepping::EnergyStepping;
+use vi_erased::simulation::Runnable;
 
 /// A system with a place to start from.
 pub struct Entry {
@@ -27,17 +26,17 @@ impl Entry {
     #[must_use]
     pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
-        S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
+        S: EnergyStepping<N> + Runnable<N> + Described + Default,
     {
-        Self { system: system::erased::<S, ByRule, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
+        Self { system: system::by_rule::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
     }
 
     /// The same of a system without a rule, which has Gauss steps alone.
     #[must_use]
     pub fn with_gauss_only<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
-        S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
+        S: Runnable<N> + Described + Default,
     {
-        Self { system: system::erased::<S, GaussOnly, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
+        Self { system: system::gauss_only::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
     }
 }

@@ -3,12 +3,12 @@
 //! In: a system with its parameters, a [`Plan`], the number of exponents. Out: [`Exponents`], which are updated along
 //! the run.
 
-use crate::plan::Plan;
-use crate::simulation::vector;
 use vi_core::collocation::Collocation;
 use vi_core::derivatives::Lyapunov;
 use vi_core::stepping::Convertible;
 use vi_core::{Gauss, Starts, StepError};
+use vi_erased::Plan;
+use vi_erased::simulation::vector;
 
 /// Stages of the Gauss steps; the command contains these anyway.
 const STAGES: usize = 8;

@@ -1,69 +1,46 @@
-//! A type-erased system with any number of degrees of freedom.
+//! A type-erased system for runs, maps and comparisons.
 //!
-//! In: a system of a known type. Out: a [`System`] for runs, maps and comparisons. This trait hides all code of the
-//! command that is generic over systems: integrators, accurate motion and the rival are compiled once per system, for
-//! any number of charts.
+//! In: a system of a known type. Out: a [`System`], which derefs to that of [`vi_erased`]: its functions and runs. This
+//! trait adds what is generic over systems and only the command needs: densities, accurate motion, exponents and the
+//! rival are compiled once per system, for any number of charts.
 
 use crate::exponents::{self, Exponents};
-use crate::kind::SystemKind;
-use crate::plan::{ENERGY_STAGES, PhasePoint, Plan};
 use crate::rival::{self, Ended};
-use crate::simulation::{self, Simulation, vector};
 use core::cell::Cell;
-use core::marker::PhantomData;
+use core::ops::{Deref, DerefMut};
 use vi_core::check::Motion;
-use vi_core::collocation::Collocation;
 use vi_core::gauss::step_density;
-use vi_core::lagrangian::Parameters;
-use vi_core::stepping::Convertible;
+use vi_core::lagrangian::Described;
+use vi_core::stepping::EnergyStepping;
 use vi_core::{Called, SVector, State, StepError};
+use vi_erased::integrator::{self, Integrator};
+use vi_erased::plan::{ENERGY_STAGES, STAGES};
+use vi_erased::simulation::{Runnable, vector};
+use vi_erased::{Method, PhasePoint, Plan, Typed};
 
 /// A system with its parameters.
 pub trait System: Send + Sync {
-    /// Name of the type.
-    fn name(&self) -> &'static str;
-    /// Names of the coordinates.
-    fn coordinates(&self) -> Vec<&'static str>;
-    /// Names and values of the parameters.
-    fn parameters(&self) -> Vec<(&'static str, f64)>;
-    /// Sets a parameter; false if there is none with this name.
-    fn set(&mut self, name: &str, value: f64) -> bool;
+    /// Its functions and runs.
+    fn erased(&self) -> &(dyn vi_erased::System + 'static);
+    /// The same, mutably.
+    fn erased_mut(&mut self) -> &mut (dyn vi_erased::System + 'static);
     /// A system of the same type with the same parameters.
     fn copy(&self) -> Box<dyn System>;
-    /// Whether the system has a rule, and with it fixed and energy-preserving steps of order 2.
-    fn has_rule(&self) -> bool;
-    /// Whether the energy of a motion is constant: L and f are autonomous, and there is no force.
-    fn conserves_energy(&self) -> bool;
     /// Step density D at t = 0; `None` without a value or without a rule.
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
     /// Step densities of 1, 2 and 3 stages at a node with its time, coordinates and momenta; `None` without a value.
     fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()];
     /// g of the time scale at a point; `None` for a system without a time scale.
     fn time_scale(&self, at: &PhasePoint) -> Option<f64>;
-    /// H at a point.
-    ///
-    /// # Errors
-    /// [`StepError::InvalidInput`] for a point with another number of coordinates, here and below.
-    fn energy(&self, at: &PhasePoint) -> Result<f64, StepError>;
-    /// Momenta ∂L/∂v at a point.
-    ///
-    /// # Errors
-    /// As [`System::energy`].
-    fn momentum(&self, at: &PhasePoint) -> Result<Vec<f64>, StepError>;
     /// The point of the same motion at the time `end`, by [`Motion::at`].
     ///
     /// # Errors
-    /// The motion cannot be computed.
+    /// The motion cannot be computed; [`StepError::InvalidInput`] for a point with another number of coordinates.
     fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError>;
-    /// Starts a run; `evaluations` grows by the evaluations of the equations.
-    ///
-    /// # Errors
-    /// The error of the integrators for the initial state.
-    fn begin<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>) -> Result<Box<dyn Simulation + 'a>, StepError>;
     /// `count` Lyapunov exponents along the run of Gauss steps of a plan.
     ///
     /// # Errors
-    /// As [`System::begin`].
+    /// As [`vi_erased::System::begin`].
     fn lyapunov(&self, plan: &Plan, count: usize) -> Result<Box<dyn Exponents>, StepError>;
     /// The point of the same motion at the time `end`, by the rival with a tolerance. `evaluations` grows by the number
     /// of accelerations, even if the run ends early; `watch`, if any, gets time and H at the start and after every
@@ -81,62 +58,94 @@ pub trait System: Send + Sync {
     ) -> Result<PhasePoint, Ended>;
 }
 
-/// A system of a known type, of the kind K.
-struct Typed<S, K, const N: usize>(S, PhantomData<K>);
+impl Deref for dyn System + '_ {
+    type Target = dyn vi_erased::System;
 
-/// The system `S` with its default parameters.
-#[must_use]
-pub fn erased<S, K: SystemKind<S, N>, const N: usize>() -> Box<dyn System>
-where
-    S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
-{
-    Box::new(Typed::<S, K, N>(S::default(), PhantomData))
+    fn deref(&self) -> &Self::Target {
+        self.erased()
+    }
 }
 
-impl<S, K: SystemKind<S, N>, const N: usize> System for Typed<S, K, N>
+impl DerefMut for dyn System + '_ {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        self.erased_mut()
+    }
+}
+
+impl dyn System + '_ {
+    /// Whether the system has a rule, and with it fixed and energy-preserving steps of order 2.
+    #[must_use]
+    pub fn has_rule(&self) -> bool {
+        self.has(Method::Fixed)
+    }
+}
+
+/// The step density of a rule at t = 0.
+type Density<S, const N: usize> = fn(&S, &SVector<f64, N>, &SVector<f64, N>) -> Option<f64>;
+
+/// A system of a known type; without a rule it has no density.
+struct Studied<S, const N: usize> {
+    typed: Typed<S, N>,
+    density: Option<Density<S, N>>,
+}
+
+/// The system `S` with its default parameters, and every integrator.
+#[must_use]
+pub fn by_rule<S, const N: usize>() -> Box<dyn System>
 where
-    S: Collocation<N> + Convertible<N> + Parameters + Send + Sync + 'static,
+    S: EnergyStepping<N> + Runnable<N> + Described + Default,
 {
-    fn name(&self) -> &'static str {
-        S::NAME
+    let density = |system: &S, q: &SVector<f64, N>, v: &SVector<f64, N>| {
+        system.step_density(0.0, q, v).ok().filter(|density| density.is_finite())
+    };
+    let with_rule = [integrator::by_rule(), vec![integrator::energy()], with_gauss()];
+    Box::new(Studied { typed: Typed::new(integrator::all(with_rule)), density: Some(density) })
+}
+
+/// The same of a system without a rule, which has Gauss steps only.
+#[must_use]
+pub fn gauss_only<S: Runnable<N> + Described + Default, const N: usize>() -> Box<dyn System> {
+    Box::new(Studied { typed: Typed::<S, N>::new(with_gauss()), density: None })
+}
+
+/// Every integrator that takes Gauss steps.
+fn with_gauss<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>> {
+    vec![
+        integrator::gauss::<S, N, { STAGES[0] }>(),
+        integrator::gauss::<S, N, { STAGES[1] }>(),
+        integrator::transformed::<S, N, { STAGES[0] }>(),
+        integrator::transformed::<S, N, { STAGES[1] }>(),
+        integrator::energy_gauss::<S, N, { ENERGY_STAGES[0] }>(),
+        integrator::energy_gauss::<S, N, { ENERGY_STAGES[1] }>(),
+        integrator::energy_gauss::<S, N, { ENERGY_STAGES[2] }>(),
+    ]
+}
+
+impl<S: Runnable<N> + Described, const N: usize> System for Studied<S, N> {
+    fn erased(&self) -> &(dyn vi_erased::System + 'static) {
+        &self.typed
     }
 
-    fn coordinates(&self) -> Vec<&'static str> {
-        S::COORDINATES.to_vec()
-    }
-
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
-        let mut system = self.0;
-        S::PARAMETERS.iter().filter_map(|name| Some((*name, *system.parameter_mut(name)?))).collect()
-    }
-
-    fn set(&mut self, name: &str, value: f64) -> bool {
-        self.0.parameter_mut(name).map(|parameter| *parameter = value).is_some()
+    fn erased_mut(&mut self) -> &mut (dyn vi_erased::System + 'static) {
+        &mut self.typed
     }
 
     fn copy(&self) -> Box<dyn System> {
-        Box::new(Self(self.0, PhantomData))
-    }
-
-    fn has_rule(&self) -> bool {
-        K::HAS_RULE
-    }
-
-    fn conserves_energy(&self) -> bool {
-        S::AUTONOMOUS && !S::FORCED
+        Box::new(Self { typed: self.typed.clone(), density: self.density })
     }
 
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64> {
         let sized = q.len() == N && v.len() == N;
-        let density = || K::step_density(&self.0, &SVector::from_column_slice(q), &SVector::from_column_slice(v));
-        sized.then(density).flatten()
+        let density =
+            |of: Density<S, N>| of(&self.typed.system, &SVector::from_column_slice(q), &SVector::from_column_slice(v));
+        self.density.filter(|_| sized).and_then(density)
     }
 
     fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()] {
         let state =
             vector(q, "number of coordinates").and_then(|q| Ok(State { t, q, p: vector(p, "number of momenta")? }));
         let Ok(state) = state else { return [None; ENERGY_STAGES.len()] };
-        let system = Called(self.0);
+        let system = Called(self.typed.system);
         [
             step_density::<_, N, { ENERGY_STAGES[0] }>(&system, &state).ok(),
             step_density::<_, N, { ENERGY_STAGES[1] }>(&system, &state).ok(),
@@ -146,29 +155,15 @@ where
 
     fn time_scale(&self, at: &PhasePoint) -> Option<f64> {
         let Motion { t, q, v } = sized(at).ok()?;
-        S::SCALES_TIME.then(|| self.0.scaled_point(t, &q, &v).g)
-    }
-
-    fn energy(&self, at: &PhasePoint) -> Result<f64, StepError> {
-        let Motion { t, q, v } = sized(at)?;
-        Ok(self.0.energy(t, &q, &v))
-    }
-
-    fn momentum(&self, at: &PhasePoint) -> Result<Vec<f64>, StepError> {
-        let Motion { t, q, v } = sized(at)?;
-        Ok(self.0.momentum(t, &q, &v).as_slice().to_vec())
+        S::SCALES_TIME.then(|| self.typed.system.scaled_point(t, &q, &v).g)
     }
 
     fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {
-        sized(from)?.at(&self.0, end).map(erased_point)
-    }
-
-    fn begin<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>) -> Result<Box<dyn Simulation + 'a>, StepError> {
-        simulation::begin::<S, K, N>(self.0, plan, evaluations)
+        sized(from)?.at(&self.typed.system, end).map(erased_point)
     }
 
     fn lyapunov(&self, plan: &Plan, count: usize) -> Result<Box<dyn Exponents>, StepError> {
-        exponents::begin(self.0, plan, count)
+        exponents::begin(self.typed.system, plan, count)
     }
 
     fn rival(
@@ -179,12 +174,13 @@ where
         evaluations: &Cell<u64>,
         mut watch: Option<&mut dyn FnMut(f64, f64)>,
     ) -> Result<PhasePoint, Ended> {
+        let system = self.typed.system;
         let mut show = |motion: &Motion<N>| {
             if let Some(watch) = &mut watch {
-                watch(motion.t, self.0.energy(motion.t, &motion.q, &motion.v));
+                watch(motion.t, system.energy(motion.t, &motion.q, &motion.v));
             }
         };
-        rival::motion(self.0, &sized(from)?, end, tolerance, evaluations, &mut show).map(erased_point)
+        rival::motion(system, &sized(from)?, end, tolerance, evaluations, &mut show).map(erased_point)
     }
 }
 

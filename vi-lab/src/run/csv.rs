@@ -8,11 +8,11 @@ use core::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use vi_erased::simulation::Row;
 use vi_report::failure::Failure;
 use vi_report::machine::{VERSION, command_line};
 use vi_report::numbers::{assigned, short};
 use vi_report::table::csv_field;
-use vi_runs::simulation::Row;
 
 /// A CSV file, or standard output.
 pub(super) struct Csv {

@@ -1,7 +1,8 @@
 //! The integrator of a run in words: `energy, 2 stages, shift 0.5, with fallback`.
 
+use vi_erased::plan::Named as _;
+use vi_erased::plan::{DEFAULT_STAGES, Method, Plan, Shift, Start};
 use vi_report::numbers::short;
-use vi_runs::plan::{DEFAULT_STAGES, Method, Plan, Shift, Start};
 
 /// The integrator of a plan and its start, in the terms of the command line.
 pub(crate) fn in_words(plan: &Plan) -> String {

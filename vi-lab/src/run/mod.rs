@@ -24,8 +24,8 @@ mod scene;
 mod shift;
 mod ways_out;
 
+use crate::entries::named;
 use clap::Args;
-use core::cell::Cell;
 use extent::Extent;
 use request::Output;
 pub(crate) use request::{Length, Request};
@@ -34,14 +34,14 @@ use std::io::{self, Write as _};
 use std::path::PathBuf;
 use vi_core::StepError;
 use vi_core::run::ErrorEstimate;
+use vi_erased::plan::{ENERGY_STAGES, Method, Plan, Shift, Start};
+use vi_erased::simulation::{Row, Steps};
 use vi_report::catalogue::Catalogue;
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::interrupt::{Interrupt, Signal};
 use vi_report::numbers::{about, short};
 use vi_report::progress::Progress;
-use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift, Start};
-use vi_runs::simulation::{Row, Simulation};
 use vi_runs::system::System;
 
 /// Bytes of complete rows written at once.
@@ -102,10 +102,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub(crate) item: Option<u64>,
     /// Integrator [default: fixed]
-    #[arg(long)]
+    #[arg(long, value_parser = named::<Method>())]
     pub(crate) method: Option<Method>,
     /// First interval of energy-preserving steps without --stages and --shift [default: midpoint]
-    #[arg(long)]
+    #[arg(long, value_parser = named::<Start>())]
     pub(crate) start: Option<Start>,
     /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3 (order 2, 4 or 6)
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = count)]
@@ -192,8 +192,7 @@ pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let mut request = Request::of(arguments, catalogue)?;
     resolution::check_times(&request.plan, request.length)?;
     let extent = Extent::of(&request)?;
-    let evaluations = Cell::new(0);
-    let begun = request.system.begin(&request.plan, &evaluations);
+    let begun = request.system.begin(&request.plan);
     let mut simulation = begun.map_err(|error| Failure::start(error, &request.plan))?;
     if let Some(of) = simulation.shifted_energy() {
         // From here on a measured shift is a given one.
@@ -284,7 +283,7 @@ impl<'a> RunLoop<'a> {
     }
 
     /// Steps to the end, and writes the requested nodes and the last.
-    fn follow(&mut self, simulation: &mut dyn Simulation, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
+    fn follow(&mut self, simulation: &mut dyn Steps, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
         let Request { plan, length, every, .. } = self.request;
         let mut progress = Progress::new(Progress::FINENESS);
         self.write(simulation)?;
@@ -307,7 +306,7 @@ impl<'a> RunLoop<'a> {
     }
 
     /// Takes one step; an error contains the reason of the end.
-    fn advance(&mut self, simulation: &mut dyn Simulation, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
+    fn advance(&mut self, simulation: &mut dyn Steps, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
         let t = simulation.t();
         if let Some(signal) = signal() {
             return Err(Failure::Interrupted { signal, reached: format!("{} steps at t = {}", self.steps, short(t)) });
@@ -329,7 +328,7 @@ impl<'a> RunLoop<'a> {
     }
 
     /// Writes the last node.
-    fn write(&mut self, simulation: &dyn Simulation) -> Result<(), Failure> {
+    fn write(&mut self, simulation: &dyn Steps) -> Result<(), Failure> {
         self.rows += 1;
         self.written = self.steps;
         let row = simulation.row();
@@ -354,9 +353,8 @@ fn describe(row: &Row, steps: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use core::cell::RefCell;
+    use core::cell::{Cell, RefCell};
     use std::rc::Rc;
-    use vi_runs::simulation::Section;
 
     /// A run that fails after three steps, at t = 1.5.
     struct Ending {
@@ -367,7 +365,7 @@ mod tests {
         lost: f64,
     }
 
-    impl Simulation for Ending {
+    impl Steps for Ending {
         fn t(&self) -> f64 {
             self.t
         }
@@ -403,10 +401,6 @@ mod tests {
 
         fn advance_to(&mut self, _: f64) -> Result<(), StepError> {
             self.advance()
-        }
-
-        fn cross(&mut self, _: &Section, _: f64, _: &mut dyn FnMut(Row)) -> Result<(), StepError> {
-            Ok(())
         }
     }
 

@@ -11,9 +11,9 @@ use serde_json::json;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use vi_erased::simulation::Row;
 use vi_report::failure::Failure;
 use vi_report::machine::{VERSION, command_line};
-use vi_runs::simulation::Row;
 
 /// An NPY file.
 pub(super) struct Npy {

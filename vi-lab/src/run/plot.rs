@@ -7,12 +7,12 @@ use super::{Request, Sink, method};
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use vi_erased::simulation::Row;
 use vi_report::catalogue::kebab;
 use vi_report::chart::{Axis, Chart, Look, Panel, Sample, Series, Sheet, Trace};
 use vi_report::failure::Failure;
 use vi_report::machine::{VERSION, command_line};
 use vi_report::numbers::{assigned, short};
-use vi_runs::simulation::Row;
 
 /// Maximum number of coordinates drawn.
 const MOST: usize = 24;

@@ -6,17 +6,17 @@ use super::shift::Wanted;
 use crate::place;
 use crate::sweep::items::Items;
 use crate::sweep::scene::Sweep;
-use core::cell::Cell;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use vi_core::StepError;
+use vi_erased::plan::Named as _;
+use vi_erased::plan::{ENERGY_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Start};
+use vi_erased::simulation::{Row, Steps};
 use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::Failure;
 use vi_report::input::number;
 use vi_report::numbers::short;
-use vi_runs::plan::{ENERGY_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Start};
-use vi_runs::simulation::{Row, Simulation};
 use vi_runs::system::System;
 
 /// Default number of steps.
@@ -64,7 +64,7 @@ impl Length {
     ///
     /// # Errors
     /// The error of the integrator.
-    pub(crate) fn advance(self, run: &mut dyn Simulation) -> Result<(), StepError> {
+    pub(crate) fn advance(self, run: &mut dyn Steps) -> Result<(), StepError> {
         match self {
             Self::Steps(_) => run.advance(),
             Self::Until(end) => run.advance_to(end),
@@ -72,7 +72,7 @@ impl Length {
     }
 
     /// Whether the end precedes the first node: with --start midpoint that node is half a step late.
-    pub(crate) fn is_before(self, run: &dyn Simulation) -> bool {
+    pub(crate) fn is_before(self, run: &dyn Steps) -> bool {
         matches!(self, Self::Until(end) if (end - run.t()) * run.h() < 0.0)
     }
 
@@ -383,8 +383,7 @@ fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Fai
 /// The step whose error is the tolerance.
 fn found_step(system: &dyn System, plan: &Plan, tolerance: f64) -> Result<f64, Failure> {
     let plan = Plan { tolerance: Some(tolerance), ..plan.clone() };
-    let evaluations = Cell::new(0);
-    let begun = system.begin(&plan, &evaluations).map_err(|error| Failure::start(error, &plan))?;
+    let begun = system.begin(&plan).map_err(|error| Failure::start(error, &plan))?;
     Ok(begun.h())
 }
 

@@ -5,10 +5,9 @@
 //! at rest.
 
 use super::request::{Length, Request};
-use core::cell::Cell;
+use vi_erased::plan::{Method, Plan};
 use vi_report::failure::Failure;
 use vi_report::numbers::{about, short};
-use vi_runs::plan::{Method, Plan};
 
 /// Checks the step by itself and with respect to the times of the run.
 pub(super) fn check_times(plan: &Plan, length: Length) -> Result<(), Failure> {
@@ -51,8 +50,7 @@ fn time(t: f64, h: f64) -> Result<(), Failure> {
 /// Checks the step with a trial: it must change q or p by more than their rounding, unless the system is at rest.
 pub(super) fn check_state(Request { system, plan, .. }: &Request) -> Result<(), Failure> {
     // The run itself reports a failed start or a failed first step.
-    let evaluations = Cell::new(0);
-    let Ok(mut trial) = system.begin(plan, &evaluations) else { return Ok(()) };
+    let Ok(mut trial) = system.begin(plan) else { return Ok(()) };
     let before = trial.row();
     let is_at_rest = plan.v.iter().all(|v| *v == 0.0);
     if is_at_rest || trial.advance().is_err() {

@@ -26,8 +26,8 @@ use crate::sweep::scene::Sweep;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
+use vi_erased::plan::{Method, Start};
 use vi_report::failure::Failure;
-use vi_runs::plan::{Method, Start};
 
 /// The entries of a scene file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]

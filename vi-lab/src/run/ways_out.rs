@@ -5,11 +5,10 @@
 //! Nothing for other errors.
 
 use super::request::Request;
-use core::cell::Cell;
 use vi_core::StepError;
+use vi_erased::plan::{ENERGY_STAGES, Method, Plan, Shift};
+use vi_erased::simulation::Row;
 use vi_report::numbers::about;
-use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift};
-use vi_runs::simulation::Row;
 
 /// Maximum ratio of a tried step, as a power of 2.
 const DOUBLINGS: u32 = 10;
@@ -60,8 +59,7 @@ fn longer(Request { system, plan, .. }: &Request, error: &StepError) -> Option<f
     let is_degenerate = matches!(error, StepError::DegenerateStep { .. });
     let lengths = (1..=DOUBLINGS).map(|k| plan.h * f64::from(1_u32 << k));
     lengths.filter(|_| is_degenerate).find(|h| {
-        let evaluations = Cell::new(0);
-        let begun = system.begin(&Plan { h: *h, ..plan.clone() }, &evaluations);
+        let begun = system.begin(&Plan { h: *h, ..plan.clone() });
         begun.is_ok_and(|mut run| run.advance_by(TRIED).is_ok())
     })
 }
@@ -71,8 +69,7 @@ fn longer(Request { system, plan, .. }: &Request, error: &StepError) -> Option<f
 fn shift(Request { system, plan, length, .. }: &Request, error: &StepError, node: &Row) -> Option<f64> {
     let time = length.measured(plan).max(node.t - plan.t);
     let stages = Some(plan.energy_stages().unwrap_or(1));
-    let evaluations = Cell::new(0);
-    let begun = system.begin(&Plan { stages, shift: Some(Shift::Over(time)), ..plan.clone() }, &evaluations).ok()?;
+    let begun = system.begin(&Plan { stages, shift: Some(Shift::Over(time)), ..plan.clone() }).ok()?;
     let met = match error {
         StepError::NoForwardGaussStep { largest, .. } => 2.0 * largest,
         _ => 0.0,

@@ -8,8 +8,8 @@ use super::axis::Axis;
 use super::random::bits;
 use super::scene::Sweep;
 use super::schema::MOST;
+use vi_erased::plan::Plan;
 use vi_report::failure::Failure;
-use vi_runs::plan::Plan;
 use vi_runs::system::System;
 
 /// All runs of a sweep.

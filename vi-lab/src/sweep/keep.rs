@@ -5,10 +5,11 @@
 use super::ending::Ending;
 use super::scene::{Cut, Keep, Passing, Sweep};
 use super::schema::{Column, Schema};
+use vi_erased::Row;
+use vi_erased::plan::Plan;
+use vi_erased::section::{Direction, Section};
 use vi_report::failure::Failure;
 use vi_report::numbers::short;
-use vi_runs::plan::Plan;
-use vi_runs::simulation::{Direction, Row, Section};
 
 /// Minimum number of steps in a period, so that no crossing is missed.
 pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;
@@ -80,12 +81,17 @@ impl Kept {
     /// A description in words.
     pub(super) fn words(&self, coordinates: &[&str]) -> String {
         let kinds = self.kinds.iter().map(|keep| format!("{keep:?}").to_lowercase());
+        let name = |index: usize| coordinates.get(index).copied().unwrap_or_default();
+        let way = |direction: &Direction| format!("{direction:?}").to_lowercase();
         let section = self.section.iter().map(|section| match section {
             Section::Coordinate { index, at, direction } => {
-                let way = format!("{direction:?}").to_lowercase();
-                format!("section {} = {}, {way}", coordinates.get(*index).copied().unwrap_or_default(), short(*at))
+                format!("section {} = {}, {}", name(*index), short(*at), way(direction))
+            }
+            Section::Velocity { index, at, direction } => {
+                format!("section dot({}) = {}, {}", name(*index), short(*at), way(direction))
             }
             Section::Period { period, .. } => format!("section every {} of time", short(*period)),
+            Section::Function(_, direction) => format!("section of a function, {}", way(direction)),
         });
         kinds.chain(section).collect::<Vec<_>>().join(", ")
     }

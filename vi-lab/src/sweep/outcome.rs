@@ -3,10 +3,11 @@
 use super::ending::Ending;
 use super::keep::STEPS_OF_A_PERIOD;
 use crate::run::{self, Length};
-use core::cell::Cell;
 use vi_core::StepError;
-use vi_runs::plan::Plan;
-use vi_runs::simulation::{Row, Section, Simulation};
+use vi_erased::plan::Plan;
+use vi_erased::section::Section;
+use vi_erased::simulation::Met;
+use vi_erased::{Row, Steps};
 use vi_runs::system::System;
 
 /// Maximum ratio of steps to the predicted number, for runs that solve for their steps.
@@ -63,14 +64,13 @@ impl Outcome {
         Self { ending: Ending::WRONG_INPUT, steps: 0, last: None, ranges: Vec::new(), step_error: f64::NAN };
 
     /// Computes a run. Shows its first node, every `every`-th, and the last.
-    pub(super) fn of(member: &Member, show: &mut dyn FnMut(&dyn Simulation)) -> Self {
+    pub(super) fn of(member: &Member, show: &mut dyn FnMut(&dyn Steps)) -> Self {
         let Member { system, plan, length, .. } = member;
         let mut outcome = Self { ranges: vec![None; plan.q.len() + 2], ..Self::NONE };
         if run::check(system.as_ref(), plan, *length).is_err() {
             return outcome;
         }
-        let evaluations = Cell::new(0);
-        match system.begin(plan, &evaluations) {
+        match system.begin(plan) {
             Ok(simulation) if length.is_before(simulation.as_ref()) => {}
             Ok(mut simulation) => {
                 if member.is_measured {
@@ -86,7 +86,7 @@ impl Outcome {
     }
 
     /// Steps to the end.
-    fn follow(&mut self, member: &Member, run: &mut dyn Simulation, show: &mut dyn FnMut(&dyn Simulation)) -> Ending {
+    fn follow(&mut self, member: &Member, run: &mut dyn Steps, show: &mut dyn FnMut(&dyn Steps)) -> Ending {
         let Member { plan, length, every, is_watched, .. } = member;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a limit
         let most = (PATIENCE * (length.steps(plan) + 1.0)) as u64;
@@ -126,7 +126,7 @@ impl Outcome {
     }
 
     /// Adds the last node to the ranges.
-    fn watch(&mut self, run: &dyn Simulation) {
+    fn watch(&mut self, run: &dyn Steps) {
         // Without H at some nodes its range is unknown too. Some nodes have no interval, and no E.
         let energies = [Some(run.energy().unwrap_or(f64::NAN)), run.discrete_energy()];
         let values = run.q().iter().copied().map(Some).chain(energies);
@@ -149,8 +149,11 @@ impl Outcome {
             let (input, allowed) = ("period of a section", "at least four steps");
             return Err(StepError::InvalidInput { input, allowed, value: *period });
         }
-        let evaluations = Cell::new(0);
-        member.system.begin(&member.plan, &evaluations)?.cross(section, last.t, take)
+        let mut take = |met: Met| {
+            take(met.row);
+            true
+        };
+        member.system.begin(&member.plan)?.cross(core::slice::from_ref(section), last.t, &mut take)
     }
 
     /// The entries of the last node in `columns` columns.

@@ -8,9 +8,9 @@
 use super::method::{Method, TOO_MANY, Task};
 use super::reference::Reference;
 use core::cell::Cell;
+use vi_erased::plan::{PhasePoint, Plan};
 use vi_report::numbers::order;
 use vi_report::progress::Progress;
-use vi_runs::plan::{PhasePoint, Plan};
 use vi_runs::rival::Ended;
 use vi_runs::system::System;
 
@@ -99,14 +99,14 @@ pub(super) fn all(
     let drifts = settings.chain(TOLERANCES.map(|tolerance| (Method::Rival, tolerance))).map(|(method, setting)| {
         progress.advance_by(1);
         let mut watch = MaximumError { system, reference, initial, largest: 0.0, worst: Vec::new() };
-        let evaluations = Cell::new(0);
         let task = Task { start, end: long, method, setting };
+        let mut evaluations = 0;
         let ended = match task.plan() {
-            Some(plan) => run(&task, &plan, &evaluations, &mut watch),
-            None => run_rival(&task, &evaluations, &mut watch),
+            Some(plan) => run(&task, &plan, &mut evaluations, &mut watch),
+            None => run_rival(&task, &mut evaluations, &mut watch),
         };
         #[allow(clippy::cast_precision_loss)] // far below 2⁵³
-        let count = evaluations.get() as f64;
+        let count = evaluations as f64;
         let reached = watch.worst.last().map_or(long, |(t, _)| *t);
         Drift { method, setting, worst: watch.worst, rate: count / reached, ended: ended.err() }
     });
@@ -114,20 +114,22 @@ pub(super) fn all(
 }
 
 /// Runs one of this project's integrators to the end, and shows the energy on the way.
-fn run(task: &Task<'_>, plan: &Plan, evaluations: &Cell<u64>, watch: &mut MaximumError<'_>) -> Result<(), Ended> {
+fn run(task: &Task<'_>, plan: &Plan, evaluations: &mut u64, watch: &mut MaximumError<'_>) -> Result<(), Ended> {
     let count = task.steps();
     let samples = if watch.reference.is_some() { REFERENCE_SAMPLES } else { SAMPLES };
     let between = (count / samples).max(1);
-    let mut run = watch.system.begin(plan, evaluations)?;
+    let mut run = watch.system.begin(plan)?;
     let finds_its_step = task.method == Method::ENERGY;
     // A given step is taken this number of times, independent of rounding in t.
     let end = if finds_its_step { task.end } else { f64::INFINITY };
     let most = if finds_its_step { TOO_MANY * count } else { count };
     let mut taken = 0;
     while taken < most && run.t() < end {
-        taken += run.advance_until(end, between.min(most - taken))?;
+        let advanced = run.advance_until(end, between.min(most - taken));
+        *evaluations = run.evaluations();
+        taken += advanced?;
         if taken % between == 0 {
-            let (t, energy) = uncounted(evaluations, || run.sampled_energy())?;
+            let (t, energy) = run.sampled_energy()?;
             if t <= end {
                 watch.see(t, energy)?;
             }
@@ -136,16 +138,8 @@ fn run(task: &Task<'_>, plan: &Plan, evaluations: &Cell<u64>, watch: &mut Maximu
     if run.t() < end && finds_its_step { Err(Ended::Short(run.t())) } else { Ok(()) }
 }
 
-/// A value whose evaluations do not count for the method.
-fn uncounted<R>(evaluations: &Cell<u64>, value: impl FnOnce() -> R) -> R {
-    let before = evaluations.get();
-    let value = value();
-    evaluations.set(before);
-    value
-}
-
 /// Runs DOP853 to the end, and shows the energy of every step.
-fn run_rival(task: &Task<'_>, evaluations: &Cell<u64>, watch: &mut MaximumError<'_>) -> Result<(), Ended> {
+fn run_rival(task: &Task<'_>, evaluations: &mut u64, watch: &mut MaximumError<'_>) -> Result<(), Ended> {
     let system = watch.system;
     let mut seen = Ok(());
     let mut see = |t: f64, energy: f64| {
@@ -153,8 +147,10 @@ fn run_rival(task: &Task<'_>, evaluations: &Cell<u64>, watch: &mut MaximumError<
             seen = watch.see(t, energy);
         }
     };
-    system.rival(task.start, task.end, task.setting, evaluations, Some(&mut see))?;
-    seen
+    let count = Cell::new(0);
+    let reached = system.rival(task.start, task.end, task.setting, &count, Some(&mut see));
+    *evaluations = count.get();
+    reached.and(seen)
 }
 
 #[cfg(test)]

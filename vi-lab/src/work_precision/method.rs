@@ -5,10 +5,11 @@
 //! the end; the others take the nearest number of steps.
 
 use core::cell::Cell;
+use vi_erased::plan::Named as _;
+use vi_erased::plan::{self, PhasePoint, Plan};
+use vi_erased::simulation::Simulation;
 use vi_report::chart::Look;
-use vi_runs::plan::{self, PhasePoint, Plan};
 use vi_runs::rival::Ended;
-use vi_runs::simulation::Simulation;
 use vi_runs::system::System;
 
 /// A method of the comparison.
@@ -136,32 +137,33 @@ impl Task<'_> {
         Some(Plan { stages, ..Plan::new(method, self.setting, self.start.clone()) })
     }
 
-    /// The final state; adds the evaluations to `evaluations`.
+    /// The final state, and the evaluations of its run.
     ///
     /// # Errors
     /// The reason why the end was not reached.
-    pub(super) fn reached(&self, system: &dyn System, evaluations: &Cell<u64>) -> Result<FinalState, Ended> {
+    pub(super) fn reached(&self, system: &dyn System) -> Result<(FinalState, u64), Ended> {
         let reached = if let Some(plan) = self.plan() {
-            let mut run = system.begin(&plan, evaluations)?;
+            let mut run = system.begin(&plan)?;
             self.follow(run.as_mut())?;
-            FinalState { t: run.t(), q: run.q().to_vec(), p: run.p().to_vec() }
+            (FinalState { t: run.t(), q: run.q().to_vec(), p: run.p().to_vec() }, run.evaluations())
         } else {
-            let at = system.rival(self.start, self.end, self.setting, evaluations, None)?;
-            FinalState { t: at.t, p: system.momentum(&at)?, q: at.q }
+            let evaluations = Cell::new(0);
+            let at = system.rival(self.start, self.end, self.setting, &evaluations, None)?;
+            (FinalState { t: at.t, p: system.momentum(&at)?, q: at.q }, evaluations.get())
         };
-        let is_finite = reached.q.iter().chain(&reached.p).all(|entry| entry.is_finite());
+        let is_finite = reached.0.q.iter().chain(&reached.0.p).all(|entry| entry.is_finite());
         if is_finite { Ok(reached) } else { Err(Ended::NonFinite) }
     }
 
-    /// The same run for timing, without its result. Evaluations are counted for all methods: one addition per
-    /// evaluation.
+    /// The same run for timing, without its result. Evaluations are counted for all methods: one addition per step,
+    /// for the rival one per evaluation.
     ///
     /// # Errors
     /// The reason why the end was not reached.
     pub(super) fn timed(&self, system: &dyn System) -> Result<(), Ended> {
         let evaluations = Cell::new(0);
         match self.plan() {
-            Some(plan) => self.follow(system.begin(&plan, &evaluations)?.as_mut()),
+            Some(plan) => self.follow(system.begin(&plan)?.as_mut()),
             None => system.rival(self.start, self.end, self.setting, &evaluations, None).map(drop),
         }
     }

@@ -10,8 +10,7 @@
 //! ```
 
 use super::method::{FinalState, Method, Task};
-use core::cell::Cell;
-use vi_runs::plan::PhasePoint;
+use vi_erased::plan::PhasePoint;
 use vi_runs::rival::Ended;
 use vi_runs::system::System;
 
@@ -96,7 +95,7 @@ impl<'a> Reference<'a> {
         let end = self.track.last().ok_or(Ended::NonFinite)?.t;
         let error = |method, setting| {
             let task = Task { start, end, method, setting };
-            self.error(&task.reached(self.system, &Cell::new(0))?)
+            self.error(&task.reached(self.system)?.0)
         };
         Ok(Agreement { composed: error(Method::KAHAN_LI_8, h)?, h, rival: error(Method::Rival, TOLERANCE)? })
     }

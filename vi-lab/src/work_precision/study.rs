@@ -6,11 +6,10 @@ use super::clock;
 use super::drift::{self, Drift};
 use super::method::{Method, Task};
 use super::reference::{Agreement, Reference};
-use core::cell::Cell;
+use vi_erased::plan::PhasePoint;
 use vi_report::numbers::{median, order};
 use vi_report::progress::Progress;
 use vi_runs::entry::Entry;
-use vi_runs::plan::PhasePoint;
 use vi_runs::rival::Ended;
 use vi_runs::system::System;
 
@@ -150,10 +149,9 @@ pub(super) fn length(entry: &Entry, quick: bool) -> u64 {
 
 /// Error and evaluations of one run, without its times.
 fn untimed(system: &dyn System, task: &Task<'_>, reference: &Reference<'_>) -> Result<Point, Ended> {
-    let evaluations = Cell::new(0);
-    let state = task.reached(system, &evaluations)?;
+    let (state, evaluations) = task.reached(system)?;
     let error = reference.error(&state)?;
-    Ok(Point { error, evaluations: Some(evaluations.get()), seconds: f64::INFINITY, median: f64::INFINITY })
+    Ok(Point { error, evaluations: Some(evaluations), seconds: f64::INFINITY, median: f64::INFINITY })
 }
 
 /// Times every completed run in rounds: a temporary disturbance of the machine then affects all runs alike.

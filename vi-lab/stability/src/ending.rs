@@ -3,11 +3,10 @@
 //! In: an integrator and a [`Limit`]. Out: a [`Course`]: the [`Ending`], the number of steps taken, the largest coordinate. A map
 //! distinguishes a solver that fails from a motion that grows without bound: each typed error has a colour of its own.
 
-use core::cell::Cell;
 use vi_core::stepping::{EnergyStepping, FixedStepping};
 use vi_core::{EnergyPreserving, FixedStep, SVector, Starts, State, StepError};
+use vi_erased::plan::Plan;
 use vi_report::chart::Class;
-use vi_runs::plan::Plan;
 use vi_runs::system::System;
 
 /// When a run is over.
@@ -143,8 +142,7 @@ impl Course {
 
     /// Runs what is planned of a system whose type is erased.
     pub(super) fn planned(system: &dyn System, plan: &Plan, limit: Limit) -> Self {
-        let evaluations = Cell::new(0);
-        Self::begun(system.begin(plan, &evaluations), limit, |run| {
+        Self::begun(system.begin(plan), limit, |run| {
             run.advance()?;
             Ok((run.t(), size(run.q())))
         })

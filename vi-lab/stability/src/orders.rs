@@ -6,10 +6,10 @@
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};
 use core::f64::consts::FRAC_PI_2;
+use vi_erased::plan::{Method, PhasePoint, Plan, Shift};
 use vi_report::catalogue::Catalogue;
 use vi_report::chart::{Axis, Class, boundary};
 use vi_report::failure::Failure;
-use vi_runs::plan::{Method, PhasePoint, Plan, Shift};
 use vi_runs::system::System;
 
 const LIMIT: Limit = Limit { steps: 20_000, until: 25.0, bound: 1e3 };
@@ -63,12 +63,11 @@ mod tests {
     use super::super::atlas::tests::strays;
     use super::super::ending::LASTING;
     use super::*;
-    use vi_runs::kind::ByRule;
-    use vi_runs::system::erased;
+    use vi_runs::system::by_rule;
     use vi_systems::Pendulum;
 
     fn cells(stages: usize, shift: Option<Shift>) -> (Grid, Vec<Class>) {
-        let system = erased::<Pendulum, ByRule, 1>();
+        let system = by_rule::<Pendulum, 1>();
         let axes = Axes { x: Axis::linear("a").over(0.2, 3.0), y: Axis::log10("h").over(0.03, 0.06) };
         let grid = Grid::new(axes, 20);
         let cells = grid.cells(&|angle, h| class(system.as_ref(), stages, shift, (angle, h)), |_| ());

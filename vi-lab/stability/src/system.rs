@@ -6,14 +6,13 @@
 use super::atlas::{Atlas, Axes, Grid, Labels};
 use super::ending::{Course, Limit, size};
 use super::span::Span;
-use core::cell::Cell;
+use vi_erased::plan::{Method, PhasePoint, Plan};
+use vi_erased::simulation::Simulation;
 use vi_report::catalogue::kebab;
 use vi_report::chart::{Class, Look, Series, boundary, middles};
 use vi_report::failure::Failure;
 use vi_report::quantity::Quantity;
 use vi_runs::entry::Entry;
-use vi_runs::plan::{Method, PhasePoint, Plan};
-use vi_runs::simulation::Simulation;
 use vi_runs::system::System;
 
 /// Steps of a run.
@@ -120,8 +119,7 @@ pub(super) fn energy(atlas: &mut Atlas, labels: Labels<'_>, entry: &Entry, axes:
 /// Coordinate and velocity in the middle of the last step of a run that failed; none where it did not.
 fn last_middle(entry: &Entry, axes: &[Span; 2], place: (f64, f64)) -> Option<(f64, f64)> {
     let (system, plan) = varied(entry, axes, place, Method::Energy);
-    let evaluations = Cell::new(0);
-    let mut run = system.begin(&plan, &evaluations).ok()?;
+    let mut run = system.begin(&plan).ok()?;
     let node = |run: &dyn Simulation| Some((run.t(), *run.q().first()?));
     let mut before = node(run.as_ref())?;
     for _ in 0..STEPS {

@@ -4,12 +4,12 @@ use super::super::book::{Book, Verdict};
 use super::super::{Study, unexpected};
 use super::runs::Case;
 use vi_core::{FixedStep, Lagrangian, SVector, Starts, StepError};
+use vi_erased::start::motion;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, order, scientific};
 use vi_report::table::Table;
 use vi_runs::raw::{RawNode, Unknowns};
-use vi_runs::start::motion;
 use vi_systems::DoubleWell;
 
 /// Initial steps.

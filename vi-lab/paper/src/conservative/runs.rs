@@ -3,8 +3,8 @@
 //! In: a [`Case`]. Out: a [`Pair`]: samples of the beginning, the growth of the energy error over the whole run.
 
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, SVector, Starts, StepError};
+use vi_erased::start::second_point;
 use vi_report::progress::Progress;
-use vi_runs::start::second_point;
 use vi_systems::DoubleWell;
 
 /// Time for which samples are kept: several oscillations.

@@ -3,10 +3,10 @@
 use super::super::book::Book;
 use super::super::unexpected;
 use super::{LOOKS, end, largest, swing};
+use vi_erased::plan::ENERGY_STAGES;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::page::math::{frac, id, num, op, row, sub, sub_sup, sup};
-use vi_runs::plan::ENERGY_STAGES;
 
 /// Where the pendulum is released.
 const ANGLE: f64 = 2.0;

@@ -4,10 +4,10 @@ use super::super::book::Book;
 use super::super::unexpected;
 use super::{LOOKS, end, largest, swing};
 use vi_core::StepError;
+use vi_erased::plan::ENERGY_STAGES;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
-use vi_runs::plan::ENERGY_STAGES;
 
 /// Amplitudes, in radians.
 const AMPLITUDES: (f64, f64) = (0.1, 3.1);

@@ -11,10 +11,10 @@ mod work;
 use super::book::Book;
 use vi_core::gauss::step_density;
 use vi_core::{Called, EnergyPreservingGauss, Gauss, Run, Starts as _, State, StepError};
+use vi_erased::plan::ENERGY_STAGES;
 use vi_report::chart::Look;
 use vi_report::failure::Failure;
 use vi_report::progress::Progress;
-use vi_runs::plan::ENERGY_STAGES;
 use vi_systems::Pendulum;
 
 /// How energy-preserving steps of 1, 2 and 3 stages are drawn.

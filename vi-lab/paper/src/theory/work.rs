@@ -5,15 +5,14 @@
 
 use super::super::book::Book;
 use super::super::unexpected;
-use core::cell::Cell;
 use core::f64::consts::TAU;
 use vi_core::{
     Called, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Lagrangian, Method, Run, Starts as _, StepError,
 };
+use vi_erased::integrator::OF_A_CORRECTION;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
-use vi_runs::counting::Counting;
 use vi_systems::Kepler;
 
 /// Periods of a run; the error is that of the last.
@@ -122,44 +121,38 @@ impl Orbit {
 
     /// A run of energy-preserving steps of order 2.
     fn energy(&self, h: f64) -> Result<(f64, f64), StepError> {
-        let evaluations = Cell::new(0);
         let (q, v) = self.start();
-        let system = Counting::new(Kepler::default(), &evaluations);
-        let error = self.follow(EnergyPreserving::from_midpoint(system, 0.0, q, v, h)?, |_| ())?;
-        Ok((count(evaluations.get()), error))
+        self.counted(EnergyPreserving::from_midpoint(Kepler::default(), 0.0, q, v, h)?, OF_A_CORRECTION)
     }
 
     /// A run of energy-preserving steps of more stages.
     fn energy_gauss<const STAGES: usize>(&self, h: f64, is_shifted: bool) -> Result<(f64, f64), StepError> {
         let (q, v) = self.start();
         let run = Called(Kepler::default()).at(0.0, q, v).integrate(EnergyPreservingGauss::<STAGES>, h)?;
-        self.swept(if is_shifted { run.with_shift_from(TAU)? } else { run }, STAGES)
+        self.counted(if is_shifted { run.with_shift_from(TAU)? } else { run }, STAGES as u64)
     }
 
     /// A run of fixed steps of order 2.
     fn fixed(&self, h: f64) -> Result<(f64, f64), StepError> {
-        let evaluations = Cell::new(0);
         let (q, v) = self.start();
-        let system = Counting::new(Kepler::default(), &evaluations);
-        let error = self.follow(system.at(0.0, q, v).integrate(FixedStep, h)?, |_| ())?;
-        Ok((count(evaluations.get()), error))
+        self.counted(Kepler::default().at(0.0, q, v).integrate(FixedStep, h)?, OF_A_CORRECTION)
     }
 
     /// A run of fixed Gauss steps.
     fn gauss<const STAGES: usize>(&self, h: f64) -> Result<(f64, f64), StepError> {
         let (q, v) = self.start();
-        self.swept(Called(Kepler::default()).at(0.0, q, v).integrate(Gauss::<STAGES>, h)?, STAGES)
+        self.counted(Called(Kepler::default()).at(0.0, q, v).integrate(Gauss::<STAGES>, h)?, STAGES as u64)
     }
 
-    /// Evaluations and error of a run whose iterations evaluate so many stages.
-    fn swept<M: Method<Called<Kepler>, 2>>(
+    /// Evaluations and error of a run, with so many evaluations in an iteration.
+    fn counted<S: Lagrangian<2> + Copy, M: Method<S, 2>>(
         &self,
-        run: Run<M, Called<Kepler>, 2>,
-        stages: usize,
+        run: Run<M, S, 2>,
+        evaluations: u64,
     ) -> Result<(f64, f64), StepError> {
         let mut iterations = 0;
         let error = self.follow(run, |run| iterations += u64::from(run.iterations()))?;
-        Ok((count(iterations * stages as u64), error))
+        Ok((count(iterations * evaluations), error))
     }
 
     /// The error of a run over its last period; `see` gets the run after each step.

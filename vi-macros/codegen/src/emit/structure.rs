@@ -121,6 +121,7 @@ pub(crate) fn described(model: &Model, definition: &str) -> TokenStream {
     let parameters = model.parameters.iter().map(|parameter| words(&parameter.attributes));
     quote! {
         #(#conditions)*
+        #[allow(deprecated)]
         impl ::vi_core::lagrangian::Described for #name {
             const ABOUT: &'static ::core::primitive::str = #about;
             const PARAMETERS_ABOUT: &'static [&'static ::core::primitive::str] = &[#(#parameters),*];

@@ -1,7 +1,7 @@
 //! The second point against an exact motion.
 
 use vi_core::SVector;
-use vi_runs::start::second_point;
+use vi_erased::start::second_point;
 use vi_systems::DampedOscillator;
 
 #[test]

@@ -1,0 +1,390 @@
+//! A run in the hands of a program: its parameters and its state change, its nodes are recorded, its derivatives are
+//! asked for.
+//!
+//! In: a run of known types. Out: the functions of a [`Session`], which the command does not need: they are a fifth of
+//! the machine code of a run, and stand behind the feature `sessions`.
+
+use crate::section::Section;
+use crate::simulation::{Erasable, Met, Runnable, Simulated, Simulation, met, vector};
+#[cfg(feature = "derivatives")]
+use core::cell::{Cell, RefCell};
+#[cfg(feature = "derivatives")]
+use vi_core::Method;
+#[cfg(feature = "derivatives")]
+use vi_core::derivatives::{Covector, Objective, Tangent, Variation, gradient};
+use vi_core::run::DenseOutput;
+use vi_core::{Run, State, StepError};
+
+/// Nodes of a run, in flat columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    /// Times.
+    pub t: Vec<f64>,
+    /// Coordinates, node after node.
+    pub q: Vec<f64>,
+    /// Momenta, node after node.
+    pub p: Vec<f64>,
+}
+
+impl Rows {
+    /// Adds a node.
+    pub fn push<const N: usize>(&mut self, state: &State<N>) {
+        self.t.push(state.t);
+        self.q.extend_from_slice(state.q.as_slice());
+        self.p.extend_from_slice(state.p.as_slice());
+    }
+}
+
+/// The motion within one step.
+pub trait StepOutput: Send + Sync {
+    /// Coordinates, momenta and velocities at the time `t`, one after the other.
+    fn at(&self, t: f64) -> [Vec<f64>; 3];
+}
+
+/// Dense output, type-erased.
+struct Output<D, const N: usize>(D);
+
+impl<D: DenseOutput<N> + Send + Sync, const N: usize> StepOutput for Output<D, N> {
+    fn at(&self, t: f64) -> [Vec<f64>; 3] {
+        let State { q, p, .. } = self.0.state(t);
+        [q, p, self.0.velocity(t)].map(|of| of.as_slice().to_vec())
+    }
+}
+
+/// A state from slices.
+///
+/// # Errors
+/// As [`vector`].
+fn state<const N: usize>(t: f64, q: &[f64], p: &[f64]) -> Result<State<N>, StepError> {
+    Ok(State { t, q: vector(q, "number of coordinates")?, p: vector(p, "number of momenta")? })
+}
+
+/// What a program asks of a run.
+pub trait Session {
+    /// Velocities of the last node.
+    ///
+    /// # Errors
+    /// The momenta have no velocity.
+    fn velocity(&self) -> Result<Vec<f64>, StepError>;
+    /// Values of the parameters, in the order of their declaration.
+    fn parameters(&self) -> Vec<f64>;
+    /// The same run, once more.
+    fn copy(&self) -> Box<dyn Simulation>;
+    /// Sets parameters by their indices.
+    ///
+    /// # Errors
+    /// As [`Run::set_parameters`].
+    fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError>;
+    /// Continues from another state, of coordinates and momenta.
+    ///
+    /// # Errors
+    /// As [`Run::set_state`]; [`StepError::InvalidInput`] for another number of coordinates or momenta.
+    fn set_state(&mut self, t: f64, q: &[f64], p: &[f64]) -> Result<(), StepError>;
+    /// Takes one step of the length h in time.
+    ///
+    /// # Errors
+    /// As [`Run::step_of`].
+    fn advance_of(&mut self, h: f64) -> Result<(), StepError>;
+    /// Takes steps toward the time `end`, where the last of them ends, if one is given; at most `most`. Adds each
+    /// `every`th node to `rows`, as `taken` counts, and the last one. Returns whether it was the last.
+    ///
+    /// # Errors
+    /// The error of the failed step; [`StepError::InvalidInput`] for an end that is not ahead.
+    fn record(
+        &mut self,
+        end: Option<f64>,
+        most: u64,
+        every: u64,
+        taken: &mut u64,
+        rows: &mut Rows,
+    ) -> Result<bool, StepError>;
+    /// Adds states at the given times to `rows`, as [`Run::states_at`].
+    ///
+    /// # Errors
+    /// As [`Run::states_at`].
+    fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError>;
+    /// Advances to the first crossing of a section, or to the time `end`.
+    ///
+    /// # Errors
+    /// As [`Run::next_event`].
+    fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError>;
+    /// Dense output of the last step, which began at this time with these coordinates and momenta.
+    ///
+    /// # Errors
+    /// As [`Run::dense_output`].
+    fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError>;
+    /// The error of the next step: of q and of h·v, one after the other.
+    ///
+    /// # Errors
+    /// As [`Run::local_error`].
+    fn local_error(&self) -> Result<[Vec<f64>; 2], StepError>;
+    /// Everything that the run carries, as text for [`System::restart`](crate::System::restart).
+    ///
+    /// # Errors
+    /// What cannot be written.
+    #[cfg(feature = "checkpoints")]
+    fn checkpoint(&self) -> Result<String, String>;
+    /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
+    /// parameters of these indices at the start: one vector of (q, p) for each. The energy that a run keeps varies with
+    /// the start where the run began; later it stays. `goes_on` is called before each step; `None` if it is false, and the
+    /// run stays where it was.
+    ///
+    /// # Errors
+    /// As [`Tangent::step`](vi_core::derivatives::Tangent::step).
+    #[cfg(feature = "derivatives")]
+    fn tangent(
+        &mut self,
+        steps: u64,
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<f64>>>, StepError>;
+    /// Takes steps, and returns the gradient of `slope·(q, p)` at their end by q, p, and the parameters of these
+    /// indices, by one backward pass.
+    ///
+    /// # Errors
+    /// As [`gradient`](vi_core::derivatives::gradient).
+    #[cfg(feature = "derivatives")]
+    fn gradient(
+        &mut self,
+        steps: u64,
+        slope: &[f64],
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError>;
+}
+
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
+    /// Takes one step toward the time `end`; returns whether the run is there.
+    #[inline(never)]
+    fn approach(&mut self, end: f64) -> Result<bool, StepError> {
+        let is_there = self.run.approach_once(end)?;
+        self.shortened = None;
+        self.count();
+        Ok(is_there)
+    }
+}
+
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M, S, N> {
+    fn velocity(&self) -> Result<Vec<f64>, StepError> {
+        Ok(self.run.velocity()?.as_slice().to_vec())
+    }
+
+    fn parameters(&self) -> Vec<f64> {
+        (0..S::PARAMETERS.len()).map(|index| self.run.system().parameter(index)).collect()
+    }
+
+    fn copy(&self) -> Box<dyn Simulation> {
+        Box::new(self.clone())
+    }
+
+    fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {
+        // What is measured belongs to the system of before.
+        self.resume();
+        self.run.set_parameters(|system| {
+            for (index, value) in change {
+                if let Some(place) = S::PARAMETERS.get(*index).and_then(|name| system.parameter_mut(name)) {
+                    *place = *value;
+                }
+            }
+        })
+    }
+
+    fn set_state(&mut self, t: f64, q: &[f64], p: &[f64]) -> Result<(), StepError> {
+        self.run.set_state(state(t, q, p)?)?;
+        self.resume();
+        Ok(())
+    }
+
+    fn advance_of(&mut self, h: f64) -> Result<(), StepError> {
+        self.run.step_of(h)?;
+        self.shortened = Some(h);
+        self.count();
+        Ok(())
+    }
+
+    fn record(
+        &mut self,
+        end: Option<f64>,
+        most: u64,
+        every: u64,
+        taken: &mut u64,
+        rows: &mut Rows,
+    ) -> Result<bool, StepError> {
+        if let Some(end) = end {
+            self.run.check_ahead(end)?;
+        }
+        let until = taken.saturating_add(most);
+        let is_far = |run: &Run<M, S, N>| {
+            end.is_none_or(|end| (run.time_to(end) - 2.0 * run.longest()) * run.h().signum() > 0.0)
+        };
+        let mut is_first = true;
+        let mut monitor = self.monitor.take();
+        let mut goes_on = |run: &Run<M, S, N>| {
+            if !is_first {
+                *taken += 1;
+                if let Some(monitor) = &mut monitor {
+                    monitor.watch(run);
+                }
+                if taken.is_multiple_of(every) {
+                    rows.push(&run.state());
+                }
+            }
+            is_first = false;
+            *taken < until && is_far(run)
+        };
+        let mut outcome = self.advance_while(&mut goes_on).map(|()| false);
+        self.monitor = monitor;
+        // The last steps are shortened, or lengthened by a rounding, to end there.
+        while outcome == Ok(false)
+            && *taken < until
+            && let Some(end) = end
+        {
+            outcome = self.approach(end);
+            *taken += u64::from(outcome.is_ok());
+            if outcome == Ok(false) && taken.is_multiple_of(every) {
+                rows.push(&self.run.state());
+            }
+        }
+        let is_missing = rows.t.last().is_none_or(|t| t.to_bits() != self.run.t().to_bits());
+        if outcome != Ok(false) && is_missing {
+            rows.push(&self.run.state());
+        }
+        outcome
+    }
+
+    fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError> {
+        self.shortened = None;
+        for state in self.run.states_at(times.iter().copied()) {
+            rows.push(&state?);
+        }
+        Ok(())
+    }
+
+    fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError> {
+        let events: Vec<_> = sections.iter().map(Section::event).collect();
+        let crossing = self.run.next_event(events, end);
+        self.resume();
+        Ok(crossing?.map(|crossing| met(self.run.system(), &crossing)))
+    }
+
+    fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError> {
+        Ok(Box::new(Output(self.run.dense_output(&state(t, q, p)?)?)))
+    }
+
+    fn local_error(&self) -> Result<[Vec<f64>; 2], StepError> {
+        let error = self.run.local_error()?;
+        Ok([error.q, error.hv].map(|of| of.as_slice().to_vec()))
+    }
+
+    #[cfg(feature = "checkpoints")]
+    fn checkpoint(&self) -> Result<String, String> {
+        serde_json::to_string(&self.run.checkpoint()).map_err(|error| error.to_string())
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn tangent(
+        &mut self,
+        steps: u64,
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<f64>>>, StepError> {
+        let mut tangent = self.varied(parameters)?;
+        for _ in 0..steps {
+            if !goes_on() {
+                return Ok(None);
+            }
+            tangent.step()?;
+        }
+        self.run = tangent.run().clone();
+        self.resume();
+        let of_node = |of: &Variation<N>| of.q.iter().chain(&of.p).copied().collect();
+        Ok(Some(tangent.variations().iter().map(of_node).collect()))
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn gradient(
+        &mut self,
+        steps: u64,
+        slope: &[f64],
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError> {
+        let State { q, p, .. } = match slope.split_at_checked(N) {
+            Some((q, p)) => state::<N>(0.0, q, p)?,
+            None => state::<N>(0.0, slope, &[])?,
+        };
+        let objective = AtTheEnd {
+            steps,
+            slope: Covector { q, p, ..Covector::zero() },
+            parameters: parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect(),
+            goes_on: RefCell::new(goes_on),
+            is_stopped: Cell::new(false),
+        };
+        let found = match gradient(&self.run, steps, KEPT, &objective) {
+            Err(_) if objective.is_stopped.get() => return Ok(None),
+            found => found?,
+        };
+        let mut of: Vec<f64> =
+            self.varied(parameters)?.variations().iter().map(|direction| found.start.of(direction)).collect();
+        for of_a_step in &found.parameters {
+            of[2 * N..].iter_mut().zip(of_a_step).for_each(|(sum, slope)| *sum += slope);
+        }
+        (0..steps).try_for_each(|_| self.run.single_step().map(drop))?;
+        self.resume();
+        Ok(Some(of))
+    }
+}
+
+/// A linear function of the node at the end.
+#[cfg(feature = "derivatives")]
+struct AtTheEnd<'a, const N: usize> {
+    steps: u64,
+    slope: Covector<N>,
+    parameters: Vec<&'static str>,
+    goes_on: RefCell<&'a mut dyn FnMut() -> bool>,
+    is_stopped: Cell<bool>,
+}
+
+#[cfg(feature = "derivatives")]
+impl<M: Method<S, N>, S: Runnable<N>, const N: usize> Objective<M, S, N> for AtTheEnd<'_, N> {
+    fn prepare(&self, _step: u64, run: &mut Run<M, S, N>) -> Result<(), StepError> {
+        let goes_on = (self.goes_on.borrow_mut())();
+        self.is_stopped.set(!goes_on);
+        let because = "the pass was stopped";
+        if goes_on { Ok(()) } else { Err(StepError::NoDerivative { t: run.t(), because }) }
+    }
+
+    fn parameters(&self) -> &[&str] {
+        &self.parameters
+    }
+
+    fn slope(&self, step: u64, _state: &State<N>) -> Covector<N> {
+        if step == self.steps { self.slope } else { Covector::zero() }
+    }
+}
+
+/// Steps whose states a gradient keeps at least.
+#[cfg(feature = "derivatives")]
+const KEPT: usize = 1024;
+
+#[cfg(feature = "derivatives")]
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
+    /// The run with the directions of the coordinates, the momenta, and the parameters of these indices. Where it
+    /// began, the energy that it keeps varies with them; later that stays.
+    ///
+    /// # Errors
+    /// As [`Tangent::from_start`].
+    fn varied(&self, parameters: &[usize]) -> Result<Tangent<M, S, N>, StepError> {
+        let of_parameter = |index: &usize| {
+            let mut parameters = vec![0.0; index + 1];
+            parameters[*index] = 1.0;
+            Variation { parameters, ..Variation::zero() }
+        };
+        let directions = Variation::of_state().into_iter().chain(parameters.iter().map(of_parameter)).collect();
+        if self.begins {
+            Tangent::from_start(self.run.clone(), directions)
+        } else {
+            Ok(Tangent::new(self.run.clone(), directions))
+        }
+    }
+}

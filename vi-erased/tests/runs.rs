@@ -1,0 +1,67 @@
+//! Erased runs are those of the generic integrators, bit for bit.
+
+use vi_core::{Composition, EnergyPreserving, FixedStep, Gauss, Run, Starts, StepError};
+use vi_erased::{Method, PhasePoint, Plan, System, kind};
+use vi_systems::{Kepler, Pendulum};
+
+fn kepler() -> Box<dyn System> {
+    kind!(Kepler, { fixed; gauss 4, 8; transformed 8; energy; energy 2 })
+}
+
+fn plan(method: Method, h: f64) -> Plan {
+    Plan::new(method, h, PhasePoint { t: 0.5, q: vec![0.4, 0.0], v: vec![0.0, 2.0] })
+}
+
+#[test]
+fn erased_runs_have_the_bits_of_generic_ones() {
+    fn same<M: vi_core::Method<Kepler, 2>>(plan: &Plan, mut run: Run<M, Kepler, 2>) {
+        let mut erased = kepler().begin(plan).expect("a start");
+        for _ in 0..50 {
+            erased.advance().expect("a step");
+            let state = run.step().expect("a step");
+            assert_eq!((erased.t(), erased.q(), erased.p()), (state.t, state.q.as_slice(), state.p.as_slice()));
+        }
+        assert_eq!(erased.energy(), run.energy());
+        assert!(erased.evaluations() >= 50);
+        // The loop without virtual calls.
+        let mut at_once = kepler().begin(plan).expect("a start");
+        assert_eq!(at_once.advance_until(f64::INFINITY, 50), Ok(50));
+        assert_eq!((at_once.row(), at_once.evaluations()), (erased.row(), erased.evaluations()));
+    }
+    let start = Kepler::default().at(0.5, [0.4, 0.0], [0.0, 2.0]);
+    same(&plan(Method::Fixed, 0.01), start.integrate(FixedStep, 0.01).expect("a start"));
+    same(&plan(Method::KahanLi8, 0.05), start.integrate(Composition::KAHAN_LI_8, 0.05).expect("a start"));
+    same(&plan(Method::Gauss, 0.1), start.integrate(Gauss::<8>, 0.1).expect("a start"));
+    let four = Plan { stages: Some(4), ..plan(Method::Gauss, 0.1) };
+    same(&four, start.integrate(Gauss::<4>, 0.1).expect("a start"));
+    let from_the_state = Plan { start: vi_erased::plan::Start::State, ..plan(Method::Energy, 0.01) };
+    same(&from_the_state, start.integrate(EnergyPreserving, 0.01).expect("a start"));
+    let from_the_middle = EnergyPreserving::from_midpoint(Kepler::default(), 0.5, [0.4, 0.0], [0.0, 2.0], 0.01);
+    same(&plan(Method::Energy, 0.01), from_the_middle.expect("a start"));
+}
+
+#[test]
+fn what_is_not_built_is_refused() {
+    let refused = |system: &dyn System, plan: &Plan| system.begin(plan).err().map(|error| error.to_string());
+    let stages = Plan { stages: Some(5), ..plan(Method::Gauss, 0.1) };
+    let message = refused(&*kepler(), &stages).expect("an error");
+    assert_eq!(message, "number of stages must be one that is built, not 5.0");
+    let alone = kind!(Kepler, { gauss 8 });
+    assert_eq!(alone.begin(&plan(Method::Fixed, 0.1)).err(), Some(StepError::NoRule { system: "Kepler" }));
+    let pendulum = kind!(Pendulum, { transformed 8 });
+    let short = Plan { dtau: Some(0.1), q: vec![1.0], v: vec![0.0], ..plan(Method::Gauss, 0.1) };
+    assert_eq!(pendulum.begin(&short).err(), Some(StepError::NoTimeScale { system: "Pendulum" }));
+    let long = Plan { q: vec![1.0; 3], ..plan(Method::Gauss, 0.1) };
+    assert!(matches!(kepler().begin(&long).err(), Some(StepError::InvalidInput { .. })));
+}
+
+#[test]
+fn a_system_tells_its_declaration() {
+    let system = kepler();
+    assert!(!system.about().is_empty(), "{}", system.about());
+    assert!(system.definition().contains("struct Kepler"));
+    assert_eq!(system.coordinates(), ["x", "y"]);
+    assert_eq!(system.parameters(), [("mu", 1.0)]);
+    assert_eq!(system.parameters_about().len(), 1);
+    assert!(system.conserves_energy() && system.has(Method::Energy) && system.integrators().len() == 9);
+}
