@@ -52,3 +52,8 @@ def test_no_runs():
     many = vi.Pendulum().ensemble(np.zeros((0, 1)), h=0.01, until=1.0)
     assert many.q.shape == many.v.shape == (0, 1)
     assert many.success
+
+
+def test_times_must_be_in_order():
+    with pytest.raises(ValueError, match="times must be ascending"):
+        vi.Pendulum().ensemble([1.0], h=0.1, times=[2.0, 1.0])

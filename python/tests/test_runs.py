@@ -295,3 +295,8 @@ def test_solutions_are_pickled(kepler):
     assert np.array_equal(again.q, sol.q)
     with pytest.raises(ValueError, match="dense=True"):
         again(0.5)
+
+
+def test_a_callback_may_move_the_run_beyond_the_end():
+    sol = vi.Pendulum().integrate([1.0], h=0.1).until(1.0, callback=lambda run: run.until(run.t + 0.3))
+    assert sol.success and sol.t[-1] <= 1.0

@@ -80,3 +80,16 @@ def test_mathematics():
 
 def test_versions_agree():
     assert importlib.metadata.version("variational") == vi.__version__
+
+
+def test_greek_letters_may_be_written_out():
+    pendulum = vi.DoublePendulum()
+    sol = pendulum.integrate([0.5, 0.2], h=0.05).until(1.0)
+    assert np.array_equal(sol["theta1"], sol["θ1"]) and np.array_equal(sol["dot(theta2)"], sol["dot(θ2)"])
+    with pytest.raises(KeyError, match="has no coordinate 'theta3'"):
+        sol["theta3"]
+
+
+def test_latex_leaves_the_step_density_to_the_explanation():
+    latex = vi.DoublePendulum()._repr_latex_()
+    assert "E &=" in latex and "D &=" not in latex and "D = " in vi.DoublePendulum().explain().text

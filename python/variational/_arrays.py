@@ -88,6 +88,18 @@ def count(value: Any, name: str, least: int = 0) -> int:
     return found
 
 
+def ordered(times: ArrayLike, h: float) -> Array:
+    """The times as an array (K,) in the order of a run with the step h."""
+    wanted = array(times, "times")
+    if wanted.ndim > 1:
+        raise ValueError(f"times must be a list of times, not of shape {wanted.shape}")
+    wanted = np.ascontiguousarray(wanted.reshape(-1))
+    finite(wanted, "times")
+    if np.any(np.diff(wanted) * np.sign(h) < 0.0):
+        raise ValueError(f"times must be {'ascending' if h > 0.0 else 'descending, since h is negative'}")
+    return wanted
+
+
 def _entries(count: int) -> str:
     return "entry" if count == 1 else "entries"
 

@@ -14,7 +14,9 @@ CONTRACT = 1
 """The version of the interface to compiled modules."""
 
 
-def _bind(module: Any, namespace: dict[str, Any] | None = None, name: str | None = None) -> list[str]:
+def _bind(
+    module: Any, namespace: dict[str, Any] | None = None, name: str | None = None, metaclass: type = type
+) -> list[str]:
     """Adds the classes of its systems to a compiled module, or to another namespace; returns their names.
 
     Raises ImportError for a module of another version.
@@ -29,14 +31,14 @@ def _bind(module: Any, namespace: dict[str, Any] | None = None, name: str | None
     outer, _, inner = name.rpartition(".")
     name = outer if outer == inner and outer else name
     target = vars(module) if namespace is None else namespace
-    classes = [class_of(kind, name) for kind in module._kinds]
+    classes = [class_of(kind, name, metaclass) for kind in module._kinds]
     target.update({cls.__name__: cls for cls in classes})
     if namespace is None:
         module.__all__ = [cls.__name__ for cls in classes]
     return sorted(cls.__name__ for cls in classes)
 
 
-def class_of(kind: Any, module: str) -> type[System]:
+def class_of(kind: Any, module: str, metaclass: type = type) -> type[System]:
     """The class of a system."""
     fields = _parameters(kind)
     signature = [
@@ -58,7 +60,7 @@ def class_of(kind: Any, module: str) -> type[System]:
         "definition": kind.definition,
         **fields,
     }
-    return type(kind.name, (System,), members)
+    return metaclass(kind.name, (System,), members)
 
 
 def _parameters(kind: Any) -> dict[str, Parameter]:
@@ -81,7 +83,8 @@ def _parameters(kind: Any) -> dict[str, Parameter]:
 
 
 def _documentation(kind: Any, coordinates: tuple[str, ...], fields: dict[str, Parameter]) -> str:
-    lines = [inspect.cleandoc(kind.about), "", f"Coordinates: {', '.join(coordinates)}."]
+    about = inspect.cleandoc(kind.about) or f"The system {kind.name}."
+    lines = [about, "", f"Coordinates: {', '.join(coordinates)}."]
     if fields:
         lines += ["", "Parameters", "----------"]
     for name, field in fields.items():

@@ -11,8 +11,10 @@ everything that it depends on; later it is loaded without cargo.
 
 from __future__ import annotations
 
+import copyreg
 import hashlib
 import importlib.util
+import inspect
 import os
 import re
 import shutil
@@ -81,6 +83,21 @@ def cache() -> Path:
 _loaded: dict[str, type[System]] = {}
 
 
+class _Compiled(type):
+    """The type of compiled classes. A pickle of one holds its text."""
+
+
+def _pickled(cls: Any) -> Any:
+    return (_unpickled, cls._source)
+
+
+def _unpickled(definition: str, methods: str) -> type[System]:
+    return compile(definition, methods=methods)
+
+
+copyreg.pickle(_Compiled, _pickled)
+
+
 def compile(definition: str, *, methods: str | None = None, verbose: bool = False) -> type[System]:
     """The class of the system that a text in the language of `lagrangian!` declares.
 
@@ -118,6 +135,7 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
             _build(definition, name, library, built, methods, verbose)
         cls = _load(library, built)
         cls._source = (definition, methods)  # type: ignore[attr-defined]
+        cls.definition = inspect.cleandoc(definition)
         _loaded[digest] = cls
     return _loaded[digest]
 
@@ -292,5 +310,5 @@ def _load(library: str, built: Path) -> type[System]:
     except ImportError as error:
         built.unlink(missing_ok=True)
         raise CompileError(f"the library of the system cannot be loaded, and was deleted: {error}") from error
-    (name,) = _bind(module, None, "variational.compiled")
+    (name,) = _bind(module, None, "variational.compiled", _Compiled)
     return getattr(module, name)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arrays import Array, array, count, finite, number
+from ._arrays import Array, array, count, finite, number, ordered
 from ._names import course
 
 if TYPE_CHECKING:
@@ -121,13 +121,7 @@ def ensemble(
         values[:, parameter.start : parameter.start + of.shape[-1]] = of
     rows = {name: np.ascontiguousarray(np.broadcast_to(of, (many, n))) for name, of in states.items()}
     end = None if until is None else number(until, "until")
-    listed_times = None
-    if times is not None:
-        wanted = array(times, "times")
-        if wanted.ndim != 1:
-            raise ValueError(f"times must be a list of times, not of shape {wanted.shape}")
-        finite(wanted, "times")
-        listed_times = wanted.tolist()
+    listed_times = None if times is None else ordered(times, request.h or request.dtau or 1.0).tolist()
     limit = _threads(threads)
     (ts, qs, ps), errors = system._kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit)
     shape = (many,) if listed_times is None else (many, len(listed_times))

@@ -15,9 +15,9 @@ class Explanation:
         return self.text
 
     def equations(self) -> str:
-        """The equations of the first section that has some, in LaTeX."""
+        """L, the momenta, the energy and the force, in LaTeX. The step density D, a long formula, is left to `text`."""
         for _, lines in self.sections:
-            rows = [f"{left} &= {right}" for left, right in lines if left]
+            rows = [f"{left} &= {right}" for left, right in lines if left and left != "D"]
             if rows:
                 return "$$\\begin{aligned}" + " \\\\ ".join(rows) + "\\end{aligned}$$"
         return ""

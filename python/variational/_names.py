@@ -18,6 +18,23 @@ def spelled(name: str) -> str:
     return name + "_" if keyword.iskeyword(name) else name
 
 
+def among(name: str, known: Iterable[str]) -> str:
+    """The known name that is meant: Greek letters may be written out, `theta1` for `θ1`."""
+    name = unicodedata.normalize("NFKC", name)
+    return next((other for other in known if name in (other, _written_out(other))), name)
+
+
+def _written_out(name: str) -> str:
+    return "".join(map(_letter, name))
+
+
+def _letter(letter: str) -> str:
+    greek = re.fullmatch(r"GREEK (SMALL|CAPITAL) LETTER (\w+)", unicodedata.name(letter, ""))
+    if greek is None:
+        return letter
+    return greek[2].lower() if greek[1] == "SMALL" else greek[2].capitalize()
+
+
 def course(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, int]:
     """Whether "x" or "dot(x)" names a velocity, and the index of the coordinate.
 
@@ -26,7 +43,7 @@ def course(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, 
     if not isinstance(name, str):
         raise TypeError(f'{system} has rows by the name of a coordinate, such as ["{coordinates[0]}"], not by {name!r}')
     inner = re.fullmatch(r"\s*dot\((.*)\)\s*", name)
-    found = unicodedata.normalize("NFKC", (inner[1] if inner else name).strip())
+    found = among((inner[1] if inner else name).strip(), coordinates)
     if found not in coordinates:
         known = ", ".join([*coordinates, *(f"dot({name})" for name in coordinates)])
         raise KeyError(f"{system} has no coordinate {found!r}{meant(found, coordinates)}; it has {known}")
@@ -34,6 +51,6 @@ def course(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, 
 
 
 def meant(name: str, known: Iterable[str]) -> str:
-    """`, did you mean …?` if a known name is close."""
+    """` (did you mean …?)` if a known name is close."""
     close = difflib.get_close_matches(name, list(known), n=1)
-    return f", did you mean {close[0]!r}?" if close else ""
+    return f" (did you mean {close[0]!r}?)" if close else ""

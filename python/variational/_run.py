@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arrays import Array, array, count, finite, number, real, vector
+from ._arrays import Array, count, number, ordered, real, vector
 from ._events import Watched, descriptions
 from ._solution import Events, Solution
 
@@ -151,8 +151,8 @@ class Run:
         if not callable(callback):
             raise TypeError(f"callback must be a function of the run, not {callback!r}")
         parts, left, error = [], steps, None
-        # At most `every` steps at a time, so that the callback sees each row.
-        while error is None and (left is None or left > 0) and (end is None or self.t != end):
+        # At most `every` steps at a time, so that the callback sees each row. It may itself move the run beyond the end.
+        while error is None and (left is None or left > 0) and (end is None or self._is_before(end)):
             few = every if left is None else min(every, left)
             rows, error, _ = self._run.advance(end, few, few, False)
             parts.append(rows)
@@ -167,20 +167,13 @@ class Run:
         t, q, p = (np.concatenate([parts[0][i], *(part[i][1:] for part in parts[1:])]) for i in range(3))
         return _finished(Solution(system, t, q, p, error), on_error)
 
+    def _is_before(self, end: float) -> bool:
+        return (end - self.t) * self.h > 0.0
+
     def at(self, times: ArrayLike, *, on_error: str = "raise") -> Solution:
         """The states at times in the order of the run, as accurate as nodes. The run keeps its own steps."""
         _check_on_error(on_error)
-        wanted = array(times, "times")
-        if wanted.ndim > 1:
-            raise ValueError(f"times must be a list of times, not of shape {wanted.shape}")
-        wanted = np.ascontiguousarray(wanted.reshape(-1))
-        finite(wanted, "times")
-        if wanted.size:
-            direction = np.sign(self.h)
-            if np.any(np.diff(wanted) * direction < 0.0):
-                order = "ascending" if direction > 0 else "descending, since h is negative"
-                raise ValueError(f"times must be {order}")
-        (t, q, p), error, _ = self._run.at(wanted)
+        (t, q, p), error, _ = self._run.at(ordered(times, self.h))
         return _finished(Solution(self.system, t, q, p, error), on_error)
 
     def events(self, events: Watched | Iterable[Watched], until: float, *, on_error: str = "raise") -> Events:

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from ._system import System
 
 
+_SMOOTH = 2000
+"""Points of a plot with dense output."""
+
+
 class Solution:
     """The rows of a run: `t` (K,), `q`, `p`, `v` (K, N), `energy` (K,).
 
@@ -140,10 +144,14 @@ class Solution:
         if axes is None:
             _, axes = plt.subplots(2, 1, sharex=True, layout="constrained")
         above, below = axes
+        # Long steps would show as corners.
+        is_smooth = self._dense is not None and len(self)
+        t = np.linspace(self.t[0], self.t[-1], _SMOOTH) if is_smooth else self.t
+        q = self.states(t)[0] if is_smooth else self.q
         for index, name in enumerate(self.system.coordinates):
-            above.plot(self.t, self.q[:, index], label=name)
+            above.plot(t, q[:, index], label=name)
         if len(self.system.coordinates) <= 10:
-            above.legend(loc="upper right")
+            above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
         above.set_ylabel("coordinates")
         if len(self):
             below.plot(self.t, self.energy - self.energy[0])

@@ -13,7 +13,7 @@ from . import _core
 from ._arrays import Array, array, finite, number, vector
 from ._ensemble import Ensemble, ensemble
 from ._explanation import Explanation
-from ._names import meant
+from ._names import among, meant
 from ._request import checked
 from ._run import Run
 
@@ -87,6 +87,7 @@ class System:
 
     @classmethod
     def _parameter(cls, name: str) -> Parameter:
+        name = among(name, cls.parameters) if isinstance(name, str) else name
         if name not in cls.parameters:
             known = ", ".join(cls.parameters) or "none"
             raise TypeError(f"{cls.__name__} has no parameter {name!r}{meant(name, cls.parameters)}; it has {known}")

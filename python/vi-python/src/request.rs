@@ -42,8 +42,13 @@ impl Request {
         if built.contains(&wanted) {
             return Ok(plan);
         }
-        let names: Vec<_> = built.into_iter().map(name).collect();
-        Err(wrong(format!("{} has no integrator {}; it has {}", system.name(), name(wanted), names.join(", "))))
+        let names: Vec<_> = built.into_iter().filter(|of| of.0 == method).map(name).collect();
+        Err(wrong(format!(
+            "{} has no integrator {}; it has {}. The argument methods of compile builds others",
+            system.name(),
+            name(wanted),
+            names.join(", ")
+        )))
     }
 }
 
