@@ -7,8 +7,6 @@
 use crate::section::Section;
 use crate::simulation::{Erasable, Met, Runnable, Simulated, Simulation, met, vector};
 #[cfg(feature = "derivatives")]
-use core::cell::{Cell, RefCell};
-#[cfg(feature = "derivatives")]
 use vi_core::Method;
 #[cfg(feature = "derivatives")]
 use vi_core::derivatives::{Covector, Objective, Tangent, Variation, gradient};
@@ -313,59 +311,65 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
             Some((q, p)) => state::<N>(0.0, q, p)?,
             None => state::<N>(0.0, slope, &[])?,
         };
-        let objective = AtTheEnd {
-            steps,
-            slope: Covector { q, p, ..Covector::zero() },
-            parameters: parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect(),
-            goes_on: RefCell::new(goes_on),
-            is_stopped: Cell::new(false),
-        };
-        let found = match gradient(&self.run, steps, KEPT, &objective) {
-            Err(_) if objective.is_stopped.get() => return Ok(None),
-            found => found?,
-        };
-        let mut of: Vec<f64> =
-            self.varied(parameters)?.variations().iter().map(|direction| found.start.of(direction)).collect();
-        for of_a_step in &found.parameters {
-            of[2 * N..].iter_mut().zip(of_a_step).for_each(|(sum, slope)| *sum += slope);
+        let names: Vec<&'static str> =
+            parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
+        // The run at the start of each stretch; the pass goes back from the last one.
+        let (mut ahead, mut stretches, mut left) = (self.run.clone(), Vec::new(), steps);
+        while left > 0 {
+            let few = left.min(STRETCH);
+            stretches.push((ahead.clone(), few));
+            for _ in 0..few {
+                if !goes_on() {
+                    return Ok(None);
+                }
+                ahead.single_step()?;
+            }
+            left -= few;
         }
-        (0..steps).try_for_each(|_| self.run.single_step().map(drop))?;
+        let mut slope = Covector { q, p, ..Covector::zero() };
+        let mut sums = vec![0.0; names.len()];
+        for (run, few) in stretches.iter().rev() {
+            if !(0..*few).all(|_| goes_on()) {
+                return Ok(None);
+            }
+            let objective = AtTheEnd { steps: *few, slope, parameters: &names };
+            let found = gradient(run, *few, usize::MAX, &objective)?;
+            slope = found.start;
+            for of_a_step in &found.parameters {
+                sums.iter_mut().zip(of_a_step).for_each(|(sum, slope)| *sum += slope);
+            }
+        }
+        let directions = self.varied(parameters)?;
+        let mut of: Vec<f64> = directions.variations().iter().map(|direction| slope.of(direction)).collect();
+        of[2 * N..].iter_mut().zip(&sums).for_each(|(of, sum)| *of += sum);
+        self.run = ahead;
         self.resume();
         Ok(Some(of))
     }
 }
+
+/// Steps of a stretch of a gradient, whose states are all kept.
+#[cfg(feature = "derivatives")]
+const STRETCH: u64 = 2048;
 
 /// A linear function of the node at the end.
 #[cfg(feature = "derivatives")]
 struct AtTheEnd<'a, const N: usize> {
     steps: u64,
     slope: Covector<N>,
-    parameters: Vec<&'static str>,
-    goes_on: RefCell<&'a mut dyn FnMut() -> bool>,
-    is_stopped: Cell<bool>,
+    parameters: &'a [&'static str],
 }
 
 #[cfg(feature = "derivatives")]
 impl<M: Method<S, N>, S: Runnable<N>, const N: usize> Objective<M, S, N> for AtTheEnd<'_, N> {
-    fn prepare(&self, _step: u64, run: &mut Run<M, S, N>) -> Result<(), StepError> {
-        let goes_on = (self.goes_on.borrow_mut())();
-        self.is_stopped.set(!goes_on);
-        let because = "the pass was stopped";
-        if goes_on { Ok(()) } else { Err(StepError::NoDerivative { t: run.t(), because }) }
-    }
-
     fn parameters(&self) -> &[&str] {
-        &self.parameters
+        self.parameters
     }
 
     fn slope(&self, step: u64, _state: &State<N>) -> Covector<N> {
         if step == self.steps { self.slope } else { Covector::zero() }
     }
 }
-
-/// Steps whose states a gradient keeps at least.
-#[cfg(feature = "derivatives")]
-const KEPT: usize = 1024;
 
 #[cfg(feature = "derivatives")]
 impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {

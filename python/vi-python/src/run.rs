@@ -293,8 +293,6 @@ impl Run {
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
         Self::check_parameters(run, parameters.iter().copied())?;
-        // The slopes by the parameters of each step are kept.
-        check_memory(steps, parameters.len() + 3)?;
         let mut signal = Signal::default();
         let found = py.detach(|| run.gradient(steps, &slope, &parameters, &mut || signal.is_silent())).raise(py)?;
         Ok(PyArray1::from_vec(py, signal.unless_raised(found)?))
