@@ -323,8 +323,8 @@ def test_the_gradient_is_that_of_the_tangent(options, before):
     slope = np.array([0.3, -0.2, 0.7, 0.5])
     tangent, gradient = run().tangent(20, ["mu"]), run().gradient(20, q=slope[:2], p=slope[2:], wrt=["mu"])
     for name in ("q", "p", "mu"):
-        # Measured: 2.9e-15 of Gauss steps, whose largest entry is 6.
-        np.testing.assert_allclose(gradient[name], slope @ tangent[name], rtol=1e-9, atol=1e-11)
+        # Measured: 3e-15 of Gauss and fixed steps; 3.9e-8 of energy-preserving ones, whose length varies much with the start.
+        np.testing.assert_allclose(gradient[name], slope @ tangent[name], rtol=2e-7, atol=1e-11)
 
 
 @pytest.mark.parametrize("options", [{"method": "energy", "h": 0.01}, {"method": "energy", "stages": 2, "h": 0.05}, {"dtau": 0.1}])

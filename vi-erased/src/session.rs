@@ -338,6 +338,11 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
             for of_a_step in &found.parameters {
                 sums.iter_mut().zip(of_a_step).for_each(|(sum, slope)| *sum += slope);
             }
+            // The sum includes a change of the kept energy, by H at the start of each stretch.
+            let changed = Tangent::from_change(run.clone(), directions(parameters))?;
+            for (sum, direction) in sums.iter_mut().zip(&changed.variations()[2 * N..]) {
+                *sum -= slope.energy * direction.energy;
+            }
         }
         let directions = self.varied(parameters)?;
         let mut of: Vec<f64> = directions.variations().iter().map(|direction| slope.of(direction)).collect();
@@ -371,24 +376,26 @@ impl<M: Method<S, N>, S: Runnable<N>, const N: usize> Objective<M, S, N> for AtT
     }
 }
 
+/// The directions of the coordinates, the momenta, and the parameters of these indices.
+#[cfg(feature = "derivatives")]
+fn directions<const N: usize>(parameters: &[usize]) -> Vec<Variation<N>> {
+    let of_parameter = |index: &usize| {
+        let mut parameters = vec![0.0; index + 1];
+        parameters[*index] = 1.0;
+        Variation { parameters, ..Variation::zero() }
+    };
+    Variation::of_state().into_iter().chain(parameters.iter().map(of_parameter)).collect()
+}
+
 #[cfg(feature = "derivatives")]
 impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
-    /// The run with the directions of the coordinates, the momenta, and the parameters of these indices. Where it
-    /// began, the energy that it keeps varies with them; later that stays.
+    /// The run with its directions. Where it began, the energy that it keeps follows from its start; later it changes as
+    /// H does.
     ///
     /// # Errors
-    /// As [`Tangent::from_start`].
+    /// As [`Tangent::from_start`] and [`Tangent::from_change`].
     fn varied(&self, parameters: &[usize]) -> Result<Tangent<M, S, N>, StepError> {
-        let of_parameter = |index: &usize| {
-            let mut parameters = vec![0.0; index + 1];
-            parameters[*index] = 1.0;
-            Variation { parameters, ..Variation::zero() }
-        };
-        let directions = Variation::of_state().into_iter().chain(parameters.iter().map(of_parameter)).collect();
-        if self.begins {
-            Tangent::from_start(self.run.clone(), directions)
-        } else {
-            Ok(Tangent::new(self.run.clone(), directions))
-        }
+        let of = if self.begins { Tangent::from_start } else { Tangent::from_change };
+        of(self.run.clone(), directions(parameters))
     }
 }

@@ -164,6 +164,19 @@ where
     M: Differentiable<S, N>,
     S: Convertible<N> + Collocation<N>,
 {
+    /// A run at any node with tangent vectors of its present state and parameters. They vary as by
+    /// [`Run::set_state`] and [`Run::set_parameters`]: the function sets `energy` of each vector to the derivative of H.
+    ///
+    /// # Errors
+    /// As [`State::velocity`].
+    pub fn from_change(run: Run<M, S, N>, mut variations: Vec<Variation<N>>) -> Result<Self, StepError> {
+        if M::KEEPS_ENERGY {
+            let changes = changes_of_energy(run.system(), &run.state(), &variations)?;
+            variations.iter_mut().zip(changes).for_each(|(variation, change)| variation.energy = change);
+        }
+        Ok(Self::new(run, variations))
+    }
+
     /// Takes steps up to the event, as [`Run::until_event`] does, or to the time `end` if there is none before. The
     /// tangent vectors are at the event: their `t` is the derivative of its time. The event needs a derivative:
     /// [`Event::smooth_rising`], [`Event::smooth_falling`], [`Event::smooth_crossing`].
