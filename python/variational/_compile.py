@@ -173,8 +173,9 @@ def _methods(methods: str | None, code: str) -> str:
         stages = [stage.strip() for stage in rest.split(",")] if rest.strip() else []
         most = {"fixed": 0, "compositions": 0, "energy": 3, "gauss": 16, "transformed": 16}.get(word)
         if most is None:
+            composed = " (compositions has suzuki-4, kahan-li-6 and kahan-li-8)" if "-" in word else ""
             raise CompileError(
-                f"there is no method {word!r}: write fixed, compositions, gauss 8, transformed 8, energy, energy 2"
+                f"there is no method {word!r}{composed}: write fixed, compositions, gauss 8, transformed 8, energy, energy 2"
             )
         if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):
             limits = f"stages from 1 to {most}" if most else "no stages"

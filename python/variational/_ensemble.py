@@ -104,6 +104,8 @@ def ensemble(
 ) -> Ensemble:
     """Runs many; see `System.ensemble`."""
     cls, n = type(system), len(system.coordinates)
+    if not isinstance(parameters, Mapping):
+        raise TypeError(f'parameters must be a dict such as {{"l": lengths}}, not {parameters!r}')
     if (until is None) == (times is None):
         raise TypeError("give one of until and times")
     states = {"q": _states(q, "q", cls), "v": np.zeros(n) if v is None else _states(v, "v", cls)}

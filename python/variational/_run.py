@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import pickle
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,6 +16,10 @@ from ._solution import Events, Solution
 
 if TYPE_CHECKING:
     from ._system import System
+
+
+_PERIOD = 4.0
+"""Steps in the shortest period of an event."""
 
 
 class LocalError(NamedTuple):
@@ -119,7 +124,8 @@ class Run:
 
         Returns the start, each `every`th node, and the end. With `dense=True` the solution is a function of time.
         After each `every`th step it calls `callback(run)`, which may change the run, and which ends it by returning
-        True. A failed step raises StepError, whose attribute `solution` has the rows so far; with
+        True. A row is the state before its callback, with the velocity and the energy of its step; an exception of the
+        callback has the rows so far as `solution`. A failed step raises StepError, whose attribute `solution` has the rows so far; with
         `on_error="return"` the solution is returned, and has the exception as `error`.
         """
         end = number(t, "t")
@@ -150,25 +156,28 @@ class Run:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
         if not callable(callback):
             raise TypeError(f"callback must be a function of the run, not {callback!r}")
-        parts, left, error = [], steps, None
-        # At most `every` steps at a time, so that the callback sees each row. It may itself move the run beyond the end.
-        while error is None and (left is None or left > 0) and (end is None or self._is_before(end)):
-            few = every if left is None else min(every, left)
-            rows, error, _ = self._run.advance(end, few, few, False)
-            parts.append(rows)
-            if left is not None:
-                left -= few
-            if error is None and callback(self) is True:
-                break
+        parts: list[Solution] = []
+        left, error = steps, None
+        ahead = 1.0 if end is None else float(np.sign(end - self.t)) or 1.0
+        try:
+            # At most `every` steps at a time, so that the callback sees each row. It may move the run beyond the end.
+            while error is None and (left is None or left > 0) and (end is None or (end - self.t) * ahead > 0.0):
+                few = every if left is None else min(every, left)
+                (t, q, p), error, _ = self._run.advance(end, few, few, False)
+                parts.append(Solution(self.system, t, q, p))
+                if left is not None:
+                    left -= few
+                if error is None and _is_true(callback(self)):
+                    break
+        except BaseException as raised:
+            # The rows so far, as of a failed step.
+            with contextlib.suppress(AttributeError):
+                raised.solution = _joined(system, parts, None)  # type: ignore[attr-defined]
+            raise
         if not parts:
-            rows, error, _ = self._run.advance(end, steps, every, False)
-            parts.append(rows)
-        # Each part begins with the row that ends the one before.
-        t, q, p = (np.concatenate([parts[0][i], *(part[i][1:] for part in parts[1:])]) for i in range(3))
-        return _finished(Solution(system, t, q, p, error), on_error)
-
-    def _is_before(self, end: float) -> bool:
-        return (end - self.t) * self.h > 0.0
+            (t, q, p), error, _ = self._run.advance(end, steps, every, False)
+            parts.append(Solution(system, t, q, p))
+        return _finished(_joined(system, parts, error), on_error)
 
     def at(self, times: ArrayLike, *, on_error: str = "raise") -> Solution:
         """The states at times in the order of the run, as accurate as nodes. The run keeps its own steps."""
@@ -187,7 +196,13 @@ class Run:
     def _events(self, events: Any, until: float, is_first: bool, on_error: str) -> Events:
         _check_on_error(on_error)
         end = number(until, "until")
-        (t, q, p), error, met = self._run.events(descriptions(events, self._cls), end, is_first)
+        wanted = descriptions(events, self._cls)
+        for event in wanted:
+            # A description of two numbers is a period. The search looks at eighths of a step.
+            if len(event) == 2 and not callable(event[0]) and event[1] < _PERIOD * abs(self.h):
+                least = _PERIOD * abs(self.h)
+                raise ValueError(f"a period must be at least four steps, here {least:g}: use at(times), or shorter steps")
+        (t, q, p), error, met = self._run.events(wanted, end, is_first)
         which = np.array([index for index, _ in met], dtype=np.intp)
         rising = np.array([rises for _, rises in met], dtype=np.bool_)
         return _finished(Events(self.system, t, q, p, error, which, rising), on_error)
@@ -251,6 +266,8 @@ class Run:
 
     def _wrt(self, wrt: Sequence[str]) -> tuple[list[str], list[int]]:
         names = [wrt] if isinstance(wrt, str) else list(wrt)
+        if not all(isinstance(name, str) for name in names):
+            raise TypeError(f"wrt must be names of parameters, not {wrt!r}")
         parameters = [self._cls._parameter(name) for name in names]
         return names, [index for parameter in parameters for index in parameter.indices]
 
@@ -275,7 +292,8 @@ class Run:
 
     @property
     def error_estimate(self) -> ErrorEstimate | None:
-        """The largest error of a step since `monitor()`, relative to the excursion of its coordinate."""
+        """The largest error of a step since `monitor()`, relative to the excursion of its coordinate; None if no step was
+        measured. Steps of `step`, `steps` and `until` are measured, those of `at`, of events and of derivatives are not."""
         found = self._run.largest_error
         if found is None:
             return None
@@ -311,6 +329,27 @@ def _finished(solution: Any, on_error: str) -> Any:
         error.solution = solution
         raise error
     return solution
+
+
+def _is_true(answer: Any) -> bool:
+    """Whether a callback returned True: other values, such as the run, do not end it."""
+    return isinstance(answer, (bool, np.bool_)) and bool(answer)
+
+
+def _joined(system: System, parts: list[Solution], error: Any) -> Solution:
+    """The rows of all parts. Each part begins with the row that ends the one before."""
+    def all_of(name: str) -> Array:
+        columns = [getattr(part, name) for part in parts]
+        return np.concatenate([*columns[:1], *(column[1:] for column in columns[1:])])
+
+    if not parts:
+        n = len(system.coordinates)
+        return Solution(system, np.zeros(0), np.zeros((0, n)), np.zeros((0, n)), error)
+    joined = Solution(system, all_of("t"), all_of("q"), all_of("p"), error)
+    if any(part.system != system for part in parts):
+        # Velocity and energy of each row belong to the parameters of its step.
+        joined.__dict__.update({name: all_of(name) for name in ("v", "energy")})
+    return joined
 
 
 def _check_on_error(on_error: str) -> None:

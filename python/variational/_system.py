@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -225,6 +226,11 @@ class System:
         p = None if p is None else vector(p, n, "p", self.coordinates)
         if p is None and v is None:
             v = np.zeros(n)
+        if request.shift_from is not None and request.tolerance is not None:
+            # The length first: the measurement of a shift takes as many steps as its duration has.
+            plain = dataclasses.replace(request, shift_from=None)
+            h = self._kind.begin(self._values, plain, number(t, "t"), q, v, p).h
+            request = checked(type(self), h, None, None, method, stages, None, shift_from, fallback)
         return Run(type(self), self._kind.begin(self._values, request, number(t, "t"), q, v, p))
 
     def ensemble(

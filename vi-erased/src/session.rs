@@ -10,6 +10,8 @@ use crate::simulation::{Erasable, Met, Runnable, Simulated, Simulation, met, vec
 use vi_core::Method;
 #[cfg(feature = "derivatives")]
 use vi_core::derivatives::{Covector, Objective, Tangent, Variation, gradient};
+#[cfg(feature = "checkpoints")]
+use vi_core::run::Checkpoint;
 use vi_core::run::DenseOutput;
 use vi_core::{Run, State, StepError};
 
@@ -176,20 +178,24 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
     }
 
     fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {
-        // What is measured belongs to the system of before.
-        self.resume();
-        self.run.set_parameters(|system| {
+        let mut run = self.run.clone();
+        run.set_parameters(|system| {
             for (index, value) in change {
                 if let Some(place) = S::PARAMETERS.get(*index).and_then(|name| system.parameter_mut(name)) {
                     *place = *value;
                 }
             }
-        })
+        })?;
+        // What is measured belongs to the system of before.
+        self.resume();
+        (self.run, self.start) = (run, None);
+        Ok(())
     }
 
     fn set_state(&mut self, t: f64, q: &[f64], p: &[f64]) -> Result<(), StepError> {
         self.run.set_state(state(t, q, p)?)?;
         self.resume();
+        self.start = None;
         Ok(())
     }
 
@@ -251,11 +257,10 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
     }
 
     fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError> {
-        self.shortened = None;
-        for state in self.run.states_at(times.iter().copied()) {
-            rows.push(&state?);
-        }
-        Ok(())
+        let mut states = self.run.states_at(times.iter().copied());
+        let outcome = states.try_for_each(|state| state.map(|state| rows.push(&state)));
+        self.resume();
+        outcome
     }
 
     fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError> {
@@ -276,7 +281,12 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
 
     #[cfg(feature = "checkpoints")]
     fn checkpoint(&self) -> Result<String, String> {
-        serde_json::to_string(&self.run.checkpoint()).map_err(|error| error.to_string())
+        let text = serde_json::to_string(&self.run.checkpoint()).map_err(|error| error.to_string())?;
+        // JSON has no infinite number: it writes null.
+        match serde_json::from_str::<Checkpoint<M::Memory, N>>(&text) {
+            Ok(_) => Ok(text),
+            Err(_) => Err(format!("a number of the run is not finite at t = {}: it cannot be stored", self.run.t())),
+        }
     }
 
     #[cfg(feature = "derivatives")]
@@ -395,7 +405,8 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     /// # Errors
     /// As [`Tangent::from_start`] and [`Tangent::from_change`].
     fn varied(&self, parameters: &[usize]) -> Result<Tangent<M, S, N>, StepError> {
-        let of = if self.begins { Tangent::from_start } else { Tangent::from_change };
+        let begins = self.start.as_ref() == Some(self.run.node());
+        let of = if begins { Tangent::from_start } else { Tangent::from_change };
         of(self.run.clone(), directions(parameters))
     }
 }

@@ -7,6 +7,7 @@
 use crate::section::Section;
 use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
+use vi_core::node::Node;
 use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor};
 use vi_core::stepping::Convertible;
 use vi_core::{Method, Run, SVector, StepError};
@@ -93,7 +94,8 @@ pub trait Steps {
     fn advance_to(&mut self, end: f64) -> Result<(), StepError>;
     /// Measures errors of the steps from here on. It costs a few per cent of their time and changes no bit of them.
     fn monitor(&mut self) {}
-    /// The largest error of a step since [`Steps::monitor`], relative to the excursion of its coordinate.
+    /// The largest error of a step since [`Steps::monitor`], relative to the excursion of its coordinate; `None` if no step
+    /// was measured.
     fn largest_error(&self) -> Option<ErrorEstimate> {
         None
     }
@@ -238,8 +240,8 @@ impl<Y: serde::Serialize + serde::de::DeserializeOwned> Storable for Y {}
 pub(crate) struct Simulated<M: Method<S, N>, S, const N: usize> {
     pub(crate) run: Run<M, S, N>,
     evaluations: u64,
-    /// Whether the run is where it began: the energy that it keeps follows from its state.
-    pub(crate) begins: bool,
+    /// The node where the run began, until its state or its parameters change: the energy that it keeps follows from it.
+    pub(crate) start: Option<Node<N>>,
     /// Whether rows have E', even for a shift of zero.
     is_shifted: bool,
     /// Length of the last step, if it was shortened.
@@ -260,14 +262,13 @@ pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
     run: Run<M, S, N>,
     is_shifted: bool,
 ) -> Box<dyn Simulation> {
-    let begins = run.iterations() == 0;
-    Box::new(Simulated { run, evaluations: 0, begins, is_shifted, shortened: None, monitor: None })
+    let start = (run.iterations() == 0).then(|| *run.node());
+    Box::new(Simulated { run, evaluations: 0, start, is_shifted, shortened: None, monitor: None })
 }
 
 impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     /// Takes notice of the last step.
     pub(crate) fn count(&mut self) {
-        self.begins = false;
         self.evaluations += M::evaluations(&self.run);
         if let Some(monitor) = &mut self.monitor {
             monitor.watch(&self.run);
@@ -287,14 +288,12 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
             }
         }
         self.run = run;
-        self.begins = false;
         self.shortened = None;
         outcome
     }
 
     /// Forgets a jump of the run.
     pub(crate) fn resume(&mut self) {
-        self.begins = false;
         self.shortened = None;
         if let Some(monitor) = &mut self.monitor {
             monitor.resume(&self.run);
@@ -383,7 +382,9 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S
     }
 
     fn largest_error(&self) -> Option<ErrorEstimate> {
-        self.monitor.as_ref().map(|monitor| monitor.largest(&self.run))
+        let monitor = self.monitor.as_ref()?;
+        let found = monitor.largest(&self.run);
+        (found.estimate > 0.0 || monitor.measurements() > 0).then_some(found)
     }
 }
 

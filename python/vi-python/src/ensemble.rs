@@ -112,7 +112,7 @@ impl Ensemble<'_> {
                 let mut left = &times[..];
                 while !left.is_empty() && !is_stopped.load(Ordering::Relaxed) {
                     let h = run.h();
-                    record_some(&mut *run, h, &mut left, &mut rows)?;
+                    record_some(&mut run, h, &mut left, &mut rows)?;
                 }
                 Ok(())
             }

@@ -79,18 +79,26 @@ const NEAR: u64 = 8192;
 /// # Errors
 /// The error of the failed step.
 pub(crate) fn record_some(
-    run: &mut dyn Simulation,
+    run: &mut Box<dyn Simulation>,
     h: f64,
     times: &mut &[f64],
     rows: &mut Rows,
 ) -> Result<(), StepError> {
-    let near = times.iter().take(256).take_while(|t| steps_to(run, h, **t) <= NEAR).count();
+    let near = times.iter().take(256).take_while(|t| steps_to(&**run, h, **t) <= NEAR).count();
     let (now, later) = times.split_at(near);
     *times = later;
     match (now, later) {
         ([], [far, ..]) => {
-            let most = (steps_to(run, h, *far) / 4).min(NEAR);
-            run.record(None, most, u64::MAX, &mut 0, &mut Rows::default()).map(drop)
+            let most = (steps_to(&**run, h, *far) / 4).min(NEAR);
+            let mut ahead = run.copy();
+            ahead.record(None, most, u64::MAX, &mut 0, &mut Rows::default())?;
+            if (far - ahead.t()) * h > 0.0 {
+                *run = ahead;
+                return Ok(());
+            }
+            // The steps have grown: it is near.
+            *times = &times[1..];
+            run.record_at(&[*far], rows)
         }
         _ => run.record_at(now, rows),
     }

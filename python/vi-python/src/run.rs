@@ -210,8 +210,8 @@ impl Run {
     fn at<'py>(&self, py: Python<'py>, times: PyReadonlyArray1<'py, f64>) -> Recorded<'py, ()> {
         let times = vector(&times, times.len(), "times")?;
         let mut guard = self.lock()?;
-        let run: &mut dyn Simulation = &mut **guard;
-        let h = self.length(run);
+        let run = &mut *guard;
+        let h = self.length(&**run);
         let mut rows = Rows::default();
         let mut left = &times[..];
         let error = loop {
