@@ -328,7 +328,9 @@ def test_the_gradient_is_that_of_the_tangent(options, before):
         assert np.all(np.abs(gradient[name] - slope @ tangent[name]) <= 1e-6 * sizes), name
 
 
-@pytest.mark.parametrize("options", [{"method": "energy", "h": 0.01}, {"method": "energy", "stages": 2, "h": 0.05}, {"dtau": 0.1}])
+@pytest.mark.parametrize(
+    "options", [{"method": "energy", "h": 0.01}, {"method": "energy", "stages": 2, "h": 0.05}, {"dtau": 0.1}]
+)
 def test_at_the_start_the_kept_energy_varies_with_the_state(options):
     def end(p):
         return vi.Kepler().integrate([0.5, 0.1], p=p, **options).steps(20)
@@ -338,7 +340,9 @@ def test_at_the_start_the_kept_energy_varies_with_the_state(options):
     for index in range(2):
         change = small * np.eye(2)[index]
         above, below = end(p + change), end(p - change)
-        difference = (np.concatenate([above.q[-1], above.p[-1]]) - np.concatenate([below.q[-1], below.p[-1]])) / (2 * small)
+        difference = (np.concatenate([above.q[-1], above.p[-1]]) - np.concatenate([below.q[-1], below.p[-1]])) / (
+            2 * small
+        )
         scale = np.abs(tangent).max()
         assert np.abs(difference - tangent[:, index]).max() < 1e-6 * scale
 
@@ -390,7 +394,7 @@ def test_an_exception_of_a_callback_has_the_rows_so_far():
 
 
 def test_output_times_that_steps_outgrow():
-    start = dict(q=[0.1, 0.0], v=[0.0, 19**0.5], dtau=8.368 / 15)
+    start = {"q": [0.1, 0.0], "v": [0.0, 19**0.5], "dtau": 8.368 / 15}
     end = 300 * 2 * np.pi
     at, until = vi.Kepler().integrate(**start).at([end]), vi.Kepler().integrate(**start).until(end)
     # Measured: 2e-11, of an orbit with e = 0.9 after 300 periods.

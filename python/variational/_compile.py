@@ -175,7 +175,8 @@ def _methods(methods: str | None, code: str) -> str:
         if most is None:
             composed = " (compositions has suzuki-4, kahan-li-6 and kahan-li-8)" if "-" in word else ""
             raise CompileError(
-                f"there is no method {word!r}{composed}: write fixed, compositions, gauss 8, transformed 8, energy, energy 2"
+                f"there is no method {word!r}{composed}: "
+                "write fixed, compositions, gauss 8, transformed 8, energy, energy 2"
             )
         if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):
             limits = f"stages from 1 to {most}" if most else "no stages"

@@ -43,7 +43,9 @@ def course(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, 
     if not isinstance(name, str):
         raise TypeError(f'{system} has rows by the name of a coordinate, such as ["{coordinates[0]}"], not by {name!r}')
     if name.startswith("p_") and name not in coordinates:
-        raise KeyError(f"{system} has no row {name!r}: the momenta are the columns of sol.p, in the order {', '.join(coordinates)}")
+        raise KeyError(
+            f"{system} has no row {name!r}: the momenta are the columns of sol.p, in the order {', '.join(coordinates)}"
+        )
     inner = re.fullmatch(r"\s*dot\((.*)\)\s*", name)
     found = among((inner[1] if inner else name).strip(), coordinates)
     if found not in coordinates:

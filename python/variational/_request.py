@@ -53,7 +53,7 @@ def checked(
     if method not in cls._methods:
         known = ", ".join(f'"{name}"' for name in cls._methods)
         close = meant(method, cls._methods) if isinstance(method, str) else ""
-        more = "" if getattr(cls, "_source", None) is None else '. The argument methods of compile builds others'
+        more = "" if getattr(cls, "_source", None) is None else ". The argument methods of compile builds others"
         raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}{more}")
     if method != "energy" and (shift is not None or shift_from is not None or fallback):
         raise ValueError('shift, shift_from and fallback are options of method="energy"')

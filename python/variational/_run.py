@@ -124,9 +124,10 @@ class Run:
 
         Returns the start, each `every`th node, and the end. With `dense=True` the solution is a function of time.
         After each `every`th step it calls `callback(run)`, which may change the run, and which ends it by returning
-        True. A row is the state before its callback, with the velocity and the energy of its step; an exception of the
-        callback has the rows so far as `solution`. A failed step raises StepError, whose attribute `solution` has the rows so far; with
-        `on_error="return"` the solution is returned, and has the exception as `error`.
+        True. A row is the state before its callback, with the velocity and the energy of its step.
+
+        A failed step raises StepError, whose attribute `solution` has the rows so far, as has an exception of the
+        callback; with `on_error="return"` the solution is returned, and has the StepError as `error`.
         """
         end = number(t, "t")
         return self._advance(end, None, every, dense, callback, on_error)
@@ -156,28 +157,30 @@ class Run:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
         if not callable(callback):
             raise TypeError(f"callback must be a function of the run, not {callback!r}")
+        return _finished(self._called(end, steps, every, callback), on_error)
+
+    def _called(self, end: float | None, left: int | None, every: int, callback: Callable[[Run], Any]) -> Solution:
+        """The rows of a run with a callback, which may move it beyond the end."""
+        system, error = self.system, None
         parts: list[Solution] = []
-        left, error = steps, None
-        ahead = 1.0 if end is None else float(np.sign(end - self.t)) or 1.0
+        ahead = 1.0 if end is None else float(np.sign(end - self.t))
         try:
-            # At most `every` steps at a time, so that the callback sees each row. It may move the run beyond the end.
-            while error is None and (left is None or left > 0) and (end is None or (end - self.t) * ahead > 0.0):
+            while True:
+                # At most `every` steps at a time, so that the callback sees each row.
                 few = every if left is None else min(every, left)
-                (t, q, p), error, _ = self._run.advance(end, few, few, False)
+                (t, q, p), error, _ = self._run.advance(end, few, few or 1, False)
                 parts.append(Solution(self.system, t, q, p))
-                if left is not None:
-                    left -= few
-                if error is None and _is_true(callback(self)):
+                left = None if left is None else left - few
+                if error is not None or len(t) == 1 or _is_true(callback(self)):
+                    break
+                if left == 0 or (end is not None and (end - self.t) * ahead <= 0.0):
                     break
         except BaseException as raised:
             # The rows so far, as of a failed step.
             with contextlib.suppress(AttributeError):
                 raised.solution = _joined(system, parts, None)  # type: ignore[attr-defined]
             raise
-        if not parts:
-            (t, q, p), error, _ = self._run.advance(end, steps, every, False)
-            parts.append(Solution(system, t, q, p))
-        return _finished(_joined(system, parts, error), on_error)
+        return _joined(system, parts, error)
 
     def at(self, times: ArrayLike, *, on_error: str = "raise") -> Solution:
         """The states at times in the order of the run, as accurate as nodes. The run keeps its own steps."""
@@ -201,7 +204,9 @@ class Run:
             # A description of two numbers is a period. The search looks at eighths of a step.
             if len(event) == 2 and not callable(event[0]) and event[1] < _PERIOD * abs(self.h):
                 least = _PERIOD * abs(self.h)
-                raise ValueError(f"a period must be at least four steps, here {least:g}: use at(times), or shorter steps")
+                raise ValueError(
+                    f"a period must be at least four steps, here {least:g}: use at(times), or shorter steps"
+                )
         (t, q, p), error, met = self._run.events(wanted, end, is_first)
         which = np.array([index for index, _ in met], dtype=np.intp)
         rising = np.array([rises for _, rises in met], dtype=np.bool_)
@@ -292,8 +297,11 @@ class Run:
 
     @property
     def error_estimate(self) -> ErrorEstimate | None:
-        """The largest error of a step since `monitor()`, relative to the excursion of its coordinate; None if no step was
-        measured. Steps of `step`, `steps` and `until` are measured, those of `at`, of events and of derivatives are not."""
+        """The largest error of a step since `monitor()`, relative to the excursion of its coordinate.
+
+        None if no step was measured: those of `step`, `steps` and `until` are, those of `at`, of events and of derivatives
+        are not.
+        """
         found = self._run.largest_error
         if found is None:
             return None
@@ -338,6 +346,7 @@ def _is_true(answer: Any) -> bool:
 
 def _joined(system: System, parts: list[Solution], error: Any) -> Solution:
     """The rows of all parts. Each part begins with the row that ends the one before."""
+
     def all_of(name: str) -> Array:
         columns = [getattr(part, name) for part in parts]
         return np.concatenate([*columns[:1], *(column[1:] for column in columns[1:])])

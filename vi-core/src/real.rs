@@ -38,8 +38,6 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 /// A number type of generated formulas.
 pub trait Real:
     Copy
-    + Send
-    + Sync
     + Debug
     + PartialEq
     + Send

@@ -188,14 +188,21 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
         })?;
         // What is measured belongs to the system of before.
         self.resume();
-        (self.run, self.start) = (run, None);
+        self.run = run;
+        #[cfg(feature = "derivatives")]
+        {
+            self.start = None;
+        }
         Ok(())
     }
 
     fn set_state(&mut self, t: f64, q: &[f64], p: &[f64]) -> Result<(), StepError> {
         self.run.set_state(state(t, q, p)?)?;
         self.resume();
-        self.start = None;
+        #[cfg(feature = "derivatives")]
+        {
+            self.start = None;
+        }
         Ok(())
     }
 

@@ -7,6 +7,7 @@
 use crate::section::Section;
 use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
+#[cfg(feature = "derivatives")]
 use vi_core::node::Node;
 use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor};
 use vi_core::stepping::Convertible;
@@ -241,6 +242,7 @@ pub(crate) struct Simulated<M: Method<S, N>, S, const N: usize> {
     pub(crate) run: Run<M, S, N>,
     evaluations: u64,
     /// The node where the run began, until its state or its parameters change: the energy that it keeps follows from it.
+    #[cfg(feature = "derivatives")]
     pub(crate) start: Option<Node<N>>,
     /// Whether rows have E', even for a shift of zero.
     is_shifted: bool,
@@ -262,8 +264,15 @@ pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
     run: Run<M, S, N>,
     is_shifted: bool,
 ) -> Box<dyn Simulation> {
-    let start = (run.iterations() == 0).then(|| *run.node());
-    Box::new(Simulated { run, evaluations: 0, start, is_shifted, shortened: None, monitor: None })
+    Box::new(Simulated {
+        #[cfg(feature = "derivatives")]
+        start: (run.iterations() == 0).then(|| *run.node()),
+        run,
+        evaluations: 0,
+        is_shifted,
+        shortened: None,
+        monitor: None,
+    })
 }
 
 impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
