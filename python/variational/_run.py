@@ -299,8 +299,8 @@ class Run:
     def error_estimate(self) -> ErrorEstimate | None:
         """The largest error of a step since `monitor()`, relative to the excursion of its coordinate.
 
-        None if no step was measured: those of `step`, `steps` and `until` are, those of `at`, of events and of derivatives
-        are not.
+        None if no step was measured: those of `step`, `steps` and `until` are, those of `at`, of events and of
+        derivatives are not.
         """
         found = self._run.largest_error
         if found is None:
