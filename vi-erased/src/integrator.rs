@@ -4,7 +4,7 @@
 //! optimised for the system; the others take [`Called`] systems, which build in a third of the time and differ by
 //! rounding.
 
-use crate::plan::{Method, Plan, Shift, Start};
+use crate::plan::{Built, Method, Plan, Shift, Start};
 use crate::simulation::{Erasable, Runnable, ShiftedEnergy, Simulation, Supported, erased, erased_with};
 use crate::start;
 use vi_core::collocation::Collocation;
@@ -25,23 +25,11 @@ type Restart<S> = fn(S, &str) -> Result<Box<dyn Simulation>, String>;
 /// An integrator that is built for a system.
 #[derive(Clone, Copy)]
 pub struct Integrator<S, const N: usize> {
-    /// Its method.
-    pub method: Method,
-    /// Stages of Gauss steps.
-    pub stages: Option<usize>,
-    /// Whether its steps have constant length in transformed time.
-    pub is_transformed: bool,
+    /// Which one it is.
+    pub built: Built,
     pub(crate) begin: Begin<S, N>,
     #[cfg(feature = "checkpoints")]
     pub(crate) restart: Restart<S>,
-}
-
-impl<S, const N: usize> Integrator<S, N> {
-    /// Whether it takes the steps of a plan.
-    pub(crate) fn is_of(&self, plan: &Plan) -> bool {
-        let stages = plan.energy_stages().or(plan.gauss_stages());
-        self.method == plan.method && self.stages == stages && self.is_transformed == plan.dtau.is_some()
-    }
 }
 
 /// Integrators of several words of [`kind!`](crate::kind).
@@ -62,13 +50,11 @@ fn restarted<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
     Ok(erased(run))
 }
 
-/// An integrator by a method that needs no further options.
+/// An integrator: which one, the system that it takes, its method for a restart, and how a run begins.
 macro_rules! integrator {
-    ($kind:expr, $stages:expr, $is_transformed:expr, $system:expr, $method:expr, $begin:expr) => {
+    ($built:expr, $system:expr, $method:expr, $begin:expr) => {
         Integrator {
-            method: $kind,
-            stages: $stages,
-            is_transformed: $is_transformed,
+            built: $built,
             begin: $begin,
             #[cfg(feature = "checkpoints")]
             restart: |system, stored| restarted($system(system), $method, stored),
@@ -82,7 +68,7 @@ pub fn fixed<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Integrator
 where
     FixedStep: Erasable<S, N>,
 {
-    integrator!(Method::Fixed, None, false, |system| system, FixedStep, |system: S, plan: &Plan, state: State<N>| {
+    integrator!((Method::Fixed, None, false), |system| system, FixedStep, |system: S, plan: &Plan, state: State<N>| {
         Ok(erased(system.at_state(state).integrate(FixedStep, plan.length())?))
     })
 }
@@ -96,7 +82,7 @@ where
 {
     macro_rules! composed {
         ($kind:expr, $scheme:expr) => {
-            integrator!($kind, None, false, |system| system, $scheme, |system: S, plan: &Plan, state: State<N>| {
+            integrator!(($kind, None, false), |system| system, $scheme, |system: S, plan: &Plan, state: State<N>| {
                 Ok(erased(system.at_state(state).integrate($scheme, plan.length())?))
             })
         };
@@ -109,16 +95,14 @@ where
     ]
 }
 
-/// Gauss steps of so many stages.
+/// Gauss steps of the given number of stages.
 #[must_use]
 pub fn gauss<S: Runnable<N>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
 where
     Gauss<STAGES>: Erasable<S, N>,
 {
     integrator!(
-        Method::Gauss,
-        Some(STAGES),
-        false,
+        (Method::Gauss, Some(STAGES), false),
         |system| system,
         Gauss::<STAGES>,
         |system: S, plan: &Plan, state: State<N>| {
@@ -134,21 +118,18 @@ where
     Called<S>: Runnable<N>,
     InTransformedTime<Gauss<STAGES>>: Erasable<Called<S>, N>,
 {
-    integrator!(
-        Method::Gauss,
-        Some(STAGES),
-        true,
-        Called,
-        Gauss::<STAGES>.in_transformed_time(),
-        |system: S, plan: &Plan, state: State<N>| {
-            // Otherwise they would be built for every system.
-            if !<S as Collocation<N>>::SCALES_TIME {
-                return Err(StepError::NoTimeScale { system: S::NAME });
-            }
-            let dtau = plan.dtau.unwrap_or(plan.h);
-            Ok(erased(Called(system).at_state(state).integrate(Gauss::<STAGES>.in_transformed_time(), dtau)?))
+    integrator!((Method::Gauss, Some(STAGES), true), Called, Gauss::<STAGES>.in_transformed_time(), |system: S,
+                                                                                                     plan: &Plan,
+                                                                                                     state: State<
+        N,
+    >| {
+        // Otherwise they would be built for every system.
+        if !<S as Collocation<N>>::SCALES_TIME {
+            return Err(StepError::NoTimeScale { system: S::NAME });
         }
-    )
+        let dtau = plan.dtau.unwrap_or(plan.h);
+        Ok(erased(Called(system).at_state(state).integrate(Gauss::<STAGES>.in_transformed_time(), dtau)?))
+    })
 }
 
 /// Energy-preserving steps of order 2.
@@ -158,9 +139,7 @@ where
     EnergyPreserving: Erasable<S, N, Memory: Controlled<f64>>,
 {
     integrator!(
-        Method::Energy,
-        None,
-        false,
+        (Method::Energy, None, false),
         |system| system,
         EnergyPreserving,
         |system: S, plan: &Plan, state: State<N>| {
@@ -179,7 +158,7 @@ where
     )
 }
 
-/// Energy-preserving Gauss steps of so many stages.
+/// Energy-preserving Gauss steps of the given number of stages.
 #[must_use]
 pub fn energy_gauss<S: Runnable<N>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
 where
@@ -187,9 +166,7 @@ where
     EnergyPreservingGauss<STAGES>: Erasable<Called<S>, N, Memory: Controlled<f64>>,
 {
     integrator!(
-        Method::Energy,
-        Some(STAGES),
-        false,
+        (Method::Energy, Some(STAGES), false),
         Called,
         EnergyPreservingGauss::<STAGES>,
         |system: S, plan: &Plan, state: State<N>| {

@@ -25,7 +25,7 @@ pub mod start;
 pub mod system;
 
 pub use integrator::Integrator;
-pub use plan::{Method, PhasePoint, Plan};
+pub use plan::{Built, Method, PhasePoint, Plan};
 #[cfg(feature = "sessions")]
 pub use session::{Rows, Session};
 pub use simulation::{Row, Simulation, Steps};

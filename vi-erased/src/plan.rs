@@ -139,6 +139,9 @@ pub enum Shift {
     Over(f64),
 }
 
+/// Method, stages, and whether in transformed time: what tells the integrators of a system apart.
+pub type Built = (Method, Option<usize>, bool);
+
 /// The description of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -180,6 +183,12 @@ impl Plan {
     #[must_use]
     pub fn length(&self) -> StepLength {
         self.tolerance.map_or(StepLength::Given(self.h), StepLength::Found)
+    }
+
+    /// The integrator that it asks for.
+    #[must_use]
+    pub fn wanted(&self) -> Built {
+        (self.method, self.energy_stages().or(self.gauss_stages()), self.dtau.is_some())
     }
 
     /// The stages of Gauss steps; `None` for other methods.

@@ -27,11 +27,15 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Adds a node.
-    pub fn push<const N: usize>(&mut self, state: &State<N>) {
-        self.t.push(state.t);
-        self.q.extend_from_slice(state.q.as_slice());
-        self.p.extend_from_slice(state.p.as_slice());
+    /// Adds a node: its time, coordinates and momenta.
+    pub fn push(&mut self, t: f64, q: &[f64], p: &[f64]) {
+        self.t.push(t);
+        self.q.extend_from_slice(q);
+        self.p.extend_from_slice(p);
+    }
+
+    fn push_state<const N: usize>(&mut self, state: &State<N>) {
+        self.push(state.t, state.q.as_slice(), state.p.as_slice());
     }
 }
 
@@ -86,7 +90,7 @@ pub trait Session {
     /// As [`Run::step_of`].
     fn advance_of(&mut self, h: f64) -> Result<(), StepError>;
     /// Takes steps toward the time `end`, where the last of them ends, if one is given; at most `most`. Adds each
-    /// `every`th node to `rows`, as `taken` counts, and the last one. Returns whether it was the last.
+    /// `every`th node before `end` to `rows`, as `taken` counts. Returns whether the run is at `end`.
     ///
     /// # Errors
     /// The error of the failed step; [`StepError::InvalidInput`] for an end that is not ahead.
@@ -125,9 +129,9 @@ pub trait Session {
     #[cfg(feature = "checkpoints")]
     fn checkpoint(&self) -> Result<String, String>;
     /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
-    /// parameters of these indices at the start: one vector of (q, p) for each. The energy that a run keeps varies with
-    /// the start where the run began; later it stays. `goes_on` is called before each step; `None` if it is false, and the
-    /// run stays where it was.
+    /// parameters of these indices at the start: one vector of (q, p) for each. The energy that a run keeps follows from
+    /// the start where the run began; later it changes as by [`Session::set_state`] and [`Session::set_parameters`].
+    /// `goes_on` is called for each step; if it is false the result is `None`, and the run stays where it was.
     ///
     /// # Errors
     /// As [`Tangent::step`](vi_core::derivatives::Tangent::step).
@@ -237,7 +241,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
                     monitor.watch(run);
                 }
                 if taken.is_multiple_of(every) {
-                    rows.push(&run.state());
+                    rows.push_state(&run.state());
                 }
             }
             is_first = false;
@@ -253,19 +257,15 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
             outcome = self.approach(end);
             *taken += u64::from(outcome.is_ok());
             if outcome == Ok(false) && taken.is_multiple_of(every) {
-                rows.push(&self.run.state());
+                rows.push_state(&self.run.state());
             }
-        }
-        let is_missing = rows.t.last().is_none_or(|t| t.to_bits() != self.run.t().to_bits());
-        if outcome != Ok(false) && is_missing {
-            rows.push(&self.run.state());
         }
         outcome
     }
 
     fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError> {
         let mut states = self.run.states_at(times.iter().copied());
-        let outcome = states.try_for_each(|state| state.map(|state| rows.push(&state)));
+        let outcome = states.try_for_each(|state| state.map(|state| rows.push_state(&state)));
         self.resume();
         outcome
     }
@@ -346,6 +346,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
         let mut slope = Covector { q, p, ..Covector::zero() };
         let mut sums = vec![0.0; names.len()];
         for (run, few) in stretches.iter().rev() {
+            // A stretch takes as long as on the way ahead.
             if !(0..*few).all(|_| goes_on()) {
                 return Ok(None);
             }

@@ -5,6 +5,8 @@
 //! virtual calls.
 
 use crate::section::Section;
+#[cfg(feature = "sessions")]
+use crate::session::Session;
 use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
 #[cfg(feature = "derivatives")]
@@ -102,9 +104,6 @@ pub trait Steps {
     }
 }
 
-#[cfg(feature = "sessions")]
-use crate::session::Session;
-
 /// A run is nothing more without the feature.
 #[cfg(not(feature = "sessions"))]
 pub trait Session {}
@@ -181,13 +180,14 @@ pub struct ShiftedEnergy {
 /// # Errors
 /// [`StepError::InvalidInput`] for another number of values.
 pub fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVector<f64, N>, StepError> {
-    if values.len() == N {
-        Ok(SVector::from_column_slice(values))
-    } else {
-        #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
-        let value = values.len() as f64;
-        Err(StepError::InvalidInput { input, allowed: "that of the system", value })
-    }
+    if values.len() == N { Ok(SVector::from_column_slice(values)) } else { Err(wrong_size(values, input)) }
+}
+
+/// The error for another number of values than that of the system.
+pub(crate) fn wrong_size(values: &[f64], input: &'static str) -> StepError {
+    #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
+    let value = values.len() as f64;
+    StepError::InvalidInput { input, allowed: "that of the system", value }
 }
 
 /// A method whose runs are erased: what its rows and its evaluations are.

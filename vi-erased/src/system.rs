@@ -3,9 +3,8 @@
 //! In: the type of a system, and its integrators. Out: a [`System`], whose functions and runs take slices.
 
 use crate::integrator::Integrator;
-use crate::plan::{Method, PhasePoint, Plan};
-use crate::simulation::{Runnable, Simulation, vector};
-use core::any::Any;
+use crate::plan::{Built, Method, PhasePoint, Plan};
+use crate::simulation::{Runnable, Simulation, vector, wrong_size};
 use std::sync::Arc;
 use vi_core::lagrangian::Described;
 use vi_core::{SVector, State, StepError};
@@ -47,12 +46,8 @@ pub trait System: Send + Sync {
     fn set(&mut self, name: &str, value: f64) -> bool;
     /// A system of the same type with the same parameters.
     fn copy(&self) -> Box<dyn System>;
-    /// The system, to read its type.
-    fn as_any(&self) -> &dyn Any;
-    /// Method, stages, and whether in transformed time, of each integrator.
-    fn integrators(&self) -> Vec<(Method, Option<usize>, bool)>;
-    /// Whether L and f are both independent of time.
-    fn is_autonomous(&self) -> bool;
+    /// The integrators that are built for it.
+    fn integrators(&self) -> Vec<Built>;
     /// Whether the energy of a motion is constant: L and f are autonomous, and there is no force.
     fn conserves_energy(&self) -> bool;
     /// A function at as many points as there are times; `q` and `v`, or momenta, have N numbers for each. Appends to
@@ -69,12 +64,12 @@ pub trait System: Send + Sync {
     /// or velocities, and for stages that are not built; [`StepError::NoRule`] for a method that needs a rule which the
     /// system does not have.
     fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
-    /// The run of a plan as [`Simulation::checkpoint`] stored it.
+    /// The run of an integrator as [`Session::checkpoint`](crate::Session::checkpoint) stored it.
     ///
     /// # Errors
     /// Why it cannot be read.
     #[cfg(feature = "checkpoints")]
-    fn restart(&self, plan: &Plan, stored: &str) -> Result<Box<dyn Simulation>, String>;
+    fn restart(&self, built: Built, stored: &str) -> Result<Box<dyn Simulation>, String>;
 }
 
 impl dyn System + '_ {
@@ -105,9 +100,7 @@ impl dyn System + '_ {
         let n = self.coordinates().len();
         for (values, input) in [(q, "number of coordinates"), (v, "number of velocities")] {
             if values.len() != n {
-                #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
-                let value = values.len() as f64;
-                return Err(StepError::InvalidInput { input, allowed: "that of the system", value });
+                return Err(wrong_size(values, input));
             }
         }
         let mut out = Vec::new();
@@ -141,29 +134,21 @@ pub fn erased<S: Runnable<N> + Described + Default, const N: usize>(
 }
 
 impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
-    /// The integrator of a plan.
+    /// An integrator.
     ///
     /// # Errors
     /// As [`System::begin`].
-    fn integrator(&self, plan: &Plan) -> Result<&Integrator<S, N>, StepError> {
-        let found = self.integrators.iter().find(|integrator| integrator.is_of(plan));
-        let is_by_rule = |method: Method| !matches!(method, Method::Gauss | Method::Energy);
-        found.ok_or_else(|| {
-            let stages = plan.energy_stages().or(plan.gauss_stages());
-            match stages {
-                #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
-                Some(stages) => StepError::InvalidInput {
-                    input: "number of stages",
-                    allowed: "one that is built",
-                    value: stages as f64,
-                },
-                None if is_by_rule(plan.method) || plan.method == Method::Energy => {
-                    StepError::NoRule { system: S::NAME }
-                }
-                None => {
-                    StepError::InvalidInput { input: "number of stages", allowed: "one that is built", value: f64::NAN }
-                }
-            }
+    fn integrator(&self, wanted: Built) -> Result<&Integrator<S, N>, StepError> {
+        let found = self.integrators.iter().find(|integrator| integrator.built == wanted);
+        found.ok_or(match wanted {
+            #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
+            (_, Some(stages), _) => StepError::InvalidInput {
+                input: "number of stages",
+                allowed: "one that is built",
+                value: stages as f64,
+            },
+            // Every system has Gauss steps of some stages; methods without stages need a rule.
+            (_, None, _) => StepError::NoRule { system: S::NAME },
         })
     }
 }
@@ -201,16 +186,8 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
         Box::new(self.clone())
     }
 
-    fn as_any(&self) -> &dyn Any {
-        self
-    }
-
-    fn integrators(&self) -> Vec<(Method, Option<usize>, bool)> {
-        self.integrators.iter().map(|of| (of.method, of.stages, of.is_transformed)).collect()
-    }
-
-    fn is_autonomous(&self) -> bool {
-        S::AUTONOMOUS
+    fn integrators(&self) -> Vec<Built> {
+        self.integrators.iter().map(|of| of.built).collect()
     }
 
     fn conserves_energy(&self) -> bool {
@@ -247,12 +224,12 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
             Some(p) => State { t: plan.t, q, p: vector(p, "number of momenta")? },
             None => State::at(&self.system, plan.t, q, vector::<N>(&plan.v, "number of velocities")?),
         };
-        (self.integrator(plan)?.begin)(self.system, plan, state)
+        (self.integrator(plan.wanted())?.begin)(self.system, plan, state)
     }
 
     #[cfg(feature = "checkpoints")]
-    fn restart(&self, plan: &Plan, stored: &str) -> Result<Box<dyn Simulation>, String> {
-        let integrator = self.integrator(plan).map_err(|error| error.to_string())?;
+    fn restart(&self, built: Built, stored: &str) -> Result<Box<dyn Simulation>, String> {
+        let integrator = self.integrator(built).map_err(|error| error.to_string())?;
         (integrator.restart)(self.system, stored)
     }
 }

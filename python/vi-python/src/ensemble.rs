@@ -42,7 +42,7 @@ const STRETCH: u64 = 1 << 14;
 const PATIENCE: Duration = Duration::from_millis(50);
 
 impl Ensemble<'_> {
-    /// Runs all, on so many threads; `None` takes all cores.
+    /// Runs all on this number of threads, without one on all cores.
     ///
     /// # Errors
     /// `KeyboardInterrupt`, `MemoryError`. Errors of runs are values.
@@ -130,8 +130,6 @@ impl Ensemble<'_> {
 fn to_the_end(run: &mut dyn Simulation, end: f64, is_stopped: &AtomicBool, rows: &mut Rows) -> Result<(), StepError> {
     let mut unused = Rows::default();
     while !run.record(Some(end), STRETCH, u64::MAX, &mut 0, &mut unused)? && !is_stopped.load(Ordering::Relaxed) {}
-    rows.t.push(run.t());
-    rows.q.extend_from_slice(run.q());
-    rows.p.extend_from_slice(run.p());
+    rows.push(run.t(), run.q(), run.p());
     Ok(())
 }

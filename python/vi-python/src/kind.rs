@@ -8,7 +8,7 @@ use crate::run::Run;
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use vi_erased::System;
-use vi_erased::plan::{Method, Named as _, PhasePoint, Plan};
+use vi_erased::plan::{Method, Named as _, Plan};
 use vi_erased::system::Quantity;
 
 /// A system's type.
@@ -64,8 +64,8 @@ impl Kind {
     /// Name, default and documentation of each parameter.
     #[getter]
     fn parameters(&self) -> Vec<(&'static str, f64, &'static str)> {
-        let about = self.of.parameters_about().iter().copied().chain(core::iter::repeat(""));
-        self.parameters.iter().zip(about).map(|((name, default), about)| (*name, *default, about)).collect()
+        let about = self.of.parameters_about();
+        self.parameters.iter().zip(about).map(|((name, default), about)| (*name, *default, *about)).collect()
     }
 
     /// Method, stages, and whether in transformed time, of each integrator.
@@ -76,16 +76,6 @@ impl Kind {
             .into_iter()
             .map(|(method, stages, transformed)| (method.name(), stages, transformed))
             .collect()
-    }
-
-    #[getter]
-    fn is_autonomous(&self) -> bool {
-        self.of.is_autonomous()
-    }
-
-    #[getter]
-    fn conserves_energy(&self) -> bool {
-        self.of.conserves_energy()
     }
 
     /// A function at points: t (K,), q and v (K, N). Returns (K,) numbers, or (K·N,) for a vector.
@@ -137,7 +127,7 @@ impl Kind {
         let plan = Plan { p, ..request.plan(&*system, t, q, v)? };
         // A tolerance or a measured shift takes thousands of steps.
         let run = py.detach(|| system.begin(&plan)).raise(py)?;
-        Ok(Run::new(run, (plan.method, plan.energy_stages().or(plan.gauss_stages()), plan.dtau.is_some())))
+        Ok(Run::new(run, plan.wanted()))
     }
 
     /// Restarts a stored run.
@@ -149,10 +139,9 @@ impl Kind {
     ) -> PyResult<Run> {
         let (method, stages, is_transformed) = integrator;
         let method = Method::named(&method).ok_or_else(|| wrong(format!("there is no method {method:?}")))?;
-        let start = PhasePoint { t: 0.0, q: vec![0.0; self.n], v: vec![0.0; self.n] };
-        let plan = Plan { stages, dtau: is_transformed.then_some(1.0), ..Plan::new(method, 1.0, start) };
-        let run = self.with(parameters.as_slice()?)?.restart(&plan, stored).map_err(wrong)?;
-        Ok(Run::new(run, (method, stages, is_transformed)))
+        let built = (method, stages, is_transformed);
+        let run = self.with(parameters.as_slice()?)?.restart(built, stored).map_err(wrong)?;
+        Ok(Run::new(run, built))
     }
 
     /// Runs from many states over threads: the state at the time `until`, or the states at times, of each. Returns the

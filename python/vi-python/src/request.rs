@@ -3,7 +3,7 @@
 use crate::failure::wrong;
 use pyo3::prelude::*;
 use vi_erased::System;
-use vi_erased::plan::{DEFAULT_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start};
+use vi_erased::plan::{Built, DEFAULT_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start};
 
 /// Method and options of a run. Python has checked their names.
 #[derive(Clone, Debug, FromPyObject)]
@@ -37,7 +37,7 @@ impl Request {
             ..Plan::new(method, h, PhasePoint { t, q, v })
         };
         let plan = Plan { stages: stages(&plan, system), ..plan };
-        let wanted = (method, plan.energy_stages().or(plan.gauss_stages()), plan.dtau.is_some());
+        let wanted = plan.wanted();
         let built = system.integrators();
         if built.contains(&wanted) {
             return Ok(plan);
@@ -63,7 +63,7 @@ fn stages(plan: &Plan, system: &dyn System) -> Option<usize> {
 }
 
 /// An integrator in the words of Python.
-pub(crate) fn name((method, stages, is_transformed): (Method, Option<usize>, bool)) -> String {
+pub(crate) fn name((method, stages, is_transformed): Built) -> String {
     let stages = stages.map_or(String::new(), |stages| format!(", stages={stages}"));
     format!("method=\"{}\"{stages}{}", method.name(), if is_transformed { ", dtau=…" } else { "" })
 }

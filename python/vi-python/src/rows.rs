@@ -18,7 +18,7 @@ pub(crate) fn to_python(py: Python<'_>, rows: Rows, n: usize) -> PyResult<Bound<
 /// Rows below which memory is not checked: the system allocates them anyway.
 const FEW: u64 = 1 << 20;
 
-/// Checks that the memory for so many rows of so many numbers exists, since a failed allocation ends the process.
+/// Checks that rows of this many numbers fit into memory: a failed allocation would end the process.
 ///
 /// # Errors
 /// `MemoryError`.

@@ -10,16 +10,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 use vi_core::StepError;
-use vi_erased::plan::{Method, Named as _};
+use vi_erased::plan::Named as _;
 use vi_erased::simulation::Met;
-use vi_erased::{Rows, Simulation};
+use vi_erased::{Built, Rows, Simulation};
 
 /// A run. A lock, not the borrow checker of pyo3, guards it: its message is for Python's users.
 #[pyclass(frozen, module = "variational._core")]
 pub struct Run {
     of: Mutex<Box<dyn Simulation>>,
     n: usize,
-    integrator: (Method, Option<usize>, bool),
+    integrator: Built,
     /// Bits of the length of a step before steps of other lengths, which the run reports in its place; 0 if there are
     /// none.
     usual: AtomicU64,
@@ -29,7 +29,7 @@ pub struct Run {
 type Recorded<'py, T> = PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyAny>>, T)>;
 
 impl Run {
-    pub(crate) fn new(of: Box<dyn Simulation>, integrator: (Method, Option<usize>, bool)) -> Self {
+    pub(crate) fn new(of: Box<dyn Simulation>, integrator: Built) -> Self {
         Self { n: of.q().len(), of: Mutex::new(of), integrator, usual: AtomicU64::new(0) }
     }
 
@@ -108,11 +108,6 @@ impl Run {
         Ok(PyArray1::from_vec(py, self.lock()?.parameters()))
     }
 
-    #[getter]
-    fn evaluations(&self) -> PyResult<u64> {
-        Ok(self.lock()?.evaluations())
-    }
-
     /// Method, stages, and whether in transformed time.
     #[getter]
     fn integrator(&self) -> (&'static str, Option<usize>, bool) {
@@ -155,7 +150,7 @@ impl Run {
         outcome.raise(py)
     }
 
-    /// Takes steps to a time or so many steps. Returns the start, every `every`th node and the end, the exception that
+    /// Takes steps to a time, or a number of steps. Returns the start, every `every`th node and the end, the exception that
     /// ended the run if any, and dense output if asked for.
     #[pyo3(signature = (until=None, steps=None, every=1, dense=false))]
     fn advance<'py>(
@@ -179,7 +174,7 @@ impl Run {
             check_memory(expected, 40 * self.n)?;
         }
         let mut rows = reserved(expected / every, self.n);
-        push_state(run, &mut rows);
+        rows.push(run.t(), run.q(), run.p());
         let mut dense = dense.then(|| Dense::new(self.n));
         self.usual.store(0, Ordering::Relaxed);
         let (mut taken, mut stretch) = (0, Stretch::new());
@@ -201,7 +196,7 @@ impl Run {
             }
         };
         if rows.t.last().map(|t| t.to_bits()) != Some(run.t().to_bits()) {
-            push_state(run, &mut rows);
+            rows.push(run.t(), run.q(), run.p());
         }
         Ok((to_python(py, rows, self.n)?, error, dense))
     }
@@ -243,9 +238,7 @@ impl Run {
         let (mut rows, mut met) = (Rows::default(), Vec::new());
         let mut take = |of: Met| {
             for event in of.events {
-                rows.t.push(of.row.t);
-                rows.q.extend_from_slice(&of.row.q);
-                rows.p.extend_from_slice(&of.row.p);
+                rows.push(of.row.t, &of.row.q, &of.row.p);
                 met.push(event);
             }
             true
@@ -351,13 +344,6 @@ impl Signal {
             (None, None) => Err(wrong("the derivative was stopped")),
         }
     }
-}
-
-/// Adds the state of the run.
-fn push_state(run: &dyn Simulation, rows: &mut Rows) {
-    rows.t.push(run.t());
-    rows.q.extend_from_slice(run.q());
-    rows.p.extend_from_slice(run.p());
 }
 
 /// [`Simulation::record`] with dense output of each step.
