@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Array, array, count, finite, number, ordered
-from ._names import course
+from ._solution import ByName
 
 if TYPE_CHECKING:
     from ._errors import StepError
     from ._system import System
 
 
-class Ensemble:
+class Ensemble(ByName):
     """The states of M runs: `t` (M,), `q`, `p`, `v` (M, N), or with an axis of K times after M.
 
     `errors` has for each run None, or the exception that ended it; `parameters` the parameters that differ.
@@ -75,13 +75,6 @@ class Ensemble:
     def success(self) -> bool:
         """Whether all runs reached their end."""
         return all(error is None for error in self.errors)
-
-    def __getitem__(self, name: str) -> Array:
-        """A coordinate, `ensemble["x"]`, or its velocity, `ensemble["dot(x)"]`."""
-        is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
-        return (self.v if is_velocity else self.q)[..., index]
-
-    __iter__ = None  # type: ignore[assignment]
 
     def __len__(self) -> int:
         return len(self.errors)

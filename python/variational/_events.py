@@ -36,8 +36,12 @@ Watched = Event | Period | str | Function
 attribute `direction`."""
 
 
-def descriptions(events: Watched | Iterable[Watched], cls: Any) -> list[tuple]:
-    """The events as `_core` reads them."""
+_PERIOD = 4.0
+"""Steps in the shortest period: the search looks at eighths of a step."""
+
+
+def descriptions(events: Watched | Iterable[Watched], cls: Any, h: float) -> list[tuple]:
+    """The events as `_core` reads them, for a run with steps of about the length h."""
     if isinstance(events, (Event, Period, str)) or callable(events):
         events = [events]
     try:
@@ -46,10 +50,10 @@ def descriptions(events: Watched | Iterable[Watched], cls: Any) -> list[tuple]:
         raise TypeError(f"events must be an Event, a function g(t, q, v), or a list of them, not {events!r}") from None
     if not listed:
         raise ValueError("give at least one event")
-    return [_description(event, cls) for event in listed]
+    return [_description(event, cls, _PERIOD * h) for event in listed]
 
 
-def _description(event: Watched, cls: Any) -> tuple:
+def _description(event: Watched, cls: Any, least: float) -> tuple:
     if isinstance(event, str):
         event = Event(event)
     if isinstance(event, Event):
@@ -59,6 +63,8 @@ def _description(event: Watched, cls: Any) -> tuple:
         period = number(event.period, "period")
         if period <= 0.0:
             raise ValueError(f"the period must be positive, not {period!r}")
+        if period < least:
+            raise ValueError(f"a period must be at least four steps, here {least:g}: use at(times), or shorter steps")
         return (number(event.start, "start"), period)
     if callable(event):
         return (event, _sign(getattr(event, "direction", 0)))

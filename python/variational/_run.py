@@ -18,10 +18,6 @@ if TYPE_CHECKING:
     from ._system import System
 
 
-_PERIOD = 4.0
-"""Steps in the shortest period of an event."""
-
-
 class LocalError(NamedTuple):
     """The error of one step: of the coordinates, and of the velocities times its length."""
 
@@ -141,7 +137,7 @@ class Run:
         callback: Callable[[Run], Any] | None = None,
         on_error: str = "raise",
     ) -> Solution:
-        """Takes so many steps; the rest as `until`."""
+        """Takes `count` steps; the rest as `until`."""
         return self._advance(None, _count(count, "the number of steps"), every, dense, callback, on_error)
 
     def _advance(
@@ -199,14 +195,7 @@ class Run:
     def _events(self, events: Any, until: float, is_first: bool, on_error: str) -> Events:
         _check_on_error(on_error)
         end = number(until, "until")
-        wanted = descriptions(events, self._cls)
-        for event in wanted:
-            # A description of two numbers is a period. The search looks at eighths of a step.
-            if len(event) == 2 and not callable(event[0]) and event[1] < _PERIOD * abs(self.h):
-                least = _PERIOD * abs(self.h)
-                raise ValueError(
-                    f"a period must be at least four steps, here {least:g}: use at(times), or shorter steps"
-                )
+        wanted = descriptions(events, self._cls, abs(self.h))
         (t, q, p), error, met = self._run.events(wanted, end, is_first)
         which = np.array([index for index, _ in met], dtype=np.intp)
         rising = np.array([rises for _, rises in met], dtype=np.bool_)

@@ -21,7 +21,23 @@ _SMOOTH = 2000
 """Points of a plot with dense output."""
 
 
-class Solution:
+class ByName:
+    """Rows whose coordinates and velocities have names."""
+
+    system: System
+    q: Array
+    v: Any
+
+    def __getitem__(self, name: str) -> Array:
+        """A coordinate, `sol["x"]`, or its velocity, `sol["dot(x)"]`."""
+        is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
+        return (self.v if is_velocity else self.q)[..., index]
+
+    # `sol["x"]` would otherwise make the rows a sequence of their names.
+    __iter__ = None
+
+
+class Solution(ByName):
     """The rows of a run: `t` (K,), `q`, `p`, `v` (K, N), `energy` (K,).
 
     `sol["x"]` and `sol["dot(x)"]` are the values of a coordinate and of its velocity. Names and shapes of
@@ -96,16 +112,8 @@ class Solution:
             q, p, v = self._dense(np.ascontiguousarray(times.reshape(-1)))
         return (q, p, v) if times.ndim else (q[0], p[0], v[0])
 
-    def __getitem__(self, name: str) -> Array:
-        """A coordinate, `sol["x"]`, or its velocity, `sol["dot(x)"]`."""
-        is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
-        return (self.v if is_velocity else self.q)[..., index]
-
     def __len__(self) -> int:
         return len(self.t)
-
-    # `sol["x"]` would otherwise make a solution a sequence of its names.
-    __iter__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         name = type(self).__name__
