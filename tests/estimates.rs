@@ -197,7 +197,7 @@ fn a_short_pericentre_is_not_missed() {
     }
 }
 
-/// The largest error of so many steps by the length that a tolerance finds.
+/// The largest error of 1000 steps of the length that a tolerance finds.
 fn by_tolerance<M, S, const N: usize>(start: Start<S, N>, method: M, tolerance: f64) -> f64
 where
     M: Method<S, N>,

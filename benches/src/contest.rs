@@ -14,7 +14,7 @@ pub enum Target {
     Faster(f64),
     /// Slower than the rival by this factor: one trajectory against many.
     Slower(f64),
-    /// The rival computes more, by at most so many times the time.
+    /// The rival computes more: at most this many times as long.
     Costs(f64),
     /// Shown, not judged.
     None,

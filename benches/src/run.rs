@@ -22,7 +22,7 @@ pub trait Stepper: Clone {
 
 /// A stepper of any kind, at the start of its run.
 pub trait Run {
-    /// The state after so many steps from the start.
+    /// The state after a number of steps from the start.
     fn run(&self, steps: usize) -> Vec<f64>;
 }
 
@@ -99,7 +99,7 @@ impl<M: Differentiable<S, N>, S: Convertible<N> + Lagrangian<N> + Copy, const N:
     }
 }
 
-/// The last coordinate after so many steps, and the state there.
+/// The last coordinate after a number of steps, and the state there.
 struct Last<'a, const N: usize> {
     steps: u64,
     end: &'a Cell<Option<State<N>>>,

@@ -54,7 +54,7 @@ pub(super) struct Grid {
     equal_aspect: bool,
 }
 
-/// Rows of a map of so many columns.
+/// Rows of a map, from the number of its columns.
 fn rows(columns: usize) -> usize {
     (columns * ROWS).div_ceil(COLUMNS)
 }
@@ -106,7 +106,7 @@ impl Grid {
 }
 
 impl Atlas {
-    /// An empty atlas of maps of so many columns, `maps` in all.
+    /// An empty atlas for `maps` maps with the given number of columns.
     pub(super) fn new(report: Report, columns: u16, maps: u32) -> Self {
         let columns = usize::from(columns);
         let cells = columns * rows(columns);
@@ -119,7 +119,7 @@ impl Atlas {
         Grid::new(axes, self.columns)
     }
 
-    /// A grid of so many times fewer columns, for runs that take long.
+    /// A grid with fewer columns, by this factor, for long runs.
     pub(super) fn coarse_grid(&self, axes: Axes, times: usize) -> Grid {
         Grid::new(axes, self.columns.div_ceil(times.max(1)))
     }

@@ -50,7 +50,7 @@ pub(super) fn section(atlas: &mut Atlas, catalogue: &Catalogue) -> Result<(), Fa
     Ok(())
 }
 
-/// How a run of so many stages ends that starts from rest at an angle.
+/// How a run from rest at an angle ends, with the given number of stages.
 fn class(system: &dyn System, stages: usize, shift: Option<Shift>, (angle, h): (f64, f64)) -> Class {
     let start = PhasePoint { t: 0.0, q: vec![angle], v: vec![0.0] };
     let plan = Plan { stages: Some(stages), shift, ..Plan::new(Method::Energy, h, start) };

@@ -37,7 +37,7 @@ fn pendulum() -> Called<Pendulum> {
     Called(Pendulum::default())
 }
 
-/// A run of energy-preserving steps of so many stages, the first of the length h, from rest at an angle.
+/// A run of energy-preserving steps from rest at an angle; the first step has the length h.
 fn released<const STAGES: usize>(
     angle: f64,
     h: f64,
@@ -45,7 +45,7 @@ fn released<const STAGES: usize>(
     pendulum().at(0.0, [angle], [0.0]).integrate(EnergyPreservingGauss::<STAGES>, h)
 }
 
-/// When a run of energy-preserving steps of so many stages from rest at an angle ends, if it does before a time.
+/// The time at which such a run ends, if it ends before a given time.
 fn end(stages: usize, angle: f64, h: f64, until: f64) -> Result<Option<f64>, StepError> {
     fn of<const STAGES: usize>(angle: f64, h: f64, until: f64) -> Result<Option<f64>, StepError> {
         let mut run = released::<STAGES>(angle, h)?;

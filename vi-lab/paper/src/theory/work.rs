@@ -144,7 +144,7 @@ impl Orbit {
         self.counted(Called(Kepler::default()).at(0.0, q, v).integrate(Gauss::<STAGES>, h)?, STAGES as u64)
     }
 
-    /// Evaluations and error of a run, with so many evaluations in an iteration.
+    /// Evaluations and error of a run; an iteration takes the given number of evaluations.
     fn counted<S: Lagrangian<2> + Copy, M: Method<S, 2>>(
         &self,
         run: Run<M, S, 2>,

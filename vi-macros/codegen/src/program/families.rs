@@ -32,7 +32,7 @@ enum Shape {
 enum Relative {
     /// The same for all members.
     Fixed(OperationId),
-    /// Of a shape, so many places on, or back.
+    /// The operation of this shape that is `on` places later, or `back` places earlier.
     Shifted { shape: usize, on: usize, back: usize },
 }
 
