@@ -23,8 +23,8 @@
 //! steps (eight in transformed time). A run of 5000 steps measures 3 % of them, a long run 1.1 %. The indicator costs
 //! about 60 instructions a step for one coordinate, 90 for two. A run without a monitor has no extra cost.
 
+use super::Run;
 use super::events::{Crossing, Crossings, Events};
-use super::{Run, Start};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
@@ -192,7 +192,7 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     /// Largest `|p_i − p_i(start)|`.
     momentum: SVector<T, N>,
     candidate: Option<Candidate<M::Memory, N, T>>,
-    steps: u64,
+    pub(super) steps: u64,
     /// Step number at which the window ends.
     due: u64,
     stretch: Option<Stretch<N, T>>,
@@ -562,188 +562,4 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
         };
         Crossings::new(run, events, until, watch).stop()
     }
-}
-
-/// A tolerance instead of a step length: `start.integrate(method, Tolerance(1e-9))`.
-///
-/// The run then has a constant step. Its largest relative error over the first stretch is at most the tolerance, and at
-/// least 0.4 of it if such steps exist. If steps stop existing before the tolerance is reached, the run uses half of
-/// the longest length that exists. The stretch lasts until the coordinates have turned back twice or more, at most 4096
-/// steps. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
-/// [`Run::monitored`] reports it. The global error is larger: about the tolerance times the number of steps, or more.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerance(pub f64);
-
-/// A step length: a number, or a [`Tolerance`].
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` is not a step length of a system in `{T}`",
-    label = "write a step length such as `0.1`, or `Tolerance(1e-9)`"
-)]
-pub trait Length<T: Scalar> {
-    /// The step length of a run from a start by a method.
-    ///
-    /// # Errors
-    /// [`StepError::Tolerance`] if no length meets the tolerance; [`StepError::InvalidInput`] for a tolerance below a
-    /// rounding (2.2e-16 in `f64`) or not below 1; the error of the shortest steps tried.
-    fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
-        self,
-        start: &Start<S, N, T>,
-        method: &M,
-    ) -> Result<T, StepError>;
-}
-
-impl<T: Scalar> Length<T> for T {
-    #[inline]
-    fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
-        self,
-        _start: &Start<S, N, T>,
-        _method: &M,
-    ) -> Result<T, StepError> {
-        Ok(self)
-    }
-}
-
-/// Most trial lengths.
-const TRIALS: u32 = 60;
-/// Largest factor between two trial lengths.
-const FACTOR: f64 = 8.0;
-/// The error target of a trial, and the least accepted error, relative to the tolerance.
-const AIM: f64 = 0.7;
-const LEAST: f64 = 0.4;
-/// Shortest step that is tried while none exists, in units of the first guess.
-const SHORTEST: f64 = 1e-9;
-/// Longest step, in units of the first guess.
-const LONGEST: f64 = 1e4;
-/// Consecutive shorter trials without a smaller error, after which rounding dominates.
-const STALLED: u32 = 3;
-
-impl<T: Scalar> Length<T> for Tolerance {
-    fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
-        self,
-        start: &Start<S, N, T>,
-        method: &M,
-    ) -> Result<T, StepError> {
-        let Self(tolerance) = self;
-        if !(tolerance >= T::EPSILON && tolerance < 1.0) {
-            let allowed = "between an ulp and 1";
-            return Err(StepError::InvalidInput { input: "the tolerance", allowed, value: tolerance });
-        }
-        let guess = guess(start)?;
-        let mut h = guess;
-        // The longest accepted length, and the shortest rejected one.
-        let (mut low, mut high) = (0.0_f64, f64::INFINITY);
-        let mut least = f64::INFINITY;
-        let mut stalled = 0;
-        let mut failure = None;
-        // Whether steps of the length `high` do not exist, so that no length has an error near the tolerance.
-        let mut is_edge = false;
-        for _ in 0..TRIALS {
-            let outcome = over_stretch(start, method, T::real(h));
-            let estimate = match outcome {
-                Ok(estimate) => estimate,
-                Err(error) => {
-                    // Of the longest steps: the lengths of the others are of the search alone.
-                    failure.get_or_insert(error);
-                    f64::INFINITY
-                }
-            };
-            if estimate <= tolerance {
-                low = low.max(h);
-                if estimate >= LEAST * tolerance || estimate == 0.0 || h >= LONGEST * guess {
-                    return Ok(T::real(h));
-                }
-            } else {
-                if h < high {
-                    (high, is_edge) = (h, estimate.is_infinite());
-                }
-                // Below this, rounding dominates the error of every method.
-                let is_rounding = estimate < T::EPSILON.sqrt() && estimate > 0.7 * least;
-                stalled = if is_rounding { stalled + 1 } else { 0 };
-                if stalled >= STALLED && low == 0.0 {
-                    break;
-                }
-            }
-            least = least.min(estimate);
-            if least.is_infinite() && h < SHORTEST * guess {
-                break;
-            }
-            if low > 0.0 && high < 1.05 * low {
-                break;
-            }
-            let exponent = 1.0 / f64::from(method.order() + 1);
-            let factor = (AIM * tolerance / estimate).powf(exponent).clamp(1.0 / FACTOR, FACTOR);
-            let next = h * factor;
-            h = if next > low && next < high { next } else { bisected(low, high) };
-        }
-        if low > 0.0 {
-            return Ok(T::real(if is_edge { 0.5 * low } else { low }));
-        }
-        match failure {
-            Some(error) if least.is_infinite() => Err(error),
-            _ => Err(StepError::Tolerance { t: start.state.t.to_f64(), estimate: least, tolerance }),
-        }
-    }
-}
-
-/// A length between two lengths.
-fn bisected(low: f64, high: f64) -> f64 {
-    if low == 0.0 {
-        high / FACTOR
-    } else if high.is_infinite() {
-        low * FACTOR
-    } else {
-        (low * high).sqrt()
-    }
-}
-
-/// The largest relative error over the first stretch with steps of the length h.
-///
-/// # Errors
-/// The reason why a step fails.
-fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
-    start: &Start<S, N, T>,
-    method: &M,
-    h: T,
-) -> Result<f64, StepError> {
-    let mut run = start.integrate(method.clone(), h)?.monitored();
-    while !run.monitor.is_over() {
-        match run.run.single_step() {
-            Ok(_) => run.monitor.watch(&run.run),
-            // No step leads past this place, however short: the steps up to it are judged.
-            Err(failure) if ends_motion(&failure) && run.monitor.steps > 0 => break,
-            Err(failure) => return Err(failure),
-        }
-    }
-    Ok(run.largest().estimate)
-}
-
-/// Whether a method has no step past some place, of any length.
-fn ends_motion(failure: &StepError) -> bool {
-    matches!(
-        failure,
-        StepError::NoForwardStep { .. }
-            | StepError::NoForwardGaussStep { .. }
-            | StepError::DegenerateStep { .. }
-            | StepError::StepRatio { .. }
-    )
-}
-
-/// A tenth of the shortest time scale of a coordinate: the longest of `|q|/|v|`, `|v|/|a|` and `√(|q|/|a|)`.
-///
-/// # Errors
-/// Those of a velocity without a solution.
-fn guess<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Start<S, N, T>) -> Result<f64, StepError> {
-    let Start { system, state } = start;
-    let v = state.velocity(system)?;
-    let a = system.acceleration(state.t, &state.q, &v)?;
-    let mut shortest = f64::INFINITY;
-    for i in 0..N {
-        let [q, v, a] = [state.q[i], v[i], a[i]].map(|entry| entry.to_f64().abs());
-        let scales = [q / v, v / a, (q / a).sqrt()];
-        let scale = scales.into_iter().filter(|scale| scale.is_normal()).fold(0.0, f64::max);
-        if scale > 0.0 {
-            shortest = shortest.min(scale);
-        }
-    }
-    Ok(if shortest.is_finite() { 0.1 * shortest } else { 0.1 })
 }

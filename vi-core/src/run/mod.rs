@@ -12,7 +12,8 @@
 //! | `events` | states at sign changes of event functions |
 //! | `search` | event search within one step |
 //! | `side` | sign of an event function just after a node |
-//! | `estimate` | measured error of a step; a step length from a tolerance |
+//! | `estimate` | measured error of a step, and of the steps of a run |
+//! | `tolerance` | a step length from a tolerance |
 //! | `checkpoint` | stored runs that resume bit for bit |
 //!
 //! A state at a time t is the end of a last step of exactly the remaining length. It has the full order of the method.
@@ -26,13 +27,15 @@ mod search;
 mod side;
 mod solution;
 mod times;
+mod tolerance;
 
 pub use checkpoint::{Checkpoint, Stored};
 pub use dense_output::{DenseOutput, Hermite};
-pub use estimate::{ErrorEstimate, ErrorMonitor, Length, LocalError, Monitored, Tolerance};
+pub use estimate::{ErrorEstimate, ErrorMonitor, LocalError, Monitored};
 pub use events::{Crossing, Crossings, Event, Events, Met, Moment};
 pub use solution::Solution;
 pub use times::Grid;
+pub use tolerance::{Length, Tolerance};
 
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
