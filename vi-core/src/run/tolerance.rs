@@ -17,6 +17,8 @@ use crate::real::Scalar;
 /// the longest length that exists. The stretch lasts until the coordinates have turned back twice or more, at most 4096
 /// steps. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
 /// [`Run::monitored`] reports it. The global error is larger: about the tolerance times the number of steps, or more.
+///
+/// [`Run::monitored`]: crate::Run::monitored
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance(pub f64);
 
