@@ -161,10 +161,15 @@ fn filled_together(function: Option<&Function>, outputs: &[Output]) -> Pattern {
 /// Whether a function has no kink and no jump.
 fn smooth(function: &Function) -> bool {
     use vi_expr::Function::{Abs, Atan2, Sign};
-    !function
-        .needed()
-        .into_iter()
-        .any(|id| matches!(function.operations.get(id), Operation::Call(Abs | Sign, _) | Operation::Call2(Atan2, ..)))
+    !function.needed().into_iter().any(|id| {
+        matches!(
+            function.operations.get(id),
+            Operation::Call(Abs | Sign, _)
+                | Operation::Call2(Atan2, ..)
+                | Operation::Select(..)
+                | Operation::Opaque(..)
+        )
+    })
 }
 
 /// The inputs of these results.

@@ -46,7 +46,7 @@ pub enum Habit {
     Conversion,
     /// `1.e-3`, `.5`.
     PointWithoutDigits { number: String },
-    /// `if`, `match`, `a ? b : c`, `a > b`.
+    /// `match`, `a ? b : c`, `a > b` outside an `if`.
     Condition,
     /// `a % b`, `n!`.
     NoOperator { sign: char },
@@ -106,7 +106,7 @@ impl Habit {
             }
             Self::FunctionWithoutParentheses { name, .. } => format!("`{name}` is a function"),
             Self::Method { name } => format!("`.{name}(…)`: numbers have no methods"),
-            Self::Path => "a name cannot have a path".to_owned(),
+            Self::Path => "an expression cannot contain a path".to_owned(),
             Self::Type => "a declaration has no type".to_owned(),
             Self::NumberSuffix { digits, suffix } => {
                 format!("the number `{digits}` is followed directly by `{suffix}`")
@@ -116,13 +116,13 @@ impl Habit {
             Self::PointWithoutDigits { .. } => {
                 "a number needs a digit before its point and before its exponent".to_owned()
             }
-            Self::Condition => "an expression cannot contain a condition".to_owned(),
+            Self::Condition => "a comparison is part of an `if`".to_owned(),
             Self::NoOperator { sign } => format!("`{sign}` is not an operator"),
             Self::OtherBrackets => "only parentheses group an expression".to_owned(),
             Self::Field { name } => format!("`.{name}`: names have no fields"),
             Self::Comment => "`#` does not start a comment".to_owned(),
             Self::DecimalComma => "a decimal fraction uses a point, not a comma".to_owned(),
-            Self::FunctionDefinition { name } => format!("`{name}(…)`: functions cannot be declared"),
+            Self::FunctionDefinition { name } => format!("`{name}(…)`: a function is declared with `fn`"),
             Self::Mutable => "`let` names an expression and cannot be mutable".to_owned(),
             Self::ColonEquals => "a definition uses `=`".to_owned(),
             Self::AddedForce => "the force on a coordinate is written once".to_owned(),
@@ -166,7 +166,8 @@ impl Habit {
             }
             Self::Method { name } => function(name)
                 .unwrap_or_else(|| format!("write it as a function, `{name}(…)`, with all its arguments")),
-            Self::Path => "write plain names such as `pi` and `sin(x)`; pass a constant of the surrounding code as a `param`".to_owned(),
+            Self::Path => "write `pi` and `sin(x)`; declare a Rust function, as in `fn cl(a) = crate::aero::cl;`, and write `cl(a)`; pass a constant of \
+                           the surrounding code as a `param`".to_owned(),
             Self::Type => {
                 "write `param m = 1.0;`, `coord x;`, `let a = …;`: all numbers have the numeric type of the run".to_owned()
             }
@@ -186,7 +187,7 @@ impl Habit {
             Self::Comment => "write `// …`".to_owned(),
             Self::DecimalComma => "write `1.5`; a comma separates definitions".to_owned(),
             Self::FunctionDefinition { name } => {
-                format!("write `let {name} = …;`, an expression of coordinates, velocities and parameters")
+                format!("write `fn {name}(a) = …;`, or `let {name} = …;` for an expression without arguments")
             }
             Self::Mutable => "remove `mut`".to_owned(),
             Self::ColonEquals => "write `=`".to_owned(),
@@ -242,7 +243,7 @@ const TYPES: [&str; 14] =
 const PRODUCTS: [&str; 3] = ["product", "prod", "Π"];
 
 /// Clauses.
-const CLAUSES: [(&[&str], &str); 13] = [
+const CLAUSES: [(&[&str], &str); 15] = [
     (&["parameter", "parameters", "params"], "write `param a = 1.0;`"),
     (&["coordinate", "coordinates", "var", "dof"], "write `coord x, y;`"),
     (&["constant", "constants", "static"], "write `const g = 9.81;`"),
@@ -260,18 +261,21 @@ const CLAUSES: [(&[&str], &str); 13] = [
         "write `force q[i in 0..8] = …;` or `let e[i in 0..8] = …;` for each entry, and `sum(i in 0..8, …)`",
     ),
     (&["if", "match"], CONDITION),
+    (
+        &["extern", "function", "func", "def", "use"],
+        "write `fn cl(a) = crate::aero::cl;` for a Rust function, `fn f(a) = …;` for an expression",
+    ),
+    (&["interp", "spline", "lookup", "lut", "data"], TABLE),
     (&["order", "stages", "gauss", "method", "integrator", "rule", "scheme"], GAUSS),
     (&["h", "dt", "step", "steps", "until"], RUN),
     (&["initial", "start", "init", "ic"], RUN),
 ];
 
 /// Functions.
-const FUNCTIONS: [(&[&str], &str); 30] = [
+const FUNCTIONS: [(&[&str], &str); 33] = [
     (&["log"], "write `ln(a)` for the natural logarithm, `ln(a) / ln(b)` for the one to the base b"),
     (&["log10"], "write `ln(a) / ln(10)`"),
     (&["log2"], "write `ln(a) / ln(2)`"),
-    (&["max"], "write `(a + b + abs(a - b)) / 2` for the larger of a and b"),
-    (&["min"], "write `(a + b - abs(a - b)) / 2` for the smaller of a and b"),
     (&["arcsin"], "write `asin(a)`"),
     (&["arccos"], "write `acos(a)`"),
     (&["arctan", "atg", "arctg"], "write `atan(a)`"),
@@ -294,7 +298,12 @@ const FUNCTIONS: [(&[&str], &str); 30] = [
     (&["powi", "powf", "power"], "write `a^b`"),
     (&["fabs", "norm"], "write `abs(a)` for a number, `sqrt(a^2 + b^2)` for a vector"),
     (&["sgn", "signum"], "write `sign(a)`"),
-    (&["heaviside", "step", "theta"], "write `(1 + sign(a)) / 2`"),
+    (&["heaviside", "Heaviside", "step", "theta"], "write `if a > 0 { 1 } else { 0 }`"),
+    (&["piecewise", "Piecewise", "where", "ifelse", "cond", "select", "switch"], CONDITION),
+    (&["interp", "interp1", "interp1d", "interpolate", "spline", "lookup", "lut", "CubicSpline"], TABLE),
+    (&["sat", "saturate", "saturation", "clip"], "write `clamp(x, a, b)`"),
+    (&["max", "maximum", "fmax"], "write `max(a, b)`"),
+    (&["min", "minimum", "fmin"], "write `min(a, b)`"),
     (
         &["rand", "randn", "random", "noise", "normal", "uniform", "wiener"],
         "random numbers are not supported: make the force a `param`, and set it between steps with `set_parameters`",
@@ -439,7 +448,12 @@ pub(crate) const CONSTRAINT: &str = "constraints are not supported: choose coord
     approximate them with a stiff spring, `- k * (…)^2 / 2` in `L`";
 
 /// Help for a condition.
-const CONDITION: &str = "write one formula for all states with `abs(a)` and `sign(a)`, as in `(1 + sign(a)) / 2`, which is 1 for positive and 0 for negative a";
+const CONDITION: &str =
+    "write `if a > b { x } else { y }`, with `>`, `>=`, `<` or `<=`; write an `if` inside another for two conditions";
+
+/// Help for a table.
+const TABLE: &str =
+    "write `table drag(v) = \"drag.csv\";` or `table drag(v) = [(0, 0.1), (1, 0.3)];`, and `drag(v)` in an expression";
 
 /// Help for an unknown clause.
 pub(crate) fn clause(word: &str) -> Option<String> {

@@ -19,6 +19,7 @@ const OF_MOTION: [(&str, &[FunctionId]); 3] = [
             FunctionId::Force,
             FunctionId::Acceleration,
             FunctionId::NonFinite,
+            FunctionId::Undefined,
         ],
     ),
     ("Gauss, EnergyPreservingGauss", &[FunctionId::Point, FunctionId::PointDerivatives, FunctionId::Power]),

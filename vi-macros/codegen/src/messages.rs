@@ -233,6 +233,28 @@ pub enum Message {
     AfterSystem,
     /// The number of messages that are not shown.
     More { count: usize },
+    /// A function or table without arguments in its declaration.
+    FunctionArguments { name: String },
+    /// A call of a declared function with the wrong number of arguments.
+    FunctionArity { name: String, arguments: Vec<String>, given: usize },
+    /// A Rust function of more arguments than derivatives are available for.
+    TooManyArguments { name: String, limit: usize },
+    /// A function of the language that calls itself.
+    Recursive { name: String },
+    /// An unused function or table.
+    UnusedFunction { name: String },
+    /// A table whose values are none of the allowed forms.
+    TableData,
+    /// A table that cannot be read or used, with the reason and the correction.
+    Table { name: String, what: String, help: String },
+    /// A word after a table that is no kind of interpolation.
+    TableWord { word: String, near: Option<String> },
+    /// An `if` without both arms.
+    MissingElse,
+    /// An `if` without a comparison.
+    MissingComparison,
+    /// An L that is discontinuous where this expression changes its sign.
+    Jump { condition: String },
     /// A bug of this compiler, found by checking its own output.
     Internal { what: &'static str },
 }
@@ -252,7 +274,8 @@ fn another_name(name: &str) -> String {
 
 /// Help for an unknown clause; `is_defined` if `=` follows it.
 fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
-    let clauses = "the clauses are const, param, coord, let, L, force, dissipation, time_scale, discretize, check";
+    let clauses =
+        "the clauses are const, param, coord, fn, table, let, L, force, dissipation, time_scale, discretize, check";
     let part = || if is_defined { format!("write `let {found} = …;` to name a part") } else { clauses.to_owned() };
     habits::clause(found).unwrap_or_else(|| did_you_mean(near, &part()))
 }
@@ -392,6 +415,19 @@ impl Message {
             Self::TooLarge(TooLarge::Work { limit }) => format!("the system takes more than {limit} steps of algebra"),
             Self::AfterSystem => "unexpected text after the system".to_owned(),
             Self::More { count } => format!("{count} more mistakes are not shown"),
+            Self::FunctionArguments { name } => format!("`{name}` is declared without arguments"),
+            Self::FunctionArity { name, arguments, given } => {
+                format!("`{name}` takes {} argument(s), not {given}", arguments.len())
+            }
+            Self::TooManyArguments { name, limit } => format!("`{name}` has more than {limit} arguments"),
+            Self::Recursive { name } => format!("`{name}` calls itself"),
+            Self::UnusedFunction { name } => format!("`{name}` is never used"),
+            Self::TableData => "these are not the values of a table".to_owned(),
+            Self::Table { name, what, .. } => format!("the table `{name}` {what}"),
+            Self::TableWord { word, .. } => format!("unknown kind of table `{word}`"),
+            Self::MissingElse => "`if` needs two values in braces".to_owned(),
+            Self::MissingComparison => "`if` needs one comparison of two numbers".to_owned(),
+            Self::Jump { condition } => format!("`L` jumps where `{condition}` is zero"),
             Self::Internal { what } => format!("internal error: the operations of `{what}` do not compute its formula"),
         }
     }
@@ -409,7 +445,8 @@ impl Message {
             Self::Absent { absence, .. } => absence.help(),
             Self::UnknownFunction { name, near } => habits::function(name).unwrap_or_else(|| did_you_mean(
                 near.as_ref(),
-                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow sum, in a rule L f, elsewhere dot",
+                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow max min clamp sum, in a rule L f, elsewhere dot; \
+                 declare others with `fn` or `table`",
             )),
             Self::Arity { name, takes, .. } => with_arguments(name, *takes),
             Self::FunctionWithoutArguments { name } => {
@@ -495,6 +532,37 @@ impl Message {
             }
             Self::AfterSystem => "one `lagrangian!` holds one `struct`".to_owned(),
             Self::More { .. } => "correct those above, and compile again".to_owned(),
+            Self::FunctionArguments { .. } => {
+                "write its arguments, as in `fn spring(k, x) = k * x^2 / 2;` or `table drag(v) = \"drag.csv\";`; name a value without \
+                 arguments with `let`"
+                    .to_owned()
+            }
+            Self::FunctionArity { name, arguments, .. } => format!("write `{name}({})`", arguments.join(", ")),
+            Self::TooManyArguments { .. } => {
+                "declare several functions of fewer arguments, or write the expression with `fn` and `let`".to_owned()
+            }
+            Self::Recursive { .. } => "write the expression without recursion; `sum` repeats a term".to_owned(),
+            Self::UnusedFunction { .. } => "use it in `L` or in a force, or remove it".to_owned(),
+            Self::TableData => {
+                "write the path of a file, `\"drag.csv\"`, points `[(0, 0.1), (1, 0.3)]`, or values at equal distances, `[0.1, 0.3]` or \
+                 the name of an array of parameters, with `table drag(v in 0..1) = …;`"
+                    .to_owned()
+            }
+            Self::Table { help, .. } => help.clone(),
+            Self::TableWord { near, .. } => did_you_mean(
+                near.as_ref(),
+                "the words are cubic, quintic, monotone, linear; periodic, hold, extend",
+            ),
+            Self::MissingElse => "write `if a > b { x } else { y }`".to_owned(),
+            Self::MissingComparison => {
+                "write `if a > b { x } else { y }`, with `>`, `>=`, `<` or `<=`; write an `if` inside another for two conditions"
+                    .to_owned()
+            }
+            Self::Jump { .. } => {
+                "an infinite force would act there: make both expressions equal where the condition changes, as in `if x > 0 { k * x^2 / 2 } \
+                 else { 0 }`; an event with `set_state` models an impact"
+                    .to_owned()
+            }
             Self::Internal { .. } => "please report this system".to_owned(),
         }
     }

@@ -5,6 +5,7 @@ mod constants;
 mod effort;
 mod families;
 mod forms;
+mod functions;
 mod inspect;
 mod mass;
 mod messages;

@@ -376,10 +376,7 @@ fn other_operators_fields_and_brackets() {
     says("x.«y»", "`.y`: names have no fields\nhelp: write plain names");
     says("x.«dot»", "`.dot`: names have no fields\nhelp: write `dot(x)` for the velocity of `x`");
     for condition in ["x «>» 0", "x «=»= 1", "x «!»= 1", "x «<»= 1", "x «?» 1 : 2"] {
-        says(
-            condition,
-            "an expression cannot contain a condition\nhelp: write one formula for all states with `abs(a)`",
-        );
+        says(condition, "a comparison is part of an `if`\nhelp: write `if a > b { x } else { y }`");
     }
     says("x «%» 2", "`%` is not an operator\nhelp: the operators are `+ - * / ^`; angles need no remainder");
     says("x«!»", "`!` is not an operator\nhelp: the operators are `+ - * / ^`");
@@ -396,7 +393,7 @@ fn other_definitions() {
     clause("let «y»;", "`y` has no value\nhelp: write `y = …`");
     clause("let y «:»= x;", "a definition uses `=`\nhelp: write `=`");
     clause("let «mut» u = x;", "`let` names an expression and cannot be mutable\nhelp: remove `mut`");
-    clause("let u«(»x) = x;", "`u(…)`: functions cannot be declared\nhelp: write `let u = …;`");
+    clause("let u«(»x) = x;", "`u(…)`: a function is declared with `fn`\nhelp: write `fn u(a) = …;`");
     clause("param a = 1, «5»;", "a decimal fraction uses a point, not a comma\nhelp: write `1.5`");
     clause("«#» the mass", "`#` does not start a comment\nhelp: write `// …`");
     clause(
@@ -415,7 +412,7 @@ fn habits() {
     says("x.«sin»()", "`.sin(…)`: numbers have no methods\nhelp: write it as a function, `sin(…)`");
     says("2.0.«sqrt»()", "`.sqrt(…)`: numbers have no methods");
     says("(x + 1).«powi»(2)", "`.powi(…)`: numbers have no methods\nhelp: write `a^b`");
-    says("x.«max»(1)", "`.max(…)`: numbers have no methods\nhelp: write `(a + b + abs(a - b)) / 2` for the larger");
+    says("x.«max»(1)", "`.max(…)`: numbers have no methods\nhelp: write `max(a, b)`");
     says("x «*»* 2", "`**` is not an operator\nhelp: write `x^2`");
     says("x «as»  f64", "numbers need no conversion\nhelp: remove `as`");
     says("«1.0f64» * x", "the number `1.0` has the type `f64`\nhelp: write `1.0`: numbers are exact");
@@ -426,13 +423,13 @@ fn habits() {
     says("«.»5 * x", "a number needs a digit before its point and before its exponent\nhelp: write `0.5`");
     says(
         "«if» x { 1 } else { 2 }",
-        "an expression cannot contain a condition\nhelp: write one formula for all states with `abs(a)`",
+        "`if` needs one comparison of two numbers\nhelp: write `if a > b { x } else { y }`, with `>`",
     );
     says("«|»x|", "bars do not denote the absolute value\nhelp: write `abs(x)`");
     says("2«|»x|", "bars do not denote the absolute value\nhelp: write `abs(x)`");
     says("x«'»x", "a prime does not denote a derivative\nhelp: write `dot(x)`");
     says("x«':'»", "a prime does not denote a derivative\nhelp: write `dot(x)`");
-    says("f64«:»:consts::PI", "a name cannot have a path\nhelp: write plain names");
+    says("f64«:»:consts::PI", "an expression cannot contain a path\nhelp: write `pi` and `sin(x)`; declare");
     says("dot(x)«[»0]", "only a name can have an index\nhelp: write `dot(q[0])`");
     says("2 «x»", "an operator is missing between `2` and `x`\nhelp: write `2 * x` for a product; units are not");
     says("m «g»", "an operator is missing between `m` and `g`\nhelp: write `m * g` for a product");
@@ -618,7 +615,8 @@ fn each_mistake_has_its_correction() {
         ("sin x", "`sin(x)`"),
         ("log(x)", "`ln(a)`"),
         ("arctan(x)", "`atan(a)`"),
-        ("max(x, 0)", "`(a + b + abs(a - b)) / 2`"),
+        ("interp(x, m, g)", "`table drag(v) = "),
+        ("Piecewise(x, 0)", "`if a > b { x } else { y }`"),
         ("cot(x)", "`1 / tan(a)`"),
         ("asinh(x)", "`ln(a + sqrt(a^2 + 1))`"),
         ("π", "`pi`"),
@@ -626,7 +624,9 @@ fn each_mistake_has_its_correction() {
         ("1.0f64 * x", "`1.0`"),
         ("1.e-3 * x", "`1.0e-3`"),
         ("x as f64", "remove `as`"),
-        ("if x > 0 { x } else { 0 }", "`(1 + sign(a)) / 2`"),
+        ("if x > 0 { x }", "`if a > b { x } else { y }`"),
+        ("heaviside(x)", "`if a > 0 { 1 } else { 0 }`"),
+        ("crate::aero::cl(x)", "`fn cl(a) = crate::aero::cl;`"),
         ("sum(i in 0..=3, i * x)", "`0..N + 1`"),
         ("lambda * x", "constraints are not supported"),
         ("mm * x", "declare it with `param`, `const`, `coord`, or an earlier `let`"),

@@ -96,7 +96,9 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         match node {
             Node::Number(value) => Ok(Ball::rational(value, bits)),
             Node::Pi => Ok(functions.pi()),
-            Node::Symbol(_) => Err(NoConstant::Undefined),
+            Node::Symbol(_) | Node::Opaque(..) => Err(NoConstant::Undefined),
+            // A condition whose sign is known was decided at construction.
+            Node::Select(_) => Err(NoConstant::Undecided),
             Node::Sum(sum) => {
                 let mut total = Ball::rational(&sum.constant, bits);
                 let mut largest = total.magnitude();

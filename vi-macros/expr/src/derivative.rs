@@ -5,6 +5,7 @@
 //! - `(Σ c u)' = Σ c u'`
 //! - `(Π b^e)' = Σ e b' b^(e-1) Π others`
 //! - `f(u, w)' = f_u u' + f_w w'`, and `sign' = 0`
+//! - `(if c > 0 { a } else { b })' = if c > 0 { a' } else { b' }`
 //!
 //! One pass over the shared nodes differentiates each expression once. Products are flat, so that the derivative of n
 //! nested calls has n factors, at a cost of n² steps.
@@ -36,6 +37,11 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                     .combination(sum.terms.iter().filter_map(|(term, c)| Some((*derivatives.get(*term)?, c.clone())))),
                 Node::Product(product) => self.product_derivative(&product.factors, &derivatives),
                 Node::Call(function, arguments) => self.call_derivative(*function, arguments, node, &derivatives),
+                Node::Opaque(function, arguments) => self.opaque_derivative(function, arguments, &derivatives),
+                Node::Select([condition, then, otherwise]) => {
+                    let of = |part: &Expr| derivatives.get(*part).copied().unwrap_or(Expr::ZERO);
+                    self.select(*condition, of(then), of(otherwise))
+                }
             };
             if derivative != Expr::ZERO {
                 derivatives.insert(node, derivative);

@@ -2,6 +2,7 @@
 //!
 //! In: expressions and the value of each symbol. Out: their values in `f64`; each shared node is computed once.
 //! Intended for checks, not for speed. Constants are rounded once; a constant without a value, or too large, is NaN.
+//! An opaque function has the value of its stand-in.
 
 use std::hash::Hash;
 
@@ -48,6 +49,11 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                 let argument = |slot| arguments.get(slot).map_or(f64::NAN, |argument| of(*argument));
                 function.value(argument(0), argument(1))
             }
+            Node::Opaque(function, arguments) => {
+                let arguments: Vec<f64> = arguments.iter().map(|argument| of(*argument)).collect();
+                function.value(&arguments)
+            }
+            Node::Select([condition, then, otherwise]) => selected(of(*condition), of(*then), of(*otherwise)),
         }
     }
 
@@ -64,6 +70,18 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             Err(NoConstant::TooSmall) => 0.0,
             Err(_) => f64::NAN,
         }
+    }
+}
+
+/// `then` for a positive condition, `otherwise` for another one; NaN for NaN.
+#[must_use]
+pub fn selected(condition: f64, then: f64, otherwise: f64) -> f64 {
+    if condition.is_nan() {
+        f64::NAN
+    } else if condition > 0.0 {
+        then
+    } else {
+        otherwise
     }
 }
 

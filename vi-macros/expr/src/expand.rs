@@ -75,6 +75,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                     let arguments: Vec<Expr> = arguments.iter().map(new).collect();
                     self.call(*function, &arguments)
                 }
+                Node::Opaque(..) | Node::Select(_) if changes => self.rebuild(&shared, &|child| new(&child)),
                 _ => node,
             };
             if result != node {

@@ -45,6 +45,10 @@ impl<S: Eq> PartialEq for Node<S> {
             (Self::Call(left, left_arguments), Self::Call(right, right_arguments)) => {
                 left == right && left_arguments == right_arguments
             }
+            (Self::Opaque(left, left_arguments), Self::Opaque(right, right_arguments)) => {
+                left == right && left_arguments == right_arguments
+            }
+            (Self::Select(left), Self::Select(right)) => left == right,
             _ => false,
         }
     }
@@ -85,6 +89,14 @@ impl<S: Hash> Hash for Node<S> {
             Self::Call(function, arguments) => {
                 function.hash(state);
                 arguments.hash(state);
+            }
+            Self::Opaque(function, arguments) => {
+                function.hash(state);
+                arguments.hash(state);
+            }
+            Self::Select(parts) => {
+                state.write_u64(4);
+                parts.hash(state);
             }
         }
     }

@@ -32,7 +32,7 @@
 //! | `table` | values by index |
 //! | `effort` | work limits |
 //! | `number` | exact powers of numbers, bounded |
-//! | `sum`, `product`, `call` | the canonical forms, each with its rules |
+//! | `sum`, `product`, `call`, `opaque` | the canonical forms, each with its rules |
 //! | `derivative`, `substitute`, `expand`, `ramp` | new expressions from old |
 //! | `ball`, `elementary`, `constant` | numbers and functions of any precision; constants, rounded once |
 //! | `collect` | merges terms that differ by constants |
@@ -53,6 +53,7 @@ mod function;
 mod identity;
 mod node;
 mod number;
+mod opaque;
 mod pool;
 mod product;
 mod ramp;
@@ -67,8 +68,10 @@ mod table;
 pub type Distinct<T> = indexmap::IndexSet<T, core::hash::BuildHasherDefault<rustc_hash::FxHasher>>;
 pub use effort::TooLarge;
 pub use elementary::NoConstant;
+pub use evaluate::selected;
 pub use function::Function;
 pub use node::{Expr, Node, Product, Rational, Sum};
+pub use opaque::{MAX_ARGUMENTS, Opaque};
 pub use pool::Pool;
 pub use render::MAX_CHARACTERS;
 pub use rounding::Rounded;

@@ -5,7 +5,7 @@
 
 use num_rational::BigRational;
 
-use crate::{Function, Index};
+use crate::{Function, Index, Opaque};
 
 /// Exact number of any size, always in lowest terms.
 pub type Rational = BigRational;
@@ -45,6 +45,10 @@ pub enum Node<S> {
     Product(Product),
     /// Function of [`Function::arity`] arguments.
     Call(Function, Vec<Expr>),
+    /// Partial derivative of a function that is known by name, at its arguments.
+    Opaque(Opaque, Vec<Expr>),
+    /// `if a > 0 { b } else { c }` of a, b, c.
+    Select([Expr; 3]),
 }
 
 /// `constant + Σ coefficient·term`.
@@ -91,11 +95,12 @@ impl<S> Node<S> {
                     see(*part);
                 }
             }
-            Self::Call(_, arguments) => {
+            Self::Call(_, arguments) | Self::Opaque(_, arguments) => {
                 for argument in arguments {
                     see(*argument);
                 }
             }
+            Self::Select(parts) => parts.iter().copied().for_each(see),
         }
     }
 
@@ -104,7 +109,8 @@ impl<S> Node<S> {
         match self {
             Self::Number(_) | Self::Pi | Self::Symbol(_) => 0,
             Self::Sum(Sum { terms: parts, .. }) | Self::Product(Product { factors: parts }) => parts.len(),
-            Self::Call(_, arguments) => arguments.len(),
+            Self::Call(_, arguments) | Self::Opaque(_, arguments) => arguments.len(),
+            Self::Select(parts) => parts.len(),
         }
     }
 

@@ -21,7 +21,7 @@ use crate::{Distinct, Expr, Node, Product, Rational, Table};
 #[derive(Clone, Debug)]
 pub struct Pool<S> {
     nodes: Distinct<Arc<Node<S>>>,
-    /// Whether each node has no symbols.
+    /// Whether each node has neither symbols nor opaque functions.
     pub(crate) constant: Vec<bool>,
     /// Some node is constant but not an exact number.
     pub(crate) has_irrational: bool,
@@ -207,7 +207,8 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             return Expr(known);
         }
         self.spend(KEPT * operands);
-        let constant = !matches!(node, Node::Symbol(_)) && !node.any_child(|child| !self.constant[child.0]);
+        let constant =
+            !matches!(node, Node::Symbol(_) | Node::Opaque(..)) && !node.any_child(|child| !self.constant[child.0]);
         self.constant.push(constant);
         self.has_irrational |= constant && !matches!(node, Node::Number(_));
         Expr(self.nodes.insert_full(Arc::new(node)).0)

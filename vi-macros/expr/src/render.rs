@@ -102,6 +102,27 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                 pieces.push(Piece::Text(")"));
                 (Binding::Atom, pieces)
             }
+            Node::Opaque(function, arguments) => {
+                let mut pieces = vec![Piece::Owned(function.text()), Piece::Text("(")];
+                for (slot, argument) in arguments.iter().take(function.arity).enumerate() {
+                    pieces.extend((slot > 0).then_some(Piece::Text(", ")));
+                    pieces.push(Piece::Inside(*argument, Binding::Sum));
+                }
+                pieces.push(Piece::Text(")"));
+                (Binding::Atom, pieces)
+            }
+            Node::Select([condition, then, otherwise]) => {
+                let pieces = [
+                    Piece::Text("if "),
+                    Piece::Inside(*condition, Binding::Sum),
+                    Piece::Text(" > 0 { "),
+                    Piece::Inside(*then, Binding::Sum),
+                    Piece::Text(" } else { "),
+                    Piece::Inside(*otherwise, Binding::Sum),
+                    Piece::Text(" }"),
+                ];
+                (Binding::Sum, pieces.into())
+            }
         }
     }
 

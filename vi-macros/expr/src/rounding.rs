@@ -130,6 +130,15 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                 }
                 _ => Rounded::LOST,
             },
+            Node::Opaque(function, arguments) => {
+                let arguments: Vec<Rounded> = arguments.iter().map(|argument| of(*argument)).collect();
+                function.rounded(&arguments)
+            }
+            Node::Select([condition, then, otherwise]) => match of(*condition).value {
+                condition if condition.is_nan() => Rounded::LOST,
+                condition if condition > 0.0 => of(*then),
+                _ => of(*otherwise),
+            },
         }
     }
 }

@@ -32,6 +32,20 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         changed.get(expr).copied().unwrap_or(expr)
     }
 
+    /// `expr` with one of its parts replaced.
+    pub fn replace(&mut self, expr: Expr, part: Expr, by: Expr) -> Expr {
+        let mut changed: Table<Expr, Expr> = Table::default();
+        changed.insert(part, by);
+        for node in self.reachable(&[expr]) {
+            let shared = self.shared_node(node);
+            if node != part && shared.any_child(|child| changed.contains(child)) {
+                let new = self.rebuild(&shared, &|child| changed.get(child).copied().unwrap_or(child));
+                changed.insert(node, new);
+            }
+        }
+        changed.get(expr).copied().unwrap_or(expr)
+    }
+
     /// The same operation with other operands.
     pub(crate) fn rebuild(&mut self, node: &Node<S>, new: &dyn Fn(Expr) -> Expr) -> Expr {
         match node {
@@ -50,6 +64,11 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                 let arguments: Vec<Expr> = arguments.iter().map(|argument| new(*argument)).collect();
                 self.call(*function, &arguments)
             }
+            Node::Opaque(function, arguments) => {
+                let arguments = arguments.iter().map(|argument| new(*argument)).collect();
+                self.opaque(function.clone(), arguments)
+            }
+            Node::Select([condition, then, otherwise]) => self.select(new(*condition), new(*then), new(*otherwise)),
         }
     }
 }

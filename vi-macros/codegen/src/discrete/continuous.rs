@@ -45,6 +45,8 @@ pub struct Continuous {
     /// Expressions checked for finite values, parts before wholes: variables, parameters, calls, roots, quotients, L,
     /// f.
     pub watched: Vec<Expr>,
+    /// Calls of Rust functions and tables in L and f, with each of their arguments, inner calls first.
+    pub calls: Vec<(Expr, Expr)>,
     /// Neither L nor f depends on the time.
     pub autonomous: bool,
     /// Whether the coordinate is absent from L and has no force, per coordinate.
@@ -139,6 +141,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         energy: energy(pool, model.lagrangian, dimension),
         cyclic: cyclic(pool, model),
         watched: watched(pool, model),
+        calls: calls(pool, model),
         force: model.forces.clone(),
         quadratic: !mass.iter().flatten().any(|entry| pool.depends_on(*entry, &moves)),
         applied_force,
@@ -201,14 +204,24 @@ fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
     let (parts, others): (Vec<Expr>, Vec<Expr>) =
         pool.reachable(&wholes).into_iter().filter(is_part).partition(|expr| {
             match pool.node(*expr) {
-                Node::Symbol(_) | Node::Call(..) => true,
+                Node::Symbol(_) | Node::Call(..) | Node::Opaque(..) => true,
                 // A product of positive powers is finite if its factors are, short of overflow.
                 Node::Product(product) => product.factors.iter().any(|(_, exponent)| *exponent < one),
-                Node::Number(_) | Node::Pi | Node::Sum(_) => false,
+                Node::Number(_) | Node::Pi | Node::Sum(_) | Node::Select(_) => false,
             }
         });
     let parts: Vec<Expr> = parts.into_iter().map(|part| pool.without_constants(part)).collect();
     parts.into_iter().chain(others.into_iter().filter(|expr| wholes.contains(expr) && !pool.is_zero(*expr))).collect()
+}
+
+fn calls(pool: &Pool<Symbol>, model: &Model) -> Vec<(Expr, Expr)> {
+    let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).copied().collect();
+    let nodes = pool.reachable(&wholes).into_iter();
+    let calls = nodes.filter_map(|node| match pool.node(node) {
+        Node::Opaque(function, arguments) => Some((node, arguments[..function.arity].to_vec())),
+        _ => None,
+    });
+    calls.flat_map(|(call, arguments)| arguments.into_iter().map(move |argument| (call, argument))).collect()
 }
 
 fn moving(pool: &mut Pool<Symbol>, index: usize) -> Expr {

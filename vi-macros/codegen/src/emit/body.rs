@@ -8,6 +8,7 @@ use super::angles::Angles;
 use super::entries::ResultEntry;
 use super::folds::FoldText;
 use super::formula::{Formula, LINE};
+use super::functions::{self, Calls};
 use super::loops::{LoopContext, Loops, Member, PrintedLoops};
 use super::names::Names;
 use super::pieces::{PieceContext, Statement, pieces};
@@ -53,6 +54,7 @@ struct Printer<'a> {
     statements: Vec<Statement>,
     in_pieces: bool,
     angles: Angles,
+    calls: Calls,
     /// Operations computed in loops.
     members: BTreeMap<OperationId, Member>,
     /// Sums over members of loops.
@@ -70,7 +72,9 @@ pub(super) fn body(model: &Model, function: &Function, points: usize, velocity: 
     let needed = if long { function.local_order() } else { needed };
     let angles = Angles::of(function, &needed);
     let needed = angles.first(function, needed);
-    let mut printer = Printer { in_pieces: long, angles, ..Printer::new(model, function, names, function.uses()) };
+    let calls = Calls::of(function, &needed);
+    let mut printer =
+        Printer { in_pieces: long, angles, calls, ..Printer::new(model, function, names, function.uses()) };
     printer.name_inputs(&needed, velocity);
     let constants = needed.iter().any(|id| matches!(function.operations.get(*id), Operation::Constant(_)));
     for id in needed {
@@ -96,6 +100,7 @@ impl<'a> Printer<'a> {
             statements: Vec::new(),
             in_pieces: false,
             angles: Angles::default(),
+            calls: Calls::default(),
             members: BTreeMap::new(),
             folds: BTreeMap::new(),
         }
@@ -179,7 +184,7 @@ impl Printer<'_> {
         if let Some((start, text)) = self.folds.get(&id) {
             return text.from(&self.operand(*start));
         }
-        let sine = match operation {
+        let together = match operation {
             Operation::Input(Symbol::Parameter { index, .. }) => {
                 let system = if self.in_pieces { format_ident!("system") } else { format_ident!("self") };
                 return Formula::parameter(&system, &self.model.parameters[*index]);
@@ -192,9 +197,10 @@ impl Printer<'_> {
                 });
             }
             Operation::Call(function @ (Elementary::Sin | Elementary::Cos), angle) => self.sine(id, *function, *angle),
+            Operation::Opaque(..) => self.derivatives(id),
             _ => None,
         };
-        sine.unwrap_or_else(|| Formula::of(operation, &mut |operand| self.operand(operand)))
+        together.unwrap_or_else(|| Formula::of(operation, &mut |operand| self.operand(operand)))
     }
 
     fn write(&mut self, id: OperationId) {
@@ -264,6 +270,29 @@ impl Printer<'_> {
             quote!(let [#(#pairs),*] = T::sin_cos_each([#(#arguments),*]);)
         };
         self.state(&binds, &angles, operations, tokens);
+        self.written.extend(binds.iter().map(|(call, name)| (*call, Formula::name(name))));
+        self.written.get(id).cloned()
+    }
+
+    /// Computes all needed derivatives of one function at the same arguments together.
+    fn derivatives(&mut self, id: OperationId) -> Option<Formula> {
+        if let Some(written) = self.written.get(id) {
+            return Some(written.clone());
+        }
+        let group = self.calls.with(id).to_vec();
+        let mut bound = Vec::new();
+        let (mut binds, mut operands) = (Vec::new(), Vec::new());
+        for call in group {
+            let Operation::Opaque(function, arguments) = self.function.operations.get(call) else { continue };
+            let name = self.names.next_shared();
+            bound.push((function.clone(), name.clone()));
+            binds.push((call, name));
+            operands.clone_from(arguments);
+        }
+        let arguments: Vec<Formula> = operands.iter().map(|argument| self.operand(*argument)).collect();
+        let operations = bound.len() + arguments.iter().map(|argument| argument.operations).sum::<usize>();
+        let statement = functions::statement(&bound, &arguments)?;
+        self.state(&binds, &operands, operations, statement);
         self.written.extend(binds.iter().map(|(call, name)| (*call, Formula::name(name))));
         self.written.get(id).cloned()
     }

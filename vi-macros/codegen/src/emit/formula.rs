@@ -2,6 +2,7 @@
 //!
 //! In: an operation and its printed operands. Out: tokens with the parentheses that precedence requires.
 
+use super::functions;
 use crate::model::Parameter;
 use crate::program::{Operation, OperationId};
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -93,6 +94,14 @@ impl Formula {
             Operation::Call2(function, a, b) => {
                 let (a, b) = (operand(*a), operand(*b));
                 Self::method(&a, function.name(), &[b])
+            }
+            Operation::Opaque(function, arguments) => {
+                let arguments: Vec<Self> = arguments.iter().map(|argument| operand(*argument)).collect();
+                functions::derivative(function, &arguments)
+            }
+            Operation::Select(a, b, c) => {
+                let (a, b, c) = (operand(*a), operand(*b), operand(*c));
+                Self::method(&a, "if_positive", &[b, c])
             }
             Operation::ZeroWhere(a, b, derivatives) => {
                 let derivatives = Literal::u8_unsuffixed(*derivatives);

@@ -3,13 +3,14 @@
 use super::Source;
 use super::body::{Body, VelocityFrom, body, state_parts};
 use super::entries::{self, ResultEntry};
+use super::formula::number as constant;
 use super::matrix::matrix;
-use crate::model::{Coordinate, Parameter};
+use crate::model::{Coordinate, FunctionKind, Parameter};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
-use vi_expr::Expr;
+use vi_expr::{Expr, Node};
 
 /// Characters of a formula shown in documentation.
 const CHARACTERS: usize = 400;
@@ -30,6 +31,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
         acceleration(source),
         flow(source),
         non_finite(source),
+        undefined(source),
     ];
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
@@ -228,6 +230,53 @@ fn flow(source: &Source) -> TokenStream {
             ::core::result::Result::Ok(::vi_core::lagrangian::Flow { v: velocity, force, power })
         }
     }
+}
+
+/// The function that names the first call of a Rust function or a table without a value.
+fn undefined(source: &Source) -> TokenStream {
+    let dimension = source.dimension();
+    let formula = "The first call of a function or a table that has no value at this state.";
+    let Some((body, documentation)) = source.documented(FunctionId::Undefined, formula, VelocityFrom::Argument) else {
+        return TokenStream::new();
+    };
+    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
+    let calls = source.system.continuous.calls.iter();
+    let (texts, ranges): (Vec<_>, Vec<_>) = calls.clone().map(|(call, _)| called(source, *call)).unzip();
+    let values = body.results.vector(Output::Value).iter();
+    let arguments = body.results.vector(Output::Argument).iter();
+    quote! {
+        #documentation
+        #[cold]
+        fn undefined(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, #dimension>,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::core::option::Option<::vi_core::lagrangian::Undefined> {
+            #inputs #statements
+            let calls = [#((#texts, #values, #arguments, #ranges)),*];
+            let missing = calls.into_iter().find(|(_, value, argument, _)| argument.is_finite() && !value.is_finite());
+            missing.map(|(function, _, argument, range)| {
+                ::vi_core::lagrangian::Undefined { function, argument: argument.to_f64(), range }
+            })
+        }
+    }
+}
+
+/// The text of a call, and the places of its table if it has one argument.
+fn called(source: &Source, call: Expr) -> (String, TokenStream) {
+    let none = quote!(::core::option::Option::None);
+    let Node::Opaque(function, _) = source.pool.node(call) else { return (source.spelt(call), none) };
+    let known = source.model.functions.iter().find(|known| known.name == function.name.as_ref());
+    let ends = known.and_then(|known| match &known.kind {
+        FunctionKind::Table(table) => table.ends(),
+        FunctionKind::Rust(_) => None,
+    });
+    let range = ends.map(|ends| {
+        let [from, to] = ends.map(constant);
+        quote!(::core::option::Option::Some([#from, #to]))
+    });
+    (source.spelt(call), range.unwrap_or(none))
 }
 
 fn non_finite(source: &Source) -> TokenStream {

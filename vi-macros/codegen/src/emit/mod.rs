@@ -12,6 +12,7 @@ mod discrete;
 mod entries;
 mod folds;
 mod formula;
+mod functions;
 mod lagrangian;
 mod loops;
 mod matrix;
@@ -83,14 +84,15 @@ pub fn items(derivations: &Derivations) -> TokenStream {
     let own = source.steps();
     let further: Vec<Steps> = further.iter().filter_map(Source::steps).collect();
     let structure = structure::structure(&source, &further);
-    let parameters = structure::parameters(&source);
+    let (functions, parameters) = (functions::items(&source), structure::parameters(&source));
     let lagrangian = lagrangian::item(&source);
     let collocation = collocation::item(&source);
     let convertible = structure::convertible(&source);
     let batch = own.as_ref().map(|_| structure::batch(&source));
     let by_own = own.as_ref().map(by_rule);
     let by_further = further.iter().map(by_rule);
-    let implementations = quote!(#parameters #lagrangian #collocation #convertible #by_own #batch #(#by_further)*);
+    let implementations =
+        quote!(#functions #parameters #lagrangian #collocation #convertible #by_own #batch #(#by_further)*);
     let conditions: Vec<_> = conditions(&source.model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests(&source, own.as_ref(), &further, &conditions);

@@ -3,6 +3,7 @@
 //! In: the symbols that a function reads. Out: identifiers made of the user's names: `x`, `x_dot`, `x0`, `x1`, `p0_x`,
 //! `x_mid`. A trailing underscore resolves a clash, so user names cannot collide.
 
+use super::functions::item_name;
 use crate::model::Model;
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Ident;
@@ -25,7 +26,8 @@ const TAKEN: [&str; 11] =
 impl<'a> Names<'a> {
     /// Names for a function of a system whose rule has `points` points.
     pub(super) fn new(model: &'a Model, points: usize) -> Self {
-        let taken = TAKEN.iter().map(|&name| name.to_owned()).collect();
+        let functions = model.functions.iter().map(|function| item_name(&function.name.to_string()).to_string());
+        let taken = TAKEN.iter().map(|&name| name.to_owned()).chain(functions).collect();
         Self { model, points, given: BTreeMap::new(), taken, shared: 0 }
     }
 

@@ -6,7 +6,7 @@
 
 use num_traits::{One, Signed, Zero};
 use std::hash::Hash;
-use vi_expr::{Expr, Function, MAX_CHARACTERS, Node, Pool, Rational, Sum};
+use vi_expr::{Expr, Function, MAX_CHARACTERS, Node, Opaque, Pool, Rational, Sum};
 
 /// Binding strength of an expression.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -90,6 +90,27 @@ impl<S: Clone + Eq + Hash> Writer<'_, S> {
             Node::Sum(sum) => self.sum(sum),
             Node::Product(product) => self.multiple(&Rational::one(), &product.factors),
             Node::Call(function, arguments) => Self::call(*function, arguments, None),
+            Node::Opaque(function, arguments) => {
+                let mut pieces = vec![text(opaque(function)), text("\\left(")];
+                for (place, argument) in arguments.iter().take(function.arity).enumerate() {
+                    pieces.extend((place > 0).then(|| text(", ")));
+                    pieces.push(Piece::Inside(*argument, Binding::Sum));
+                }
+                pieces.push(text("\\right)"));
+                (Binding::Power, pieces)
+            }
+            Node::Select([condition, then, otherwise]) => {
+                let pieces = [
+                    text("\\begin{cases}"),
+                    Piece::Inside(*then, Binding::Sum),
+                    text(" & \\text{if } "),
+                    Piece::Inside(*condition, Binding::Sum),
+                    text(" > 0 \\\\ "),
+                    Piece::Inside(*otherwise, Binding::Sum),
+                    text(" & \\text{otherwise} \\end{cases}"),
+                ];
+                (Binding::Sum, pieces.into())
+            }
         }
     }
 
@@ -210,6 +231,17 @@ impl<S: Clone + Eq + Hash> Writer<'_, S> {
         }
         pieces.push(text("\\right)"));
         (Binding::Power, pieces)
+    }
+}
+
+/// A partial derivative of a function that is known by name.
+fn opaque(function: &Opaque) -> String {
+    let orders: Vec<String> = function.orders[..function.arity].iter().map(u8::to_string).collect();
+    let name = format!("\\operatorname{{{}}}", plain(&function.name));
+    match (function.arity, function.order()) {
+        (_, 0) => name,
+        (1, order) => name + &"'".repeat(order),
+        _ => format!("{name}^{{({})}}", orders.join(",")),
     }
 }
 

@@ -40,6 +40,13 @@ fn function(derived: &Derived, of: &Function) -> String {
             Operation::Reciprocal(a) => format!("1 / {}", operand(a)),
             Operation::Call(called, a) => format!("{}({})", called.name(), operand(a)),
             Operation::Call2(called, a, b) => format!("{}({}, {})", called.name(), operand(a), operand(b)),
+            Operation::Opaque(called, arguments) => {
+                let arguments: Vec<String> = arguments.iter().map(operand).collect();
+                format!("{}({})", called.text(), arguments.join(", "))
+            }
+            Operation::Select(a, b, c) => {
+                format!("if {} > 0 {{ {} }} else {{ {} }}", operand(a), operand(b), operand(c))
+            }
             Operation::ZeroWhere(a, b, _) => format!("{}, or 0 where {} = 0", operand(a), operand(b)),
         };
         if operation.is_work() {

@@ -3,8 +3,10 @@
 //! In: a [`System`] as written. Out: its clauses by kind, with exact numbers and the necessary parentheses.
 
 use crate::syntax::{
-    Default, Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range, System,
+    Body, Comparison, Default, Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range,
+    System, Table, TableArgument, TableData,
 };
+use quote::ToTokens;
 
 /// The clauses of a system.
 pub(super) fn text(system: &System) -> String {
@@ -15,6 +17,15 @@ pub(super) fn text(system: &System) -> String {
         let length = coordinate.length.as_ref().map(|length| format!("[{}]", expression(length)));
         lines.push(format!("coord {}{};", coordinate.name, length.unwrap_or_default()));
     }
+    lines.extend(system.functions.iter().map(|of| {
+        let arguments: Vec<String> = of.arguments.iter().map(ToString::to_string).collect();
+        let body = match &of.body {
+            Body::Expression(body) => expression(body),
+            Body::Path(path) => path.to_token_stream().to_string().replace(' ', ""),
+        };
+        format!("fn {}({}) = {body};", of.name, arguments.join(", "))
+    }));
+    lines.extend(system.tables.iter().map(table));
     lines.extend(system.lets.iter().map(|of| format!("let {}", definition(of))));
     lines.extend(system.lagrangians.iter().map(definition));
     lines.extend(system.forces.iter().map(|of| format!("force {}", definition(of))));
@@ -34,6 +45,30 @@ pub(super) fn text(system: &System) -> String {
         }
     }
     format!("struct {} {{\n    {}\n}}\n", system.name, lines.join("\n    "))
+}
+
+fn table(of: &Table) -> String {
+    let list = |row: &Vec<Expression>| row.iter().map(expression).collect::<Vec<_>>().join(", ");
+    let argument = |argument: &TableArgument| match &argument.range {
+        Some((from, to)) => format!("{} in {}..{}", argument.name, expression(from), expression(to)),
+        None => argument.name.to_string(),
+    };
+    let arguments: Vec<String> = of.arguments.iter().map(argument).collect();
+    let data = match &of.data {
+        TableData::File(path) => format!("{:?}", path.value()),
+        TableData::Parameters(name) => name.to_string(),
+        TableData::Points(points) => {
+            let points: Vec<String> = points.iter().map(|point| format!("({})", list(point))).collect();
+            format!("[{}]", points.join(", "))
+        }
+        TableData::Rows(rows) if rows.len() == 1 => format!("[{}]", list(&rows[0])),
+        TableData::Rows(rows) => {
+            let rows: Vec<String> = rows.iter().map(|row| format!("[{}]", list(row))).collect();
+            format!("[{}]", rows.join(", "))
+        }
+    };
+    let words: String = of.words.iter().map(|word| format!(" {word}")).collect();
+    format!("table {}({}) = {data}{words};", of.name, arguments.join(", "))
 }
 
 fn parameter(of: &Parameter) -> String {
@@ -95,6 +130,14 @@ fn written(of: &Expression) -> (Binding, String) {
             (Binding::Power, format!("{}^{}", within(base, Binding::Atom), within(exponent, Binding::Negative)))
         }
         Kind::Chain(first, rest) => chain(first, rest),
+        Kind::If(comparison, arms) => {
+            let [then, otherwise] = &**arms;
+            let Comparison { larger, smaller, or_equal, reversed } = &**comparison;
+            let (left, sign, right) = if *reversed { (smaller, "<", larger) } else { (larger, ">", smaller) };
+            let equal = if *or_equal { "=" } else { "" };
+            let condition = format!("{} {sign}{equal} {}", expression(left), expression(right));
+            (Binding::Atom, format!("if {condition} {{ {} }} else {{ {} }}", expression(then), expression(otherwise)))
+        }
     }
 }
 

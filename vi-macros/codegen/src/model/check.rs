@@ -4,7 +4,7 @@
 
 use super::context::Context;
 use super::scope::Meaning;
-use super::{Coordinate, Model, Parameter, Rule, check_state, force, mass, rule, time_scale};
+use super::{Coordinate, Model, Parameter, Rule, check_state, condition, force, function, mass, rule, time_scale};
 use crate::limits::{COORDINATES, PARAMETERS, bounded};
 use crate::messages::{Absence, Message, error};
 use crate::symbol::{Symbol, Variable};
@@ -12,6 +12,9 @@ use crate::syntax::{self, Default, Definition, Expression, Indices, System};
 use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, NoConstant, Pool};
+
+/// Characters of an expression shown in a message.
+const CHARACTERS: usize = 100;
 
 /// Checks a system with the rule at this position of its list, and adds its expressions to the pool.
 ///
@@ -28,6 +31,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let parameters = context.parameters(parameters);
     let coordinates = context.coordinates(coordinates, &system.name);
     context.scope.expect(lets.iter().map(|named| &named.name), Absence::Below);
+    let functions = function::functions(&mut context, system);
     context.lets(lets);
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
     let forces = force::forces(&mut context, &system.forces, &system.dissipations, &parameters, coordinates.len());
@@ -40,6 +44,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
         let acting: Vec<Expr> = acting.chain(of_rule).collect();
         context.check_parameters_used(&parameters, &acting);
+        function::check_used(&mut context, system);
     }
     let Context { pool, errors, .. } = context;
     errors.finish(())?;
@@ -51,12 +56,13 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     // Values from an exhausted pool are meaningless.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
     singular?;
-    Ok(Model {
+    let model = Model {
         attributes: system.attributes.clone(),
         visibility: system.visibility.clone(),
         name: system.name.clone(),
         parameters,
         coordinates,
+        functions,
         lagrangian,
         lagrangian_span,
         forced,
@@ -64,7 +70,12 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         time_scale,
         rule,
         check_state,
-    })
+    };
+    if let Some(condition) = condition::jump(pool, lagrangian, &model.parameters) {
+        let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
+        return Err(error(lagrangian_span, &Message::Jump { condition }));
+    }
+    Ok(model)
 }
 
 impl Context<'_> {

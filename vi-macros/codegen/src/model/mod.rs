@@ -6,20 +6,25 @@
 
 pub mod check;
 mod check_state;
+mod condition;
 mod context;
 mod dissipation;
 mod force;
+mod function;
 mod mass;
 mod point;
 mod probe;
 mod resolve;
 pub(crate) mod rule;
 mod scope;
+mod table;
 mod time_scale;
 
 pub use check_state::CheckState;
+pub use function::{Function, FunctionKind};
 pub use point::Point;
 pub use rule::{DiscreteForces, Rule};
+pub use table::{Outside, Table, TableKind, Values};
 
 use crate::symbol::Symbol;
 use proc_macro2::{Ident, Span};
@@ -40,6 +45,8 @@ pub struct Model {
     pub parameters: Vec<Parameter>,
     /// Coordinates.
     pub coordinates: Vec<Coordinate>,
+    /// Rust functions and tables.
+    pub functions: Vec<Function>,
     /// L(t, q, v).
     pub lagrangian: Expr,
     /// Where L is declared.

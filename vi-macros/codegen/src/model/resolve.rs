@@ -4,6 +4,7 @@
 //! expression of a system is a number. In a rule, the coordinates at an end and the force are vectors, and `*` of two
 //! vectors is their dot product.
 
+use super::condition::CHOICES;
 use super::point::Point;
 use super::scope::{Meaning, Scope};
 use crate::habits::Habit;
@@ -56,14 +57,21 @@ impl Value {
         }
     }
 
-    fn entries(&self) -> &[Expr] {
+    /// Whether both are numbers, or vectors of equal length.
+    pub(super) fn has_shape_of(&self, other: &Self) -> bool {
+        core::mem::discriminant(self) == core::mem::discriminant(other) && self.entries().len() == other.entries().len()
+    }
+
+    /// The number, or the entries of the vector.
+    pub(super) fn entries(&self) -> &[Expr] {
         match self {
             Self::Number(value) => core::slice::from_ref(value),
             Self::Vector(entries) => entries,
         }
     }
 
-    fn map(self, mut make: impl FnMut(Expr) -> Expr) -> Self {
+    /// Applies an operation to each entry.
+    pub(super) fn map(self, mut make: impl FnMut(Expr) -> Expr) -> Self {
         match self {
             Self::Number(value) => Self::Number(make(value)),
             Self::Vector(entries) => Self::Vector(entries.into_iter().map(make).collect()),
@@ -133,6 +141,7 @@ impl Scope {
                 Value::Number(power(pool, operands[0], operands[1]))
             }
             Kind::Chain(first, rest) => self.chain(pool, first, rest)?,
+            Kind::If(comparison, arms) => self.condition(pool, comparison, arms)?,
         };
         let mut wrong = None;
         let value = value.map(|entry| {
@@ -155,7 +164,7 @@ impl Scope {
     ///
     /// # Errors
     /// The errors of all parts; for a system that is too large, only the first.
-    fn each_of<P, Q>(
+    pub(super) fn each_of<P, Q>(
         &mut self,
         pool: &mut Pool<Symbol>,
         parts: impl IntoIterator<Item = P>,
@@ -182,7 +191,7 @@ impl Scope {
             return Err(error(range.to.span, &Message::BackwardRange { from, to }));
         }
         let index = range.index.to_string();
-        self.declare(&range.index, Meaning::Number(pool.zero()))?;
+        self.declare_index(&range.index, Meaning::Number(pool.zero()))?;
         let made = (from..to).map(|value| {
             self.set(&index, Meaning::Number(pool.integer(value)));
             make(self, pool, value)
@@ -247,7 +256,7 @@ impl Scope {
             Some(Meaning::Array { .. } | Meaning::Coordinates { .. }) => Message::ArrayWithoutIndex { name: text },
             Some(Meaning::OfState) => Message::NotInRule { name: text },
             Some(Meaning::Moving) => Message::VelocityInTimeScale { name: text },
-            Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_)) => {
+            Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_) | Meaning::Function(_)) => {
                 Message::FunctionWithoutArguments { name: text }
             }
             None => self.unknown(pool, text),
@@ -313,7 +322,9 @@ impl Scope {
         match self.meaning(&name) {
             Some(Meaning::OfState) => Message::NotInRule { name },
             Some(Meaning::Moving) => Message::VelocityInTimeScale { name },
-            Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_)) => Message::FunctionWithoutArguments { name },
+            Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_) | Meaning::Function(_)) => {
+                Message::FunctionWithoutArguments { name }
+            }
             Some(_) => Message::NotArray { name },
             None => self.unknown(pool, name),
         }
@@ -351,6 +362,14 @@ impl Scope {
                 return Ok(Value::Vector(components.collect()));
             }
             Some(Meaning::Moving) => return Err(error(function.span(), &Message::VelocityInTimeScale { name })),
+            Some(Meaning::Wrong) => return Ok(Value::Number(pool.one())),
+            Some(Meaning::Function(called)) => {
+                self.record_call(&name);
+                let values = self.each_of(pool, arguments, Self::value)?;
+                let spans = arguments.iter().map(|argument| argument.span).collect();
+                return self.call_declared(pool, function, called, (values, spans));
+            }
+            None if CHOICES.contains(&name.as_str()) => return self.choice(pool, function, arguments),
             _ => {}
         }
         let known = Function::from_name(&name);

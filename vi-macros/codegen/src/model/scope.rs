@@ -3,12 +3,14 @@
 //! In: the declarations of a system, one by one. Out: the meaning of each name in expressions of the system or in lines
 //! of a rule. A name has one meaning, and none before its declaration.
 
+use super::function::Called;
 use super::point::Point;
+use super::resolve::Value;
 use crate::habits::{self, Habit};
 use crate::messages::{Absence, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Ident;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use syn::Result;
 use vi_expr::{Expr, Function, Pool};
 
@@ -25,6 +27,12 @@ pub(super) struct Scope {
     absent: BTreeMap<String, Absence>,
     /// Points at which the expressions of a rule evaluate L and f.
     points: Vec<Point>,
+    /// Indices of the ranges around an expression.
+    indices: Vec<String>,
+    /// Functions of the language whose bodies are being evaluated.
+    open: Vec<String>,
+    /// Declared functions that some expression has called.
+    called: BTreeSet<String>,
 }
 
 /// The meaning of a name.
@@ -50,12 +58,24 @@ pub(super) enum Meaning {
     Lagrangian,
     /// f of time, coordinates and velocities, with this number of components.
     Force(usize),
+    /// A declared function.
+    Function(Called),
     /// A quantity that depends on the state; in a rule it may only appear in arguments of L and f.
     OfState,
     /// A quantity that depends on velocities; a time scale cannot use it.
     Moving,
     /// A declaration with a reported error: it evaluates to 1, with or without an index.
     Wrong,
+}
+
+impl Meaning {
+    /// The meaning of a name that stands for a value.
+    pub(super) fn of_value(value: Value) -> Self {
+        match value {
+            Value::Number(number) => Self::Number(number),
+            Value::Vector(entries) => Self::Array { first: 0, entries },
+        }
+    }
 }
 
 impl Scope {
@@ -81,7 +101,12 @@ impl Scope {
 
     fn of<const N: usize>(names: [(&str, Meaning); N]) -> Self {
         let names = names.into_iter().map(|(name, meaning)| (name.to_owned(), meaning)).collect();
-        Self { names, absent: BTreeMap::new(), points: Vec::new() }
+        Self::with_names(names)
+    }
+
+    fn with_names(names: BTreeMap<String, Meaning>) -> Self {
+        let (absent, called) = (BTreeMap::new(), BTreeSet::new());
+        Self { names, absent, points: Vec::new(), indices: Vec::new(), open: Vec::new(), called }
     }
 
     /// Adds the declarations of a system. Names that already have a meaning keep it, as do numbers of constants and
@@ -92,7 +117,7 @@ impl Scope {
             let meaning = match meaning {
                 Meaning::Number(value) if is_constant(value) => meaning.clone(),
                 Meaning::Array { entries, .. } if entries.iter().all(is_constant) => meaning.clone(),
-                Meaning::Pi | Meaning::Wrong => meaning.clone(),
+                Meaning::Pi | Meaning::Wrong | Meaning::Function(_) => meaning.clone(),
                 _ => Meaning::OfState,
             };
             self.names.entry(name.clone()).or_insert(meaning);
@@ -111,7 +136,7 @@ impl Scope {
             _ => meaning.clone(),
         };
         let names = self.names.iter().map(|(name, known)| (name.clone(), meaning(known))).collect();
-        Self { names, absent: BTreeMap::new(), points: Vec::new() }
+        Self::with_names(names)
     }
 
     /// The number of an evaluation point; equal points have the same number.
@@ -157,9 +182,58 @@ impl Scope {
         Ok(())
     }
 
+    /// Adds the index of a range.
+    ///
+    /// # Errors
+    /// As [`Self::declare`].
+    pub(super) fn declare_index(&mut self, name: &Ident, meaning: Meaning) -> Result<()> {
+        self.declare(name, meaning)?;
+        self.indices.push(name.to_string());
+        Ok(())
+    }
+
     /// Removes an index after its range.
     pub(super) fn forget(&mut self, name: &str) {
         self.names.remove(name);
+        self.indices.retain(|index| index != name);
+    }
+
+    /// Changes or removes the meaning of a name, and returns the previous one.
+    pub(super) fn replace(&mut self, name: &str, meaning: Option<Meaning>) -> Option<Meaning> {
+        match meaning {
+            Some(meaning) => self.names.insert(name.to_owned(), meaning),
+            None => self.names.remove(name),
+        }
+    }
+
+    /// Begins the body of a function: hides and returns the indices of ranges around the call. `None` if the body is
+    /// already being evaluated.
+    pub(super) fn enter(&mut self, function: &str) -> Option<Vec<(String, Option<Meaning>)>> {
+        if self.open.iter().any(|open| open == function) {
+            return None;
+        }
+        self.open.push(function.to_owned());
+        let indices = core::mem::take(&mut self.indices);
+        Some(indices.into_iter().map(|index| (index.clone(), self.names.remove(&index))).collect())
+    }
+
+    /// Ends the body of a function: shows the indices again.
+    pub(super) fn leave(&mut self, function: &str, indices: Vec<(String, Option<Meaning>)>) {
+        self.open.retain(|open| open != function);
+        for (index, meaning) in indices {
+            self.replace(&index, meaning);
+            self.indices.push(index);
+        }
+    }
+
+    /// Records that an expression has called a declared function.
+    pub(super) fn record_call(&mut self, function: &str) {
+        self.called.insert(function.to_owned());
+    }
+
+    /// Whether an expression has called a declared function.
+    pub(super) fn was_called(&self, function: &str) -> bool {
+        self.called.contains(function)
     }
 
     /// Changes the meaning of a declared name: the next value of an index.
@@ -255,14 +329,18 @@ impl Scope {
     }
 
     /// The functions of the language, and those of this scope only.
-    pub(super) fn functions(&self) -> impl Iterator<Item = &'static str> {
-        let own = self.names.values().filter_map(|meaning| match meaning {
-            Meaning::Dot => Some("dot"),
-            Meaning::Lagrangian => Some("L"),
-            Meaning::Force(_) => Some("f"),
-            _ => None,
+    pub(super) fn functions(&self) -> impl Iterator<Item = &str> + '_ {
+        let own = self.names.iter().filter_map(|(name, meaning)| -> Option<&str> {
+            match meaning {
+                Meaning::Function(_) => Some(name.as_str()),
+                Meaning::Dot => Some("dot"),
+                Meaning::Lagrangian => Some("L"),
+                Meaning::Force(_) => Some("f"),
+                _ => None,
+            }
         });
-        Function::ALL.into_iter().map(Function::name).chain(["sqrt", "sum"]).chain(own)
+        let built_in: [&str; 5] = ["sqrt", "sum", "max", "min", "clamp"];
+        own.chain(Function::ALL.into_iter().map(|function| -> &str { function.name() })).chain(built_in)
     }
 
     /// The nearest declared name that satisfies `is_meant`.

@@ -170,6 +170,11 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         functions.push(assembly.function(FunctionId::StepDensity, number(of.step_density))?);
     }
     functions.push(assembly.function(FunctionId::NonFinite, vector(&of.watched))?);
+    if !of.calls.is_empty() {
+        let (calls, arguments) = of.calls.iter().copied().unzip();
+        let quantities = vec![(Output::Value, vec![calls]), (Output::Argument, vec![arguments])];
+        functions.push(assembly.function(FunctionId::Undefined, quantities)?);
+    }
     if let Some(TimeScale { g, g_dq, g_dt }) = &of.time_scale {
         let quantities = vec![
             momentum,

@@ -43,6 +43,14 @@ impl Lowering<'_> {
                 Node::Sum(sum) => self.sum(expr, &sum),
                 Node::Product(product) => self.product(&product.factors, &Rational::one()),
                 Node::Call(function, arguments) => self.call(function, &arguments),
+                Node::Opaque(function, arguments) => {
+                    let arguments = arguments.into_iter().map(|argument| self.value(argument)).collect();
+                    self.operations.add(Operation::Opaque(function, arguments))
+                }
+                Node::Select(parts) => {
+                    let [condition, then, otherwise] = parts.map(|part| self.value(part));
+                    self.operations.add(Operation::Select(condition, then, otherwise))
+                }
                 Node::Number(_) | Node::Pi => self.operations.constant(f64::NAN),
             }
         };
@@ -64,12 +72,17 @@ impl Lowering<'_> {
             Node::Number(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
             Node::Sum(sum) => sum.terms.iter().map(|(term, _)| *term).collect(),
             Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
-            Node::Call(_, arguments) => arguments.clone(),
+            Node::Call(_, arguments) | Node::Opaque(_, arguments) => arguments.clone(),
+            Node::Select(parts) => parts.to_vec(),
         };
         let found = match self.pool.node(expr) {
             Node::Symbol(Symbol::Parameter { .. }) => Dependence::Parameters,
             Node::Symbol(Symbol::Step) => Dependence::Run,
             Node::Symbol(_) => Dependence::Step,
+            // Evaluated at run time, even at a constant.
+            Node::Opaque(..) => {
+                children.into_iter().map(|child| self.dependence(child)).fold(Dependence::Parameters, Ord::max)
+            }
             _ => children.into_iter().map(|child| self.dependence(child)).max().unwrap_or(Dependence::None),
         };
         self.known.dependences.insert(expr, found);

@@ -3,7 +3,7 @@
 //! In: requests for operations. Out: a list in which equal operations share one entry and operands come first.
 
 use crate::symbol::Symbol;
-use vi_expr::{Distinct, Function, Index, Table};
+use vi_expr::{Distinct, Function, Index, Opaque, Table};
 
 /// The index of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -47,6 +47,10 @@ pub enum Operation {
     Call(Function, OperationId),
     /// A function of two operands.
     Call2(Function, OperationId, OperationId),
+    /// A partial derivative of a function that is known by name.
+    Opaque(Opaque, Vec<OperationId>),
+    /// b if a is positive, else c; NaN if a is NaN
+    Select(OperationId, OperationId, OperationId),
     /// a, or 0 if b is 0; then this number of its derivatives is 0 too
     ZeroWhere(OperationId, OperationId, u8),
 }
@@ -199,18 +203,24 @@ impl Operations {
 
 impl Operation {
     /// The operands, from left to right.
-    pub fn operands(&self) -> impl Iterator<Item = OperationId> {
+    pub fn operands(&self) -> impl Iterator<Item = OperationId> + '_ {
         let (first, second) = match self {
-            Self::Constant(_) | Self::Input(_) => (None, None),
+            Self::Constant(_) | Self::Input(_) | Self::Opaque(..) => (None, None),
             Self::Negate(a) | Self::SquareRoot(a) | Self::Reciprocal(a) | Self::Call(_, a) => (Some(*a), None),
             Self::Add(a, b)
             | Self::Subtract(a, b)
             | Self::Multiply(a, b)
             | Self::Divide(a, b)
             | Self::Call2(_, a, b)
-            | Self::ZeroWhere(a, b, _) => (Some(*a), Some(*b)),
+            | Self::ZeroWhere(a, b, _)
+            | Self::Select(a, b, _) => (Some(*a), Some(*b)),
         };
-        first.into_iter().chain(second)
+        let others: &[OperationId] = match self {
+            Self::Select(_, _, c) => core::slice::from_ref(c),
+            Self::Opaque(_, arguments) => arguments,
+            _ => &[],
+        };
+        first.into_iter().chain(second).chain(others.iter().copied())
     }
 
     /// The operation without its operands.
@@ -228,6 +238,8 @@ impl Operation {
             Self::Call(function, _) => Self::Call(*function, none),
             Self::Call2(function, ..) => Self::Call2(*function, none, none),
             Self::ZeroWhere(_, _, derivatives) => Self::ZeroWhere(none, none, *derivatives),
+            Self::Opaque(function, _) => Self::Opaque(function.clone(), Vec::new()),
+            Self::Select(..) => Self::Select(none, none, none),
         }
     }
 
@@ -242,9 +254,14 @@ impl Operation {
     pub fn cost(&self) -> usize {
         match self {
             Self::Constant(_) | Self::Input(_) => 0,
-            Self::Negate(_) | Self::Add(..) | Self::Subtract(..) | Self::Multiply(..) | Self::ZeroWhere(..) => 1,
+            Self::Negate(_)
+            | Self::Add(..)
+            | Self::Subtract(..)
+            | Self::Multiply(..)
+            | Self::ZeroWhere(..)
+            | Self::Select(..) => 1,
             Self::Divide(..) | Self::SquareRoot(_) | Self::Reciprocal(_) => 4,
-            Self::Call(..) | Self::Call2(..) => 12,
+            Self::Call(..) | Self::Call2(..) | Self::Opaque(..) => 12,
         }
     }
 }

@@ -28,6 +28,8 @@ pub enum FunctionId {
     StepDensity,
     /// The parts of L and f.
     NonFinite,
+    /// The calls of Rust functions and tables, with their arguments.
+    Undefined,
     /// L_d.
     Ld,
     /// ∂L_d/∂t0.
@@ -78,6 +80,7 @@ impl FunctionId {
             Self::ScaledPoint => "scaled_point",
             Self::StepDensity => "step_density",
             Self::NonFinite => "non_finite",
+            Self::Undefined => "undefined",
             Self::Ld => "ld",
             Self::D1Ld => "d1_ld",
             Self::D2Ld => "d2_ld",
@@ -103,6 +106,8 @@ impl FunctionId {
 pub enum Output {
     /// The value of a function that computes one number or one vector.
     Value,
+    /// The arguments of calls.
+    Argument,
     /// The mass matrix M.
     Mass,
     /// L_v.

@@ -133,7 +133,7 @@ impl Lowering<'_> {
                 .map(|(base, _)| *base)
                 .collect(),
             Node::Number(_) | Node::Pi | Node::Sum(_) => Vec::new(),
-            Node::Symbol(_) | Node::Call(..) => vec![term],
+            Node::Symbol(_) | Node::Call(..) | Node::Opaque(..) | Node::Select(_) => vec![term],
         }
     }
 

@@ -144,7 +144,8 @@ impl Known {
         });
         let is_varying = |base: &Expr| self.natures.get(*base).is_some_and(|of| of.change == StateDependence::Varying);
         match node {
-            Node::Symbol(Symbol::Parameter { .. }) | Node::Number(_) | Node::Pi | Node::Sum(_) => {}
+            Node::Symbol(Symbol::Parameter { .. }) | Node::Number(_) | Node::Pi | Node::Sum(_) | Node::Opaque(..) => {}
+            Node::Select(_) => nature.jumps = true,
             Node::Symbol(_) => nature.change = StateDependence::Varying,
             Node::Call(Function::Sign, _) => {
                 let change = nature.change.min(StateDependence::Stepwise);

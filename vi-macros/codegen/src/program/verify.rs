@@ -12,7 +12,7 @@ use crate::symbol::{Symbol, Variable};
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
 use syn::Result;
-use vi_expr::{Expr, Pool, Rounded, Table};
+use vi_expr::{Expr, Pool, Rounded, Table, selected};
 
 /// Relative difference that reordering may cause, including cancellation in the residuals.
 const TOLERANCE: f64 = 1e-7;
@@ -93,6 +93,8 @@ impl Function {
                 Operation::Reciprocal(a) => of(a).recip(),
                 Operation::Call(function, a) => function.value(of(a), 0.0),
                 Operation::Call2(function, a, b) => function.value(of(a), of(b)),
+                Operation::Opaque(function, arguments) => function.value(&arguments.iter().map(of).collect::<Vec<_>>()),
+                Operation::Select(a, b, c) => selected(of(a), of(b), of(c)),
                 Operation::ZeroWhere(a, b, _) => {
                     if of(b) == 0.0 {
                         0.0

@@ -8,7 +8,8 @@
 //! product = unary { ("*" | "/") unary }
 //! unary   = "-" unary | power
 //! power   = atom [ "^" unary ]                  binds tightest, right-associative
-//! atom    = number | name | name "[" sum "]" | name "(" sum { "," sum } ")" | "sum" "(" range "," sum ")" | "(" sum ")"
+//! atom    = number | name | name "[" sum "]" | name "(" sum { "," sum } ")" | "sum" "(" range "," sum ")" | "(" sum ")" | if
+//! if      = "if" sum (">" | ">=" | "<" | "<=") sum "{" sum "}" "else" (if | "{" sum "}")
 //! range   = name "in" sum ".." sum
 //! ```
 //!
@@ -59,6 +60,20 @@ pub enum Kind {
     Power(Box<Expression>, Box<Expression>),
     /// Operands of one precedence, from left to right.
     Chain(Box<Expression>, Vec<(Operator, Expression)>),
+    /// `if a > b { x } else { y }`: the comparison, x and y.
+    If(Box<Comparison>, Box<[Expression; 2]>),
+}
+
+/// `a > b`, or one of the other three.
+pub struct Comparison {
+    /// The side that is larger where the comparison with `>` or `>=` holds.
+    pub larger: Expression,
+    /// The other side.
+    pub smaller: Expression,
+    /// Whether it also holds where both are equal.
+    pub or_equal: bool,
+    /// Whether it was written with `<` or `<=`.
+    pub reversed: bool,
 }
 
 /// `i in 0..8`: the index runs from the first bound to the second, which is excluded.
@@ -208,6 +223,9 @@ impl Expression {
             syn::parenthesized!(inner in input);
             return Self::alone(&inner, depth, "an operator or `)`");
         }
+        if input.peek(Token![if]) {
+            return Self::condition(input, depth);
+        }
         let Ok(name) = input.parse::<Ident>() else {
             return Err(unexpected::operand(input));
         };
@@ -243,6 +261,57 @@ impl Expression {
         }
         let arguments = Self::list(&inner, depth + 1, "an operator, `,` or `)`")?;
         Ok(Self { span, kind: Kind::Call(name, arguments) })
+    }
+
+    /// `if a > b { x } else { y }`, with `else if` as the other arm.
+    fn condition(input: ParseStream, depth: usize) -> Result<Self> {
+        if depth >= DEPTH {
+            return Err(error(input.span(), &Message::TooDeep { limit: DEPTH }));
+        }
+        let span = input.span();
+        input.parse::<Token![if]>()?;
+        let comparison = Self::comparison(input, depth + 1, span)?;
+        let then = Self::arm(input, depth + 1)?;
+        if !input.peek(Token![else]) {
+            return Err(error(span, &Message::MissingElse));
+        }
+        input.parse::<Token![else]>()?;
+        let otherwise =
+            if input.peek(Token![if]) { Self::condition(input, depth + 1)? } else { Self::arm(input, depth + 1)? };
+        Ok(Self { span, kind: Kind::If(Box::new(comparison), Box::new([then, otherwise])) })
+    }
+
+    /// The comparison of an `if` at this place.
+    fn comparison(input: ParseStream, depth: usize, condition: Span) -> Result<Comparison> {
+        let left = Self::sum(input, depth)?;
+        let (reversed, or_equal) = if input.peek(Token![>=]) {
+            input.parse::<Token![>=]>().map(|_| (false, true))?
+        } else if input.peek(Token![<=]) {
+            input.parse::<Token![<=]>().map(|_| (true, true))?
+        } else if input.peek(Token![>]) && !input.peek(Token![>>]) {
+            input.parse::<Token![>]>().map(|_| (false, false))?
+        } else if input.peek(Token![<]) && !input.peek(Token![<<]) {
+            input.parse::<Token![<]>().map(|_| (true, false))?
+        } else {
+            let span = if input.peek(syn::token::Brace) { condition } else { input.span() };
+            return Err(error(span, &Message::MissingComparison));
+        };
+        let right = Self::sum(input, depth)?;
+        if !input.peek(syn::token::Brace) {
+            return Err(error(input.span(), &Message::MissingComparison));
+        }
+        let (larger, smaller) = if reversed { (right, left) } else { (left, right) };
+        Ok(Comparison { larger, smaller, or_equal, reversed })
+    }
+
+    /// `{ x }`
+    fn arm(input: ParseStream, depth: usize) -> Result<Self> {
+        if !input.peek(syn::token::Brace) {
+            return Err(error(input.span(), &Message::MissingElse));
+        }
+        let inner;
+        syn::braced!(inner in input);
+        Self::alone(&inner, depth, "an operator or `}`")
     }
 
     /// The only expression between delimiters; `what` names the expected end.

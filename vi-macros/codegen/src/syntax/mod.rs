@@ -4,16 +4,20 @@
 //! AFTER THIS only spans are left of the tokens.
 
 mod expression;
+mod function;
 pub mod parse;
 mod unexpected;
 
 use crate::rules::GAUSS;
-pub use expression::{Expression, Kind, Operator, Range};
+pub use expression::{Comparison, Expression, Kind, Operator, Range};
+pub use function::{Body, Function, Table, TableArgument, TableData};
 use proc_macro2::{Ident, Span};
+use std::path::PathBuf;
+use std::rc::Rc;
 
 /// The words that start a clause.
-const CLAUSES: [&str; 10] =
-    ["const", "param", "coord", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
+const CLAUSES: [&str; 12] =
+    ["const", "param", "coord", "fn", "table", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
 
 /// A `lagrangian!` as written.
 pub struct System {
@@ -29,6 +33,12 @@ pub struct System {
     pub parameters: Vec<Parameter>,
     /// `coord x, q[8];` in order.
     pub coordinates: Vec<Coordinate>,
+    /// `fn f(a) = …;` in order.
+    pub functions: Vec<Rc<Function>>,
+    /// `table f(a) = …;` in order.
+    pub tables: Vec<Table>,
+    /// The folder of the paths of tables.
+    pub folder: PathBuf,
     /// `let a = …;` in order.
     pub lets: Vec<Definition>,
     /// `L = …;`, each occurrence.

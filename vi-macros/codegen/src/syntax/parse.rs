@@ -4,6 +4,7 @@
 //! up to the next clause if the `;` is missing, so that later clauses are read too.
 
 use super::expression::DEPTH;
+use super::function;
 use super::unexpected;
 use super::{
     CLAUSES, Check, CheckEntry, Coordinate, Default, Definition, Discretization, Expression, Indices, Kind, Parameter,
@@ -13,6 +14,7 @@ use crate::habits::Habit;
 use crate::messages::{Errors, Message, bounded, error, nearest};
 use num_traits::Zero;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use std::rc::Rc;
 use syn::buffer::Cursor;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
@@ -148,6 +150,9 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         constants: Vec::new(),
         parameters: Vec::new(),
         coordinates: Vec::new(),
+        functions: Vec::new(),
+        tables: Vec::new(),
+        folder: std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default().into(),
         lets: Vec::new(),
         lagrangians: Vec::new(),
         forces: Vec::new(),
@@ -229,6 +234,8 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             list(input, &mut |input| coordinate(input).map(|one| system.coordinates.push(one)))?;
             return end_of_names(input, start);
         }
+        "fn" => system.functions.push(Rc::new(function::function(input)?)),
+        "table" => system.tables.push(function::table(input)?),
         "let" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.lets.push(one)))?,
         "force" if input.peek(Token![=]) || input.peek(syn::token::Paren) => {
             return Err(error(input.span(), &Message::Habit(Habit::ForceWithoutCoordinate)));
@@ -263,6 +270,10 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             return Ok(());
         }
         found => {
+            if found == "extern" {
+                // Or its `fn` would start another clause.
+                input.parse::<Option<Token![fn]>>()?;
+            }
             let near = nearest(found, CLAUSES);
             let is_coordinate = system.coordinates.iter().any(|coordinate| coordinate.name == word);
             let is_defined = input.peek(Token![=]) || input.peek(syn::token::Bracket);
@@ -440,7 +451,7 @@ fn length(input: ParseStream) -> Result<Option<Expression>> {
     Expression::alone(&inner, 0, INSIDE_BRACKETS).map(Some)
 }
 
-fn name(input: ParseStream) -> Result<Ident> {
+pub(super) fn name(input: ParseStream) -> Result<Ident> {
     let span = input.span();
     let name = input.call(Ident::parse_any).map_err(|_| error(span, &Message::Expected { what: "a name" }))?;
     let text = name.to_string();

@@ -20,7 +20,10 @@ pub(super) fn operand(input: ParseStream) -> Error {
     let cursor = input.cursor();
     let point = || cursor.punct().filter(|(punct, _)| punct.as_char() == '.');
     let habit = match cursor.ident() {
-        Some((word, _)) if word == "if" || word == "match" => Some(Habit::Condition),
+        Some((word, _)) if word == "match" => Some(Habit::Condition),
+        Some((word, _)) if ["crate", "self", "super"].iter().any(|root| word == root) && input.peek2(Token![::]) => {
+            Some(Habit::Path)
+        }
         Some(_) => None,
         None if input.peek(Token![|]) => Some(Habit::Bars),
         None if input.peek(syn::token::Brace) || input.peek(syn::token::Bracket) => Some(Habit::OtherBrackets),

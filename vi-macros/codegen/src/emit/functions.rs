@@ -1,0 +1,209 @@
+//! Rust functions and tables: their items, and the calls that evaluate them with derivatives.
+//!
+//! In: the functions of a model, and calls among the operations. Out: an item `NAME_function` for each, and for calls of
+//! one function at the same arguments one statement that binds all needed derivatives:
+//!
+//! ```text
+//! let (s1, [s2]) = ::vi_core::function::Jets::jet_1(&drag_function, [x_dot_mid]);
+//! ```
+
+use super::Source;
+use super::formula::{Formula, number};
+use crate::model::{self, FunctionKind, Outside, Table, TableKind, Values};
+use crate::program::{Function, Operation, OperationId};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote, quote_spanned};
+use std::collections::BTreeMap;
+use syn::spanned::Spanned;
+use vi_expr::Opaque;
+
+/// The item of a function.
+pub(super) fn item_name(name: &str) -> Ident {
+    format_ident!("{name}_function")
+}
+
+/// The items of all functions of a system.
+pub(super) fn items(source: &Source) -> TokenStream {
+    source.model.functions.iter().map(item).collect()
+}
+
+fn item(function: &model::Function) -> TokenStream {
+    let name = item_name(&function.name.to_string());
+    match &function.kind {
+        FunctionKind::Rust(path) => {
+            let count = Literal::usize_unsuffixed(function.arguments.len());
+            let arguments: Vec<Ident> = function.arguments.iter().map(|argument| format_ident!("{argument}")).collect();
+            let documentation = format!(" The Rust function `{}`.", function.name);
+            // A wrong signature is reported at the path.
+            let call = quote_spanned!(path.span()=> #path(#(#arguments),*));
+            quote! {
+                #[doc = #documentation]
+                #[allow(non_camel_case_types)]
+                struct #name;
+
+                impl ::vi_core::function::Function<#count> for #name {
+                    #[inline(always)]
+                    fn value<AnyNumber: ::vi_core::real::Number>(
+                        &self,
+                        [#(#arguments),*]: [AnyNumber; #count],
+                    ) -> AnyNumber {
+                        #call
+                    }
+                }
+            }
+        }
+        FunctionKind::Table(table) => {
+            let documentation = format!(" The table `{}`.", function.name);
+            let (kind, value) = table_value(table);
+            let rebuilt = table.file.as_ref().map(|file| {
+                let path = file.to_string_lossy().into_owned();
+                // Cargo builds again when the file changes.
+                quote!(
+                    const _: &[::core::primitive::u8] = ::core::include_bytes!(#path);
+                )
+            });
+            quote! {
+                #[doc = #documentation]
+                #[allow(non_upper_case_globals)]
+                static #name: #kind = #value;
+                #rebuilt
+            }
+        }
+    }
+}
+
+/// The type and the value of a table.
+fn table_value(table: &Table) -> (TokenStream, TokenStream) {
+    let constructor = format_ident!("{}", table.kind.name());
+    let outside = match table.outside {
+        Outside::Nothing | Outside::Periodic => None,
+        Outside::Hold => Some(quote!(.hold())),
+        Outside::Extend => Some(quote!(.extend())),
+    };
+    let periodic = table.outside == Outside::Periodic;
+    let list = |numbers: &[f64]| {
+        let numbers = numbers.iter().map(|value| number(*value));
+        quote!([#(#numbers),*])
+    };
+    let coefficients = match table.kind {
+        TableKind::Linear => 2_usize,
+        TableKind::Cubic | TableKind::Monotone => 4,
+        TableKind::Quintic => 6,
+    };
+    let (of, ends) = (Literal::usize_unsuffixed(coefficients), if periodic { quote!(Periodic) } else { quote!(Free) });
+    match &table.values {
+        Values::Points { places, values } => {
+            let count = Literal::usize_unsuffixed(places.len());
+            let (places, values) = (list(places), list(values));
+            let kind = quote!(::vi_core::table::Table<#count, #of>);
+            (
+                kind,
+                quote!(::vi_core::table::Table::#constructor(#places, #values, ::vi_core::table::Ends::#ends) #outside),
+            )
+        }
+        Values::Grid { places: [first, second], rows } => {
+            let (m, n) = (Literal::usize_unsuffixed(first.len()), Literal::usize_unsuffixed(second.len()));
+            let (first, second) = (list(first), list(second));
+            let rows = rows.iter().map(|row| list(row));
+            let kind = quote!(::vi_core::table::Grid<#m, #n>);
+            (kind, quote!(::vi_core::table::Grid::#constructor(#first, #second, [#(#rows),*]) #outside))
+        }
+        Values::Parameters { ends: [from, to], count, .. } => {
+            let (count, from, to) = (Literal::usize_unsuffixed(*count), number(*from), number(*to));
+            let kind = quote!(::vi_core::table::Uniform<#count>);
+            (kind, quote!(::vi_core::table::Uniform::#constructor(#from, #to, ::vi_core::table::Ends::#ends) #outside))
+        }
+    }
+}
+
+/// A call with derivatives up to an order; further arguments are the values of a table of parameters.
+fn jet(function: &Opaque, order: usize, arguments: &[Formula]) -> TokenStream {
+    let (own, values) = arguments.split_at(function.arity);
+    let (name, jet) = (item_name(&function.name), format_ident!("jet_{order}"));
+    let own = own.iter().map(Formula::tokens);
+    let of = if values.is_empty() {
+        quote!(#name)
+    } else {
+        let values = values.iter().map(Formula::tokens);
+        quote!(#name.of(&[#(#values),*]))
+    };
+    quote!(::vi_core::function::Jets::#jet(&#of, [#(#own),*]))
+}
+
+/// One derivative as an expression: `jet_1(…).1[0]`.
+pub(super) fn derivative(function: &Opaque, arguments: &[Formula]) -> Formula {
+    let order = function.order();
+    let call = jet(function, order, arguments);
+    let operations = 1 + arguments.iter().map(|argument| argument.operations).sum::<usize>();
+    if order == 0 {
+        return Formula::atom(call, operations);
+    }
+    let part = Literal::usize_unsuffixed(order);
+    let indices = slots(function).into_iter().map(Literal::usize_unsuffixed);
+    Formula::atom(quote!(#call.#part #([#indices])*), operations)
+}
+
+/// The arguments of differentiation in ascending order: 0, 0, 1 for a mixed third derivative.
+fn slots(function: &Opaque) -> Vec<usize> {
+    let each = function.orders.iter().enumerate();
+    each.flat_map(|(slot, order)| core::iter::repeat_n(slot, usize::from(*order))).collect()
+}
+
+/// The calls of one function at the same arguments.
+#[derive(Default)]
+pub(super) struct Calls {
+    /// The needed derivatives of each group.
+    groups: Vec<Vec<OperationId>>,
+    of: BTreeMap<OperationId, usize>,
+}
+
+impl Calls {
+    /// The calls of a function that needs these operations.
+    pub(super) fn of(function: &Function, needed: &[OperationId]) -> Self {
+        let mut calls = Self::default();
+        let mut known = BTreeMap::new();
+        for id in needed {
+            let Operation::Opaque(called, arguments) = function.operations.get(*id) else { continue };
+            let group = *known.entry((called.name.clone(), arguments.clone())).or_insert(calls.groups.len());
+            calls.groups.resize_with(calls.groups.len().max(group + 1), Vec::new);
+            calls.groups[group].push(*id);
+            calls.of.insert(*id, group);
+        }
+        calls
+    }
+
+    /// The derivatives that are computed together with this one; empty if it is alone.
+    pub(super) fn with(&self, id: OperationId) -> &[OperationId] {
+        let group = self.of.get(&id).map_or(&[][..], |group| &self.groups[*group]);
+        if group.len() > 1 { group } else { &[] }
+    }
+}
+
+/// The statement that binds these derivatives to their names.
+pub(super) fn statement(bound: &[(Opaque, Ident)], arguments: &[Formula]) -> Option<TokenStream> {
+    let (first, _) = bound.first()?;
+    let order = bound.iter().map(|(function, _)| function.order()).max()?;
+    let named = |slots: &[usize]| {
+        let name = bound.iter().find(|(function, _)| self::slots(function) == slots).map(|(_, name)| name);
+        name.map_or_else(|| quote!(_), |name| quote!(#name))
+    };
+    let levels = (0..=order).map(|order| pattern(first.arity, order, &mut Vec::new(), &named));
+    let call = jet(first, order, arguments);
+    Some(quote!(let (#(#levels),*) = #call;))
+}
+
+/// The pattern of all derivatives of one order; equal mixed derivatives are bound once.
+fn pattern(arity: usize, order: usize, slots: &mut Vec<usize>, named: &dyn Fn(&[usize]) -> TokenStream) -> TokenStream {
+    if order == 0 {
+        return named(slots);
+    }
+    let entries: Vec<TokenStream> = (0..arity)
+        .map(|slot| {
+            slots.push(slot);
+            let entry = pattern(arity, order - 1, slots, named);
+            slots.pop();
+            entry
+        })
+        .collect();
+    if entries.iter().all(|entry| entry.to_string() == "_") { quote!(_) } else { quote!([#(#entries),*]) }
+}

@@ -1,0 +1,196 @@
+//! Declared functions: of the language, of Rust, and tables.
+//!
+//! In: the clauses `fn` and `table`. Out: the meaning of their names. A function of the language is replaced by its body
+//! at each call. The others are opaque: the [`Model`](super::Model) lists them for the code that evaluates them.
+
+use super::context::Context;
+use super::resolve::Value;
+use super::scope::{Meaning, Scope};
+use super::table::{self, Table};
+use crate::messages::{Message, error};
+use crate::symbol::Symbol;
+use crate::syntax::{self, Body, Expression};
+use proc_macro2::{Ident, Span};
+use std::rc::Rc;
+use syn::Result;
+use vi_expr::{Expr, MAX_ARGUMENTS, Opaque, Pool};
+
+/// Frequency of the stand-in of a function without a known period.
+const FREQUENCY: f64 = 0.7;
+
+/// A function that the generated code evaluates.
+pub struct Function {
+    /// Its name.
+    pub name: Ident,
+    /// The names of its arguments.
+    pub arguments: Vec<String>,
+    /// What it is.
+    pub kind: FunctionKind,
+}
+
+/// The kinds of functions that the generated code evaluates.
+pub enum FunctionKind {
+    /// A Rust function.
+    Rust(syn::Path),
+    /// A table.
+    Table(Table),
+}
+
+impl Function {
+    /// The function itself, for expressions.
+    fn opaque(&self) -> Opaque {
+        let period = match &self.kind {
+            FunctionKind::Table(table) => table.period(),
+            FunctionKind::Rust(_) => None,
+        };
+        let frequency = period.map_or(FREQUENCY, |period| core::f64::consts::TAU / period);
+        Opaque::new(&self.name.to_string(), self.arguments.len(), frequency)
+    }
+}
+
+/// A function as an expression calls it.
+#[derive(Clone)]
+pub(super) enum Called {
+    /// A function of the language.
+    Language(Rc<syntax::Function>),
+    /// An opaque function, the names of its arguments, and the parameters that are its further arguments.
+    Opaque { function: Opaque, arguments: Vec<String>, parameters: Vec<Expr> },
+}
+
+impl core::fmt::Debug for Called {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Language(function) => write!(formatter, "fn {}", function.name),
+            Self::Opaque { function, .. } => write!(formatter, "{function:?}"),
+        }
+    }
+}
+
+impl PartialEq for Called {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Language(left), Self::Language(right)) => Rc::ptr_eq(left, right),
+            (Self::Opaque { function: left, .. }, Self::Opaque { function: right, .. }) => left == right,
+            _ => false,
+        }
+    }
+}
+
+impl Eq for Called {}
+
+/// Declares all functions and tables. Returns those that the generated code evaluates.
+pub(super) fn functions(context: &mut Context, written: &syntax::System) -> Vec<Function> {
+    let mut functions = Vec::new();
+    for function in &written.functions {
+        let arguments: Vec<String> = function.arguments.iter().map(Ident::to_string).collect();
+        for (place, argument) in function.arguments.iter().enumerate() {
+            if function.arguments[..place].contains(argument) {
+                context.errors.at(argument.span(), &Message::Duplicate { name: argument.to_string() });
+            }
+        }
+        let called = match &function.body {
+            Body::Expression(_) => Called::Language(Rc::clone(function)),
+            Body::Path(path) => {
+                if arguments.len() > MAX_ARGUMENTS {
+                    let name = function.name.to_string();
+                    context.errors.at(function.name.span(), &Message::TooManyArguments { name, limit: MAX_ARGUMENTS });
+                    context.declare(&function.name, Meaning::Wrong);
+                    continue;
+                }
+                let kind = FunctionKind::Rust(path.clone());
+                functions.push(Function { name: function.name.clone(), arguments: arguments.clone(), kind });
+                let function = functions[functions.len() - 1].opaque();
+                Called::Opaque { function, arguments, parameters: Vec::new() }
+            }
+        };
+        context.declare(&function.name, Meaning::Function(called));
+    }
+    for written_table in &written.tables {
+        let name = &written_table.name;
+        let Some((table, parameters)) = table::table(context, written_table, &written.folder) else {
+            context.declare(name, Meaning::Wrong);
+            continue;
+        };
+        let arguments: Vec<String> = written_table.arguments.iter().map(|argument| argument.name.to_string()).collect();
+        let kind = FunctionKind::Table(table);
+        functions.push(Function { name: name.clone(), arguments: arguments.clone(), kind });
+        let function = functions[functions.len() - 1].opaque();
+        context.declare(name, Meaning::Function(Called::Opaque { function, arguments, parameters }));
+    }
+    functions
+}
+
+/// Reports functions and tables that no expression has called: their bodies would never be checked.
+pub(super) fn check_used(context: &mut Context, written: &syntax::System) {
+    let names = written.functions.iter().map(|function| &function.name);
+    for name in names.chain(written.tables.iter().map(|table| &table.name)) {
+        if !context.scope.was_called(&name.to_string()) {
+            context.errors.at(name.span(), &Message::UnusedFunction { name: name.to_string() });
+        }
+    }
+}
+
+impl Scope {
+    /// The value of a declared function at these arguments.
+    ///
+    /// # Errors
+    /// The wrong number of arguments, a function that calls itself, and those of its body.
+    pub(super) fn call_declared(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        name: &Ident,
+        called: Called,
+        (values, spans): (Vec<Value>, Vec<Span>),
+    ) -> Result<Value> {
+        let arity = |arguments: Vec<String>| {
+            let (name, given) = (name.to_string(), values.len());
+            let wrong = arguments.len() != given;
+            if wrong { Err(Message::FunctionArity { name, arguments, given }) } else { Ok(()) }
+        };
+        match called {
+            Called::Language(function) => {
+                arity(function.arguments.iter().map(Ident::to_string).collect())
+                    .map_err(|message| error(name.span(), &message))?;
+                let Body::Expression(body) = &function.body else {
+                    return Err(error(name.span(), &Message::Recursive { name: name.to_string() }));
+                };
+                self.body_value(pool, name, (&function.arguments, values), body)
+            }
+            Called::Opaque { function, arguments, parameters } => {
+                arity(arguments).map_err(|message| error(name.span(), &message))?;
+                let numbers = values.into_iter().zip(spans).map(|(value, span)| value.number(span));
+                let mut numbers = numbers.collect::<Result<Vec<Expr>>>()?;
+                numbers.extend(parameters);
+                Ok(Value::Number(pool.opaque(function, numbers)))
+            }
+        }
+    }
+
+    /// The value of a body with these arguments. Indices of ranges around the call have no meaning in it.
+    fn body_value(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        name: &Ident,
+        (arguments, values): (&[Ident], Vec<Value>),
+        body: &Expression,
+    ) -> Result<Value> {
+        let hidden = self
+            .enter(&name.to_string())
+            .ok_or_else(|| error(name.span(), &Message::Recursive { name: name.to_string() }))?;
+        let bound: Vec<(String, Option<Meaning>)> = arguments
+            .iter()
+            .zip(values)
+            .map(|(argument, value)| {
+                let argument = argument.to_string();
+                let before = self.replace(&argument, Some(Meaning::of_value(value)));
+                (argument, before)
+            })
+            .collect();
+        let value = self.value(pool, body);
+        for (argument, before) in bound.into_iter().rev() {
+            self.replace(&argument, before);
+        }
+        self.leave(&name.to_string(), hidden);
+        value
+    }
+}

@@ -1,0 +1,256 @@
+//! Functions, tables and conditions: what they become, and the messages for mistakes.
+
+use proc_macro2::TokenStream;
+use vi_codegen::syntax;
+
+/// The derived system of a text.
+fn derived(text: &str) -> vi_codegen::Derivations {
+    let tokens: TokenStream = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
+    let system = syntax::parse::system(tokens).unwrap_or_else(|error| panic!("{text}: {error}"));
+    vi_codegen::derive(&system).unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+/// L of a body, as text.
+fn lagrangian(body: &str) -> String {
+    let derived = derived(&format!("struct System {{ {body} }}")).own;
+    derived.pool.render(derived.model.lagrangian, &|symbol| derived.model.spell(symbol))
+}
+
+/// The only error of a body: its token and its text.
+fn mistake(body: &str) -> (String, String) {
+    let plain = format!("struct System {{ {} }}", body.replace(['«', '»'], ""));
+    let tokens: TokenStream = plain.parse().unwrap_or_else(|error| panic!("{plain}: {error}"));
+    let result = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).map(|_| ());
+    let Err(error) = result else { panic!("no mistake in {plain}") };
+    let found: Vec<_> = error.into_iter().map(|error| (error.span().source_text(), error.to_string())).collect();
+    assert_eq!(found.len(), 1, "{plain}\n{found:#?}");
+    let (token, text) = found.into_iter().next().unwrap_or_default();
+    (token.unwrap_or_default(), text)
+}
+
+/// The marked token is underlined, and the message starts with this text.
+fn case(body: &str, message: &str) {
+    let marked = body.split_once('«').and_then(|(_, rest)| rest.split_once('»')).map_or("System", |(token, _)| token);
+    let (token, text) = mistake(body);
+    assert_eq!(token, marked, "{body}\n{text}");
+    assert!(text.starts_with(message), "{body}\nsays: {text}\nnot:  {message}");
+    println!("{body}\n    at `{token}`: {text}\n");
+}
+
+#[test]
+fn functions_of_the_language_are_substituted() {
+    let plain = lagrangian("param k = 2; coord x, y; L = (dot(x)^2 + dot(y)^2) / 2 - k * (x - y)^2 / 2 - 3 * y^2 / 2;");
+    // Arguments shadow names of the system; one function uses another, and a `let`.
+    let with = "param k = 2; coord x, y; fn spring(k, x) = k * square(x) / 2; fn square(a) = a^2; let d = x - y; \
+                L = (square(dot(x)) + square(dot(y))) / 2 - spring(k, d) - spring(3, y);";
+    assert_eq!(lagrangian(with), plain);
+    // `dot` inside a function is the derivative of its argument.
+    let energy = lagrangian("coord x; fn energy(m, s) = m * dot(s)^2 / 2; L = energy(2, x^2);");
+    assert_eq!(energy, lagrangian("coord x; L = dot(x^2)^2;"));
+    let sum = "coord q[3]; fn well(s) = s^4 / 4 - s^2 / 2; L = sum(i in 0..3, dot(q[i])^2 / 2 - well(q[i]));";
+    assert!(lagrangian(sum).contains("q[2]^4/4"), "{}", lagrangian(sum));
+}
+
+#[test]
+fn conditions_select() {
+    let text =
+        |expression: &str| lagrangian(&format!("param c = 1; coord x, y; L = dot(x)^2 + dot(y)^2 - c - {expression};"));
+    let same = |left: &str, right: &str| assert_eq!(text(left), text(right), "{left} is {right}");
+    same("max(x, y)^2", "(if x > y { x } else { y })^2");
+    same("min(x, y)^2", "(if x < y { x } else { y })^2");
+    same("max(x, y, 2)", "max(max(x, y), 2)");
+    same("clamp(x, -1, 1)", "min(max(x, -1), 1)");
+    same("if x >= y { x } else { y }", "if y > x { y } else { x }");
+    same("if x <= y { x } else { y }", "if x > y { y } else { x }");
+    same("if 2 * x > 2 * y { x } else { y }", "max(x, y)");
+    same("if 1 > 2 { x } else { y }", "y");
+    same("if 2 >= 2 { x } else { y }", "x");
+    same("if x > y { x } else { x }", "x");
+    same(
+        "if x > 1 { (x - 1)^2 } else if x < -1 { (x + 1)^2 } else { 0 }",
+        "if x > 1 { (x - 1)^2 } else { if -1 > x { (x + 1)^2 } else { 0 } }",
+    );
+    assert_eq!(text("max(x, 0)^2 * 3"), "dot(x)^2 - c + dot(y)^2 - 3*(if x > 0 { x } else { 0 })^2");
+}
+
+#[test]
+fn the_derivative_of_a_condition_is_a_condition() {
+    let derived = derived("struct S { coord x; L = dot(x)^2 / 2 - if x > 1 { (x - 1)^3 } else { 0 }; }").own;
+    let force = derived.system.continuous.applied_force[0];
+    let text = derived.pool.render(force, &|symbol| derived.model.spell(symbol));
+    assert_eq!(text, "-(if x - 1 > 0 { 3*(x - 1)^2 } else { 0 })");
+}
+
+#[test]
+fn declared_names_win() {
+    assert_eq!(lagrangian("coord x; fn max(a, b) = a + b; L = dot(x)^2 - max(x, 1);"), "dot(x)^2 - x - 1");
+    assert_eq!(
+        lagrangian("param table = 1, input = 2; coord x; L = table * dot(x)^2 - input * x;"),
+        "table*dot(x)^2 - input*x"
+    );
+    assert_eq!(lagrangian("param max = 1; coord x; L = max * dot(x)^2;"), "max*dot(x)^2");
+}
+
+#[test]
+fn functions_of_rust_and_tables_are_opaque() {
+    let body = "param c[3] = 1; coord x, y; fn cl(a) = crate::aero::cl; fn cp(a, b) = crate::aero::cp; table lift(a in 0..2) = c; \
+                L = dot(x)^2 + dot(y)^2 - cl(x) - cp(x, 2 * y) - lift(x);";
+    let own = derived(&format!("struct S {{ {body} }}")).own;
+    let spell = |expr| own.pool.render(expr, &|symbol| own.model.spell(symbol));
+    assert_eq!(spell(own.model.lagrangian), "dot(x)^2 + dot(y)^2 - cl(x) - cp(x, 2*y) - lift(x)");
+    let force = own.system.continuous.applied_force.clone();
+    assert_eq!(spell(force[0]), "-cl'(x) - cp^(1,0)(x, 2*y) - lift'(x)");
+    assert_eq!(spell(force[1]), "-2*cp^(0,1)(x, 2*y)");
+    // A call of a constant is evaluated when the program runs.
+    let body = "coord x; fn cl(a) = crate::cl; L = cl(1) * dot(x)^2;";
+    assert_eq!(lagrangian(body), "cl(1)*dot(x)^2");
+}
+
+#[test]
+fn mistakes_in_functions() {
+    let rest = "coord x; L = dot(x)^2 / 2 - g(x);";
+    case(&format!("fn «g»() = 1; {rest}"), "`g` is declared without arguments\nhelp: write its arguments");
+    case(&format!("fn «g» = 1; {rest}"), "`g` is declared without arguments\nhelp: write its arguments");
+    case("fn g(a, «a») = a; coord x; L = dot(x)^2 / 2 - g(x, 1);", "the name `a` is declared twice");
+    case("fn g(a) = a * «b»; coord x; L = dot(x)^2 / 2 - g(x);", "unknown name `b`\nhelp: declare it");
+    case(
+        "fn g(a, b) = a * b; coord x; L = dot(x)^2 / 2 - «g»(x);",
+        "`g` takes 2 argument(s), not 1\nhelp: write `g(a, b)`",
+    );
+    case(
+        "fn g(a, b) = crate::g; coord x; L = dot(x)^2 / 2 - «g»(x);",
+        "`g` takes 2 argument(s), not 1\nhelp: write `g(a, b)`",
+    );
+    case(
+        "fn «g»(a, b, c, d) = crate::g; coord x; L = dot(x)^2 / 2 - g(x, 1, 2, 3);",
+        "`g` has more than 3 arguments\nhelp: declare several",
+    );
+    case(
+        "fn g(a) = «g»(a - 1) * a; coord x; L = dot(x)^2 / 2 - g(x);",
+        "`g` calls itself\nhelp: write the expression without recursion",
+    );
+    case("fn g(a) = k(a); fn k(a) = «g»(a); coord x; L = dot(x)^2 / 2 - g(x);", "`g` calls itself");
+    case("fn «g»(a) = a; coord x; L = dot(x)^2 / 2;", "`g` is never used\nhelp: use it in `L`");
+    case("fn g(a) = a; coord x; L = dot(x)^2 / 2 - «g» * x;", "`g` is a function\nhelp: write its argument: `g(…)`");
+    case("fn g(a) = a; coord «g», x; L = dot(x)^2 / 2 - x;", "the name `g` is declared twice");
+    case("fn g(a) = a * «i»; coord q[2]; L = sum(i in 0..2, dot(q[i])^2 / 2 - g(q[i]));", "unknown name `i`");
+    case(
+        "«extern» fn cl(a); coord x; L = dot(x)^2 / 2;",
+        "unknown clause `extern`\nhelp: write `fn cl(a) = crate::aero::cl;`",
+    );
+    case("fn g«:»(a) = a; coord x; L = dot(x)^2 / 2;", "`g` is declared without arguments");
+}
+
+#[test]
+fn mistakes_in_conditions() {
+    let potential = |written: &str, message: &str| case(&format!("coord x; L = dot(x)^2 / 2 - {written};"), message);
+    potential("«if» x > 0 { x }", "`if` needs two values in braces\nhelp: write `if a > b { x } else { y }`");
+    potential("if x «=»= 0 { x } else { 0 }", "`if` needs one comparison of two numbers");
+    potential(
+        "if x > 0 «&»& x < 1 { x } else { 0 }",
+        "`if` needs one comparison of two numbers\nhelp: write `if a > b { x } else { y }`",
+    );
+    potential("«max»(x)", "`max` takes 2 argument(s), not 1\nhelp: write `max(a, b)`");
+    potential("«clamp»(x, 1)", "`clamp` takes 3 argument(s), not 2\nhelp: write `clamp(x, a, b)`");
+    potential("«max» * x", "unknown name `max`");
+}
+
+/// An L that jumps is refused; a kink, and a jump of a force, are not.
+#[test]
+fn a_lagrangian_that_jumps_is_refused() {
+    for jumps in [
+        "if x > 1 { x } else { 0 }",
+        "x * if x > 1 { 1 } else { x^2 + 1 }",
+        "if x + y > 3 { 1 } else { 0 }",
+        "y * if x > c { 1 } else { 0 }",
+    ] {
+        let message = "`L` jumps where `";
+        case(&format!("param c = 0.3; coord x, y; «L» = dot(x)^2 + c * dot(y)^2 - {jumps};"), message);
+    }
+    for continuous in [
+        "if x > 1 { x - 1 } else { 0 }",
+        "max(x, y)",
+        "if x > 0 { x^1.5 } else { 0 }",
+        "(if x > 0 { 1 } else { -1 }) * x",
+        "clamp(x, -c, c)",
+    ] {
+        assert!(
+            !lagrangian(&format!("param c = 0.3; coord x, y; L = dot(x)^2 + c * dot(y)^2 - {continuous};")).is_empty()
+        );
+    }
+    assert!(!lagrangian("coord x; L = dot(x)^2; force x = if dot(x) > 0 { -1 } else { 1 };").is_empty());
+}
+
+#[test]
+fn mistakes_in_tables() {
+    let of = |table: &str, message: &str| {
+        case(&format!("param c[4] = 0; coord x; {table} L = c[0] * dot(x)^2 / 2 - dot(x)^2 - g(x);"), message)
+    };
+    of("table g(a) = «3»;", "these are not the values of a table\nhelp: write the path of a file");
+    of("table g(a) = «\"no such file.csv\"»;", "the table `g` cannot be read from its file\nhelp: `");
+    of("table «g»(a) = [(0, 1)];", "the table `g` has 1 values\nhelp: write at least 2 values");
+    of(
+        "table «g»(a) = [(0, 1), (2, 3), (1, 5)];",
+        "the table `g` has the place 1 after 2\nhelp: write the places in ascending order",
+    );
+    of("table «g»(a) = [(0, 1), (1, 3, 4)];", "the table `g` has no place and value in each point");
+    of("table g(«a») = [1, 2, 3];", "the table `g` has values without places in `a`\nhelp: write the range");
+    of("table g(a in 0..«0») = [1, 2, 3];", "the table `g` has a range that ends before it begins");
+    of("table g(a in 0..1) = «d»;", "the table `g` has the values `d`, which is no array of parameters");
+    of("table g(«a») = c;", "the table `g` has values without places in `a`");
+    of("table «g»(a in 0..1) = c quintic;", "the table `g` cannot be `quintic`");
+    of("table g(a in 0..1) = c «cubci»;", "unknown kind of table `cubci`\nhelp: did you mean `cubic`?");
+    of("table g(a in 0..1) = c linear «cubic»;", "the table `g` cannot also be `cubic`");
+    of(
+        "table «g»(a) = [(0, 1), (1, 2), (2, 3), (3, 5)] periodic;",
+        "the table `g` is `periodic`, but its first and last values differ",
+    );
+    of("table g(a) = [(0, 1), (1, «x»)];", "the value of `g` is not a constant");
+}
+
+/// A file with this content in a folder of its own.
+fn file(name: &str, content: &str) -> std::path::PathBuf {
+    let folder = std::env::temp_dir().join(format!("vi-tables-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join(name);
+    std::fs::write(&path, content).expect("a file");
+    path
+}
+
+#[test]
+fn files_of_tables() {
+    let table = |arguments: &str, name: &str, content: &str| {
+        let path = file(name, content);
+        let calls = if arguments.contains(',') { "g(x, 0.5)" } else { "g(x)" };
+        format!("coord x; table g({arguments}) = {path:?}; L = dot(x)^2 / 2 - {calls};")
+    };
+    for (name, content) in [
+        ("a.csv", "v,drag\n0,0.1\n1,0.3\n"),
+        ("b.csv", "0;0.1\r\n1;0.3"),
+        ("c.csv", "# measured\n\n0 0.1\n1   0.3\n"),
+        ("d.csv", "\u{feff}0\t0.1\n1\t3e-1"),
+    ] {
+        let own = derived(&format!("struct S {{ {} }}", table("a", name, content))).own;
+        let vi_codegen::model::FunctionKind::Table(table) = &own.model.functions[0].kind else { panic!("a table") };
+        let wanted = vi_codegen::model::Values::Points { places: vec![0.0, 1.0], values: vec![0.1, 0.3] };
+        assert_eq!(table.values, wanted, "{name}");
+    }
+    let grid = table("a, b", "grid.csv", "x/y,0,1,2\n0,1,2,3\n1,4,5,6\n");
+    let own = derived(&format!("struct S {{ {grid} }}")).own;
+    let vi_codegen::model::FunctionKind::Table(table_of_grid) = &own.model.functions[0].kind else { panic!("a table") };
+    let rows = vec![vec![1.0, 2.0, 3.0], vec![4.0, 5.0, 6.0]];
+    let wanted = vi_codegen::model::Values::Grid { places: [vec![0.0, 1.0], vec![0.0, 1.0, 2.0]], rows };
+    assert_eq!(table_of_grid.values, wanted);
+    for (name, content, message) in [
+        ("e.csv", "0,1\n1,2\n2,abc\n", "the table `g` has `abc` in line 3 of its file, which is no number"),
+        ("f.csv", "0,1\n1\n", "the table `g` has 1 columns in line 2 of its file, and 2 before"),
+        ("g.csv", "v,drag\n", "the table `g` has no numbers in its file"),
+        ("h.csv", "0,1,2\n1,2,3\n", "the table `g` has 3 columns in its file"),
+        ("i.csv", "0,1\n1,inf\n", "the table `g` has `inf` in line 2 of its file"),
+        ("j.csv", "\u{0}PNG", "the table `g` has no numbers in its file"),
+        ("k.csv", "0,1\n0,2\n", "the table `g` has the place 0 after 0"),
+    ] {
+        let (_, text) = mistake(&table("a", name, content));
+        assert!(text.starts_with(message), "{name}: {text}");
+    }
+}
