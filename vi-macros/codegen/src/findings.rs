@@ -18,7 +18,7 @@ mod pattern;
 pub use pattern::Pattern;
 
 use crate::discrete::DiscreteSystem;
-use crate::model::Model;
+use crate::model::{Model, Smoothness};
 use crate::program::{Function, FunctionId, Operation, OperationId, Output, Program};
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
@@ -49,6 +49,8 @@ pub struct Findings {
     pub mass: Pattern,
     /// Common zero pattern of the derivatives of L_v and L_q + f with respect to q and v.
     pub point_derivatives: Pattern,
+    /// The smoothness of L and f, if tables or conditions limit it.
+    pub smoothness: Option<Smoothness>,
     /// Properties of the steps, if the system has a rule.
     pub steps: Option<StepFindings>,
 }
@@ -114,6 +116,7 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
             program.function(FunctionId::PointDerivatives),
             &[Output::Mass, Output::MomentumDq, Output::ForceDq, Output::ForceDv],
         ),
+        smoothness: model.smoothness.clone(),
         steps: program.function(FunctionId::MomentumEquation).map(|equation| steps(equation, program)),
     }
 }
@@ -164,10 +167,7 @@ fn smooth(function: &Function) -> bool {
     !function.needed().into_iter().any(|id| {
         matches!(
             function.operations.get(id),
-            Operation::Call(Abs | Sign, _)
-                | Operation::Call2(Atan2, ..)
-                | Operation::Select(..)
-                | Operation::Opaque(..)
+            Operation::Call(Abs | Sign, _) | Operation::Call2(Atan2, ..) | Operation::Select(..)
         )
     })
 }
@@ -218,6 +218,24 @@ fn affine(function: &Function) -> bool {
 fn symmetric(rows: &[Vec<OperationId>]) -> bool {
     let entry = |i: usize, j: usize| rows.get(i).and_then(|row| row.get(j));
     (0..rows.len()).all(|i| (0..i).all(|j| entry(i, j) == entry(j, i)))
+}
+
+/// The orders that the methods keep with so many continuous derivatives of L.
+fn smoothness_in_words(Smoothness { derivatives, cause }: &Smoothness) -> String {
+    let left = match derivatives {
+        0 => {
+            "`FixedStep` has order 1 across it, and a step may have no solution; no energy-preserving step is certain to exist"
+        }
+        1 => {
+            "`FixedStep` keeps order 2, `Gauss` has order 2 across it; the step density jumps, so that energy-preserving steps may end there"
+        }
+        2 => "`FixedStep` and energy-preserving steps keep order 2; `Gauss` has order 3 across it",
+        _ => {
+            "`FixedStep` and energy-preserving steps keep order 2; `Gauss` has one order more than derivatives across it"
+        }
+    };
+    let noun = if *derivatives == 1 { "derivative" } else { "derivatives" };
+    format!("`L` has {derivatives} continuous {noun} because of {cause}: {left}")
 }
 
 /// The names of coordinates, separated by commas.
@@ -276,6 +294,7 @@ impl Findings {
             (false, true) => "The mass matrix is constant".to_owned(),
             (false, false) => "The mass matrix depends on the state".to_owned(),
         });
+        lines.extend(self.smoothness.as_ref().map(smoothness_in_words));
         lines.extend(self.of_steps(name));
         lines
     }

@@ -138,7 +138,7 @@ fn mistakes_in_functions() {
         "«extern» fn cl(a); coord x; L = dot(x)^2 / 2;",
         "unknown clause `extern`\nhelp: write `fn cl(a) = crate::aero::cl;`",
     );
-    case("fn g«:»(a) = a; coord x; L = dot(x)^2 / 2;", "`g` is declared without arguments");
+    case("fn «g»: (a) = a; coord x; L = dot(x)^2 / 2;", "`g` is declared without arguments");
 }
 
 #[test]

@@ -458,8 +458,8 @@ fn habits() {
     says("«time»", "unknown name `time`\nhelp: write `t`");
     says("«lambda» * x", "unknown name `lambda`\nhelp: constraints are not supported: choose coordinates");
     for (function, help) in [
-        ("max", "write `(a + b + abs(a - b)) / 2` for the larger"),
-        ("min", "write `(a + b - abs(a - b)) / 2` for the smaller"),
+        ("fmin", "write `min(a, b)`"),
+        ("saturation", "write `clamp(x, a, b)`"),
         ("log", "write `ln(a)` for the natural logarithm"),
         ("arctan", "write `atan(a)`"),
         ("asinh", "write `ln(a + sqrt(a^2 + 1))`"),

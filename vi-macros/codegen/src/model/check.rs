@@ -4,7 +4,7 @@
 
 use super::context::Context;
 use super::scope::Meaning;
-use super::{Coordinate, Model, Parameter, Rule, check_state, condition, force, function, mass, rule, time_scale};
+use super::{Coordinate, Model, Parameter, Rule, check_state, force, function, mass, rule, smoothness, time_scale};
 use crate::limits::{COORDINATES, PARAMETERS, bounded};
 use crate::messages::{Absence, Message, error};
 use crate::symbol::{Symbol, Variable};
@@ -56,7 +56,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     // Values from an exhausted pool are meaningless.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
     singular?;
-    let model = Model {
+    let mut model = Model {
         attributes: system.attributes.clone(),
         visibility: system.visibility.clone(),
         name: system.name.clone(),
@@ -65,16 +65,24 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         functions,
         lagrangian,
         lagrangian_span,
+        smoothness: None,
         forced,
         forces,
         time_scale,
         rule,
         check_state,
     };
-    if let Some(condition) = condition::jump(pool, lagrangian, &model.parameters) {
+    if let Some(condition) = smoothness::jump(pool, lagrangian, &model.parameters) {
         let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
         return Err(error(lagrangian_span, &Message::Jump { condition }));
     }
+    if let Some(name) = smoothness::linear_table(pool, &model) {
+        let (what, help) =
+            ("is linear, but `L` needs a continuous slope", "use it in a force, or make it `cubic` or `monotone`");
+        let message = Message::Table { name, what: what.to_owned(), help: help.to_owned() };
+        return Err(error(lagrangian_span, &message));
+    }
+    model.smoothness = smoothness::smoothness(pool, &model);
     Ok(model)
 }
 

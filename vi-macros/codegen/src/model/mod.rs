@@ -17,6 +17,7 @@ mod probe;
 mod resolve;
 pub(crate) mod rule;
 mod scope;
+mod smoothness;
 mod table;
 mod time_scale;
 
@@ -24,6 +25,7 @@ pub use check_state::CheckState;
 pub use function::{Function, FunctionKind};
 pub use point::Point;
 pub use rule::{DiscreteForces, Rule};
+pub use smoothness::Smoothness;
 pub use table::{Outside, Table, TableKind, Values};
 
 use crate::symbol::Symbol;
@@ -53,6 +55,8 @@ pub struct Model {
     pub lagrangian_span: Span,
     /// f(t, q, v), one component per coordinate; zero without a declaration.
     pub forces: Vec<Expr>,
+    /// The smoothness of L and f, if tables or conditions limit it.
+    pub smoothness: Option<Smoothness>,
     /// Whether a force is declared that is not identically zero.
     pub forced: bool,
     /// g(t, q) of the time transformation dt = g dτ, if declared.

@@ -1,0 +1,159 @@
+//! The smoothness of L and f: how many derivatives are continuous across conditions and the knots of tables.
+//!
+//! In: L and f. Out: [`Smoothness`], or the condition at whose border L jumps. A force counts one derivative less than
+//! L, since the equations contain the derivative of L. The border of a condition is sought between points of a fixed
+//! sequence. There the expression, and its derivatives along a fixed direction, are evaluated with either arm of the
+//! condition. Parameters have their defaults.
+
+use super::{FunctionKind, Model, Parameter, TableKind, probe};
+use crate::symbol::Symbol;
+use std::collections::BTreeMap;
+use vi_expr::{Expr, Node, Pool};
+
+/// Pairs of points between which a border is sought.
+const PAIRS: u32 = 40;
+/// Borders at which both expressions are compared.
+const BORDERS: usize = 10;
+/// Bisections of the way between two points: the bits of a number.
+const BISECTIONS: u32 = 60;
+/// Relative difference at a border that counts as a jump. A root has an infinite slope there, and differs by 1e-8.
+const JUMP: f64 = 1e-6;
+/// Number of continuous derivatives that leave nothing to say: a quintic spline has four.
+const SMOOTH: usize = 5;
+
+/// The number of continuous derivatives of L.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Smoothness {
+    /// Continuous derivatives; 0 if L is only continuous.
+    pub derivatives: usize,
+    /// What breaks the next derivative, in words: a table or a condition.
+    pub cause: String,
+}
+
+/// The smoothness of a system with tables or conditions; `None` if all derivatives that matter are continuous.
+pub(super) fn smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Option<Smoothness> {
+    let mut found: Vec<Smoothness> = Vec::new();
+    let of_lagrangian = [(model.lagrangian, 0)];
+    let of_forces = model.forces.iter().map(|force| (*force, 1));
+    for (expr, more) in of_lagrangian.into_iter().chain(of_forces) {
+        let reachable = pool.reachable(&[expr]);
+        for node in &reachable {
+            let Node::Opaque(function, _) = pool.node(*node) else { continue };
+            let known = model.functions.iter().find(|known| known.name == function.name.as_ref());
+            if let Some(FunctionKind::Table(table)) = known.map(|known| &known.kind) {
+                let derivatives = (table.kind.smoothness() + more).saturating_sub(function.order());
+                let cause = format!("the table `{}`", function.name);
+                found.push(Smoothness { derivatives, cause });
+            }
+        }
+        let mut slope = expr;
+        for order in 0..SMOOTH {
+            if let Some(condition) = jump(pool, slope, &model.parameters) {
+                let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
+                let derivatives = (order + more).saturating_sub(1);
+                found.push(Smoothness { derivatives, cause: format!("the condition `{condition} > 0`") });
+                break;
+            }
+            if !reachable.iter().any(|node| matches!(pool.node(*node), Node::Select(_))) {
+                break;
+            }
+            slope = directional(pool, slope);
+        }
+    }
+    found.into_iter().filter(|found| found.derivatives < SMOOTH).min_by_key(|found| found.derivatives)
+}
+
+/// The linear tables in L: their slope jumps at each place, where an infinite force would act.
+pub(super) fn linear_table(pool: &Pool<Symbol>, model: &Model) -> Option<String> {
+    pool.reachable(&[model.lagrangian]).into_iter().find_map(|node| {
+        let Node::Opaque(function, _) = pool.node(node) else { return None };
+        let known = model.functions.iter().find(|known| known.name == function.name.as_ref())?;
+        match &known.kind {
+            FunctionKind::Table(table) if table.kind == TableKind::Linear => Some(function.name.to_string()),
+            _ => None,
+        }
+    })
+}
+
+/// Characters of a condition in words.
+const CHARACTERS: usize = 60;
+
+/// The derivative along a fixed direction in time, coordinates and velocities.
+fn directional(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
+    let mut directions: BTreeMap<Symbol, i64> = BTreeMap::new();
+    pool.derivative(expr, &mut |pool, symbol| {
+        if !matches!(symbol, Symbol::Continuous(_)) {
+            return pool.zero();
+        }
+        let next = i64::try_from(directions.len()).unwrap_or(0);
+        // Neighbours differ, so that no difference of two coordinates stays constant.
+        let direction = *directions.entry(symbol.clone()).or_insert(1 + next * next);
+        pool.integer(direction)
+    })
+}
+
+/// A condition of an expression at whose border the expression jumps.
+///
+/// The border is sought between points of a fixed sequence. There the expression is evaluated with either arm of the
+/// condition. Parameters have their defaults.
+pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]) -> Option<Expr> {
+    let selects: Vec<(Expr, [Expr; 3])> = pool
+        .reachable(&[expr])
+        .into_iter()
+        .filter_map(|node| if let Node::Select(parts) = pool.node(node) { Some((node, *parts)) } else { None })
+        .collect();
+    for (select, [condition, then, otherwise]) in selects {
+        let sides = [then, otherwise].map(|arm| pool.replace(expr, select, arm));
+        let mut borders = 0;
+        for pair in 0..PAIRS {
+            let Some(values) = border(pool, condition, pair, &sides, parameters) else { continue };
+            let [then, otherwise] = values;
+            if (then - otherwise).abs() > JUMP * (then.abs() + otherwise.abs()) {
+                return Some(condition);
+            }
+            borders += 1;
+            if borders == BORDERS {
+                break;
+            }
+        }
+    }
+    None
+}
+
+/// The values of two expressions at a point where a condition changes its sign; `None` if it does not between the two
+/// points of this pair, or if a value is not finite.
+fn border(
+    pool: &Pool<Symbol>,
+    condition: Expr,
+    pair: u32,
+    sides: &[Expr; 2],
+    parameters: &[Parameter],
+) -> Option<[f64; 2]> {
+    let mut ends: BTreeMap<Symbol, [f64; 2]> = BTreeMap::new();
+    let mut at = |way: f64, exprs: &[Expr]| {
+        pool.evaluate_all(exprs, &mut |symbol| {
+            if let Symbol::Parameter { index, .. } = symbol {
+                return parameters.get(*index).map_or(f64::NAN, |parameter| parameter.default);
+            }
+            let drawn = ends.len();
+            let [from, to] = *ends.entry(symbol.clone()).or_insert_with(|| {
+                let draw = if pair.is_multiple_of(2) { probe::near_one } else { probe::of_any_size };
+                [draw(2 * pair, 2 * drawn), draw(2 * pair + 1, 2 * drawn + 1)]
+            });
+            from + way * (to - from)
+        })
+    };
+    let mut sign = |way: f64| at(way, &[condition]).first().map_or(f64::NAN, |value| *value);
+    let (mut low, mut high) = (0.0, 1.0);
+    let first = sign(low) > 0.0;
+    if (sign(high) > 0.0) == first {
+        return None;
+    }
+    for _ in 0..BISECTIONS {
+        let middle = f64::midpoint(low, high);
+        if (sign(middle) > 0.0) == first { low = middle } else { high = middle }
+    }
+    let values = at(high, sides);
+    let [then, otherwise] = values[..] else { return None };
+    (then.is_finite() && otherwise.is_finite()).then_some([then, otherwise])
+}
