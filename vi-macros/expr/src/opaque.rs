@@ -21,6 +21,8 @@ pub const MAX_ARGUMENTS: usize = 3;
 
 /// Ratio of the frequencies of the stand-in in one argument and in the one before.
 const RATIO: f64 = 1.3;
+/// Phase of the stand-in at zero, per unit of the sum of the bytes of its name.
+const FIRST_PHASE: f64 = 0.025;
 /// Ratio of the frequency in further arguments to that in the first.
 const FURTHER: f64 = 0.1;
 
@@ -84,7 +86,7 @@ impl Opaque {
     /// The value of the stand-in.
     #[must_use]
     pub fn value(&self, arguments: &[f64]) -> f64 {
-        let phase = f64::from(self.name.bytes().fold(0_u8, u8::wrapping_add));
+        let phase = FIRST_PHASE * f64::from(self.name.bytes().fold(0_u8, u8::wrapping_add));
         let phase = arguments.iter().enumerate().fold(phase, |phase, (slot, x)| phase + self.frequency_in(slot) * x);
         let quarter_turns = f64::from(self.orders.iter().map(|order| order % 4).sum::<u8>() % 4);
         self.scale() * (phase + quarter_turns * FRAC_PI_2).sin()

@@ -45,8 +45,8 @@ pub struct Continuous {
     /// Expressions checked for finite values, parts before wholes: variables, parameters, calls, roots, quotients, L,
     /// f.
     pub watched: Vec<Expr>,
-    /// Calls of Rust functions and tables in L and f, with each of their arguments, inner calls first.
-    pub calls: Vec<(Expr, Expr)>,
+    /// Calls of Rust functions and tables in L and f, with their arguments, inner calls first.
+    pub calls: Vec<(Expr, Vec<Expr>)>,
     /// Neither L nor f depends on the time.
     pub autonomous: bool,
     /// Whether the coordinate is absent from L and has no force, per coordinate.
@@ -214,14 +214,14 @@ fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
     parts.into_iter().chain(others.into_iter().filter(|expr| wholes.contains(expr) && !pool.is_zero(*expr))).collect()
 }
 
-fn calls(pool: &Pool<Symbol>, model: &Model) -> Vec<(Expr, Expr)> {
+fn calls(pool: &Pool<Symbol>, model: &Model) -> Vec<(Expr, Vec<Expr>)> {
     let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).copied().collect();
     let nodes = pool.reachable(&wholes).into_iter();
-    let calls = nodes.filter_map(|node| match pool.node(node) {
+    let call = |node| match pool.node(node) {
         Node::Opaque(function, arguments) => Some((node, arguments[..function.arity].to_vec())),
         _ => None,
-    });
-    calls.flat_map(|(call, arguments)| arguments.into_iter().map(move |argument| (call, argument))).collect()
+    };
+    nodes.filter_map(call).collect()
 }
 
 fn moving(pool: &mut Pool<Symbol>, index: usize) -> Expr {

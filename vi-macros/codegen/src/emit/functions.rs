@@ -9,7 +9,7 @@
 
 use super::Source;
 use super::formula::{Formula, number};
-use crate::model::{self, FunctionKind, Outside, Table, TableKind, Values};
+use crate::model::{self, FunctionKind, Table, TableKind, Values};
 use crate::program::{Function, Operation, OperationId};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote, quote_spanned};
@@ -36,12 +36,12 @@ fn item(function: &model::Function) -> TokenStream {
             let documentation = format!(" The Rust function `{}`.", function.name);
             // A wrong signature is reported at the path.
             let call = quote_spanned!(path.span()=> #path(#(#arguments),*));
+            let source = format_ident!("{}_source", function.name);
             quote! {
-                #[doc = #documentation]
                 #[allow(non_camel_case_types)]
-                struct #name;
+                struct #source;
 
-                impl ::vi_core::function::Function<#count> for #name {
+                impl ::vi_core::function::Function<#count> for #source {
                     #[inline(always)]
                     fn value<AnyNumber: ::vi_core::real::Number>(
                         &self,
@@ -50,6 +50,11 @@ fn item(function: &model::Function) -> TokenStream {
                         #call
                     }
                 }
+
+                #[doc = #documentation]
+                #[allow(non_upper_case_globals)]
+                static #name: ::vi_core::function::Differentiated<#source> =
+                    ::vi_core::function::Differentiated(#source);
             }
         }
         FunctionKind::Table(table) => {
@@ -74,46 +79,38 @@ fn item(function: &model::Function) -> TokenStream {
 
 /// The type and the value of a table.
 fn table_value(table: &Table) -> (TokenStream, TokenStream) {
-    let constructor = format_ident!("{}", table.kind.name());
-    let outside = match table.outside {
-        Outside::Nothing | Outside::Periodic => None,
-        Outside::Hold => Some(quote!(.hold())),
-        Outside::Extend => Some(quote!(.extend())),
-    };
-    let periodic = table.outside == Outside::Periodic;
+    let kind = format_ident!("{}", table.kind.name());
+    let outside = table.outside.name().map(|word| {
+        let word = format_ident!("{word}");
+        quote!(.#word())
+    });
     let list = |numbers: &[f64]| {
         let numbers = numbers.iter().map(|value| number(*value));
         quote!([#(#numbers),*])
     };
-    let coefficients = match table.kind {
-        TableKind::Linear => 2_usize,
+    let coefficients = Literal::usize_unsuffixed(match table.kind {
+        TableKind::Linear => 2,
         TableKind::Cubic | TableKind::Monotone => 4,
         TableKind::Quintic => 6,
-    };
-    let (of, ends) = (Literal::usize_unsuffixed(coefficients), if periodic { quote!(Periodic) } else { quote!(Free) });
-    match &table.values {
+    });
+    let (item, counts, values) = match &table.values {
         Values::Points { places, values } => {
             let count = Literal::usize_unsuffixed(places.len());
             let (places, values) = (list(places), list(values));
-            let kind = quote!(::vi_core::table::Table<#count, #of>);
-            (
-                kind,
-                quote!(::vi_core::table::Table::#constructor(#places, #values, ::vi_core::table::Ends::#ends) #outside),
-            )
+            (quote!(Table), quote!(#count, #coefficients), quote!(#places, #values))
         }
         Values::Grid { places: [first, second], rows } => {
-            let (m, n) = (Literal::usize_unsuffixed(first.len()), Literal::usize_unsuffixed(second.len()));
+            let [m, n] = [first, second].map(|axis| Literal::usize_unsuffixed(axis.len()));
             let (first, second) = (list(first), list(second));
             let rows = rows.iter().map(|row| list(row));
-            let kind = quote!(::vi_core::table::Grid<#m, #n>);
-            (kind, quote!(::vi_core::table::Grid::#constructor(#first, #second, [#(#rows),*]) #outside))
+            (quote!(Grid), quote!(#m, #n), quote!(#first, #second, [#(#rows),*]))
         }
         Values::Parameters { ends: [from, to], count, .. } => {
             let (count, from, to) = (Literal::usize_unsuffixed(*count), number(*from), number(*to));
-            let kind = quote!(::vi_core::table::Uniform<#count>);
-            (kind, quote!(::vi_core::table::Uniform::#constructor(#from, #to, ::vi_core::table::Ends::#ends) #outside))
+            (quote!(Uniform), quote!(#count), quote!(#from, #to))
         }
-    }
+    };
+    (quote!(::vi_core::table::#item<#counts>), quote!(::vi_core::table::#item::#kind(#values)#outside))
 }
 
 /// A call with derivatives up to an order; further arguments are the values of a table of parameters.

@@ -3,9 +3,9 @@
 use super::Source;
 use super::body::{Body, VelocityFrom, body, state_parts};
 use super::entries::{self, ResultEntry};
-use super::formula::number as constant;
+use super::functions;
 use super::matrix::matrix;
-use crate::model::{Coordinate, FunctionKind, Parameter};
+use crate::model::{Coordinate, Parameter};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
@@ -240,10 +240,14 @@ fn undefined(source: &Source) -> TokenStream {
         return TokenStream::new();
     };
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let calls = source.system.continuous.calls.iter();
-    let (texts, ranges): (Vec<_>, Vec<_>) = calls.clone().map(|(call, _)| called(source, *call)).unzip();
-    let values = body.results.vector(Output::Value).iter();
-    let arguments = body.results.vector(Output::Argument).iter();
+    let mut arguments = body.results.vector(Output::Value).iter();
+    let calls = source.system.continuous.calls.iter().map(|(call, of)| {
+        let Node::Opaque(function, _) = source.pool.node(*call) else { return TokenStream::new() };
+        let (item, text) = (functions::item_name(&function.name), source.spelt(*call));
+        let arguments = arguments.by_ref().take(of.len());
+        quote!(#item.undefined(#text, [#(#arguments),*]))
+    });
+    let calls: Vec<TokenStream> = calls.collect();
     quote! {
         #documentation
         #[cold]
@@ -254,29 +258,9 @@ fn undefined(source: &Source) -> TokenStream {
             v: &::vi_core::SVector<T, #dimension>,
         ) -> ::core::option::Option<::vi_core::lagrangian::Undefined> {
             #inputs #statements
-            let calls = [#((#texts, #values, #arguments, #ranges)),*];
-            let missing = calls.into_iter().find(|(_, value, argument, _)| argument.is_finite() && !value.is_finite());
-            missing.map(|(function, _, argument, range)| {
-                ::vi_core::lagrangian::Undefined { function, argument: argument.to_f64(), range }
-            })
+            [#(#calls),*].into_iter().flatten().next()
         }
     }
-}
-
-/// The text of a call, and the places of its table if it has one argument.
-fn called(source: &Source, call: Expr) -> (String, TokenStream) {
-    let none = quote!(::core::option::Option::None);
-    let Node::Opaque(function, _) = source.pool.node(call) else { return (source.spelt(call), none) };
-    let known = source.model.functions.iter().find(|known| known.name == function.name.as_ref());
-    let ends = known.and_then(|known| match &known.kind {
-        FunctionKind::Table(table) => table.ends(),
-        FunctionKind::Rust(_) => None,
-    });
-    let range = ends.map(|ends| {
-        let [from, to] = ends.map(constant);
-        quote!(::core::option::Option::Some([#from, #to]))
-    });
-    (source.spelt(call), range.unwrap_or(none))
 }
 
 fn non_finite(source: &Source) -> TokenStream {

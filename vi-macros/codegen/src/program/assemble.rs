@@ -171,9 +171,8 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     }
     functions.push(assembly.function(FunctionId::NonFinite, vector(&of.watched))?);
     if !of.calls.is_empty() {
-        let (calls, arguments) = of.calls.iter().copied().unzip();
-        let quantities = vec![(Output::Value, vec![calls]), (Output::Argument, vec![arguments])];
-        functions.push(assembly.function(FunctionId::Undefined, quantities)?);
+        let arguments: Vec<Expr> = of.calls.iter().flat_map(|(_, arguments)| arguments).copied().collect();
+        functions.push(assembly.function(FunctionId::Undefined, vector(&arguments))?);
     }
     if let Some(TimeScale { g, g_dq, g_dt }) = &of.time_scale {
         let quantities = vec![

@@ -28,7 +28,7 @@ pub enum FunctionId {
     StepDensity,
     /// The parts of L and f.
     NonFinite,
-    /// The calls of Rust functions and tables, with their arguments.
+    /// The arguments of Rust functions and tables.
     Undefined,
     /// L_d.
     Ld,
@@ -106,8 +106,6 @@ impl FunctionId {
 pub enum Output {
     /// The value of a function that computes one number or one vector.
     Value,
-    /// The arguments of calls.
-    Argument,
     /// The mass matrix M.
     Mass,
     /// L_v.

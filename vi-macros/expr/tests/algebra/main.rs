@@ -6,6 +6,7 @@
 //! - `identities`: value and slope where an identity fails;
 //! - `limits`: deep, wide and huge expressions, and undefined values;
 //! - `rounding`: errors of values against identities;
+//! - `opaque`: functions known by name, and conditions;
 //! - `passes`: substitution, expansion and the queries.
 //!
 //! `notation` reads the text that the tables are written in; `tree` makes the random expressions.
@@ -15,6 +16,7 @@ mod derivatives;
 mod identities;
 mod limits;
 mod notation;
+mod opaque;
 mod passes;
 mod random;
 mod rounding;
