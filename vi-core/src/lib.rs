@@ -102,6 +102,7 @@ pub use vi_macros::lagrangian;
 pub mod prelude {
     pub use crate::error::StepError;
     pub use crate::method::{Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method};
+    pub use crate::real::Number;
     pub use crate::run::{Crossing, Event, Moment, Monitored, Run, Solution, Start, Starts as _, Tolerance};
     pub use crate::state::State;
     pub use vi_macros::lagrangian;
