@@ -129,6 +129,14 @@ class NonFinite(StepError):
     quantity: str
     expression: str | None
 
+class Undefined(StepError):
+    """A table or a Rust function has no value at an argument."""
+
+    t: float
+    function: str
+    argument: float
+    range: list[float] | None
+
 class CannotLeave(StepError):
     """The trajectory cannot leave the zero of an event."""
 

@@ -5,7 +5,7 @@
 //! `f64` accuracy only.
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
-use vi_core::real::Real;
+use vi_core::real::{Number, Real};
 
 /// The sum of two numbers, the second at most half an ulp of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,9 +125,7 @@ impl num_traits::One for Twice {
     }
 }
 
-impl Real for Twice {
-    const EPSILON: f64 = 1e-31;
-
+impl Number for Twice {
     fn real(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
@@ -212,7 +210,7 @@ impl Real for Twice {
         if self.high < 0.0 { -self } else { self }
     }
     fn sign(self) -> Self {
-        Self::real(Real::sign(self.high))
+        Self::real(Number::sign(self.high))
     }
     fn hypot(self, other: Self) -> Self {
         (self * self + other * other).sqrt()
@@ -220,6 +218,18 @@ impl Real for Twice {
     fn pow(self, exponent: Self) -> Self {
         if self.high == 0.0 { Self::real(0.0_f64.powf(exponent.high)) } else { (self.ln() * exponent).exp() }
     }
+    fn if_positive(self, then: Self, otherwise: Self) -> Self {
+        let arm = if self.high > 0.0 { then } else { otherwise };
+        if self.high.is_nan() { self } else { arm }
+    }
+    fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C] {
+        find(arguments.map(|argument| argument.high)).map(Self::real)
+    }
+}
+
+impl Real for Twice {
+    const EPSILON: f64 = 1e-31;
+
     fn max(self, other: Self) -> Self {
         if (other - self).high > 0.0 { other } else { self }
     }

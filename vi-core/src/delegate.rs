@@ -14,7 +14,7 @@ use crate::stepping::{Batch, Convertible, Discretized, EnergyStepping, FixedStep
 macro_rules! motion {
     ($wrapper:ty, $attribute:tt $(, $rule:ident)?) => {
         impl<const N: usize, T: Real, S: Lagrangian<N, T>$(, $rule: Rule)?> Lagrangian<N, T> for $wrapper {
-            forward! { [N T S] self => self; [] lagrangian_constants non_finite }
+            forward! { [N T S] self => self; [] lagrangian_constants non_finite undefined }
             forward! { [N T S] self => self; [#[inline]] lagrangian energy momentum force acceleration flow }
         }
 

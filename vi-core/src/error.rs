@@ -149,6 +149,17 @@ pub enum StepError {
         /// The subexpression of L or f that is not finite, if the system can name it.
         expression: Option<&'static str>,
     },
+    /// A table or a Rust function in L or f has no value at an argument that the state or the trial step has.
+    Undefined {
+        /// Time of the last good node.
+        t: f64,
+        /// The function as it is written, with its arguments: `drag(v)`.
+        function: &'static str,
+        /// The argument, in its own unit.
+        argument: f64,
+        /// The range in which a table is given; `None` for a function that is not finite at the argument.
+        range: Option<[f64; 2]>,
+    },
     /// A one-directional event is at its zero at the start of the search, and its function passes zero again at the
     /// same instant. A ball at rest on its floor is an example.
     CannotLeave {
@@ -275,6 +286,12 @@ impl fmt::Display for Reason<'_> {
             StepError::NonFinite { t, quantity, expression: Some(expression) } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
             }
+            StepError::Undefined { t, function, argument, range: Some([from, to]) } => {
+                write!(f, "`{function}` is given for {from} to {to}, not at {argument}, past t = {t:.9}")
+            }
+            StepError::Undefined { t, function, argument, range: None } => {
+                write!(f, "`{function}` is not finite at {argument}, past t = {t:.9}")
+            }
             StepError::CannotLeave { t, event, value, within } => write!(
                 f,
                 "the trajectory cannot leave the zero of event {event} at t = {t:.9}: its function is {value:.3e} and passes zero again within {within:.3e}"
@@ -362,6 +379,12 @@ impl fmt::Display for StepError {
             ),
             Self::Tolerance { .. } => {
                 f.write_str("; take shorter steps, a method of higher order, or allow a larger error")
+            }
+            Self::Undefined { range: Some(_), .. } => {
+                f.write_str("; write `hold` or `extend` in its `table`, add points, or stop the run before it leaves them")
+            }
+            Self::Undefined { range: None, .. } => {
+                f.write_str("; return a finite number there, or stop the run before it gets there")
             }
             Self::Singular { .. }
             | Self::NonFinite { .. }

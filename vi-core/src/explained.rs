@@ -1,16 +1,18 @@
-//! Adds the expression that is not finite to a failure.
+//! Adds the reason to a failure: the function without a value, or the expression that is not finite.
 //!
-//! For a [`StepError::NonFinite`] and the attempted step, this module asks the system for the part of L or f without a
-//! value there.
+//! For the attempted step, this module asks the system for a table whose argument has left its range, for a Rust
+//! function that is not finite, and for the part of L or f without a value. Iterations that run into the end of a table
+//! fail in other ways too, so that it is asked for them as well.
 
 use crate::error::StepError;
-use crate::lagrangian::Lagrangian;
+use crate::lagrangian::{Lagrangian, Undefined};
 use crate::node::Node;
 use crate::real::Scalar;
 use nalgebra::SVector;
 
 impl StepError {
-    /// Adds the expression that is not finite at the attempted step `(v, h)` from `node`, if the system can name it.
+    /// Adds the function or the expression that is not finite at the attempted step `(v, h)` from `node`, if the system
+    /// can name it.
     #[cold]
     pub(crate) fn explained<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
         self,
@@ -19,11 +21,46 @@ impl StepError {
         h: T,
         v: &SVector<T, N>,
     ) -> Self {
+        if !self.may_be_undefined() {
+            return self;
+        }
+        // The middle of the step, the node, the end, and the middle of the longest trial step.
+        let places = [1.0, 0.0, 2.0, 3.0].map(|part| node.midpoint(h * T::real(part), v));
+        let undefined = places.iter().find_map(|(t, q)| system.undefined(*t, q, v));
+        if let Some(Undefined { function, argument, range }) = undefined {
+            return Self::Undefined { t: node.t.to_f64(), function, argument, range };
+        }
         let Self::NonFinite { t, quantity, expression: None } = self else { return self };
-        // The middle of the step, the node, and the middle of the longest trial step.
-        let lengths = [h, T::zero(), h * T::real(3.0)];
-        let mut places = lengths.into_iter().map(|h| node.midpoint(h, v));
-        let expression = places.find_map(|(t, q)| system.non_finite(t, &q, v));
+        let [middle, start, _, longest] = places;
+        let expression = [middle, start, longest].into_iter().find_map(|(t, q)| system.non_finite(t, &q, v));
         Self::NonFinite { t, quantity, expression }
+    }
+
+    /// The same for a step of the length h with the velocity of the node, if it has one.
+    #[cold]
+    pub(crate) fn explained_at<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
+        self,
+        system: &S,
+        node: &Node<N, T>,
+        h: T,
+    ) -> Self {
+        if !self.may_be_undefined() || node.check_finite(node.t).is_err() {
+            return self;
+        }
+        let flow = system.flow(node.t, &node.q, &node.p);
+        self.explained(system, node, h, &flow.map_or_else(|_| SVector::zeros(), |flow| flow.v))
+    }
+
+    /// Whether a function without a value may be the reason.
+    fn may_be_undefined(&self) -> bool {
+        match self {
+            Self::NonFinite { expression: None, .. }
+            | Self::NotConverged { .. }
+            | Self::StagesUnsettled { .. }
+            | Self::Singular { .. } => true,
+            Self::TimeScale { g, .. } => !g.is_finite(),
+            Self::Tolerance { estimate, .. } => !estimate.is_finite(),
+            _ => false,
+        }
     }
 }

@@ -72,6 +72,10 @@ macro_rules! forward {
         $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, non_finite -> Option<&'static str>, $($rest)* }
     };
 
+    (@undefined [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, undefined -> Option<$crate::lagrangian::Undefined>, $($rest)* }
+    };
+
     // The equations of motion at a point.
     (@collocation_types [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
         type Mass = <$s as $crate::collocation::Collocation<$n, $t>>::Mass;

@@ -53,6 +53,23 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     fn non_finite(&self, _t: T, _q: &SVector<T, N>, _v: &SVector<T, N>) -> Option<&'static str> {
         None
     }
+    /// The first table or Rust function in L and f that has no value at `(t, q, v)`, although its arguments are finite.
+    ///
+    /// `None` if all have one, and for systems without them.
+    fn undefined(&self, _t: T, _q: &SVector<T, N>, _v: &SVector<T, N>) -> Option<Undefined> {
+        None
+    }
+}
+
+/// A function without a value at an argument.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undefined {
+    /// The function as it is written, with its arguments: `drag(v)`.
+    pub function: &'static str,
+    /// The argument, in its own unit.
+    pub argument: f64,
+    /// The range in which a table is given; `None` for a function that is not finite at the argument.
+    pub range: Option<[f64; 2]>,
 }
 
 /// The rates of change at `(t, q, p)`: Hamilton's equations with a force.

@@ -29,14 +29,27 @@ impl<const N: usize, T: Scalar> State<N, T> {
     /// [`StepError::Singular`] if the mass matrix is singular, [`StepError::NotConverged`] if no velocity has these
     /// momenta, [`StepError::NonFinite`].
     pub fn velocity<S: Lagrangian<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
-        self.flow(system).map(|flow| flow.v)
+        self.raw_flow(system).map(|flow| flow.v)
     }
 
     /// The rates of change at this state: its velocity, `L_q + f`, and the power `f·v − L_t`.
     ///
     /// # Errors
-    /// As [`State::velocity`].
+    /// As [`State::velocity`]; [`StepError::NonFinite`] or [`StepError::Undefined`] if a rate is not finite.
     pub fn flow<S: Lagrangian<N, T>>(&self, system: &S) -> Result<Flow<N, T>, StepError> {
+        let flow = self.raw_flow(system)?;
+        if flow.power.is_finite() && flow.force.iter().all(|entry| entry.is_finite()) {
+            return Ok(flow);
+        }
+        let failure = StepError::NonFinite { t: self.t.to_f64(), quantity: "flow", expression: None };
+        Err(failure.explained(system, &Node::new(*self, T::zero()), T::zero(), &flow.v))
+    }
+
+    /// The flow, whose forces and power may be infinite or NaN where the velocity is not.
+    ///
+    /// # Errors
+    /// As [`State::velocity`].
+    pub(crate) fn raw_flow<S: Lagrangian<N, T>>(&self, system: &S) -> Result<Flow<N, T>, StepError> {
         let node = Node::new(*self, T::zero());
         let flow = node.check_finite(T::zero()).and_then(|()| system.flow(self.t, &self.q, &self.p));
         flow.map_err(|failure| failure.explained(system, &node, T::zero(), &SVector::zeros()))

@@ -43,6 +43,7 @@
 //! | [`condition`] | condition numbers of the step equations |
 //! | [`error`] | the typed failures of a step, with their numbers |
 //! | [`check`] | tests of a system: derivatives, order, momenta, symplecticity; also from `check { … }` |
+//! | [`function`], [`table`] | derivatives of Rust functions; functions given by points |
 //! | [`real`] | number types: `f64`, duals, series, running error analysis, SIMD lanes |
 //! | `compensated` | compensated summation |
 //! | [`called`], `delegate`, `forward` | wrappers of a system, for example with functions that are not inlined |
@@ -65,6 +66,7 @@ pub mod energy_preserving;
 pub mod error;
 mod explained;
 mod forward;
+pub mod function;
 pub mod gauss;
 pub mod lagrangian;
 mod legendre;
@@ -82,6 +84,7 @@ pub mod state;
 pub mod stepping;
 #[doc(hidden)]
 pub mod support;
+pub mod table;
 mod vector;
 
 pub use called::Called;
@@ -102,6 +105,7 @@ pub use vi_macros::lagrangian;
 pub mod prelude {
     pub use crate::error::StepError;
     pub use crate::method::{Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method};
+    pub use crate::real::Number;
     pub use crate::run::{Crossing, Event, Moment, Monitored, Run, Solution, Start, Starts as _, Tolerance};
     pub use crate::state::State;
     pub use vi_macros::lagrangian;

@@ -1,7 +1,7 @@
 //! Number types of generated code.
 //!
-//! Formulas are generic over [`Real`] and run in `f64`, in `f32`, and in lanes of an ensemble. [`Real`] has the
-//! operations of formulas, all of which a lane of several numbers can perform. [`Scalar`] adds the order that the
+//! Formulas run in `f64`, in `f32`, and in lanes of an ensemble. [`Number`] has the operations of formulas, all of which
+//! several lanes can perform at once. [`Real`] adds the functions that read a number, and [`Scalar`] the order that the
 //! control flow of a stepper needs.
 
 /// Implements the assigning operators by the others.
@@ -35,8 +35,11 @@ pub use series::Series;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A number type of generated formulas.
-pub trait Real:
+/// A number, or several side by side, for formulas: a function `fn cl<T: Number>(a: T) -> T` runs in every number type.
+///
+/// It has no comparison, because several numbers may compare differently. [`if_positive`](Number::if_positive) selects
+/// for each of them, and a [`Table`](crate::table::Table) finds the piece of each.
+pub trait Number:
     Copy
     + Debug
     + PartialEq
@@ -54,9 +57,6 @@ pub trait Real:
     + num_traits::Zero
     + num_traits::One
 {
-    /// Distance from 1 to the next larger number.
-    const EPSILON: f64;
-
     /// The constant `value`, rounded to this type.
     fn real(value: f64) -> Self;
     /// 1/x.
@@ -125,9 +125,6 @@ pub trait Real:
     /// x^y for a real exponent.
     #[must_use]
     fn pow(self, exponent: Self) -> Self;
-    /// The larger of two numbers.
-    #[must_use]
-    fn max(self, other: Self) -> Self;
     /// The number itself, or 0 if `base` is zero: the limit of a product whose factors are zero and infinite there. The
     /// first `derivatives` derivatives have the limit 0 too; number types with derivatives do not know higher ones.
     #[must_use]
@@ -135,6 +132,31 @@ pub trait Real:
     fn zero_where(self, base: Self, _derivatives: u8) -> Self {
         if base.is_zero() { Self::zero() } else { self }
     }
+    /// `then` if the number is above zero, `otherwise` if it is not, and NaN if it is NaN; for each lane by itself.
+    ///
+    /// Both arms are computed. Derivatives are those of the selected arm, without any trace of the other one.
+    #[must_use]
+    fn if_positive(self, then: Self, otherwise: Self) -> Self;
+    /// Constants that depend on where the arguments are, as the coefficients of a piece of a table: `find` at their
+    /// values, for each lane by itself. Derivatives of the constants are zero.
+    fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C];
+    /// 0 if the number and all its derivatives are zero, otherwise 1; for each lane by itself.
+    #[doc(hidden)]
+    #[must_use]
+    #[inline(always)]
+    fn presence(self) -> Self {
+        Self::one().zero_where(self, 0)
+    }
+}
+
+/// A number type of generated formulas.
+pub trait Real: Number {
+    /// Distance from 1 to the next larger number.
+    const EPSILON: f64;
+
+    /// The larger of two numbers.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
     /// Whether the number is finite.
     fn is_finite(self) -> bool;
     /// Whether the number is above zero.
@@ -167,10 +189,7 @@ fn large_sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
 
 macro_rules! impl_real {
     ($($float:ident),*) => {$(
-        impl Real for $float {
-            #[allow(clippy::cast_lossless)]
-            const EPSILON: f64 = $float::EPSILON as f64;
-
+        impl Number for $float {
             // A constant of a formula is rounded to the evaluating type, as `real` documents.
             #[allow(clippy::cast_possible_truncation, clippy::cast_lossless)]
             #[inline]
@@ -184,12 +203,12 @@ macro_rules! impl_real {
             #[inline]
             fn ln(self) -> Self { $float::ln(self) }
             #[inline]
-            fn sin(self) -> Self { Real::sin_cos(self).0 }
+            fn sin(self) -> Self { Number::sin_cos(self).0 }
             #[inline]
-            fn cos(self) -> Self { Real::sin_cos(self).1 }
+            fn cos(self) -> Self { Number::sin_cos(self).1 }
             #[inline]
             fn sin_cos(self) -> (Self, Self) {
-                let [pair] = Real::sin_cos_each([self]);
+                let [pair] = Number::sin_cos_each([self]);
                 pair
             }
             // In double precision for every type: cheaper than the library call.
@@ -222,6 +241,25 @@ macro_rules! impl_real {
             fn hypot(self, other: Self) -> Self { $float::hypot(self, other) }
             #[inline]
             fn pow(self, exponent: Self) -> Self { $float::powf(self, exponent) }
+            #[inline(always)]
+            fn if_positive(self, then: Self, otherwise: Self) -> Self {
+                let arm = if self > 0.0 { then } else { otherwise };
+                if self.is_nan() { self } else { arm }
+            }
+            #[allow(clippy::cast_possible_truncation, clippy::cast_lossless)]
+            #[inline(always)]
+            fn lookup<const A: usize, const C: usize>(
+                arguments: [Self; A],
+                find: impl Fn([f64; A]) -> [f64; C],
+            ) -> [Self; C] {
+                find(arguments.map(|argument| argument as f64)).map(|constant| constant as $float)
+            }
+        }
+
+        impl Real for $float {
+            #[allow(clippy::cast_lossless)]
+            const EPSILON: f64 = $float::EPSILON as f64;
+
             #[inline]
             fn max(self, other: Self) -> Self { $float::max(self, other) }
             #[inline]

@@ -4,7 +4,7 @@ use vi_core::collocation::Collocation;
 use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
 use vi_core::lagrangian::Parameters;
 use vi_core::nalgebra::{DMatrix, SVector};
-use vi_core::real::{Dual, Real};
+use vi_core::real::{Dual, Number, Real};
 use vi_core::run::Event;
 use vi_core::stepping::Convertible;
 use vi_core::{

@@ -12,8 +12,8 @@
 //! Cancellation keeps the rounding errors in the bound. Source: Higham, Accuracy and Stability of Numerical Algorithms,
 //! section 3.3 (running error analysis).
 
-use crate::real::Real;
-use crate::real::assignments;
+use crate::real::{Number, Real, assignments};
+use crate::vector::worse;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use nalgebra::SVector;
 
@@ -145,9 +145,7 @@ impl num_traits::One for Bounded {
     }
 }
 
-impl Real for Bounded {
-    const EPSILON: f64 = EPSILON;
-
+impl Number for Bounded {
     /// A constant of a formula: rounded once, unless it is an exact fraction.
     fn real(value: f64) -> Self {
         let is_exact = value.abs() <= EXACT && (value * EXACT).fract() == 0.0;
@@ -174,7 +172,7 @@ impl Real for Bounded {
         self.sin_cos().1
     }
     fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = Real::sin_cos(self.value);
+        let (sin, cos) = Number::sin_cos(self.value);
         // The reduced angle is rounded at a distance from zero.
         let (error, reduced) = (self.error.min(2.0), EPSILON * EPSILON * self.value.abs());
         let bound = |value: f64, slope: f64| Self::after(value, (slope.abs() + error) * error + reduced, 2.0);
@@ -215,7 +213,7 @@ impl Real for Bounded {
         Self { value: self.value.abs(), error: self.error }
     }
     fn sign(self) -> Self {
-        Self { value: Real::sign(self.value), error: if self.is_seen() || self.error == 0.0 { 0.0 } else { 2.0 } }
+        Self { value: Number::sign(self.value), error: if self.is_seen() || self.error == 0.0 { 0.0 } else { 2.0 } }
     }
     fn hypot(self, other: Self) -> Self {
         Self::after(self.value.hypot(other.value), self.error + other.error, 2.0)
@@ -230,10 +228,6 @@ impl Real for Bounded {
         let by_exponent = if exponent.error == 0.0 { 0.0 } else { self.value.ln().abs() * exponent.error };
         Self::after(value, value.abs() * (by_base + by_exponent).exp_m1(), 2.0)
     }
-    fn max(self, other: Self) -> Self {
-        let larger = if self.value >= other.value { self } else { other };
-        Self { error: self.error.max(other.error), ..larger }
-    }
     /// Without bound if the base may be zero.
     fn zero_where(self, base: Self, _derivatives: u8) -> Self {
         let value = if base.value == 0.0 { 0.0 } else { self.value };
@@ -243,6 +237,32 @@ impl Real for Bounded {
             _ => f64::INFINITY,
         };
         Self { value, error }
+    }
+    /// With the distance to the other arm if either may be selected.
+    fn if_positive(self, then: Self, otherwise: Self) -> Self {
+        if self.value.is_nan() {
+            return self;
+        }
+        let (arm, other) = if self.value > 0.0 { (then, otherwise) } else { (otherwise, then) };
+        let is_known = self.error == 0.0 || self.is_seen();
+        let farthest = if is_known { 0.0 } else { (arm.value - other.value).abs() + other.error };
+        Self { error: worse(arm.error, farthest), ..arm }
+    }
+    /// The constants of the piece at the value: those of its neighbour agree with them at their common border.
+    fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C] {
+        find(arguments.map(|argument| argument.value)).map(Self::once)
+    }
+    fn presence(self) -> Self {
+        Self::exact(if self.most() == 0.0 { 0.0 } else { 1.0 })
+    }
+}
+
+impl Real for Bounded {
+    const EPSILON: f64 = EPSILON;
+
+    fn max(self, other: Self) -> Self {
+        let larger = if self.value >= other.value { self } else { other };
+        Self { error: self.error.max(other.error), ..larger }
     }
     fn is_finite(self) -> bool {
         self.value.is_finite()
@@ -266,22 +286,22 @@ mod tests {
     type Function = (&'static str, fn(f64) -> f64, fn(Bounded) -> Bounded);
 
     const FUNCTIONS: [Function; 16] = [
-        ("recip", Real::recip, Real::recip),
-        ("sqrt", Real::sqrt, Real::sqrt),
-        ("exp", Real::exp, Real::exp),
-        ("ln", Real::ln, Real::ln),
-        ("sin", Real::sin, Real::sin),
-        ("cos", Real::cos, Real::cos),
-        ("tan", Real::tan, Real::tan),
-        ("asin", Real::asin, Real::asin),
-        ("acos", Real::acos, Real::acos),
-        ("atan", Real::atan, Real::atan),
-        ("sinh", Real::sinh, Real::sinh),
-        ("cosh", Real::cosh, Real::cosh),
-        ("tanh", Real::tanh, Real::tanh),
-        ("abs", Real::abs, Real::abs),
-        ("sign", Real::sign, Real::sign),
-        ("x^2.5", |x| Real::pow(x, 2.5), |x| x.pow(Bounded::real(2.5))),
+        ("recip", Number::recip, Number::recip),
+        ("sqrt", Number::sqrt, Number::sqrt),
+        ("exp", Number::exp, Number::exp),
+        ("ln", Number::ln, Number::ln),
+        ("sin", Number::sin, Number::sin),
+        ("cos", Number::cos, Number::cos),
+        ("tan", Number::tan, Number::tan),
+        ("asin", Number::asin, Number::asin),
+        ("acos", Number::acos, Number::acos),
+        ("atan", Number::atan, Number::atan),
+        ("sinh", Number::sinh, Number::sinh),
+        ("cosh", Number::cosh, Number::cosh),
+        ("tanh", Number::tanh, Number::tanh),
+        ("abs", Number::abs, Number::abs),
+        ("sign", Number::sign, Number::sign),
+        ("x^2.5", |x| Number::pow(x, 2.5), |x| x.pow(Bounded::real(2.5))),
     ];
 
     /// A binary function, in both number types.
@@ -292,9 +312,9 @@ mod tests {
         ("-", |x, y| x - y, |x, y| x - y),
         ("*", |x, y| x * y, |x, y| x * y),
         ("/", |x, y| x / y, |x, y| x / y),
-        ("atan2", Real::atan2, Real::atan2),
-        ("hypot", Real::hypot, Real::hypot),
-        ("pow", Real::pow, Real::pow),
+        ("atan2", Number::atan2, Number::atan2),
+        ("hypot", Number::hypot, Number::hypot),
+        ("pow", Number::pow, Number::pow),
         ("max", Real::max, Real::max),
     ];
 

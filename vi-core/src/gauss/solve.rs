@@ -240,7 +240,7 @@ pub(crate) fn constant<Y: Collocation<N>, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
 ) -> Result<Stages<N, S>, StepError> {
-    let flow = node.state().flow(system)?;
+    let flow = node.state().raw_flow(system)?;
     let start = if Y::SEPARABLE { flow.force } else { flow.v };
     Ok(start.data.0[0].map(|entry| [entry; S]))
 }
@@ -364,7 +364,8 @@ pub(crate) fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &N
     };
     let lost = StepError::NonFinite { t: node.t, quantity: "force at a stage", expression: None };
     let explained = lost.explained(system, node, h, &v);
-    let is_named = matches!(explained, StepError::NonFinite { expression: Some(_), .. });
+    let is_named =
+        matches!(explained, StepError::NonFinite { expression: Some(_), .. } | StepError::Undefined { .. });
     let has_slopes = |h: f64| {
         let (t, q) = node.midpoint(h, &v);
         let Point { momentum, force, .. } = system.point(t, &q, &v);

@@ -6,7 +6,7 @@ use super::points::{Form, Points};
 use super::tableau::Tableau;
 use crate::linear::row_by_row;
 use crate::node::Node;
-use crate::real::{Lane, Lanes, Real};
+use crate::real::{Lane, Lanes, Number, Real};
 use nalgebra::SVector;
 
 /// N vectors of S stages.

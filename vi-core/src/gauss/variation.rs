@@ -30,7 +30,7 @@ use crate::method::energy_gauss::Lengths;
 use crate::method::gauss::LastStages;
 use crate::method::{EnergyPreservingGauss, Gauss};
 use crate::node::Node;
-use crate::real::{Dual, Lane, Lanes, Real};
+use crate::real::{Dual, Lane, Lanes, Number};
 use crate::run::Run;
 use crate::state::StepKind;
 use crate::stepping::Convertible;

@@ -357,6 +357,7 @@ impl<T: Scalar> Phase<T> {
                 _,
                 StepError::Singular { .. }
                 | StepError::NonFinite { .. }
+                | StepError::Undefined { .. }
                 | StepError::InvalidInput { .. }
                 | StepError::ShiftTooLarge { .. },
             ) => return Err(failure),

@@ -5,7 +5,7 @@
 //! by one evaluation. `Dual<Dual<f64>>` gives second derivatives. Source: Griewank and Walther, Evaluating Derivatives,
 //! chapter 3.
 
-use crate::real::Real;
+use crate::real::{Number, Real};
 use core::array;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -44,6 +44,14 @@ pub trait Slope<T>:
     /// one.
     #[must_use]
     fn chain(self, derivative: T) -> Self;
+    /// A function of each derivative.
+    #[must_use]
+    fn each(self, function: impl Fn(T) -> T) -> Self;
+    /// `then` if `condition` is above zero, `otherwise` if it is not, as [`Number::if_positive`].
+    #[must_use]
+    fn select(condition: T, then: Self, otherwise: Self) -> Self;
+    /// 0 if all derivatives are zero, otherwise 1; for each lane by itself.
+    fn presence(self) -> T;
 }
 
 impl<T: Real> Slope<T> for T {
@@ -63,7 +71,16 @@ impl<T: Real> Slope<T> for T {
         self / divisor
     }
     fn chain(self, derivative: T) -> Self {
-        if num_traits::Zero::is_zero(&self) { T::zero() } else { derivative * self }
+        (derivative * self).zero_where(Number::presence(self), u8::MAX)
+    }
+    fn each(self, function: impl Fn(T) -> T) -> Self {
+        function(self)
+    }
+    fn select(condition: T, then: Self, otherwise: Self) -> Self {
+        condition.if_positive(then, otherwise)
+    }
+    fn presence(self) -> T {
+        Number::presence(self)
     }
 }
 
@@ -85,6 +102,16 @@ impl<T: Real, const W: usize> Slope<T> for Slopes<T, W> {
     }
     fn chain(self, derivative: T) -> Self {
         Self(self.0.map(|slope| slope.chain(derivative)))
+    }
+    fn each(self, function: impl Fn(T) -> T) -> Self {
+        Self(self.0.map(function))
+    }
+    fn select(condition: T, then: Self, otherwise: Self) -> Self {
+        Self(array::from_fn(|k| condition.if_positive(then.0[k], otherwise.0[k])))
+    }
+    fn presence(self) -> T {
+        let either = |a: T, b: T| a + b - a * b;
+        self.0.into_iter().map(Number::presence).fold(T::zero(), either)
     }
 }
 
@@ -219,9 +246,7 @@ impl<T: Real, D: Slope<T>> num_traits::One for Dual<T, D> {
     }
 }
 
-impl<T: Real, D: Slope<T>> Real for Dual<T, D> {
-    const EPSILON: f64 = T::EPSILON;
-
+impl<T: Real, D: Slope<T>> Number for Dual<T, D> {
     fn real(value: f64) -> Self {
         Self::fixed(T::real(value))
     }
@@ -292,23 +317,43 @@ impl<T: Real, D: Slope<T>> Real for Dual<T, D> {
     fn pow(self, exponent: Self) -> Self {
         let value = self.value.pow(exponent.value);
         let by_base = self.slope.chain(exponent.value * self.value.pow(exponent.value - T::one()));
-        // A fixed exponent needs no logarithm, which does not exist for a negative base. At x = 0, x^y ln x is 0 like
-        // x^y, and needs none either.
-        if exponent.slope.is_zero() || value.is_zero() {
+        // A fixed exponent needs no logarithm, which does not exist for a negative base.
+        if exponent.slope.is_zero() {
             return Self { value, slope: by_base };
         }
-        Self { value, slope: by_base + exponent.slope.chain(value * self.value.ln()) }
-    }
-    fn max(self, other: Self) -> Self {
-        if self.value.to_f64() >= other.value.to_f64() { self } else { other }
+        // At x = 0, x^y ln x is 0 like x^y.
+        let by_exponent = (value * self.value.ln()).zero_where(Number::presence(value), u8::MAX);
+        Self { value, slope: by_base + exponent.slope.chain(by_exponent) }
     }
     fn zero_where(self, base: Self, derivatives: u8) -> Self {
-        if base.to_f64() != 0.0 {
-            return self;
+        // 0, or NaN where the base is zero.
+        let unknown = || T::zero() / T::one().zero_where(base.value, u8::MAX);
+        let slope = self.slope.each(|slope| match derivatives.checked_sub(1) {
+            Some(others) => slope.zero_where(base.value, others),
+            None => slope - unknown(),
+        });
+        Self { value: self.value.zero_where(base.value, derivatives), slope }
+    }
+    fn if_positive(self, then: Self, otherwise: Self) -> Self {
+        Self {
+            value: self.value.if_positive(then.value, otherwise.value),
+            slope: D::select(self.value, then.slope, otherwise.slope),
         }
-        let zero = T::zero();
-        let factor = derivatives.checked_sub(1).map_or(T::real(f64::NAN), |others| zero.zero_where(zero, others));
-        Self { value: zero.zero_where(zero, derivatives), slope: D::zero().times(factor) }
+    }
+    fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C] {
+        T::lookup(arguments.map(|argument| argument.value), find).map(Self::fixed)
+    }
+    fn presence(self) -> Self {
+        let (of_value, of_slope) = (Number::presence(self.value), Slope::presence(self.slope));
+        Self::fixed(of_value + of_slope - of_value * of_slope)
+    }
+}
+
+impl<T: Real, D: Slope<T>> Real for Dual<T, D> {
+    const EPSILON: f64 = T::EPSILON;
+
+    fn max(self, other: Self) -> Self {
+        if self.value.to_f64() >= other.value.to_f64() { self } else { other }
     }
     fn is_positive(self) -> bool {
         self.value.is_positive()

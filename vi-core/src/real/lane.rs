@@ -8,7 +8,7 @@
 //! follows, and `a b + c` is one instruction if the processor has it. Which values are products is known at compile
 //! time and costs nothing at run time.
 
-use super::{Real, sine};
+use super::{Number, Real, sine};
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// One lane: a number whose sine and cosine have no slow path. `FUSED`: whether to use fused multiply-add.
@@ -128,19 +128,17 @@ impl<const FUSED: bool> num_traits::One for Lane<FUSED> {
 macro_rules! functions {
     ($($function:ident($($argument:ident),*)),*) => {$(
         #[inline(always)]
-        fn $function(self, $($argument: Self),*) -> Self { Self::new(Real::$function(self.get(), $($argument.get()),*)) }
+        fn $function(self, $($argument: Self),*) -> Self { Self::new(Number::$function(self.get(), $($argument.get()),*)) }
     )*};
 }
 
-impl<const FUSED: bool> Real for Lane<FUSED> {
-    const EPSILON: f64 = f64::EPSILON;
-
+impl<const FUSED: bool> Number for Lane<FUSED> {
     #[inline(always)]
     fn real(value: f64) -> Self {
         Self::new(value)
     }
     functions!(recip(), sqrt(), exp(), ln(), tan(), asin(), acos(), atan(), sinh(), cosh(), tanh(), abs(), sign());
-    functions!(atan2(other), hypot(other), pow(exponent), max(other));
+    functions!(atan2(other), hypot(other), pow(exponent));
     #[inline(always)]
     fn sin(self) -> Self {
         self.sin_cos().0
@@ -162,6 +160,23 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
     fn zero_where(self, base: Self, _derivatives: u8) -> Self {
         // A select, without a branch.
         Self::new(if base.get() == 0.0 { 0.0 } else { self.get() })
+    }
+    #[inline(always)]
+    fn if_positive(self, then: Self, otherwise: Self) -> Self {
+        Self::new(self.get().if_positive(then.get(), otherwise.get()))
+    }
+    #[inline(always)]
+    fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C] {
+        find(arguments.map(Self::get)).map(Self::new)
+    }
+}
+
+impl<const FUSED: bool> Real for Lane<FUSED> {
+    const EPSILON: f64 = f64::EPSILON;
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::new(Real::max(self.get(), other.get()))
     }
     #[inline(always)]
     fn is_finite(self) -> bool {

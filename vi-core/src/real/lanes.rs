@@ -4,7 +4,7 @@
 //! loops over coordinates, becomes a vector instruction. [`Lane`](super::Lane) is for short formulas: there the
 //! compiler vectorizes the surrounding loop.
 
-use super::{Real, sine};
+use super::{Number, Real, sine};
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// W numbers. `FUSED`: whether sines use fused multiply-add.
@@ -96,26 +96,24 @@ impl<const W: usize, const FUSED: bool> num_traits::One for Lanes<W, FUSED> {
 macro_rules! functions {
     ($($function:ident),*) => {$(
         #[inline(always)]
-        fn $function(self) -> Self { self.each(Real::$function) }
+        fn $function(self) -> Self { self.each(Number::$function) }
     )*};
 }
 
 macro_rules! functions_of_two {
     ($($function:ident),*) => {$(
         #[inline(always)]
-        fn $function(self, other: Self) -> Self { self.pairs(other, Real::$function) }
+        fn $function(self, other: Self) -> Self { self.pairs(other, Number::$function) }
     )*};
 }
 
-impl<const W: usize, const FUSED: bool> Real for Lanes<W, FUSED> {
-    const EPSILON: f64 = f64::EPSILON;
-
+impl<const W: usize, const FUSED: bool> Number for Lanes<W, FUSED> {
     #[inline(always)]
     fn real(value: f64) -> Self {
         Self([value; W])
     }
     functions!(recip, sqrt, exp, ln, tan, asin, acos, atan, sinh, cosh, tanh, abs, sign);
-    functions_of_two!(atan2, hypot, pow, max);
+    functions_of_two!(atan2, hypot, pow);
     #[inline(always)]
     fn sin(self) -> Self {
         self.sin_cos().0
@@ -140,6 +138,33 @@ impl<const W: usize, const FUSED: bool> Real for Lanes<W, FUSED> {
     #[inline(always)]
     fn zero_where(self, base: Self, _derivatives: u8) -> Self {
         self.pairs(base, |number, base| if base == 0.0 { 0.0 } else { number })
+    }
+    #[inline(always)]
+    fn if_positive(self, then: Self, otherwise: Self) -> Self {
+        let mut all = self;
+        for i in 0..W {
+            all.0[i] = self.0[i].if_positive(then.0[i], otherwise.0[i]);
+        }
+        all
+    }
+    #[inline(always)]
+    fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C] {
+        let mut constants = [Self([0.0; W]); C];
+        for i in 0..W {
+            for (constant, found) in constants.iter_mut().zip(find(arguments.map(|argument| argument.0[i]))) {
+                constant.0[i] = found;
+            }
+        }
+        constants
+    }
+}
+
+impl<const W: usize, const FUSED: bool> Real for Lanes<W, FUSED> {
+    const EPSILON: f64 = f64::EPSILON;
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.pairs(other, Real::max)
     }
     #[inline(always)]
     fn is_finite(self) -> bool {

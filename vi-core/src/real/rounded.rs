@@ -8,12 +8,13 @@
 //! ```
 //!
 //! so that cancellation inside a formula stays in the bound: a residual below it is zero to rounding. Library functions
-//! are assumed accurate to an ulp. A kink or a jump (`abs`, `sign`) uses the side of the value. The type is for cold
+//! are assumed accurate to an ulp. A kink or a jump (`abs`, `sign`, `if_positive`)
+//! uses the side of the value. The type is for cold
 //! paths, and each operation is a call, which keeps the formulas of a system small in the program.
 //!
 //! Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.3.
 
-use super::Real;
+use super::{Number, Real};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number with a rounding-error bound, by running error analysis (Higham, Accuracy and Stability of Numerical
@@ -132,9 +133,7 @@ impl num_traits::One for Rounded {
     }
 }
 
-impl Real for Rounded {
-    const EPSILON: f64 = f64::EPSILON;
-
+impl Number for Rounded {
     /// A constant or a parameter counts as exact.
     fn real(value: f64) -> Self {
         Self::exact(value)
@@ -202,7 +201,7 @@ impl Real for Rounded {
         Self { value: self.value.abs(), error: self.error }
     }
     fn sign(self) -> Self {
-        Self::exact(Real::sign(self.value))
+        Self::exact(Number::sign(self.value))
     }
     fn hypot(self, other: Self) -> Self {
         Self::rounding(self.value.hypot(other.value), self.error + other.error, 2.0)
@@ -218,6 +217,19 @@ impl Real for Rounded {
         let by_exponent = product((self.value.ln() * value).abs(), exponent.error);
         Self::rounding(value, by_base + by_exponent, 2.0)
     }
+    fn if_positive(self, then: Self, otherwise: Self) -> Self {
+        let arm = if self.value > 0.0 { then } else { otherwise };
+        if self.value.is_nan() { self } else { arm }
+    }
+    /// The constants count as rounded once.
+    fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C] {
+        find(arguments.map(|argument| argument.value)).map(Self::nearest)
+    }
+}
+
+impl Real for Rounded {
+    const EPSILON: f64 = f64::EPSILON;
+
     fn max(self, other: Self) -> Self {
         if other.value > self.value { other } else { self }
     }

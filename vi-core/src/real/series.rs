@@ -11,7 +11,7 @@
 //! Source: Griewank and Walther, Evaluating Derivatives, chapter 13. Functions of constants are constants, even if
 //! their slope is infinite.
 
-use super::Real;
+use super::{Number, Real};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Terms of a series, including the constant: derivatives up to order six, which steps of three stages need.
@@ -168,9 +168,7 @@ impl num_traits::One for Series {
     }
 }
 
-impl Real for Series {
-    const EPSILON: f64 = f64::EPSILON;
-
+impl Number for Series {
     fn real(value: f64) -> Self {
         Self::fixed(value)
     }
@@ -193,7 +191,7 @@ impl Real for Series {
         self.sin_cos().1
     }
     fn sin_cos(self) -> (Self, Self) {
-        let (sine, cosine) = Real::sin_cos(self.value());
+        let (sine, cosine) = Number::sin_cos(self.value());
         let [sine, cosine] = self.functions([sine, cosine], -1.0);
         (sine, cosine)
     }
@@ -228,7 +226,7 @@ impl Real for Series {
         self * self.sign()
     }
     fn sign(self) -> Self {
-        Self::fixed(Real::sign(self.value()))
+        Self::fixed(Number::sign(self.value()))
     }
     fn hypot(self, other: Self) -> Self {
         (self * self + other * other).sqrt()
@@ -241,9 +239,6 @@ impl Real for Series {
             (exponent * self.ln()).exp()
         }
     }
-    fn max(self, other: Self) -> Self {
-        if self.value() >= other.value() { self } else { other }
-    }
     /// For a constant base the limit holds along the trajectory; otherwise only the first `derivatives` terms are
     /// known.
     fn zero_where(self, base: Self, derivatives: u8) -> Self {
@@ -252,6 +247,23 @@ impl Real for Series {
         }
         let known = if base.is_fixed() { TERMS } else { usize::from(derivatives) };
         Self::from_fn(|k| if k <= known { 0.0 } else { f64::NAN })
+    }
+    fn if_positive(self, then: Self, otherwise: Self) -> Self {
+        Self::from_fn(|k| self.value().if_positive(then.terms[k], otherwise.terms[k]))
+    }
+    fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C] {
+        find(arguments.map(|argument| argument.value())).map(Self::fixed)
+    }
+    fn presence(self) -> Self {
+        Self::fixed(if self.terms == [0.0; TERMS] { 0.0 } else { 1.0 })
+    }
+}
+
+impl Real for Series {
+    const EPSILON: f64 = f64::EPSILON;
+
+    fn max(self, other: Self) -> Self {
+        if self.value() >= other.value() { self } else { other }
     }
     fn is_finite(self) -> bool {
         self.terms.iter().all(|term| term.is_finite())

@@ -80,11 +80,12 @@ impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Start<S, N, T> {
     /// state, [`StepError::Singular`] or [`StepError::NotConverged`] if no velocity has its momenta,
     /// [`StepError::Tolerance`] if no step has the tolerance; errors of the method.
     pub fn integrate<M: Method<S, N, T>>(self, method: M, h: impl Length<T>) -> Result<Run<M, S, N, T>, StepError> {
-        let h = h.length(&self, &method)?;
         let Self { system, state } = self;
-        method.check_length(h)?;
         let mut node = Node::new(state, T::zero());
-        let memory = method.begin(&system, &mut node, h)?;
+        let explained = |failure: StepError| failure.explained_at(&system, &Node::new(state, T::zero()), T::zero());
+        let h = h.length(&self, &method).map_err(explained)?;
+        method.check_length(h)?;
+        let memory = method.begin(&system, &mut node, h).map_err(explained)?;
         Ok(Run::resumed(method, system, (node, h, memory)))
     }
 }
@@ -141,7 +142,9 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// Those of a step, and the run does not change. [`StepError::InvalidInput`] for an h that is zero, subnormal or
     /// not finite, or that is negative although the method only steps forward.
     pub fn step_of(&mut self, h: T) -> Result<State<N, T>, StepError> {
-        (self.node, self.memory) = self.method.step_of(&self.system, (&self.node, &self.memory), [h, self.h])?;
+        let Self { method, system, node, memory, .. } = &*self;
+        let after = method.step_of(system, (node, memory), [h, self.h]);
+        (self.node, self.memory) = after.map_err(|failure| failure.explained_at(system, node, h))?;
         self.failure = None;
         Ok(self.node.state())
     }
@@ -269,7 +272,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 #[cold]
 #[inline(never)]
 #[allow(clippy::type_complexity)] // the fields of a run, each for itself
-fn cold_step<M: Method<S, N, T>, S, const N: usize, T: Scalar>(
+fn cold_step<M: Method<S, N, T>, S: Lagrangian<N, T>, const N: usize, T: Scalar>(
     (method, system, prepared, h): (M, S, M::Prepared, T),
     (mut node, mut memory, mut cache, failure): (Node<N, T>, M::Memory, M::Cache, Option<StepError>),
     left: M::Left,
@@ -283,7 +286,10 @@ fn cold_step<M: Method<S, N, T>, S, const N: usize, T: Scalar>(
             method.take(h, (&mut node, &mut memory), &mut cache, step);
             (node, memory, cache, None)
         }
-        Err(failure) => (node, memory, cache, Some(failure)),
+        Err(failure) => {
+            let failure = failure.explained_at(&system, &node, method.length(h, &memory));
+            (node, memory, cache, Some(failure))
+        }
     }
 }
 

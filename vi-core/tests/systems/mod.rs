@@ -14,8 +14,8 @@
 use vi_core::lagrangian::Flow;
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
-use vi_core::real::Real;
 use vi_core::real::Rounded;
+use vi_core::real::{Number, Real};
 use vi_core::stepping::{
     EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping, Increment,
     MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
@@ -362,9 +362,9 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Energy
         let fields = self.0.fields(t, &q, v);
         ExtendedResidual {
             residual: system.momentum.residual,
-            scale: v.map(Real::abs)
-                + (fields.gradient.map(Real::abs) + fields.force.map(Real::abs)) * (h * T::real(0.5)).abs()
-                + node.p.map(Real::abs),
+            scale: v.map(Number::abs)
+                + (fields.gradient.map(Number::abs) + fields.force.map(Number::abs)) * (h * T::real(0.5)).abs()
+                + node.p.map(Number::abs),
             energy_residual: system.energy_residual,
             energy_scale: v.dot(v) * T::real(0.5)
                 + fields.potential_magnitude

@@ -41,7 +41,7 @@ impl Ending {
             StepError::StagesUnsettled { .. } => 6,
             StepError::TimeScale { .. } => 7,
             StepError::Singular { .. } => 8,
-            StepError::NonFinite { .. } => 9,
+            StepError::NonFinite { .. } | StepError::Undefined { .. } => 9,
             StepError::InvalidInput { .. } => 10,
             _ => 13,
         })

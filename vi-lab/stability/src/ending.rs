@@ -69,7 +69,7 @@ impl Ending {
                 StepError::StepRatio { .. } => STEP_RATIO,
                 StepError::NotConverged { .. } | StepError::StagesUnsettled { .. } => NOT_CONVERGED,
                 StepError::Singular { .. } => SINGULAR,
-                StepError::NonFinite { .. } => NON_FINITE,
+                StepError::NonFinite { .. } | StepError::Undefined { .. } => NON_FINITE,
                 _ => OTHER,
             },
         }

@@ -1,0 +1,144 @@
+//! The knots of an argument, and the piece to which a value of it belongs.
+
+/// What a table is outside of its range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outside {
+    /// NaN: a run reports that the argument has left the range.
+    Undefined,
+    /// The value at the end of the range.
+    Hold,
+    /// The straight line with the slope at the end of the range.
+    Extend,
+    /// The range again: its length is the period.
+    Periodic,
+}
+
+/// Ascending knots.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis<const N: usize> {
+    pub(super) knots: [f64; N],
+    /// Both ends of the range.
+    pub(super) range: [f64; 2],
+    /// Inverse distance of the knots if all are near equal distances, otherwise 0.
+    inverse: f64,
+    pub(super) outside: Outside,
+    /// The period as a sum: 26 bits, 27 bits, and the rounding error of `to − from`.
+    period: [f64; 3],
+}
+
+/// A piece of a polynomial in `u = x − base[0] − base[1]`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// Index of the last knot that is not above x; 0 below all of them.
+    pub(super) index: usize,
+    /// The whole periods before x, and the knot with the rest of them. The first is 0 in the range itself.
+    pub(super) base: [f64; 2],
+    /// Number of coefficients that hold at x.
+    pub(super) kept: usize,
+}
+
+impl<const N: usize> Axis<N> {
+    /// The axis of these knots, up to `to`.
+    pub(super) const fn new(knots: [f64; N], to: f64, outside: Outside) -> Self {
+        let from = knots[0];
+        let length = to - from;
+        // The rounding error of a difference (Knuth).
+        let of_from = to - length;
+        let low = (of_from - from) + (to - (length + of_from));
+        // The upper half of the digits (Veltkamp), times a whole number below 2²⁷ is exact.
+        let wide = length * 134_217_729.0;
+        let high = wide - (wide - length);
+        Self { knots, range: [from, to], inverse: inverse(&knots), outside, period: [high, length - high, low] }
+    }
+
+    /// Whether the argument is periodic.
+    pub(super) const fn is_periodic(&self) -> bool {
+        matches!(self.outside, Outside::Periodic)
+    }
+
+    /// Whether a function is defined at x.
+    pub(super) fn covers(&self, x: f64) -> bool {
+        let [from, to] = self.range;
+        self.outside != Outside::Undefined || from <= x && x <= to
+    }
+
+    /// The piece at x.
+    #[inline]
+    pub(super) fn place(&self, x: f64) -> Place {
+        let [from, to] = self.range;
+        if self.is_periodic() {
+            let [high, middle, low] = self.period;
+            let turns = ((x - from) / (to - from)).floor();
+            let (whole, rest) = (turns * high, turns * low);
+            let index = self.index(x - whole - (turns * middle + rest));
+            return Place { index, base: [whole, turns * middle + (rest + self.knots[index])], kept: usize::MAX };
+        }
+        let index = self.index(x);
+        // NaN belongs to the first piece, which is NaN there.
+        let kept = match self.outside {
+            _ if !(x < from || x > to) => usize::MAX,
+            Outside::Hold => 1,
+            Outside::Extend => 2,
+            Outside::Undefined | Outside::Periodic => 0,
+        };
+        Place { index, base: [0.0, self.knots[index]], kept }
+    }
+
+    /// Index of the last knot that is not above x; 0 below all of them and for NaN.
+    #[inline]
+    fn index(&self, x: f64) -> usize {
+        if self.inverse == 0.0 {
+            return self.knots.partition_point(|knot| *knot <= x).saturating_sub(1);
+        }
+        // Near equal distances this index is off by at most one. The cast is 0 below the range and for NaN.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let guess = (((x - self.knots[0]) * self.inverse) as usize).min(N - 1);
+        if x < self.knots[guess] {
+            guess.saturating_sub(1)
+        } else if guess + 1 < N && self.knots[guess + 1] <= x {
+            guess + 1
+        } else {
+            guess
+        }
+    }
+}
+
+impl Place {
+    /// The coefficients that hold at x; NaN for an x outside of the range of a function that is undefined there.
+    #[inline]
+    pub(super) fn kept<const C: usize>(&self, coefficients: [f64; C]) -> [f64; C] {
+        let mut kept = coefficients;
+        for (k, coefficient) in kept.iter_mut().enumerate() {
+            if self.kept == 0 {
+                *coefficient = f64::NAN;
+            } else if k >= self.kept {
+                *coefficient = 0.0;
+            }
+        }
+        kept
+    }
+}
+
+/// Inverse mean distance of knots that are within a sixteenth of it of equal distances, otherwise 0.
+const fn inverse<const N: usize>(knots: &[f64; N]) -> f64 {
+    if N < 2 {
+        return 0.0;
+    }
+    let distance = (knots[N - 1] - knots[0]) / number(N - 1);
+    let mut i = 0;
+    while i < N {
+        let off = knots[i] - (knots[0] + number(i) * distance);
+        if !(-distance <= 16.0 * off && 16.0 * off <= distance) {
+            return 0.0;
+        }
+        i += 1;
+    }
+    let inverse = 1.0 / distance;
+    if inverse.is_finite() { inverse } else { 0.0 }
+}
+
+/// An index as a number.
+#[allow(clippy::cast_precision_loss)]
+pub(super) const fn number(index: usize) -> f64 {
+    index as f64
+}

@@ -1,0 +1,302 @@
+//! The quintic spline with continuous fourth derivatives, while compiling.
+//!
+//! Unknowns are the slope s and the second derivative m at each knot. Continuity of the third and of the fourth
+//! derivative gives two equations for each, in 2 × 2 blocks:
+//!
+//! ```text
+//! fourth derivative after − before = 0          third derivative before − after = 0
+//! ```
+//!
+//! The end conditions are "not-a-knot": the first three pieces are one polynomial, and so are the last three.
+//! Each is determined by three values and by value, s and m at its inner end, so that its knots have no unknowns.
+
+/// A 2 × 2 block, by rows.
+type Block = [[f64; 2]; 2];
+
+/// The equations of one knot: the blocks of the knot before, of its own and of the knot after, and the right side.
+#[derive(Clone, Copy)]
+struct Row {
+    lower: Block,
+    diagonal: Block,
+    upper: Block,
+    right: [f64; 2],
+}
+
+const ZERO: Block = [[0.0; 2]; 2];
+
+const fn add(a: Block, b: Block) -> Block {
+    [[a[0][0] + b[0][0], a[0][1] + b[0][1]], [a[1][0] + b[1][0], a[1][1] + b[1][1]]]
+}
+
+/// `a − b c`.
+const fn less(a: Block, b: Block, c: Block) -> Block {
+    let [x, y] = [[c[0][0], c[1][0]], [c[0][1], c[1][1]]];
+    let [p, q] = [less_vector([a[0][0], a[1][0]], b, x), less_vector([a[0][1], a[1][1]], b, y)];
+    [[p[0], q[0]], [p[1], q[1]]]
+}
+
+/// `a − b x`.
+const fn less_vector(a: [f64; 2], b: Block, x: [f64; 2]) -> [f64; 2] {
+    [a[0] - (b[0][0] * x[0] + b[0][1] * x[1]), a[1] - (b[1][0] * x[0] + b[1][1] * x[1])]
+}
+
+/// The inverse of a block.
+const fn inverse([[a, b], [c, d]]: Block) -> Block {
+    let determinant = a * d - b * c;
+    [[d / determinant, -b / determinant], [-c / determinant, a / determinant]]
+}
+
+/// `a b`, and `a x`.
+const fn product(a: Block, b: Block) -> Block {
+    let [[p, q], [r, s]] = less(ZERO, a, b);
+    [[-p, -q], [-r, -s]]
+}
+const fn product_vector(a: Block, x: [f64; 2]) -> [f64; 2] {
+    let [p, q] = less_vector([0.0; 2], a, x);
+    [-p, -q]
+}
+
+/// As [`tridiagonal::solve`](super::tridiagonal::solve), with blocks.
+const fn solve<const N: usize>(rows: &[Row; N], count: usize) -> [[f64; 2]; N] {
+    let last = count - 1;
+    let (mut known, mut above, mut by_last) = ([[0.0; 2]; N], [ZERO; N], [ZERO; N]);
+    let mut i = 0;
+    while i < last {
+        let Row { lower, diagonal, upper, right } = rows[i];
+        let is_before_last = i + 1 == last;
+        let coupling = if is_before_last { upper } else { ZERO };
+        let inner = if is_before_last { ZERO } else { upper };
+        let (pivot, right, coupling) = if i == 0 {
+            (diagonal, right, add(coupling, lower))
+        } else {
+            let pivot = less(diagonal, lower, above[i - 1]);
+            (pivot, less_vector(right, lower, known[i - 1]), less(coupling, lower, by_last[i - 1]))
+        };
+        let pivot = inverse(pivot);
+        above[i] = product(pivot, inner);
+        known[i] = product_vector(pivot, right);
+        by_last[i] = product(pivot, coupling);
+        i += 1;
+    }
+    while i > 1 {
+        i -= 1;
+        known[i - 1] = less_vector(known[i - 1], above[i - 1], known[i]);
+        by_last[i - 1] = less(by_last[i - 1], above[i - 1], by_last[i]);
+    }
+    let Row { lower, diagonal, upper, right } = rows[last];
+    known[last] = if last == 0 {
+        product_vector(inverse(add(add(lower, diagonal), upper)), right)
+    } else {
+        let pivot = less(less(diagonal, lower, by_last[last - 1]), upper, by_last[0]);
+        product_vector(inverse(pivot), less_vector(less_vector(right, lower, known[last - 1]), upper, known[0]))
+    };
+    i = 0;
+    while i < last {
+        known[i] = less_vector(known[i], by_last[i], known[last]);
+        i += 1;
+    }
+    known
+}
+
+/// Adds the piece `[knot − h, knot]` with the chord d to the equations of its right knot.
+const fn with_piece_before(row: Row, h: f64, d: f64) -> Row {
+    let (h2, h3) = (h * h, h * h * h);
+    let diagonal = add(row.diagonal, [[192.0 / h3, -36.0 / h2], [-36.0 / h2, 9.0 / h]]);
+    let lower = add(row.lower, [[168.0 / h3, 24.0 / h2], [-24.0 / h2, -3.0 / h]]);
+    let right = [row.right[0] + 360.0 * d / h3, row.right[1] - 60.0 * d / h2];
+    Row { lower, diagonal, right, ..row }
+}
+
+/// Adds the piece `[knot, knot + h]` with the chord d to the equations of its left knot.
+const fn with_piece_after(row: Row, h: f64, d: f64) -> Row {
+    let (h2, h3) = (h * h, h * h * h);
+    let diagonal = add(row.diagonal, [[192.0 / h3, 36.0 / h2], [36.0 / h2, 9.0 / h]]);
+    let upper = add(row.upper, [[168.0 / h3, -24.0 / h2], [24.0 / h2, -3.0 / h]]);
+    let right = [row.right[0] + 360.0 * d / h3, row.right[1] + 60.0 * d / h2];
+    Row { diagonal, upper, right, ..row }
+}
+
+/// Three points `(u, y)` relative to a knot, for the polynomial of three pieces.
+struct Side {
+    u: [f64; 3],
+    y: [f64; 3],
+}
+
+impl Side {
+    /// The points of these indices relative to a knot.
+    const fn new<const N: usize>(x: &[f64; N], y: &[f64; N], points: [usize; 3], knot: usize) -> Self {
+        let [a, b, c] = points;
+        Self {
+            u: [x[a] - x[knot], x[b] - x[knot], x[c] - x[knot]],
+            y: [y[a] - y[knot], y[b] - y[knot], y[c] - y[knot]],
+        }
+    }
+
+    /// The parabola through `(u, value)`, as coefficients.
+    const fn parabola(&self, value: [f64; 3]) -> [f64; 3] {
+        let [u0, u1, u2] = self.u;
+        let weights = [
+            value[0] / ((u0 - u1) * (u0 - u2)),
+            value[1] / ((u1 - u0) * (u1 - u2)),
+            value[2] / ((u2 - u0) * (u2 - u1)),
+        ];
+        let [w0, w1, w2] = weights;
+        [w0 * u1 * u2 + w1 * u0 * u2 + w2 * u0 * u1, -(w0 * (u1 + u2) + w1 * (u0 + u2) + w2 * (u0 + u1)), w0 + w1 + w2]
+    }
+
+    /// Coefficients of u³, u⁴ and u⁵, with slope s and second derivative m at the knot.
+    const fn highest(&self, [s, m]: [f64; 2]) -> [f64; 3] {
+        let ([u0, u1, u2], [y0, y1, y2]) = (self.u, self.y);
+        self.parabola([
+            (y0 - u0 * (s + 0.5 * m * u0)) / (u0 * u0 * u0),
+            (y1 - u1 * (s + 0.5 * m * u1)) / (u1 * u1 * u1),
+            (y2 - u2 * (s + 0.5 * m * u2)) / (u2 * u2 * u2),
+        ])
+    }
+
+    /// Adds the fourth derivative times `sign`, and the third one times `−sign`, to the equations of the knot.
+    const fn added_to(&self, row: Row, sign: f64) -> Row {
+        let none = Self { u: self.u, y: [0.0; 3] };
+        let (known, by_s, by_m) = (self.highest([0.0; 2]), none.highest([1.0, 0.0]), none.highest([0.0, 1.0]));
+        let (fourth, third) = (24.0 * sign, -6.0 * sign);
+        let block = [[fourth * by_s[1], fourth * by_m[1]], [third * by_s[0], third * by_m[0]]];
+        let right = [row.right[0] - fourth * known[1], row.right[1] - third * known[0]];
+        Row { diagonal: add(row.diagonal, block), right, ..row }
+    }
+}
+
+/// Taylor coefficients at u = `by` of a polynomial given by those at u = 0.
+const fn shifted(coefficients: [f64; 6], by: f64) -> [f64; 6] {
+    let mut shifted = coefficients;
+    let mut first = 0;
+    while first < 5 {
+        let mut k = 5;
+        while k > first {
+            shifted[k - 1] += by * shifted[k];
+            k -= 1;
+        }
+        first += 1;
+    }
+    shifted
+}
+
+/// Coefficients of the piece from `[y, s, m]` at u = 0 to those at u = h. h may be negative.
+const fn hermite(h: f64, [y0, s0, m0]: [f64; 3], [y1, s1, m1]: [f64; 3]) -> [f64; 6] {
+    let r0 = ((y1 - y0) / h - s0) / (h * h) - 0.5 * m0 / h;
+    let r1 = (s1 - s0) / (h * h) - m0 / h;
+    let r2 = (m1 - m0) / h;
+    let a = 10.0 * r0 - 4.0 * r1 + 0.5 * r2;
+    let b = -15.0 * r0 + 7.0 * r1 - r2;
+    let c = 6.0 * r0 - 3.0 * r1 + 0.5 * r2;
+    [y0, s0, 0.5 * m0, a, b / h, c / (h * h)]
+}
+
+/// Coefficients of the pieces, each at its left knot, and of the last one at its right knot.
+pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_periodic: bool) -> [[f64; 6]; N] {
+    if !is_periodic && N <= 6 {
+        return polynomial(x, y);
+    }
+    // The knots with unknowns.
+    let (first, count) = if is_periodic { (0, N - 1) } else { (3, N - 6) };
+    let mut rows = [Row { lower: ZERO, diagonal: ZERO, upper: ZERO, right: [0.0; 2] }; N];
+    let mut i = 0;
+    while i < count {
+        let knot = first + i;
+        let (before, after) = (if knot == 0 { N - 2 } else { knot - 1 }, knot);
+        let mut row = rows[i];
+        row = if is_periodic || i > 0 {
+            let h = x[before + 1] - x[before];
+            with_piece_before(row, h, (y[before + 1] - y[before]) / h)
+        } else {
+            Side::new(x, y, [0, 1, 2], knot).added_to(row, -1.0)
+        };
+        row = if is_periodic || i + 1 < count {
+            let h = x[after + 1] - x[after];
+            with_piece_after(row, h, (y[after + 1] - y[after]) / h)
+        } else {
+            Side::new(x, y, [N - 3, N - 2, N - 1], knot).added_to(row, 1.0)
+        };
+        rows[i] = row;
+        i += 1;
+    }
+    let found = solve(&rows, count);
+    let mut pieces = [[0.0; 6]; N];
+    i = 0;
+    while i < count {
+        let knot = first + i;
+        let [s, m] = found[i];
+        if is_periodic || i + 1 < count {
+            let [s1, m1] = found[(i + 1) % count];
+            pieces[knot] = hermite(x[knot + 1] - x[knot], [y[knot], s, m], [y[knot + 1], s1, m1]);
+        }
+        i += 1;
+    }
+    if is_periodic {
+        let ([s0, m0], [s, m]) = (found[count - 1], found[0]);
+        pieces[N - 1] = hermite(x[N - 2] - x[N - 1], [y[N - 1], s, m], [y[N - 2], s0, m0]);
+        return pieces;
+    }
+    // The polynomials of three pieces, at each of their knots.
+    let (left, right) = (3, N - 4);
+    let mut k = 0;
+    while k < 3 {
+        pieces[k] = one_of_three(x, y, Side::new(x, y, [0, 1, 2], left), found[0], [left, k]);
+        k += 1;
+    }
+    k = right;
+    while k < N {
+        let side = Side::new(x, y, [N - 3, N - 2, N - 1], right);
+        pieces[k] = one_of_three(x, y, side, found[count - 1], [right, k]);
+        k += 1;
+    }
+    pieces
+}
+
+/// The polynomial of three pieces that has slope and second derivative `[s, m]` at the knot `base`, at the knot `at`.
+const fn one_of_three<const N: usize>(
+    x: &[f64; N],
+    y: &[f64; N],
+    side: Side,
+    [s, m]: [f64; 2],
+    [base, at]: [usize; 2],
+) -> [f64; 6] {
+    let [a, b, c] = side.highest([s, m]);
+    let mut piece = shifted([y[base], s, 0.5 * m, a, b, c], x[at] - x[base]);
+    piece[0] = y[at];
+    piece
+}
+
+/// The polynomial through at most six points, at each of them: Newton's form, then its expansion.
+const fn polynomial<const N: usize>(x: &[f64; N], y: &[f64; N]) -> [[f64; 6]; N] {
+    let mut differences = *y;
+    let mut order = 1;
+    while order < N {
+        let mut i = N - 1;
+        while i >= order {
+            differences[i] = (differences[i] - differences[i - 1]) / (x[i] - x[i - order]);
+            i -= 1;
+        }
+        order += 1;
+    }
+    let mut pieces = [[0.0; 6]; N];
+    let mut at = 0;
+    while at < N {
+        let mut piece = [0.0; 6];
+        let mut k = N;
+        while k > 0 {
+            k -= 1;
+            // piece ← piece (u + distance) + difference.
+            let distance = x[at] - x[k];
+            let mut power = 5;
+            while power > 0 {
+                piece[power] = piece[power] * distance + piece[power - 1];
+                power -= 1;
+            }
+            piece[0] = piece[0] * distance + differences[k];
+        }
+        piece[0] = y[at];
+        pieces[at] = piece;
+        at += 1;
+    }
+    pieces
+}

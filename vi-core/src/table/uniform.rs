@@ -1,0 +1,214 @@
+//! A table at equal distances whose values are parameters.
+
+use super::axis::{Axis, Outside, number};
+use super::{ascend, derivatives, distance, polynomial, slopes, tridiagonal, undefined_along};
+use crate::function::{Gradient, Hessian, Jets, ThirdDerivatives};
+use crate::lagrangian::Undefined;
+use crate::real::{Number, Real};
+
+/// A function of one number through N values at equal distances, which are given when it is evaluated.
+///
+/// It is linear in the values: a sum of N *cardinal functions*, each 1 at its own knot and 0 at the others. Evaluation
+/// takes O(N).
+///
+/// ```
+/// use vi_core::function::Jets;
+/// use vi_core::table::Uniform;
+///
+/// static LIFT: Uniform<4> = Uniform::cubic(0.0, 3.0);
+/// let (value, [slope]) = LIFT.of(&[0.0, 1.0, 8.0, 27.0]).jet_1([0.5]);
+/// assert!((value - 0.125_f64).abs() < 1e-14 && (slope - 0.75_f64).abs() < 1e-14);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Uniform<const N: usize> {
+    axis: Axis<N>,
+    /// For each knot, the slopes of all cardinal functions; `None` for straight lines.
+    slopes: Option<[[f64; N]; N]>,
+    /// Whether the range is not finite or does not ascend.
+    is_invalid: bool,
+}
+
+impl<const N: usize> Uniform<N> {
+    /// The cubic spline with continuous second derivatives, "not-a-knot" at both ends, of values at N equal distances
+    /// of a range, ends included.
+    #[must_use]
+    pub const fn cubic(from: f64, to: f64) -> Self {
+        let mut table = Self::linear(from, to);
+        let mut by_knot = [[0.0; N]; N];
+        let mut j = 0;
+        while j < N {
+            let mut cardinal = [0.0; N];
+            cardinal[j] = 1.0;
+            let of_cardinal = slopes::spline(&table.axis.knots, &cardinal, Outside::Undefined);
+            let mut i = 0;
+            while i < N {
+                by_knot[i][j] = of_cardinal[i];
+                i += 1;
+            }
+            j += 1;
+        }
+        table.slopes = Some(by_knot);
+        table
+    }
+
+    /// Straight lines between values at N equal distances of a range, ends included.
+    #[must_use]
+    pub const fn linear(from: f64, to: f64) -> Self {
+        const { assert!(N >= 2, "a table needs two points") };
+        let mut knots = [from; N];
+        let mut i = 1;
+        while i < N {
+            knots[i] = from + (to - from) * (number(i) / number(N - 1));
+            i += 1;
+        }
+        knots[N - 1] = to;
+        Self { axis: Axis::new(knots, to, Outside::Undefined), slopes: None, is_invalid: !ascend(&knots) }
+    }
+
+    /// Repeats the function beyond both ends. The knots are at `from + k (to − from)/N`, so that no value is given
+    /// twice: the first one is the one at `to` too.
+    #[must_use]
+    pub const fn periodic(self) -> Self {
+        let [from, to] = self.axis.range;
+        let mut knots = [from; N];
+        let mut i = 1;
+        while i < N {
+            knots[i] = from + (to - from) * (number(i) / number(N));
+            i += 1;
+        }
+        let mut slopes = self.slopes;
+        if slopes.is_some() {
+            let per_distance = 3.0 * number(N) / (to - from);
+            let mut by_knot = [[0.0; N]; N];
+            let mut j = 0;
+            while j < N {
+                let mut rows = [[1.0, 4.0, 1.0, 0.0]; N];
+                rows[(j + N - 1) % N][3] += per_distance;
+                rows[(j + 1) % N][3] -= per_distance;
+                let of_cardinal = tridiagonal::solve(&rows, N);
+                i = 0;
+                while i < N {
+                    by_knot[i][j] = of_cardinal[i];
+                    i += 1;
+                }
+                j += 1;
+            }
+            slopes = Some(by_knot);
+        }
+        Self { axis: Axis::new(knots, to, Outside::Periodic), slopes, is_invalid: self.is_invalid }
+    }
+
+    /// The value of each end beyond it. Of no effect on a periodic table.
+    #[must_use]
+    pub const fn hold(mut self) -> Self {
+        if !self.axis.is_periodic() {
+            self.axis.outside = Outside::Hold;
+        }
+        self
+    }
+
+    /// The straight line with the slope of each end beyond it. Of no effect on a periodic table.
+    #[must_use]
+    pub const fn extend(mut self) -> Self {
+        if !self.axis.is_periodic() {
+            self.axis.outside = Outside::Extend;
+        }
+        self
+    }
+
+    /// Both ends of the range.
+    #[must_use]
+    pub const fn range(&self) -> [f64; 2] {
+        self.axis.range
+    }
+
+    /// The function with these values at its knots.
+    #[inline]
+    pub fn of<'a, T>(&'a self, values: &'a [T; N]) -> WithValues<'a, T, N> {
+        WithValues { table: self, values }
+    }
+
+    /// As [`Table::undefined`](super::Table::undefined).
+    pub fn undefined<T: Real>(&self, function: &'static str, [x]: [T; 1]) -> Option<Undefined> {
+        undefined_along(&self.axis, function, x.to_f64())
+    }
+
+    /// The base of the piece at x, and the coefficients of the cardinal function j there.
+    #[inline]
+    fn constants(&self, x: f64, j: usize) -> [f64; 6] {
+        let place = self.axis.place(x);
+        let i = place.index;
+        // The last knot is at the end of the range, unless the table is periodic.
+        let (other, h) = if i + 1 < N {
+            (i + 1, self.axis.knots[i + 1] - self.axis.knots[i])
+        } else if self.axis.is_periodic() {
+            (0, self.axis.range[1] - self.axis.knots[i])
+        } else {
+            (i - 1, self.axis.knots[i - 1] - self.axis.knots[i])
+        };
+        let cardinal = |knot: usize| if knot == j { 1.0 } else { 0.0 };
+        let coefficients = match &self.slopes {
+            Some(slopes) => slopes::hermite(h, [cardinal(i), slopes[i][j]], [cardinal(other), slopes[other][j]]),
+            None => [cardinal(i), (cardinal(other) - cardinal(i)) / h, 0.0, 0.0],
+        };
+        let coefficients = if self.is_invalid { [f64::NAN; 4] } else { place.kept(coefficients) };
+        let [c0, c1, c2, c3] = coefficients;
+        [place.base[0], place.base[1], c0, c1, c2, c3]
+    }
+}
+
+/// A [`Uniform`] table with the values at its knots.
+#[derive(Clone, Copy, Debug)]
+pub struct WithValues<'a, T, const N: usize> {
+    table: &'a Uniform<N>,
+    values: &'a [T; N],
+}
+
+impl<T: Number, const N: usize> WithValues<'_, T, N> {
+    /// The value at x. NaN for NaN.
+    #[inline]
+    pub fn at(&self, x: T) -> T {
+        let (u, coefficients) = self.piece(x);
+        polynomial::<_, 4>(&coefficients, u, 0)
+    }
+
+    /// The distance from the base of a piece, and its coefficients: those of the cardinal functions times the values.
+    #[inline(always)]
+    fn piece(&self, x: T) -> (T, [T; 6]) {
+        let mut coefficients = [T::zero(); 6];
+        let mut base = [T::zero(); 2];
+        for (j, value) in self.values.iter().enumerate() {
+            let [whole, rest, c0, c1, c2, c3] = T::lookup([x], |[x]| self.table.constants(x, j));
+            base = [whole, rest];
+            for (sum, cardinal) in coefficients.iter_mut().zip([c0, c1, c2, c3]) {
+                *sum += *value * cardinal;
+            }
+        }
+        (distance(&self.table.axis, x, base), coefficients)
+    }
+}
+
+impl<T: Real, const N: usize> Jets<T, 1> for WithValues<'_, T, N> {
+    #[inline]
+    fn jet_0(&self, [x]: [T; 1]) -> T {
+        self.at(x)
+    }
+
+    #[inline]
+    fn jet_1(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>) {
+        let [value, slope] = derivatives::<_, 4, 2>(self.piece(x));
+        (value, [slope])
+    }
+
+    #[inline]
+    fn jet_2(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>, Hessian<T, 1>) {
+        let [value, slope, second] = derivatives::<_, 4, 3>(self.piece(x));
+        (value, [slope], [[second]])
+    }
+
+    #[inline]
+    fn jet_3(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>, Hessian<T, 1>, ThirdDerivatives<T, 1>) {
+        let [value, slope, second, third] = derivatives::<_, 4, 4>(self.piece(x));
+        (value, [slope], [[second]], [[[third]]])
+    }
+}
