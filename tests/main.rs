@@ -12,6 +12,7 @@ mod events;
 mod extremes;
 mod flow;
 mod forms;
+mod functions;
 mod integrators;
 mod limits;
 mod loops;

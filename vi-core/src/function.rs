@@ -24,6 +24,7 @@
 //! assert_eq!([value, slope, curvature], [0.0, 6.0, 0.0]);
 //! ```
 
+use crate::lagrangian::Undefined;
 use crate::real::{Dual, Number, Real, Slopes};
 use core::array;
 
@@ -55,6 +56,19 @@ pub trait Jets<T, const K: usize> {
 /// A function whose derivatives are computed by dual numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Differentiated<F>(pub F);
+
+impl<F> Differentiated<F> {
+    /// The reason why the function has no value at finite arguments: its value is not finite. It names the first
+    /// argument.
+    pub fn undefined<T: Real, const K: usize>(&self, function: &'static str, arguments: [T; K]) -> Option<Undefined>
+    where
+        F: Function<K>,
+    {
+        let is_finite = |number: &T| number.is_finite();
+        let argument = arguments.first().filter(|_| arguments.iter().all(is_finite))?.to_f64();
+        (!self.0.value(arguments).is_finite()).then_some(Undefined { function, argument, range: None })
+    }
+}
 
 /// A number with its derivatives with respect to K arguments.
 type Varied<T, const K: usize> = Dual<T, Slopes<T, K>>;
