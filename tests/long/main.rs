@@ -15,6 +15,7 @@ mod iterations;
 mod kept_energies;
 mod motions;
 mod robustness;
+mod smoothness;
 mod solvability;
 #[path = "../support/mod.rs"]
 mod support;

@@ -18,7 +18,7 @@ use crate::support::twice::Twice;
 use vi_core::collocation::{Collocation, Point, ScaledPoint, TimeScale};
 use vi_core::linear::Matrix;
 use vi_core::node::Node;
-use vi_core::real::{Real, Rounded};
+use vi_core::real::{Number, Real, Rounded};
 use vi_core::stepping::{Convertible, FixedStepping};
 use vi_core::{EnergyPreservingGauss, Gauss, Method, Run, SVector, Starts, State, StepError, lagrangian};
 
