@@ -380,9 +380,9 @@ impl fmt::Display for StepError {
             Self::Tolerance { .. } => {
                 f.write_str("; take shorter steps, a method of higher order, or allow a larger error")
             }
-            Self::Undefined { range: Some(_), .. } => {
-                f.write_str("; write `hold` or `extend` in its `table`, add points, or stop the run before it leaves them")
-            }
+            Self::Undefined { range: Some(_), .. } => f.write_str(
+                "; write `hold` or `extend` in its `table`, add points, or stop the run before it leaves them",
+            ),
             Self::Undefined { range: None, .. } => {
                 f.write_str("; return a finite number there, or stop the run before it gets there")
             }

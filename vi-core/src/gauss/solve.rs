@@ -364,8 +364,7 @@ pub(crate) fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &N
     };
     let lost = StepError::NonFinite { t: node.t, quantity: "force at a stage", expression: None };
     let explained = lost.explained(system, node, h, &v);
-    let is_named =
-        matches!(explained, StepError::NonFinite { expression: Some(_), .. } | StepError::Undefined { .. });
+    let is_named = matches!(explained, StepError::NonFinite { expression: Some(_), .. } | StepError::Undefined { .. });
     let has_slopes = |h: f64| {
         let (t, q) = node.midpoint(h, &v);
         let Point { momentum, force, .. } = system.point(t, &q, &v);
