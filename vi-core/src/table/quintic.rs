@@ -239,13 +239,13 @@ pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_period
     let (left, right) = (3, N - 4);
     let mut k = 0;
     while k < 3 {
-        pieces[k] = one_of_three(x, y, Side::new(x, y, [0, 1, 2], left), found[0], [left, k]);
+        pieces[k] = one_of_three(x, y, &Side::new(x, y, [0, 1, 2], left), found[0], [left, k]);
         k += 1;
     }
     k = right;
     while k < N {
         let side = Side::new(x, y, [N - 3, N - 2, N - 1], right);
-        pieces[k] = one_of_three(x, y, side, found[count - 1], [right, k]);
+        pieces[k] = one_of_three(x, y, &side, found[count - 1], [right, k]);
         k += 1;
     }
     pieces
@@ -255,7 +255,7 @@ pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_period
 const fn one_of_three<const N: usize>(
     x: &[f64; N],
     y: &[f64; N],
-    side: Side,
+    side: &Side,
     [s, m]: [f64; 2],
     [base, at]: [usize; 2],
 ) -> [f64; 6] {
