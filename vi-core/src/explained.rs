@@ -24,15 +24,14 @@ impl StepError {
         if !self.may_be_undefined() {
             return self;
         }
-        // The middle of the step, the node, the end, and the middle of the longest trial step.
-        let places = [1.0, 0.0, 2.0, 3.0].map(|part| node.midpoint(h * T::real(part), v));
-        let undefined = places.iter().find_map(|(t, q)| system.undefined(*t, q, v));
-        if let Some(Undefined { function, argument, range }) = undefined {
+        if let Some(Undefined { function, argument, range }) = undefined(system, node, h, v) {
             return Self::Undefined { t: node.t.to_f64(), function, argument, range };
         }
         let Self::NonFinite { t, quantity, expression: None } = self else { return self };
-        let [middle, start, _, longest] = places;
-        let expression = [middle, start, longest].into_iter().find_map(|(t, q)| system.non_finite(t, &q, v));
+        // The middle of the step, the node, and the middle of the longest trial step.
+        let lengths = [h, T::zero(), h * T::real(3.0)];
+        let mut places = lengths.into_iter().map(|h| node.midpoint(h, v));
+        let expression = places.find_map(|(t, q)| system.non_finite(t, &q, v));
         Self::NonFinite { t, quantity, expression }
     }
 
@@ -57,10 +56,36 @@ impl StepError {
             Self::NonFinite { expression: None, .. }
             | Self::NotConverged { .. }
             | Self::StagesUnsettled { .. }
+            | Self::NoForwardStep { .. }
+            | Self::NoForwardGaussStep { .. }
+            | Self::DegenerateStep { .. }
+            | Self::StepRatio { .. }
             | Self::Singular { .. } => true,
             Self::TimeScale { g, .. } => !g.is_finite(),
             Self::Tolerance { estimate, .. } => !estimate.is_finite(),
             _ => false,
         }
     }
+}
+
+/// The function without a value at the node, in the step of the length h or a little after it, which iterations reach.
+/// Velocities are constant, or have the acceleration of the node.
+fn undefined<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    v: &SVector<T, N>,
+) -> Option<Undefined> {
+    let acceleration = system.acceleration(node.t, &node.q, v).unwrap_or_else(|_| SVector::zeros());
+    let is_finite = acceleration.iter().all(|entry| entry.is_finite());
+    let by_acceleration = if is_finite { acceleration } else { SVector::zeros() };
+    [1.0, 0.0, 2.0, 3.0].into_iter().find_map(|part| {
+        let twice = h * T::real(part);
+        let (t, q) = node.midpoint(twice, v);
+        let changed = v + by_acceleration * (twice * T::real(0.5));
+        system.undefined(t, &q, v).or_else(|| {
+            let (t, q) = node.midpoint(twice, &((v + changed) * T::real(0.5)));
+            system.undefined(t, &q, &changed)
+        })
+    })
 }

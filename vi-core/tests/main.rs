@@ -15,3 +15,4 @@ mod outcomes;
 mod references;
 mod spoiled;
 mod systems;
+mod tables;

@@ -255,7 +255,7 @@ impl Number for Series {
         find(arguments.map(|argument| argument.value())).map(Self::fixed)
     }
     fn presence(self) -> Self {
-        Self::fixed(if self.terms == [0.0; TERMS] { 0.0 } else { 1.0 })
+        Self::fixed(if num_traits::Zero::is_zero(&self) { 0.0 } else { 1.0 })
     }
 }
 

@@ -60,7 +60,13 @@ impl<const M: usize, const N: usize> Grid<M, N> {
     /// What the function is beyond the edges, along x and along y. Along a periodic axis the last values must be the
     /// first ones.
     #[must_use]
-    pub const fn outside(self, outside: [Outside; 2]) -> Self {
+    pub const fn outside(mut self, outside: [Outside; 2]) -> Self {
+        let is_joined_in_x = self.x.is_periodic() == matches!(outside[0], Outside::Periodic);
+        let is_joined_in_y = self.y.is_periodic() == matches!(outside[1], Outside::Periodic);
+        if is_joined_in_x && is_joined_in_y {
+            [self.x.outside, self.y.outside] = outside;
+            return self;
+        }
         let mut values = [[0.0; N]; M];
         let mut i = 0;
         while i < M {

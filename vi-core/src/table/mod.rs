@@ -264,12 +264,14 @@ fn distance<T: Number, const N: usize>(axis: &Axis<N>, x: T, [whole, rest]: [T; 
 const fn ascend<const N: usize>(knots: &[f64; N]) -> bool {
     let mut i = 1;
     while i < N {
-        if !(knots[i - 1] < knots[i]) {
+        // Also false for NaN and for an infinite distance.
+        let distance = knots[i] - knots[i - 1];
+        if distance <= 0.0 || !distance.is_finite() {
             return false;
         }
         i += 1;
     }
-    knots[0].is_finite() && knots[N - 1].is_finite()
+    true
 }
 
 /// The failure of a function of an argument outside of the range; `None` for NaN, which has another reason.

@@ -24,76 +24,75 @@ struct Row {
 
 const ZERO: Block = [[0.0; 2]; 2];
 
-const fn add(a: Block, b: Block) -> Block {
-    [[a[0][0] + b[0][0], a[0][1] + b[0][1]], [a[1][0] + b[1][0], a[1][1] + b[1][1]]]
+const fn add([[a, b], [c, d]]: Block, [[e, f], [g, h]]: Block) -> Block {
+    [[a + e, b + f], [c + g, d + h]]
 }
 
 /// `a − b c`.
-const fn less(a: Block, b: Block, c: Block) -> Block {
-    let [x, y] = [[c[0][0], c[1][0]], [c[0][1], c[1][1]]];
-    let [p, q] = [less_vector([a[0][0], a[1][0]], b, x), less_vector([a[0][1], a[1][1]], b, y)];
-    [[p[0], q[0]], [p[1], q[1]]]
+const fn less([[p, q], [r, s]]: Block, [[a, b], [c, d]]: Block, [[e, f], [g, h]]: Block) -> Block {
+    [[p - (a * e + b * g), q - (a * f + b * h)], [r - (c * e + d * g), s - (c * f + d * h)]]
 }
 
 /// `a − b x`.
-const fn less_vector(a: [f64; 2], b: Block, x: [f64; 2]) -> [f64; 2] {
-    [a[0] - (b[0][0] * x[0] + b[0][1] * x[1]), a[1] - (b[1][0] * x[0] + b[1][1] * x[1])]
+const fn less_vector([p, q]: [f64; 2], [[a, b], [c, d]]: Block, [x, y]: [f64; 2]) -> [f64; 2] {
+    [p - (a * x + b * y), q - (c * x + d * y)]
 }
 
-/// The inverse of a block.
-const fn inverse([[a, b], [c, d]]: Block) -> Block {
-    let determinant = a * d - b * c;
-    [[d / determinant, -b / determinant], [-c / determinant, a / determinant]]
-}
-
-/// `a b`, and `a x`.
-const fn product(a: Block, b: Block) -> Block {
-    let [[p, q], [r, s]] = less(ZERO, a, b);
-    [[-p, -q], [-r, -s]]
-}
-const fn product_vector(a: Block, x: [f64; 2]) -> [f64; 2] {
-    let [p, q] = less_vector([0.0; 2], a, x);
-    [-p, -q]
+/// `a⁻¹ b` and `a⁻¹ x`, which end the elimination of a knot.
+const fn divided([[e, f], [g, h]]: Block, [x, y]: [f64; 2], [[a, b], [c, d]]: Block) -> (Block, [f64; 2]) {
+    let inverse = 1.0 / (a * d - b * c);
+    let block = [
+        [(d * e - b * g) * inverse, (d * f - b * h) * inverse],
+        [(a * g - c * e) * inverse, (a * h - c * f) * inverse],
+    ];
+    (block, [(d * x - b * y) * inverse, (a * y - c * x) * inverse])
 }
 
 /// As [`tridiagonal::solve`](super::tridiagonal::solve), with blocks.
-const fn solve<const N: usize>(rows: &[Row; N], count: usize) -> [[f64; 2]; N] {
+const fn solve<const N: usize>(rows: &[Row; N], count: usize, is_cyclic: bool) -> [[f64; 2]; N] {
     let last = count - 1;
     let (mut known, mut above, mut by_last) = ([[0.0; 2]; N], [ZERO; N], [ZERO; N]);
     let mut i = 0;
     while i < last {
-        let Row { lower, diagonal, upper, right } = rows[i];
+        let Row { lower, diagonal, upper, right } = &rows[i];
         let is_before_last = i + 1 == last;
-        let coupling = if is_before_last { upper } else { ZERO };
-        let inner = if is_before_last { ZERO } else { upper };
-        let (pivot, right, coupling) = if i == 0 {
-            (diagonal, right, add(coupling, lower))
+        let inner = if is_before_last && is_cyclic { ZERO } else { *upper };
+        let (pivot, right) = if i == 0 {
+            (*diagonal, *right)
         } else {
-            let pivot = less(diagonal, lower, above[i - 1]);
-            (pivot, less_vector(right, lower, known[i - 1]), less(coupling, lower, by_last[i - 1]))
+            (less(*diagonal, *lower, above[i - 1]), less_vector(*right, *lower, known[i - 1]))
         };
-        let pivot = inverse(pivot);
-        above[i] = product(pivot, inner);
-        known[i] = product_vector(pivot, right);
-        by_last[i] = product(pivot, coupling);
+        (above[i], known[i]) = divided(inner, right, pivot);
+        if is_cyclic {
+            let coupling = if is_before_last { *upper } else { ZERO };
+            let coupling = if i == 0 { add(coupling, *lower) } else { less(coupling, *lower, by_last[i - 1]) };
+            by_last[i] = divided(coupling, [0.0; 2], pivot).0;
+        }
         i += 1;
-    }
-    while i > 1 {
-        i -= 1;
-        known[i - 1] = less_vector(known[i - 1], above[i - 1], known[i]);
-        by_last[i - 1] = less(by_last[i - 1], above[i - 1], by_last[i]);
     }
     let Row { lower, diagonal, upper, right } = rows[last];
-    known[last] = if last == 0 {
-        product_vector(inverse(add(add(lower, diagonal), upper)), right)
-    } else {
+    let (pivot, right) = if last == 0 {
+        (add(add(lower, diagonal), upper), right)
+    } else if is_cyclic {
+        while i > 1 {
+            i -= 1;
+            known[i - 1] = less_vector(known[i - 1], above[i - 1], known[i]);
+            by_last[i - 1] = less(by_last[i - 1], above[i - 1], by_last[i]);
+        }
         let pivot = less(less(diagonal, lower, by_last[last - 1]), upper, by_last[0]);
-        product_vector(inverse(pivot), less_vector(less_vector(right, lower, known[last - 1]), upper, known[0]))
+        (pivot, less_vector(less_vector(right, lower, known[last - 1]), upper, known[0]))
+    } else {
+        (less(diagonal, lower, above[last - 1]), less_vector(right, lower, known[last - 1]))
     };
-    i = 0;
-    while i < last {
-        known[i] = less_vector(known[i], by_last[i], known[last]);
-        i += 1;
+    known[last] = divided(ZERO, right, pivot).1;
+    i = last;
+    while i > 0 {
+        i -= 1;
+        known[i] = if is_cyclic {
+            less_vector(known[i], by_last[i], known[last])
+        } else {
+            less_vector(known[i], above[i], known[i + 1])
+        };
     }
     known
 }
@@ -219,7 +218,7 @@ pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_period
         rows[i] = row;
         i += 1;
     }
-    let found = solve(&rows, count);
+    let found = solve(&rows, count, is_periodic);
     let mut pieces = [[0.0; 6]; N];
     i = 0;
     while i < count {
@@ -240,13 +239,13 @@ pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_period
     let (left, right) = (3, N - 4);
     let mut k = 0;
     while k < 3 {
-        pieces[k] = one_of_three(x, y, Side::new(x, y, [0, 1, 2], left), found[0], [left, k]);
+        pieces[k] = one_of_three(x, y, &Side::new(x, y, [0, 1, 2], left), found[0], [left, k]);
         k += 1;
     }
     k = right;
     while k < N {
         let side = Side::new(x, y, [N - 3, N - 2, N - 1], right);
-        pieces[k] = one_of_three(x, y, side, found[count - 1], [right, k]);
+        pieces[k] = one_of_three(x, y, &side, found[count - 1], [right, k]);
         k += 1;
     }
     pieces
@@ -256,7 +255,7 @@ pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_period
 const fn one_of_three<const N: usize>(
     x: &[f64; N],
     y: &[f64; N],
-    side: Side,
+    side: &Side,
     [s, m]: [f64; 2],
     [base, at]: [usize; 2],
 ) -> [f64; 6] {

@@ -11,7 +11,7 @@
 //!     energy_dh = −(V_tt + 2 v·V_tq + v·V_qq v)/4
 //!     D = |V_q − f|² + v·V_qq v + 2 v·V_tq + V_tt          for f = 0
 
-use vi_core::lagrangian::Flow;
+use vi_core::lagrangian::{Flow, Undefined};
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::real::Rounded;
@@ -40,7 +40,7 @@ pub(crate) struct Fields<const N: usize, T> {
 
 impl<const N: usize, T: Real> Fields<N, T> {
     /// An autonomous potential without force.
-    fn potential(potential: T, magnitude: T, gradient: SVector<T, N>, hessian: SMatrix<T, N, N>) -> Self {
+    pub(crate) fn potential(potential: T, magnitude: T, gradient: SVector<T, N>, hessian: SMatrix<T, N, N>) -> Self {
         let (zero, zeros, square) = (T::zero(), SVector::zeros(), SMatrix::zeros());
         Self {
             potential,
@@ -61,6 +61,9 @@ impl<const N: usize, T: Real> Fields<N, T> {
 /// The parts of a system of unit mass.
 pub(crate) trait Potential<const N: usize, T: Real>: Copy {
     fn fields(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Fields<N, T>;
+    fn undefined(&self, _: &SVector<T, N>, _: &SVector<T, N>) -> Option<Undefined> {
+        None
+    }
 }
 
 /// The requirements on such a system: its equations in its own numbers, and in numbers with a rounding bound.
@@ -221,6 +224,10 @@ impl<const N: usize, T: Real, P: Potential<N, T>> Lagrangian<N, T> for UnitMass<
     fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
         let fields = self.0.fields(t, q, p);
         Ok(Flow { v: *p, force: fields.force - fields.gradient, power: fields.potential_t + fields.force.dot(p) })
+    }
+
+    fn undefined(&self, _: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<Undefined> {
+        self.0.undefined(q, v)
     }
 }
 

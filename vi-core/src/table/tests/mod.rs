@@ -63,9 +63,9 @@ fn polynomials_are_reproduced() {
         let table = build(knots, knots.map(|x| polynomial_of(degree, x)));
         for k in 0..=200 {
             let x = -1.0 + 0.01 * f64::from(k);
-            // Differences of third order between close points lose digits. Measured: 3e-15, and 4e-13 for quintics.
+            // Measured: 9e-16, and 2e-15 for quintics.
             let error = (table.at(x) - polynomial_of(degree, x)).abs();
-            assert!(error <= if C == 4 { 2e-14 } else { 2e-12 }, "{N} points, degree {degree}, at {x}: {error:e}");
+            assert!(error <= if C == 4 { 9e-15 } else { 2e-14 }, "{N} points, degree {degree}, at {x}: {error:e}");
         }
     }
     check::<2, 2>(Table::linear, 1);
@@ -94,7 +94,7 @@ fn products_of_cubics_are_reproduced_on_a_grid() {
     let grid = Grid::cubic(x, y, x.map(|x| y.map(|y| of(x, y))));
     for (i, j) in (0..=40).flat_map(|i| (0..=40).map(move |j| (i, j))) {
         let (x, y) = (-1.0 + 0.05 * f64::from(i), -1.0 + 0.05 * f64::from(j));
-        // Measured: 9e-16.
+        // Measured: 2e-15.
         assert!((grid.at(x, y) - of(x, y)).abs() <= 1e-14, "{x}, {y}");
     }
     let plane = Grid::linear([0.0, 1.0, 4.0], [0.0, 2.0], [[0.0, 2.0], [1.0, 5.0], [4.0, 14.0]]);
@@ -130,9 +130,9 @@ fn pieces_join_smoothly() {
         // The seam is measured within the range: from its last point to its first.
         for (before, after) in inner.chain(ends.then_some((KNOTS[7].next_down(), KNOTS[0]))) {
             let (left, right) = (series(table, before), series(table, after));
-            // Measured: 5e-13, for the fourth derivative of the quintic splines, which is 200.
+            // Measured: 2e-13, for the fourth derivatives of the quintic splines.
             let error = worst(&left[..=smooth], &right[..=smooth]);
-            assert!(error <= 5e-12, "{name} at {after}: {error:e}");
+            assert!(error <= 2e-12, "{name} at {after}: {error:e}");
             kinks = kinks.max((left[smooth + 1] - right[smooth + 1]).abs());
         }
         assert!(kinks > 1.0, "{name}: {kinks}");
@@ -193,7 +193,7 @@ fn whole_periods_cost_no_digits() {
             // The remainder is exact.
             let near = x.rem_euclid(PERIOD);
             let error = (table.at(x) - table.at(near)).abs();
-            // Slopes are up to 120. Measured: 7e-15; without the low part of the product 8e-8.
+            // Measured: 5e-15. A rounded product of turns and period would be off by 2e-9, with slopes of about 100.
             assert!(error <= 5e-14, "{x}: {error:e}");
         }
     }
@@ -214,8 +214,8 @@ fn jets_are_the_derivatives_by_duals() {
             let found = [value, slope, second, last];
             let wanted = of_dual(table.at(third(x)));
             assert!(found.iter().zip(wanted).all(|(a, b)| a.is_nan() == b.is_nan()));
-            // Measured: 1e-15.
-            assert!(value.is_nan() || worst(&found, &wanted) <= 1e-14, "{x}: {found:?}, {wanted:?}");
+            // Measured: 3e-15.
+            assert!(value.is_nan() || worst(&found, &wanted) <= 3e-14, "{x}: {found:?}, {wanted:?}");
         }
     }
     let [x, y] = [2.0, 1.3];
@@ -279,7 +279,7 @@ fn the_error_bound_holds_for_rounded_coefficients() {
         let rounded = QUINTIC.at(Rounded::exact(x));
         let error = ((rounded.to_f64() - sum) - low).abs();
         let bound = rounded.error() * 0.5 * f64::EPSILON;
-        // Measured: 0.28.
+        // Measured: 0.44.
         largest = largest.max(error / bound);
         assert!(error <= bound, "{x}: {error:e}, {bound:e}");
         // Half a rounding of each coefficient, as in `f32`, is in the bound too: at least that of the value.
@@ -302,7 +302,7 @@ fn parameters_are_multiplied_by_cardinal_functions() {
         let compare = |found: (f64, [f64; 1], [[f64; 1]; 1]), wanted: (f64, [f64; 1], [[f64; 1]; 1])| {
             let flat = |(value, [slope], [[second]]): (f64, [f64; 1], [[f64; 1]; 1])| [value, slope, second];
             let (found, wanted) = (flat(found), flat(wanted));
-            // Measured: 4e-15.
+            // Measured: 8e-15.
             assert!(
                 worst(&found, &wanted) <= 1e-13 || found[0].is_nan() && wanted[0].is_nan(),
                 "{x}: {found:?} {wanted:?}"
