@@ -5,6 +5,7 @@ mod arrays;
 mod bodies;
 mod checks;
 mod composition;
+mod control;
 mod declarations;
 mod derivatives;
 mod estimates;
