@@ -13,6 +13,7 @@ mod events;
 mod extremes;
 mod flow;
 mod forms;
+mod inputs;
 mod integrators;
 mod limits;
 mod loops;
