@@ -103,12 +103,12 @@ pub(super) fn find<S: Collocation<N> + Convertible<N>, const N: usize>(
 ) -> Result<Equilibrium<N>, StepError> {
     let (dual, rounded) = (system.convert::<Dual<f64>>(), system.convert::<Dual<Rounded>>());
     let mut rest = Rest { dual, rounded, t, free: [false; N], names: S::COORDINATES };
-    let start = rest.linearized(&guess);
-    if !start.is_finite() {
-        let node = Node::new(State { t, q: guess, p: SVector::zeros() }, 0.0);
+    let finite = |of: Balance<N>, q: SVector<f64, N>| {
+        let node = Node::new(State { t, q, p: SVector::zeros() }, 0.0);
         let lost = StepError::NonFinite { t, quantity: "generalized force", expression: None };
-        return Err(lost.explained(system, &node, 0.0, &SVector::zeros()));
-    }
+        if of.is_finite() { Ok(of) } else { Err(lost.explained(system, &node, 0.0, &SVector::zeros())) }
+    };
+    let start = finite(rest.linearized(&guess), guess)?;
     let is_zero = |i: usize, j: usize| start.stiffness[(i, j)] == 0.0;
     rest.free = array::from_fn(|k| (0..N).all(|other| is_zero(k, other) && is_zero(other, k)));
     let forces = rest.at(&guess);
@@ -120,10 +120,10 @@ pub(super) fn find<S: Collocation<N> + Convertible<N>, const N: usize>(
         Failure::Singular => rest.free_motion(&near),
         _ => rest.unbalanced(&near),
     })?;
-    if spectrum_null(&rest.held(&root.at.stiffness)).is_some() {
+    if free_coordinate(&rest.held(&root.at.stiffness)).is_some() {
         return Err(rest.free_motion(&root.u));
     }
-    let Balance { mass, damping, stiffness, .. } = rest.linearized(&root.u);
+    let Balance { mass, damping, stiffness, .. } = finite(rest.linearized(&root.u), root.u)?;
     let residual = worst(&root.at.residual, &root.at.scale);
     Ok(Equilibrium { t, q: root.u, mass, damping, stiffness, free: rest.free, residual })
 }
@@ -151,8 +151,8 @@ struct Balance<const N: usize> {
 
 impl<const N: usize> Balance<N> {
     fn is_finite(&self) -> bool {
-        let Self { residual, stiffness, .. } = self;
-        residual.iter().chain(stiffness).all(|entry| entry.is_finite())
+        let Self { residual, stiffness, damping, mass, .. } = self;
+        residual.iter().chain(stiffness).chain(damping).chain(mass).all(|entry| entry.is_finite())
     }
 }
 
@@ -209,7 +209,8 @@ impl<const N: usize, D: Collocation<N, Dual<f64>>, R: Collocation<N, Dual<Rounde
                     return Err(self.unbalanced(&q));
                 }
             };
-            if factor == 1.0 {
+            // The first trial was accepted.
+            if factor > 0.5 {
                 return Ok(q);
             }
             (q, at) = (q - correction * factor, next);
@@ -228,7 +229,7 @@ impl<const N: usize, D: Collocation<N, Dual<f64>>, R: Collocation<N, Dual<Rounde
     /// The direction along which the force does not change at a point.
     fn free_motion(&self, q: &SVector<f64, N>) -> StepError {
         let stiffness = self.held(&self.linearized(q).stiffness);
-        match spectrum_null(&stiffness) {
+        match free_coordinate(&stiffness) {
             Some(coordinate) => StepError::FreeMotion { t: self.t, coordinate: self.names[coordinate] },
             None => self.unbalanced(q),
         }
@@ -236,7 +237,7 @@ impl<const N: usize, D: Collocation<N, Dual<f64>>, R: Collocation<N, Dual<Rounde
 }
 
 /// The coordinate that moves most along a null vector of K; `None` if K is regular.
-fn spectrum_null<const N: usize>(stiffness: &SMatrix<f64, N, N>) -> Option<usize> {
+fn free_coordinate<const N: usize>(stiffness: &SMatrix<f64, N, N>) -> Option<usize> {
     let [rows, columns] = linear::weights(stiffness);
     let dense = DMatrix::from_fn(N, N, |i, j| stiffness[(i, j)]);
     spectrum::null_vector(&dense, &rows, &columns).map(|vector| vector.iamax())
