@@ -63,7 +63,7 @@ where
         (after - before) / (2.0 * DELTA)
     });
     let State { q, p, .. } = run.step().expect("a step");
-    assert!(linear.value.iter().zip(q.iter().chain(&p)).all(|(found, wanted)| found == wanted));
+    assert!(linear.value.iter().eq(q.iter().chain(&p)));
     (found - &wanted).amax() / wanted.amax()
 }
 
@@ -125,10 +125,7 @@ fn inputs_are_constant_over_a_step() {
 }
 
 /// The distance between a run with inputs that change after every step, and new runs from each of its states.
-fn distance_of_restarts<M: Clone>(method: M, h: f64) -> f64
-where
-    M: vi_core::Method<Springs, 2>,
-{
+fn distance_of_restarts<M: Method<Springs, 2>>(method: &M, h: f64) -> f64 {
     let mut springs = Springs::default();
     let mut run = springs.at(0.0, [0.6, -0.3], [0.2, 0.5]).integrate(method.clone(), h).expect("a run");
     let mut worst = 0.0_f64;
@@ -145,7 +142,7 @@ where
 
 #[test]
 fn a_step_after_a_change_is_that_of_a_new_run() {
-    let errors = [distance_of_restarts(FixedStep, 0.05), distance_of_restarts(Gauss::<4>, 0.2)];
+    let errors = [distance_of_restarts(&FixedStep, 0.05), distance_of_restarts(&Gauss::<4>, 0.2)];
     println!("restarts: {errors:?}");
     // 2.2e-16 was measured: a new run has no low parts.
     assert!(errors.into_iter().all(|error| error < 2e-15), "{errors:?}");
@@ -156,7 +153,7 @@ const STEPS: i32 = 10_000;
 
 /// Damps and drives the masses; returns the sum of the energies that the inputs brought, by formulas of this test, the
 /// kept energy, and the range of H about it.
-fn balance<M: vi_core::Method<Springs, 2>>(mut run: Run<M, Springs, 2>, kept: impl Fn(&Run<M, Springs, 2>) -> f64) {
+fn balance<M: Method<Springs, 2>>(mut run: Run<M, Springs, 2>, kept: impl Fn(&Run<M, Springs, 2>) -> f64) {
     let first = kept(&run);
     let mut brought = first;
     let (mut error, mut apart, mut moved) = (0.0_f64, [0.0_f64; 2], 0.0_f64);
@@ -272,7 +269,7 @@ lagrangian! {
 }
 
 /// The momentum at t = 2 of the driven pendulum in this number of steps, by inputs at the middle of each step.
-fn driven<M: vi_core::Method<Driven, 1>>(method: M, steps: i32) -> SVector<f64, 2> {
+fn driven<M: Method<Driven, 1>>(method: M, steps: i32) -> SVector<f64, 2> {
     let Written { lift, w, .. } = Written::default();
     let h = 2.0 / f64::from(steps);
     let pivot = |t: f64| [lift * (w * t).sin(), lift * w * (w * t).cos()];

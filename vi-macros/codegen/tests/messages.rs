@@ -120,7 +120,7 @@ fn inputs() {
         clause(&format!("«{word}» u = 0.0;"), &format!("unknown clause `{word}`\nhelp: {help}"));
     }
     clause("«inptu» u = 0.0;", "unknown clause `inptu`\nhelp: did you mean `input`?");
-    clause("#[«cfg»(test)] input u = 0.0;", "this attribute has no effect");
+    clause("«#»[cfg(test)] input u = 0.0;", "this attribute has no meaning here");
     // The clause before it lacks its `;`.
     case("param m = «1» input u = 0; coord x; L = m * u * dot(x)^2; discretize midpoint;", "`;` is missing after `1`");
     // The word starts a clause, and is a name elsewhere.
@@ -129,6 +129,7 @@ fn inputs() {
         "param input = 1; coord x; L = input * dot(x)^2 / 2; discretize midpoint; check { input = 2; h = 0.1; }",
         "input input = 1; coord x; let control = input^2; L = control * dot(x)^2 / 2; discretize midpoint;",
         "coord input; L = dot(input)^2 / 2 - input; force input = 1; discretize midpoint;",
+        "#[allow(dead_code)] input u = 1; coord x; L = dot(x)^2 / 2 - u * x; discretize midpoint;",
         "const input = 1; coord x; L = dot(x)^2 / 2 - 2 * input * x; discretize midpoint;",
     ] {
         assert_eq!(errors(&format!("struct System {{ {accepted} }}")), [], "{accepted}");
