@@ -24,7 +24,7 @@ lagrangian! {
     struct CartPole {
         param M = 1.0, m = 0.2, l = 0.5, g = 9.81;
         /// Force on the cart.
-        param u = 0.0;
+        input u = 0.0;
         coord x, a;
         L = (M + m) * dot(x)^2 / 2 + m * l * dot(x) * dot(a) * cos(a) + m * l^2 * dot(a)^2 / 2 - m * g * l * cos(a);
         force x = u;

@@ -13,9 +13,10 @@ use libfuzzer_sys::fuzz_target;
 use proc_macro2::TokenStream;
 
 /// One token for each byte; the last ones open and close.
-const TOKENS: [&str; 112] = [
+const TOKENS: [&str; 113] = [
     "const",
     "param",
+    "input",
     "coord",
     "let",
     "L",

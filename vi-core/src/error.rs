@@ -140,6 +140,22 @@ pub enum StepError {
         /// Name of the matrix.
         matrix: &'static str,
     },
+    /// No equilibrium was found near the guess.
+    NoEquilibrium {
+        /// Time of the equilibrium.
+        t: f64,
+        /// The coordinate whose force stayed largest, in units of its rounding-error bound.
+        coordinate: &'static str,
+        /// The force on this coordinate, in the units of the system.
+        force: f64,
+    },
+    /// The stiffness matrix is singular: the forces at rest do not change along some direction.
+    FreeMotion {
+        /// Time of the equilibrium.
+        t: f64,
+        /// The coordinate that moves most along this direction.
+        coordinate: &'static str,
+    },
     /// A quantity is infinite or not a number.
     NonFinite {
         /// Time of this value.
@@ -280,6 +296,14 @@ impl fmt::Display for Reason<'_> {
             StepError::NoRule { system } => write!(f, "`{system}` declares no quadrature rule"),
             StepError::Ambiguous { t } => write!(f, "two velocities have the same momenta at t = {t:.9}"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
+            StepError::NoEquilibrium { t, coordinate, force } => write!(
+                f,
+                "no equilibrium was found near the guess at t = {t:.9}: the force {force:.3e} on `{coordinate}` is not balanced"
+            ),
+            StepError::FreeMotion { t, coordinate } => write!(
+                f,
+                "the stiffness matrix is singular at t = {t:.9}: the forces do not change along a motion of `{coordinate}`"
+            ),
             StepError::NonFinite { t, quantity, expression: None } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}")
             }
@@ -386,6 +410,14 @@ impl fmt::Display for StepError {
             Self::Undefined { range: None, .. } => {
                 f.write_str("; return a finite number there, or stop the run before it gets there")
             }
+            Self::NoEquilibrium { coordinate, .. } => write!(
+                f,
+                "; start nearer to it, or set inputs and parameters so that the forces on `{coordinate}` can balance"
+            ),
+            Self::FreeMotion { coordinate, .. } => write!(
+                f,
+                "; start nearer to an equilibrium; if the equilibria form a family, hold `{coordinate}` by a weak spring"
+            ),
             Self::Singular { .. }
             | Self::NonFinite { .. }
             | Self::NoDerivative { .. }

@@ -45,6 +45,7 @@ macro_rules! forward {
         const FORCED: bool = <$s as $crate::Lagrangian<$n, $t>>::FORCED;
         const CYCLIC: [bool; $n] = <$s as $crate::Lagrangian<$n, $t>>::CYCLIC;
         const PARAMETERS: &'static [&'static str] = <$s as $crate::Lagrangian<$n, $t>>::PARAMETERS;
+        const INPUTS: &'static [usize] = <$s as $crate::Lagrangian<$n, $t>>::INPUTS;
 
         fn parameter(&$this, index: usize) -> $t {
             <$s as $crate::Lagrangian<$n, $t>>::parameter($to, index)

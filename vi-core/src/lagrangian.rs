@@ -18,6 +18,9 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     const CYCLIC: [bool; N];
     /// Names of the parameters, as declared.
     const PARAMETERS: &'static [&'static str] = &[];
+    /// Indices in [`Lagrangian::PARAMETERS`] of the inputs, the parameters that `input` declares for a controller to
+    /// set, in ascending order.
+    const INPUTS: &'static [usize] = &[];
 
     /// The value of the parameter of this index in [`Lagrangian::PARAMETERS`].
     fn parameter(&self, _index: usize) -> T {

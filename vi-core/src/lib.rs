@@ -35,6 +35,7 @@
 //! | [`state`], [`node`] | states, intervals and steps; nodes with compensated sums |
 //! | [`method`] | the integrators, one file each |
 //! | [`run`] | shared by all methods: steps, dense output, output at given times, events, error estimates, checkpoints |
+//! | [`control`] | mass matrix, bias, inverse dynamics, linearizations, equilibria |
 //! | [`derivatives`] | sensitivities to initial conditions and parameters, gradients, Lyapunov exponents |
 //! | `momentum`, [`energy_preserving`], [`gauss`] | solvers of the step equations |
 //! | `newton`, `solve`, [`linear`] | Newton iteration, root bracketing, small linear systems with their zero patterns |
@@ -59,6 +60,7 @@ pub mod check;
 pub mod collocation;
 mod compensated;
 pub mod condition;
+pub mod control;
 mod delegate;
 pub mod derivatives;
 pub mod discrete;
@@ -88,6 +90,7 @@ pub mod table;
 mod vector;
 
 pub use called::Called;
+pub use control::Dynamics;
 pub use discrete::DiscreteLagrangian;
 pub use error::StepError;
 pub use lagrangian::Lagrangian;
@@ -103,6 +106,7 @@ pub use vi_macros::lagrangian;
 
 /// The names that a typical program needs.
 pub mod prelude {
+    pub use crate::control::Dynamics as _;
     pub use crate::error::StepError;
     pub use crate::method::{Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method};
     pub use crate::real::Number;

@@ -110,6 +110,11 @@ fn is_kept<T: Real>(entry: T, eliminated: T) -> bool {
     eliminated.abs().is_at_most(entry.abs() * T::real(GROWTH))
 }
 
+/// Scale factors of the rows and of the columns that make its entries comparable, in any units.
+pub(crate) fn weights<const N: usize>(matrix: &SMatrix<f64, N, N>) -> [[f64; N]; 2] {
+    [dense::weights(matrix), dense::weights(&matrix.transpose())]
+}
+
 /// Sign of the determinant, by elimination with partial pivoting: −1, 0 or 1; 0 if an entry is NaN.
 #[must_use]
 pub fn determinant_sign<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> i8 {

@@ -79,7 +79,7 @@ pub enum Habit {
     /// A clause, or a line of a rule, without `;` at its end.
     MissingSemicolon { after: String },
     /// A definition without `=`.
-    MissingValue { name: String, is_parameter: bool },
+    MissingValue { name: String, clause: Option<&'static str> },
     /// `coord x = 1`.
     ValueOfCoordinate,
     /// `force = …`.
@@ -211,7 +211,10 @@ impl Habit {
             Self::MissingValue { name, .. } if matches!(name.as_str(), "dissipation" | "time_scale") => {
                 format!("write `{name} = …;`, one function for all coordinates")
             }
-            Self::MissingValue { name, is_parameter: false } => format!("write `{name} = …`"),
+            Self::MissingValue { name, clause: None } => format!("write `{name} = …`"),
+            Self::MissingValue { name, clause: Some("input") } => {
+                format!("write `{name} = 0.0`: an `input` needs a default, its value until a controller sets it")
+            }
             Self::MissingValue { name, .. } => {
                 format!("write `{name} = 1.0`: a `param` needs a default; its field can override it")
             }
@@ -243,8 +246,12 @@ const TYPES: [&str; 14] =
 const PRODUCTS: [&str; 3] = ["product", "prod", "Π"];
 
 /// Clauses.
-const CLAUSES: [(&[&str], &str); 15] = [
+const CLAUSES: [(&[&str], &str); 16] = [
     (&["parameter", "parameters", "params"], "write `param a = 1.0;`"),
+    (
+        &["inputs", "control", "controls", "actuator", "actuators"],
+        "write `input u = 0.0;`, a parameter that a controller sets between steps",
+    ),
     (&["coordinate", "coordinates", "var", "dof"], "write `coord x, y;`"),
     (&["constant", "constants", "static"], "write `const g = 9.81;`"),
     (&["lagrangian", "Lagrangian", "Lagrange", "Lag"], "write `L = …;`"),
@@ -306,7 +313,7 @@ const FUNCTIONS: [(&[&str], &str); 33] = [
     (&["min", "minimum", "fmin"], "write `min(a, b)`"),
     (
         &["rand", "randn", "random", "noise", "normal", "uniform", "wiener"],
-        "random numbers are not supported: make the force a `param`, and set it between steps with `set_parameters`",
+        "random numbers are not supported: make the force an `input`, and set it between steps with `set_parameters`",
     ),
     (&["integral", "integrate", "int", "quad"], "integrals are not supported: write the value as a formula"),
     (

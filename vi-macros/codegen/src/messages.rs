@@ -13,8 +13,7 @@ use vi_expr::TooLarge;
 const SHOWN: usize = 30;
 
 /// Where attributes are allowed.
-const ATTRIBUTES: &str =
-    "write doc comments before a clause, attributes of the field before a `param`, and `#[cfg]` before the `struct`";
+const ATTRIBUTES: &str = "write doc comments before a clause, attributes of the field before a `param` or an `input`, and `#[cfg]` before the `struct`";
 
 /// Rayleigh functions of friction.
 const FRICTION: &str = "write `c * dot(x)^2 / 2` for viscous friction, `c * abs(dot(x))` for dry friction; a driving force belongs in `force x = …;`";
@@ -134,7 +133,7 @@ pub enum Message {
     /// A list of values whose length differs from its array.
     ParameterValues { name: String, length: usize, values: usize },
     /// A list of values for a scalar parameter.
-    ParameterWithoutLength { name: String, values: usize },
+    ParameterWithoutLength { name: String, values: usize, clause: &'static str },
     /// An index out of the range of its array.
     IndexRange { name: String, index: i64, first: i64, end: i64 },
     /// A range that ends before it begins.
@@ -144,7 +143,7 @@ pub enum Message {
     /// An array without an index.
     ArrayWithoutIndex { name: String },
     /// An unused parameter.
-    UnusedParameter { name: String },
+    UnusedParameter { name: String, is_input: bool },
     /// A second line `dissipation = …;`.
     SecondDissipation,
     /// A Rayleigh function without velocities.
@@ -274,8 +273,7 @@ fn another_name(name: &str) -> String {
 
 /// Help for an unknown clause; `is_defined` if `=` follows it.
 fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
-    let clauses =
-        "the clauses are const, param, coord, fn, table, let, L, force, dissipation, time_scale, discretize, check";
+    let clauses = "the clauses are const, param, input, coord, fn, table, let, L, force, dissipation, time_scale, discretize, check";
     let part = || if is_defined { format!("write `let {found} = …;` to name a part") } else { clauses.to_owned() };
     habits::clause(found).unwrap_or_else(|| did_you_mean(near, &part()))
 }
@@ -365,7 +363,8 @@ impl Message {
             Self::BackwardRange { from, to } => format!("the range {from}..{to} ends before it begins"),
             Self::NotArray { name } => format!("`{name}` is not an array"),
             Self::ArrayWithoutIndex { name } => format!("`{name}` is an array"),
-            Self::UnusedParameter { name } => format!("the parameter `{name}` is never used"),
+            Self::UnusedParameter { name, is_input: true } => format!("the input `{name}` is never used"),
+            Self::UnusedParameter { name, .. } => format!("the parameter `{name}` is never used"),
             Self::SecondDissipation => "a second `dissipation`".to_owned(),
             Self::NoDissipation => "`dissipation` does not depend on any velocity".to_owned(),
             Self::ConstantDissipation => {
@@ -469,7 +468,9 @@ impl Message {
             Self::Length { limit, .. } => format!("a system has 1 to {limit} coordinates"),
             Self::ParametersLength { limit, .. } => format!("an array of parameters has 1 to {limit} entries"),
             Self::ParameterValues { length, .. } => format!("write {length} values, or one for all entries: `= 1.0`"),
-            Self::ParameterWithoutLength { name, values } => format!("write its length: `param {name}[{values}] = […];`"),
+            Self::ParameterWithoutLength { name, values, clause } => {
+                format!("write its length: `{clause} {name}[{values}] = […];`")
+            }
             Self::IndexRange { first, end, .. } if end <= first => "this array has no entries".to_owned(),
             Self::IndexRange { first, end, .. } => format!("the indices are {first} to {}", end - 1),
             Self::BackwardRange { .. } => "write the smaller bound first; the second one is not included".to_owned(),

@@ -102,6 +102,41 @@ fn time_scales() {
 const OF_THREE: &str = "L = (dot(x)^2 + dot(y[0])^2 + dot(y[1])^2) / 2; discretize midpoint;";
 
 #[test]
+fn inputs() {
+    let help = "help: write `u = 0.0`: an `input` needs a default, its value until a controller sets it";
+    clause("input «u»;", &format!("`u` has no value\n{help}"));
+    clause("input w = 1.0, «u», ", "`u` has no value");
+    clause("input «u»[3];", "`u` has no value");
+    clause("input «u» = 0.0;", "the input `u` is never used\nhelp: use it in `L` or in a force");
+    clause("input «u»[2] = 0.0;", "the input `u` is never used");
+    clause(
+        "input «u» = [0, 1];",
+        "`u` is not an array but has a list of values\nhelp: write its length: `input u[2] = […];`",
+    );
+    clause("input u«:» f64 = 1.0;", "a declaration has no type");
+    clause("param a = 1; input «a» = 1;", "the name `a` is declared twice");
+    for word in ["inputs", "control", "controls", "actuator", "actuators"] {
+        let help = "write `input u = 0.0;`, a parameter that a controller sets between steps";
+        clause(&format!("«{word}» u = 0.0;"), &format!("unknown clause `{word}`\nhelp: {help}"));
+    }
+    clause("«inptu» u = 0.0;", "unknown clause `inptu`\nhelp: did you mean `input`?");
+    clause("«#»[cfg(test)] input u = 0.0;", "this attribute has no meaning here");
+    // The clause before it lacks its `;`.
+    case("param m = «1» input u = 0; coord x; L = m * u * dot(x)^2; discretize midpoint;", "`;` is missing after `1`");
+    // The word starts a clause, and is a name elsewhere.
+    for accepted in [
+        "input u[2] = 0.0, w = 1.0; coord x; L = dot(x)^2 / 2; force x = u[0] + u[1] * w; discretize midpoint;",
+        "param input = 1; coord x; L = input * dot(x)^2 / 2; discretize midpoint; check { input = 2; h = 0.1; }",
+        "input input = 1; coord x; let control = input^2; L = control * dot(x)^2 / 2; discretize midpoint;",
+        "coord input; L = dot(input)^2 / 2 - input; force input = 1; discretize midpoint;",
+        "#[allow(dead_code)] input u = 1; coord x; L = dot(x)^2 / 2 - u * x; discretize midpoint;",
+        "const input = 1; coord x; L = dot(x)^2 / 2 - 2 * input * x; discretize midpoint;",
+    ] {
+        assert_eq!(errors(&format!("struct System {{ {accepted} }}")), [], "{accepted}");
+    }
+}
+
+#[test]
 fn velocities() {
     case("param «a» = 1; coord x; L = dot(x)^2; discretize midpoint;", "the parameter `a` is never used");
     case(
@@ -532,7 +567,7 @@ fn unsupported_features_are_reported() {
         says(&derivative.replacen(name, &format!("«{name}»"), 1), &format!("unknown function `{name}`\nhelp: {help}"));
     }
     for (function, help) in [
-        ("randn", "random numbers are not supported: make the force a `param`, and set it between steps"),
+        ("randn", "random numbers are not supported: make the force an `input`, and set it between steps"),
         ("noise", "random numbers are not supported"),
         ("integral", "integrals are not supported: write the value as a formula"),
         ("erf", "special functions are not supported: write an approximation"),

@@ -87,3 +87,33 @@ fn the_text_of_a_file_starts_with_the_cost_of_each_method() {
     let place = |what: &str| both.find(what).expect("a part");
     assert!(place("impl ::core::default::Default") < place("use ::core::convert"));
 }
+
+#[test]
+fn an_input_is_a_parameter_with_a_place_in_a_list() {
+    let rest = "coord x; L = k * dot(x)^2 / 2; force x = u[0] - w * u[1] * x; check { u[1] = 0.5; h = 0.1; }";
+    let text = |declared: &str| {
+        let system = format!("struct System {{ {declared} {rest} }}").parse().expect("tokens");
+        items(&derive(&parse::system(system).expect("a system")).expect("a system without mistakes")).to_string()
+    };
+    let inputs = text("input u[2] = 0; param k = 2; input w = 0.5;");
+    let parameters = text("param u[2] = 0; param k = 2; param w = 0.5;");
+    let documented = [
+        ("\" Inputs `u[0]` to `u[1]`, each 0 by default.\"", "\" Parameters `u[0]` to `u[1]`, each 0 by default.\""),
+        ("\" Input `w`, 0.5 by default.\"", "\" Parameter `w`, 0.5 by default.\""),
+    ];
+    // Its place, its documentation, and 1 in the checks: otherwise it is a parameter.
+    let list = "const INPUTS : & 'static [:: core :: primitive :: usize] = & [0 , 1 , 3] ; ";
+    let ones = ["system . u [0] = 1.0 ;", "system . w = 1.0 ;"];
+    assert!(inputs.contains(list), "{inputs}");
+    let mut same = inputs.replace(list, "");
+    for (of_input, of_parameter) in documented {
+        assert!(same.contains(of_input), "{of_input}: {inputs}");
+        same = same.replace(of_input, of_parameter);
+    }
+    for one in ones {
+        assert!(same.contains(one), "{one}: {}", same.split_once("fn system ()").expect("the system of the checks").1);
+        same = same.replace(&format!("{one} "), "");
+    }
+    assert_eq!(same, parameters);
+    assert!(!parameters.contains("INPUTS"));
+}

@@ -8,7 +8,7 @@ use super::matrix::matrix;
 use crate::model::{Coordinate, Parameter};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use vi_expr::{Expr, Node};
 
@@ -23,6 +23,13 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let (autonomous, forced, cyclic) = (of.autonomous, model.forced, &of.cyclic);
     let parameters = model.parameters.iter().map(Parameter::place);
     let names = model.parameters.iter().map(Parameter::text);
+    let inputs: Vec<Literal> = (0..)
+        .zip(&model.parameters)
+        .filter(|(_, parameter)| parameter.is_input)
+        .map(|(index, _)| Literal::usize_unsuffixed(index))
+        .collect();
+    let inputs =
+        (!inputs.is_empty()).then(|| quote!(const INPUTS: &'static [::core::primitive::usize] = &[#(#inputs),*];));
     let functions = [
         number(source, FunctionId::Lagrangian, &source.formula("L", of.lagrangian)),
         number(source, FunctionId::Energy, &source.formula("v·L_v − L", of.energy)),
@@ -41,6 +48,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
             const FORCED: bool = #forced;
             const CYCLIC: [bool; #dimension] = [#(#cyclic),*];
             const PARAMETERS: &'static [&'static str] = &[#(#names),*];
+            #inputs
 
             fn parameter(&self, index: usize) -> T {
                 [#(self.#parameters),*][index]

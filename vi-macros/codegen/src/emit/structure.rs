@@ -45,12 +45,13 @@ pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
 fn default_words(field: &[Parameter]) -> String {
     let defaults: Vec<String> = field.iter().map(Parameter::default_text).collect();
     let (Some(first), Some(last)) = (field.first(), field.last()) else { return String::new() };
+    let word = if first.is_input { "Input" } else { "Parameter" };
     if first.index.is_none() {
-        return format!(" Parameter `{}`, {} by default.", first.name, defaults.join(", "));
+        return format!(" {word} `{}`, {} by default.", first.name, defaults.join(", "));
     }
     let same = defaults.iter().all(|default| *default == defaults[0]);
     let values = if same { format!("each {}", defaults[0]) } else { defaults.join(", ") };
-    format!(" Parameters `{}` to `{}`, {values} by default.", first.text(), last.text())
+    format!(" {word}s `{}` to `{}`, {values} by default.", first.text(), last.text())
 }
 
 /// The value of a field: `one` of its parameter, or an array of these.

@@ -30,9 +30,10 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     }];
     for (index, parameter) in model.parameters.iter().enumerate() {
         let symbol = name::latex(derived, &parameter.symbol(index));
+        let [word, title] = if parameter.is_input { ["input", "Input"] } else { ["parameter", "Parameter"] };
         lines.push(Line::Words {
-            text: format!("parameter {} = {}", parameter.text(), parameter.default_text()),
-            latex: format!("Parameter `{symbol}`, by default `{}`", parameter.default_text()),
+            text: format!("{word} {} = {}", parameter.text(), parameter.default_text()),
+            latex: format!("{title} `{symbol}`, by default `{}`", parameter.default_text()),
         });
     }
     lines.push(Line::words(format!("rule {}", title(model))));

@@ -77,7 +77,7 @@ fn parameter(of: &Parameter) -> String {
         Default::Same(value) => expression(value),
         Default::Each(values) => format!("[{}]", values.iter().map(expression).collect::<Vec<_>>().join(", ")),
     };
-    format!("param {}{length} = {default};", of.name)
+    format!("{} {}{length} = {default};", of.clause(), of.name)
 }
 
 fn definition(of: &Definition) -> String {

@@ -101,7 +101,7 @@ impl Context<'_> {
     fn parameters(&mut self, declared: &[syntax::Parameter]) -> Vec<Parameter> {
         let fields: Vec<Option<Vec<f64>>> = declared.iter().map(|parameter| self.defaults(parameter)).collect();
         let mut parameters = Vec::new();
-        for (syntax::Parameter { attributes, name, length, .. }, defaults) in declared.iter().zip(fields) {
+        for (syntax::Parameter { attributes, name, length, is_input, .. }, defaults) in declared.iter().zip(fields) {
             let Some(defaults) = defaults else {
                 self.declare(name, Meaning::Wrong);
                 continue;
@@ -109,7 +109,8 @@ impl Context<'_> {
             let mut entries = Vec::with_capacity(defaults.len());
             for (index, default) in defaults.into_iter().enumerate() {
                 let index = length.is_some().then_some(index);
-                let parameter = Parameter { attributes: attributes.clone(), name: name.clone(), index, default };
+                let (attributes, name, is_input) = (attributes.clone(), name.clone(), *is_input);
+                let parameter = Parameter { attributes, name, index, default, is_input };
                 entries.push(self.pool.symbol(parameter.symbol(parameters.len())));
                 parameters.push(parameter);
             }
@@ -139,7 +140,8 @@ impl Context<'_> {
         let numbers: Vec<f64> = written.iter().map(|value| self.number(value, name).1).collect();
         let values = numbers.len();
         let Some((length, span)) = length else {
-            self.errors.at(name.span(), &Message::ParameterWithoutLength { name: name.to_string(), values });
+            let (name, span, clause) = (name.to_string(), name.span(), parameter.clause());
+            self.errors.at(span, &Message::ParameterWithoutLength { name, values, clause });
             return None;
         };
         if values != length {
@@ -251,8 +253,8 @@ impl Context<'_> {
         let acts: Vec<(&Parameter, bool)> = parameters.iter().zip(parameters.iter().enumerate().map(acts)).collect();
         for field in acts.chunk_by(|(left, _), (right, _)| left.name == right.name) {
             if let Some((parameter, _)) = field.first().filter(|_| field.iter().all(|(_, acts)| !acts)) {
-                let name = parameter.name.to_string();
-                self.errors.at(parameter.name.span(), &Message::UnusedParameter { name });
+                let (name, is_input) = (parameter.name.to_string(), parameter.is_input);
+                self.errors.at(parameter.name.span(), &Message::UnusedParameter { name, is_input });
             }
         }
     }

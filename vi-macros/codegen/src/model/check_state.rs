@@ -1,8 +1,8 @@
 //! The state of the checks.
 //!
 //! In: the clauses `check { x = 1, dot(x) = 0, k = 2; h = 0.01; }`. Out: one numeric [`CheckState`]. Unnamed
-//! coordinates and velocities are zero; unnamed parameters have their defaults. The last plain `h` is the step, so a
-//! coordinate or a parameter may also be called h.
+//! coordinates and velocities are zero; unnamed parameters have their defaults, unnamed inputs are 1, so that the checks
+//! see them. The last plain `h` is the step, so a coordinate or a parameter may also be called h.
 
 use super::Parameter;
 use super::context::Context;
@@ -69,7 +69,9 @@ pub(super) fn check_state(
         }
     }
     let numbers = |entries: Vec<Option<f64>>| entries.into_iter().map(Option::unwrap_or_default).collect();
-    let of_parameters = (0..).zip(given.parameters).filter_map(|(index, value)| Some((index, value?))).collect();
+    let or_one = |(value, parameter): (Option<f64>, &Parameter)| value.or(parameter.is_input.then_some(1.0));
+    let of_parameters = given.parameters.into_iter().zip(parameters).map(or_one);
+    let of_parameters = of_parameters.enumerate().filter_map(|(index, value)| Some((index, value?))).collect();
     Some(CheckState {
         t: t.unwrap_or_default(),
         q: numbers(given.q),

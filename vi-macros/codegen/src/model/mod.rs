@@ -110,6 +110,8 @@ pub struct Parameter {
     pub index: Option<usize>,
     /// Its value in `Default`.
     pub default: f64,
+    /// Whether a controller sets it between steps: declared by `input`.
+    pub is_input: bool,
 }
 
 impl Parameter {

@@ -16,8 +16,21 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 /// The words that start a clause.
-const CLAUSES: [&str; 12] =
-    ["const", "param", "coord", "fn", "table", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
+const CLAUSES: [&str; 13] = [
+    "const",
+    "param",
+    "input",
+    "coord",
+    "fn",
+    "table",
+    "let",
+    "L",
+    "force",
+    "dissipation",
+    "time_scale",
+    "discretize",
+    "check",
+];
 
 /// A `lagrangian!` as written.
 pub struct System {
@@ -29,7 +42,7 @@ pub struct System {
     pub name: Ident,
     /// `const a = …;` in order.
     pub constants: Vec<Definition>,
-    /// `param a = …, m[3] = …;` in order.
+    /// `param a = …, m[3] = …;` and `input u = …;` in order.
     pub parameters: Vec<Parameter>,
     /// `coord x, q[8];` in order.
     pub coordinates: Vec<Coordinate>,
@@ -97,6 +110,21 @@ pub struct Parameter {
     pub length: Option<Expression>,
     /// Its default.
     pub default: Default,
+    /// Whether it is declared by `input`.
+    pub is_input: bool,
+}
+
+impl Parameter {
+    /// The word that declares it.
+    #[must_use]
+    pub fn clause(&self) -> &'static str {
+        clause_of(self.is_input)
+    }
+}
+
+/// The word that declares a parameter or an input.
+fn clause_of(is_input: bool) -> &'static str {
+    if is_input { "input" } else { "param" }
 }
 
 /// The default of a parameter.

@@ -8,7 +8,7 @@ use super::function;
 use super::unexpected;
 use super::{
     CLAUSES, Check, CheckEntry, Coordinate, Default, Definition, Discretization, Expression, Indices, Kind, Parameter,
-    Rule, System,
+    Rule, System, clause_of,
 };
 use crate::habits::Habit;
 use crate::messages::{Errors, Message, bounded, error, nearest};
@@ -198,7 +198,7 @@ fn check_derives(attributes: &[Attribute]) -> Result<()> {
 fn check_attributes(attributes: &[Attribute], word: &Ident) -> Result<()> {
     let fits = |attribute: &Attribute| {
         let named = |names: &[&str]| names.iter().any(|name| attribute.path().is_ident(name));
-        named(&["doc"]) || word == "param" && !named(&["cfg", "cfg_attr", "derive"])
+        named(&["doc"]) || (word == "param" || word == "input") && !named(&["cfg", "cfg_attr", "derive"])
     };
     match attributes.iter().find(|attribute| !fits(attribute)) {
         Some(attribute) => Err(error(attribute.pound_token.span, &Message::AttributeOfClause)),
@@ -229,7 +229,10 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     }
     match word.to_string().as_str() {
         "const" => list(input, &mut |input| definition(input, &attributes).map(|one| system.constants.push(one)))?,
-        "param" => list(input, &mut |input| parameter(input, &attributes, &mut system.parameters))?,
+        "param" | "input" => {
+            let is_input = word == "input";
+            list(input, &mut |input| parameter(input, is_input, &attributes, &mut system.parameters))?;
+        }
         "coord" => {
             list(input, &mut |input| coordinate(input).map(|one| system.coordinates.push(one)))?;
             return end_of_names(input, start);
@@ -395,30 +398,35 @@ fn indices(input: ParseStream) -> Result<Option<Indices>> {
 
 /// `= 1`
 fn value_of(name: Ident, input: ParseStream, attributes: Vec<Attribute>) -> Result<Definition> {
-    equals(input, &name, false)?;
+    equals(input, &name, None)?;
     Ok(Definition { attributes, name, indices: None, value: Expression::parse(input)? })
 }
 
 /// The `=` after a name.
-fn equals(input: ParseStream, name: &Ident, is_parameter: bool) -> Result<()> {
+fn equals(input: ParseStream, name: &Ident, clause: Option<&'static str>) -> Result<()> {
     if !input.peek(Token![=]) {
-        return Err(unexpected::equals(input, name, is_parameter));
+        return Err(unexpected::equals(input, name, clause));
     }
     input.parse::<Token![=]>().map(|_| ())
 }
 
 /// `a = 1`, `m[3] = 1` or `m[3] = [1, 2, 3]`. An unreadable default becomes 0, so that the field exists for the
 /// surrounding code.
-fn parameter(input: ParseStream, attributes: &[Attribute], parameters: &mut Vec<Parameter>) -> Result<()> {
+fn parameter(
+    input: ParseStream,
+    is_input: bool,
+    attributes: &[Attribute],
+    parameters: &mut Vec<Parameter>,
+) -> Result<()> {
     let name = name(input)?;
     let length = length(input)?;
-    let read = equals(input, &name, true).and_then(|()| default(input));
+    let read = equals(input, &name, Some(clause_of(is_input))).and_then(|()| default(input));
     let zero = || Default::Same(Expression { span: name.span(), kind: Kind::Number(Rational::zero()) });
     let (default, outcome) = match read {
         Ok(default) => (default, Ok(())),
         Err(error) => (zero(), Err(error)),
     };
-    parameters.push(Parameter { attributes: attributes.to_vec(), name, length, default });
+    parameters.push(Parameter { attributes: attributes.to_vec(), name, length, default, is_input });
     outcome
 }
 

@@ -98,10 +98,10 @@ pub(super) fn end_of_names(input: ParseStream, start: Cursor) -> Error {
     }
 }
 
-/// The error for a definition without `=`.
-pub(super) fn equals(input: ParseStream, name: &Ident, is_parameter: bool) -> Error {
+/// The error for a definition without `=`; `clause` declares a parameter.
+pub(super) fn equals(input: ParseStream, name: &Ident, clause: Option<&'static str>) -> Error {
     if input.peek(Token![;]) || input.peek(Token![,]) || ends(input) {
-        return error(name.span(), &Message::Habit(Habit::MissingValue { name: name.to_string(), is_parameter }));
+        return error(name.span(), &Message::Habit(Habit::MissingValue { name: name.to_string(), clause }));
     }
     let is_colon_equals = input.peek(Token![:]) && input.peek2(Token![=]);
     let habit = if is_colon_equals {
@@ -123,7 +123,12 @@ pub(super) fn equals(input: ParseStream, name: &Ident, is_parameter: bool) -> Er
 /// Whether a word starts a clause here.
 pub(super) fn begins_clause(input: ParseStream) -> bool {
     let Some((word, _)) = input.cursor().ident() else { return false };
-    if word == "L" { input.peek2(Token![=]) } else { CLAUSES.contains(&word.to_string().as_str()) }
+    match word.to_string().as_str() {
+        "L" => input.peek2(Token![=]),
+        // May also be the name of a parameter.
+        "input" => input.peek2(syn::Ident),
+        other => CLAUSES.contains(&other),
+    }
 }
 
 /// Whether the previous definition ends here: at the end, at a clause, or at another definition.

@@ -1,0 +1,185 @@
+//! What a controller asks of a system: mass matrix, bias, inverse dynamics, linearizations, equilibria.
+//!
+//! Along the motion `M a + b = 0`, with the mass matrix `M = L_vv` and the bias
+//!
+//! ```text
+//! b = L_vt + L_vq v − L_q − f            inputs and parameters as they are set
+//! ```
+//!
+//! A linearization of x = (q, v), or of a step of (q, p), has one column of B for each `input` of the system, in the
+//! order of [`Lagrangian::INPUTS`]. Inputs are constant over a step (zero-order hold).
+//!
+//! | file | contents |
+//! |---|---|
+//! | `equilibrium` | states of rest, with their matrices and frequencies |
+//! | `spectrum` | eigenvalues of matrices of a size known at run time |
+
+mod equilibrium;
+mod spectrum;
+
+pub use equilibrium::Equilibrium;
+
+use crate::collocation::Collocation;
+use crate::derivatives::{Differentiable, TOGETHER, Tangent, Variation, Varied};
+use crate::error::StepError;
+use crate::lagrangian::{Lagrangian, Parameters};
+use crate::node::Node;
+use crate::real::Dual;
+use crate::run::Run;
+use crate::state::{Numbers, State};
+use crate::stepping::Convertible;
+use nalgebra::{Complex, DMatrix, DVector, SMatrix, SVector};
+
+/// Mass matrix, bias, inverse dynamics, linearization and equilibria of a system, for every generated system.
+///
+/// All functions use the inputs and parameters as they are set. Times, coordinates, velocities, accelerations and
+/// forces are in the units of the system.
+pub trait Dynamics<const N: usize>: Collocation<N> + Convertible<N> {
+    /// The mass matrix `M = L_vv` at (t, q, v). Its entries are not finite where L is not.
+    fn mass_matrix(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> SMatrix<f64, N, N> {
+        use crate::linear::Matrix;
+        self.point(t, &q.vector(), &v.vector()).mass.dense()
+    }
+
+    /// The bias b at (t, q, v), with `M a + b = 0` along the motion: Coriolis and centrifugal terms, gravity and other
+    /// potentials, and generalized forces, with inputs as set. Its entries are not finite where L or f is not.
+    fn bias(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> SVector<f64, N> {
+        self.inverse_dynamics(t, q, v, SVector::zeros())
+    }
+
+    /// The generalized force `M a + b` that has to be added for the acceleration a at (t, q, v). It is zero for the
+    /// acceleration of the motion. Its entries are not finite where L or f is not.
+    fn inverse_dynamics(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>, a: impl Numbers<N>) -> SVector<f64, N> {
+        let (q, v, a) = (q.vector(), v.vector(), a.vector());
+        let along = |value: f64, slope: f64| Dual { value, slope };
+        let point = self.convert::<Dual<f64>>().point(Dual::variable(t), &q.zip_map(&v, along), &v.zip_map(&a, along));
+        // d/dt L_v − (L_q + f)
+        point.momentum.map(|entry| entry.slope) - point.force.map(|entry| entry.value)
+    }
+
+    /// The linearization of x = (q, v) at (t, q, v): `x' = value + A δx + B δu`, exact to rounding. A has 2N rows and
+    /// columns, B one column for each input.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] if the mass matrix is singular, [`StepError::NonFinite`] if L, f or a derivative is not
+    /// finite.
+    fn linearization(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Linearization, StepError> {
+        let (q, v) = (q.vector(), v.vector());
+        let node = Node::new(State { t, q, p: SVector::zeros() }, 0.0);
+        let explained = |failure: StepError| failure.explained(self, &node, 0.0, &v);
+        let acceleration = self.acceleration(t, &q, &v).map_err(explained)?;
+        let value = DVector::from_iterator(2 * N, v.iter().chain(&acceleration).copied());
+        let columns: Vec<usize> = (0..2 * N + Self::INPUTS.len()).collect();
+        // The derivative of q' = v is known, that of v' comes from dual numbers.
+        let mut derivatives = DMatrix::zeros(2 * N, columns.len());
+        derivatives.view_mut((0, N), (N, N)).fill_with_identity();
+        for columns in columns.chunks(TOGETHER) {
+            let mut system = self.convert::<Varied>();
+            let (mut q, mut v) = (q.map(Varied::fixed), v.map(Varied::fixed));
+            for (direction, column) in columns.iter().enumerate() {
+                let varied = match *column {
+                    column if column < N => q.get_mut(column),
+                    column if column < 2 * N => v.get_mut(column - N),
+                    column => system.parameter_mut(Self::PARAMETERS[Self::INPUTS[column - 2 * N]]),
+                };
+                if let Some(number) = varied {
+                    number.slope.0[direction] = 1.0;
+                }
+            }
+            let varied = system.acceleration(Dual::fixed(t), &q, &v).map_err(explained)?;
+            for (direction, column) in columns.iter().enumerate() {
+                for (row, entry) in varied.iter().enumerate() {
+                    derivatives[(N + row, *column)] = entry.slope.0[direction];
+                }
+            }
+        }
+        Linearization::new(t, value, &derivatives)
+    }
+
+    /// The equilibrium near a guess of the coordinates, at the time t: a state of rest without acceleration,
+    /// `L_q + f = L_vt` at v = 0. See [`Equilibrium`].
+    ///
+    /// A coordinate on which nothing depends at the guess, as the place of a cart, keeps the value of the guess.
+    ///
+    /// # Errors
+    /// [`StepError::NoEquilibrium`] if there is none near the guess, [`StepError::FreeMotion`] if the equilibria form a
+    /// family along several coordinates, as those of two masses with a spring between them,
+    /// [`StepError::NonFinite`] if a derivative of L or f is not finite.
+    fn equilibrium(&self, t: f64, guess: impl Numbers<N>) -> Result<Equilibrium<N>, StepError> {
+        equilibrium::find(self, t, guess.vector())
+    }
+}
+
+impl<S: Collocation<N> + Convertible<N>, const N: usize> Dynamics<N> for S {}
+
+/// A linearization: `f(x + δx, u + δu) = value + A δx + B δu` to first order, where f is the rate of change of x =
+/// (q, v), or the end (q, p) of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linearization {
+    /// Time of the point of linearization; of a step, of its start.
+    pub t: f64,
+    /// f at the point of linearization: 2N entries.
+    pub value: DVector<f64>,
+    /// `A = ∂f/∂x`: 2N rows, 2N columns.
+    pub a: DMatrix<f64>,
+    /// `B = ∂f/∂u`: 2N rows, one column for each input in the order of
+    /// [`Lagrangian::INPUTS`].
+    pub b: DMatrix<f64>,
+}
+
+impl Linearization {
+    /// Splits `[A B]`, and rejects entries that are not finite.
+    fn new(t: f64, value: DVector<f64>, derivatives: &DMatrix<f64>) -> Result<Self, StepError> {
+        if !value.iter().chain(derivatives).all(|entry| entry.is_finite()) {
+            return Err(StepError::NonFinite { t, quantity: "linearization", expression: None });
+        }
+        let (a, b) = derivatives.columns_range_pair(..value.len(), value.len()..);
+        Ok(Self { t, a: a.into_owned(), b: b.into_owned(), value })
+    }
+
+    /// The eigenvalues of A, ascending by the size of their imaginary part, then by their real part; of a pair the one
+    /// with negative imaginary part comes first. Their errors are of the order of an ulp of the largest, more if
+    /// eigenvalues nearly coincide.
+    ///
+    /// For x' the motion decays if all real parts are negative; for a step if all absolute values are below 1.
+    ///
+    /// # Errors
+    /// [`StepError::NonFinite`] if the QR iteration does not converge.
+    pub fn eigenvalues(&self) -> Result<Vec<Complex<f64>>, StepError> {
+        spectrum::eigenvalues(&self.a).ok_or(no_eigenvalues(self.t))
+    }
+}
+
+/// The iteration for the eigenvalues did not converge.
+fn no_eigenvalues(t: f64) -> StepError {
+    StepError::NonFinite { t, quantity: "spectrum", expression: None }
+}
+
+impl<M, S, const N: usize> Run<M, S, N>
+where
+    M: Differentiable<S, N>,
+    S: Convertible<N> + Collocation<N>,
+{
+    /// The linearization of the next step: how (q, p) at its end changes with (q, p) at the node, and with the inputs
+    /// over the step. It is exact to rounding, and the run does not change.
+    ///
+    /// If the method finds the length of its steps, the end is that of the changed step. A change of the state or of
+    /// the inputs changes the preserved energy as [`Run::set_state`] and [`Run::set_parameters`] do.
+    ///
+    /// # Errors
+    /// Those of a step and of [`Run::vary`].
+    pub fn linearization(&self) -> Result<Linearization, StepError> {
+        let mut variations = Variation::of_state();
+        for input in S::INPUTS {
+            variations.push(Variation::of_parameter::<S>(S::PARAMETERS[*input])?);
+        }
+        let mut tangent = Tangent::from_change(self.clone(), variations)?;
+        let State { q, p, .. } = tangent.step()?;
+        let columns = tangent.variations();
+        let derivatives = DMatrix::from_fn(2 * N, columns.len(), |row, column| {
+            let Variation { q, p, .. } = &columns[column];
+            if row < N { q[row] } else { p[row - N] }
+        });
+        Linearization::new(self.t(), DVector::from_iterator(2 * N, q.iter().chain(&p).copied()), &derivatives)
+    }
+}

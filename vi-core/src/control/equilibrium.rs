@@ -1,0 +1,270 @@
+//! Equilibria: the coordinates at which a system rests.
+//!
+//! At rest `M a = F(t, q) = L_q + f − L_vt`. From a guess, damped Newton iteration approaches a root of F: a correction
+//! is halved until K = −∂F/∂q changes by less than half along it, so that the iteration does not leap over a maximum of
+//! the potential to a distant equilibrium. Undamped iteration to the rounding floor follows ([`newton`]).
+
+use super::{no_eigenvalues, spectrum};
+use crate::collocation::{Collocation, Point};
+use crate::error::StepError;
+use crate::linear::{self, Matrix};
+use crate::newton::{self, Equations, Failure, roundings, worst};
+use crate::node::Node;
+use crate::real::{Dual, Rounded};
+use crate::state::State;
+use crate::stepping::Convertible;
+use core::array;
+use nalgebra::{Complex, DMatrix, SMatrix, SVector};
+
+/// Damped steps, and halvings of each.
+const STEPS: u32 = 200;
+const HALVINGS: u32 = 40;
+
+/// A state of rest without acceleration. Small motions x about it satisfy `M x'' + C x' + K x = 0`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equilibrium<const N: usize> {
+    /// Time.
+    pub t: f64,
+    /// Coordinates.
+    pub q: SVector<f64, N>,
+    /// The mass matrix M.
+    pub mass: SMatrix<f64, N, N>,
+    /// `C = −∂F/∂v`, with F the generalized force at zero acceleration: damping and gyroscopic terms.
+    pub damping: SMatrix<f64, N, N>,
+    /// `K = −∂F/∂q`.
+    pub stiffness: SMatrix<f64, N, N>,
+    /// For each coordinate, whether nothing depends on it here: its row and its column of K are zero. It then has the
+    /// value of the guess.
+    pub free: [bool; N],
+    /// Largest unbalanced force, in units of its rounding-error bound.
+    pub residual: f64,
+}
+
+impl<const N: usize> Equilibrium<N> {
+    /// The 2N rates λ of small motions e^(λt), in radians per unit of time: the eigenvalues of the linearization,
+    /// ascending by the size of their imaginary part, then by their real part. The damping ratio of an oscillation is
+    /// −Re λ/|λ|; the equilibrium is unstable if a real part is positive.
+    ///
+    /// Without damping and gyroscopic terms the rates follow from the symmetric problem `K x = ω² M x`: real parts of
+    /// oscillations are then exactly zero, and ω² has an error of a few ulps of the largest ω².
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] if the mass matrix is singular, [`StepError::NonFinite`] if the QR iteration does not
+    /// converge.
+    pub fn rates(&self) -> Result<Vec<Complex<f64>>, StepError> {
+        let Self { t, mass, damping, stiffness, .. } = self;
+        let dense = |matrix: &SMatrix<f64, N, N>| DMatrix::from_fn(N, N, |i, j| matrix[(i, j)]);
+        let is_conservative = damping.iter().all(|entry| *entry == 0.0) && is_symmetric(stiffness);
+        if is_conservative && let Some(squares) = spectrum::squared_frequencies(&dense(stiffness), &dense(mass)) {
+            let pair = |square: &f64| {
+                let rate = Complex::new(0.0, 1.0) * Complex::new(*square, 0.0).sqrt();
+                [-rate, rate]
+            };
+            let mut rates: Vec<_> = squares.iter().flat_map(pair).collect();
+            spectrum::sort(&mut rates);
+            return Ok(rates);
+        }
+        let singular = StepError::Singular { t: *t, matrix: "mass matrix" };
+        let accelerations = |forces| linear::solve(mass, forces).ok_or(singular);
+        let (by_q, by_v) = (accelerations(stiffness)?, accelerations(damping)?);
+        let a = DMatrix::from_fn(2 * N, 2 * N, |i, j| match (i < N, j < N) {
+            (true, _) => f64::from(u8::from(j == N + i)),
+            (false, true) => -by_q[(i - N, j)],
+            (false, false) => -by_v[(i - N, j - N)],
+        });
+        spectrum::eigenvalues(&a).ok_or(no_eigenvalues(*t))
+    }
+
+    /// The frequencies of the oscillations about it, ascending, in radians per unit of time: the positive imaginary
+    /// parts of [`Equilibrium::rates`].
+    ///
+    /// # Errors
+    /// As [`Equilibrium::rates`].
+    pub fn frequencies(&self) -> Result<Vec<f64>, StepError> {
+        Ok(self.rates()?.into_iter().map(|rate| rate.im).filter(|frequency| *frequency > 0.0).collect())
+    }
+}
+
+/// Whether a matrix equals its transpose, to a few roundings of the entries.
+fn is_symmetric<const N: usize>(k: &SMatrix<f64, N, N>) -> bool {
+    (0..N).all(|i| {
+        (0..i).all(|j| {
+            let size = (k[(i, i)] * k[(j, j)]).abs().sqrt().max(k[(i, j)].abs());
+            (k[(i, j)] - k[(j, i)]).abs() <= 4.0 * f64::EPSILON * size
+        })
+    })
+}
+
+/// The equilibrium near a guess; see [`Dynamics::equilibrium`](super::Dynamics::equilibrium).
+pub(super) fn find<S: Collocation<N> + Convertible<N>, const N: usize>(
+    system: &S,
+    t: f64,
+    guess: SVector<f64, N>,
+) -> Result<Equilibrium<N>, StepError> {
+    let (dual, rounded) = (system.convert::<Dual<f64>>(), system.convert::<Dual<Rounded>>());
+    let mut rest = Rest { dual, rounded, t, free: [false; N], names: S::COORDINATES };
+    let finite = |of: Balance<N>, q: SVector<f64, N>| {
+        let node = Node::new(State { t, q, p: SVector::zeros() }, 0.0);
+        let lost = StepError::NonFinite { t, quantity: "generalized force", expression: None };
+        if of.is_finite() { Ok(of) } else { Err(lost.explained(system, &node, 0.0, &SVector::zeros())) }
+    };
+    let start = finite(rest.linearized(&guess), guess)?;
+    let is_zero = |i: usize, j: usize| start.stiffness[(i, j)] == 0.0;
+    rest.free = array::from_fn(|k| (0..N).all(|other| is_zero(k, other) && is_zero(other, k)));
+    let forces = rest.at(&guess);
+    if (0..N).any(|k| rest.free[k] && roundings(forces.residual[k], forces.scale[k]) > newton::FLOOR) {
+        return Err(rest.unbalanced(&guess));
+    }
+    let near = rest.approached(guess, start)?;
+    let root = newton::solve(&rest, near).map_err(|failure| match failure {
+        Failure::Singular => rest.free_motion(&near),
+        _ => rest.unbalanced(&near),
+    })?;
+    if free_coordinate(&rest.held(&root.at.stiffness)).is_some() {
+        return Err(rest.free_motion(&root.u));
+    }
+    let Balance { mass, damping, stiffness, .. } = finite(rest.linearized(&root.u), root.u)?;
+    let residual = worst(&root.at.residual, &root.at.scale);
+    Ok(Equilibrium { t, q: root.u, mass, damping, stiffness, free: rest.free, residual })
+}
+
+/// The equation F(t, q) = 0, of a system in dual numbers.
+struct Rest<const N: usize, D, R> {
+    dual: D,
+    /// The same system over numbers with rounding-error bounds.
+    rounded: R,
+    t: f64,
+    /// Coordinates on which nothing depends.
+    free: [bool; N],
+    names: [&'static str; N],
+}
+
+/// −F and its derivatives at rest.
+struct Balance<const N: usize> {
+    residual: SVector<f64, N>,
+    stiffness: SMatrix<f64, N, N>,
+    damping: SMatrix<f64, N, N>,
+    mass: SMatrix<f64, N, N>,
+    /// One ulp of the terms of −F; zero before the iteration to the rounding floor.
+    scale: SVector<f64, N>,
+}
+
+impl<const N: usize> Balance<N> {
+    fn is_finite(&self) -> bool {
+        let Self { residual, stiffness, damping, mass, .. } = self;
+        residual.iter().chain(stiffness).chain(damping).chain(mass).all(|entry| entry.is_finite())
+    }
+}
+
+impl<const N: usize, D: Collocation<N, Dual<f64>>, R: Collocation<N, Dual<Rounded>>> Rest<N, D, R> {
+    /// −F, its derivatives and M, without the rounding-error bounds. Along the direction of time of the dual numbers, a
+    /// slope is a derivative with respect to t.
+    fn linearized(&self, q: &SVector<f64, N>) -> Balance<N> {
+        let (t, q, v) = (Dual::variable(self.t), q.map(Dual::fixed), SVector::zeros());
+        let Point { momentum, force, .. } = self.dual.point(t, &q, &v);
+        let of = self.dual.point_derivatives(t, &q, &v);
+        let [momentum_dq, mass, force_dq, force_dv] =
+            [of.momentum_dq, of.mass, of.force_dq, of.force_dv].map(|matrix| matrix.dense());
+        Balance {
+            residual: momentum.zip_map(&force, |momentum, force| momentum.slope - force.value),
+            // L_vqt − ∂(L_q + f)/∂q
+            stiffness: momentum_dq.zip_map(&force_dq, |momentum, force| momentum.slope - force.value),
+            // L_vvt + L_vq − ∂(L_q + f)/∂v
+            damping: SMatrix::from_fn(|i, j| mass[(i, j)].slope + (momentum_dq[(i, j)].value - force_dv[(i, j)].value)),
+            mass: mass.map(|entry| entry.value),
+            scale: SVector::zeros(),
+        }
+    }
+
+    /// K with the rows and columns of free coordinates replaced by those of the identity.
+    fn held(&self, stiffness: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+        let identity = SMatrix::<f64, N, N>::identity();
+        SMatrix::from_fn(|i, j| if self.free[i] || self.free[j] { identity[(i, j)] } else { stiffness[(i, j)] })
+    }
+
+    /// Forces, zero on free coordinates.
+    fn held_forces(&self, forces: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::from_fn(|k, _| if self.free[k] { 0.0 } else { forces[k] })
+    }
+
+    /// A point from which undamped Newton iteration converges.
+    fn approached(&self, mut q: SVector<f64, N>, mut at: Balance<N>) -> Result<SVector<f64, N>, StepError> {
+        // Unlike lengths of the coordinates, the kinetic energy of a correction has no units of its own.
+        let weights = at.mass.diagonal().map(f64::abs);
+        let size = |u: &SVector<f64, N>| u.component_mul(u).dot(&weights).sqrt();
+        for _ in 0..STEPS {
+            let stiffness = self.held(&at.stiffness);
+            let solved = |forces: &SVector<f64, N>| linear::solve(&stiffness, forces).ok_or(self.free_motion(&q));
+            let correction = solved(&self.held_forces(&at.residual))?;
+            let mut factor = 1.0;
+            let next = loop {
+                let next = q - correction * factor;
+                let there = self.linearized(&next);
+                let change = solved(&((self.held(&there.stiffness) - stiffness) * correction));
+                if there.is_finite() && change.is_ok_and(|change| size(&change) <= 0.5 * size(&correction)) {
+                    break there;
+                }
+                factor *= 0.5;
+                if factor < 0.5_f64.powi(HALVINGS.cast_signed()) {
+                    return Err(self.unbalanced(&q));
+                }
+            };
+            // The first trial was accepted.
+            if factor > 0.5 {
+                return Ok(q);
+            }
+            (q, at) = (q - correction * factor, next);
+        }
+        Err(self.unbalanced(&q))
+    }
+
+    /// The force that remains at a point.
+    fn unbalanced(&self, q: &SVector<f64, N>) -> StepError {
+        let at = self.at(q);
+        let size = |k: usize| roundings(at.residual[k], at.scale[k]);
+        let worst = (0..N).fold(0, |worst, k| if size(k) > size(worst) { k } else { worst });
+        StepError::NoEquilibrium { t: self.t, coordinate: self.names[worst], force: -at.residual[worst] }
+    }
+
+    /// The direction along which the force does not change at a point.
+    fn free_motion(&self, q: &SVector<f64, N>) -> StepError {
+        let stiffness = self.held(&self.linearized(q).stiffness);
+        match free_coordinate(&stiffness) {
+            Some(coordinate) => StepError::FreeMotion { t: self.t, coordinate: self.names[coordinate] },
+            None => self.unbalanced(q),
+        }
+    }
+}
+
+/// The coordinate that moves most along a null vector of K; `None` if K is regular.
+fn free_coordinate<const N: usize>(stiffness: &SMatrix<f64, N, N>) -> Option<usize> {
+    let [rows, columns] = linear::weights(stiffness);
+    let dense = DMatrix::from_fn(N, N, |i, j| stiffness[(i, j)]);
+    spectrum::null_vector(&dense, &rows, &columns).map(|vector| vector.iamax())
+}
+
+impl<const N: usize, D, R> Equations<f64> for Rest<N, D, R>
+where
+    D: Collocation<N, Dual<f64>>,
+    R: Collocation<N, Dual<Rounded>>,
+{
+    type Unknowns = SVector<f64, N>;
+    type Evaluation = Balance<N>;
+
+    fn at(&self, q: &SVector<f64, N>) -> Balance<N> {
+        let t = Dual { value: Rounded::exact(self.t), slope: Rounded::exact(1.0) };
+        let nearest = q.map(|number| Dual::fixed(Rounded::nearest(number)));
+        let Point { momentum, force, .. } = self.rounded.point(t, &nearest, &SVector::zeros());
+        let scale = momentum.zip_map(&force, |momentum, force| (momentum.slope - force.value).ulps());
+        Balance { scale, ..self.linearized(q) }
+    }
+
+    fn roundings(&self, of: &Balance<N>, scales: &Balance<N>) -> [f64; 2] {
+        [worst(&of.residual, &scales.scale), 0.0]
+    }
+
+    fn correction(&self, jacobian: &Balance<N>, residual: &Balance<N>) -> Result<SVector<f64, N>, Failure> {
+        let forces = self.held_forces(&residual.residual);
+        linear::solve(&self.held(&jacobian.stiffness), &forces).ok_or(Failure::Singular)
+    }
+}
