@@ -138,7 +138,7 @@ fn comma(inner: ParseStream) -> Result<()> {
 
 fn equals(input: ParseStream, name: &Ident) -> Result<()> {
     if !input.peek(Token![=]) {
-        return Err(unexpected::equals(input, name, false));
+        return Err(unexpected::equals(input, name, None));
     }
     input.parse::<Token![=]>().map(|_| ())
 }
