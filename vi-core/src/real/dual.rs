@@ -55,60 +55,83 @@ pub trait Slope<T>:
 }
 
 impl<T: Real> Slope<T> for T {
+    #[inline(always)]
     fn zero() -> Self {
         num_traits::Zero::zero()
     }
+    #[inline(always)]
     fn is_zero(&self) -> bool {
         num_traits::Zero::is_zero(self)
     }
+    #[inline(always)]
     fn is_finite(self) -> bool {
         Real::is_finite(self)
     }
+    #[inline(always)]
     fn times(self, factor: T) -> Self {
         self * factor
     }
+    #[inline(always)]
     fn over(self, divisor: T) -> Self {
         self / divisor
     }
+    #[inline(always)]
     fn chain(self, derivative: T) -> Self {
         (derivative * self).zero_where(Number::presence(self), u8::MAX)
     }
+    #[inline(always)]
     fn each(self, function: impl Fn(T) -> T) -> Self {
         function(self)
     }
+    #[inline(always)]
     fn select(condition: T, then: Self, otherwise: Self) -> Self {
         condition.if_positive(then, otherwise)
     }
+    #[inline(always)]
     fn presence(self) -> T {
         Number::presence(self)
     }
 }
 
 impl<T: Real, const W: usize> Slope<T> for Slopes<T, W> {
+    #[inline(always)]
     fn zero() -> Self {
         Self([T::zero(); W])
     }
+    #[inline(always)]
     fn is_zero(&self) -> bool {
         self.0.iter().all(num_traits::Zero::is_zero)
     }
+    #[inline(always)]
     fn is_finite(self) -> bool {
         self.0.into_iter().all(Real::is_finite)
     }
+    #[inline(always)]
     fn times(self, factor: T) -> Self {
-        Self(self.0.map(|slope| slope * factor))
+        self.each(|slope| slope * factor)
     }
+    #[inline(always)]
     fn over(self, divisor: T) -> Self {
-        Self(self.0.map(|slope| slope / divisor))
+        self.each(|slope| slope / divisor)
     }
+    #[inline(always)]
     fn chain(self, derivative: T) -> Self {
-        Self(self.0.map(|slope| slope.chain(derivative)))
+        self.each(|slope| slope.chain(derivative))
     }
+    #[inline(always)]
     fn each(self, function: impl Fn(T) -> T) -> Self {
-        Self(self.0.map(function))
+        // A loop, because `map` is a call for large numbers.
+        let mut slopes = self.0;
+        for slope in &mut slopes {
+            *slope = function(*slope);
+        }
+        Self(slopes)
     }
+    #[inline(always)]
     fn select(condition: T, then: Self, otherwise: Self) -> Self {
         Self(array::from_fn(|k| condition.if_positive(then.0[k], otherwise.0[k])))
     }
+    #[inline(always)]
     fn presence(self) -> T {
         let either = |a: T, b: T| a + b - a * b;
         self.0.into_iter().map(Number::presence).fold(T::zero(), either)
@@ -117,6 +140,7 @@ impl<T: Real, const W: usize> Slope<T> for Slopes<T, W> {
 
 impl<T: Real, const W: usize> Add for Slopes<T, W> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self(array::from_fn(|k| self.0[k] + other.0[k]))
     }
@@ -124,6 +148,7 @@ impl<T: Real, const W: usize> Add for Slopes<T, W> {
 
 impl<T: Real, const W: usize> Sub for Slopes<T, W> {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self(array::from_fn(|k| self.0[k] - other.0[k]))
     }
@@ -131,6 +156,7 @@ impl<T: Real, const W: usize> Sub for Slopes<T, W> {
 
 impl<T: Real, const W: usize> Neg for Slopes<T, W> {
     type Output = Self;
+    #[inline(always)]
     fn neg(self) -> Self {
         Self(self.0.map(Neg::neg))
     }
@@ -179,6 +205,7 @@ pub(crate) fn slopes<T: Real, const N: usize>(vector: &SVector<Dual<T>, N>) -> S
 
 impl<T: Real, D: Slope<T>> Add for Dual<T, D> {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self { value: self.value + other.value, slope: self.slope + other.slope }
     }
@@ -186,6 +213,7 @@ impl<T: Real, D: Slope<T>> Add for Dual<T, D> {
 
 impl<T: Real, D: Slope<T>> Sub for Dual<T, D> {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         Self { value: self.value - other.value, slope: self.slope - other.slope }
     }
@@ -193,6 +221,7 @@ impl<T: Real, D: Slope<T>> Sub for Dual<T, D> {
 
 impl<T: Real, D: Slope<T>> Mul for Dual<T, D> {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         Self { value: self.value * other.value, slope: self.slope.times(other.value) + other.slope.times(self.value) }
     }
@@ -200,6 +229,7 @@ impl<T: Real, D: Slope<T>> Mul for Dual<T, D> {
 
 impl<T: Real, D: Slope<T>> Div for Dual<T, D> {
     type Output = Self;
+    #[inline]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
         Self { value, slope: (self.slope - other.slope.times(value)).over(other.value) }
@@ -208,6 +238,7 @@ impl<T: Real, D: Slope<T>> Div for Dual<T, D> {
 
 impl<T: Real, D: Slope<T>> Neg for Dual<T, D> {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Self { value: -self.value, slope: -self.slope }
     }
