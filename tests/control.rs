@@ -343,6 +343,33 @@ fn without_an_equilibrium_there_is_a_typed_error() {
 }
 
 #[test]
+fn from_any_guess_there_is_an_equilibrium_or_a_typed_error() {
+    const GUESSES: u32 = 400;
+    let arm = PlanarArm { l: [0.7, 0.55, 0.4], u: [9.0, 2.5, -0.8], d: [0.4, 0.2, 0.1], ..Default::default() };
+    let mut draw = Sequence::new(3);
+    let (mut found, mut worst, mut farthest) = (0, 0.0_f64, 0.0_f64);
+    for _ in 0..GUESSES {
+        let guess = SVector::<f64, 3>::from_fn(|_, _| draw.within(-PI, PI));
+        match arm.equilibrium(0.0, guess) {
+            Ok(at) => {
+                found += 1;
+                assert!(at.residual <= 4.0, "{at:?}");
+                let force = arm.bias(0.0, at.q, [0.0; 3]);
+                worst = worst.max(force.amax() / arm.bias(0.0, [0.0; 3], [0.0; 3]).amax());
+                farthest = farthest.max((at.q - guess).amax());
+            }
+            Err(error) => assert!(
+                matches!(error, StepError::NoEquilibrium { .. } | StepError::FreeMotion { .. }),
+                "{guess}: {error}"
+            ),
+        }
+    }
+    println!("{found} of {GUESSES} guesses led to an equilibrium, at most {farthest:.1} away, force {worst:.1e}");
+    // All, 3.6 and 9.1e-16 were measured.
+    assert!(found > GUESSES * 9 / 10 && worst < 4e-15 && farthest < 5.0, "{found}, {worst:e}, {farthest}");
+}
+
+#[test]
 fn eigenvalues_are_those_of_the_matrix() {
     let of = |size: usize, rows: &[f64]| {
         let a = DMatrix::from_row_slice(size, size, rows);

@@ -18,7 +18,10 @@ use nalgebra::{Complex, DMatrix, SMatrix, SVector};
 
 /// Damped steps, and halvings of each.
 const STEPS: u32 = 200;
-const HALVINGS: u32 = 40;
+const HALVINGS: i32 = 40;
+/// Largest relative change of K over a correction, and the parts of a correction where it is measured.
+const CHANGE: f64 = 0.5;
+const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// A state of rest without acceleration. Small motions x about it satisfy `M x'' + C x' + K x = 0`.
 #[derive(Clone, Debug, PartialEq)]
@@ -194,26 +197,23 @@ impl<const N: usize, D: Collocation<N, Dual<f64>>, R: Collocation<N, Dual<Rounde
         let size = |u: &SVector<f64, N>| u.component_mul(u).dot(&weights).sqrt();
         for _ in 0..STEPS {
             let stiffness = self.held(&at.stiffness);
-            let solved = |forces: &SVector<f64, N>| linear::solve(&stiffness, forces).ok_or(self.free_motion(&q));
-            let correction = solved(&self.held_forces(&at.residual))?;
-            let mut factor = 1.0;
-            let next = loop {
-                let next = q - correction * factor;
-                let there = self.linearized(&next);
+            let solved = |forces: &SVector<f64, N>| linear::solve(&stiffness, forces);
+            let correction = solved(&self.held_forces(&at.residual)).ok_or_else(|| self.free_motion(&q))?;
+            let is_similar = |factor: f64| {
+                let there = self.linearized(&(q - correction * factor));
                 let change = solved(&((self.held(&there.stiffness) - stiffness) * correction));
-                if there.is_finite() && change.is_ok_and(|change| size(&change) <= 0.5 * size(&correction)) {
-                    break there;
-                }
-                factor *= 0.5;
-                if factor < 0.5_f64.powi(HALVINGS.cast_signed()) {
-                    return Err(self.unbalanced(&q));
-                }
+                there.is_finite() && change.is_some_and(|change| size(&change) <= CHANGE * size(&correction))
             };
-            // The first trial was accepted.
-            if factor > 0.5 {
-                return Ok(q);
+            // On the way too: after a turn of an angle K is as before.
+            let is_short = |factor: &f64| PARTS.iter().all(|part| is_similar(factor * part));
+            let factors = (0..HALVINGS).map(|halvings| 0.5_f64.powi(halvings));
+            match factors.into_iter().find(is_short) {
+                // The first trial.
+                Some(factor) if factor > 0.5 => return Ok(q),
+                Some(factor) => q -= correction * factor,
+                None => return Err(self.unbalanced(&q)),
             }
-            (q, at) = (q - correction * factor, next);
+            at = self.linearized(&q);
         }
         Err(self.unbalanced(&q))
     }
