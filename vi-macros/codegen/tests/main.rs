@@ -14,3 +14,4 @@ mod requests;
 mod rules;
 mod scope;
 mod vanishing;
+mod vectors;

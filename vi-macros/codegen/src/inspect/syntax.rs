@@ -2,9 +2,7 @@
 //!
 //! In: a [`System`] as written. Out: its clauses by kind, with exact numbers and the necessary parentheses.
 
-use crate::syntax::{
-    Default, Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range, System,
-};
+use crate::syntax::{Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range, System};
 
 /// The clauses of a system.
 pub(super) fn text(system: &System) -> String {
@@ -12,8 +10,7 @@ pub(super) fn text(system: &System) -> String {
     lines.extend(system.constants.iter().map(|of| format!("const {}", definition(of))));
     lines.extend(system.parameters.iter().map(parameter));
     for coordinate in &system.coordinates {
-        let length = coordinate.length.as_ref().map(|length| format!("[{}]", expression(length)));
-        lines.push(format!("coord {}{};", coordinate.name, length.unwrap_or_default()));
+        lines.push(format!("coord {}{};", coordinate.name, brackets(&coordinate.lengths)));
     }
     lines.extend(system.lets.iter().map(|of| format!("let {}", definition(of))));
     lines.extend(system.lagrangians.iter().map(definition));
@@ -37,20 +34,20 @@ pub(super) fn text(system: &System) -> String {
 }
 
 fn parameter(of: &Parameter) -> String {
-    let length = of.length.as_ref().map(|length| format!("[{}]", expression(length))).unwrap_or_default();
-    let default = match &of.default {
-        Default::Same(value) => expression(value),
-        Default::Each(values) => format!("[{}]", values.iter().map(expression).collect::<Vec<_>>().join(", ")),
-    };
-    format!("param {}{length} = {default};", of.name)
+    format!("param {}{} = {};", of.name, brackets(&of.lengths), expression(&of.default))
+}
+
+/// Indices or lengths, each in brackets of its own.
+fn brackets(of: &[Expression]) -> String {
+    of.iter().map(|index| format!("[{}]", expression(index))).collect()
 }
 
 fn definition(of: &Definition) -> String {
-    let indices = match &of.indices {
-        None => String::new(),
-        Some(Indices::Range(indices)) => format!("[{}]", range(indices)),
-        Some(Indices::One(index)) => format!("[{}]", expression(index)),
+    let one = |indices: &Indices| match indices {
+        Indices::Range(indices) => format!("[{}]", range(indices)),
+        Indices::One(index) => format!("[{}]", expression(index)),
     };
+    let indices: String = of.indices.iter().map(one).collect();
     format!("{}{indices} = {};", of.name, expression(&of.value))
 }
 
@@ -84,12 +81,19 @@ fn written(of: &Expression) -> (Binding, String) {
         // It would parse as a quotient.
         Kind::Number(value) => (Binding::Product, format!("{} / {}", value.numer(), value.denom())),
         Kind::Name(name) => (Binding::Atom, name.to_string()),
-        Kind::Entry(name, index) => (Binding::Atom, format!("{name}[{}]", expression(index))),
+        Kind::Entry(name, indices) => (Binding::Atom, format!("{name}{}", brackets(indices))),
+        Kind::List(entries) => {
+            let entries: Vec<String> = entries.iter().map(expression).collect();
+            (Binding::Atom, format!("[{}]", entries.join(", ")))
+        }
         Kind::Call(name, arguments) => {
             let arguments: Vec<String> = arguments.iter().map(expression).collect();
             (Binding::Atom, format!("{name}({})", arguments.join(", ")))
         }
-        Kind::Sum(indices, summand) => (Binding::Atom, format!("sum({}, {})", range(indices), expression(summand))),
+        Kind::Sum(ranges, summand) => {
+            let ranges: Vec<String> = ranges.iter().map(range).collect();
+            (Binding::Atom, format!("sum({}, {})", ranges.join(", "), expression(summand)))
+        }
         Kind::Negative(operand) => (Binding::Negative, format!("-{}", within(operand, Binding::Negative))),
         Kind::Power(base, exponent) => {
             (Binding::Power, format!("{}^{}", within(base, Binding::Atom), within(exponent, Binding::Negative)))

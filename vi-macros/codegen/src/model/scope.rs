@@ -3,7 +3,9 @@
 //! In: the declarations of a system, one by one. Out: the meaning of each name in expressions of the system or in lines
 //! of a rule. A name has one meaning, and none before its declaration.
 
+use super::array::Array;
 use super::point::Point;
+use super::vector;
 use crate::habits::{self, Habit};
 use crate::messages::{Absence, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
@@ -25,6 +27,8 @@ pub(super) struct Scope {
     absent: BTreeMap<String, Absence>,
     /// Points at which the expressions of a rule evaluate L and f.
     points: Vec<Point>,
+    /// The array of `let`s whose entries are being defined, with the entry as written: `x[i]`.
+    growing: Option<(String, String)>,
 }
 
 /// The meaning of a name.
@@ -32,16 +36,16 @@ pub(super) struct Scope {
 pub(super) enum Meaning {
     /// A parameter, constant, index or `let`, with its expression.
     Number(Expr),
-    /// An array of `let`s: its first index and its entries.
-    Array { first: i64, entries: Vec<Expr> },
+    /// A vector, a matrix, or an array of parameters, constants or `let`s.
+    Array(Array),
     /// Time, or a slot of a rule.
     Symbol(Symbol),
     /// π.
     Pi,
     /// A coordinate, by index.
     Coordinate(usize),
-    /// An array of coordinates: the index of the first one, and the length.
-    Coordinates { first: usize, length: usize },
+    /// An array of coordinates: the index of the first one, and the lengths.
+    Coordinates { first: usize, lengths: Vec<usize> },
     /// The coordinates at an end of the interval.
     Vector(Vec<Symbol>),
     /// The function `dot`.
@@ -81,7 +85,7 @@ impl Scope {
 
     fn of<const N: usize>(names: [(&str, Meaning); N]) -> Self {
         let names = names.into_iter().map(|(name, meaning)| (name.to_owned(), meaning)).collect();
-        Self { names, absent: BTreeMap::new(), points: Vec::new() }
+        Self { names, absent: BTreeMap::new(), points: Vec::new(), growing: None }
     }
 
     /// Adds the declarations of a system. Names that already have a meaning keep it, as do numbers of constants and
@@ -91,7 +95,7 @@ impl Scope {
         for (name, meaning) in &system.names {
             let meaning = match meaning {
                 Meaning::Number(value) if is_constant(value) => meaning.clone(),
-                Meaning::Array { entries, .. } if entries.iter().all(is_constant) => meaning.clone(),
+                Meaning::Array(array) if !array.any(&|expr| !is_constant(expr)) => meaning.clone(),
                 Meaning::Pi | Meaning::Wrong => meaning.clone(),
                 _ => Meaning::OfState,
             };
@@ -107,11 +111,11 @@ impl Scope {
         let meaning = |meaning: &Meaning| match meaning {
             Meaning::Dot => Meaning::Moving,
             Meaning::Number(value) if moves(value) => Meaning::Moving,
-            Meaning::Array { entries, .. } if entries.iter().any(moves) => Meaning::Moving,
+            Meaning::Array(array) if array.any(&moves) => Meaning::Moving,
             _ => meaning.clone(),
         };
         let names = self.names.iter().map(|(name, known)| (name.clone(), meaning(known))).collect();
-        Self { names, absent: BTreeMap::new(), points: Vec::new() }
+        Self { names, absent: BTreeMap::new(), points: Vec::new(), growing: None }
     }
 
     /// The number of an evaluation point; equal points have the same number.
@@ -167,6 +171,24 @@ impl Scope {
         if let Some(known) = self.names.get_mut(name) {
             *known = meaning;
         }
+    }
+
+    /// The array with this name, to add entries to it.
+    pub(super) fn array_mut(&mut self, name: &str) -> Option<&mut Array> {
+        match self.names.get_mut(name) {
+            Some(Meaning::Array(array)) => Some(array),
+            _ => None,
+        }
+    }
+
+    /// Sets the array whose entries are being defined, with the entry as written.
+    pub(super) fn grow(&mut self, growing: Option<(String, String)>) {
+        self.growing = growing;
+    }
+
+    /// The entry as written, if the entries of the array with this name are being defined.
+    pub(super) fn growing(&self, name: &str) -> Option<&str> {
+        self.growing.as_ref().filter(|(growing, _)| growing == name).map(|(_, entry)| entry.as_str())
     }
 
     /// What a name stands for.
@@ -262,7 +284,7 @@ impl Scope {
             Meaning::Force(_) => Some("f"),
             _ => None,
         });
-        Function::ALL.into_iter().map(Function::name).chain(["sqrt", "sum"]).chain(own)
+        Function::ALL.into_iter().map(Function::name).chain(["sqrt", "sum"]).chain(vector::FUNCTIONS).chain(own)
     }
 
     /// The nearest declared name that satisfies `is_meant`.

@@ -15,6 +15,9 @@ use proc_macro2::{Ident, Span};
 const CLAUSES: [&str; 10] =
     ["const", "param", "coord", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
 
+/// The tokens expected after an index or a length.
+const INSIDE_BRACKETS: &str = "an operator or `]`";
+
 /// A `lagrangian!` as written.
 pub struct System {
     /// Attributes and doc comments of the struct.
@@ -63,8 +66,8 @@ pub struct Definition {
     pub attributes: Vec<syn::Attribute>,
     /// The defined name.
     pub name: Ident,
-    /// The entries of an array that are defined.
-    pub indices: Option<Indices>,
+    /// The entries of an array that are defined, one for each pair of brackets; of a constant its lengths.
+    pub indices: Vec<Indices>,
     /// Its value.
     pub value: Expression,
 }
@@ -83,26 +86,18 @@ pub struct Parameter {
     pub attributes: Vec<syn::Attribute>,
     /// Its name.
     pub name: Ident,
-    /// The length of an array.
-    pub length: Option<Expression>,
-    /// Its default.
-    pub default: Default,
-}
-
-/// The default of a parameter.
-pub enum Default {
-    /// `= 1.0`: this value, for each entry of an array.
-    Same(Expression),
-    /// `= [1.0, 2.0]`: the entries of an array, in order.
-    Each(Vec<Expression>),
+    /// The lengths of an array, one for each pair of brackets.
+    pub lengths: Vec<Expression>,
+    /// Its default: a number, for each entry of an array, or a list of them.
+    pub default: Expression,
 }
 
 /// A coordinate, or an array of them.
 pub struct Coordinate {
     /// Its name.
     pub name: Ident,
-    /// The length of an array.
-    pub length: Option<Expression>,
+    /// The lengths of an array, one for each pair of brackets.
+    pub lengths: Vec<Expression>,
 }
 
 /// The rule from L to L_d.
