@@ -3,6 +3,8 @@
 //! In: the shapes and names found. Out: a message with the error and its correction. A shape is the list of the
 //! lengths: empty for a number, `[3]` for a vector, `[2, 3]` for a matrix of two rows.
 
+use core::fmt::Display;
+
 /// A mistake with vectors, matrices and arrays. The fields of a variant are the words that its text names.
 #[allow(missing_docs)]
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,6 +21,8 @@ pub enum ArrayMistake {
     Function { function: String, given: Vec<usize>, name: Option<String> },
     /// A power of an array.
     Power { given: Vec<usize>, name: Option<String> },
+    /// `M^-1`.
+    Inverse,
     /// A function of vectors or matrices with other arguments.
     OfVectors { function: &'static str, given: Vec<Vec<usize>> },
     /// A constant with too many entries, or none.
@@ -51,6 +55,15 @@ pub enum ArrayMistake {
     Transposed { name: Option<String> },
 }
 
+/// Help for the inverse of a matrix.
+pub(crate) const INVERSE: &str = "inverses are not supported: `transpose(R)` is the inverse of a rotation; of `[[a, b], [c, d]]` it is \
+    `[[d, -b], [-c, a]] / (a * d - b * c)`";
+
+/// Each of these in brackets of its own: `[0][3]`.
+pub(crate) fn bracketed(parts: impl IntoIterator<Item = impl Display>) -> String {
+    parts.into_iter().fold(String::new(), |text, part| format!("{text}[{part}]"))
+}
+
 /// A shape in words.
 fn words(shape: &[usize]) -> String {
     match shape {
@@ -77,12 +90,13 @@ fn first(shape: &[usize]) -> String {
     "[0]".repeat(shape.len())
 }
 
-/// The ranges over all entries: `[i in 0..2][j in 0..3]` of a 2 × 3 matrix; then the indices alone.
-fn ranges(shape: &[usize]) -> (String, String) {
-    let names = ["i", "j", "k"].into_iter().cycle();
-    let each = || names.clone().zip(shape);
-    let ranges = each().map(|(index, length)| format!("[{index} in 0..{length}]")).collect();
-    (ranges, each().map(|(index, _)| format!("[{index}]")).collect())
+/// The ranges over all entries of a named part: `[i in 0..2][j in 0..3]` of a 2 × 3 matrix; then the indices alone.
+fn ranges(name: &str, shape: &[usize]) -> (String, String) {
+    let is_free = |index: &&str| !name.contains(&format!("[{index}]"));
+    let names: Vec<&str> = ["i", "j", "k", "l", "m", "n"].into_iter().filter(is_free).collect();
+    let each = || names.iter().zip(shape);
+    let ranges = bracketed(each().map(|(index, length)| format!("{index} in 0..{length}")));
+    (ranges, bracketed(each().map(|(index, _)| index)))
 }
 
 /// A literal of a shape, with letters.
@@ -107,6 +121,7 @@ impl ArrayMistake {
             Self::Multiplied { left, right } => format!("{} cannot be multiplied", both(left, right)),
             Self::Function { function, given, .. } => format!("`{function}` takes numbers, not {}", words(given)),
             Self::Power { given, .. } => format!("`^` takes numbers, not {}", words(given)),
+            Self::Inverse => "a matrix has no power -1".to_owned(),
             Self::OfVectors { function, given } => {
                 let needs = match *function {
                     "cross" => "two vectors of 3, or two of 2",
@@ -150,7 +165,7 @@ impl ArrayMistake {
             }
             Self::ShapeNeeded { needs, name, .. } => match needs.len() {
                 0 => "write one number".to_owned(),
-                _ => format!("write a list, as in `{}`, or one number for each entry, `{name}{} = …`", literal(needs), ranges(needs).0),
+                _ => format!("write a list, as in `{}`, or one number for each entry, `{name}{} = …`", literal(needs), ranges(name, needs).0),
             },
             Self::Added { .. } => "the terms of a sum have one shape; write a vector as `[a, b, c]`, one entry as `v[0]`".to_owned(),
             Self::Multiplied { .. } => {
@@ -161,16 +176,20 @@ impl ArrayMistake {
                 format!("write `norm({name})` for the length of a vector")
             }
             Self::Function { function, given, name } => {
-                let (ranges, indices) = ranges(given);
-                let letter = function.get(..1).unwrap_or("s");
                 let name = name.as_deref().unwrap_or("v");
+                let (ranges, indices) = ranges(name, given);
+                let letter = function.get(..1).unwrap_or("s");
                 format!("write `let {letter}{ranges} = {function}({name}{indices});` for each entry")
             }
-            Self::Power { given, name } => {
-                let name = name.as_deref().unwrap_or(if given.len() == 1 { "v" } else { "M" });
-                let what = if given.len() == 1 { "the inner product" } else { "the product" };
-                format!("write {what}, `{name} * {name}`")
+            Self::Power { given, name } if given.len() == 1 => {
+                let name = name.as_deref().unwrap_or("v");
+                format!("write the inner product, `{name} * {name}`, or a power of the length, `norm({name})^3`")
             }
+            Self::Power { name, .. } => {
+                let name = name.as_deref().unwrap_or("M");
+                format!("write the product, `{name} * {name}`")
+            }
+            Self::Inverse => INVERSE.to_owned(),
             Self::OfVectors { function: "cross", .. } => "write `cross(a, b)` of two vectors, as in `cross([x, y, z], v)`".to_owned(),
             Self::OfVectors { function: "norm", .. } => "write `abs(x)` for a number, `norm([x, y])` for a vector".to_owned(),
             Self::OfVectors { .. } => "write `v * M * w` as it is: a vector is a row on the left and a column on the right".to_owned(),

@@ -7,7 +7,7 @@ use proc_macro2::TokenStream;
 use vi_codegen::syntax;
 
 /// All errors of a text: (token underlined, message).
-fn errors(text: &str) -> Vec<(String, String)> {
+pub(crate) fn errors(text: &str) -> Vec<(String, String)> {
     let tokens: TokenStream = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
     let result = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).map(|_| ());
     let Err(error) = result else { return Vec::new() };
@@ -16,7 +16,7 @@ fn errors(text: &str) -> Vec<(String, String)> {
 }
 
 /// One case: the marked token is underlined, and the message starts with the given text.
-fn case(body: &str, message: &str) {
+pub(crate) fn case(body: &str, message: &str) {
     let marked = body.split_once('«').and_then(|(_, rest)| rest.split_once('»')).map(|(token, _)| token);
     let text = format!("struct System {{ {} }}", body.replace(['«', '»'], ""));
     let found = errors(&text);

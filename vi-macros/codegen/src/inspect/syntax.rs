@@ -2,12 +2,15 @@
 //!
 //! In: a [`System`] as written. Out: its clauses by kind, with exact numbers and the necessary parentheses.
 
-use crate::syntax::{Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range, System};
+use crate::arrays::bracketed;
+use crate::syntax::{
+    Constant, Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range, System,
+};
 
 /// The clauses of a system.
 pub(super) fn text(system: &System) -> String {
     let mut lines = Vec::new();
-    lines.extend(system.constants.iter().map(|of| format!("const {}", definition(of))));
+    lines.extend(system.constants.iter().map(constant));
     lines.extend(system.parameters.iter().map(parameter));
     for coordinate in &system.coordinates {
         lines.push(format!("coord {}{};", coordinate.name, brackets(&coordinate.lengths)));
@@ -33,21 +36,25 @@ pub(super) fn text(system: &System) -> String {
     format!("struct {} {{\n    {}\n}}\n", system.name, lines.join("\n    "))
 }
 
+fn constant(of: &Constant) -> String {
+    format!("const {}{} = {};", of.name, brackets(&of.lengths), expression(&of.value))
+}
+
 fn parameter(of: &Parameter) -> String {
     format!("param {}{} = {};", of.name, brackets(&of.lengths), expression(&of.default))
 }
 
 /// Indices or lengths, each in brackets of its own.
 fn brackets(of: &[Expression]) -> String {
-    of.iter().map(|index| format!("[{}]", expression(index))).collect()
+    bracketed(of.iter().map(expression))
 }
 
 fn definition(of: &Definition) -> String {
     let one = |indices: &Indices| match indices {
-        Indices::Range(indices) => format!("[{}]", range(indices)),
-        Indices::One(index) => format!("[{}]", expression(index)),
+        Indices::Range(indices) => range(indices),
+        Indices::One(index) => expression(index),
     };
-    let indices: String = of.indices.iter().map(one).collect();
+    let indices = bracketed(of.indices.iter().map(one));
     format!("{}{indices} = {};", of.name, expression(&of.value))
 }
 

@@ -3,7 +3,7 @@
 //! In: entries, one by one and in order. Out: an entry, a row, or the whole array as a vector or a matrix.
 
 use super::value::{Tensor, Value};
-use crate::arrays::ArrayMistake;
+use crate::arrays::{ArrayMistake, bracketed};
 use crate::messages::{Message, error};
 use core::ops::Range;
 use proc_macro2::Span;
@@ -90,7 +90,7 @@ impl Array {
                 let (index, first, end) = (*index, array.first, array.end());
                 return Err(error(*at, &Message::IndexRange { name: text, index, first, end }));
             };
-            text.push_str(&format!("[{index}]"));
+            text += &bracketed([index]);
             match (entry, path.get(place + 1)) {
                 (Entry::Number(value), None) => return Ok(Value::Number(*value)),
                 (Entry::Number(_), Some((_, at))) => return Err(error(*at, &Message::NotArray { name: text })),
@@ -173,13 +173,11 @@ impl Array {
         let mut array = self;
         for (place, (index, at)) in rows.iter().enumerate() {
             let position = array.position(*index).unwrap_or(array.entries.len());
-            array = match array.entries.get_mut(position) {
-                Some(Entry::Array(inner)) => inner,
-                _ => {
-                    let name = spelled(name, &path[..place]);
-                    return Err(error(*at, &Message::Array(ArrayMistake::Entries { name, index: *index })));
-                }
+            let Some(Entry::Array(inner)) = array.entries.get_mut(position) else {
+                let name = spelled(name, &path[..place]);
+                return Err(error(*at, &Message::Array(ArrayMistake::Entries { name, index: *index })));
             };
+            array = inner;
         }
         Ok(Some((array, *last, *span)))
     }
@@ -201,7 +199,7 @@ fn misplaced(parent: &Array, name: &str, path: Path, span: Span) -> syn::Error {
 
 /// A name with its indices.
 pub(super) fn spelled(name: &str, path: Path) -> String {
-    path.iter().fold(name.to_owned(), |text, (index, _)| format!("{text}[{index}]"))
+    name.to_owned() + &bracketed(path.iter().map(|(index, _)| index))
 }
 
 /// The entries of an array of these lengths at these indices, and the lengths that are left.

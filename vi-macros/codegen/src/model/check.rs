@@ -3,7 +3,6 @@
 //! In: a [`System`]. Out: a [`Model`], or all messages.
 
 use super::context::Context;
-use super::lengths::mismatch;
 use super::scope::Meaning;
 use super::value::Value;
 use super::{Coordinate, Model, Parameter, Rule, check_state, force, indices, lets, mass, rule, time_scale};
@@ -11,8 +10,8 @@ use crate::arrays::ArrayMistake;
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
 use crate::messages::{Absence, Message, error};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{self, Definition, Indices, System};
-use proc_macro2::{Ident, Span};
+use crate::syntax::{self, Constant, Definition, System};
+use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, Pool};
 
@@ -71,36 +70,13 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
 }
 
 impl Context<'_> {
-    fn constants(&mut self, constants: &[Definition]) {
-        for constant in constants {
-            let value = self.constant_of(constant);
-            let meaning = value.map_or_else(|| Meaning::Number(self.pool.one()), |value| lets::meaning(&value));
-            self.declare(&constant.name, meaning);
-        }
-    }
-
-    /// The value of a constant; of the declared lengths, if there are any.
-    fn constant_of(&mut self, Definition { name, indices, value: written, .. }: &Definition) -> Option<Value> {
-        let value = self.shaped(written)?;
-        let value = self.constant_value(name, written, value)?;
-        let written_lengths = indices.iter().filter_map(|index| match index {
-            Indices::One(length) => Some(length),
-            Indices::Range(_) => None,
-        });
-        let spans: Vec<Span> = written_lengths.clone().map(|length| length.span).collect();
-        let too_long = |given| Message::Array(ArrayMistake::Length { given, limit: ENTRIES });
-        let lengths = self.lengths(written_lengths, ENTRIES, too_long)?;
-        if lengths.is_empty() {
-            return Some(value);
-        }
-        match (&value, value.shape() == lengths) {
-            (Value::Number(only), _) => Some(Value::of_shape(&lengths, vec![*only; lengths.iter().product::<usize>()])),
-            (_, true) | (Value::Wrong(_), _) => Some(value),
-            (_, false) => {
-                let (span, message) = mismatch(name, (&lengths, &spans), written, value.shape());
-                self.errors.at(span, &message);
-                None
-            }
+    fn constants(&mut self, constants: &[Constant]) {
+        for Constant { name, lengths: written, value, .. } in constants {
+            let too_long = |given| Message::Array(ArrayMistake::Length { given, limit: ENTRIES });
+            let lengths = self.lengths(written, ENTRIES, too_long);
+            let value = lengths.and_then(|lengths| self.constant_value(name, (written, &lengths), value));
+            let meaning = value.map_or(Meaning::Wrong, |value| lets::meaning(&value));
+            self.declare(name, meaning);
         }
     }
 
@@ -129,9 +105,8 @@ impl Context<'_> {
         let syntax::Parameter { name, lengths: written, default, .. } = parameter;
         let too_long = |given| Message::ParametersLength { given, limit: PARAMETERS };
         let lengths = self.lengths(written, PARAMETERS, too_long)?;
-        let spans: Vec<Span> = written.iter().map(|length| length.span).collect();
-        let numbers = self.constants_of(name, (&lengths, &spans), default)?;
-        Some((lengths, numbers.into_iter().map(|(_, number)| number).collect()))
+        let numbers = self.numbers(name, (written, &lengths), default)?;
+        Some((lengths, numbers))
     }
 
     fn coordinates(&mut self, declared: &[syntax::Coordinate], system: &Ident) -> Vec<Coordinate> {

@@ -1,10 +1,10 @@
 //! Declared arrays: their lengths and the values of their entries.
 //!
-//! In: lengths and a value as written: a number for all entries, or a list. Out: one constant for each entry, row by row.
+//! In: lengths and a value as written: a number for all entries, or a list. Out: one value for each entry, row by row.
 
 use super::context::Context;
 use super::value::Value;
-use crate::arrays::ArrayMistake;
+use crate::arrays::{ArrayMistake, bracketed};
 use crate::messages::Message;
 use crate::syntax::{Expression, Kind};
 use proc_macro2::{Ident, Span};
@@ -18,66 +18,64 @@ impl Context<'_> {
         limit: usize,
         message: impl Fn(i64) -> Message,
     ) -> Option<Vec<usize>> {
-        let (mut lengths, mut count) = (Vec::new(), 1_i64);
+        let (mut lengths, mut count) = (Vec::new(), 1_usize);
         for written in written {
             let length = self.scope.integer(self.pool, written);
-            let length = self.report(length)?;
-            let given = length.saturating_mul(count);
-            match usize::try_from(length)
-                .ok()
-                .filter(|_| usize::try_from(given).is_ok_and(|given| (1..=limit).contains(&given)))
-            {
-                Some(length) => lengths.push(length),
-                None => {
-                    self.errors.at(written.span, &message(given));
-                    return None;
-                }
+            let given = self.report(length)?;
+            let length = usize::try_from(given).unwrap_or(0);
+            count = count.saturating_mul(length);
+            if !(1..=limit).contains(&count) {
+                let given = if given > 0 { i64::try_from(count).unwrap_or(i64::MAX) } else { given };
+                self.errors.at(written.span, &message(given));
+                return None;
             }
-            count = given;
+            lengths.push(length);
         }
         Some(lengths)
     }
 
-    /// The constants of an array of these lengths, each with its number: one for all entries, or a list of them.
-    /// Reports another shape, and entries without a number.
-    pub(super) fn constants_of(
+    /// The numbers of the entries of a parameter with these lengths, as written and as numbers. Reports another shape,
+    /// and entries without a number.
+    pub(super) fn numbers(
         &mut self,
         name: &Ident,
-        (lengths, spans): (&[usize], &[Span]),
+        of: (&[Expression], &[usize]),
         written: &Expression,
-    ) -> Option<Vec<(Expr, f64)>> {
-        let count = lengths.iter().product::<usize>();
-        let value = match written {
-            // Its lengths are compared first.
-            Expression { kind: Kind::List(entries), .. } if entries.is_empty() => None,
-            written => Some(self.shaped(written)),
+    ) -> Option<Vec<f64>> {
+        let count = of.1.iter().product::<usize>();
+        let value = match &written.kind {
+            // The lengths name what is missing.
+            Kind::List(entries) if entries.is_empty() => Value::vector_of(Vec::new()),
+            _ => match self.shaped(written) {
+                Some(value) => value,
+                None => return Some(vec![1.0; count]),
+            },
         };
-        let value = match value {
-            None => Value::vector_of(Vec::new()),
-            Some(None) => return Some(vec![(self.pool.one(), 1.0); count]),
-            Some(Some(value)) => value,
-        };
-        if let Value::Number(only) | Value::Wrong(only) = value {
-            let number = self.constant(only, written.span, name).unwrap_or((self.pool.one(), 1.0));
-            return Some(vec![number; count]);
+        match value {
+            Value::Number(only) | Value::Wrong(only) => {
+                Some(vec![self.finite(only, written.span, name).unwrap_or(1.0); count])
+            }
+            value if value.shape() == of.1 => {
+                let entries = value.entries().iter().enumerate();
+                entries.map(|(place, entry)| self.finite(*entry, entry_span(written, of.1, place), name)).collect()
+            }
+            other @ Value::Tensor(_) => {
+                let (span, message) = mismatch(name, of, written, other.shape());
+                self.errors.at(span, &message);
+                None
+            }
         }
-        if value.shape() != lengths {
-            let (span, message) = mismatch(name, (lengths, spans), written, value.shape());
-            self.errors.at(span, &message);
-            return None;
-        }
-        let entries = value.entries().iter().enumerate();
-        let numbers = entries.map(|(place, entry)| self.constant(*entry, entry_span(written, lengths, place), name));
-        numbers.collect()
     }
 
-    /// A constant with its number; a constant below the range of numbers may be multiplied before it is rounded.
-    pub(super) fn constant(&mut self, value: Expr, span: Span, name: &Ident) -> Option<(Expr, f64)> {
-        self.finite(value, span, name).map(|number| (value, number))
-    }
-
-    /// The value of a constant: reports entries that are not finite.
-    pub(super) fn constant_value(&mut self, name: &Ident, written: &Expression, value: Value) -> Option<Value> {
+    /// The value of a constant with these lengths, as written and as numbers; without lengths, the value as it is.
+    /// Reports another shape, and entries without a number.
+    pub(super) fn constant_value(
+        &mut self,
+        name: &Ident,
+        of: (&[Expression], &[usize]),
+        written: &Expression,
+    ) -> Option<Value> {
+        let value = self.shaped(written)?;
         let shape = value.shape().to_vec();
         let mut is_right = true;
         for (place, entry) in value.entries().iter().enumerate() {
@@ -85,37 +83,45 @@ impl Context<'_> {
             let is_small = self.pool.constant(*entry) == Err(NoConstant::TooSmall);
             is_right &= is_small || self.finite(*entry, entry_span(written, &shape, place), name).is_some();
         }
-        is_right.then_some(value)
+        if !is_right {
+            return None;
+        }
+        match value {
+            Value::Number(only) => {
+                let entries: Vec<Expr> = vec![only; of.1.iter().product::<usize>()];
+                Some(Value::of_shape(of.1, entries))
+            }
+            Value::Tensor(tensor) if !of.1.is_empty() && tensor.shape != of.1 => {
+                let (span, message) = mismatch(name, of, written, &shape);
+                self.errors.at(span, &message);
+                None
+            }
+            value => Some(value),
+        }
     }
 }
 
 /// The message for a value of another shape than that of its array, with its place.
-pub(super) fn mismatch(
+fn mismatch(
     name: &Ident,
-    (lengths, spans): (&[usize], &[Span]),
+    (written_lengths, lengths): (&[Expression], &[usize]),
     written: &Expression,
     given: &[usize],
 ) -> (Span, Message) {
     let text = name.to_string();
-    let Some(first) = given.first().filter(|_| !lengths.is_empty()) else {
-        let lengths = given.iter().map(|length| format!("[{length}]")).collect();
-        return (name.span(), Message::ParameterWithoutLength { name: text, lengths });
-    };
-    let differs = lengths.iter().zip(given).position(|(length, values)| length != values);
-    match differs.filter(|level| lengths.len() == given.len() || *level == 0 && *first == 0) {
-        Some(level) => {
-            let (length, values) = (lengths[level], given[level]);
-            let name = text + &"[0]".repeat(level);
-            // Points at the first surplus value, or at the length if values are missing.
-            let surplus = row(written, level).and_then(|row| row.get(length)).map(|value| value.span);
-            let span = surplus.or(spans.get(level).copied()).unwrap_or(written.span);
-            (span, Message::ParameterValues { name, length, values })
-        }
-        None => {
-            let (needs, given) = (lengths.to_vec(), given.to_vec());
-            (written.span, Message::Array(ArrayMistake::ShapeNeeded { needs, given, name: text }))
-        }
+    if lengths.is_empty() {
+        return (name.span(), Message::ParameterWithoutLength { name: text, lengths: bracketed(given) });
     }
+    let differs = lengths.iter().zip(given).position(|(length, values)| length != values);
+    let Some(level) = differs.filter(|_| lengths.len() == given.len() || given == [0]) else {
+        let (needs, given) = (lengths.to_vec(), given.to_vec());
+        return (written.span, Message::Array(ArrayMistake::ShapeNeeded { needs, given, name: text }));
+    };
+    let (length, values) = (lengths[level], given[level]);
+    // Points at the first surplus value, or at the length if values are missing.
+    let surplus = row(written, level).and_then(|row| row.get(length));
+    let span = surplus.or(written_lengths.get(level)).map_or(written.span, |value| value.span);
+    (span, Message::ParameterValues { name: text + &"[0]".repeat(level), length, values })
 }
 
 /// The first list at this depth.

@@ -9,14 +9,18 @@
 
 use super::array::{Array, Entry};
 use super::context::Context;
-use super::scope::{Meaning, Scope};
-use super::value::Value;
+use super::scope::{Growing, Meaning, Scope};
+use super::value::{Value, index_text};
+use crate::arrays::bracketed;
 use crate::symbol::Symbol;
-use crate::syntax::{Definition, Expression, Indices, Kind};
+use crate::syntax::{Definition, Indices};
 use proc_macro2::Span;
 use std::collections::BTreeSet;
 use syn::Result;
 use vi_expr::Pool;
+
+/// Work of storing one entry.
+const ENTRY: usize = 8;
 
 /// Declares the names of these lines; reports wrong ones.
 pub(super) fn lets(context: &mut Context, lets: &[Definition]) {
@@ -37,7 +41,7 @@ pub(super) fn lets(context: &mut Context, lets: &[Definition]) {
         }
         if arrays.contains(&name) && !named.indices.is_empty() && context.scope.array_mut(&name).is_some() {
             let Context { scope, pool, .. } = context;
-            scope.grow(Some((name.clone(), written(named))));
+            scope.grow(Some(Growing { name: name.clone(), entry: written(named), at: Vec::new() }));
             let defined = entries(scope, pool, named, &named.indices, &mut Vec::new());
             scope.grow(None);
             if context.report(defined).is_none() {
@@ -66,7 +70,9 @@ fn entries(
 ) -> Result<()> {
     let name = named.name.to_string();
     let Some((level, inner)) = levels.split_first() else {
+        scope.grow_at(path.iter().map(|(index, _)| *index).collect());
         let value = scope.value(pool, &named.value)?;
+        pool.spend(ENTRY);
         return scope.array_mut(&name).map_or(Ok(()), |array| array.define(&name, path, &value));
     };
     let first = match level {
@@ -99,14 +105,9 @@ fn entries(
 
 /// The defined entry as it is written: `x[i]`.
 fn written(named: &Definition) -> String {
-    let one = |index: &Expression| match &index.kind {
-        Kind::Number(number) => format!("[{number}]"),
-        Kind::Name(name) => format!("[{name}]"),
-        _ => "[…]".to_owned(),
-    };
     let index = |level: &Indices| match level {
-        Indices::One(index) => one(index),
-        Indices::Range(range) => format!("[{}]", range.index),
+        Indices::One(index) => index_text(index),
+        Indices::Range(range) => range.index.to_string(),
     };
-    named.indices.iter().map(index).fold(named.name.to_string(), |text, index| text + &index)
+    named.name.to_string() + &bracketed(named.indices.iter().map(index))
 }

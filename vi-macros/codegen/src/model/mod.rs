@@ -26,6 +26,7 @@ pub use check_state::CheckState;
 pub use point::Point;
 pub use rule::{DiscreteForces, Rule};
 
+use crate::arrays::bracketed;
 use crate::symbol::Symbol;
 use proc_macro2::{Ident, Span};
 use vi_expr::Expr;
@@ -91,7 +92,7 @@ fn ident(name: &Ident, indices: &[usize]) -> String {
 
 /// A name as the user writes it, with its indices in an array.
 fn text(name: &Ident, indices: &[usize]) -> String {
-    indices.iter().fold(name.to_string(), |text, index| format!("{text}[{index}]"))
+    name.to_string() + &bracketed(indices)
 }
 
 /// The indices of all entries of an array of these lengths, row by row; no indices for no lengths.

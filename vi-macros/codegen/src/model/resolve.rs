@@ -69,7 +69,10 @@ impl Scope {
                 }
                 let operands = self.each_of(pool, [&**base, exponent], Self::value)?;
                 if let Value::Tensor(tensor) = &operands[0] {
-                    let mistake = ArrayMistake::Power { given: tensor.shape.clone(), name: spelled(base) };
+                    let mistake = match (&tensor.shape[..], &exponent.kind) {
+                        ([_, _], Kind::Negative(_)) => ArrayMistake::Inverse,
+                        (shape, _) => ArrayMistake::Power { given: shape.to_vec(), name: spelled(base) },
+                    };
                     return Err(error(base.span, &Message::Array(mistake)));
                 }
                 let numbers = operands.into_iter().zip([base, exponent]);

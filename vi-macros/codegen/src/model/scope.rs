@@ -27,8 +27,17 @@ pub(super) struct Scope {
     absent: BTreeMap<String, Absence>,
     /// Points at which the expressions of a rule evaluate L and f.
     points: Vec<Point>,
-    /// The array of `let`s whose entries are being defined, with the entry as written: `x[i]`.
-    growing: Option<(String, String)>,
+    /// The array of `let`s whose entries are being defined.
+    growing: Option<Growing>,
+}
+
+/// An array of `let`s whose entries are being defined.
+pub(super) struct Growing {
+    pub(super) name: String,
+    /// The entry as written: `x[i]`.
+    pub(super) entry: String,
+    /// The indices of the entry.
+    pub(super) at: Vec<i64>,
 }
 
 /// The meaning of a name.
@@ -181,14 +190,21 @@ impl Scope {
         }
     }
 
-    /// Sets the array whose entries are being defined, with the entry as written.
-    pub(super) fn grow(&mut self, growing: Option<(String, String)>) {
+    /// Sets the array whose entries are being defined.
+    pub(super) fn grow(&mut self, growing: Option<Growing>) {
         self.growing = growing;
     }
 
-    /// The entry as written, if the entries of the array with this name are being defined.
-    pub(super) fn growing(&self, name: &str) -> Option<&str> {
-        self.growing.as_ref().filter(|(growing, _)| growing == name).map(|(_, entry)| entry.as_str())
+    /// Sets the indices of the entry that is being defined.
+    pub(super) fn grow_at(&mut self, at: Vec<i64>) {
+        if let Some(growing) = &mut self.growing {
+            growing.at = at;
+        }
+    }
+
+    /// The entry that is being defined, if it belongs to the array with this name.
+    pub(super) fn growing(&self, name: &str) -> Option<&Growing> {
+        self.growing.as_ref().filter(|growing| growing.name == name)
     }
 
     /// What a name stands for.

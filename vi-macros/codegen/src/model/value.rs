@@ -2,7 +2,7 @@
 //!
 //! In: expressions of the pool with their shapes. Out: one expression for each entry. No later stage sees a shape.
 
-use crate::arrays::ArrayMistake;
+use crate::arrays::{ArrayMistake, bracketed};
 use crate::habits::Habit;
 use crate::limits::bounded;
 use crate::messages::{Message, error};
@@ -202,16 +202,20 @@ fn contraction(pool: &mut Pool<Symbol>, left: &Tensor, right: &Tensor, span: Spa
     Ok(Value::of_shape(&shape, entries))
 }
 
+/// An index as it is written; `…` for one that is computed.
+pub(super) fn index_text(index: &Expression) -> String {
+    match &index.kind {
+        Kind::Number(number) => number.to_string(),
+        Kind::Name(name) => name.to_string(),
+        _ => "…".to_owned(),
+    }
+}
+
 /// A name, or an entry of an array, as it is written; `None` for other expressions.
 pub(super) fn spelled(written: &Expression) -> Option<String> {
-    let index = |index: &Expression| match &index.kind {
-        Kind::Number(number) => format!("[{number}]"),
-        Kind::Name(name) => format!("[{name}]"),
-        _ => "[…]".to_owned(),
-    };
     match &written.kind {
         Kind::Name(name) => Some(name.to_string()),
-        Kind::Entry(name, indices) => Some(format!("{name}{}", indices.iter().map(index).collect::<String>())),
+        Kind::Entry(name, indices) => Some(name.to_string() + &bracketed(indices.iter().map(index_text))),
         _ => None,
     }
 }

@@ -2,14 +2,16 @@
 //!
 //! In: an array by its name, with some of its indices; or a function with its arguments. Out: a [`Value`].
 
-use super::array::{self, Path};
+use super::array::{Array, Path, part};
 use super::resolve::power;
-use super::scope::{Meaning, Scope};
+use super::scope::{Growing, Meaning, Scope};
 use super::value::{Tensor, Value};
 use crate::arrays::ArrayMistake;
 use crate::messages::{Absence, Errors, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::Expression;
+use core::cmp::Ordering;
+use core::ops::Range;
 use proc_macro2::{Ident, Span};
 use syn::Result;
 use vi_expr::{Expr, Pool, Rational};
@@ -57,14 +59,14 @@ impl Scope {
         }
         let value = match self.meaning(&text) {
             Some(Meaning::Array(array)) => {
-                if let Some(entry) = self.growing(&text) {
-                    is_defined(array, &text, entry, path, name.span())?;
+                if let Some(growing) = self.growing(&text) {
+                    is_defined(array, growing, path, name.span())?;
                 }
                 array.at(&text, path, name.span())?
             }
             Some(Meaning::Vector(symbols)) => {
                 let lengths = [symbols.len()];
-                let (range, rest) = array::part(&text, &lengths, path)?;
+                let (range, rest) = part(&text, &lengths, path)?;
                 let symbols = symbols.get(range).unwrap_or_default().iter();
                 Value::of_shape(rest, symbols.map(|symbol| pool.symbol(symbol.clone())).collect())
             }
@@ -76,10 +78,10 @@ impl Scope {
     }
 
     /// The coordinates at these indices and the lengths that are left, if the name is an array of coordinates.
-    fn coordinates_at(&self, name: &Ident, path: Path) -> Result<Option<(core::ops::Range<usize>, &[usize])>> {
+    fn coordinates_at(&self, name: &Ident, path: Path) -> Result<Option<(Range<usize>, &[usize])>> {
         let text = name.to_string();
         let Some(Meaning::Coordinates { first, lengths }) = self.meaning(&text) else { return Ok(None) };
-        let (range, rest) = array::part(&text, lengths, path)?;
+        let (range, rest) = part(&text, lengths, path)?;
         Ok(Some((first + range.start..first + range.end, rest)))
     }
 
@@ -135,27 +137,23 @@ impl Scope {
     }
 }
 
-/// Checks that an entry of the array that is being defined is there.
-fn is_defined(array: &array::Array, name: &str, entry: &str, path: Path, span: Span) -> Result<()> {
-    let Some((index, at)) = path.first() else {
-        return Err(error(span, &Message::Absent { name: name.to_owned(), absence: Absence::Below }));
+/// Checks that an entry of the array that is being defined comes before the one that is being defined.
+fn is_defined(array: &Array, growing: &Growing, path: Path, span: Span) -> Result<()> {
+    let name = &growing.name;
+    let (Some((index, at)), length) = (path.first(), path.len().min(growing.at.len())) else {
+        return Err(error(span, &Message::Absent { name: name.clone(), absence: Absence::Below }));
     };
-    let mut array = array;
-    let (mut index, mut at, mut name) = (*index, *at, name.to_owned());
-    // The search goes as far as there are rows.
-    for (next, place) in &path[1..] {
-        let row = index.checked_sub(array.first).and_then(|offset| usize::try_from(offset).ok());
-        let Some(array::Entry::Array(inner)) = row.and_then(|row| array.entries.get(row)) else { break };
-        name.push_str(&format!("[{index}]"));
-        (array, index, at) = (inner, *next, *place);
-    }
-    let mistake = if index >= array.end() && !array.entries.is_empty() {
-        let before = entry.strip_suffix(']').map_or_else(|| entry.to_owned(), |entry| format!("{entry} - 1]"));
-        ArrayMistake::Behind { entry: entry.to_owned(), before, itself: index == array.end() }
-    } else if array.entries.is_empty() {
-        ArrayMistake::Before { name, index }
-    } else {
-        return Ok(());
+    let indices: Vec<i64> = path.iter().take(length).map(|(index, _)| *index).collect();
+    let differs = indices.iter().zip(&growing.at).position(|(index, of_entry)| index != of_entry);
+    let at = path.get(differs.unwrap_or(length.saturating_sub(1))).map_or(*at, |(_, at)| *at);
+    let mistake = match indices[..].cmp(growing.at.get(..length).unwrap_or_default()) {
+        Ordering::Less if array.entries.is_empty() => ArrayMistake::Before { name: name.clone(), index: *index },
+        Ordering::Less => return Ok(()),
+        order => {
+            let entry = growing.entry.clone();
+            let before = entry.strip_suffix(']').map_or_else(|| entry.clone(), |entry| format!("{entry} - 1]"));
+            ArrayMistake::Behind { entry, before, itself: order == Ordering::Equal }
+        }
     };
     Err(error(at, &Message::Array(mistake)))
 }

@@ -26,8 +26,8 @@ pub struct System {
     pub visibility: syn::Visibility,
     /// Name of the struct.
     pub name: Ident,
-    /// `const a = …;` in order.
-    pub constants: Vec<Definition>,
+    /// `const a = …, s[3] = …;` in order.
+    pub constants: Vec<Constant>,
     /// `param a = …, m[3] = …;` in order.
     pub parameters: Vec<Parameter>,
     /// `coord x, q[8];` in order.
@@ -66,7 +66,7 @@ pub struct Definition {
     pub attributes: Vec<syn::Attribute>,
     /// The defined name.
     pub name: Ident,
-    /// The entries of an array that are defined, one for each pair of brackets; of a constant its lengths.
+    /// The entries of an array that are defined, one for each pair of brackets.
     pub indices: Vec<Indices>,
     /// Its value.
     pub value: Expression,
@@ -78,6 +78,18 @@ pub enum Indices {
     Range(Range),
     /// `[0]`: this entry.
     One(Expression),
+}
+
+/// A constant, or an array of them.
+pub struct Constant {
+    /// Doc comments before it.
+    pub attributes: Vec<syn::Attribute>,
+    /// Its name.
+    pub name: Ident,
+    /// The lengths of an array, one for each pair of brackets; an array may omit them.
+    pub lengths: Vec<Expression>,
+    /// Its value: a number, for each entry of an array, or a list of them.
+    pub value: Expression,
 }
 
 /// A parameter, or an array of them.

@@ -6,8 +6,8 @@
 use super::expression::DEPTH;
 use super::unexpected;
 use super::{
-    CLAUSES, Check, CheckEntry, Coordinate, Definition, Discretization, Expression, INSIDE_BRACKETS, Indices, Kind,
-    Parameter, Rule, System,
+    CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression, INSIDE_BRACKETS, Indices,
+    Kind, Parameter, Rule, System,
 };
 use crate::habits::Habit;
 use crate::messages::{Errors, Message, bounded, error, nearest};
@@ -356,10 +356,10 @@ fn definition(input: ParseStream, attributes: &[Attribute]) -> Result<Definition
 }
 
 /// `a = 1` or `a[3] = [1, 2, 3]`
-fn constant(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
+fn constant(input: ParseStream, attributes: &[Attribute]) -> Result<Constant> {
     let (name, lengths) = (name(input)?, lengths(input)?);
-    let indices = lengths.into_iter().map(Indices::One).collect();
-    Ok(Definition { indices, ..value_of(name, input, attributes.to_vec())? })
+    let Definition { attributes, name, value, .. } = value_of(name, input, attributes.to_vec())?;
+    Ok(Constant { attributes, name, lengths, value })
 }
 
 /// `a = 1`, `a[i in 0..8] = 1` or `a[0] = 1`
