@@ -2,6 +2,7 @@
 //!
 //! In: the notation found. Out: a message with the error and its correction; for a single word, the help only.
 
+use crate::arrays::INVERSE;
 use crate::rules;
 
 /// Notation that this language writes differently. The fields of a variant are the words that its text names.
@@ -50,7 +51,7 @@ pub enum Habit {
     Condition,
     /// `a % b`, `n!`.
     NoOperator { sign: char },
-    /// `{a + b}`, `[a + b]`.
+    /// `{a + b}`, `2 * [a + b]`.
     OtherBrackets,
     /// `self.m`, `x.dot`.
     Field { name: String },
@@ -146,7 +147,7 @@ impl Habit {
             Self::PowerOverNumber { exponent } => {
                 format!("write `a^({exponent}/b)` for a root; write a quotient as `(a^{exponent})/b`")
             }
-            Self::Bars => "write `abs(x)`".to_owned(),
+            Self::Bars => "write `abs(x)`, `norm(v)` for the length of a vector".to_owned(),
             Self::Prime => "write `dot(x)` for the velocity of `x`; name another quantity `x_1`, for example".to_owned(),
             Self::VelocityByName { coordinate, .. } => format!("write `dot({coordinate})`, the velocity of `{coordinate}`"),
             Self::Velocity { coordinate } => {
@@ -164,6 +165,7 @@ impl Habit {
             Self::FunctionWithoutParentheses { name, argument } => {
                 format!("write its argument in parentheses: `{name}({argument})`")
             }
+            Self::Method { name } if name == "dot" => "write `a * b` for the inner product, `dot(x)` for the velocity of `x`".to_owned(),
             Self::Method { name } => function(name)
                 .unwrap_or_else(|| format!("write it as a function, `{name}(…)`, with all its arguments")),
             Self::Path => "write `pi` and `sin(x)`; declare a Rust function, as in `fn cl(a) = crate::aero::cl;`, and write `cl(a)`; pass a constant of \
@@ -181,7 +183,8 @@ impl Habit {
                 "the operators are `+ - * / ^`; angles need no remainder, since `sin` and `cos` are periodic".to_owned()
             }
             Self::NoOperator { .. } => "the operators are `+ - * / ^`".to_owned(),
-            Self::OtherBrackets => "write `(a + b)`; brackets enclose an index, braces the lines of a rule or a check".to_owned(),
+            Self::OtherBrackets => "write `(a + b)`; brackets enclose an index or the entries of a vector, braces the lines of a rule or a check".to_owned(),
+            Self::Field { name } if name == "T" => "write `transpose(M)`".to_owned(),
             Self::Field { name } if name == "dot" => "write `dot(x)` for the velocity of `x`".to_owned(),
             Self::Field { .. } => "write plain names: `m` for a parameter, `q[0]`, `q[1]` for entries of an array".to_owned(),
             Self::Comment => "write `// …`".to_owned(),
@@ -204,7 +207,7 @@ impl Habit {
                 "write `{name}` for its value at the time `t`, `{name} * (…)` for a product; delays (values at other times) are not \
                  supported"
             ),
-            Self::IndexBehind => "write `dot(q[0])` for the velocity of `q[0]`, and name other arrays with `let`".to_owned(),
+            Self::IndexBehind => "write `dot(q[0])` for the velocity of `q[0]`, and name other vectors with `let`, as in `let d = a + b;`, `d[0]`".to_owned(),
             Self::MissingSemicolon { .. } => {
                 "every clause ends with `;`; entries of one list are separated by `,`".to_owned()
             }
@@ -279,7 +282,7 @@ const CLAUSES: [(&[&str], &str); 16] = [
 ];
 
 /// Functions.
-const FUNCTIONS: [(&[&str], &str); 33] = [
+const FUNCTIONS: [(&[&str], &str); 42] = [
     (&["log"], "write `ln(a)` for the natural logarithm, `ln(a) / ln(b)` for the one to the base b"),
     (&["log10"], "write `ln(a) / ln(10)`"),
     (&["log2"], "write `ln(a) / ln(2)`"),
@@ -303,7 +306,25 @@ const FUNCTIONS: [(&[&str], &str); 33] = [
     (&["cbrt"], "write `a^(1/3)`"),
     (&["square", "sqr", "sq"], "write `a^2`"),
     (&["powi", "powf", "power"], "write `a^b`"),
-    (&["fabs", "norm"], "write `abs(a)` for a number, `sqrt(a^2 + b^2)` for a vector"),
+    (&["fabs"], "write `abs(a)` for a number, `norm(v)` for the length of a vector"),
+    (&["inv", "inverse", "invert", "solve"], INVERSE),
+    (
+        &["det", "determinant"],
+        "write it out: `M[0][0] * M[1][1] - M[0][1] * M[1][0]`, `cross(M[0], M[1]) * M[2]` for three rows",
+    ),
+    (&["trace", "tr"], "write `sum(i in 0..3, M[i][i])`"),
+    (&["outer"], "write `let M[i in 0..3][j in 0..3] = a[i] * b[j];`"),
+    (&["inner", "scalar_product", "dotp", "matmul", "mul"], "write `a * b`, also for vectors and matrices"),
+    (&["normalize", "normalized", "unit", "versor"], "write `v / norm(v)`"),
+    (&["eye", "identity", "diag", "zeros", "ones"], "write the rows: `[[1, 0], [0, 1]]`"),
+    (
+        &["vec", "vector", "Vector", "matrix", "Matrix", "array"],
+        "write `[a, b, c]`, and a matrix by its rows, `[[a, b], [c, d]]`",
+    ),
+    (
+        &["length", "len"],
+        "write `norm(v)` for the length of a vector; its number of entries is the constant that declares it",
+    ),
     (&["sgn", "signum"], "write `sign(a)`"),
     (&["heaviside", "Heaviside", "step", "theta"], "write `if a > 0 { 1 } else { 0 }`"),
     (&["piecewise", "Piecewise", "where", "ifelse", "cond", "select", "switch"], CONDITION),

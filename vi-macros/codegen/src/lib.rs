@@ -10,6 +10,7 @@
 //! One stage, one folder, one product. A stage reports all its errors before the next one starts. The stages after
 //! parsing run once for each declared rule.
 
+mod arrays;
 mod derived;
 pub mod discrete;
 pub mod emit;

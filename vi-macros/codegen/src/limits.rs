@@ -12,6 +12,9 @@ pub(crate) const COORDINATES: usize = 256;
 /// Maximum number of entries of an array of parameters.
 pub(crate) const PARAMETERS: usize = 256;
 
+/// Maximum number of entries of a constant.
+pub(crate) const ENTRIES: usize = 65_536;
+
 /// Maximum number of distinct terms in the expressions of all stages of a system.
 const TERMS: usize = 85_000;
 

@@ -3,6 +3,7 @@
 //! In: an error found by a stage. Out: its text: the error, then the correction; lower case, no full stop. A stage
 //! collects its errors in [`Errors`] and reports them all before the next stage starts.
 
+use crate::arrays::ArrayMistake;
 use crate::habits::{self, Habit};
 use crate::rules;
 use proc_macro2::Span;
@@ -132,16 +133,16 @@ pub enum Message {
     ParametersLength { given: i64, limit: usize },
     /// A list of values whose length differs from its array.
     ParameterValues { name: String, length: usize, values: usize },
-    /// A list of values for a scalar parameter.
-    ParameterWithoutLength { name: String, values: usize, clause: &'static str },
+    /// A list of values for a scalar parameter, with the lengths that it needs: `[3]`.
+    ParameterWithoutLength { name: String, lengths: String, clause: &'static str },
     /// An index out of the range of its array.
     IndexRange { name: String, index: i64, first: i64, end: i64 },
     /// A range that ends before it begins.
     BackwardRange { from: i64, to: i64 },
     /// An index on a name that is not an array.
     NotArray { name: String },
-    /// An array without an index.
-    ArrayWithoutIndex { name: String },
+    /// A mistake with vectors, matrices and arrays.
+    Array(ArrayMistake),
     /// An unused parameter.
     UnusedParameter { name: String, is_input: bool },
     /// A second line `dissipation = …;`.
@@ -362,7 +363,7 @@ impl Message {
             Self::IndexRange { name, index, first, end } => format!("`{name}[{index}]` is out of range {first}..{end}"),
             Self::BackwardRange { from, to } => format!("the range {from}..{to} ends before it begins"),
             Self::NotArray { name } => format!("`{name}` is not an array"),
-            Self::ArrayWithoutIndex { name } => format!("`{name}` is an array"),
+            Self::Array(mistake) => mistake.what(),
             Self::UnusedParameter { name, is_input: true } => format!("the input `{name}` is never used"),
             Self::UnusedParameter { name, .. } => format!("the parameter `{name}` is never used"),
             Self::SecondDissipation => "a second `dissipation`".to_owned(),
@@ -444,7 +445,7 @@ impl Message {
             Self::Absent { absence, .. } => absence.help(),
             Self::UnknownFunction { name, near } => habits::function(name).unwrap_or_else(|| did_you_mean(
                 near.as_ref(),
-                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow max min clamp sum, in a rule L f, elsewhere dot; \
+                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow max min clamp sum cross norm transpose, in a rule L f, elsewhere dot; \
                  declare others with `fn` or `table`",
             )),
             Self::Arity { name, takes, .. } => with_arguments(name, *takes),
@@ -468,14 +469,14 @@ impl Message {
             Self::Length { limit, .. } => format!("a system has 1 to {limit} coordinates"),
             Self::ParametersLength { limit, .. } => format!("an array of parameters has 1 to {limit} entries"),
             Self::ParameterValues { length, .. } => format!("write {length} values, or one for all entries: `= 1.0`"),
-            Self::ParameterWithoutLength { name, values, clause } => {
-                format!("write its length: `{clause} {name}[{values}] = […];`")
+            Self::ParameterWithoutLength { name, lengths, clause } => {
+                format!("write its length: `{clause} {name}{lengths} = […];`")
             }
             Self::IndexRange { first, end, .. } if end <= first => "this array has no entries".to_owned(),
             Self::IndexRange { first, end, .. } => format!("the indices are {first} to {}", end - 1),
             Self::BackwardRange { .. } => "write the smaller bound first; the second one is not included".to_owned(),
             Self::NotArray { name } => format!("write `{name}` without an index"),
-            Self::ArrayWithoutIndex { name } => format!("write one entry, `{name}[0]`, or a sum over it"),
+            Self::Array(mistake) => mistake.help(),
             Self::UnusedParameter { .. } => "use it in `L` or in a force, or remove it".to_owned(),
             Self::NoDissipation => {
                 "Rayleigh's function is half the dissipated power, as in `c * dot(x)^2 / 2`".to_owned()

@@ -14,7 +14,7 @@ const INPUTS: u64 = 1000;
 const LONGEST: usize = 32_000_000;
 
 /// Correct systems, which together use every clause and every form of expression.
-const SYSTEMS: [&str; 11] = [
+const SYSTEMS: [&str; 13] = [
     "struct A { param m = 1, k = 2.5e-1; coord x; let v = dot(x); L = m * v^2 / 2 - k * x^2; force x = -0.1 * v; discretize midpoint; }",
     "pub struct B { const N = 3; param a = N / 2; coord q[N], y; let e[i in 1..N] = q[i] - q[i - 1]; L = sum(i in 0..N, dot(q[i])^2) + dot(y)^2 - a * sum(i in 1..N, e[i]^2 * cos(y)); force q[i in 0..2] = sin(t * i); discretize trapezoidal; }",
     "/// Doc.\n struct C { coord θ, φ; L = (dot(θ)^2 + sin(θ)^2 * dot(φ)^2) / 2 + cos(θ); dissipation = dot(θ)^2 + dot(θ)^4; discretize midpoint; }",
@@ -25,13 +25,15 @@ const SYSTEMS: [&str; 11] = [
     "struct I { const N = 3; coord q[N]; let a = q[0] + 1; let b[i in 0..N] = a * a * (q[i] + i); L = sum(i in 0..N, dot(q[i])^2) - sum(i in 0..N, sum(j in 0..i, b[i] * b[j]^2))^2 / 3^20; discretize midpoint; }",
     "struct J { const u = 1e-30; coord x, y; let w = sinh(x) * (1 + x)^3 * (2 + y)^(1/3); L = u * dot(x)^2 + dot(y)^2 / u - w * w^2 - sum(i in 1..9, x^i / i); discretize { Ld = h * (L(t0, q0, (q1 - q0)/h) / 3 + 2 * L(t1, q1, (q1 - q0)/h) / 3); } check { x = 0.1; h = 1e-2; } }",
     "struct K { const N = 2; param m[N] = [1, 2.5], l[N + 1] = 0.5, k = 1,; coord q[N]; let x[i in 0..N] = sum(j in 0..i + 1, l[j] * sin(q[j]) + t * l[N]); L = sum(i in 0..N, m[i] * dot(x[i])^2 + dot(q[i])^2) - k * x[1]; force q[0] = -dot(x[0] * x[1]); discretize midpoint, trapezoidal,; }",
+    "struct M { const N = 3, s = [1, -2, 3], A[2][2] = [[1, 2], [3, 4]]; param K[2][2] = [[1, 2], [3, 4]], m[N] = s; coord r[N][2], x; let R = [[cos(x), -sin(x)], [sin(x), cos(x)]], p[0] = R * r[0]; let p[i in 1..N] = p[i - 1] + transpose(R) * A * r[i]; L = sum(i in 0..N, m[i] * dot(r[i]) * dot(r[i])) + dot(x)^2 - sum(i in 0..N, j in 0..i, 1 / norm(r[i] - r[j])) - p[N - 1] * K * p[0]; force r[i in 0..N] = [0, -m[i]]; discretize midpoint; check { r[0] = [1, 2], dot(r[1][0]) = 3, K = A; h = 0.1; } }",
+    "struct N { coord q[3], u[2][3]; let d[i in 0..3][j in 0..i] = q[i] - q[j]; let w = cross(u[0], q); L = dot(q) * dot(q) + dot(u[0]) * dot(u[0]) + dot(u[1]) * dot(u[1]) - sum(i in 0..3, j in 0..i, d[i][j]^2) - dot(w) * w * cross([q[0], x_0], [1, q[1]]); let x_0 = 2; force u = [[1, 2, 3], -q]; discretize trapezoidal; }",
     "struct H { const M = 4; coord u[M]; let a[i in 0..M] = sum(j in 0..i + 1, dot(u[j]) * cos(u[j])); L = sum(i in 0..M, a[i]^2 + dot(u[i])^2); discretize midpoint; }",
 ];
 
 /// Inserted tokens: all words of the language, and some others.
 const WORDS: &str = "struct const param coord let L force dissipation discretize midpoint trapezoidal Ld fd_minus fd_plus gd_minus \
     gd_plus f h t t0 t1 q0 q1 q x y θ i in dot sum pi sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign \
-    hypot pow self Self r#type fn _ + - * / ^ = ; , : . .. # ! & 0 1 2 3 7 0.5 1e3 1e-3 1e308 1e400 1e-400 0x10 1f64 2x 100 256 257 \
+    hypot pow cross norm transpose self Self r#type fn _ + - * / ^ = ; , : . .. # ! & 0 1 2 3 7 0.5 1e3 1e-3 1e308 1e400 1e-400 0x10 1f64 2x 100 256 257 \
     1000 20000 65536 4294967296 18446744073709551616 99999999999999999999999999999999999999999999999999 1_0 1e-30 2.5e-200 0.1234567890123456789012345678901234567890 \
     if as for max log xdot e λ time constraint 1.5f64 | .. [1,2] [3] m l k \"text\" 'c' b\"b\" true";
 

@@ -1,6 +1,7 @@
 //! The tests of the compiler as one program, so that shared code compiles once.
 
 mod arbitrary;
+mod array_messages;
 mod constants;
 mod effort;
 mod families;
@@ -15,3 +16,4 @@ mod requests;
 mod rules;
 mod scope;
 mod vanishing;
+mod vectors;

@@ -7,7 +7,7 @@ use proc_macro2::TokenStream;
 use vi_codegen::syntax;
 
 /// All errors of a text: (token underlined, message).
-fn errors(text: &str) -> Vec<(String, String)> {
+pub(crate) fn errors(text: &str) -> Vec<(String, String)> {
     let tokens: TokenStream = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
     let result = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).map(|_| ());
     let Err(error) = result else { return Vec::new() };
@@ -16,7 +16,7 @@ fn errors(text: &str) -> Vec<(String, String)> {
 }
 
 /// One case: the marked token is underlined, and the message starts with the given text.
-fn case(body: &str, message: &str) {
+pub(crate) fn case(body: &str, message: &str) {
     let marked = body.split_once('«').and_then(|(_, rest)| rest.split_once('»')).map(|(token, _)| token);
     let text = format!("struct System {{ {} }}", body.replace(['«', '»'], ""));
     let found = errors(&text);
@@ -90,7 +90,7 @@ fn time_scales() {
     case(&rest("let zero = x - x; time_scale = 1 / «zero»;"), "division by zero");
     case(&rest("time_scale = «ln»(x - x);"), "this expression has no value");
     case(&rest("time_scale = 1 + «z»;"), "unknown name `z`");
-    case(&rest("time_scale = 1 + «y»;"), "`y` is an array");
+    case(&rest("time_scale = 1 + «y»;"), "a number and a vector of 2 cannot be added");
     case(&rest("param «a» = 1; time_scale = 1 + x^2;"), "the parameter `a` is never used");
     case(&rest("«time_scales» = 1;"), "unknown clause `time_scales`\nhelp: did you mean `time_scale`?");
     // A parameter used only there counts as used.
@@ -157,9 +157,12 @@ fn velocities() {
         "coord x; let m[i in 0..2] = i; L = dot(x)^2 * dot(«m»[0]); discretize midpoint;",
         "`dot(m)`: `m` does not change with time",
     );
-    case("coord x; L = dot(x)^2 * «dot»(x, t); discretize midpoint;", "`dot` takes 1 argument(s), not 2");
+    case(
+        "coord x; L = dot(x)^2 * «dot»(x, t); discretize midpoint;",
+        "`dot` is the time derivative, of one argument\nhelp: the inner product is `a * b`",
+    );
     case("coord x; L = dot(x)^2 * dot(«sin»); discretize midpoint;", "`sin` is a function");
-    case("coord q[2]; L = dot(q[0])^2 * dot(«q»); discretize midpoint;", "`q` is an array");
+    case("coord q[2]; L = «dot»(q[0])^2 * dot(q); discretize midpoint;", "a number is needed here, not a vector of 2");
     case(
         "coord x; L = dot(x)^2; force x = «dot»(dot(x)); discretize midpoint;",
         "an expression cannot depend on the acceleration",
@@ -746,18 +749,15 @@ fn arrays() {
     case("coord q[«1.5»]; L = 1; discretize midpoint;", "this must be a constant integer");
     case("coord q[«pi»]; L = 1; discretize midpoint;", "this must be a constant integer");
     case("coord q[«M»]; L = 1; discretize midpoint;", "unknown name `M`");
-    case("coord q[2«,» 2]; L = 1; discretize midpoint;", "expected an operator or `]`");
+    case("coord q[2«,» 2]; L = 1; discretize midpoint;", "an index is one number\nhelp: write each index in brackets");
     case(&system("let e[i in 0..N] = q[«i» + 1] - q[i];"), "`q[4]` is out of range 0..4\nhelp: the indices are 0 to 3");
     case(&system("let e[i in 1..N] = q[i]; let d = e[«0»];"), "`e[0]` is out of range 1..4");
     case(&system("let e = q[«-»1];"), "`q[-1]` is out of range 0..4");
     case(&system("let e = q[«x»];"), "this must be a constant integer");
-    case(&system("let e = «q»;"), "`q` is an array\nhelp: write one entry, `q[0]`");
-    case(&system("let e = dot(«q»);"), "`q` is an array");
     case(&system("let e = «x»[0];"), "`x` is not an array");
     case(&system("let e = «N»[0];"), "`N` is not an array");
     case(&system("let e = dot(«x»[0]);"), "`x` is not an array");
     case(&system("let e = «p»[0];"), "unknown name `p`");
-    case(&system("let e[«0»] = 1;"), "expected a range");
     case(&system("let e[i in 3..«1»] = 1;"), "the range 3..1 ends before it begins");
     case(&system("let e = sum(i in 0..«1»/2, i);"), "this must be a constant integer");
     case(&system("let e = sum(«x» in 0..2, 1);"), "the name `x` is declared twice");
@@ -777,7 +777,7 @@ fn arrays() {
         &system("let e[i in 3..3] = 0; let g = e[«3»];"),
         "`e[3]` is out of range 3..3\nhelp: this array has no entries",
     );
-    case(&system("force «q» = 1;"), "`q` is an array");
+    case(&system("force q = «1»;"), "a vector of 4 is needed here, not a number\nhelp: write a list, as in");
     case(&system("force «x»[0] = 1;"), "`x` is not an array");
     case(&system("force q[«4»] = 1;"), "`q[4]` is out of range 0..4");
     case(&system("force q[i in 0..«5»] = 1;"), "`q[4]` is out of range 0..4");
@@ -818,7 +818,7 @@ fn arrays_of_parameters() {
     case(&system("param m[«1.5»] = 1"), "this must be a constant integer");
     case(&system("param m[«x»] = 1"), "`x` is a coordinate: it has no value");
     case(&system("param m[«i» in 0..2] = 1"), "expected a length, as in `q[8]`");
-    case(&system("param m[2«,» 2] = 1"), "expected an operator or `]`");
+    case(&system("param m[2«,» 2] = 1"), "an index is one number");
     case(&system("param m[2] = [1 «2»]"), "an operator is missing between `1` and `2`");
     case(&system("param m[2] = [1, «x»]"), "`x` is a coordinate: it has no value");
     case(&system("param m[2] = [1, «exp»(1000)]"), "the value of `m` is not finite");
@@ -826,7 +826,10 @@ fn arrays_of_parameters() {
     case(&system("param m[2] = 1, «m» = 2"), "the name `m` is declared twice");
     case(&system("param m[2] = 1, «k»[4] = 1"), "the parameter `k` is never used");
     case(&system("param m[2] = 1; let a = m[«2»]"), "`m[2]` is out of range 0..2\nhelp: the indices are 0 to 1");
-    case(&system("param m[2] = 1; let a = «m»"), "`m` is an array\nhelp: write one entry, `m[0]`, or a sum over it");
+    case(
+        &system("param m[2] = 1; force x = «m»"),
+        "a number is needed here, not a vector of 2\nhelp: write one entry, `m[0]`",
+    );
     case(&system("param m[2] = 1; let a = dot(«m»[0])"), "`dot(m)`: `m` does not change with time");
     case(&system("param m[2] = 1; const a = «m»[0]"), "`m` is a parameter: it has no value");
     case(&system("param m[2] = 1; force «m»[0] = 1"), "`m` has a force but is not a coordinate");
@@ -913,11 +916,11 @@ fn rules() {
     case(&system(&format!("{ld} {forces} gd_plus = 0; «gd» = 0;")), "a rule has no line `gd`");
     case(&system(&format!("{ld} {forces} gd_plus = 0; «Ld» = h;")), "a second `Ld` in the rule");
     case(&system(&format!("{ld} {forces} gd_plus = «q0»;")), "a number is needed here");
-    case(&system(&format!("{ld} {forces} gd_plus = t0 + «q0»;")), "a number is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = t0 + «q0»;")), "a number and a vector of 1 cannot be added");
     case(&system(&format!("{ld} {forces} gd_plus = «q2»;")), "unknown name `q2`\nhelp: did you mean `q0`?");
     case(&system(&format!("{ld} {forces} gd_plus = «sine»(h);")), "unknown function `sine`\nhelp: did you mean `sin`?");
     case(&system(&format!("{ld} {forces} gd_plus = «dot»(q0);")), "unknown function `dot`");
-    case(&system(&format!("{ld} {forces} gd_plus = sin(«q0»);")), "a number is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = sin(«q0»);")), "`sin` takes numbers, not a vector of 1");
     case(&system(&format!("{ld} {forces} gd_plus = «x»;")), "a rule cannot depend on `x`\nhelp: a rule can use t0,");
     case(&system(&format!("{ld} {forces} gd_plus = «L»;")), "`L` is a function\nhelp: write its argument");
     case(&system(&format!("{ld} {forces} gd_plus = «h»[0];")), "`h` is not an array");
@@ -981,7 +984,7 @@ fn checks() {
     case(&system("check { dot(x) = 1; dot(«x») = 2; h = 1; }"), "`x` is given twice");
     case(&system("check { t = 1; «t» = 2; h = 1; }"), "`t` is given twice");
     case(&system("check { q[i in 0..N] = i; «q»[0] = 1; h = 1; }"), "`q` is given twice");
-    case(&system("check { «q» = 1; h = 1; }"), "`q` is an array");
+    case(&system("check { q = «1»; h = 1; }"), "a vector of 3 is needed here, not a number");
     case(&system("check { dot(«x»[0]) = 1; h = 1; }"), "`x` is not an array");
     case(&system("check { dot(q[i in 0..«4»]) = 1; h = 1; }"), "`q[3]` is out of range 0..3");
     case(&system("check { x = «a»; h = 1; }"), "the value of `x` is not a constant\nhelp: use numbers");
@@ -1020,7 +1023,7 @@ fn parameters_of_a_check() {
         "`mass` is given twice\nhelp: set each coordinate, velocity and param",
     );
     case(&system("k[1] = 1, «k»[i in 0..3] = i; h = 1;"), "`k` is given twice");
-    case(&system("«k» = 1; h = 1;"), "`k` is an array\nhelp: write one entry, `k[0]`");
+    case(&system("k = «1»; h = 1;"), "a vector of 3 is needed here, not a number\nhelp: write a list");
     case(&system("«mass»[0] = 1; h = 1;"), "`mass` is not an array");
     case(&system("k[«3»] = 1; h = 1;"), "`k[3]` is out of range 0..3\nhelp: the indices are 0 to 2");
     case(&system("k[i in 0..«4»] = 1; h = 1;"), "`k[3]` is out of range 0..3");
@@ -1069,7 +1072,7 @@ fn uses_of_a_wrong_declaration_report_nothing() {
         &format!("const a = 1; coord q[4]; let e[i in 0..4] = q[«i» + 1]; {}", rest.replace("= e;", "= e[1];")),
         "`q[4]` is out",
     );
-    case(&format!("const a = 1; coord q[4]; let e[«0»] = q[0]; {rest}"), "expected a range");
+    case(&format!("const a = 1; coord q[4]; let e[0] = «b»; {rest}"), "unknown name `b`");
     case(
         &format!("const a = 1; coord q[«0»]; let e = q; {}", rest.replace("e[i]", "dot(q)")),
         "an array cannot have 0 coordinates",

@@ -125,8 +125,8 @@ impl Parameter {
     /// Its field in the struct: `k`, or `m[3]`.
     pub(super) fn place(&self) -> TokenStream {
         let name = &self.name;
-        let index = self.index.map(Literal::usize_unsuffixed).into_iter();
-        quote!(#name #([#index])*)
+        let indices = self.indices.iter().copied().map(Literal::usize_unsuffixed);
+        quote!(#name #([#indices])*)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::formula::number;
 use super::{Source, Steps, conditions, limit};
-use crate::limits::PARAMETERS;
+use crate::limits::{COORDINATES, PARAMETERS};
 use crate::model::{Model, Parameter};
 use crate::rules::{GAUSS, RULES};
 use crate::syntax::{self, Discretization, Expression, Kind, System};
@@ -18,11 +18,10 @@ pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
     let (name, visibility) = (&model.name, &model.visibility);
     let attributes = model.attributes.iter().filter(|attribute| limit(attribute).is_none());
     let fields = model.fields().filter_map(|field| {
-        let Parameter { name, attributes, index, .. } = field.first()?;
+        let Parameter { name, attributes, .. } = field.first()?;
         let pause = pause(attributes);
         let default = default_words(field);
-        let length = Literal::usize_unsuffixed(field.len());
-        let of = if index.is_some() { quote!([T; #length]) } else { quote!(T) };
+        let of = array_of(&lengths(field), quote!(T));
         Some(quote!(#(#attributes)* #pause #[doc = #default] pub #name: #of))
     });
     let findings = findings_documentation(source);
@@ -41,12 +40,25 @@ pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
     }
 }
 
+/// The lengths of the array of a field; none of a number.
+fn lengths(field: &[Parameter]) -> Vec<usize> {
+    field.last().map(|last| last.indices.iter().map(|index| index + 1).collect()).unwrap_or_default()
+}
+
+/// An array of these lengths, as a type or as a value that repeats one entry.
+fn array_of(lengths: &[usize], one: TokenStream) -> TokenStream {
+    lengths.iter().rev().fold(one, |inner, length| {
+        let length = Literal::usize_unsuffixed(*length);
+        quote!([#inner; #length])
+    })
+}
+
 /// Documentation of the default of a field.
 fn default_words(field: &[Parameter]) -> String {
     let defaults: Vec<String> = field.iter().map(Parameter::default_text).collect();
     let (Some(first), Some(last)) = (field.first(), field.last()) else { return String::new() };
     let word = if first.is_input { "Input" } else { "Parameter" };
-    if first.index.is_none() {
+    if first.indices.is_empty() {
         return format!(" {word} `{}`, {} by default.", first.name, defaults.join(", "));
     }
     let same = defaults.iter().all(|default| *default == defaults[0]);
@@ -56,19 +68,20 @@ fn default_words(field: &[Parameter]) -> String {
 
 /// The value of a field: `one` of its parameter, or an array of these.
 fn field_value(field: &[Parameter], one: impl Fn(TokenStream) -> TokenStream) -> Option<TokenStream> {
-    let Parameter { name, index, .. } = field.first()?;
-    if index.is_none() {
-        return Some(one(quote!(#name)));
-    }
-    let entry = one(quote!(#name[entry]));
-    Some(quote!(::core::array::from_fn(|entry| #entry)))
+    let Parameter { name, indices, .. } = field.first()?;
+    let counter = |level: usize| if level == 0 { format_ident!("entry") } else { format_ident!("entry{level}") };
+    let counters: Vec<Ident> = (0..indices.len()).map(counter).collect();
+    let entry = one(quote!(#name #([#counters])*));
+    Some(counters.iter().rev().fold(entry, |inner, counter| quote!(::core::array::from_fn(|#counter| #inner))))
 }
 
 /// The default of a field.
 fn default_value(field: &[Parameter]) -> TokenStream {
-    let values = field.iter().map(|parameter| number(parameter.default));
-    let is_array = field.iter().any(|parameter| parameter.index.is_some());
-    if is_array { quote!([#(#values),*]) } else { quote!(#(#values)*) }
+    let mut values: Vec<TokenStream> = field.iter().map(|parameter| number(parameter.default)).collect();
+    for length in lengths(field).into_iter().rev() {
+        values = values.chunks(length.max(1)).map(|row| quote!([#(#row),*])).collect();
+    }
+    quote!(#(#values)*)
 }
 
 /// The derived traits of every system.
@@ -264,11 +277,9 @@ fn stub(system: &System) -> TokenStream {
     let parameters: BTreeMap<String, &syntax::Parameter> =
         system.parameters.iter().map(|parameter| (parameter.name.to_string(), parameter)).collect();
     let names: Vec<&Ident> = parameters.values().map(|parameter| &parameter.name).collect();
-    let lengths = parameters.values().map(|parameter| field_length(system, parameter));
-    let lengths: Vec<Option<Literal>> = lengths.map(|length| length.map(Literal::usize_unsuffixed)).collect();
-    let types = lengths.iter().map(|length| length.as_ref().map_or_else(|| quote!(T), |length| quote!([T; #length])));
-    let zeros =
-        lengths.iter().map(|length| length.as_ref().map_or_else(|| quote!(0.0), |length| quote!([0.0; #length])));
+    let lengths: Vec<Vec<usize>> = parameters.values().map(|parameter| field_lengths(system, parameter)).collect();
+    let types = lengths.iter().map(|lengths| array_of(lengths, quote!(T)));
+    let zeros = lengths.iter().map(|lengths| array_of(lengths, quote!(0.0)));
     let (marker, marker_value) = marker(names.is_empty());
     let size = Size::of(system);
     let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &size, rule.as_ref()));
@@ -297,22 +308,31 @@ fn stub(system: &System) -> TokenStream {
 
 /// The number of coordinates, if every length is a literal or a constant defined by one.
 fn dimension(system: &System) -> Option<Literal> {
-    let lengths = system.coordinates.iter().map(|coordinate| match &coordinate.length {
-        None => Some(1),
-        Some(length) => plain_length(system, length),
+    let lengths = system.coordinates.iter().map(|coordinate| {
+        let lengths = coordinate.lengths.iter().map(|length| plain_length(system, length));
+        let product = |before: usize, length: Option<usize>| before.checked_mul(length?);
+        lengths.into_iter().try_fold(1, product).filter(|length| *length <= COORDINATES)
     });
     lengths.sum::<Option<usize>>().filter(|dimension| *dimension > 0).map(Literal::usize_unsuffixed)
 }
 
-/// The length of the field of an array of parameters; 1 if it is unknown.
-fn field_length(system: &System, parameter: &syntax::Parameter) -> Option<usize> {
-    let known_length =
-        plain_length(system, parameter.length.as_ref()?).filter(|length| (1..=PARAMETERS).contains(length));
-    let values = match &parameter.default {
-        syntax::Default::Each(values) => values.len(),
-        syntax::Default::Same(_) => 1,
+/// The lengths of the field of an array of parameters; those of its default, or 1, where they are unknown.
+fn field_lengths(system: &System, parameter: &syntax::Parameter) -> Vec<usize> {
+    let mut default = Some(&parameter.default);
+    let length = |written: &Expression| {
+        let known = plain_length(system, written).filter(|length| (1..=PARAMETERS).contains(length));
+        let values = match default.map(|default| &default.kind) {
+            Some(Kind::List(values)) => {
+                default = values.first();
+                values.len()
+            }
+            _ => 1,
+        };
+        known.unwrap_or(values)
     };
-    Some(known_length.unwrap_or(values))
+    let lengths: Vec<usize> = parameter.lengths.iter().map(length).collect();
+    let count = lengths.iter().try_fold(1_usize, |before, length| before.checked_mul(*length));
+    if count.is_some_and(|count| count <= PARAMETERS) { lengths } else { vec![1; lengths.len()] }
 }
 
 /// A length that is a literal, or a constant defined by one.

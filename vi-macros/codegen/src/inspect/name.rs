@@ -117,16 +117,12 @@ const GREEK: [(char, &str); 37] = [
 
 /// The name of a coordinate.
 pub(super) fn coordinate(of: &Coordinate) -> Name {
-    entry(&of.name, of.index)
+    entry(&of.name, &of.indices)
 }
 
-/// A name with its index in an array.
-fn entry(name: &Ident, index: Option<usize>) -> Name {
-    let name = Name::of(&name.to_string());
-    match index {
-        Some(index) => name.with(index.to_string()),
-        None => name,
-    }
+/// A name with its indices in an array.
+fn entry(name: &Ident, indices: &[usize]) -> Name {
+    indices.iter().fold(Name::of(&name.to_string()), |name, index| name.with(index.to_string()))
 }
 
 /// A symbol in LaTeX.
@@ -145,7 +141,7 @@ fn named(derived: &Derived, symbol: &Symbol) -> Name {
     let of = |index: &usize| derived.model.coordinates.get(*index).map_or_else(|| Name::of("q"), coordinate);
     match symbol {
         Symbol::Parameter { index, .. } => {
-            derived.model.parameters.get(*index).map_or_else(|| Name::of("a"), |of| entry(&of.name, of.index))
+            derived.model.parameters.get(*index).map_or_else(|| Name::of("a"), |of| entry(&of.name, &of.indices))
         }
         Symbol::Continuous(Variable::Time) => Name::of("t"),
         Symbol::Continuous(Variable::Coordinate(index)) => of(index),

@@ -2,8 +2,9 @@
 //!
 //! In: a [`System`] as written. Out: its clauses by kind, with exact numbers and the necessary parentheses.
 
+use crate::arrays::bracketed;
 use crate::syntax::{
-    Body, Comparison, Default, Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range,
+    Body, Comparison, Constant, Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range,
     System, Table, TableArgument, TableData,
 };
 use quote::ToTokens;
@@ -11,11 +12,10 @@ use quote::ToTokens;
 /// The clauses of a system.
 pub(super) fn text(system: &System) -> String {
     let mut lines = Vec::new();
-    lines.extend(system.constants.iter().map(|of| format!("const {}", definition(of))));
+    lines.extend(system.constants.iter().map(constant));
     lines.extend(system.parameters.iter().map(parameter));
     for coordinate in &system.coordinates {
-        let length = coordinate.length.as_ref().map(|length| format!("[{}]", expression(length)));
-        lines.push(format!("coord {}{};", coordinate.name, length.unwrap_or_default()));
+        lines.push(format!("coord {}{};", coordinate.name, brackets(&coordinate.lengths)));
     }
     lines.extend(system.functions.iter().map(|of| {
         let arguments: Vec<String> = of.arguments.iter().map(ToString::to_string).collect();
@@ -71,21 +71,25 @@ fn table(of: &Table) -> String {
     format!("table {}({}) = {data}{words};", of.name, arguments.join(", "))
 }
 
+fn constant(of: &Constant) -> String {
+    format!("const {}{} = {};", of.name, brackets(&of.lengths), expression(&of.value))
+}
+
 fn parameter(of: &Parameter) -> String {
-    let length = of.length.as_ref().map(|length| format!("[{}]", expression(length))).unwrap_or_default();
-    let default = match &of.default {
-        Default::Same(value) => expression(value),
-        Default::Each(values) => format!("[{}]", values.iter().map(expression).collect::<Vec<_>>().join(", ")),
-    };
-    format!("{} {}{length} = {default};", of.clause(), of.name)
+    format!("{} {}{} = {};", of.clause(), of.name, brackets(&of.lengths), expression(&of.default))
+}
+
+/// Indices or lengths, each in brackets of its own.
+fn brackets(of: &[Expression]) -> String {
+    bracketed(of.iter().map(expression))
 }
 
 fn definition(of: &Definition) -> String {
-    let indices = match &of.indices {
-        None => String::new(),
-        Some(Indices::Range(indices)) => format!("[{}]", range(indices)),
-        Some(Indices::One(index)) => format!("[{}]", expression(index)),
+    let one = |indices: &Indices| match indices {
+        Indices::Range(indices) => range(indices),
+        Indices::One(index) => expression(index),
     };
+    let indices = bracketed(of.indices.iter().map(one));
     format!("{}{indices} = {};", of.name, expression(&of.value))
 }
 
@@ -119,12 +123,19 @@ fn written(of: &Expression) -> (Binding, String) {
         // It would parse as a quotient.
         Kind::Number(value) => (Binding::Product, format!("{} / {}", value.numer(), value.denom())),
         Kind::Name(name) => (Binding::Atom, name.to_string()),
-        Kind::Entry(name, index) => (Binding::Atom, format!("{name}[{}]", expression(index))),
+        Kind::Entry(name, indices) => (Binding::Atom, format!("{name}{}", brackets(indices))),
+        Kind::List(entries) => {
+            let entries: Vec<String> = entries.iter().map(expression).collect();
+            (Binding::Atom, format!("[{}]", entries.join(", ")))
+        }
         Kind::Call(name, arguments) => {
             let arguments: Vec<String> = arguments.iter().map(expression).collect();
             (Binding::Atom, format!("{name}({})", arguments.join(", ")))
         }
-        Kind::Sum(indices, summand) => (Binding::Atom, format!("sum({}, {})", range(indices), expression(summand))),
+        Kind::Sum(ranges, summand) => {
+            let ranges: Vec<String> = ranges.iter().map(range).collect();
+            (Binding::Atom, format!("sum({}, {})", ranges.join(", "), expression(summand)))
+        }
         Kind::Negative(operand) => (Binding::Negative, format!("-{}", within(operand, Binding::Negative))),
         Kind::Power(base, exponent) => {
             (Binding::Power, format!("{}^{}", within(base, Binding::Atom), within(exponent, Binding::Negative)))

@@ -4,14 +4,18 @@
 
 use super::context::Context;
 use super::scope::Meaning;
-use super::{Coordinate, Model, Parameter, Rule, check_state, force, function, mass, rule, smoothness, time_scale};
-use crate::limits::{COORDINATES, PARAMETERS, bounded};
+use super::value::Value;
+use super::{
+    Coordinate, Model, Parameter, Rule, check_state, force, function, indices, lets, mass, rule, smoothness, time_scale,
+};
+use crate::arrays::ArrayMistake;
+use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
 use crate::messages::{Absence, Message, error};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{self, Default, Definition, Expression, Indices, System};
+use crate::syntax::{self, Constant, Definition, System};
 use proc_macro2::Ident;
 use syn::Result;
-use vi_expr::{Expr, NoConstant, Pool};
+use vi_expr::{Expr, Pool};
 
 /// Characters of an expression shown in a message.
 const CHARACTERS: usize = 100;
@@ -32,7 +36,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let coordinates = context.coordinates(coordinates, &system.name);
     context.scope.expect(lets.iter().map(|named| &named.name), Absence::Below);
     let functions = function::functions(&mut context, system);
-    context.lets(lets);
+    lets::lets(&mut context, lets);
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
     let forces = force::forces(&mut context, &system.forces, &system.dissipations, &parameters, coordinates.len());
     let forced = forces.iter().any(|force| !context.pool.is_zero(*force));
@@ -87,81 +91,43 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
 }
 
 impl Context<'_> {
-    fn constants(&mut self, constants: &[Definition]) {
-        for constant in constants {
-            let value = self.value(&constant.value);
-            // A value below the range of numbers may be multiplied before it is rounded.
-            let is_small = self.pool.constant(value) == Err(NoConstant::TooSmall);
-            let has_value = is_small || self.finite(value, constant.value.span, &constant.name).is_some();
-            self.declare(&constant.name, Meaning::Number(if has_value { value } else { self.pool.one() }));
+    fn constants(&mut self, constants: &[Constant]) {
+        for Constant { name, lengths: written, value, .. } in constants {
+            let too_long = |given| Message::Array(ArrayMistake::Length { given, limit: ENTRIES });
+            let lengths = self.lengths(written, ENTRIES, too_long);
+            let value = lengths.and_then(|lengths| self.constant_value(name, (written, &lengths), value));
+            let meaning = value.map_or(Meaning::Wrong, |value| lets::meaning(&value));
+            self.declare(name, meaning);
         }
     }
 
     /// The parameters with their defaults; arrays entry by entry.
     fn parameters(&mut self, declared: &[syntax::Parameter]) -> Vec<Parameter> {
-        let fields: Vec<Option<Vec<f64>>> = declared.iter().map(|parameter| self.defaults(parameter)).collect();
+        let fields: Vec<_> = declared.iter().map(|parameter| self.defaults(parameter)).collect();
         let mut parameters = Vec::new();
-        for (syntax::Parameter { attributes, name, length, is_input, .. }, defaults) in declared.iter().zip(fields) {
-            let Some(defaults) = defaults else {
+        for (syntax::Parameter { attributes, name, is_input, .. }, defaults) in declared.iter().zip(fields) {
+            let Some((lengths, defaults)) = defaults else {
                 self.declare(name, Meaning::Wrong);
                 continue;
             };
             let mut entries = Vec::with_capacity(defaults.len());
-            for (index, default) in defaults.into_iter().enumerate() {
-                let index = length.is_some().then_some(index);
+            for (indices, default) in indices(&lengths).into_iter().zip(defaults) {
                 let (attributes, name, is_input) = (attributes.clone(), name.clone(), *is_input);
-                let parameter = Parameter { attributes, name, index, default, is_input };
+                let parameter = Parameter { attributes, name, indices, default, is_input };
                 entries.push(self.pool.symbol(parameter.symbol(parameters.len())));
                 parameters.push(parameter);
             }
-            let meaning = match (length, entries.first()) {
-                (None, Some(only)) => Meaning::Number(*only),
-                _ => Meaning::Array { first: 0, entries },
-            };
-            self.declare(name, meaning);
+            self.declare(name, lets::meaning(&Value::of_shape(&lengths, entries)));
         }
         parameters
     }
 
-    /// The default of a parameter, or of the entries of an array; reports a wrong length.
-    fn defaults(&mut self, parameter: &syntax::Parameter) -> Option<Vec<f64>> {
-        let syntax::Parameter { name, length, default, .. } = parameter;
-        let length = match length {
-            Some(written) => Some((self.length_of_parameters(written)?, written.span)),
-            None => None,
-        };
-        let written = match default {
-            Default::Same(value) => {
-                let (_, number) = self.number(value, name);
-                return Some(vec![number; length.map_or(1, |(length, _)| length)]);
-            }
-            Default::Each(written) => written,
-        };
-        let numbers: Vec<f64> = written.iter().map(|value| self.number(value, name).1).collect();
-        let values = numbers.len();
-        let Some((length, span)) = length else {
-            let (name, span, clause) = (name.to_string(), name.span(), parameter.clause());
-            self.errors.at(span, &Message::ParameterWithoutLength { name, values, clause });
-            return None;
-        };
-        if values != length {
-            // Points at the first surplus value, or at the length if values are missing.
-            let span = written.get(length).map_or(span, |value| value.span);
-            self.errors.at(span, &Message::ParameterValues { name: name.to_string(), length, values });
-            return None;
-        }
-        Some(numbers)
-    }
-
-    /// The length of an array of parameters; reports a wrong length.
-    fn length_of_parameters(&mut self, written: &Expression) -> Option<usize> {
-        let length = self.scope.integer(self.pool, written);
-        let given = self.report(length)?;
-        let fitting = usize::try_from(given).ok().filter(|length| (1..=PARAMETERS).contains(length));
-        if fitting.is_none() {
-            self.errors.at(written.span, &Message::ParametersLength { given, limit: PARAMETERS });
-        }
-        fitting
+    /// The lengths of a parameter and the defaults of its entries; reports a wrong length.
+    fn defaults(&mut self, parameter: &syntax::Parameter) -> Option<(Vec<usize>, Vec<f64>)> {
+        let too_long = |given| Message::ParametersLength { given, limit: PARAMETERS };
+        let lengths = self.lengths(&parameter.lengths, PARAMETERS, too_long)?;
+        let numbers = self.numbers(parameter, &lengths)?;
+        Some((lengths, numbers))
     }
 
     fn coordinates(&mut self, declared: &[syntax::Coordinate], system: &Ident) -> Vec<Coordinate> {
@@ -169,61 +135,29 @@ impl Context<'_> {
             self.errors.at(system.span(), &Message::MissingCoordinates);
         }
         let (mut coordinates, mut too_many) = (Vec::new(), None);
-        for syntax::Coordinate { name, length } in declared {
+        for syntax::Coordinate { name, lengths } in declared {
             let first = coordinates.len();
-            let Some(written) = length else {
-                if first == COORDINATES {
-                    self.declare(name, Meaning::Wrong);
-                    too_many = too_many.or(Some(name.span()));
-                    continue;
-                }
-                coordinates.push(Coordinate { name: name.clone(), index: None });
-                self.declare(name, Meaning::Coordinate(first));
-                continue;
-            };
-            let length = self.scope.integer(self.pool, written);
-            let Some(length) = self.report(length) else {
+            if lengths.is_empty() && first == COORDINATES {
                 self.declare(name, Meaning::Wrong);
+                too_many = too_many.or(Some(name.span()));
                 continue;
-            };
-            let fitting = 1..=COORDINATES - first.min(COORDINATES);
-            if let Some(length) = usize::try_from(length).ok().filter(|length| fitting.contains(length)) {
-                coordinates.extend((0..length).map(|i| Coordinate { name: name.clone(), index: Some(i) }));
-                self.declare(name, Meaning::Coordinates { first, length });
-            } else {
-                self.errors.at(written.span, &Message::Length { given: length, limit: COORDINATES });
-                self.declare(name, Meaning::Wrong);
             }
+            let left = COORDINATES - first.min(COORDINATES);
+            let too_long = |given| Message::Length { given, limit: COORDINATES };
+            let Some(lengths) = self.lengths(lengths, left, too_long) else {
+                self.declare(name, Meaning::Wrong);
+                continue;
+            };
+            let each = indices(&lengths).into_iter();
+            coordinates.extend(each.map(|indices| Coordinate { name: name.clone(), indices }));
+            let is_one = lengths.is_empty();
+            let meaning = if is_one { Meaning::Coordinate(first) } else { Meaning::Coordinates { first, lengths } };
+            self.declare(name, meaning);
         }
         if let Some(first) = too_many {
             self.errors.at(first, &Message::TooManyCoordinates { limit: COORDINATES });
         }
         coordinates
-    }
-
-    fn lets(&mut self, lets: &[Definition]) {
-        for named in lets {
-            match &named.indices {
-                None => {
-                    let value = self.value(&named.value);
-                    self.declare(&named.name, Meaning::Number(value));
-                }
-                Some(Indices::Range(range)) => {
-                    let first = self.scope.integer(self.pool, &range.from);
-                    let entries =
-                        self.scope.each(self.pool, range, &mut |scope, pool, _| scope.expression(pool, &named.value));
-                    let meaning = match (self.report(entries), first) {
-                        (Some(entries), Ok(first)) => Meaning::Array { first, entries },
-                        _ => Meaning::Wrong,
-                    };
-                    self.declare(&named.name, meaning);
-                }
-                Some(Indices::One(index)) => {
-                    self.errors.at(index.span, &Message::Expected { what: "a range, as in `i in 0..8`" });
-                    self.declare(&named.name, Meaning::Wrong);
-                }
-            }
-        }
     }
 
     fn lagrangian(&mut self, written: &[Definition], system: &Ident) -> Option<Expr> {

@@ -82,7 +82,7 @@ pub(super) fn check_state(
 }
 
 fn plain(entry: &CheckEntry) -> bool {
-    !entry.velocity && entry.definition.indices.is_none()
+    !entry.velocity && entry.definition.indices.is_empty()
 }
 
 /// The step; reports a value that is not positive.
@@ -111,11 +111,12 @@ fn fill(
     };
     let name = definition.name.to_string();
     let coordinates = Entries::of_coordinate(context, &name);
-    let (entries, numbers) = match coordinates.or_else(|| of_parameter(of, &name).filter(|_| !velocity)) {
-        None => (None, &mut given.q),
-        some if coordinates.is_none() => (some, &mut given.parameters),
-        some if *velocity => (some, &mut given.v),
-        some => (some, &mut given.q),
+    let is_coordinate = coordinates.is_some();
+    let entries = coordinates.or_else(|| of_parameter(of, &name).filter(|_| !velocity));
+    let numbers = match entries {
+        Some(_) if !is_coordinate => &mut given.parameters,
+        Some(_) if *velocity => &mut given.v,
+        _ => &mut given.q,
     };
     let Some(values) = force::values(context, definition, entries, &other) else { return false };
     let mut twice = false;
@@ -128,10 +129,7 @@ fn fill(
 
 /// The parameters with this name.
 fn of_parameter(parameters: &[Parameter], name: &str) -> Option<Entries> {
-    let mut of_name = (0..).zip(parameters).filter(|(_, parameter)| parameter.name == name);
-    let (first, parameter) = of_name.next()?;
-    Some(match parameter.index {
-        None => Entries::One(first),
-        Some(_) => Entries::Array { first, length: 1 + of_name.count() },
-    })
+    let first = parameters.iter().position(|parameter| parameter.name == name)?;
+    let last = parameters.iter().rfind(|parameter| parameter.name == name)?;
+    Some(Entries { first, lengths: last.indices.iter().map(|index| index + 1).collect() })
 }

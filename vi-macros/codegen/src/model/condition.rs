@@ -3,8 +3,9 @@
 //! In: a comparison and two expressions. Out: one expression that is the first or the second, depending on a sign.
 //! Both are computed, and one is selected.
 
-use super::resolve::Value;
 use super::scope::Scope;
+use super::value::Value;
+use crate::arrays::ArrayMistake;
 use crate::messages::{Message, error};
 use crate::symbol::Symbol;
 use crate::syntax::{Comparison, Expression};
@@ -29,9 +30,9 @@ impl Scope {
         let values = self.each_of(pool, arms, Self::value)?;
         let [then, otherwise] =
             <[Value; 2]>::try_from(values).map_err(|_| error(arms[0].span, &Message::MissingElse))?;
-        if !then.has_shape_of(&otherwise) {
-            let needs = if matches!(then, Value::Number(_)) { "number" } else { "vector" };
-            return Err(error(arms[1].span, &Message::Shape { needs }));
+        if then.shape() != otherwise.shape() {
+            let (left, right) = (then.shape().to_vec(), otherwise.shape().to_vec());
+            return Err(error(arms[1].span, &Message::Array(ArrayMistake::Chosen { left, right })));
         }
         let (first, second) = if *or_equal { (otherwise, then) } else { (then, otherwise) };
         let mut others = second.entries().to_vec().into_iter();

@@ -4,6 +4,7 @@
 //! to 1, so that later lines are checked too.
 
 use super::scope::{Meaning, Scope};
+use super::value::Value;
 use crate::limits::bounded;
 use crate::messages::{Errors, Message};
 use crate::symbol::Symbol;
@@ -55,6 +56,12 @@ impl<'a> Context<'a> {
     pub(super) fn value(&mut self, written: &Expression) -> Expr {
         let value = self.scope.expression(self.pool, written);
         self.report(value).unwrap_or_else(|| self.pool.one())
+    }
+
+    /// The exact value of an expression: a number, a vector or a matrix; `None` after a report.
+    pub(super) fn shaped(&mut self, written: &Expression) -> Option<Value> {
+        let value = self.scope.value(self.pool, written);
+        self.report(value)
     }
 
     /// The finite number of a constant expression that defines this name.

@@ -7,15 +7,18 @@
 //! ```
 
 use super::Parameter;
+use super::array::{part, spelled};
 use super::context::Context;
 use super::dissipation;
-use super::scope::Meaning;
+use super::scope::{Meaning, Scope};
+use super::value::not_a_number;
+use crate::arrays::ArrayMistake;
 use crate::messages::{Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Indices};
 use proc_macro2::Span;
 use syn::Result;
-use vi_expr::Expr;
+use vi_expr::{Expr, Pool};
 
 /// The force on each coordinate; zero where none is declared.
 pub(super) fn forces(
@@ -46,19 +49,18 @@ pub(super) fn forces(
     forces
 }
 
-/// The indices that a line assigns values to.
-#[derive(Clone, Copy)]
-pub(super) enum Entries {
-    One(usize),
-    Array { first: usize, length: usize },
+/// The numbers that a line assigns values to: one, or those of an array of these lengths.
+pub(super) struct Entries {
+    pub(super) first: usize,
+    pub(super) lengths: Vec<usize>,
 }
 
 impl Entries {
     /// The coordinates with this name.
     pub(super) fn of_coordinate(context: &Context, name: &str) -> Option<Self> {
         match context.scope.meaning(name)? {
-            Meaning::Coordinate(coordinate) => Some(Self::One(*coordinate)),
-            Meaning::Coordinates { first, length } => Some(Self::Array { first: *first, length: *length }),
+            Meaning::Coordinate(coordinate) => Some(Self { first: *coordinate, lengths: Vec::new() }),
+            Meaning::Coordinates { first, lengths } => Some(Self { first: *first, lengths: lengths.clone() }),
             _ => None,
         }
     }
@@ -75,47 +77,79 @@ pub(super) fn values(
     other: Other,
 ) -> Option<Vec<(usize, Expr)>> {
     let name = line.name.to_string();
-    let wanted = match (entries, &line.indices) {
-        (Some(Entries::One(entry)), None) => Ok(vec![(entry, context.value(&line.value))]),
-        (Some(Entries::Array { .. }), None) => Err(error(line.name.span(), &Message::ArrayWithoutIndex { name })),
-        (Some(Entries::One(_)), Some(_)) => Err(error(line.name.span(), &Message::NotArray { name })),
-        (Some(Entries::Array { first, length }), Some(indices)) => {
-            array_values(context, line, indices, &|index, span| match usize::try_from(index) {
-                Ok(index) if index < length => Ok(first + index),
-                _ => {
-                    let (name, end) = (name.clone(), i64::try_from(length).unwrap_or(i64::MAX));
-                    Err(error(span, &Message::IndexRange { name, index, first: 0, end }))
-                }
-            })
+    let wanted = match entries {
+        Some(Entries { first, lengths }) if lengths.is_empty() && line.indices.is_empty() => {
+            Ok(vec![(first, context.value(&line.value))])
         }
-        (None, _) if context.scope.meaning(&name) == Some(&Meaning::Wrong) => Ok(Vec::new()),
-        (None, _) => {
+        Some(Entries { lengths, .. }) if lengths.is_empty() => {
+            Err(error(line.name.span(), &Message::NotArray { name }))
+        }
+        Some(entries) => array_values(context, line, &entries),
+        None if context.scope.meaning(&name) == Some(&Meaning::Wrong) => Ok(Vec::new()),
+        None => {
             // Reports errors in the value too.
-            context.value(&line.value);
+            context.shaped(&line.value);
             Err(error(line.name.span(), &other(context, name)))
         }
     };
     context.report(wanted)
 }
 
-/// The values of entries of an array; `entry` maps the value of the index and its position to the number of the entry.
+/// The values of the entries of an array: a number for a number, a vector for a vector.
 fn array_values(
     context: &mut Context,
     line: &Definition,
-    indices: &Indices,
-    entry: &dyn Fn(i64, Span) -> Result<usize>,
+    Entries { first, lengths }: &Entries,
 ) -> Result<Vec<(usize, Expr)>> {
     let Context { scope, pool, .. } = context;
-    match indices {
-        Indices::One(index) => {
-            let value = scope.expression(pool, &line.value)?;
-            Ok(vec![(entry(scope.integer(pool, index)?, index.span)?, value)])
+    let name = line.name.to_string();
+    let mut made = Vec::new();
+    over(scope, pool, &line.indices, &mut Vec::new(), &mut |scope, pool, at| {
+        let value = scope.value(pool, &line.value)?;
+        let path = path(scope, pool, &line.indices, at)?;
+        let (range, rest) = part(&name, lengths, &path)?;
+        let values = value.fitting(pool, rest).map_err(|value| {
+            if rest.is_empty() {
+                return not_a_number(&line.value, value.shape());
+            }
+            let (needs, given) = (rest.to_vec(), value.shape().to_vec());
+            let mistake = ArrayMistake::ShapeNeeded { needs, given, name: spelled(&name, &path) };
+            error(line.value.span, &Message::Array(mistake))
+        })?;
+        made.extend(range.map(|place| first + place).zip(values));
+        Ok(())
+    })?;
+    Ok(made)
+}
+
+/// The operation at the entries of a line.
+type Make<'a> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, &[i64]) -> Result<()>;
+
+/// Applies an operation to the values of the indices of the ranges, in order.
+fn over(scope: &mut Scope, pool: &mut Pool<Symbol>, levels: &[Indices], at: &mut Vec<i64>, make: Make) -> Result<()> {
+    match levels.split_first() {
+        None => make(scope, pool, at),
+        Some((Indices::One(_), inner)) => over(scope, pool, inner, at, make),
+        Some((Indices::Range(range), inner)) => {
+            scope.each(pool, range, &mut |scope, pool, index| {
+                at.push(index);
+                over(scope, pool, inner, at, make)?;
+                at.pop();
+                Ok(())
+            })?;
+            Ok(())
         }
-        Indices::Range(range) => scope.each(pool, range, &mut |scope, pool, index| {
-            let value = scope.expression(pool, &line.value)?;
-            Ok((entry(index, range.to.span)?, value))
-        }),
     }
+}
+
+/// The indices of an entry with their places, from those of its ranges.
+fn path(scope: &mut Scope, pool: &mut Pool<Symbol>, levels: &[Indices], at: &[i64]) -> Result<Vec<(i64, Span)>> {
+    let mut of_ranges = at.iter();
+    let index = |level: &Indices| match level {
+        Indices::One(index) => Ok((scope.integer(pool, index)?, index.span)),
+        Indices::Range(range) => Ok((of_ranges.next().copied().unwrap_or_default(), range.to.span)),
+    };
+    levels.iter().map(index).collect()
 }
 
 /// Adds −∂R/∂v.

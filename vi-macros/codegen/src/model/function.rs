@@ -4,9 +4,10 @@
 //! at each call. The others are opaque: the [`Model`](super::Model) lists them for the code that evaluates them.
 
 use super::context::Context;
-use super::resolve::Value;
+use super::lets;
 use super::scope::{Meaning, Scope};
 use super::table::{self, Table};
+use super::value::Value;
 use crate::messages::{Message, error};
 use crate::symbol::Symbol;
 use crate::syntax::{self, Body, Expression};
@@ -182,7 +183,7 @@ impl Scope {
             .zip(values)
             .map(|(argument, value)| {
                 let argument = argument.to_string();
-                let before = self.replace(&argument, Some(Meaning::of_value(value)));
+                let before = self.replace(&argument, Some(lets::meaning(&value)));
                 (argument, before)
             })
             .collect();

@@ -4,6 +4,7 @@
 //! including those of the rule, is resolved and every number is exact. L and f are expressions in
 //! [`Symbol::Continuous`](crate::symbol::Symbol) and parameters only. The remaining spans are those of declared names.
 
+mod array;
 pub mod check;
 mod check_state;
 mod condition;
@@ -11,6 +12,8 @@ mod context;
 mod dissipation;
 mod force;
 mod function;
+mod lengths;
+mod lets;
 mod mass;
 mod point;
 mod probe;
@@ -20,6 +23,8 @@ mod scope;
 mod smoothness;
 mod table;
 mod time_scale;
+mod value;
+mod vector;
 
 pub use check_state::CheckState;
 pub use function::{Function, FunctionKind};
@@ -28,6 +33,7 @@ pub use rule::{DiscreteForces, Rule};
 pub use smoothness::Smoothness;
 pub use table::{Outside, Table, TableKind, Values};
 
+use crate::arrays::bracketed;
 use crate::symbol::Symbol;
 use proc_macro2::{Ident, Span};
 use vi_expr::Expr;
@@ -72,32 +78,40 @@ pub struct Model {
 pub struct Coordinate {
     /// Its name as declared.
     pub name: Ident,
-    /// Its index in an array.
-    pub index: Option<usize>,
+    /// Its indices in an array; none outside.
+    pub indices: Vec<usize>,
 }
 
 impl Coordinate {
     /// The name as the user writes it: `x`, or `q[3]`.
     #[must_use]
     pub fn text(&self) -> String {
-        text(&self.name, self.index)
+        text(&self.name, &self.indices)
     }
 
     /// The name as an identifier: `x`, or `q_3`.
     #[must_use]
     pub fn ident(&self) -> String {
-        ident(&self.name, self.index)
+        ident(&self.name, &self.indices)
     }
 }
 
-/// A name as an identifier, with its index in an array.
-fn ident(name: &Ident, index: Option<usize>) -> String {
-    index.map_or_else(|| name.to_string(), |index| format!("{name}_{index}"))
+/// A name as an identifier, with its indices in an array.
+fn ident(name: &Ident, indices: &[usize]) -> String {
+    indices.iter().fold(name.to_string(), |text, index| format!("{text}_{index}"))
 }
 
-/// A name as the user writes it, with its index in an array.
-fn text(name: &Ident, index: Option<usize>) -> String {
-    index.map_or_else(|| name.to_string(), |index| format!("{name}[{index}]"))
+/// A name as the user writes it, with its indices in an array.
+fn text(name: &Ident, indices: &[usize]) -> String {
+    name.to_string() + &bracketed(indices)
+}
+
+/// The indices of all entries of an array of these lengths, row by row; no indices for no lengths.
+fn indices(lengths: &[usize]) -> Vec<Vec<usize>> {
+    lengths.iter().fold(vec![Vec::new()], |rows, length| {
+        let with = |row: &Vec<usize>, index: usize| row.iter().copied().chain([index]).collect();
+        rows.iter().flat_map(|row| (0..*length).map(move |index| with(row, index))).collect()
+    })
 }
 
 /// A runtime parameter, or one entry of an array of them.
@@ -106,8 +120,8 @@ pub struct Parameter {
     pub attributes: Vec<syn::Attribute>,
     /// The name of its field.
     pub name: Ident,
-    /// Its index in an array.
-    pub index: Option<usize>,
+    /// Its indices in an array; none outside.
+    pub indices: Vec<usize>,
     /// Its value in `Default`.
     pub default: f64,
     /// Whether a controller sets it between steps: declared by `input`.
@@ -115,22 +129,23 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Its symbol, if `before` parameters precede it.
+    /// Its symbol, if `before` parameters precede it. Loops run over arrays of numbers, not over arrays of arrays.
     #[must_use]
     pub fn symbol(&self, before: usize) -> Symbol {
-        Symbol::Parameter { index: before, array: self.index.map(|place| before - place) }
+        let array = if let [place] = self.indices[..] { before.checked_sub(place) } else { None };
+        Symbol::Parameter { index: before, array }
     }
 
     /// The name as the user writes it: `k`, or `m[3]`.
     #[must_use]
     pub fn text(&self) -> String {
-        text(&self.name, self.index)
+        text(&self.name, &self.indices)
     }
 
     /// The name as an identifier: `k`, or `m_3`.
     #[must_use]
     pub fn ident(&self) -> String {
-        ident(&self.name, self.index)
+        ident(&self.name, &self.indices)
     }
 
     /// Its default in words, `0.04` or `1e150`.
@@ -142,7 +157,7 @@ impl Parameter {
 }
 
 impl Model {
-    /// The parameters grouped by field of the struct: a scalar parameter, or the entries of an array.
+    /// The parameters grouped by field of the struct: a scalar parameter, or the entries of an array row by row.
     pub fn fields(&self) -> impl Iterator<Item = &[Parameter]> {
         self.parameters.chunk_by(|left, right| left.name == right.name)
     }

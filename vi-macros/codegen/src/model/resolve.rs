@@ -1,12 +1,15 @@
 //! Resolves written expressions to exact ones.
 //!
 //! In: an [`Expression`] and the names in [`Scope`]. Out: a [`Value`] of the pool, or a message at the token. An
-//! expression of a system is a number. In a rule, the coordinates at an end and the force are vectors, and `*` of two
-//! vectors is their dot product.
+//! expression of a system is a number, a vector or a matrix. In a rule, the coordinates at an end and the force are
+//! vectors.
 
 use super::condition::CHOICES;
 use super::point::Point;
 use super::scope::{Meaning, Scope};
+use super::value::{Value, brackets, not_a_number, spelled};
+use super::vector;
+use crate::arrays::ArrayMistake;
 use crate::habits::Habit;
 use crate::limits::bounded;
 use crate::messages::{Errors, Message, error, nearest};
@@ -27,97 +30,16 @@ const CHARACTERS: usize = 30;
 /// The operation for one value of an index.
 type Make<'a, P> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, i64) -> Result<P>;
 
-/// A number, or a vector with one entry per coordinate.
-#[derive(Clone, Debug)]
-pub(super) enum Value {
-    Number(Expr),
-    Vector(Vec<Expr>),
-}
-
-impl Value {
-    /// The number.
-    ///
-    /// # Errors
-    /// A vector: a message at this place.
-    pub(super) fn number(self, span: Span) -> Result<Expr> {
-        match self {
-            Self::Number(value) => Ok(value),
-            Self::Vector(_) => Err(error(span, &Message::Shape { needs: "number" })),
-        }
-    }
-
-    /// The vector.
-    ///
-    /// # Errors
-    /// A number: a message at this place.
-    pub(super) fn vector(self, span: Span) -> Result<Vec<Expr>> {
-        match self {
-            Self::Vector(entries) => Ok(entries),
-            Self::Number(_) => Err(error(span, &Message::Shape { needs: "vector" })),
-        }
-    }
-
-    /// Whether both are numbers, or vectors of equal length.
-    pub(super) fn has_shape_of(&self, other: &Self) -> bool {
-        core::mem::discriminant(self) == core::mem::discriminant(other) && self.entries().len() == other.entries().len()
-    }
-
-    /// The number, or the entries of the vector.
-    pub(super) fn entries(&self) -> &[Expr] {
-        match self {
-            Self::Number(value) => core::slice::from_ref(value),
-            Self::Vector(entries) => entries,
-        }
-    }
-
-    /// Applies an operation to each entry.
-    pub(super) fn map(self, mut make: impl FnMut(Expr) -> Expr) -> Self {
-        match self {
-            Self::Number(value) => Self::Number(make(value)),
-            Self::Vector(entries) => Self::Vector(entries.into_iter().map(make).collect()),
-        }
-    }
-
-    /// The sum of values of equal shape, each with its place.
-    fn sum(pool: &mut Pool<Symbol>, terms: Vec<(Self, Span)>) -> Result<Self> {
-        let Some((Self::Vector(first), _)) = terms.first() else {
-            let numbers = terms.into_iter().map(|(term, span)| term.number(span)).collect::<Result<Vec<_>>>()?;
-            return Ok(Self::Number(pool.sum(&numbers)));
-        };
-        let length = first.len();
-        let vectors = terms.into_iter().map(|(term, span)| term.vector(span)).collect::<Result<Vec<_>>>()?;
-        let entry = |index: usize| vectors.iter().filter_map(|vector| vector.get(index)).copied().collect::<Vec<_>>();
-        Ok(Self::Vector((0..length).map(|index| pool.sum(&entry(index))).collect()))
-    }
-
-    /// The product of factors, from left to right.
-    fn product(pool: &mut Pool<Symbol>, factors: Vec<Self>) -> Self {
-        let numbers: Option<Vec<Expr>> = factors.iter().map(|factor| factor.clone().into_number()).collect();
-        if let Some(numbers) = numbers {
-            return Self::Number(pool.product(&numbers));
-        }
-        let times = |left: Self, right: Self| match (left, right) {
-            (Self::Number(scale), other) | (other, Self::Number(scale)) => other.map(|entry| pool.mul(entry, scale)),
-            (Self::Vector(left), Self::Vector(right)) => {
-                let products: Vec<Expr> = left.into_iter().zip(right).map(|(a, b)| pool.mul(a, b)).collect();
-                Self::Number(pool.sum(&products))
-            }
-        };
-        factors.into_iter().reduce(times).unwrap_or(Self::Vector(Vec::new()))
-    }
-
-    fn into_number(self) -> Option<Expr> {
-        if let Self::Number(value) = self { Some(value) } else { None }
-    }
-}
-
 impl Scope {
     /// The exact number of a written expression.
     ///
     /// # Errors
     /// Those of [`Self::value`], and a vector.
     pub(super) fn expression(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Expr> {
-        self.value(pool, written)?.number(written.span)
+        match self.value(pool, written)? {
+            Value::Number(value) | Value::Wrong(value) => Ok(value),
+            Value::Tensor(tensor) => Err(not_a_number(written, &tensor.shape)),
+        }
     }
 
     /// The exact value of a written expression.
@@ -129,16 +51,38 @@ impl Scope {
         let value = match &written.kind {
             Kind::Number(value) => Value::Number(pool.number(value.clone())),
             Kind::Name(name) => self.name(pool, name)?,
-            Kind::Entry(name, index) => Value::Number(self.entry(pool, name, index)?),
+            Kind::Entry(name, indices) => self.entry(pool, name, indices)?,
+            Kind::List(entries) => self.list(pool, written.span, entries)?,
             Kind::Call(function, arguments) => self.call(pool, function, arguments)?,
-            Kind::Sum(range, summand) => {
-                let terms = self.each(pool, range, &mut |scope, pool, _| scope.value(pool, summand))?;
+            Kind::Sum(ranges, summand) => {
+                let mut terms = Vec::new();
+                self.terms(pool, ranges, summand, &mut terms)?;
                 Value::sum(pool, terms.into_iter().map(|term| (term, summand.span)).collect())?
             }
             Kind::Negative(operand) => self.value(pool, operand)?.map(|operand| pool.neg(operand)),
             Kind::Power(base, exponent) => {
-                let operands = self.each_of(pool, [&**base, exponent], Self::expression)?;
-                Value::Number(power(pool, operands[0], operands[1]))
+                if let Kind::Name(name) = &exponent.kind
+                    && name == "T"
+                    && self.meaning("T").is_none()
+                {
+                    let mistake = ArrayMistake::Transposed { name: spelled(base) };
+                    return Err(error(exponent.span, &Message::Array(mistake)));
+                }
+                let operands = self.each_of(pool, [&**base, exponent], Self::value)?;
+                if let Value::Tensor(tensor) = &operands[0] {
+                    let mistake = match (&tensor.shape[..], &exponent.kind) {
+                        ([_, _], Kind::Negative(_)) => ArrayMistake::Inverse,
+                        (shape, _) => ArrayMistake::Power { given: shape.to_vec(), name: spelled(base) },
+                    };
+                    return Err(error(base.span, &Message::Array(mistake)));
+                }
+                let numbers = operands.into_iter().zip([base, exponent]);
+                let numbers = numbers.map(|(operand, written)| match operand {
+                    Value::Number(value) | Value::Wrong(value) => Ok(value),
+                    Value::Tensor(tensor) => Err(not_a_number(written, &tensor.shape)),
+                });
+                let numbers = numbers.collect::<Result<Vec<Expr>>>()?;
+                Value::Number(power(pool, numbers[0], numbers[1]))
             }
             Kind::Chain(first, rest) => self.chain(pool, first, rest)?,
             Kind::If(comparison, arms) => self.condition(pool, comparison, arms)?,
@@ -214,12 +158,47 @@ impl Scope {
     fn chain(&mut self, pool: &mut Pool<Symbol>, first: &Expression, rest: &[(Operator, Expression)]) -> Result<Value> {
         let is_sum = rest.iter().all(|(operator, _)| matches!(operator, Operator::Plus | Operator::Minus));
         let leading = if is_sum { Operator::Plus } else { Operator::Times };
-        let rest = rest.iter().map(|(operator, written)| (*operator, written));
-        let operands = self.each_of(pool, [(leading, first)].into_iter().chain(rest), Self::operand)?;
-        if is_sum {
-            return Value::sum(pool, operands);
+        let others = rest.iter().map(|(operator, written)| (*operator, written));
+        let operands = self.each_of(pool, [(leading, first)].into_iter().chain(others), Self::operand)?;
+        let made = if is_sum { Value::sum(pool, operands) } else { Value::product(pool, operands) };
+        made.map_err(|mistake| match brackets_of(first, rest) {
+            Some(span) => error(span, &Message::Habit(Habit::OtherBrackets)),
+            None => mistake,
+        })
+    }
+
+    /// The summands over nested ranges, in order.
+    fn terms(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        ranges: &[Range],
+        summand: &Expression,
+        terms: &mut Vec<Value>,
+    ) -> Result<()> {
+        let Some((range, inner)) = ranges.split_first() else {
+            terms.push(self.value(pool, summand)?);
+            return Ok(());
+        };
+        self.each(pool, range, &mut |scope, pool, _| scope.terms(pool, inner, summand, terms))?;
+        Ok(())
+    }
+
+    /// A list of numbers, or of rows of one shape.
+    fn list(&mut self, pool: &mut Pool<Symbol>, span: Span, written: &[Expression]) -> Result<Value> {
+        let values = self.each_of(pool, written, Self::value)?;
+        if let Some(wrong) = values.iter().find(|value| matches!(value, Value::Wrong(_))) {
+            return Ok(wrong.clone());
         }
-        Ok(Value::product(pool, operands.into_iter().map(|(operand, _)| operand).collect()))
+        let Some(first) = values.first() else {
+            return Err(error(span, &Message::Array(ArrayMistake::EmptyList)));
+        };
+        if let Some((other, written)) = values.iter().zip(written).find(|(value, _)| value.shape() != first.shape()) {
+            let (first, other) = (first.shape().to_vec(), other.shape().to_vec());
+            return Err(error(written.span, &Message::Array(ArrayMistake::Rows { first, other })));
+        }
+        let shape: Vec<usize> = [values.len()].iter().chain(first.shape()).copied().collect();
+        let entries = values.iter().flat_map(Value::entries).copied().collect();
+        Ok(Value::of_shape(&shape, entries))
     }
 
     /// A term or factor with its place: negated after `-`, inverted after `/`.
@@ -230,7 +209,10 @@ impl Scope {
             Operator::Plus | Operator::Times => operand,
             Operator::Minus => operand.map(|operand| pool.neg(operand)),
             Operator::Over => {
-                let divisor = operand.number(written.span)?;
+                let divisor = match operand {
+                    Value::Number(value) | Value::Wrong(value) => value,
+                    Value::Tensor(tensor) => return Err(not_a_number(written, &tensor.shape)),
+                };
                 if is_zero(pool, divisor) {
                     return Err(error(written.span, &Message::DivisionByZero));
                 }
@@ -240,20 +222,19 @@ impl Scope {
         Ok((operand, written.span))
     }
 
-    fn name(&self, pool: &mut Pool<Symbol>, name: &Ident) -> Result<Value> {
+    fn name(&mut self, pool: &mut Pool<Symbol>, name: &Ident) -> Result<Value> {
         let text = name.to_string();
         let message = match self.meaning(&text) {
             Some(Meaning::Number(value)) => return Ok(Value::Number(*value)),
-            Some(Meaning::Wrong) => return Ok(Value::Number(pool.one())),
+            Some(Meaning::Wrong) => return Ok(Value::Wrong(pool.one())),
             Some(Meaning::Pi) => return Ok(Value::Number(pool.pi())),
             Some(Meaning::Symbol(symbol)) => return Ok(Value::Number(pool.symbol(symbol.clone()))),
             Some(Meaning::Coordinate(index)) => {
                 return Ok(Value::Number(pool.symbol(Symbol::Continuous(Variable::Coordinate(*index)))));
             }
-            Some(Meaning::Vector(entries)) => {
-                return Ok(Value::Vector(entries.iter().map(|entry| pool.symbol(entry.clone())).collect()));
+            Some(Meaning::Vector(_) | Meaning::Array(_) | Meaning::Coordinates { .. }) => {
+                return self.whole(pool, name);
             }
-            Some(Meaning::Array { .. } | Meaning::Coordinates { .. }) => Message::ArrayWithoutIndex { name: text },
             Some(Meaning::OfState) => Message::NotInRule { name: text },
             Some(Meaning::Moving) => Message::VelocityInTimeScale { name: text },
             Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_) | Meaning::Function(_)) => {
@@ -264,61 +245,8 @@ impl Scope {
         Err(error(name.span(), &message))
     }
 
-    /// An entry of an array.
-    fn entry(&mut self, pool: &mut Pool<Symbol>, name: &Ident, index: &Expression) -> Result<Expr> {
-        if let Some(coordinate) = self.coordinate_entry(pool, name, index)? {
-            return Ok(pool.symbol(Symbol::Continuous(Variable::Coordinate(coordinate))));
-        }
-        let text = name.to_string();
-        if self.meaning(&text).is_none() {
-            let mut errors = Errors::default();
-            errors.at(name.span(), &self.unknown(pool, text));
-            errors.keep(self.integer(pool, index));
-            return errors.finish(pool.one());
-        }
-        let at = self.integer(pool, index)?;
-        let of_coordinates: Vec<Expr>;
-        let (first, entries) = match self.meaning(&text) {
-            Some(Meaning::Array { first, entries }) => (*first, entries),
-            Some(Meaning::Vector(entries)) => {
-                of_coordinates = entries.iter().map(|entry| pool.symbol(entry.clone())).collect();
-                (0, &of_coordinates)
-            }
-            Some(Meaning::Wrong) => return Ok(pool.one()),
-            _ => return Err(error(name.span(), &self.no_array(pool, text))),
-        };
-        let offset = at.checked_sub(first).and_then(|offset| usize::try_from(offset).ok());
-        let entry = offset.and_then(|offset| entries.get(offset));
-        entry.copied().ok_or_else(|| {
-            let end = first.saturating_add(i64::try_from(entries.len()).unwrap_or(i64::MAX));
-            error(index.span, &Message::IndexRange { name: text, index: at, first, end })
-        })
-    }
-
-    /// The number of the coordinate of an entry, if its array is an array of coordinates.
-    ///
-    /// # Errors
-    /// The index is not an integer, or is out of range.
-    pub(super) fn coordinate_entry(
-        &mut self,
-        pool: &mut Pool<Symbol>,
-        name: &Ident,
-        index: &Expression,
-    ) -> Result<Option<usize>> {
-        let text = name.to_string();
-        let Some(Meaning::Coordinates { first, length }) = self.meaning(&text).cloned() else {
-            return Ok(None);
-        };
-        let at = self.integer(pool, index)?;
-        if let Some(at) = usize::try_from(at).ok().filter(|at| *at < length) {
-            return Ok(Some(first + at));
-        }
-        let end = i64::try_from(length).unwrap_or(i64::MAX);
-        Err(error(index.span, &Message::IndexRange { name: text, index: at, first: 0, end }))
-    }
-
     /// The message for an index on a name that is not an array.
-    fn no_array(&self, pool: &Pool<Symbol>, name: String) -> Message {
+    pub(super) fn no_array(&self, pool: &Pool<Symbol>, name: String) -> Message {
         match self.meaning(&name) {
             Some(Meaning::OfState) => Message::NotInRule { name },
             Some(Meaning::Moving) => Message::VelocityInTimeScale { name },
@@ -331,8 +259,9 @@ impl Scope {
     }
 
     /// The message for an undeclared name.
-    fn unknown(&self, pool: &Pool<Symbol>, name: String) -> Message {
-        if name == "sum" || name == "sqrt" || Function::from_name(&name).is_some() {
+    pub(super) fn unknown(&self, pool: &Pool<Symbol>, name: String) -> Message {
+        let is_function = ["sum", "sqrt"].into_iter().chain(vector::FUNCTIONS).any(|function| function == name);
+        if is_function || Function::from_name(&name).is_some() {
             return Message::FunctionWithoutArguments { name };
         }
         if let Some(absence) = self.absence(&name) {
@@ -351,7 +280,7 @@ impl Scope {
     fn call(&mut self, pool: &mut Pool<Symbol>, function: &Ident, arguments: &[Expression]) -> Result<Value> {
         let name = function.to_string();
         match self.meaning(&name).cloned() {
-            Some(Meaning::Dot) => return self.rate(pool, function.span(), arguments).map(Value::Number),
+            Some(Meaning::Dot) => return self.rate(pool, function.span(), arguments),
             Some(Meaning::Lagrangian) => {
                 let point = self.arguments_of_point(pool, function, arguments)?;
                 return Ok(Value::Number(pool.symbol(at_point(Quantity::Lagrangian, point))));
@@ -359,7 +288,7 @@ impl Scope {
             Some(Meaning::Force(dimension)) => {
                 let point = self.arguments_of_point(pool, function, arguments)?;
                 let components = (0..dimension).map(|index| pool.symbol(at_point(Quantity::Force(index), point)));
-                return Ok(Value::Vector(components.collect()));
+                return Ok(Value::vector_of(components.collect()));
             }
             Some(Meaning::Moving) => return Err(error(function.span(), &Message::VelocityInTimeScale { name })),
             Some(Meaning::Wrong) => return Ok(Value::Number(pool.one())),
@@ -384,13 +313,25 @@ impl Scope {
                 let product = Habit::MissingOperator { left: name, right: "(…)".to_owned(), is_number: false };
                 return Err(error(function.span(), &Message::Habit(product)));
             }
+            if let Some(value) = self.of_vectors(pool, function, arguments)? {
+                return Ok(value);
+            }
             let near = nearest(&name, self.functions());
             return Err(error(function.span(), &Message::UnknownFunction { name, near }));
         };
         if arguments.len() != takes {
             return Err(error(function.span(), &Message::Arity { name, takes, given: arguments.len() }));
         }
-        let values = self.each_of(pool, arguments, Self::expression)?;
+        let values = self.each_of(pool, arguments, Self::value)?;
+        let numbers = values.into_iter().zip(arguments).map(|(value, written)| match value {
+            Value::Number(value) | Value::Wrong(value) => Ok(value),
+            Value::Tensor(tensor) => {
+                let (function, given) = (name.clone(), tensor.shape);
+                let mistake = ArrayMistake::Function { function, given, name: spelled(written) };
+                Err(error(written.span, &Message::Array(mistake)))
+            }
+        });
+        let values = numbers.collect::<Result<Vec<Expr>>>()?;
         Ok(Value::Number(match known {
             Some(Function::Pow) => power(pool, values[0], values[1]),
             Some(function) => pool.call(function, &values),
@@ -430,23 +371,29 @@ impl Scope {
     /// ```text
     /// dot(X) = ∂X/∂t + Σ_i ∂X/∂q_i v_i
     /// ```
-    fn rate(&mut self, pool: &mut Pool<Symbol>, span: Span, arguments: &[Expression]) -> Result<Expr> {
+    ///
+    /// and the same of each entry of a vector or a matrix.
+    fn rate(&mut self, pool: &mut Pool<Symbol>, span: Span, arguments: &[Expression]) -> Result<Value> {
         let [argument] = arguments else {
+            if let [_, _] = arguments {
+                return Err(error(span, &Message::Array(ArrayMistake::InnerProduct)));
+            }
             return Err(error(span, &Message::Arity { name: "dot".to_owned(), takes: 1, given: arguments.len() }));
         };
-        let name = match &argument.kind {
-            Kind::Name(name) | Kind::Entry(name, _) => Some(name),
-            _ => None,
+        let (name, indices) = match &argument.kind {
+            Kind::Name(name) => (Some(name), [].as_slice()),
+            Kind::Entry(name, indices) => (Some(name), indices.as_slice()),
+            _ => (None, [].as_slice()),
         };
+        if let Some(name) = name
+            && let Some(velocities) = self.velocities(pool, name, indices)?
+        {
+            return Ok(velocities);
+        }
         match (&argument.kind, name.and_then(|name| self.meaning(&name.to_string()))) {
-            (_, Some(Meaning::Wrong)) => return Ok(pool.one()),
+            (_, Some(Meaning::Wrong)) => return Ok(Value::Wrong(pool.one())),
             (Kind::Name(_), Some(Meaning::Coordinate(coordinate))) => {
-                return Ok(pool.symbol(Symbol::Continuous(Variable::Velocity(*coordinate))));
-            }
-            (Kind::Entry(name, index), Some(Meaning::Coordinates { .. })) => {
-                if let Some(coordinate) = self.coordinate_entry(pool, name, index)? {
-                    return Ok(pool.symbol(Symbol::Continuous(Variable::Velocity(coordinate))));
-                }
+                return Ok(Value::Number(pool.symbol(Symbol::Continuous(Variable::Velocity(*coordinate)))));
             }
             (Kind::Call(inner, _), _) if inner == "dot" => {
                 return Err(error(span, &Message::Acceleration { name: "dot(dot(…))".to_owned() }));
@@ -458,11 +405,12 @@ impl Scope {
             }
             _ => {}
         }
-        let value = self.expression(pool, argument)?;
+        let value = self.value(pool, argument)?;
         if let Some(name) = name.filter(|name| self.is_constant(pool, &name.to_string())) {
             return Err(error(name.span(), &Message::DotOfConstant { name: name.to_string() }));
         }
-        if pool.depends_on(value, &|symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)))) {
+        let is_velocity = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
+        if value.entries().iter().any(|entry| pool.depends_on(*entry, &is_velocity)) {
             // Names an array entry without its index; other expressions have no name.
             let name = match &argument.kind {
                 Kind::Name(name) => format!("dot({name})"),
@@ -471,13 +419,14 @@ impl Scope {
             };
             return Err(error(argument.span, &Message::Acceleration { name }));
         }
-        Ok(pool.derivative(value, &mut |pool, symbol| match symbol {
+        let mut of_symbol = |pool: &mut Pool<Symbol>, symbol: &Symbol| match symbol {
             Symbol::Continuous(Variable::Time) => pool.one(),
             Symbol::Continuous(Variable::Coordinate(index)) => {
                 pool.symbol(Symbol::Continuous(Variable::Velocity(*index)))
             }
             _ => pool.zero(),
-        }))
+        };
+        Ok(value.map(|entry| pool.derivative(entry, &mut of_symbol)))
     }
 
     /// Whether a name denotes numbers independent of time and state.
@@ -486,7 +435,7 @@ impl Scope {
         match self.meaning(name) {
             Some(Meaning::Pi) => true,
             Some(Meaning::Number(value)) => !changes(value),
-            Some(Meaning::Array { entries, .. }) => !entries.iter().any(changes),
+            Some(Meaning::Array(array)) => !array.any(&changes),
             _ => false,
         }
     }
@@ -522,10 +471,15 @@ fn is_zero(pool: &mut Pool<Symbol>, divisor: Expr) -> bool {
 }
 
 /// `base^exponent`. A root that starts at a point gets a form of its base that is exactly zero before that point.
-fn power(pool: &mut Pool<Symbol>, base: Expr, exponent: Expr) -> Expr {
+pub(super) fn power(pool: &mut Pool<Symbol>, base: Expr, exponent: Expr) -> Expr {
     let is_root = !pool.as_number(exponent).is_some_and(Rational::is_integer);
     let base = if is_root { pool.with_ramps(base) } else { base };
     pool.call(Function::Pow, &[base, exponent])
+}
+
+/// Where brackets take the place of parentheses in a chain.
+fn brackets_of(first: &Expression, rest: &[(Operator, Expression)]) -> Option<Span> {
+    [first].into_iter().chain(rest.iter().map(|(_, operand)| operand)).find_map(brackets)
 }
 
 /// L or a component of f at a point of the rule.

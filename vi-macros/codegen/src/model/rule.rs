@@ -5,8 +5,8 @@
 
 use super::context::Context;
 use super::point::Point;
-use super::resolve::Value;
 use super::scope::Scope;
+use super::value::Value;
 use crate::messages::{Errors, Message, nearest};
 use crate::rules::{self, NamedRule};
 use crate::symbol::{Quantity, Symbol};

@@ -3,9 +3,10 @@
 //! In: the declarations of a system, one by one. Out: the meaning of each name in expressions of the system or in lines
 //! of a rule. A name has one meaning, and none before its declaration.
 
+use super::array::Array;
 use super::function::Called;
 use super::point::Point;
-use super::resolve::Value;
+use super::vector;
 use crate::habits::{self, Habit};
 use crate::messages::{Absence, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
@@ -33,6 +34,17 @@ pub(super) struct Scope {
     open: Vec<String>,
     /// Declared functions that some expression has called.
     called: BTreeSet<String>,
+    /// The array of `let`s whose entries are being defined.
+    growing: Option<Growing>,
+}
+
+/// An array of `let`s whose entries are being defined.
+pub(super) struct Growing {
+    pub(super) name: String,
+    /// The entry as written: `x[i]`.
+    pub(super) entry: String,
+    /// The indices of the entry.
+    pub(super) at: Vec<i64>,
 }
 
 /// The meaning of a name.
@@ -40,16 +52,16 @@ pub(super) struct Scope {
 pub(super) enum Meaning {
     /// A parameter, constant, index or `let`, with its expression.
     Number(Expr),
-    /// An array of `let`s: its first index and its entries.
-    Array { first: i64, entries: Vec<Expr> },
+    /// A vector, a matrix, or an array of parameters, constants or `let`s.
+    Array(Array),
     /// Time, or a slot of a rule.
     Symbol(Symbol),
     /// π.
     Pi,
     /// A coordinate, by index.
     Coordinate(usize),
-    /// An array of coordinates: the index of the first one, and the length.
-    Coordinates { first: usize, length: usize },
+    /// An array of coordinates: the index of the first one, and the lengths.
+    Coordinates { first: usize, lengths: Vec<usize> },
     /// The coordinates at an end of the interval.
     Vector(Vec<Symbol>),
     /// The function `dot`.
@@ -66,16 +78,6 @@ pub(super) enum Meaning {
     Moving,
     /// A declaration with a reported error: it evaluates to 1, with or without an index.
     Wrong,
-}
-
-impl Meaning {
-    /// The meaning of a name that stands for a value.
-    pub(super) fn of_value(value: Value) -> Self {
-        match value {
-            Value::Number(number) => Self::Number(number),
-            Value::Vector(entries) => Self::Array { first: 0, entries },
-        }
-    }
 }
 
 impl Scope {
@@ -106,7 +108,7 @@ impl Scope {
 
     fn with_names(names: BTreeMap<String, Meaning>) -> Self {
         let (absent, called) = (BTreeMap::new(), BTreeSet::new());
-        Self { names, absent, points: Vec::new(), indices: Vec::new(), open: Vec::new(), called }
+        Self { names, absent, points: Vec::new(), indices: Vec::new(), open: Vec::new(), called, growing: None }
     }
 
     /// Adds the declarations of a system. Names that already have a meaning keep it, as do numbers of constants and
@@ -116,7 +118,7 @@ impl Scope {
         for (name, meaning) in &system.names {
             let meaning = match meaning {
                 Meaning::Number(value) if is_constant(value) => meaning.clone(),
-                Meaning::Array { entries, .. } if entries.iter().all(is_constant) => meaning.clone(),
+                Meaning::Array(array) if !array.any(&|expr| !is_constant(expr)) => meaning.clone(),
                 Meaning::Pi | Meaning::Wrong | Meaning::Function(_) => meaning.clone(),
                 _ => Meaning::OfState,
             };
@@ -132,7 +134,7 @@ impl Scope {
         let meaning = |meaning: &Meaning| match meaning {
             Meaning::Dot => Meaning::Moving,
             Meaning::Number(value) if moves(value) => Meaning::Moving,
-            Meaning::Array { entries, .. } if entries.iter().any(moves) => Meaning::Moving,
+            Meaning::Array(array) if array.any(&moves) => Meaning::Moving,
             _ => meaning.clone(),
         };
         let names = self.names.iter().map(|(name, known)| (name.clone(), meaning(known))).collect();
@@ -243,6 +245,31 @@ impl Scope {
         }
     }
 
+    /// The array with this name, to add entries to it.
+    pub(super) fn array_mut(&mut self, name: &str) -> Option<&mut Array> {
+        match self.names.get_mut(name) {
+            Some(Meaning::Array(array)) => Some(array),
+            _ => None,
+        }
+    }
+
+    /// Sets the array whose entries are being defined.
+    pub(super) fn grow(&mut self, growing: Option<Growing>) {
+        self.growing = growing;
+    }
+
+    /// Sets the indices of the entry that is being defined.
+    pub(super) fn grow_at(&mut self, at: Vec<i64>) {
+        if let Some(growing) = &mut self.growing {
+            growing.at = at;
+        }
+    }
+
+    /// The entry that is being defined, if it belongs to the array with this name.
+    pub(super) fn growing(&self, name: &str) -> Option<&Growing> {
+        self.growing.as_ref().filter(|growing| growing.name == name)
+    }
+
     /// What a name stands for.
     pub(super) fn meaning(&self, name: &str) -> Option<&Meaning> {
         self.names.get(name)
@@ -340,7 +367,9 @@ impl Scope {
             }
         });
         let built_in: [&str; 5] = ["sqrt", "sum", "max", "min", "clamp"];
-        own.chain(Function::ALL.into_iter().map(|function| -> &str { function.name() })).chain(built_in)
+        own.chain(Function::ALL.into_iter().map(|function| -> &str { function.name() }))
+            .chain(built_in)
+            .chain(vector::FUNCTIONS)
     }
 
     /// The nearest declared name that satisfies `is_meant`.

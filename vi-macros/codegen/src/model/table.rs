@@ -368,14 +368,20 @@ impl Reader<'_, '_> {
         let pool = &*self.context.pool;
         let is_parameter = |expr: &Expr| matches!(pool.as_symbol(*expr), Some(Symbol::Parameter { .. }));
         let entries = match meaning {
-            Some(Meaning::Array { entries, .. }) if entries.iter().all(is_parameter) => entries,
+            Some(Meaning::Array(array)) => match array.at(&name.to_string(), &[], name.span()) {
+                Ok(value) if value.shape().len() == 1 && value.entries().iter().all(is_parameter) => {
+                    value.entries().to_vec()
+                }
+                _ => Vec::new(),
+            },
             Some(Meaning::Wrong) => return None,
-            _ => {
-                let help = "write the name of an array of parameters, as `c` after `param c[9] = 0;`".to_owned();
-                self.report(name.span(), format!("has the values `{name}`, which is no array of parameters"), help);
-                return None;
-            }
+            _ => Vec::new(),
         };
+        if entries.is_empty() {
+            let help = "write the name of an array of parameters, as `c` after `param c[9] = 0;`".to_owned();
+            self.report(name.span(), format!("has the values `{name}`, which is no array of parameters"), help);
+            return None;
+        }
         if entries.len() > PARAMETERS || written.arguments.len() != 1 {
             let help = format!("use at most {PARAMETERS} parameters, and one argument");
             self.report(name.span(), format!("has the values `{name}` with {} entries", entries.len()), help);

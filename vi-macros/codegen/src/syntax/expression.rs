@@ -8,14 +8,15 @@
 //! product = unary { ("*" | "/") unary }
 //! unary   = "-" unary | power
 //! power   = atom [ "^" unary ]                  binds tightest, right-associative
-//! atom    = number | name | name "[" sum "]" | name "(" sum { "," sum } ")" | "sum" "(" range "," sum ")" | "(" sum ")" | if
+//! atom    = number | name { "[" sum "]" } | name "(" sum { "," sum } ")" | "sum" "(" range { "," range } "," sum ")"
+//!         | "(" sum ")" | "[" sum { "," sum } "]" | if
 //! if      = "if" sum (">" | ">=" | "<" | "<=") sum "{" sum "}" "else" (if | "{" sum "}")
 //! range   = name "in" sum ".." sum
 //! ```
 //!
 //! A list may end with a comma. A power `a^1/2` is rejected: it means `(a^1)/2`, which is never intended.
 
-use super::unexpected;
+use super::{INSIDE_BRACKETS, unexpected};
 use crate::habits::Habit;
 use crate::messages::{Message, error};
 use num_bigint::BigInt;
@@ -48,12 +49,14 @@ pub enum Kind {
     Number(Rational),
     /// A name.
     Name(Ident),
-    /// An entry of an array.
-    Entry(Ident, Box<Expression>),
+    /// An entry of an array, or a row of one.
+    Entry(Ident, Vec<Expression>),
+    /// A vector by its entries, or a matrix by its rows.
+    List(Vec<Expression>),
     /// A function of its arguments.
     Call(Ident, Vec<Expression>),
-    /// The sum of an expression over a range.
-    Sum(Box<Range>, Box<Expression>),
+    /// The sum of an expression over ranges; a range may use the indices of those before it.
+    Sum(Vec<Range>, Box<Expression>),
     /// Minus an expression.
     Negative(Box<Expression>),
     /// Base and exponent.
@@ -226,14 +229,23 @@ impl Expression {
         if input.peek(Token![if]) {
             return Self::condition(input, depth);
         }
+        if input.peek(syn::token::Bracket) {
+            let inner;
+            syn::bracketed!(inner in input);
+            let entries = Self::list(&inner, depth + 1, "an operator, `,` or `]`")?;
+            return Ok(Self { span, kind: Kind::List(entries) });
+        }
         let Ok(name) = input.parse::<Ident>() else {
             return Err(unexpected::operand(input));
         };
         if input.peek(syn::token::Bracket) {
-            let inner;
-            syn::bracketed!(inner in input);
-            let index = Self::alone(&inner, depth, "an operator or `]`")?;
-            return Ok(Self { span, kind: Kind::Entry(name, Box::new(index)) });
+            let mut indices = Vec::new();
+            while input.peek(syn::token::Bracket) {
+                let inner;
+                syn::bracketed!(inner in input);
+                indices.push(Self::alone(&inner, depth, INSIDE_BRACKETS)?);
+            }
+            return Ok(Self { span, kind: Kind::Entry(name, indices) });
         }
         if !input.peek(syn::token::Paren) {
             return Ok(Self { span, kind: Kind::Name(name) });
@@ -241,11 +253,14 @@ impl Expression {
         let inner;
         syn::parenthesized!(inner in input);
         if name == "sum" {
-            let range = Self::range(&inner, depth + 1)?;
-            if !inner.peek(Token![,]) {
-                return Err(error(inner.span(), &Message::Expected { what: "`,` and what is summed" }));
+            let mut ranges = Vec::new();
+            while ranges.is_empty() || inner.peek(syn::Ident) && inner.peek2(Token![in]) {
+                ranges.push(Self::range(&inner, depth + 1)?);
+                if !inner.peek(Token![,]) {
+                    return Err(error(inner.span(), &Message::Expected { what: "`,` and what is summed" }));
+                }
+                inner.parse::<Token![,]>()?;
             }
-            inner.parse::<Token![,]>()?;
             let start = inner.cursor();
             let summand = Self::sum(&inner, depth + 1)?;
             if inner.peek(Token![,]) {
@@ -254,7 +269,7 @@ impl Expression {
             if !inner.is_empty() {
                 return Err(unexpected::operator(&inner, start, "an operator or `)`"));
             }
-            return Ok(Self { span, kind: Kind::Sum(Box::new(range), Box::new(summand)) });
+            return Ok(Self { span, kind: Kind::Sum(ranges, Box::new(summand)) });
         }
         if inner.peek(syn::Ident) && inner.peek2(Token![in]) {
             return Err(error(span, &Message::Habit(Habit::RangeOf { function: name.to_string() })));

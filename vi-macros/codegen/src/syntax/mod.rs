@@ -32,6 +32,9 @@ const CLAUSES: [&str; 13] = [
     "check",
 ];
 
+/// The tokens expected after an index or a length.
+const INSIDE_BRACKETS: &str = "an operator or `]`";
+
 /// A `lagrangian!` as written.
 pub struct System {
     /// Attributes and doc comments of the struct.
@@ -40,8 +43,8 @@ pub struct System {
     pub visibility: syn::Visibility,
     /// Name of the struct.
     pub name: Ident,
-    /// `const a = …;` in order.
-    pub constants: Vec<Definition>,
+    /// `const a = …, s[3] = …;` in order.
+    pub constants: Vec<Constant>,
     /// `param a = …, m[3] = …;` and `input u = …;` in order.
     pub parameters: Vec<Parameter>,
     /// `coord x, q[8];` in order.
@@ -86,8 +89,8 @@ pub struct Definition {
     pub attributes: Vec<syn::Attribute>,
     /// The defined name.
     pub name: Ident,
-    /// The entries of an array that are defined.
-    pub indices: Option<Indices>,
+    /// The entries of an array that are defined, one for each pair of brackets.
+    pub indices: Vec<Indices>,
     /// Its value.
     pub value: Expression,
 }
@@ -100,16 +103,28 @@ pub enum Indices {
     One(Expression),
 }
 
+/// A constant, or an array of them.
+pub struct Constant {
+    /// Doc comments before it.
+    pub attributes: Vec<syn::Attribute>,
+    /// Its name.
+    pub name: Ident,
+    /// The lengths of an array, one for each pair of brackets; an array may omit them.
+    pub lengths: Vec<Expression>,
+    /// Its value: a number, for each entry of an array, or a list of them.
+    pub value: Expression,
+}
+
 /// A parameter, or an array of them.
 pub struct Parameter {
     /// Attributes and doc comments of its field.
     pub attributes: Vec<syn::Attribute>,
     /// Its name.
     pub name: Ident,
-    /// The length of an array.
-    pub length: Option<Expression>,
-    /// Its default.
-    pub default: Default,
+    /// The lengths of an array, one for each pair of brackets.
+    pub lengths: Vec<Expression>,
+    /// Its default: a number, for each entry of an array, or a list of them.
+    pub default: Expression,
     /// Whether it is declared by `input`.
     pub is_input: bool,
 }
@@ -127,20 +142,12 @@ fn clause_of(is_input: bool) -> &'static str {
     if is_input { "input" } else { "param" }
 }
 
-/// The default of a parameter.
-pub enum Default {
-    /// `= 1.0`: this value, for each entry of an array.
-    Same(Expression),
-    /// `= [1.0, 2.0]`: the entries of an array, in order.
-    Each(Vec<Expression>),
-}
-
 /// A coordinate, or an array of them.
 pub struct Coordinate {
     /// Its name.
     pub name: Ident,
-    /// The length of an array.
-    pub length: Option<Expression>,
+    /// The lengths of an array, one for each pair of brackets.
+    pub lengths: Vec<Expression>,
 }
 
 /// The rule from L to L_d.

@@ -7,8 +7,8 @@ use super::expression::DEPTH;
 use super::function;
 use super::unexpected;
 use super::{
-    CLAUSES, Check, CheckEntry, Coordinate, Default, Definition, Discretization, Expression, Indices, Kind, Parameter,
-    Rule, System, clause_of,
+    CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression, INSIDE_BRACKETS, Indices,
+    Kind, Parameter, Rule, System, clause_of,
 };
 use crate::habits::Habit;
 use crate::messages::{Errors, Message, bounded, error, nearest};
@@ -33,9 +33,6 @@ const TOKENS: usize = 200_000;
 
 /// Maximum number of letters of a name.
 const LETTERS: usize = 200;
-
-/// The tokens expected after an index or a length.
-const INSIDE_BRACKETS: &str = "an operator or `]`";
 
 /// Delimiter pairs around an expression: of the system, of a rule, of an index.
 const CLAUSE_DEPTH: usize = 3;
@@ -228,7 +225,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         check_attributes(&attributes, &word)?;
     }
     match word.to_string().as_str() {
-        "const" => list(input, &mut |input| definition(input, &attributes).map(|one| system.constants.push(one)))?,
+        "const" => list(input, &mut |input| constant(input, &attributes).map(|one| system.constants.push(one)))?,
         "param" | "input" => {
             let is_input = word == "input";
             list(input, &mut |input| parameter(input, is_input, &attributes, &mut system.parameters))?;
@@ -372,34 +369,42 @@ fn definition(input: ParseStream, attributes: &[Attribute]) -> Result<Definition
     value_of(name(input)?, input, attributes.to_vec())
 }
 
+/// `a = 1` or `a[3] = [1, 2, 3]`
+fn constant(input: ParseStream, attributes: &[Attribute]) -> Result<Constant> {
+    let (name, lengths) = (name(input)?, lengths(input)?);
+    let Definition { attributes, name, value, .. } = value_of(name, input, attributes.to_vec())?;
+    Ok(Constant { attributes, name, lengths, value })
+}
+
 /// `a = 1`, `a[i in 0..8] = 1` or `a[0] = 1`
 fn indexed(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
     let (name, indices) = (name(input)?, indices(input)?);
     Ok(Definition { indices, ..value_of(name, input, attributes.to_vec())? })
 }
 
-/// Nothing, `[i in 0..8]` or `[0]`
-fn indices(input: ParseStream) -> Result<Option<Indices>> {
-    if !input.peek(syn::token::Bracket) {
-        return Ok(None);
+/// Pairs of brackets: `[i in 0..8]` or `[0]` each
+fn indices(input: ParseStream) -> Result<Vec<Indices>> {
+    let mut indices = Vec::new();
+    while input.peek(syn::token::Bracket) {
+        let inner;
+        syn::bracketed!(inner in input);
+        if !(inner.peek(syn::Ident) && inner.peek2(Token![in])) {
+            indices.push(Indices::One(Expression::alone(&inner, 0, INSIDE_BRACKETS)?));
+            continue;
+        }
+        let start = inner.cursor();
+        indices.push(Indices::Range(Expression::range(&inner, 0)?));
+        if !inner.is_empty() {
+            return Err(unexpected::operator(&inner, start, INSIDE_BRACKETS));
+        }
     }
-    let inner;
-    syn::bracketed!(inner in input);
-    if !(inner.peek(syn::Ident) && inner.peek2(Token![in])) {
-        return Ok(Some(Indices::One(Expression::alone(&inner, 0, INSIDE_BRACKETS)?)));
-    }
-    let start = inner.cursor();
-    let range = Expression::range(&inner, 0)?;
-    if !inner.is_empty() {
-        return Err(unexpected::operator(&inner, start, INSIDE_BRACKETS));
-    }
-    Ok(Some(Indices::Range(range)))
+    Ok(indices)
 }
 
 /// `= 1`
 fn value_of(name: Ident, input: ParseStream, attributes: Vec<Attribute>) -> Result<Definition> {
     equals(input, &name, None)?;
-    Ok(Definition { attributes, name, indices: None, value: Expression::parse(input)? })
+    Ok(Definition { attributes, name, indices: Vec::new(), value: Expression::parse(input)? })
 }
 
 /// The `=` after a name.
@@ -419,44 +424,35 @@ fn parameter(
     parameters: &mut Vec<Parameter>,
 ) -> Result<()> {
     let name = name(input)?;
-    let length = length(input)?;
-    let read = equals(input, &name, Some(clause_of(is_input))).and_then(|()| default(input));
-    let zero = || Default::Same(Expression { span: name.span(), kind: Kind::Number(Rational::zero()) });
+    let lengths = lengths(input)?;
+    let read = equals(input, &name, Some(clause_of(is_input))).and_then(|()| Expression::parse(input));
+    let zero = || Expression { span: name.span(), kind: Kind::Number(Rational::zero()) };
     let (default, outcome) = match read {
         Ok(default) => (default, Ok(())),
         Err(error) => (zero(), Err(error)),
     };
-    parameters.push(Parameter { attributes: attributes.to_vec(), name, length, default, is_input });
+    parameters.push(Parameter { attributes: attributes.to_vec(), name, lengths, default, is_input });
     outcome
-}
-
-/// `1` or `[1, 2, 3]`
-fn default(input: ParseStream) -> Result<Default> {
-    if !input.peek(syn::token::Bracket) {
-        return Expression::parse(input).map(Default::Same);
-    }
-    let inner;
-    syn::bracketed!(inner in input);
-    Expression::list(&inner, 1, "an operator, `,` or `]`").map(Default::Each)
 }
 
 /// `x` or `q[8]`
 fn coordinate(input: ParseStream) -> Result<Coordinate> {
     let name = name(input)?;
-    Ok(Coordinate { name, length: length(input)? })
+    Ok(Coordinate { name, lengths: lengths(input)? })
 }
 
-/// Nothing, or the length of an array, `[8]`
-fn length(input: ParseStream) -> Result<Option<Expression>> {
-    if !input.peek(syn::token::Bracket) {
-        return Ok(None);
+/// The lengths of an array, `[8]` or `[8][3]`; none of a number
+fn lengths(input: ParseStream) -> Result<Vec<Expression>> {
+    let mut lengths = Vec::new();
+    while input.peek(syn::token::Bracket) {
+        let inner;
+        syn::bracketed!(inner in input);
+        if inner.peek(syn::Ident) && inner.peek2(Token![in]) {
+            return Err(error(inner.span(), &Message::Expected { what: "a length, as in `q[8]`" }));
+        }
+        lengths.push(Expression::alone(&inner, 0, INSIDE_BRACKETS)?);
     }
-    let inner;
-    syn::bracketed!(inner in input);
-    if inner.peek(syn::Ident) && inner.peek2(Token![in]) {
-        return Err(error(inner.span(), &Message::Expected { what: "a length, as in `q[8]`" }));
-    }
-    Expression::alone(&inner, 0, INSIDE_BRACKETS).map(Some)
+    Ok(lengths)
 }
 
 pub(super) fn name(input: ParseStream) -> Result<Ident> {

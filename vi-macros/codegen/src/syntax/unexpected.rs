@@ -3,7 +3,8 @@
 //! In: the input at the token, and the start of the clause. Out: the error at the wrong token: the correction for a
 //! known habit of notation, otherwise what the grammar expects.
 
-use super::CLAUSES;
+use super::{CLAUSES, INSIDE_BRACKETS};
+use crate::arrays::ArrayMistake;
 use crate::habits::Habit;
 use crate::messages::{Message, error};
 use proc_macro2::{Delimiter, Span, TokenTree};
@@ -26,7 +27,10 @@ pub(super) fn operand(input: ParseStream) -> Error {
         }
         Some(_) => None,
         None if input.peek(Token![|]) => Some(Habit::Bars),
-        None if input.peek(syn::token::Brace) || input.peek(syn::token::Bracket) => Some(Habit::OtherBrackets),
+        None if input.peek(syn::token::Brace) => Some(Habit::OtherBrackets),
+        None if input.peek(Token![..]) || input.peek(Token![:]) => {
+            return error(input.span(), &Message::Array(ArrayMistake::Slice));
+        }
         None => point()
             .and_then(|(_, behind)| behind.literal())
             .map(|(digits, _)| Habit::PointWithoutDigits { number: format!("0.{}", short(digits.to_string())) }),
@@ -40,6 +44,14 @@ pub(super) fn operator(input: ParseStream, start: Cursor, what: &'static str) ->
         return unexpected(input.span(), None, what);
     };
     let previous = previous(input, start);
+    if what == INSIDE_BRACKETS {
+        let is_slice = input.peek(Token![..]) || input.peek(Token![:]);
+        let mistake = if is_slice { Some(ArrayMistake::Slice) } else { None };
+        let mistake = if input.peek(Token![,]) { Some(ArrayMistake::IndexComma) } else { mistake };
+        if let Some(mistake) = mistake {
+            return error(input.span(), &Message::Array(mistake));
+        }
+    }
     let habit = match &next {
         TokenTree::Punct(punct) => match punct.as_char() {
             '.' => {
