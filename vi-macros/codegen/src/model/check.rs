@@ -4,7 +4,7 @@
 
 use super::context::Context;
 use super::scope::Meaning;
-use super::{Coordinate, Model, Parameter, Rule, check_state, force, mass, rule, time_scale};
+use super::{Coordinate, Model, Parameter, Rule, angles, check_state, force, mass, rule, time_scale};
 use crate::limits::{COORDINATES, PARAMETERS, bounded};
 use crate::messages::{Absence, Message, error};
 use crate::symbol::{Symbol, Variable};
@@ -35,6 +35,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let time_scale = time_scale::time_scale(&mut context, &system.time_scales);
     let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
     let check_state = check_state::check_state(&mut context, &system.checks, &parameters, coordinates.len());
+    angles::check(&mut context, system, (&coordinates, &parameters), (lagrangian, time_scale));
     if context.errors.is_empty() {
         let of_rule = rule.iter().flat_map(Rule::expressions);
         let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
@@ -148,7 +149,7 @@ impl Context<'_> {
             self.errors.at(system.span(), &Message::MissingCoordinates);
         }
         let (mut coordinates, mut too_many) = (Vec::new(), None);
-        for syntax::Coordinate { name, length } in declared {
+        for &syntax::Coordinate { ref name, ref length, is_angle } in declared {
             let first = coordinates.len();
             let Some(written) = length else {
                 if first == COORDINATES {
@@ -156,7 +157,7 @@ impl Context<'_> {
                     too_many = too_many.or(Some(name.span()));
                     continue;
                 }
-                coordinates.push(Coordinate { name: name.clone(), index: None });
+                coordinates.push(Coordinate { name: name.clone(), index: None, is_angle });
                 self.declare(name, Meaning::Coordinate(first));
                 continue;
             };
@@ -167,7 +168,7 @@ impl Context<'_> {
             };
             let fitting = 1..=COORDINATES - first.min(COORDINATES);
             if let Some(length) = usize::try_from(length).ok().filter(|length| fitting.contains(length)) {
-                coordinates.extend((0..length).map(|i| Coordinate { name: name.clone(), index: Some(i) }));
+                coordinates.extend((0..length).map(|i| Coordinate { name: name.clone(), index: Some(i), is_angle }));
                 self.declare(name, Meaning::Coordinates { first, length });
             } else {
                 self.errors.at(written.span, &Message::Length { given: length, limit: COORDINATES });

@@ -12,8 +12,8 @@ pub use expression::{Expression, Kind, Operator, Range};
 use proc_macro2::{Ident, Span};
 
 /// The words that start a clause.
-const CLAUSES: [&str; 10] =
-    ["const", "param", "coord", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
+const CLAUSES: [&str; 11] =
+    ["const", "param", "coord", "angle", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
 
 /// A `lagrangian!` as written.
 pub struct System {
@@ -27,7 +27,7 @@ pub struct System {
     pub constants: Vec<Definition>,
     /// `param a = …, m[3] = …;` in order.
     pub parameters: Vec<Parameter>,
-    /// `coord x, q[8];` in order.
+    /// `coord x, q[8];` and `angle θ;` in order.
     pub coordinates: Vec<Coordinate>,
     /// `let a = …;` in order.
     pub lets: Vec<Definition>,
@@ -103,6 +103,8 @@ pub struct Coordinate {
     pub name: Ident,
     /// The length of an array.
     pub length: Option<Expression>,
+    /// Whether it is declared as an `angle`, modulo 2π.
+    pub is_angle: bool,
 }
 
 /// The rule from L to L_d.

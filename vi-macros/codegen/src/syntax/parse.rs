@@ -225,8 +225,9 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     match word.to_string().as_str() {
         "const" => list(input, &mut |input| definition(input, &attributes).map(|one| system.constants.push(one)))?,
         "param" => list(input, &mut |input| parameter(input, &attributes, &mut system.parameters))?,
-        "coord" => {
-            list(input, &mut |input| coordinate(input).map(|one| system.coordinates.push(one)))?;
+        "coord" | "angle" => {
+            let is_angle = word == "angle";
+            list(input, &mut |input| coordinate(input, is_angle).map(|one| system.coordinates.push(one)))?;
             return end_of_names(input, start);
         }
         "let" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.lets.push(one)))?,
@@ -422,9 +423,9 @@ fn default(input: ParseStream) -> Result<Default> {
 }
 
 /// `x` or `q[8]`
-fn coordinate(input: ParseStream) -> Result<Coordinate> {
+fn coordinate(input: ParseStream, is_angle: bool) -> Result<Coordinate> {
     let name = name(input)?;
-    Ok(Coordinate { name, length: length(input)? })
+    Ok(Coordinate { name, length: length(input)?, is_angle })
 }
 
 /// Nothing, or the length of an array, `[8]`
