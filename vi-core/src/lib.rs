@@ -44,7 +44,7 @@
 //! | [`error`] | the typed failures of a step, with their numbers |
 //! | [`check`] | tests of a system: derivatives, order, momenta, symplecticity; also from `check { … }` |
 //! | [`real`] | number types: `f64`, duals, series, running error analysis, SIMD lanes |
-//! | `compensated` | compensated summation |
+//! | `compensated`, `angles` | compensated summation; angles as a reduced angle and a count of turns |
 //! | [`called`], `delegate`, `forward` | wrappers of a system, for example with functions that are not inlined |
 //!
 //! Nothing here panics or prints. Stepping does not allocate, except for one buffer at the first stiff Gauss step.
@@ -52,6 +52,7 @@
 // A call that is not inlined spills the run's state out of registers.
 #![allow(clippy::inline_always)]
 
+mod angles;
 mod branch;
 pub mod called;
 pub mod check;
