@@ -44,6 +44,7 @@ macro_rules! forward {
         const AUTONOMOUS: bool = <$s as $crate::Lagrangian<$n, $t>>::AUTONOMOUS;
         const FORCED: bool = <$s as $crate::Lagrangian<$n, $t>>::FORCED;
         const CYCLIC: [bool; $n] = <$s as $crate::Lagrangian<$n, $t>>::CYCLIC;
+        const ANGLES: [bool; $n] = <$s as $crate::Lagrangian<$n, $t>>::ANGLES;
         const PARAMETERS: &'static [&'static str] = <$s as $crate::Lagrangian<$n, $t>>::PARAMETERS;
         const INPUTS: &'static [usize] = <$s as $crate::Lagrangian<$n, $t>>::INPUTS;
 

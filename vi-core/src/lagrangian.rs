@@ -16,6 +16,8 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     const FORCED: bool;
     /// For each coordinate, whether it appears neither in L nor has a force. Its momentum is then conserved.
     const CYCLIC: [bool; N];
+    /// For each coordinate, whether it is declared as an `angle`: L and f are 2π-periodic in it, and a run reduces it.
+    const ANGLES: [bool; N] = [false; N];
     /// Names of the parameters, as declared.
     const PARAMETERS: &'static [&'static str] = &[];
     /// Indices in [`Lagrangian::PARAMETERS`] of the inputs, the parameters that `input` declares for a controller to

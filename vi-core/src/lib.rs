@@ -46,7 +46,7 @@
 //! | [`check`] | tests of a system: derivatives, order, momenta, symplecticity; also from `check { … }` |
 //! | [`function`], [`table`] | derivatives of Rust functions; functions given by points |
 //! | [`real`] | number types: `f64`, duals, series, running error analysis, SIMD lanes |
-//! | `compensated` | compensated summation |
+//! | `compensated`, `angles` | compensated summation; angles as a reduced angle and a count of turns |
 //! | [`called`], `delegate`, `forward` | wrappers of a system, for example with functions that are not inlined |
 //!
 //! Nothing here panics or prints. Stepping does not allocate, except for one buffer at the first stiff Gauss step.
@@ -54,6 +54,7 @@
 // A call that is not inlined spills the run's state out of registers.
 #![allow(clippy::inline_always)]
 
+mod angles;
 mod branch;
 pub mod called;
 pub mod check;

@@ -1,5 +1,6 @@
 //! Internals for the other crates of this project, without any stability promise.
 
+pub use crate::angles::{Reduced, Turns, are_far, has_angles, reduced as reduced_angles, state as state_with_turns};
 pub use crate::compensated::two_sum;
 pub use crate::legendre::{acceleration, step_density, velocity, velocity_by_mass};
 pub use crate::method::check_step;

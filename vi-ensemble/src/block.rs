@@ -17,7 +17,9 @@ use crate::pass::{Elapsed, Extrapolate, Fixed, Pass, Rejections};
 use nalgebra::SVector;
 use vi_core::node::Node;
 use vi_core::stepping::Batch;
-use vi_core::support::{step_alone, weights as extrapolation};
+use vi_core::support::{
+    Turns, are_far, has_angles, reduced_angles, state_with_turns, step_alone, weights as extrapolation,
+};
 use vi_core::{FixedStep, Starts, State, StepError};
 use vi_dispatch::Instructions;
 
@@ -44,6 +46,8 @@ pub(crate) struct Block<S: Batch<N>, const N: usize> {
     /// Number of trajectories that have not ended.
     running: usize,
     ended: Vec<Option<Ended<N>>>,
+    /// Whole turns of the angles of each lane; its node is without them.
+    turns: [Turns<N>; WIDTH],
 }
 
 impl<S: Batch<N>, const N: usize> Block<S, N> {
@@ -68,6 +72,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
             verdict: Box::new(Rejections { refused: Row::filled(0), running: Row::filled(0) }),
             running: count,
             ended: vec![None; count],
+            turns: [Turns::zeros(); WIDTH],
         };
         for (number, (system, state)) in all.iter().enumerate() {
             let lane = LaneIndex::of(number);
@@ -103,7 +108,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
 
     /// The state of a trajectory.
     pub(crate) fn result(&self, number: usize) -> Result<State<N>, Ended<N>> {
-        self.ended[number].map_or_else(|| Ok(self.node(number).state()), Err)
+        self.ended[number].map_or_else(|| Ok(self.state(number)), Err)
     }
 
     /// The velocity of the last step of a trajectory; before the first step, the velocity of its momenta.
@@ -118,6 +123,11 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         self.nodes[0].get(lane, self.elapsed().since(self.fixed.t.get(lane)))
     }
 
+    /// The last state of one trajectory.
+    fn state(&self, number: usize) -> State<N> {
+        state_with_turns::<S, N, f64>(&self.node(number), &self.turns[number])
+    }
+
     fn elapsed(&self) -> Elapsed {
         Elapsed::after(self.steps, self.fixed.h)
     }
@@ -128,7 +138,28 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
             if self.running == 0 {
                 return;
             }
+            if const { has_angles::<S, N, f64>() } {
+                self.reduce();
+            }
             self.step();
+        }
+    }
+
+    /// Reduces angles that are far from zero, as a run does before a step.
+    fn reduce(&mut self) {
+        for number in 0..WIDTH {
+            let lane = LaneIndex::of(number);
+            if self.verdict.running.get(lane) == 0 || !are_far::<S, N, f64>(&self.nodes[0].q(lane)) {
+                continue;
+            }
+            let node = self.node(number);
+            match reduced_angles::<S, N, f64>((node.q, node.q_low, self.turns[number])) {
+                Ok((q, q_low, turns)) => {
+                    self.nodes[0].set(lane, &Node { q, q_low, ..node });
+                    self.turns[number] = turns;
+                }
+                Err(error) => self.end(number, self.state(number), error),
+            }
         }
     }
 
@@ -168,7 +199,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
                     self.nodes[1].remainder.set(lane, &SVector::<f64, N>::zeros());
                     self.restart(lane, v, v - last);
                 }
-                Err(error) => self.end(number, node.state(), error),
+                Err(error) => self.end(number, self.state(number), error),
             }
         }
     }

@@ -134,6 +134,12 @@ impl<const N: usize> Nodes<N> {
         }
     }
 
+    /// Coordinates of one trajectory.
+    #[inline(always)]
+    pub(crate) fn q(&self, lane: LaneIndex) -> SVector<f64, N> {
+        self.q.get(lane)
+    }
+
     /// Sets the node of one trajectory.
     #[inline(always)]
     pub(crate) fn set<T: Real>(&mut self, lane: LaneIndex, node: &Node<N, T>) {

@@ -7,12 +7,14 @@
 use crate::section::Section;
 #[cfg(feature = "sessions")]
 use crate::session::Session;
+use std::borrow::Cow;
 use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
 #[cfg(feature = "derivatives")]
 use vi_core::node::Node;
 use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor};
 use vi_core::stepping::Convertible;
+use vi_core::support::has_angles;
 use vi_core::{Method, Run, SVector, StepError};
 
 /// A node, its energies, and the length of the step that led to it.
@@ -68,7 +70,7 @@ pub trait Steps {
     /// Time of the last node.
     fn t(&self) -> f64;
     /// Coordinates of the last node.
-    fn q(&self) -> &[f64];
+    fn q(&self) -> Cow<'_, [f64]>;
     /// Momenta of the last node.
     fn p(&self) -> &[f64];
     /// Length of the last step; before the first one the requested length.
@@ -330,8 +332,13 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S
         self.run.t()
     }
 
-    fn q(&self) -> &[f64] {
-        self.run.node().q.as_slice()
+    fn q(&self) -> Cow<'_, [f64]> {
+        // Only angles differ from their node.
+        if const { has_angles::<S, N, f64>() } {
+            self.run.state().q.as_slice().to_vec().into()
+        } else {
+            self.run.node().q.as_slice().into()
+        }
     }
 
     fn p(&self) -> &[f64] {

@@ -19,7 +19,7 @@ fn erased_runs_have_the_bits_of_generic_ones() {
         for _ in 0..50 {
             erased.advance().expect("a step");
             let state = run.step().expect("a step");
-            assert_eq!((erased.t(), erased.q(), erased.p()), (state.t, state.q.as_slice(), state.p.as_slice()));
+            assert_eq!((erased.t(), &*erased.q(), erased.p()), (state.t, state.q.as_slice(), state.p.as_slice()));
         }
         assert_eq!(erased.energy(), run.energy());
         assert!(erased.evaluations() >= 50);

@@ -130,6 +130,6 @@ impl Ensemble<'_> {
 fn to_the_end(run: &mut dyn Simulation, end: f64, is_stopped: &AtomicBool, rows: &mut Rows) -> Result<(), StepError> {
     let mut unused = Rows::default();
     while !run.record(Some(end), STRETCH, u64::MAX, &mut 0, &mut unused)? && !is_stopped.load(Ordering::Relaxed) {}
-    rows.push(run.t(), run.q(), run.p());
+    rows.push(run.t(), &run.q(), run.p());
     Ok(())
 }

@@ -74,7 +74,7 @@ impl Run {
 
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(PyArray1::from_slice(py, self.lock()?.q()))
+        Ok(PyArray1::from_slice(py, &self.lock()?.q()))
     }
 
     #[getter]
@@ -174,7 +174,7 @@ impl Run {
             check_memory(expected, 40 * self.n)?;
         }
         let mut rows = reserved(expected / every, self.n);
-        rows.push(run.t(), run.q(), run.p());
+        rows.push(run.t(), &run.q(), run.p());
         let mut dense = dense.then(|| Dense::new(self.n));
         self.usual.store(0, Ordering::Relaxed);
         let (mut taken, mut stretch) = (0, Stretch::new());
@@ -196,7 +196,7 @@ impl Run {
             }
         };
         if rows.t.last().map(|t| t.to_bits()) != Some(run.t().to_bits()) {
-            rows.push(run.t(), run.q(), run.p());
+            rows.push(run.t(), &run.q(), run.p());
         }
         Ok((to_python(py, rows, self.n)?, error, dense))
     }

@@ -142,7 +142,7 @@ where
             changes.clear();
             changes.extend(variations.iter().map(|variation| slope.of(variation)));
             if M::KEEPS_ENERGY && (are_varied || !have_equal_parameters(before.system(), after.system())) {
-                let state = before.state();
+                let state = before.node().state();
                 let gained = changes_of_energy(after.system(), &state, &directions)?;
                 let lost = changes_of_energy(before.system(), &state, &directions)?;
                 // The run still has the parameters of the previous step.

@@ -5,6 +5,7 @@
 //! the node; dual numbers provide those with respect to the time and the parameters, if a direction needs them.
 
 use super::variation::{TOGETHER, Variation, Varied, more_parameters, not_finite};
+use crate::angles;
 use crate::energy_preserving::interval::Last;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -40,7 +41,7 @@ pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> 
         let memory = method.with_length(system, memory, node, length)?;
         let mut aside = Run::resumed(method.clone(), *system, (*node, length, memory));
         aside.step()?;
-        Self::vary(&aside, node, variations)
+        aside.vary(node, variations)
     }
 
     /// Sets `energy` of tangent vectors at the start of a run by [`Start::integrate`](crate::Start::integrate): the
@@ -84,7 +85,8 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S,
     /// is not the start node of the last step, the parameters have changed since, or a tangent vector has more
     /// parameters than the system.
     pub fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        M::vary(self, before, variations)
+        // The step began at reduced angles.
+        M::vary(self, &angles::reduced_node::<S, N, f64>(before), variations)
     }
 }
 
@@ -274,6 +276,7 @@ where
         other: &Variation<N>,
     ) -> Result<(SVector<f64, N>, SVector<f64, N>), StepError> {
         let (h, v) = (self.h, self.memory.steps.v());
+        let before = &angles::reduced_node::<S, N, f64>(before);
         check_last(before, (h, &v), &self.node, self.memory.steps.has_parameters_of_last())?;
         // With a regular matrix, the tangent vectors themselves are out of range.
         let unsolved = || {

@@ -141,7 +141,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
             all.pop().unwrap_or_else(Variation::zero)
         } else {
             // No time remains: the state moves along the flow.
-            let State { t, q, p } = run.state();
+            let State { t, q, p } = run.node().state();
             let Flow { v, force, power } = run.system().flow(t, &q, &p)?;
             Variation { t: 1.0, q: v, p: force, energy: power, ..Variation::zero() }
         };
@@ -171,7 +171,7 @@ where
     /// As [`State::velocity`].
     pub fn from_change(run: Run<M, S, N>, mut variations: Vec<Variation<N>>) -> Result<Self, StepError> {
         if M::KEEPS_ENERGY {
-            let changes = changes_of_energy(run.system(), &run.state(), &variations)?;
+            let changes = changes_of_energy(run.system(), &run.node().state(), &variations)?;
             variations.iter_mut().zip(changes).for_each(|(variation, change)| variation.energy = change);
         }
         Ok(Self::new(run, variations))
@@ -201,7 +201,7 @@ where
         S: Parameters,
     {
         self.latched(|tangent| {
-            let state = tangent.run.state();
+            let state = tangent.run.node().state();
             let before = changes_of_energy(tangent.run.system(), &state, &tangent.variations)?;
             let plain = Variation::zero();
             let numbers = |variation: &Variation<N>, run: &Run<M, S, N>| {
@@ -242,7 +242,8 @@ where
     ) -> Result<(), StepError> {
         self.latched(|tangent| {
             let State { t, q, p } = tangent.run.state();
-            let before = changes_of_energy(tangent.run.system(), &tangent.run.state(), &tangent.variations)?;
+            let node = tangent.run.node().state();
+            let before = changes_of_energy(tangent.run.system(), &node, &tangent.variations)?;
             let mapped = |variation: &Variation<N>, run: &Run<M, S, N>| {
                 let along = |value: f64, slope: f64| Dual { value, slope };
                 let (q, p) = (q.zip_map(&variation.q, along), p.zip_map(&variation.p, along));
@@ -283,6 +284,7 @@ where
             return self.end_at_time(end).map(|_| None);
         };
         let Crossing { state: State { t, q, .. }, v, length, .. } = crossing;
+        let reduced = after.node().q;
         // The search takes the same steps up to the node before the event.
         let missed = 4.0 * f64::EPSILON * t.abs();
         while self.run.time_to(t).abs() > length.abs() + missed {
@@ -291,12 +293,13 @@ where
             self.run.vary(&before, &mut self.variations)?;
         }
         let system = *self.run.system();
-        let matrix = system.point(t, &q, &v).mass;
+        let matrix = system.point(t, &reduced, &v).mass;
         let slope = |variation: &Variation<N>| {
             let along = |value: f64, slope: f64| Dual { value, slope };
-            let (t, q) = (along(t, variation.t), q.zip_map(&variation.q, along));
+            let t = along(t, variation.t);
+            let [q, reduced] = [q, reduced].map(|q| q.zip_map(&variation.q, along));
             // L_v(t, q, v) = p
-            let momentum = varied(&system, variation).point(t, &q, &v.map(Dual::fixed)).momentum;
+            let momentum = varied(&system, variation).point(t, &reduced, &v.map(Dual::fixed)).momentum;
             let of_v = linear::solve(&matrix, &(variation.p - momentum.map(|entry| entry.slope)));
             let of_v = of_v.ok_or(StepError::Singular { t: t.value, matrix: "mass matrix" })?;
             event.slope(&Moment { t, q, v: v.zip_map(&of_v, along) }).ok_or(not_finite(t.value))

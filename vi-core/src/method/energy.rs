@@ -15,6 +15,7 @@
 
 use super::bounds::{Alternating, FORWARD, check_forward};
 use super::{Method, Problem, Report};
+use crate::angles;
 use crate::called::Called;
 use crate::condition::Condition;
 use crate::energy_preserving::interval::Last;
@@ -325,9 +326,10 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S
         let Self { node, memory, .. } = self;
         let Last { v, h, density, iterations, measured, .. } = memory.last;
         let (t_mid, q_mid) = node.midpoint(-h, &v);
+        let q_mid = angles::with_turns(&q_mid, &SVector::zeros(), &self.turns);
         Step {
             t: node.t,
-            q: node.q,
+            q: self.state().q,
             p: node.p,
             energy: memory.discrete_energy(node),
             h,

@@ -332,6 +332,13 @@ impl<const N: usize, const S: usize> DenseOutput<N> for GaussOutput<N, S> {
         }
     }
 
+    fn moved(self, by: &SVector<f64, N>) -> Self {
+        match self {
+            Self::Collocation(polynomial) => Self::Collocation(polynomial.moved(by)),
+            Self::Hermite(cubics) => Self::Hermite(cubics.moved(by)),
+        }
+    }
+
     fn state(&self, t: f64) -> State<N> {
         match self {
             Self::Collocation(polynomial) => polynomial.state(t),

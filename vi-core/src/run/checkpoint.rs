@@ -6,6 +6,7 @@
 //! stored: the restarted run meets them again.
 
 use super::Run;
+use crate::angles::{self, Turns};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::{Memory as _, Method};
@@ -44,6 +45,9 @@ pub struct Checkpoint<Y, const N: usize, T = f64> {
 )]
 pub struct Stored<Y, const N: usize, T = f64> {
     node: Node<N, T>,
+    /// Whole turns of angles; zero for other coordinates, and in files of before.
+    #[cfg_attr(feature = "serde", serde(default = "Turns::zeros"))]
+    turns: Turns<N>,
     h: T,
     memory: Y,
 }
@@ -56,7 +60,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             system: S::NAME.to_owned(),
             rule: self.method.rule().map(str::to_owned),
             parameters: named.map(|(index, name)| ((*name).to_owned(), self.system.parameter(index))).collect(),
-            run: Stored { node: self.node, h: self.h, memory: self.memory.stored() },
+            run: Stored { node: self.node, turns: self.turns, h: self.h, memory: self.memory.stored() },
         }
     }
 
@@ -66,12 +70,13 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`]
     /// and [`StepError::InvalidInput`] for data that no run of this method can produce.
     pub fn restart(system: S, method: M, checkpoint: Checkpoint<M::Memory, N, T>) -> Result<Self, StepError> {
-        let Stored { node, h, memory } = checkpoint.run_of(&system, method.rule())?;
+        let Stored { node, turns, h, memory } = checkpoint.run_of(&system, method.rule())?;
         method.check_length(h)?;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
+        angles::check::<S, N, T>(&node.q, &turns)?;
         method.check(&memory, h, t)?;
-        Ok(Self::resumed(method, system, (node, h, memory)))
+        Ok(Self { turns, ..Self::resumed(method, system, (node, h, memory)) })
     }
 }
 

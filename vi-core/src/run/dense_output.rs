@@ -29,6 +29,12 @@ pub trait DenseOutput<const N: usize, T = f64> {
     fn since_start(self) -> Self
     where
         Self: Sized;
+    /// The same dense output with `by` added to the coordinates.
+    #[doc(hidden)]
+    #[must_use]
+    fn moved(self, by: &SVector<T, N>) -> Self
+    where
+        Self: Sized;
 }
 
 /// Hermite cubics through the ends of a step.
@@ -77,6 +83,10 @@ impl<const N: usize, T: Scalar> Hermite<N, T> {
 impl<const N: usize, T: Scalar> DenseOutput<N, T> for Hermite<N, T> {
     fn since_start(self) -> Self {
         Self { t: T::zero(), ..self }
+    }
+
+    fn moved(self, by: &SVector<T, N>) -> Self {
+        Self { q: Cubic { start: self.q.start + by, ..self.q }, ..self }
     }
 
     fn state(&self, t: T) -> State<N, T> {

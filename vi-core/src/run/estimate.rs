@@ -25,6 +25,7 @@
 
 use super::Run;
 use super::events::{Crossing, Crossings, Events};
+use crate::angles::{self, Turns};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
@@ -139,7 +140,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     pub fn local_error(&self) -> Result<LocalError<N>, StepError> {
         let mut ahead = self.clone();
         ahead.single_step()?;
-        Ok(measured(self, &self.memory, [&self.node, &ahead.node]).of)
+        let before = angles::reduced_node::<S, N, T>(&self.node);
+        Ok(measured(self, &self.memory, [&before, &ahead.node]).of)
     }
 
     /// Adds an error monitor, which changes no bit of the steps. See the [module](crate::run::ErrorMonitor).
@@ -184,6 +186,8 @@ impl ErrorEstimate {
 pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
     start: State<N, T>,
     last: Node<N, T>,
+    /// The turns that the angles of `start` and `last` are without.
+    turns: Turns<N>,
     /// Increment of the momenta in the last step, divided by its length.
     force: SVector<T, N>,
     /// Inverse of the largest `|p_i − p_i(start)|`, of counted coordinates.
@@ -220,6 +224,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Self {
             start: node.state(),
             last: node,
+            turns: run.turns,
             force: zeros,
             weights: zeros,
             excursion: zeros,
@@ -245,6 +250,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
         let rate = T::one() / h;
         let mut indicator = T::zero();
+        self.turn(run);
         for i in 0..N {
             let excursion = (node.q[i] - self.start.q[i]).abs();
             self.excursion[i] = larger(self.excursion[i], excursion);
@@ -274,13 +280,23 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
     }
 
+    /// Takes the turns of a run for the start of its step, and for the start of the run.
+    #[inline]
+    fn turn(&mut self, run: &Run<M, S, N, T>) {
+        if const { angles::has_angles::<S, N, T>() } && self.turns != run.turns {
+            self.last = angles::reduced_node::<S, N, T>(&self.last);
+            self.start = angles::without_turns(&self.start, &(run.turns - self.turns));
+            self.turns = run.turns;
+        }
+    }
+
     /// Skips a jump of the state: the next step begins at the current node of the run.
     pub fn resume(&mut self, run: &Run<M, S, N, T>) {
         self.close(run);
         // A jump is no excursion.
         self.start.q += run.node.q - self.last.q;
         self.start.p += run.node.p - self.last.p;
-        self.last = run.node;
+        (self.last, self.turns) = (run.node, run.turns);
         self.force = SVector::zeros();
     }
 
@@ -310,7 +326,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         let mut monitor = self.clone();
         // The excursions include this step.
         monitor.watch(&ahead);
-        let found = measured(run, &run.memory, [&run.node, &ahead.node]);
+        let before = angles::reduced_node::<S, N, T>(&run.node);
+        let found = measured(run, &run.memory, [&before, &ahead.node]);
         monitor.add(&found);
         Ok(monitor.relative(&found.error, &SVector::zeros()).estimate)
     }

@@ -37,6 +37,7 @@ pub use solution::Solution;
 pub use times::Grid;
 pub use tolerance::{Length, Tolerance};
 
+use crate::angles::{self, Turns};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::{Memory, Method, Problem};
@@ -81,6 +82,7 @@ impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Start<S, N, T> {
     /// [`StepError::Tolerance`] if no step has the tolerance; errors of the method.
     pub fn integrate<M: Method<S, N, T>>(self, method: M, h: impl Length<T>) -> Result<Run<M, S, N, T>, StepError> {
         let Self { system, state } = self;
+        angles::check::<S, N, T>(&state.q, &Turns::zeros())?;
         let mut node = Node::new(state, T::zero());
         let explained = |failure: StepError| failure.explained_at(&system, &Node::new(state, T::zero()), T::zero());
         let h = h.length(&self, &method).map_err(explained)?;
@@ -96,7 +98,10 @@ pub struct Run<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
     pub(crate) method: M,
     pub(crate) system: S,
     pub(crate) prepared: M::Prepared,
+    /// The node; angles are less the turns.
     pub(crate) node: Node<N, T>,
+    /// Whole turns of angles; zero for other coordinates.
+    pub(crate) turns: Turns<N>,
     /// Length of a step in the unit of the method.
     pub(crate) h: T,
     pub(crate) memory: M::Memory,
@@ -108,7 +113,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// Resumes a run at a node.
     pub(crate) fn resumed(method: M, system: S, (node, h, memory): (Node<N, T>, T, M::Memory)) -> Self {
         let prepared = method.prepare(&system, h);
-        Self { method, system, prepared, node, h, memory, cache: M::Cache::default(), failure: None }
+        let (turns, cache) = (Turns::zeros(), M::Cache::default());
+        Self { method, system, prepared, node, turns, h, memory, cache, failure: None }
     }
 
     /// Takes one step and returns its end state.
@@ -117,6 +123,12 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// The reason why the step failed. The run holds the last good state, and a further call returns the same error.
     #[inline(always)]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
+        let mut kept = None;
+        if angles::are_far::<S, N, T>(&self.node.q) {
+            let far = (self.node.q, self.node.q_low, self.turns);
+            (self.node.q, self.node.q_low, self.turns) = angles::reduced::<S, N, T>(far)?;
+            kept = Some(far);
+        }
         let Self { method, system, prepared, node, h, memory, cache, .. } = self;
         if let Err(left) = method.advance(system, prepared, *h, (node, memory), cache) {
             // Values, not references: one escaping field address keeps the whole run in memory (double well: 29 ns a
@@ -129,10 +141,13 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             self.cache = cache;
             self.failure = failure;
             if let Some(failure) = failure {
+                if let Some(far) = kept {
+                    (self.node.q, self.node.q_low, self.turns) = far;
+                }
                 return Err(failure);
             }
         }
-        Ok(self.node.state())
+        Ok(self.state())
     }
 
     /// Takes one step of the length h in time. The length of later steps and the preserved energy do not change. If it
@@ -142,20 +157,48 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// Those of a step, and the run does not change. [`StepError::InvalidInput`] for an h that is zero, subnormal or
     /// not finite, or that is negative although the method only steps forward.
     pub fn step_of(&mut self, h: T) -> Result<State<N, T>, StepError> {
-        let Self { method, system, node, memory, .. } = &*self;
-        let after = method.step_of(system, (node, memory), [h, self.h]);
-        (self.node, self.memory) = after.map_err(|failure| failure.explained_at(system, node, h))?;
-        self.failure = None;
-        Ok(self.node.state())
+        let (mut node, mut turns) = (self.node, self.turns);
+        if angles::are_far::<S, N, T>(&node.q) {
+            (node.q, node.q_low, turns) = angles::reduced::<S, N, T>((node.q, node.q_low, turns))?;
+        }
+        let after = self.method.step_of(&self.system, (&node, &self.memory), [h, self.h]);
+        (self.node, self.memory) = after.map_err(|failure| failure.explained_at(&self.system, &self.node, h))?;
+        (self.turns, self.failure) = (turns, None);
+        Ok(self.state())
     }
 
-    /// The last state.
+    /// The last state. An angle includes its turns, and is rounded: after 1e7 turns to 7e-9. [`Run::reduced`] and
+    /// [`Run::turns`] return all its digits.
     #[inline]
     pub fn state(&self) -> State<N, T> {
-        self.node.state()
+        angles::state::<S, N, T>(&self.node, &self.turns)
     }
 
-    /// The last node: the state with the low parts of its sums, and the preserved energy.
+    /// Whole turns of each coordinate that is declared as an `angle`, zero for the others: `state().q` is
+    /// [`Run::reduced`] plus 2π times these.
+    pub fn turns(&self) -> [i64; N] {
+        angles::normalized::<S, N, T>(&self.node, &self.turns).1.into()
+    }
+
+    /// The coordinates of the last state, with angles in [-π, π].
+    pub fn reduced(&self) -> SVector<T, N> {
+        angles::normalized::<S, N, T>(&self.node, &self.turns).0
+    }
+
+    /// Sets the whole turns of the angles. The motion does not change: later states, events and dense output include
+    /// the new turns.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for turns of a coordinate that is no angle, or beyond 2^53.
+    pub fn set_turns(&mut self, turns: [i64; N]) -> Result<(), StepError> {
+        let turns = Turns::from(turns);
+        angles::check::<S, N, T>(&self.node.q, &turns)?;
+        let (_, nearest) = angles::normalized::<S, N, T>(&self.node, &Turns::zeros());
+        self.turns = turns - nearest;
+        Ok(())
+    }
+
+    /// The last node: the state with the low parts of its sums, and the preserved energy. Angles are less whole turns.
     pub fn node(&self) -> &Node<N, T> {
         &self.node
     }
@@ -195,7 +238,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// # Errors
     /// As [`State::velocity`].
     pub fn velocity(&self) -> Result<SVector<T, N>, StepError> {
-        self.state().velocity(&self.system)
+        self.node.state().velocity(&self.system)
     }
 
     /// Energy `H = v·∂L/∂v − L` at the last state, in the units of L.
@@ -203,7 +246,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// # Errors
     /// As [`State::energy`].
     pub fn energy(&self) -> Result<T, StepError> {
-        self.state().energy(&self.system)
+        self.node.state().energy(&self.system)
     }
 
     /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step, which energy-preserving runs preserve. It differs from
@@ -221,7 +264,12 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] if no velocity has the momenta
     /// at one of its ends.
     pub fn dense_output(&self, before: &State<N, T>) -> Result<M::DenseOutput, StepError> {
-        self.method.dense_output(&self.system, before, &self.node, self.h(), &self.memory)
+        let output = |before| self.method.dense_output(&self.system, before, &self.node, self.h(), &self.memory);
+        if const { !angles::has_angles::<S, N, T>() } {
+            return output(before);
+        }
+        let turned = angles::with_turns(&SVector::zeros(), &SVector::zeros(), &self.turns);
+        output(&angles::without_turns(before, &self.turns)).map(|output| output.moved(&turned))
     }
 
     /// Changes parameters of the system from the last node on. Coordinates and momenta stay; the run clears an error of
@@ -253,9 +301,10 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// # Errors
     /// Those of a new run from that state. The run then does not change.
     pub fn set_state(&mut self, state: State<N, T>) -> Result<(), StepError> {
+        angles::check::<S, N, T>(&state.q, &Turns::zeros())?;
         let mut node = self.node;
         self.memory = self.method.with_state(&self.system, &mut node, self.h, &self.memory, state)?;
-        (self.node, self.failure) = (node, None);
+        (self.node, self.turns, self.failure) = (node, Turns::zeros(), None);
         Ok(())
     }
 

@@ -7,6 +7,7 @@ use super::{Run, Solution};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
+use crate::node::Node;
 use crate::state::State;
 
 /// Relative amount by which the last step may exceed h.
@@ -53,8 +54,15 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     /// one before.
     pub fn at_times(&mut self, times: impl IntoIterator<Item = f64>) -> Result<Solution<N>, StepError> {
         let system = self.system;
-        let states: Result<Vec<State<N>>, StepError> = self.states_at(times).collect();
-        Solution::of(&system, states?)
+        let mut states = Vec::new();
+        let mut energies = Vec::new();
+        let mut grid = self.states_at(times);
+        while let Some(t) = grid.times.next() {
+            let (state, node) = grid.at(t)?;
+            states.push(state);
+            energies.push(node.state().energy(&system)?);
+        }
+        Ok(Solution::of::<S>(states, energies))
     }
 
     /// Iterates over states at the given times, in the order of the run, and takes steps on demand. The run ends at its
@@ -181,8 +189,8 @@ pub struct Grid<'a, M: Method<S, N>, S, I, const N: usize> {
 }
 
 impl<M: Method<S, N>, S: Lagrangian<N> + Copy, I, const N: usize> Grid<'_, M, S, I, N> {
-    /// The state at the time t.
-    fn at(&mut self, t: f64) -> Result<State<N>, StepError> {
+    /// The state at the time t, and its node.
+    fn at(&mut self, t: f64) -> Result<(State<N>, Node<N>), StepError> {
         self.run.check_ahead(t)?;
         let direction = self.run.h().signum();
         while self.run.time_to(t) != 0.0 {
@@ -194,11 +202,11 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, I, const N: usize> Grid<'_, M, S,
                 self.ahead = Some(ahead);
                 let mut aside = self.run.clone();
                 aside.end_at(t)?;
-                return Ok(aside.state());
+                return Ok((aside.state(), aside.node));
             }
             *self.run = ahead;
         }
-        Ok(State { t, ..self.run.state() })
+        Ok((State { t, ..self.run.state() }, self.run.node))
     }
 }
 
@@ -212,6 +220,6 @@ where
 
     fn next(&mut self) -> Option<Self::Item> {
         let t = self.times.next()?;
-        Some(self.at(t))
+        Some(self.at(t).map(|(state, _)| state))
     }
 }

@@ -354,6 +354,7 @@ fn describe(row: &Row, steps: u64) -> String {
 mod tests {
     use super::*;
     use core::cell::{Cell, RefCell};
+    use std::borrow::Cow;
     use std::rc::Rc;
 
     /// A run that fails after three steps, at t = 1.5.
@@ -370,8 +371,8 @@ mod tests {
             self.t
         }
 
-        fn q(&self) -> &[f64] {
-            core::slice::from_ref(&self.t)
+        fn q(&self) -> Cow<'_, [f64]> {
+            core::slice::from_ref(&self.t).into()
         }
 
         fn h(&self) -> f64 {

@@ -144,7 +144,7 @@ impl Course {
     pub(super) fn planned(system: &dyn System, plan: &Plan, limit: Limit) -> Self {
         Self::begun(system.begin(plan), limit, |run| {
             run.advance()?;
-            Ok((run.t(), size(run.q())))
+            Ok((run.t(), size(&run.q())))
         })
     }
 }

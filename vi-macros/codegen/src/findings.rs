@@ -39,6 +39,8 @@ pub struct Findings {
     pub forced: bool,
     /// Indices of the coordinates that are cyclic: absent from L, and without a force.
     pub cyclic: Vec<usize>,
+    /// Indices of the angles, which a run reduces to a turn.
+    pub angles: Vec<usize>,
     /// L = T(v) + U(t, q).
     pub separable: bool,
     /// The mass matrix L_vv depends on parameters only.
@@ -108,6 +110,7 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         autonomous: system.continuous.autonomous,
         forced: model.forced,
         cyclic: cyclic.collect(),
+        angles: (0..model.dimension()).filter(|index| model.coordinates[*index].is_angle).collect(),
         separable: momentum.is_some_and(|function| inputs(function, function.results.entries()).iter().all(velocities)),
         constant_mass,
         force_of_position: constant_mass && system.continuous.momentum_is_mass_times_velocity && !rate_moves,
@@ -287,6 +290,9 @@ impl Findings {
         if !self.cyclic.is_empty() {
             let momenta = if self.cyclic.len() == 1 { "its momentum is" } else { "their momenta are" };
             lines.push(format!("Cyclic: {}; {momenta} conserved", list(name, &self.cyclic)));
+        }
+        if !self.angles.is_empty() {
+            lines.push(format!("Angles modulo 2π: {}; a run keeps their sines exact", list(name, &self.angles)));
         }
         lines.push(match (self.separable, self.constant_mass) {
             (true, true) => "`L = T(v) + U(t, q)` with a constant mass matrix".to_owned(),

@@ -211,6 +211,8 @@ pub enum Message {
     Expected { what: &'static str },
     /// Notation that this language writes differently.
     Habit(Habit),
+    /// An expression that changes if an angle makes a turn.
+    NotPeriodic { what: String, angle: String, name: String },
     /// A number that is not a decimal integer or fraction.
     NotDecimal,
     /// A number outside the range of `f64`.
@@ -274,7 +276,7 @@ fn another_name(name: &str) -> String {
 
 /// Help for an unknown clause; `is_defined` if `=` follows it.
 fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
-    let clauses = "the clauses are const, param, input, coord, fn, table, let, L, force, dissipation, time_scale, discretize, check";
+    let clauses = "the clauses are const, param, input, coord, angle, fn, table, let, L, force, dissipation, time_scale, discretize, check";
     let part = || if is_defined { format!("write `let {found} = …;` to name a part") } else { clauses.to_owned() };
     habits::clause(found).unwrap_or_else(|| did_you_mean(near, &part()))
 }
@@ -406,6 +408,9 @@ impl Message {
             Self::NoDerivative { expression, by } => {
                 format!("`{expression}` has no derivative with respect to `{by}`")
             }
+            Self::NotPeriodic { what, angle, .. } => {
+                format!("{what} is not periodic in the angle `{angle}`: it changes when `{angle}` makes a turn of 2π")
+            }
             Self::CoefficientRange => "the equations have a coefficient outside the range of `f64`".to_owned(),
             Self::TooDeep { limit } => format!("this expression is nested deeper than {limit} levels"),
             Self::TooLong { limit } => format!("the system is longer than {limit} tokens"),
@@ -525,6 +530,10 @@ impl Message {
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
             Self::NoDerivative { .. } => NO_DERIVATIVE.to_owned(),
+            Self::NotPeriodic { angle, name, .. } => format!(
+                "declare `{name}` with `coord`, or use it in functions of period 2π, as `cos({angle})` and `sin(2 * {angle})`; write a \
+                 constant torque as a force, `force {angle} = …;`"
+            ),
             Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
             Self::TooLong { .. } => "write repeated terms with arrays and `sum`".to_owned(),

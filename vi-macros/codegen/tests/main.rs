@@ -1,5 +1,6 @@
 //! The tests of the compiler as one program, so that shared code compiles once.
 
+mod angles;
 mod arbitrary;
 mod array_messages;
 mod constants;

@@ -92,6 +92,10 @@ impl<const N: usize, const S: usize> DenseOutput<N> for TransformedPolynomial<N,
         Self { start: State { t: 0.0, ..self.start }, ..self }
     }
 
+    fn moved(self, by: &SVector<f64, N>) -> Self {
+        Self { start: State { q: self.start.q + by, ..self.start }, ..self }
+    }
+
     fn state(&self, t: f64) -> State<N> {
         let integrals = integrals::<S>(self.part(t));
         let q = self.start.q + sum(&self.position, &integrals) * self.dtau;

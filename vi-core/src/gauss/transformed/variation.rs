@@ -19,6 +19,7 @@ use super::super::stages::{stage, weights};
 use super::super::tableau::Tableau;
 use super::equations::Scaled;
 use super::rates::LastRates;
+use crate::angles;
 use crate::collocation::{Collocation, ScaledPoint, TimeScale};
 use crate::derivatives::{
     Differentiable, TOGETHER, Variation, Varied, changes_of_energy, more_parameters, not_finite, not_last, singular,
@@ -55,7 +56,7 @@ where
         after.step_of(length)?;
         let mut all: Vec<_> = variations.iter().map(|variation| Variation { h: 0.0, ..variation.clone() }).collect();
         all.push(Variation::of_length());
-        vary(&after, &run.node, &mut all)?;
+        vary(&after, &angles::reduced_node::<S, N, f64>(&run.node), &mut all)?;
         let Some(along_dtau) = all.pop() else { return Ok(()) };
         for (own, varied) in variations.iter_mut().zip(&all) {
             let missing = own.h + own.t - varied.t;
@@ -66,7 +67,7 @@ where
     }
 
     fn vary_start(run: &Run<Self, S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let energies = changes_of_energy(&run.system, &run.state(), variations)?;
+        let energies = changes_of_energy(&run.system, &run.node.state(), variations)?;
         for (variation, energy) in variations.iter_mut().zip(energies) {
             variation.energy = energy;
         }

@@ -5,7 +5,7 @@ use super::body::{Body, VelocityFrom, body, state_parts};
 use super::entries::{self, ResultEntry};
 use super::functions;
 use super::matrix::matrix;
-use crate::model::{Coordinate, Parameter};
+use crate::model::{Coordinate, Model, Parameter};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::{Literal, TokenStream};
@@ -21,6 +21,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension) = (&model.name, source.dimension());
     let (text, coordinates) = (name.to_string(), model.coordinates.iter().map(Coordinate::text));
     let (autonomous, forced, cyclic) = (of.autonomous, model.forced, &of.cyclic);
+    let angles = angles(model);
     let parameters = model.parameters.iter().map(Parameter::place);
     let names = model.parameters.iter().map(Parameter::text);
     let inputs: Vec<Literal> = (0..)
@@ -47,6 +48,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
             const AUTONOMOUS: bool = #autonomous;
             const FORCED: bool = #forced;
             const CYCLIC: [bool; #dimension] = [#(#cyclic),*];
+            #angles
             const PARAMETERS: &'static [&'static str] = &[#(#names),*];
             #inputs
 
@@ -57,6 +59,13 @@ pub(super) fn item(source: &Source) -> TokenStream {
             #(#functions)*
         }
     }
+}
+
+/// The constant that marks angles, if there are any.
+fn angles(model: &Model) -> TokenStream {
+    let (dimension, angles) = (model.dimension(), model.coordinates.iter().map(|coordinate| coordinate.is_angle));
+    let item = quote!(const ANGLES: [bool; #dimension] = [#(#angles),*];);
+    if model.coordinates.iter().any(|coordinate| coordinate.is_angle) { item } else { TokenStream::new() }
 }
 
 impl Source<'_> {

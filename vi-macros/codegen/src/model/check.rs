@@ -6,7 +6,8 @@ use super::context::Context;
 use super::scope::Meaning;
 use super::value::Value;
 use super::{
-    Coordinate, Model, Parameter, Rule, check_state, force, function, indices, lets, mass, rule, smoothness, time_scale,
+    Coordinate, Model, Parameter, Rule, angles, check_state, force, function, indices, lets, mass, rule, smoothness,
+    time_scale,
 };
 use crate::arrays::ArrayMistake;
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
@@ -43,6 +44,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let time_scale = time_scale::time_scale(&mut context, &system.time_scales);
     let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
     let check_state = check_state::check_state(&mut context, &system.checks, &parameters, coordinates.len());
+    angles::check(&mut context, system, (&coordinates, &parameters), (lagrangian, time_scale));
     if context.errors.is_empty() {
         let of_rule = rule.iter().flat_map(Rule::expressions);
         let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
@@ -135,7 +137,7 @@ impl Context<'_> {
             self.errors.at(system.span(), &Message::MissingCoordinates);
         }
         let (mut coordinates, mut too_many) = (Vec::new(), None);
-        for syntax::Coordinate { name, lengths } in declared {
+        for syntax::Coordinate { name, lengths, is_angle } in declared {
             let first = coordinates.len();
             if lengths.is_empty() && first == COORDINATES {
                 self.declare(name, Meaning::Wrong);
@@ -149,7 +151,7 @@ impl Context<'_> {
                 continue;
             };
             let each = indices(&lengths).into_iter();
-            coordinates.extend(each.map(|indices| Coordinate { name: name.clone(), indices }));
+            coordinates.extend(each.map(|indices| Coordinate { name: name.clone(), indices, is_angle: *is_angle }));
             let is_one = lengths.is_empty();
             let meaning = if is_one { Meaning::Coordinate(first) } else { Meaning::Coordinates { first, lengths } };
             self.declare(name, meaning);

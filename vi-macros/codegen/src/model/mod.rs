@@ -4,6 +4,7 @@
 //! including those of the rule, is resolved and every number is exact. L and f are expressions in
 //! [`Symbol::Continuous`](crate::symbol::Symbol) and parameters only. The remaining spans are those of declared names.
 
+mod angles;
 mod array;
 pub mod check;
 mod check_state;
@@ -80,6 +81,8 @@ pub struct Coordinate {
     pub name: Ident,
     /// Its indices in an array; none outside.
     pub indices: Vec<usize>,
+    /// Whether L, f and the time scale are 2π-periodic in it, and a run reduces it.
+    pub is_angle: bool,
 }
 
 impl Coordinate {

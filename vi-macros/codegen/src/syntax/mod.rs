@@ -16,11 +16,12 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 /// The words that start a clause.
-const CLAUSES: [&str; 13] = [
+const CLAUSES: [&str; 14] = [
     "const",
     "param",
     "input",
     "coord",
+    "angle",
     "fn",
     "table",
     "let",
@@ -47,7 +48,7 @@ pub struct System {
     pub constants: Vec<Constant>,
     /// `param a = …, m[3] = …;` and `input u = …;` in order.
     pub parameters: Vec<Parameter>,
-    /// `coord x, q[8];` in order.
+    /// `coord x, q[8];` and `angle θ;` in order.
     pub coordinates: Vec<Coordinate>,
     /// `fn f(a) = …;` in order.
     pub functions: Vec<Rc<Function>>,
@@ -148,6 +149,8 @@ pub struct Coordinate {
     pub name: Ident,
     /// The lengths of an array, one for each pair of brackets.
     pub lengths: Vec<Expression>,
+    /// Whether it is declared as an `angle`, modulo 2π.
+    pub is_angle: bool,
 }
 
 /// The rule from L to L_d.

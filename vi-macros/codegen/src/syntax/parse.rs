@@ -230,8 +230,9 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             let is_input = word == "input";
             list(input, &mut |input| parameter(input, is_input, &attributes, &mut system.parameters))?;
         }
-        "coord" => {
-            list(input, &mut |input| coordinate(input).map(|one| system.coordinates.push(one)))?;
+        "coord" | "angle" => {
+            let is_angle = word == "angle";
+            list(input, &mut |input| coordinate(input, is_angle).map(|one| system.coordinates.push(one)))?;
             return end_of_names(input, start);
         }
         "fn" => system.functions.push(Rc::new(function::function(input)?)),
@@ -436,9 +437,9 @@ fn parameter(
 }
 
 /// `x` or `q[8]`
-fn coordinate(input: ParseStream) -> Result<Coordinate> {
+fn coordinate(input: ParseStream, is_angle: bool) -> Result<Coordinate> {
     let name = name(input)?;
-    Ok(Coordinate { name, lengths: lengths(input)? })
+    Ok(Coordinate { name, lengths: lengths(input)?, is_angle })
 }
 
 /// The lengths of an array, `[8]` or `[8][3]`; none of a number

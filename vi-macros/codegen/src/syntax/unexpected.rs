@@ -98,7 +98,7 @@ pub(super) fn end_of_definition(input: ParseStream, start: Cursor, what: &'stati
 
 /// The error for a clause of names that starts at `start` and does not end with `;`.
 pub(super) fn end_of_names(input: ParseStream, start: Cursor) -> Error {
-    let is_coordinates = start.ident().is_some_and(|(word, _)| word == "coord");
+    let is_coordinates = start.ident().is_some_and(|(word, _)| word == "coord" || word == "angle");
     let is_argument =
         input.peek(syn::token::Paren) || input.peek(Token![=]) || input.peek(Token![<]) || input.peek(syn::Lit);
     match previous(input, start) {
