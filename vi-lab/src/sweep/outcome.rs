@@ -129,7 +129,8 @@ impl Outcome {
     fn watch(&mut self, run: &dyn Steps) {
         // Without H at some nodes its range is unknown too. Some nodes have no interval, and no E.
         let energies = [Some(run.energy().unwrap_or(f64::NAN)), run.discrete_energy()];
-        let values = run.q().iter().copied().map(Some).chain(energies);
+        let q = run.q();
+        let values = q.iter().copied().map(Some).chain(energies);
         for (range, value) in self.ranges.iter_mut().zip(values) {
             if let Some(value) = value {
                 Range::push(range, value);
