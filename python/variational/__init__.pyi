@@ -106,6 +106,11 @@ class NoTimeScale(StepError):
 
     system: str
 
+class NoStepDensity(StepError):
+    """The method preserves the energy, but L contains a monotone table."""
+
+    table: str
+
 class NoRule(StepError):
     """The method needs a quadrature rule, but the system declares none."""
 

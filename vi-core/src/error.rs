@@ -123,6 +123,11 @@ pub enum StepError {
         /// Name of the system.
         system: &'static str,
     },
+    /// The method preserves the energy, but L contains a `monotone` table, at whose places the step density jumps.
+    NoStepDensity {
+        /// Name of the table.
+        table: &'static str,
+    },
     /// The method needs a quadrature rule, but the system declares none.
     NoRule {
         /// Name of the system.
@@ -293,6 +298,12 @@ impl fmt::Display for Reason<'_> {
                 write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, but it must be positive and finite")
             }
             StepError::NoTimeScale { system } => write!(f, "`{system}` has no time scale"),
+            StepError::NoStepDensity { table } => {
+                write!(
+                    f,
+                    "the step density of energy-preserving steps jumps at the places of the `monotone` table `{table}`"
+                )
+            }
             StepError::NoRule { system } => write!(f, "`{system}` declares no quadrature rule"),
             StepError::Ambiguous { t } => write!(f, "two velocities have the same momenta at t = {t:.9}"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
@@ -388,6 +399,7 @@ impl fmt::Display for StepError {
             Self::NoTimeScale { .. } => {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or use `Gauss`")
             }
+            Self::NoStepDensity { .. } => f.write_str("; make the table `cubic`, or take `FixedStep` or `Gauss`"),
             Self::NoRule { .. } => f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`"),
             Self::Ambiguous { .. } => {
                 f.write_str("; L is not defined at rest and has a branch on each side: write an L with one branch")

@@ -47,6 +47,7 @@ macro_rules! forward {
         const ANGLES: [bool; $n] = <$s as $crate::Lagrangian<$n, $t>>::ANGLES;
         const PARAMETERS: &'static [&'static str] = <$s as $crate::Lagrangian<$n, $t>>::PARAMETERS;
         const INPUTS: &'static [usize] = <$s as $crate::Lagrangian<$n, $t>>::INPUTS;
+        const MONOTONE_TABLE: Option<&'static str> = <$s as $crate::Lagrangian<$n, $t>>::MONOTONE_TABLE;
 
         fn parameter(&$this, index: usize) -> $t {
             <$s as $crate::Lagrangian<$n, $t>>::parameter($to, index)

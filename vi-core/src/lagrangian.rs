@@ -24,6 +24,10 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     /// set, in ascending order.
     const INPUTS: &'static [usize] = &[];
 
+    /// The name of a `monotone` table in L, if there is one: the step density jumps at its places, and no
+    /// energy-preserving step is taken.
+    const MONOTONE_TABLE: Option<&'static str> = None;
+
     /// The value of the parameter of this index in [`Lagrangian::PARAMETERS`].
     fn parameter(&self, _index: usize) -> T {
         T::zero()

@@ -7,9 +7,10 @@ use super::interval::Last;
 use super::lengths::{After, Lengths};
 use crate::called::Called;
 use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
 use crate::momentum::continuation::{self, BranchPoint};
 use crate::node::Node;
-use crate::real::Scalar;
+use crate::real::{Real, Scalar};
 use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
@@ -23,6 +24,7 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     node: &mut Node<N, T>,
     h: T,
 ) -> Result<Lengths<N, T>, StepError> {
+    check_density::<N, T, S>()?;
     let state = node.state();
     let rest = state.velocity(system)?;
     let called = &Called(*system);
@@ -66,4 +68,12 @@ pub(crate) fn first_interval<const N: usize, T: Scalar, S: EnergyStepping<N, T>>
     // Only the first guess depends on the acceleration; without one v is constant.
     let acceleration = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
     Ok(After { node, lengths: Lengths::new(Last::first(v, h, density, acceleration * h)) })
+}
+
+/// Checks that the step density is continuous.
+///
+/// # Errors
+/// [`StepError::NoStepDensity`].
+pub(crate) fn check_density<const N: usize, T: Real, S: Lagrangian<N, T>>() -> Result<(), StepError> {
+    S::MONOTONE_TABLE.map_or(Ok(()), |table| Err(StepError::NoStepDensity { table }))
 }

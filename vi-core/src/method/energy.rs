@@ -291,6 +291,7 @@ fn after<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
     h: T,
     v: SVector<T, N>,
 ) -> Result<Run<EnergyPreserving, S, N, T>, StepError> {
+    start::check_density::<N, T, S>()?;
     match start::first_interval(&Called(system), start, h, v) {
         Ok(After { node, lengths }) => Ok(Run::resumed(EnergyPreserving, system, (node, h, lengths))),
         Err(failure) => Err(failure.explained(&system, &start, h, &v)),

@@ -38,6 +38,7 @@ use super::gauss::{Gauss, GaussOutput, LastStages};
 use super::length::{Search, Trial};
 use super::{Memory, Method, Problem, Report};
 use crate::collocation::Collocation;
+use crate::energy_preserving::start::check_density;
 use crate::error::StepError;
 use crate::gauss::density::{power, step_density};
 use crate::gauss::energies::{bounded_energies, energies};
@@ -455,6 +456,7 @@ where
     }
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
+        check_density::<N, f64, S>()?;
         node.energy = 0.0;
         let mut memory = begun(system, node, h)?;
         let at = Problem { system, prepared: &Instructions::detected(), node, h };

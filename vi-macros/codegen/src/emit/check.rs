@@ -5,6 +5,7 @@
 //! without a rule has the tests of its motion and of its Gauss steps.
 
 use super::formula::number;
+use super::lagrangian::monotone_table;
 use super::{Source, Steps};
 use crate::pretty::snake_case;
 use crate::rules::LEAST_ORDER;
@@ -108,13 +109,14 @@ fn of_steps(steps: &Steps) -> Vec<Check> {
     let forced = steps.model.forced;
     let rule = steps.discrete.rule;
     let symmetric = rule.is_some_and(|rule| rule.symmetric);
-    let step_density = rule.is_some_and(|rule| rule.step_density);
+    let is_monotone = monotone_table(steps).is_some();
+    let step_density = rule.is_some_and(|rule| rule.step_density) && !is_monotone;
     let order = Literal::u32_unsuffixed(rule.map_or(LEAST_ORDER, |rule| rule.order));
     let each = [
         ("derivatives", true, TokenStream::new()),
         ("slots", true, TokenStream::new()),
         ("steps", true, TokenStream::new()),
-        ("energy_equations", steps.discrete.has_energy_steps(), TokenStream::new()),
+        ("energy_equations", steps.discrete.has_energy_steps() && !is_monotone, TokenStream::new()),
         ("order", true, quote!(, #order)),
         ("momenta", steps.system.continuous.cyclic.contains(&true), TokenStream::new()),
         ("symplecticity", !forced, TokenStream::new()),

@@ -5,7 +5,7 @@ use super::body::{Body, VelocityFrom, body, state_parts};
 use super::entries::{self, ResultEntry};
 use super::functions;
 use super::matrix::matrix;
-use crate::model::{Coordinate, Model, Parameter};
+use crate::model::{Coordinate, Function, FunctionKind, Model, Parameter, TableKind};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::{Literal, TokenStream};
@@ -31,6 +31,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
         .collect();
     let inputs =
         (!inputs.is_empty()).then(|| quote!(const INPUTS: &'static [::core::primitive::usize] = &[#(#inputs),*];));
+    let monotone = monotone(source);
     let functions = [
         number(source, FunctionId::Lagrangian, &source.formula("L", of.lagrangian)),
         number(source, FunctionId::Energy, &source.formula("v·L_v − L", of.energy)),
@@ -51,6 +52,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
             #angles
             const PARAMETERS: &'static [&'static str] = &[#(#names),*];
             #inputs
+            #monotone
 
             fn parameter(&self, index: usize) -> T {
                 [#(self.#parameters),*][index]
@@ -59,6 +61,25 @@ pub(super) fn item(source: &Source) -> TokenStream {
             #(#functions)*
         }
     }
+}
+
+/// The constant that names a monotone table in L, if there is one.
+fn monotone(source: &Source) -> Option<TokenStream> {
+    let name = monotone_table(source)?;
+    Some(quote! {
+        const MONOTONE_TABLE: ::core::option::Option<&'static str> = ::core::option::Option::Some(#name);
+    })
+}
+
+/// The name of a monotone table in L.
+pub(super) fn monotone_table(source: &Source) -> Option<String> {
+    let is_monotone = |function: &&Function| {
+        let is_called =
+            |expr: Expr| matches!(source.pool.node(expr), Node::Opaque(of, _) if function.name == of.name.as_ref());
+        let is_table = matches!(&function.kind, FunctionKind::Table(table) if table.kind == TableKind::Monotone);
+        is_table && source.pool.reachable(&[source.model.lagrangian]).into_iter().any(is_called)
+    };
+    source.model.functions.iter().find(is_monotone).map(|function| function.name.to_string())
 }
 
 /// The constant that marks angles, if there are any.

@@ -5,7 +5,7 @@
 //! sequence. There the expression, and its derivatives along a fixed direction, are evaluated with either arm of the
 //! condition. Parameters have their defaults.
 
-use super::{FunctionKind, Model, Parameter, TableKind, probe};
+use super::{FunctionKind, Model, Outside, Parameter, TableKind, probe};
 use crate::symbol::Symbol;
 use std::collections::BTreeMap;
 use vi_expr::{Expr, Node, Pool};
@@ -41,9 +41,16 @@ pub(super) fn smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Option<Smoot
             let Node::Opaque(function, _) = pool.node(*node) else { continue };
             let known = model.functions.iter().find(|known| known.name == function.name.as_ref());
             if let Some(FunctionKind::Table(table)) = known.map(|known| &known.kind) {
-                let derivatives = (table.kind.smoothness() + more).saturating_sub(function.order());
+                let of = |smoothness: usize| (smoothness + more).saturating_sub(function.order());
                 let cause = format!("the table `{}`", function.name);
-                found.push(Smoothness { derivatives, cause });
+                found.push(Smoothness { derivatives: of(table.kind.smoothness()), cause });
+                let at_the_ends = match table.outside {
+                    Outside::Hold => 0,
+                    Outside::Extend => 1,
+                    Outside::Nothing | Outside::Periodic => SMOOTH,
+                };
+                let cause = format!("the ends of the table `{}`", function.name);
+                found.push(Smoothness { derivatives: of(at_the_ends), cause });
             }
         }
         let mut slope = expr;
