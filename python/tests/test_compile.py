@@ -145,3 +145,36 @@ def test_an_interrupted_build_is_taken_up(warm_cache, tmp_path):
         os.killpg(process.pid, 9)
     process.wait()
     assert vi.compile(SPRING.format(8.5))().k == 8.5
+
+
+def test_vectors_a_table_of_a_file_and_an_input(warm_cache, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    definition = """
+    struct Glider {
+        param m = 2.0, g = 9.81;
+        input thrust = 1.5;
+        coord r[2];
+        table drag(v) = "drag.csv" extend;
+        let v = dot(r);
+        L = m * v * v / 2 - m * g * r[1];
+        force r = [thrust, m * g] - drag(norm(v)) * v;
+        discretize midpoint;
+    }
+    """
+    with pytest.raises(vi.CompileError, match=r"the table `drag` cannot be read from its file"):
+        vi.compile(definition)
+    (tmp_path / "drag.csv").write_text("v,drag\n0,0.5\n1,0.5\n2,0.5\n9,0.5\n")
+    Glider = vi.compile(definition)
+    assert Glider.coordinates == ("r[0]", "r[1]")
+    sol = Glider().integrate((0.0, [0.0, 0.0], [1.0, 0.0]), (0.0, 2.0), h=0.01)
+    # m v' = thrust - v/2, by hand.
+    exact = 3.0 - 2.0 * np.exp(-0.25 * 2.0)
+    assert abs(sol["dot(r[0])"][-1] - exact) < 1e-8
+    (tmp_path / "drag.csv").write_text("v,drag\n0,0\n1,0\n2,0\n9,0\n")
+    assert vi.compile(definition) is not Glider
+    assert abs(vi.compile(definition)().integrate((0.0, [0.0, 0.0], [1.0, 0.0]), (0.0, 2.0), h=0.01)["dot(r[0])"][-1] - 2.5) < 1e-9
+
+
+def test_a_rust_function_needs_a_crate():
+    with pytest.raises(vi.CompileError, match=r"`cl` is a Rust function.*vi-lab new NAME --python"):
+        vi.compile("struct S { coord x; fn cl(a) = crate::aero::cl; L = dot(x)^2/2 - cl(x); }")

@@ -123,9 +123,10 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
         raise TypeError(f"the definition must be a text, not {type(definition).__name__}")
     if methods is not None and not isinstance(methods, str):
         raise TypeError(f'methods must be a text such as "fixed; gauss 8", not {type(methods).__name__}')
+    definition, tables = _located(definition)
     code = _without_comments(definition)
     methods = _methods(methods, code)
-    key = "\0".join([definition, methods, str(CONTRACT), _core.sources_digest, sysconfig.get_platform()])
+    key = "\0".join([definition, tables, methods, str(CONTRACT), _core.sources_digest, sysconfig.get_platform()])
     digest = hashlib.sha256(key.encode()).hexdigest()[:20]
     if digest not in _loaded:
         library = f"s_{digest}"
@@ -203,8 +204,31 @@ def _words(methods: str) -> str:
     return "; ".join(words)
 
 
+_TABLE = re.compile(r'(\btable\b[^;"]*=\s*")([^"]+)(")')
+_RUST = re.compile(r"\bfn\s+(\w+)\s*\([^)]*\)\s*=\s*(?:::)?\w+::")
+
+
+def _located(definition: str) -> tuple[str, str]:
+    """The definition with absolute paths of its tables, and a digest of their files: a relative path starts at the
+    current folder, and a change of a file is a change of the system."""
+    digest = hashlib.sha256()
+
+    def located(found: re.Match[str]) -> str:
+        path = Path(found[2]).expanduser().absolute()
+        if path.is_file():
+            digest.update(path.read_bytes())
+        return found[1] + path.as_posix() + found[3]
+
+    return _TABLE.sub(located, definition), digest.hexdigest()
+
+
 def _checked(definition: str) -> str:
     """The name of the system. Mistakes are found here in milliseconds, by the compiler that is part of `_core`."""
+    if found := _RUST.search(_without_comments(definition)):
+        raise CompileError(
+            f"`{found[1]}` is a Rust function, which a text alone does not have: write it in the language, make it a "
+            "table, or put the system into a crate, `vi-lab new NAME --python`"
+        )
     try:
         name, _, _ = _core.explain(definition)
     except ValueError as mistake:

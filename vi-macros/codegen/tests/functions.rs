@@ -254,3 +254,51 @@ fn files_of_tables() {
         assert!(text.starts_with(message), "{name}: {text}");
     }
 }
+
+#[test]
+fn tables_are_explained() {
+    let text = "struct S { coord x; fn cl(a) = crate::aero::cl; table V(x) = [(0, 1), (1, 3), (2, 2)] hold; \
+                L = dot(x)^2 / 2 - V(x); force x = cl(x); }";
+    let own = derived(text);
+    let explained = vi_codegen::inspect::explanation_of(&own).text();
+    for line in [
+        "cl(a) = crate::aero::cl",
+        "table V(x): cubic, 3 values from 0 to 2, hold",
+        "1            3 ██████████████████████████████",
+    ] {
+        assert!(explained.contains(line), "{line}\n{explained}");
+    }
+    let limit = "`L` has 0 continuous derivatives because of the ends of the table `V`";
+    assert!(explained.contains(&limit.replace('`', "")) || explained.contains(limit), "{explained}");
+}
+
+#[test]
+fn the_smoothness_of_l_is_found() {
+    let found = |clauses: &str| {
+        let own = derived(&format!("struct S {{ coord x; {clauses} discretize midpoint; }}")).own;
+        own.model.smoothness.map(|smoothness| (smoothness.derivatives, smoothness.cause))
+    };
+    let table = |words: &str| format!("table V(x) = [(0, 1), (1, 3), (2, 2), (3, 1)] {words};");
+    assert_eq!(found("L = dot(x)^2 / 2 - cos(x);"), None);
+    let of_table = |derivatives| Some((derivatives, "the table `V`".to_owned()));
+    assert_eq!(found(&(table("") + "L = dot(x)^2 / 2 - V(x);")), of_table(2));
+    assert_eq!(found(&(table("") + "L = dot(x)^2 / 2 - dot(V(x))^2 - x^2;")), of_table(1));
+    assert_eq!(found(&(table("") + "L = dot(x)^2 / 2; force x = V(x);")), of_table(3));
+    assert_eq!(found(&(table("quintic") + "L = dot(x)^2 / 2 - V(x);")), of_table(4));
+    assert_eq!(found(&(table("monotone") + "L = dot(x)^2 / 2 - V(x);")), of_table(1));
+    assert_eq!(found(&(table("linear") + "L = dot(x)^2 / 2; force x = V(x);")), of_table(1));
+    let of_condition = |derivatives, text: &str| Some((derivatives, format!("the condition `{text} > 0`")));
+    assert_eq!(found("L = dot(x)^2 / 2 - max(x, 0);"), of_condition(0, "x"));
+    assert_eq!(found("L = dot(x)^2 / 2 - max(x, 0)^2;"), of_condition(1, "x"));
+    assert_eq!(found("L = dot(x)^2 / 2 - max(x - 1, 0)^4;"), of_condition(3, "x - 1"));
+    assert_eq!(found("L = dot(x)^2 / 2; force x = max(x, 0);"), of_condition(1, "x"));
+    assert_eq!(found("L = dot(x)^2 / 2; force x = if x > 0 { 1 } else { -1 };"), of_condition(0, "x"));
+}
+
+#[test]
+fn a_linear_table_belongs_in_a_force() {
+    case(
+        "coord x; table V(x) = [(0, 1), (1, 3)] linear; «L» = dot(x)^2 / 2 - V(x);",
+        "the table `V` is linear, but `L` needs a continuous slope\nhelp: use it in a force, or make it `cubic` or `monotone`",
+    );
+}

@@ -17,6 +17,7 @@
 mod discrete;
 mod explanation;
 mod findings;
+mod functions;
 mod gauss;
 pub mod latex;
 mod model;
