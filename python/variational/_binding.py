@@ -65,19 +65,21 @@ def class_of(kind: Any, module: str, metaclass: type = type) -> type[System]:
 
 def _parameters(kind: Any) -> dict[str, Parameter]:
     """The parameters by their names in Python. `m[0]`, `m[1]`, … are one array."""
-    groups: dict[str, list[tuple[int, float, str, bool]]] = {}
+    groups: dict[str, list[tuple[int, float, str, str]]] = {}
     for index, (name, default, about) in enumerate(kind.parameters):
-        name, _, is_entry = name.partition("[")
-        groups.setdefault(name, []).append((index, default, about, bool(is_entry)))
+        name, _, indices = name.partition("[")
+        groups.setdefault(name, []).append((index, default, about, indices))
     fields: dict[str, Parameter] = {}
     for name, entries in groups.items():
         start, default, about, is_array = entries[0]
+        # The last entry of a matrix is `K[1][2]`: two rows of three.
+        shape = tuple(int(index) + 1 for index in entries[-1][3].rstrip("]").split("][") if index)
         defaults = tuple(default for _, default, _, _ in entries)
         field = spelled(name)
         while hasattr(System, field) or field in fields:
             field += "_"
         fields[field] = Parameter(
-            field, start, len(entries) if is_array else None, defaults if is_array else default, about.strip()
+            field, start, shape, defaults if is_array else default, about.strip()
         )
     return fields
 
@@ -88,7 +90,7 @@ def _documentation(kind: Any, coordinates: tuple[str, ...], fields: dict[str, Pa
     if fields:
         lines += ["", "Parameters", "----------"]
     for name, field in fields.items():
-        kind_of = "float" if field.length is None else f"array of {field.length}"
+        kind_of = "float" if field.length is None else f"array of {' by '.join(map(str, field.shape))}"
         lines.append(f"{name} : {kind_of}, default {field.default}")
         about = inspect.cleandoc(field.__doc__ or "")
         if about != f"Parameter {name}.":

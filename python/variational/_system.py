@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import dataclasses
 import importlib
 from collections.abc import Mapping
@@ -22,8 +23,9 @@ from ._run import Run
 class Parameter:
     """A parameter of a system. An array is returned as a copy that cannot be written: assign the whole array."""
 
-    def __init__(self, name: str, start: int, length: int | None, default: Any, about: str):
-        self.name, self.start, self.length, self.default = name, start, length, default
+    def __init__(self, name: str, start: int, shape: tuple[int, ...], default: Any, about: str):
+        self.name, self.start, self.shape, self.default = name, start, shape, default
+        self.length = math.prod(shape) if shape else None
         self.__doc__ = about or f"Parameter {name}."
 
     @property
@@ -36,7 +38,7 @@ class Parameter:
             return self
         if self.length is None:
             return float(system._values[self.start])
-        values = system._values[self.start : self.start + self.length].copy()
+        values = system._values[self.start : self.start + self.length].reshape(self.shape).copy()
         values.flags.writeable = False
         return values
 
@@ -49,10 +51,11 @@ class Parameter:
         if self.length is None:
             return np.array([number(value, self.name)])
         found = array(value, self.name)
-        if found.shape not in ((), (self.length,)):
-            raise ValueError(f"{self.name} must have {self.length} entries, not the shape {found.shape}")
+        if found.shape not in ((), self.shape, (self.length,)):
+            wanted = f"{self.length} entries" if len(self.shape) == 1 else f"the shape {self.shape}"
+            raise ValueError(f"{self.name} must have {wanted}, not the shape {found.shape}")
         finite(found, self.name)
-        return np.broadcast_to(found, (self.length,))
+        return np.broadcast_to(found.reshape(-1) if found.shape else found, (self.length,))
 
 
 class System:
