@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import dataclasses
 import importlib
+import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 

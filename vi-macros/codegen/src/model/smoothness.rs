@@ -16,7 +16,7 @@ const PAIRS: u32 = 40;
 const BORDERS: usize = 10;
 /// Bisections of the way between two points: the bits of a number.
 const BISECTIONS: u32 = 60;
-/// Relative difference at a border that counts as a jump. A root has an infinite slope there, and differs by 1e-8.
+/// Difference at a border that counts as a jump, relative to the values around it. A root has an infinite slope there, and differs by 1e-8.
 const JUMP: f64 = 1e-6;
 /// Number of continuous derivatives that leave nothing to say: a quintic spline has four.
 const SMOOTH: usize = 5;
@@ -114,8 +114,8 @@ pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]
         let mut borders = 0;
         for pair in 0..PAIRS {
             let Some(values) = border(pool, condition, pair, &sides, parameters) else { continue };
-            let [then, otherwise] = values;
-            if (then - otherwise).abs() > JUMP * (then.abs() + otherwise.abs()) {
+            let [then, otherwise, scale] = values;
+            if (then - otherwise).abs() > JUMP * scale {
                 return Some(condition);
             }
             borders += 1;
@@ -127,7 +127,7 @@ pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]
     None
 }
 
-/// The values of two expressions at a point where a condition changes its sign; `None` if it does not between the two
+/// The values of two expressions at a point where a condition changes its sign, and their size around it; `None` if it does not between the two
 /// points of this pair, or if a value is not finite.
 fn border(
     pool: &Pool<Symbol>,
@@ -135,7 +135,7 @@ fn border(
     pair: u32,
     sides: &[Expr; 2],
     parameters: &[Parameter],
-) -> Option<[f64; 2]> {
+) -> Option<[f64; 3]> {
     let mut ends: BTreeMap<Symbol, [f64; 2]> = BTreeMap::new();
     let mut at = |way: f64, exprs: &[Expr]| {
         pool.evaluate_all(exprs, &mut |symbol| {
@@ -162,5 +162,7 @@ fn border(
     }
     let values = at(high, sides);
     let [then, otherwise] = values[..] else { return None };
-    (then.is_finite() && otherwise.is_finite()).then_some([then, otherwise])
+    let around = [at(0.0, sides), at(1.0, sides)].concat().into_iter().chain(values);
+    let scale = around.filter(|value| value.is_finite()).fold(0.0_f64, |scale, value| scale.max(value.abs()));
+    (then.is_finite() && otherwise.is_finite()).then_some([then, otherwise, scale])
 }
