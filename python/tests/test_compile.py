@@ -180,3 +180,36 @@ def test_vectors_a_table_of_a_file_and_an_input(warm_cache, tmp_path, monkeypatc
 def test_a_rust_function_needs_a_crate():
     with pytest.raises(vi.CompileError, match=r"`cl` is a Rust function.*vi-lab new NAME --python"):
         vi.compile("struct S { coord x; fn cl(a) = crate::aero::cl; L = dot(x)^2/2 - cl(x); }")
+
+
+BODIES = """
+struct Bodies {
+    const N = 4;
+    param m[N] = [1.0, 0.3, 0.2, 0.1], G = 0.8;
+    coord r[N][3];
+    let v = dot(r);
+    L = sum(i in 0..N, m[i] * v[i] * v[i]) / 2
+        + sum(i in 0..N, j in 0..i, G * m[i] * m[j] / norm(r[i] - r[j]));
+}
+"""
+
+
+def test_bodies_in_space_against_dop853(warm_cache):
+    from scipy.integrate import solve_ivp
+
+    Bodies = vi.compile(BODIES)
+    m, g = np.array([1.0, 0.3, 0.2, 0.1]), 0.8
+    r = np.array([[0.0, 0.1, 0.0], [1.5, 0.0, 0.2], [-0.4, 2.5, -0.3], [0.5, -1.1, 3.5]])
+    v = np.array([[0.0, -0.05, 0.0], [0.1, 0.8, 0.0], [-0.6, 0.0, 0.1], [0.2, 0.4, 0.2]])
+
+    def rate(_, y):
+        r, v = y.reshape(2, 4, 3)
+        d = r[:, None] - r[None]
+        distance = np.linalg.norm(d, axis=-1) + np.eye(4)
+        return np.concatenate([v.ravel(), (-g * (m[None, :, None] * d / distance[..., None] ** 3).sum(1)).ravel()])
+
+    exact = solve_ivp(rate, (0.0, 20.0), np.concatenate([r.ravel(), v.ravel()]), "DOP853", rtol=1e-13, atol=1e-13)
+    end = Bodies().integrate(r.ravel(), v.ravel(), h=0.05).until(20.0)
+    error = np.abs(end.q[-1] - exact.y[:12, -1]).max()
+    print(error)
+    assert error < 1e-9

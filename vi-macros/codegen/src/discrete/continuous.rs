@@ -45,7 +45,7 @@ pub struct Continuous {
     /// Expressions checked for finite values, parts before wholes: variables, parameters, calls, roots, quotients, L,
     /// f.
     pub watched: Vec<Expr>,
-    /// Calls of Rust functions and tables in L and f, with their arguments, inner calls first.
+    /// Calls of Rust functions and tables in L, f and the time scale, with their arguments, inner calls first.
     pub calls: Vec<(Expr, Vec<Expr>)>,
     /// Neither L nor f depends on the time.
     pub autonomous: bool,
@@ -215,7 +215,7 @@ fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
 }
 
 fn calls(pool: &Pool<Symbol>, model: &Model) -> Vec<(Expr, Vec<Expr>)> {
-    let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).copied().collect();
+    let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).chain(&model.time_scale).copied().collect();
     let nodes = pool.reachable(&wholes).into_iter();
     let call = |node| match pool.node(node) {
         Node::Opaque(function, arguments) => Some((node, arguments[..function.arity].to_vec())),
