@@ -1,5 +1,6 @@
 //! The tests across crates with many steps as one program, compiled with optimization.
 
+mod angles;
 mod derivatives_at_the_edge;
 mod derivatives_of_runs;
 mod energy_preserving_gauss;

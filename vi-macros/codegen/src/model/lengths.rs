@@ -52,7 +52,7 @@ impl Context<'_> {
             Value::Number(only) | Value::Wrong(only) => {
                 Some(vec![self.finite(only, written.span, name).unwrap_or(1.0); count])
             }
-            value if value.shape() == of.1 => {
+            value @ Value::Tensor(_) if value.shape() == of.1 => {
                 let entries = value.entries().iter().enumerate();
                 entries.map(|(place, entry)| self.finite(*entry, entry_span(written, of.1, place), name)).collect()
             }
