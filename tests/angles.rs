@@ -1,4 +1,5 @@
 //! Angles: whole turns leave no trace in a motion, and everything that a user sees is continuous.
+#![allow(clippy::cast_precision_loss, reason = "counts of turns and of events")]
 
 use std::f64::consts::{PI, TAU};
 use vi_core::derivatives::{Differentiable, Tangent, Variation};
@@ -144,7 +145,8 @@ fn a_start_is_reduced_as_the_number_that_it_is() {
     assert_eq!((far.turns(), far.reduced()[0].to_bits()), ([159_154_943], rest.to_bits()));
     assert_eq!(far.state().q[0].to_bits(), 1e9_f64.to_bits());
     for _ in 0..1000 {
-        (far.step().expect("a step"), near.step().expect("a step"));
+        far.step().expect("a step");
+        near.step().expect("a step");
     }
     let difference = far.reduced() - near.reduced();
     // The start differs by 5e-18. Measured: 4e-16.
@@ -187,7 +189,7 @@ fn every_turn_is_an_event_once() {
         let near = crossings(Gauss::<6>, h, 0, end);
         let mut run = Rotor::default().at(0.0, [0.4], [7.0]).integrate(Gauss::<6>, h).expect("a start");
         let whole = (run.until(end).expect("an end").q[0] / TAU).floor();
-        assert_eq!(near.len() as f64, whole, "h = {h}");
+        assert!((near.len() as f64 - whole).abs() < 0.5, "h = {h}");
         // With turns, the angle of an event has eight digits less.
         let far = crossings(Gauss::<6>, h, TURNS, end);
         assert_eq!(far.len(), near.len());
@@ -314,13 +316,16 @@ where
     let of = |run| Tangent::from_start(run, Variation::of_state()).expect("a start");
     let (mut one, mut other) = (of(start), of(turned));
     for step in 0..100 {
-        (one.step().expect("a step"), other.step().expect("a step"));
+        one.step().expect("a step");
+        other.step().expect("a step");
         assert_eq!(one.variations(), other.variations(), "step {step}");
     }
     let t = one.run().t() + 1.234;
-    (one.until(t).expect("a time"), other.until(t).expect("a time"));
+    one.until(t).expect("a time");
+    other.until(t).expect("a time");
     assert_eq!(one.variations(), other.variations());
-    (one.step_of(0.01).expect("a step"), other.step_of(0.01).expect("a step"));
+    one.step_of(0.01).expect("a step");
+    other.step_of(0.01).expect("a step");
     assert_eq!(one.variations(), other.variations());
     assert!(one.run().turns()[N - 1] > 0 && other.run().turns()[N - 1] > TURNS);
 }
@@ -355,7 +360,8 @@ fn measured_errors_do_not_see_turns() {
     let (mut one, mut other) = (start.monitored(), turned.monitored());
     for _ in 0..2000 {
         assert_eq!(one.run().local_error(), other.run().local_error());
-        (one.step().expect("a step"), other.step().expect("a step"));
+        one.step().expect("a step");
+        other.step().expect("a step");
     }
     let mut plain = Unreduced::default().at(0.3, [0.4], [7.0]).integrate(FixedStep, 0.05).expect("a start").monitored();
     for _ in 0..2000 {

@@ -3,7 +3,7 @@
 
 use vi_core::lagrangian::Undefined;
 use vi_core::prelude::*;
-use vi_core::real::{Dual, Lanes, Number as _};
+use vi_core::real::{Dual, Lanes};
 use vi_core::stepping::Convertible;
 use vi_core::{Lagrangian, SVector};
 
@@ -11,25 +11,25 @@ use vi_core::{Lagrangian, SVector};
 mod laws {
     use vi_core::real::Number;
 
-    pub fn wave<T: Number>(a: T) -> T {
+    pub(super) fn wave<T: Number>(a: T) -> T {
         a.sin()
     }
 
-    pub fn coupling<T: Number>(a: T, b: T) -> T {
+    pub(super) fn coupling<T: Number>(a: T, b: T) -> T {
         a * a * (b + a).cos()
     }
 
-    pub fn triple<T: Number>(a: T, b: T, c: T) -> T {
+    pub(super) fn triple<T: Number>(a: T, b: T, c: T) -> T {
         a * b * c + (a - c).exp()
     }
 
     /// A piecewise law with its own table.
-    pub fn piecewise<T: Number>(a: T) -> T {
+    pub(super) fn piecewise<T: Number>(a: T) -> T {
         let stiff = a - T::real(0.5);
         a * a + stiff.if_positive(stiff * stiff * stiff, T::real(0.0))
     }
 
-    pub fn until_one<T: Number>(a: T) -> T {
+    pub(super) fn until_one<T: Number>(a: T) -> T {
         (T::real(1.0) - a).sqrt()
     }
 }

@@ -59,7 +59,8 @@ fn has_the_bits_of_a_run_without_turns<M: Method<Rotor, 1>>(mut far: Run<M, Roto
     let mut near = far.clone();
     near.set_turns([0]).expect("turns");
     for _ in 0..AFTER {
-        (far.step().expect("a step"), near.step().expect("a step"));
+        far.step().expect("a step");
+        near.step().expect("a step");
         assert_eq!((far.node(), far.reduced(), far.energy()), (near.node(), near.reduced(), near.energy()));
     }
     assert!(far.turns()[0] > 9_999_990 && near.turns()[0] > 90);

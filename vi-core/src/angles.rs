@@ -33,6 +33,7 @@ const LARGEST: i64 = 1 << 53;
 pub type Turns<const N: usize> = SVector<i64, N>;
 
 /// Whether a system has angles.
+#[must_use]
 pub const fn has_angles<S: Lagrangian<N, T>, const N: usize, T: Scalar>() -> bool {
     let mut index = 0;
     while index < N {
@@ -177,7 +178,7 @@ fn nearest(high: f64, low: f64) -> Option<(i64, [f64; 2])> {
         return Some((0, [high, low]));
     }
     #[allow(clippy::cast_precision_loss)] // 2^53
-    if !(k.abs() <= LARGEST as f64) {
+    if k.is_nan() || k.abs() > LARGEST as f64 {
         return None;
     }
     // The difference is exact, since both numbers are within a factor of two.
@@ -234,7 +235,7 @@ mod tests {
             (1e9, 159_154_943, 0.577_395_423_501_385_2, -4.937_786_218_090_278_4e-18),
             (4.5, 1, -1.783_185_307_179_586_5, -2.288_475_490_443_932_7e-17),
             (-1e9, -159_154_943, -0.577_395_423_501_385_2, 4.937_786_218_090_278_4e-18),
-            (6.283_185_307_179_586, 1, -2.449_293_598_294_706_4e-16, 5.989_539_619_436_679e-33),
+            (core::f64::consts::TAU, 1, -2.449_293_598_294_706_4e-16, 5.989_539_619_436_679e-33),
             (62_831_853.071_795_86, 10_000_000, -6.326_469_511_952_699e-9, -1.537_344_478_267_249_8e-25),
             (1e15, 159_154_943_091_895, 2.109_698_117_070_112_6, 3.160_753_408_753_027_7e-17),
             (-3.7e16, -5_888_732_894_400_127, -2.660_606_645_439_128_4, -6.683_282_685_223_188e-18),

@@ -16,6 +16,7 @@ pub mod discrete;
 pub mod emit;
 pub mod file;
 pub mod findings;
+pub mod functions;
 mod habits;
 mod header;
 #[cfg(feature = "inspect")]

@@ -4,6 +4,7 @@
 //! collects its errors in [`Errors`] and reports them all before the next stage starts.
 
 use crate::arrays::ArrayMistake;
+use crate::functions::FunctionMistake;
 use crate::habits::{self, Habit};
 use crate::rules;
 use proc_macro2::Span;
@@ -22,6 +23,23 @@ const FRICTION: &str = "write `c * dot(x)^2 / 2` for viscous friction, `c * abs(
 /// Correction of a Rayleigh function that adds energy.
 const OTHER_SIGN: &str =
     "reverse its sign, as in `c * dot(x)^2 / 2` with a positive `c`; a driving force belongs in `force x = …;`";
+
+/// The functions.
+const FUNCTIONS: &str = "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow max min clamp sum cross norm \
+    transpose, in a rule L f, elsewhere dot; declare others with `fn` or `table`";
+
+/// What `dot` takes.
+const OF_TIME: &str = "`dot` is the derivative with respect to time: its argument must depend on time or a coordinate";
+
+/// Numbers and vectors of a rule.
+const IN_RULE: &str = "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product";
+
+/// What a check sets.
+const IN_CHECK: &str = "a check sets coordinates, their `dot(…)`, parameters, the time `t` and the step `h`";
+
+/// The size at which systems end.
+const LARGE: &str = "use fewer coordinates or a simpler Lagrangian; systems in which all coordinates are coupled end near 18 links by positions, 28 links by \
+    angles, 12 bodies in space";
 
 /// Correction of an expression without a derivative.
 const NO_DERIVATIVE: &str = "its derivative divides by zero, or takes the logarithm of zero or of a negative number, for every state; rewrite the expression";
@@ -235,33 +253,13 @@ pub enum Message {
     AfterSystem,
     /// The number of messages that are not shown.
     More { count: usize },
-    /// A function or table without arguments in its declaration.
-    FunctionArguments { name: String },
-    /// A call of a declared function with the wrong number of arguments.
-    FunctionArity { name: String, arguments: Vec<String>, given: usize },
-    /// A Rust function of more arguments than derivatives are available for.
-    TooManyArguments { name: String, limit: usize },
-    /// A function of the language that calls itself.
-    Recursive { name: String },
-    /// An unused function or table.
-    UnusedFunction { name: String },
-    /// A table whose values are none of the allowed forms.
-    TableData,
-    /// A table that cannot be read or used, with the reason and the correction.
-    Table { name: String, what: String, help: String },
-    /// A word after a table that is no kind of interpolation.
-    TableWord { word: String, near: Option<String> },
-    /// An `if` without both arms.
-    MissingElse,
-    /// An `if` without a comparison.
-    MissingComparison,
-    /// An L that is discontinuous where this expression changes its sign.
-    Jump { condition: String },
+    /// A mistake with functions, tables and conditions.
+    Function(FunctionMistake),
     /// A bug of this compiler, found by checking its own output.
     Internal { what: &'static str },
 }
 
-fn did_you_mean(near: Option<&String>, otherwise: &str) -> String {
+pub(crate) fn did_you_mean(near: Option<&String>, otherwise: &str) -> String {
     near.map_or_else(|| otherwise.to_owned(), |name| format!("did you mean `{name}`?"))
 }
 
@@ -420,19 +418,7 @@ impl Message {
             Self::TooLarge(TooLarge::Work { limit }) => format!("the system takes more than {limit} steps of algebra"),
             Self::AfterSystem => "unexpected text after the system".to_owned(),
             Self::More { count } => format!("{count} more mistakes are not shown"),
-            Self::FunctionArguments { name } => format!("`{name}` is declared without arguments"),
-            Self::FunctionArity { name, arguments, given } => {
-                format!("`{name}` takes {} argument(s), not {given}", arguments.len())
-            }
-            Self::TooManyArguments { name, limit } => format!("`{name}` has more than {limit} arguments"),
-            Self::Recursive { name } => format!("`{name}` calls itself"),
-            Self::UnusedFunction { name } => format!("`{name}` is never used"),
-            Self::TableData => "these are not the values of a table".to_owned(),
-            Self::Table { name, what, .. } => format!("the table `{name}` {what}"),
-            Self::TableWord { word, .. } => format!("unknown kind of table `{word}`"),
-            Self::MissingElse => "`if` needs two values in braces".to_owned(),
-            Self::MissingComparison => "`if` needs one comparison of two numbers".to_owned(),
-            Self::Jump { condition } => format!("`L` jumps where `{condition}` is zero"),
+            Self::Function(mistake) => mistake.what(),
             Self::Internal { what } => format!("internal error: the operations of `{what}` do not compute its formula"),
         }
     }
@@ -448,18 +434,14 @@ impl Message {
             Self::AttributeOfClause => ATTRIBUTES.to_owned(),
             Self::Unknown { name, near } => name_for(name, near.as_ref()),
             Self::Absent { absence, .. } => absence.help(),
-            Self::UnknownFunction { name, near } => habits::function(name).unwrap_or_else(|| did_you_mean(
-                near.as_ref(),
-                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow max min clamp sum cross norm transpose, in a rule L f, elsewhere dot; \
-                 declare others with `fn` or `table`",
-            )),
+            Self::UnknownFunction { name, near } => {
+                habits::function(name).unwrap_or_else(|| did_you_mean(near.as_ref(), FUNCTIONS))
+            }
             Self::Arity { name, takes, .. } => with_arguments(name, *takes),
             Self::FunctionWithoutArguments { name } => {
                 format!("write its argument: `{name}(…)`; a power follows it, `{name}(…)^2`")
             }
-            Self::DotOfConstant { .. } => {
-                "`dot` is the derivative with respect to time: its argument must depend on time or a coordinate".to_owned()
-            }
+            Self::DotOfConstant { .. } => OF_TIME.to_owned(),
             Self::DotOfOther { .. } => "in a check, `dot(…)` takes a coordinate".to_owned(),
             Self::Acceleration { .. } => {
                 "use positions, velocities, time and parameters; an inertial term belongs in `L`".to_owned()
@@ -490,7 +472,9 @@ impl Message {
             Self::FeedingDissipation => OTHER_SIGN.to_owned(),
             Self::SecondTimeScale => "write `time_scale` once".to_owned(),
             Self::VelocityInTimeScale { .. } => "use positions, time, constants and parameters".to_owned(),
-            Self::TimeScaleNotPositive => "dt = g dτ: write a g that is positive in every state of the motion".to_owned(),
+            Self::TimeScaleNotPositive => {
+                "dt = g dτ: write a g that is positive in every state of the motion".to_owned()
+            }
             Self::UnusedSlot { .. } => "a discrete Lagrangian depends on both ends of its interval".to_owned(),
             Self::MissingLagrangian => "write `L = …;`, kinetic minus potential energy".to_owned(),
             Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),
@@ -498,10 +482,7 @@ impl Message {
             Self::SecondCheck => "write `check` once".to_owned(),
             Self::MissingStep => "end it with the step, as in `h = 0.01;`".to_owned(),
             Self::StepNotPositive => "write a positive step that resolves the motion, as in `h = 0.01;`".to_owned(),
-            Self::CheckOfOther { near, .. } => did_you_mean(
-                near.as_ref(),
-                "a check sets coordinates, their `dot(…)`, parameters, the time `t` and the step `h`",
-            ),
+            Self::CheckOfOther { near, .. } => did_you_mean(near.as_ref(), IN_CHECK),
             Self::SecondEntry { .. } => "set each coordinate, velocity and parameter once".to_owned(),
             Self::MissingCoordinates => "declare them: `coord x, y;`".to_owned(),
             Self::ForceOnOther { near, .. } => {
@@ -515,14 +496,13 @@ impl Message {
             Self::WrittenInList => "write it alone: `discretize { … }`".to_owned(),
             Self::UnknownSlot { .. } => "the lines are Ld, fd_minus, fd_plus, gd_minus, gd_plus".to_owned(),
             Self::MissingSlot { name } if *name == "Ld" => "write `Ld = …;`".to_owned(),
-            Self::MissingSlot { .. } => "the system has a force: write all lines, or only `Ld`, in terms of `L`".to_owned(),
+            Self::MissingSlot { .. } => {
+                "the system has a force: write all lines, or only `Ld`, in terms of `L`".to_owned()
+            }
             Self::NotInRule { .. } => "a rule can use t0, t1, h, q0, q1, L, f, constants and parameters".to_owned(),
             Self::FieldInArgument => "write times, coordinates and velocities as their arguments".to_owned(),
             Self::SecondSlot { .. } => "write each line of a rule once".to_owned(),
-            Self::Shape { .. } => {
-                "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product"
-                    .to_owned()
-            }
+            Self::Shape { .. } => IN_RULE.to_owned(),
             Self::UnknownClause { is_coordinate: true, .. } => habits::RUN.to_owned(),
             Self::UnknownClause { found, near, is_defined, .. } => clause_for(found, near.as_ref(), *is_defined),
             Self::Expected { .. } => "write a clause as `name = expression;` and a sum as `a + 2 * b`".to_owned(),
@@ -538,45 +518,11 @@ impl Message {
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
             Self::TooLong { .. } => "write repeated terms with arrays and `sum`".to_owned(),
             Self::LongName { .. } => "choose a shorter one".to_owned(),
-            Self::TooLarge(_) => {
-                "use fewer coordinates or a simpler Lagrangian; systems in which all coordinates are coupled end near 18 links by positions, \
-                 28 links by angles, 12 bodies in space"
-                    .to_owned()
-            }
+            Self::TooLarge(_) => LARGE.to_owned(),
             Self::TooManyCoordinates { .. } => "use fewer coordinates or a simpler Lagrangian".to_owned(),
             Self::AfterSystem => "one `lagrangian!` holds one `struct`".to_owned(),
             Self::More { .. } => "correct those above, and compile again".to_owned(),
-            Self::FunctionArguments { .. } => {
-                "write its arguments, as in `fn spring(k, x) = k * x^2 / 2;` or `table drag(v) = \"drag.csv\";`; name a value without \
-                 arguments with `let`"
-                    .to_owned()
-            }
-            Self::FunctionArity { name, arguments, .. } => format!("write `{name}({})`", arguments.join(", ")),
-            Self::TooManyArguments { .. } => {
-                "declare several functions of fewer arguments, or write the expression with `fn` and `let`".to_owned()
-            }
-            Self::Recursive { .. } => "write the expression without recursion; `sum` repeats a term".to_owned(),
-            Self::UnusedFunction { .. } => "use it in `L` or in a force, or remove it".to_owned(),
-            Self::TableData => {
-                "write the path of a file, `\"drag.csv\"`, points `[(0, 0.1), (1, 0.3)]`, or values at equal distances, `[0.1, 0.3]` or \
-                 the name of an array of parameters, with `table drag(v in 0..1) = …;`"
-                    .to_owned()
-            }
-            Self::Table { help, .. } => help.clone(),
-            Self::TableWord { near, .. } => did_you_mean(
-                near.as_ref(),
-                "the words are cubic, quintic, monotone, linear; periodic, hold, extend",
-            ),
-            Self::MissingElse => "write `if a > b { x } else { y }`".to_owned(),
-            Self::MissingComparison => {
-                "write `if a > b { x } else { y }`, with `>`, `>=`, `<` or `<=`; write an `if` inside another for two conditions"
-                    .to_owned()
-            }
-            Self::Jump { .. } => {
-                "an infinite force would act there: make both expressions equal where the condition changes, as in `if x > 0 { k * x^2 / 2 } \
-                 else { 0 }`; an event with `set_state` models an impact"
-                    .to_owned()
-            }
+            Self::Function(mistake) => mistake.help(),
             Self::Internal { .. } => "please report this system".to_owned(),
         }
     }

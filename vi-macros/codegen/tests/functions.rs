@@ -184,7 +184,7 @@ fn a_lagrangian_that_jumps_is_refused() {
 #[test]
 fn mistakes_in_tables() {
     let of = |table: &str, message: &str| {
-        case(&format!("param c[4] = 0; coord x; {table} L = c[0] * dot(x)^2 / 2 - dot(x)^2 - g(x);"), message)
+        case(&format!("param c[4] = 0; coord x; {table} L = c[0] * dot(x)^2 / 2 - dot(x)^2 - g(x);"), message);
     };
     of("table g(a) = «3»;", "these are not the values of a table\nhelp: write the path of a file");
     of("table g(a) = «\"no such file.csv\"»;", "the table `g` cannot be read from its file\nhelp: `");

@@ -67,8 +67,8 @@ fn table(of: &Table) -> String {
             format!("[{}]", rows.join(", "))
         }
     };
-    let words: String = of.words.iter().map(|word| format!(" {word}")).collect();
-    format!("table {}({}) = {data}{words};", of.name, arguments.join(", "))
+    let words: Vec<String> = [data].into_iter().chain(of.words.iter().map(ToString::to_string)).collect();
+    format!("table {}({}) = {};", of.name, arguments.join(", "), words.join(" "))
 }
 
 fn constant(of: &Constant) -> String {

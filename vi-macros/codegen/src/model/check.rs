@@ -10,6 +10,7 @@ use super::{
     time_scale,
 };
 use crate::arrays::ArrayMistake;
+use crate::functions::FunctionMistake;
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
 use crate::messages::{Absence, Message, error};
 use crate::symbol::{Symbol, Variable};
@@ -80,12 +81,12 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     };
     if let Some(condition) = smoothness::jump(pool, lagrangian, &model.parameters) {
         let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
-        return Err(error(lagrangian_span, &Message::Jump { condition }));
+        return Err(error(lagrangian_span, &Message::Function(FunctionMistake::Jump { condition })));
     }
     if let Some(name) = smoothness::linear_table(pool, &model) {
         let (what, help) =
             ("is linear, but `L` needs a continuous slope", "use it in a force, or make it `cubic` or `monotone`");
-        let message = Message::Table { name, what: what.to_owned(), help: help.to_owned() };
+        let message = Message::Function(FunctionMistake::Table { name, what: what.to_owned(), help: help.to_owned() });
         return Err(error(lagrangian_span, &message));
     }
     model.smoothness = smoothness::smoothness(pool, &model);

@@ -6,6 +6,7 @@
 use super::scope::Scope;
 use super::value::Value;
 use crate::arrays::ArrayMistake;
+use crate::functions::FunctionMistake;
 use crate::messages::{Message, error};
 use crate::symbol::Symbol;
 use crate::syntax::{Comparison, Expression};
@@ -28,8 +29,8 @@ impl Scope {
         let sides = self.each_of(pool, [larger, smaller], Self::expression)?;
         let difference = if *or_equal { pool.sub(sides[1], sides[0]) } else { pool.sub(sides[0], sides[1]) };
         let values = self.each_of(pool, arms, Self::value)?;
-        let [then, otherwise] =
-            <[Value; 2]>::try_from(values).map_err(|_| error(arms[0].span, &Message::MissingElse))?;
+        let [then, otherwise] = <[Value; 2]>::try_from(values)
+            .map_err(|_| error(arms[0].span, &Message::Function(FunctionMistake::Else)))?;
         if then.shape() != otherwise.shape() {
             let (left, right) = (then.shape().to_vec(), otherwise.shape().to_vec());
             return Err(error(arms[1].span, &Message::Array(ArrayMistake::Chosen { left, right })));
@@ -54,7 +55,7 @@ impl Scope {
         if is_clamp && given != 3 || given < 2 {
             let arguments: &[&str] = if is_clamp { &["x", "a", "b"] } else { &["a", "b"] };
             let arguments = arguments.iter().map(|&argument| argument.to_owned()).collect();
-            return Err(error(function.span(), &Message::FunctionArity { name, arguments, given }));
+            return Err(error(function.span(), &Message::Function(FunctionMistake::Arity { name, arguments, given })));
         }
         let values = self.each_of(pool, written, Self::expression)?;
         let chosen = match values.as_slice() {

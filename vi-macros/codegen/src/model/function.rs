@@ -8,6 +8,7 @@ use super::lets;
 use super::scope::{Meaning, Scope};
 use super::table::{self, Table};
 use super::value::Value;
+use crate::functions::FunctionMistake;
 use crate::messages::{Message, error};
 use crate::symbol::Symbol;
 use crate::syntax::{self, Body, Expression};
@@ -94,7 +95,10 @@ pub(super) fn functions(context: &mut Context, written: &syntax::System) -> Vec<
             Body::Path(path) => {
                 if arguments.len() > MAX_ARGUMENTS {
                     let name = function.name.to_string();
-                    context.errors.at(function.name.span(), &Message::TooManyArguments { name, limit: MAX_ARGUMENTS });
+                    context.errors.at(
+                        function.name.span(),
+                        &Message::Function(FunctionMistake::TooManyArguments { name, limit: MAX_ARGUMENTS }),
+                    );
                     context.declare(&function.name, Meaning::Wrong);
                     continue;
                 }
@@ -126,7 +130,7 @@ pub(super) fn check_used(context: &mut Context, written: &syntax::System) {
     let names = written.functions.iter().map(|function| &function.name);
     for name in names.chain(written.tables.iter().map(|table| &table.name)) {
         if !context.scope.was_called(&name.to_string()) {
-            context.errors.at(name.span(), &Message::UnusedFunction { name: name.to_string() });
+            context.errors.at(name.span(), &Message::Function(FunctionMistake::Unused { name: name.to_string() }));
         }
     }
 }
@@ -146,14 +150,17 @@ impl Scope {
         let arity = |arguments: Vec<String>| {
             let (name, given) = (name.to_string(), values.len());
             let wrong = arguments.len() != given;
-            if wrong { Err(Message::FunctionArity { name, arguments, given }) } else { Ok(()) }
+            if wrong { Err(Message::Function(FunctionMistake::Arity { name, arguments, given })) } else { Ok(()) }
         };
         match called {
             Called::Language(function) => {
                 arity(function.arguments.iter().map(Ident::to_string).collect())
                     .map_err(|message| error(name.span(), &message))?;
                 let Body::Expression(body) = &function.body else {
-                    return Err(error(name.span(), &Message::Recursive { name: name.to_string() }));
+                    return Err(error(
+                        name.span(),
+                        &Message::Function(FunctionMistake::Recursive { name: name.to_string() }),
+                    ));
                 };
                 self.body_value(pool, name, (&function.arguments, values), body)
             }
@@ -175,9 +182,9 @@ impl Scope {
         (arguments, values): (&[Ident], Vec<Value>),
         body: &Expression,
     ) -> Result<Value> {
-        let hidden = self
-            .enter(&name.to_string())
-            .ok_or_else(|| error(name.span(), &Message::Recursive { name: name.to_string() }))?;
+        let hidden = self.enter(&name.to_string()).ok_or_else(|| {
+            error(name.span(), &Message::Function(FunctionMistake::Recursive { name: name.to_string() }))
+        })?;
         let bound: Vec<(String, Option<Meaning>)> = arguments
             .iter()
             .zip(values)

@@ -5,6 +5,7 @@
 
 use super::context::Context;
 use super::scope::Meaning;
+use crate::functions::FunctionMistake;
 use crate::messages::{Message, nearest};
 use crate::symbol::Symbol;
 use crate::syntax::{self, Expression, TableArgument, TableData};
@@ -172,7 +173,7 @@ struct Reader<'a, 'b> {
 impl Reader<'_, '_> {
     fn report(&mut self, span: Span, what: String, help: String) {
         let name = self.written.name.to_string();
-        self.context.errors.at(span, &Message::Table { name, what, help });
+        self.context.errors.at(span, &Message::Function(FunctionMistake::Table { name, what, help }));
         self.wrong = true;
     }
 
@@ -196,7 +197,7 @@ impl Reader<'_, '_> {
             };
             if new_kind.is_none() && new_outside.is_none() {
                 let near = nearest(&text, WORDS);
-                self.context.errors.at(word.span(), &Message::TableWord { word: text, near });
+                self.context.errors.at(word.span(), &Message::Function(FunctionMistake::Word { word: text, near }));
                 self.wrong = true;
                 continue;
             }
@@ -216,7 +217,7 @@ impl Reader<'_, '_> {
             TableData::File(path) => {
                 let file = folder.join(path.value());
                 let rows = self.file(&file, path.span())?;
-                Some((self.from_rows(rows, path.span())?, Vec::new(), Some(file)))
+                Some((self.values_of_rows(rows, path.span())?, Vec::new(), Some(file)))
             }
             TableData::Points(points) => {
                 let rows = self.numbers(points);
@@ -282,7 +283,7 @@ impl Reader<'_, '_> {
     }
 
     /// The rows of a file as values: places with values, or a grid whose first row and column are places.
-    fn from_rows(&mut self, mut rows: Vec<Vec<f64>>, span: Span) -> Option<Values> {
+    fn values_of_rows(&mut self, mut rows: Vec<Vec<f64>>, span: Span) -> Option<Values> {
         let columns = rows.first().map_or(0, Vec::len);
         let is_one = self.written.arguments.len() == 1;
         if is_one && columns == 1 {
@@ -432,8 +433,10 @@ impl Reader<'_, '_> {
             self.report(span, format!("has {all} values"), format!("write at most {VALUES} values"));
         }
         for axis in axes {
-            if let Some(pair) = axis.windows(2).find(|pair| pair[0] >= pair[1]) {
-                let what = format!("has the place {} after {}", pair[1], pair[0]);
+            if let Some(pair) = axis.windows(2).find(|pair| pair[0] >= pair[1])
+                && let [before, after] = pair
+            {
+                let what = format!("has the place {after} after {before}");
                 self.report(span, what, "write the places in ascending order, each once".to_owned());
             }
         }

@@ -17,6 +17,7 @@
 //! A list may end with a comma. A power `a^1/2` is rejected: it means `(a^1)/2`, which is never intended.
 
 use super::{INSIDE_BRACKETS, unexpected};
+use crate::functions::FunctionMistake;
 use crate::habits::Habit;
 use crate::messages::{Message, error};
 use num_bigint::BigInt;
@@ -288,7 +289,7 @@ impl Expression {
         let comparison = Self::comparison(input, depth + 1, span)?;
         let then = Self::arm(input, depth + 1)?;
         if !input.peek(Token![else]) {
-            return Err(error(span, &Message::MissingElse));
+            return Err(error(span, &Message::Function(FunctionMistake::Else)));
         }
         input.parse::<Token![else]>()?;
         let otherwise =
@@ -309,11 +310,11 @@ impl Expression {
             input.parse::<Token![<]>().map(|_| (true, false))?
         } else {
             let span = if input.peek(syn::token::Brace) { condition } else { input.span() };
-            return Err(error(span, &Message::MissingComparison));
+            return Err(error(span, &Message::Function(FunctionMistake::Comparison)));
         };
         let right = Self::sum(input, depth)?;
         if !input.peek(syn::token::Brace) {
-            return Err(error(input.span(), &Message::MissingComparison));
+            return Err(error(input.span(), &Message::Function(FunctionMistake::Comparison)));
         }
         let (larger, smaller) = if reversed { (right, left) } else { (left, right) };
         Ok(Comparison { larger, smaller, or_equal, reversed })
@@ -322,7 +323,7 @@ impl Expression {
     /// `{ x }`
     fn arm(input: ParseStream, depth: usize) -> Result<Self> {
         if !input.peek(syn::token::Brace) {
-            return Err(error(input.span(), &Message::MissingElse));
+            return Err(error(input.span(), &Message::Function(FunctionMistake::Else)));
         }
         let inner;
         syn::braced!(inner in input);

@@ -11,6 +11,7 @@
 use super::expression::Expression;
 use super::parse::name;
 use super::unexpected;
+use crate::functions::FunctionMistake;
 use crate::messages::{Message, error};
 use proc_macro2::Ident;
 use syn::parse::ParseStream;
@@ -76,7 +77,7 @@ pub(super) fn function(input: ParseStream) -> Result<Function> {
         comma(&inner)?;
     }
     if arguments.is_empty() {
-        return Err(error(name.span(), &Message::FunctionArguments { name: name.to_string() }));
+        return Err(error(name.span(), &Message::Function(FunctionMistake::Arguments { name: name.to_string() })));
     }
     equals(input, &name)?;
     let is_path = input.peek(Token![::]) || input.peek(syn::Ident) && input.peek2(Token![::]) || is_crate(input);
@@ -101,7 +102,7 @@ pub(super) fn table(input: ParseStream) -> Result<Table> {
     } else if input.peek(syn::Ident) {
         TableData::Parameters(self::name(input)?)
     } else {
-        return Err(error(input.span(), &Message::TableData));
+        return Err(error(input.span(), &Message::Function(FunctionMistake::Data)));
     };
     let mut words = Vec::new();
     while input.peek(syn::Ident) {
@@ -118,7 +119,7 @@ fn is_crate(input: ParseStream) -> bool {
 /// The tokens between the parentheses after a name.
 fn arguments<'a>(input: ParseStream<'a>, name: &Ident) -> Result<syn::parse::ParseBuffer<'a>> {
     if !input.peek(syn::token::Paren) {
-        return Err(error(name.span(), &Message::FunctionArguments { name: name.to_string() }));
+        return Err(error(name.span(), &Message::Function(FunctionMistake::Arguments { name: name.to_string() })));
     }
     let inner;
     syn::parenthesized!(inner in input);
@@ -171,7 +172,7 @@ fn rows(input: ParseStream) -> Result<TableData> {
         }
         let kinds = [!points.is_empty(), !rows.is_empty(), !only.is_empty()];
         if kinds.into_iter().filter(|is_there| *is_there).count() > 1 || !inner.is_empty() && !inner.peek(Token![,]) {
-            return Err(error(inner.span(), &Message::TableData));
+            return Err(error(inner.span(), &Message::Function(FunctionMistake::Data)));
         }
         comma(&inner)?;
     }
