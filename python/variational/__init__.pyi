@@ -142,6 +142,19 @@ class Undefined(StepError):
     argument: float
     range: list[float] | None
 
+class NoEquilibrium(StepError):
+    """No equilibrium was found near the guess."""
+
+    t: float
+    coordinate: str
+    force: float
+
+class FreeMotion(StepError):
+    """The stiffness is singular: a motion has no restoring force."""
+
+    t: float
+    coordinate: str
+
 class CannotLeave(StepError):
     """The trajectory cannot leave the zero of an event."""
 

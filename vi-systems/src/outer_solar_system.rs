@@ -25,19 +25,12 @@ lagrangian! {
         /// Pluto.
         param m5 = 1 / 1.3e8;
         coord x[N], y[N], z[N];
-        let v2[i in 0..N] = dot(x[i])^2 + dot(y[i])^2 + dot(z[i])^2;
-        let r0[i in 1..N] = sqrt((x[i] - x[0])^2 + (y[i] - y[0])^2 + (z[i] - z[0])^2);
-        let r1[i in 2..N] = sqrt((x[i] - x[1])^2 + (y[i] - y[1])^2 + (z[i] - z[1])^2);
-        let r2[i in 3..N] = sqrt((x[i] - x[2])^2 + (y[i] - y[2])^2 + (z[i] - z[2])^2);
-        let r3[i in 4..N] = sqrt((x[i] - x[3])^2 + (y[i] - y[3])^2 + (z[i] - z[3])^2);
-        let r4[i in 5..N] = sqrt((x[i] - x[4])^2 + (y[i] - y[4])^2 + (z[i] - z[4])^2);
-        let sun = m0 * (m1 / r0[1] + m2 / r0[2] + m3 / r0[3] + m4 / r0[4] + m5 / r0[5]);
-        let jupiter = m1 * (m2 / r1[2] + m3 / r1[3] + m4 / r1[4] + m5 / r1[5]);
-        let saturn = m2 * (m3 / r2[3] + m4 / r2[4] + m5 / r2[5]);
-        let uranus = m3 * (m4 / r3[4] + m5 / r3[5]);
-        let neptune = m4 * m5 / r4[5];
-        let kinetic = (m0 * v2[0] + m1 * v2[1] + m2 * v2[2] + m3 * v2[3] + m4 * v2[4] + m5 * v2[5]) / 2;
-        L = kinetic + g * (sun + jupiter + saturn + uranus + neptune);
+        let m = [m0, m1, m2, m3, m4, m5];
+        let r[i in 0..N] = [x[i], y[i], z[i]];
+        let v2[i in 0..N] = dot(r[i]) * dot(r[i]);
+        let d[j in 0..N - 1][i in j + 1..N] = norm(r[i] - r[j]);
+        let pull[j in 0..N - 1] = m[j] * sum(i in j + 1..N, m[i] / d[j][i]);
+        L = sum(i in 0..N, m[i] * v2[i]) / 2 + g * sum(j in 0..N - 1, pull[j]);
         discretize midpoint;
         check {
             x[1] = -3.5, y[1] = -3.8, z[1] = -1.6, dot(x[1]) = 0.0057, dot(y[1]) = -0.0041, dot(z[1]) = -0.0019,

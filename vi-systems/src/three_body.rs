@@ -17,10 +17,11 @@ lagrangian! {
         /// Mass of the third one.
         param m2 = 1.0;
         coord x[N], y[N];
-        let v2[i in 0..N] = dot(x[i])^2 + dot(y[i])^2;
-        let r0[i in 1..N] = sqrt((x[i] - x[0])^2 + (y[i] - y[0])^2);
-        let r1[i in 2..N] = sqrt((x[i] - x[1])^2 + (y[i] - y[1])^2);
-        L = (m0 * v2[0] + m1 * v2[1] + m2 * v2[2]) / 2 + m0 * m1 / r0[1] + m0 * m2 / r0[2] + m1 * m2 / r1[2];
+        let m = [m0, m1, m2];
+        let r[i in 0..N] = [x[i], y[i]];
+        let v2[i in 0..N] = dot(r[i]) * dot(r[i]);
+        let d[j in 0..N - 1][i in j + 1..N] = norm(r[i] - r[j]);
+        L = sum(i in 0..N, m[i] * v2[i]) / 2 + sum(j in 0..N - 1, i in j + 1..N, m[j] * m[i] / d[j][i]);
         discretize midpoint;
         check {
             x[0] = 1.0, y[0] = -0.3, x[1] = -0.9, y[1] = 0.2, x[2] = 0.1, y[2] = 0.1,
