@@ -44,8 +44,15 @@ def test_there_is_a_class_for_each_variant():
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_advice_has_words_of_python(name):
-    values = {"float": 0.5, "int": 3, "str": "x", "str | None": None, "list[str]": ["x"], "list[float]": [1.0],
-              "list[float] | None": None}
+    values = {
+        "float": 0.5,
+        "int": 3,
+        "str": "x",
+        "str | None": None,
+        "list[str]": ["x"],
+        "list[float]": [1.0],
+        "list[float] | None": None,
+    }
     error = _exception(name, "the reason", {field: values[kind] for field, kind in FIELDS[name].items()})
     assert type(error) is getattr(vi, name)
     assert error.reason == "the reason"

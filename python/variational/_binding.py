@@ -78,9 +78,7 @@ def _parameters(kind: Any) -> dict[str, Parameter]:
         field = spelled(name)
         while hasattr(System, field) or field in fields:
             field += "_"
-        fields[field] = Parameter(
-            field, start, shape, defaults if is_array else default, about.strip()
-        )
+        fields[field] = Parameter(field, start, shape, defaults if is_array else default, about.strip())
     return fields
 
 
