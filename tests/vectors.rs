@@ -136,8 +136,10 @@ fn momentum_and_angular_momentum_are_kept() {
         largest = change.fold(largest, f64::max);
     }
     println!("momenta change by {largest:e}");
-    assert!(first.iter().all(|momentum| momentum.abs() > 0.1), "{first:?}");
-    assert!(largest <= 1e-12, "{largest:e}");
+    let not_zero = first.iter().filter(|momentum| momentum.abs() > 0.1).count();
+    assert_eq!(not_zero, 5, "{first:?}");
+    // Measured: 6.3e-15.
+    assert!(largest <= 1e-14, "{largest:e}");
     // Energy-preserving steps, whose length varies.
     let mut run = bodies.at(0.0, q, v).integrate(EnergyPreserving, 0.01).expect("a valid start");
     let energy = State::at(&bodies, 0.0, q, v).energy(&bodies).expect("an energy");

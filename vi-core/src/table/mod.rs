@@ -10,7 +10,7 @@
 //! static DRAG: Table<5, 4> = Table::cubic([0.0, 10.0, 20.0, 30.0, 40.0], [0.0, 0.1, 0.4, 0.9, 1.6]).extend();
 //!
 //! let (value, [slope]) = DRAG.jet_1([25.0]);
-//! assert!((value - 0.625).abs() < 1e-15 && (slope - 0.05_f64).abs() < 1e-15);
+//! assert!((value - 0.625_f64).abs() < 1e-15 && (slope - 0.05_f64).abs() < 1e-15);
 //! ```
 
 mod axis;

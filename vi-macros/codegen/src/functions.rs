@@ -10,6 +10,8 @@ use crate::messages::did_you_mean;
 pub enum FunctionMistake {
     /// A function or table without arguments in its declaration.
     Arguments { name: String },
+    /// A function with types or a body in braces, as in Rust.
+    Typed { name: String, arguments: Vec<String> },
     /// A call of a declared function with the wrong number of arguments.
     Arity { name: String, arguments: Vec<String>, given: usize },
     /// A Rust function of more arguments than derivatives are available for.
@@ -38,6 +40,7 @@ impl FunctionMistake {
     pub fn what(&self) -> String {
         match self {
             Self::Arguments { name } => format!("`{name}` is declared without arguments"),
+            Self::Typed { name, .. } => format!("`{name}` is declared with types or braces"),
             Self::Arity { name, arguments, given } => {
                 format!("`{name}` takes {} argument(s), not {given}", arguments.len())
             }
@@ -61,6 +64,9 @@ impl FunctionMistake {
                 "write its arguments, as in `fn spring(k, x) = k * x^2 / 2;` or `table drag(v) = \"drag.csv\";`; name a value without \
                  arguments with `let`"
                     .to_owned()
+            }
+            Self::Typed { name, arguments } => {
+                format!("write `fn {name}({}) = …;`: arguments and values are numbers", arguments.join(", "))
             }
             Self::Arity { name, arguments, .. } => format!("write `{name}({})`", arguments.join(", ")),
             Self::TooManyArguments { .. } => {

@@ -58,6 +58,8 @@ fn conditions_select() {
     let same = |left: &str, right: &str| assert_eq!(text(left), text(right), "{left} is {right}");
     same("max(x, y)^2", "(if x > y { x } else { y })^2");
     same("min(x, y)^2", "(if x < y { x } else { y })^2");
+    same("if (x < y) { x^2 } else { y^2 }", "if x < y { x^2 } else { y^2 }");
+    same("if (x) < (y) { x^2 } else { y^2 }", "if x < y { x^2 } else { y^2 }");
     same("max(x, y, 2)", "max(max(x, y), 2)");
     same("clamp(x, -1, 1)", "min(max(x, -1), 1)");
     same("if x >= y { x } else { y }", "if y > x { y } else { x }");
@@ -138,6 +140,10 @@ fn mistakes_in_functions() {
         "«extern» fn cl(a); coord x; L = dot(x)^2 / 2;",
         "unknown clause `extern`\nhelp: write `fn cl(a) = crate::aero::cl;`",
     );
+    let typed = "`g` is declared with types or braces\nhelp: write `fn g(a) = …;`: arguments and values are numbers";
+    case("fn g(a«:» f64) -> f64 { a } coord x; L = dot(x)^2 / 2;", typed);
+    case("fn g(a) «-»> f64 { a } coord x; L = dot(x)^2 / 2;", typed);
+    case("fn g(a) «{ a }» coord x; L = dot(x)^2 / 2;", typed);
     case("fn «g»: (a) = a; coord x; L = dot(x)^2 / 2;", "`g` is declared without arguments");
 }
 
@@ -150,6 +156,9 @@ fn mistakes_in_conditions() {
         "if x > 0 «&»& x < 1 { x } else { 0 }",
         "`if` needs one comparison of two numbers\nhelp: write `if a > b { x } else { y }`",
     );
+    potential("«if» (x) { x } else { 0 }", "`if` needs one comparison of two numbers");
+    potential("if (x > 0 «&»& x < 1) { x } else { 0 }", "`if` needs one comparison of two numbers");
+    potential("if (x > 0) «&»& (x < 1) { x } else { 0 }", "`if` needs one comparison of two numbers");
     potential("«max»(x)", "`max` takes 2 argument(s), not 1\nhelp: write `max(a, b)`");
     potential("«clamp»(x, 1)", "`clamp` takes 3 argument(s), not 2\nhelp: write `clamp(x, a, b)`");
     potential("«max» * x", "unknown name `max`");

@@ -10,7 +10,8 @@
 //! power   = atom [ "^" unary ]                  binds tightest, right-associative
 //! atom    = number | name { "[" sum "]" } | name "(" sum { "," sum } ")" | "sum" "(" range { "," range } "," sum ")"
 //!         | "(" sum ")" | "[" sum { "," sum } "]" | if
-//! if      = "if" sum (">" | ">=" | "<" | "<=") sum "{" sum "}" "else" (if | "{" sum "}")
+//! if      = "if" (test | "(" test ")") "{" sum "}" "else" (if | "{" sum "}")
+//! test    = sum (">" | ">=" | "<" | "<=") sum
 //! range   = name "in" sum ".." sum
 //! ```
 //!
@@ -286,7 +287,13 @@ impl Expression {
         }
         let span = input.span();
         input.parse::<Token![if]>()?;
-        let comparison = Self::comparison(input, depth + 1, span)?;
+        let comparison = if input.peek(syn::token::Paren) && input.peek2(syn::token::Brace) {
+            let inner;
+            syn::parenthesized!(inner in input);
+            Self::comparison(&inner, depth + 1, span)?
+        } else {
+            Self::comparison(input, depth + 1, span)?
+        };
         let then = Self::arm(input, depth + 1)?;
         if !input.peek(Token![else]) {
             return Err(error(span, &Message::Function(FunctionMistake::Else)));
@@ -297,7 +304,7 @@ impl Expression {
         Ok(Self { span, kind: Kind::If(Box::new(comparison), Box::new([then, otherwise])) })
     }
 
-    /// The comparison of an `if` at this place.
+    /// The comparison of an `if` at this place, up to a brace or the end.
     fn comparison(input: ParseStream, depth: usize, condition: Span) -> Result<Comparison> {
         let left = Self::sum(input, depth)?;
         let (reversed, or_equal) = if input.peek(Token![>=]) {
@@ -309,11 +316,12 @@ impl Expression {
         } else if input.peek(Token![<]) && !input.peek(Token![<<]) {
             input.parse::<Token![<]>().map(|_| (true, false))?
         } else {
-            let span = if input.peek(syn::token::Brace) { condition } else { input.span() };
+            let is_end = input.is_empty() || input.peek(syn::token::Brace);
+            let span = if is_end { condition } else { input.span() };
             return Err(error(span, &Message::Function(FunctionMistake::Comparison)));
         };
         let right = Self::sum(input, depth)?;
-        if !input.peek(syn::token::Brace) {
+        if !(input.is_empty() || input.peek(syn::token::Brace)) {
             return Err(error(input.span(), &Message::Function(FunctionMistake::Comparison)));
         }
         let (larger, smaller) = if reversed { (right, left) } else { (left, right) };

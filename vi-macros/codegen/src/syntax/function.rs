@@ -13,7 +13,7 @@ use super::parse::name;
 use super::unexpected;
 use crate::functions::FunctionMistake;
 use crate::messages::{Message, error};
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 use syn::parse::ParseStream;
 use syn::{LitStr, Path, Result, Token};
 
@@ -74,7 +74,13 @@ pub(super) fn function(input: ParseStream) -> Result<Function> {
     let mut arguments = Vec::new();
     while !inner.is_empty() {
         arguments.push(self::name(&inner)?);
+        if inner.peek(Token![:]) {
+            return Err(typed(&name, &arguments, inner.span()));
+        }
         comma(&inner)?;
+    }
+    if input.peek(Token![->]) || input.peek(syn::token::Brace) {
+        return Err(typed(&name, &arguments, input.span()));
     }
     if arguments.is_empty() {
         return Err(error(name.span(), &Message::Function(FunctionMistake::Arguments { name: name.to_string() })));
@@ -83,6 +89,12 @@ pub(super) fn function(input: ParseStream) -> Result<Function> {
     let is_path = input.peek(Token![::]) || input.peek(syn::Ident) && input.peek2(Token![::]) || is_crate(input);
     let body = if is_path { Body::Path(input.parse()?) } else { Body::Expression(Expression::parse(input)?) };
     Ok(Function { name, arguments, body })
+}
+
+/// The error for types or braces at this place.
+fn typed(name: &Ident, arguments: &[Ident], span: Span) -> syn::Error {
+    let (name, arguments) = (name.to_string(), arguments.iter().map(Ident::to_string).collect());
+    error(span, &Message::Function(FunctionMistake::Typed { name, arguments }))
 }
 
 /// `drag(v) = "drag.csv" hold`
