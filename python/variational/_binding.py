@@ -55,6 +55,7 @@ def class_of(kind: Any, module: str, metaclass: type = type) -> type[System]:
         "_defaults": np.array([default for _, default, _ in kind.parameters]),
         "coordinates": coordinates,
         "parameters": tuple(fields),
+        "inputs": tuple(name for name, field in fields.items() if field.start in kind.inputs),
         "integrators": tuple(kind.integrators),
         "_methods": tuple(dict.fromkeys(method for method, *_ in kind.integrators)),
         "definition": kind.definition,

@@ -42,8 +42,8 @@ class Ensemble(ByName):
         self.parameters = parameters
         self._values = values
 
-    def _evaluate(self, of: str, is_vector: bool) -> Array:
-        out = np.full(self.q.shape if is_vector else self.t.shape, np.nan)
+    def _evaluate(self, of: str, each: tuple[int, ...] = ()) -> Array:
+        out = np.full((*self.t.shape, *each), np.nan)
         many = len(self.errors)
         same = bool((self._values == self._values[:1]).all()) if many else True
         # All runs at once if they have the same parameters, otherwise one by one.
@@ -51,9 +51,7 @@ class Ensemble(ByName):
             is_there = np.isfinite(self.t[rows])
             if np.any(is_there):
                 system = self.system._of(self._values[0 if same else rows])
-                found = system._at(
-                    of, self.t[rows][is_there], self.q[rows][is_there], self.p[rows][is_there], is_vector
-                )
+                found = system._at(of, self.t[rows][is_there], self.q[rows][is_there], self.p[rows][is_there], each)
                 part = out[rows]
                 if np.ndim(self.t[rows]) == 0:
                     out[rows] = found[0]
@@ -64,12 +62,12 @@ class Ensemble(ByName):
     @cached_property
     def v(self) -> Array:
         """Velocities."""
-        return self._evaluate("velocity", True)
+        return self._evaluate("velocity", self.q.shape[-1:])
 
     @cached_property
     def energy(self) -> Array:
         """The energy H."""
-        return self._evaluate("hamiltonian", False)
+        return self._evaluate("hamiltonian")
 
     @property
     def success(self) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Array, count, number, ordered, real, vector
+from ._control import Linearization
 from ._events import Watched, descriptions
 from ._solution import Events, Solution
 
@@ -274,6 +275,11 @@ class Run:
             start += len(parameter.indices)
             found[name] = part.copy() if parameter.length is not None else part[..., 0].copy()
         return found
+
+    def linearization(self) -> Linearization:
+        """The linearization of the next step: derivatives of (q, p) at its end with respect to (q, p) at its start and
+        to the inputs, which are constant over the step. The run does not change."""
+        return Linearization(self.t, *self._run.linearization())
 
     def local_error(self) -> LocalError:
         """The error of the next step, by half steps. The run does not change."""

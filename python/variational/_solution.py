@@ -61,7 +61,7 @@ class Solution(ByName):
     @cached_property
     def energy(self) -> Array:
         """The energy H."""
-        return np.asarray(self.system._at("hamiltonian", self.t, self.q, self.p, False, "p"))
+        return np.asarray(self.system._at("hamiltonian", self.t, self.q, self.p, second="p"))
 
     @property
     def y(self) -> Array:

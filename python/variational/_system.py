@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Array, array, finite, number, vector
+from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble
 from ._explanation import Explanation
 from ._names import among, meant
@@ -71,6 +72,8 @@ class System:
     """Names of the coordinates."""
     parameters: ClassVar[tuple[str, ...]] = ()
     """Names of the parameters."""
+    inputs: ClassVar[tuple[str, ...]] = ()
+    """Names of the inputs, the parameters that a controller sets."""
     integrators: ClassVar[tuple[tuple[str, int | None, bool], ...]] = ()
     """Method, stages, and whether in transformed time, of each integrator that is built."""
     definition: ClassVar[str] = ""
@@ -131,27 +134,61 @@ class System:
 
     def lagrangian(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Any:
         """L(t, q, v). q and v have the shape (..., N); leading axes broadcast."""
-        return self._at("lagrangian", t, q, v, False)
+        return self._at("lagrangian", t, q, v)
 
     def energy(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Any:
         """The energy v·∂L/∂v − L at (t, q, v)."""
-        return self._at("energy", t, q, v, False)
+        return self._at("energy", t, q, v)
 
     def momentum(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
         """The momenta p = ∂L/∂v at (t, q, v)."""
-        return self._at("momentum", t, q, v, True)
+        return self._at("momentum", t, q, v, self._shape)
 
     def velocity(self, t: ArrayLike, q: ArrayLike, p: ArrayLike) -> Array:
         """The velocities of the momenta p at (t, q)."""
-        return self._at("velocity", t, q, p, True, "p")
+        return self._at("velocity", t, q, p, self._shape, "p")
 
     def force(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
         """The generalized force at (t, q, v)."""
-        return self._at("force", t, q, v, True)
+        return self._at("force", t, q, v, self._shape)
 
     def acceleration(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
         """The acceleration at (t, q, v)."""
-        return self._at("acceleration", t, q, v, True)
+        return self._at("acceleration", t, q, v, self._shape)
+
+    def mass_matrix(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
+        """The mass matrix M = ∂²L/∂v² at (t, q, v): (..., N, N)."""
+        return self._at("mass_matrix", t, q, v, (len(self.coordinates),) * 2)
+
+    def bias(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
+        """The bias b at (t, q, v): along the motion M a + b = 0. Inputs have the values that are set."""
+        return self._at("bias", t, q, v, self._shape)
+
+    def inverse_dynamics(self, t: ArrayLike, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
+        """The force M a + b that has to be added for the acceleration a at (t, q, v)."""
+        a = array(a, "a")
+        if a.shape[-1:] != self._shape:
+            raise ValueError(f"the last axis of a must have length {self._shape[0]}, not the shape {a.shape}")
+        return (self.mass_matrix(t, q, v) @ a[..., None])[..., 0] + self.bias(t, q, v)
+
+    def linearization(self, t: float, q: ArrayLike, v: ArrayLike) -> Linearization:
+        """The linearization of (q, v) at (t, q, v): derivatives of its rate of change with respect to the state and the
+        inputs, exact to rounding."""
+        (n,), names, t = self._shape, self.coordinates, number(t, "t")
+        found = self._kind.linearization(self._values, t, vector(q, n, "q", names), vector(v, n, "v", names))
+        return Linearization(t, *found)
+
+    def equilibrium(self, guess: ArrayLike, t: float = 0.0) -> Equilibrium:
+        """The equilibrium near a guess of the coordinates, with its matrices and frequencies.
+
+        Raises NoEquilibrium if there is none near the guess, FreeMotion if equilibria form a family.
+        """
+        t = number(t, "t")
+        q, matrices, free, residual, rates = self._kind.equilibrium(
+            self._values, t, vector(guess, self._shape[0], "guess", self.coordinates)
+        )
+        rates = np.array(rates)
+        return Equilibrium(t, q, *matrices, tuple(free), residual, rates[:, 0] + 1j * rates[:, 1])
 
     def rhs(self, t: float, y: ArrayLike) -> Array:
         """dy/dt of y = (q, v), for `scipy.integrate.solve_ivp`. y has the shape (2N,) or (2N, K)."""
@@ -161,7 +198,15 @@ class System:
             raise ValueError(f"y must have {2 * n} entries, q and v, not the shape {y.shape}")
         return np.concatenate([y[n:], self.acceleration(t, y[:n].T, y[n:].T).T])
 
-    def _at(self, of: str, t: ArrayLike, q: ArrayLike, v: ArrayLike, is_vector: bool, second: str = "v") -> Any:
+    @property
+    def _shape(self) -> tuple[int, ...]:
+        """The shape of a vector."""
+        return (len(self.coordinates),)
+
+    def _at(
+        self, of: str, t: ArrayLike, q: ArrayLike, v: ArrayLike, each: tuple[int, ...] = (), second: str = "v"
+    ) -> Any:
+        """A function at points, of this shape at each."""
         n = len(self.coordinates)
         t, q, v = array(t, "t"), array(q, "q"), array(v, second)
         for x, name in ((q, "q"), (v, second)):
@@ -181,8 +226,7 @@ class System:
             times = np.ascontiguousarray(np.broadcast_to(t, shape)).reshape(-1)
             points = (times, *(np.ascontiguousarray(np.broadcast_to(x, (*shape, n))).reshape(-1, n) for x in (q, v)))
         out = self._kind.evaluate(self._values, of, *points)
-        if is_vector:
-            return out.reshape((*shape, n))
+        shape += each
         return out.reshape(shape) if shape else float(out[0])
 
     def integrate(

@@ -12,9 +12,12 @@
 //! | [`system`] | a system with its parameters |
 //! | [`simulation`] | a started run |
 //! | `session` | a run in the hands of a program; feature `sessions` |
+//! | `control` | mass matrix, linearizations, equilibria; feature `derivatives` |
 //! | [`start`] | an accurate second node |
 //! | [`section`] | events of a run, type-erased |
 
+#[cfg(feature = "derivatives")]
+pub mod control;
 pub mod integrator;
 pub mod plan;
 pub mod section;

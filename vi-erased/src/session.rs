@@ -4,6 +4,8 @@
 //! In: a run of known types. Out: the functions of a [`Session`], which the command does not need: they are a fifth of
 //! the machine code of a run, and stand behind the feature `sessions`.
 
+#[cfg(feature = "derivatives")]
+use crate::control::Linear;
 use crate::section::Section;
 use crate::simulation::{Erasable, Met, Runnable, Simulated, Simulation, met, vector};
 #[cfg(feature = "derivatives")]
@@ -128,6 +130,12 @@ pub trait Session {
     /// What cannot be written.
     #[cfg(feature = "checkpoints")]
     fn checkpoint(&self) -> Result<String, String>;
+    /// The linearization of the next step. The run does not change.
+    ///
+    /// # Errors
+    /// As [`Run::linearization`].
+    #[cfg(feature = "derivatives")]
+    fn linearization(&self) -> Result<Linear, StepError>;
     /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
     /// parameters of these indices at the start: one vector of (q, p) for each. The energy that a run keeps follows from
     /// the start where the run began; later it changes as by [`Session::set_state`] and [`Session::set_parameters`].
@@ -294,6 +302,11 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
             Ok(_) => Ok(text),
             Err(_) => Err(format!("a number of the run is not finite at t = {}: it cannot be stored", self.run.t())),
         }
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn linearization(&self) -> Result<Linear, StepError> {
+        self.run.linearization().map(Linear::from)
     }
 
     #[cfg(feature = "derivatives")]

@@ -2,6 +2,8 @@
 //!
 //! In: the type of a system, and its integrators. Out: a [`System`], whose functions and runs take slices.
 
+#[cfg(feature = "derivatives")]
+use crate::control::Control;
 use crate::integrator::Integrator;
 use crate::plan::{Built, Method, PhasePoint, Plan};
 use crate::simulation::{Runnable, Simulation, vector, wrong_size};
@@ -57,6 +59,9 @@ pub trait System: Send + Sync {
     /// [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] of the first point without a
     /// value.
     fn evaluate(&self, of: Quantity, points: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError>;
+    /// What a controller asks of it.
+    #[cfg(feature = "derivatives")]
+    fn control(&self) -> &dyn Control;
     /// Starts a run.
     ///
     /// # Errors
@@ -216,6 +221,11 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
             out.push(number);
         }
         Ok(())
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn control(&self) -> &dyn Control {
+        self
     }
 
     fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {

@@ -3,11 +3,12 @@
 use crate::ensemble::{Ensemble, Output};
 use crate::failure::{Raise as _, wrong};
 use crate::request::Request;
-use crate::rows::{matrix, vector};
+use crate::rows::{Linearized, linearized, matrix, rows, vector};
 use crate::run::Run;
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use vi_erased::System;
+use vi_erased::control::Rest;
 use vi_erased::plan::{Method, Named as _, Plan};
 use vi_erased::system::Quantity;
 
@@ -78,7 +79,8 @@ impl Kind {
             .collect()
     }
 
-    /// A function at points: t (K,), q and v (K, N). Returns (K,) numbers, or (K·N,) for a vector.
+    /// A function at points: t (K,), q and v (K, N). Returns (K,) numbers, (K·N,) for a
+    /// vector, or (K·N·N,) for the mass matrix.
     #[allow(clippy::too_many_arguments)] // Python's keywords
     fn evaluate<'py>(
         &self,
@@ -89,7 +91,19 @@ impl Kind {
         q: PyReadonlyArray2<'py, f64>,
         v: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let system = self.with(parameters.as_slice()?)?;
+        let count = t.len();
+        let (t, q, v) = (vector(&t, count, "t")?, matrix(&q, [count, self.n], "q")?, matrix(&v, [count, self.n], "v")?);
+        let mut out = Vec::new();
         let quantity = match of {
+            "mass_matrix" => {
+                py.detach(|| system.control().mass_matrix([&t, &q, &v], &mut out));
+                return Ok(PyArray1::from_vec(py, out));
+            }
+            "bias" => {
+                py.detach(|| system.control().bias([&t, &q, &v], &mut out));
+                return Ok(PyArray1::from_vec(py, out));
+            }
             "lagrangian" => Quantity::Lagrangian,
             "energy" => Quantity::Energy,
             "hamiltonian" => Quantity::Hamiltonian,
@@ -99,12 +113,45 @@ impl Kind {
             "velocity" => Quantity::Velocity,
             _ => return Err(wrong(format!("there is no function {of:?}"))),
         };
-        let system = self.with(parameters.as_slice()?)?;
-        let count = t.len();
-        let (t, q, v) = (vector(&t, count, "t")?, matrix(&q, [count, self.n], "q")?, matrix(&v, [count, self.n], "v")?);
-        let mut out = Vec::new();
         py.detach(|| system.evaluate(quantity, [&t, &q, &v], &mut out)).raise(py)?;
         Ok(PyArray1::from_vec(py, out))
+    }
+
+    /// Indices of the inputs among the parameters.
+    #[getter]
+    fn inputs(&self) -> Vec<usize> {
+        self.of.control().inputs().to_vec()
+    }
+
+    /// The linearization of (q, v): its value, A and B.
+    fn linearization<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray1<'py, f64>,
+        t: f64,
+        q: PyReadonlyArray1<'py, f64>,
+        v: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Linearized<'py>> {
+        let system = self.with(parameters.as_slice()?)?;
+        let (q, v) = (vector(&q, self.n, "q")?, vector(&v, self.n, "v")?);
+        linearized(py, system.control().linearization(t, &q, &v).raise(py)?)
+    }
+
+    /// The equilibrium near a guess: q, the matrices M, C and K, whether coordinates are free, the residual, and the
+    /// real and imaginary parts of the rates.
+    #[allow(clippy::type_complexity)] // fields of a Python class
+    fn equilibrium<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray1<'py, f64>,
+        t: f64,
+        guess: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Vec<Bound<'py, PyArray2<f64>>>, Vec<bool>, f64, Vec<[f64; 2]>)> {
+        let system = self.with(parameters.as_slice()?)?;
+        let Rest { q, matrices, free, residual, rates, .. } =
+            system.control().equilibrium(t, &vector(&guess, self.n, "guess")?).raise(py)?;
+        let matrices: PyResult<_> = matrices.map(|of| rows(py, of, self.n)).into_iter().collect();
+        Ok((PyArray1::from_vec(py, q), matrices?, free, residual, rates))
     }
 
     /// Starts a run from velocities, or from momenta.

@@ -1,9 +1,10 @@
 //! Rows of a run as numpy arrays.
 
 use crate::failure::{too_many, wrong};
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use vi_core::StepError;
+use vi_erased::control::Linear;
 use vi_erased::{Rows, Simulation};
 
 /// Arrays t (K), q (K, N), p (K, N), which take over the memory of the rows.
@@ -13,6 +14,22 @@ pub(crate) fn to_python(py: Python<'_>, rows: Rows, n: usize) -> PyResult<Bound<
     let q = PyArray1::from_vec(py, rows.q).reshape([count, n])?;
     let p = PyArray1::from_vec(py, rows.p).reshape([count, n])?;
     Ok((t, q, p).into_pyobject(py)?.into_any())
+}
+
+/// A matrix of rows of n numbers.
+pub(crate) fn rows(py: Python<'_>, numbers: Vec<f64>, n: usize) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let count = numbers.len().checked_div(n).unwrap_or(0);
+    PyArray1::from_vec(py, numbers).reshape([count, n])
+}
+
+/// The value of a linearization, A and B.
+pub(crate) type Linearized<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
+
+/// A linearization as arrays.
+pub(crate) fn linearized(py: Python<'_>, of: Linear) -> PyResult<Linearized<'_>> {
+    let (count, inputs) = (of.value.len(), of.b.len() / of.value.len());
+    let b = PyArray1::from_vec(py, of.b).reshape([count, inputs])?;
+    Ok((PyArray1::from_vec(py, of.value), rows(py, of.a, count)?, b))
 }
 
 /// Rows below which memory is not checked: the system allocates them anyway.

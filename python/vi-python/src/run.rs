@@ -3,7 +3,7 @@
 use crate::dense::Dense;
 use crate::events::{Description, Raised, sections};
 use crate::failure::{Raise as _, busy, instance, wrong};
-use crate::rows::{check_memory, record_some, reserved, steps_to, to_python, vector};
+use crate::rows::{Linearized, check_memory, linearized, record_some, reserved, steps_to, to_python, vector};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -271,6 +271,11 @@ impl Run {
         let rows = py.detach(|| run.tangent(steps, &parameters, &mut || signal.is_silent())).raise(py)?;
         let rows = signal.unless_raised(rows)?;
         Ok(PyArray2::from_vec2(py, &rows)?)
+    }
+
+    /// The linearization of the next step: (q, p) at its end, A and B.
+    fn linearization<'py>(&self, py: Python<'py>) -> PyResult<Linearized<'py>> {
+        linearized(py, self.lock()?.linearization().raise(py)?)
     }
 
     /// Takes steps. Returns the gradient of slope·(q, p) at their end with respect to the start and the parameters of

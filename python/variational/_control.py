@@ -1,0 +1,54 @@
+"""What a controller asks of a system: linearizations and equilibria."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Linearization:
+    """A linearization: `value + A @ dx + B @ du` to first order.
+
+    Of a system, x = (q, v) and the value is dx/dt. Of a run, x = (q, p) and the value is x at the end of the next step.
+    """
+
+    t: float
+    """Time of the point of linearization; of a step, of its start."""
+    value: Array
+    """The value there, (2N,)."""
+    A: Array
+    """Derivatives with respect to x, (2N, 2N)."""
+    B: Array
+    """Derivatives with respect to the inputs, (2N, M), in the order of their declaration."""
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A state of rest. Small motions x about it satisfy `mass @ x'' + damping @ x' + stiffness @ x = 0`."""
+
+    t: float
+    """Time."""
+    q: Array
+    """Coordinates, (N,)."""
+    mass: Array
+    """The mass matrix, (N, N)."""
+    damping: Array
+    """Damping and gyroscopic terms, (N, N)."""
+    stiffness: Array
+    """Stiffness, (N, N)."""
+    free: tuple[bool, ...]
+    """For each coordinate, whether nothing depends on it here. It then has the value of the guess."""
+    residual: float
+    """Largest unbalanced force, in units of its rounding error."""
+    rates: NDArray[np.complex128]
+    """The 2N rates of small motions exp(rate t), in radians per unit of time. One with a positive real part grows."""
+
+    @property
+    def frequencies(self) -> Array:
+        """The frequencies of oscillations about it, ascending, in radians per unit of time."""
+        return self.rates.imag[self.rates.imag > 0]

@@ -1,0 +1,112 @@
+//! What a controller asks of a system and of a run, type-erased. Matrices are flat, row by row.
+
+use crate::simulation::{Runnable, vector};
+use crate::system::Typed;
+use vi_core::control::{Dynamics as _, Equilibrium, Linearization};
+use vi_core::lagrangian::Described;
+use vi_core::nalgebra::DMatrix;
+use vi_core::{SVector, StepError};
+
+/// A linearization: `value + A δx + B δu`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear {
+    /// Time.
+    pub t: f64,
+    /// The value at the point of linearization, 2N numbers.
+    pub value: Vec<f64>,
+    /// A, 2N rows of 2N numbers.
+    pub a: Vec<f64>,
+    /// B, 2N rows with a number for each input.
+    pub b: Vec<f64>,
+}
+
+impl From<Linearization> for Linear {
+    fn from(of: Linearization) -> Self {
+        let rows = |matrix: DMatrix<f64>| matrix.transpose().as_slice().to_vec();
+        Self { t: of.t, value: of.value.as_slice().to_vec(), a: rows(of.a), b: rows(of.b) }
+    }
+}
+
+/// A state of rest without acceleration, as [`Equilibrium`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rest {
+    /// Time.
+    pub t: f64,
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// M, C and K of `M x'' + C x' + K x = 0`, each N rows of N numbers.
+    pub matrices: [Vec<f64>; 3],
+    /// For each coordinate, whether nothing depends on it.
+    pub free: Vec<bool>,
+    /// Largest unbalanced force, in roundings.
+    pub residual: f64,
+    /// Real and imaginary part of each rate of small motions.
+    pub rates: Vec<[f64; 2]>,
+}
+
+impl Rest {
+    fn of<const N: usize>(of: &Equilibrium<N>) -> Result<Self, StepError> {
+        Ok(Self {
+            t: of.t,
+            q: of.q.as_slice().to_vec(),
+            matrices: [of.mass, of.damping, of.stiffness].map(|matrix| matrix.transpose().as_slice().to_vec()),
+            free: of.free.to_vec(),
+            residual: of.residual,
+            rates: of.rates()?.into_iter().map(|rate| [rate.re, rate.im]).collect(),
+        })
+    }
+}
+
+/// What a controller asks of a system.
+pub trait Control {
+    /// Indices of the inputs among the parameters.
+    fn inputs(&self) -> &'static [usize];
+    /// The mass matrix at as many points as there are times, N² numbers for each; appends to `out`.
+    fn mass_matrix(&self, points: [&[f64]; 3], out: &mut Vec<f64>);
+    /// The bias at points, N numbers for each; appends to `out`.
+    fn bias(&self, points: [&[f64]; 3], out: &mut Vec<f64>);
+    /// The linearization of x = (q, v).
+    ///
+    /// # Errors
+    /// As [`vi_core::control::Dynamics::linearization`]; [`StepError::InvalidInput`] for another number of coordinates
+    /// or velocities, here and below.
+    fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError>;
+    /// The equilibrium near a guess of the coordinates.
+    ///
+    /// # Errors
+    /// As [`vi_core::control::Dynamics::equilibrium`].
+    fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError>;
+}
+
+impl<S: Runnable<N> + Described, const N: usize> Control for Typed<S, N> {
+    fn inputs(&self) -> &'static [usize] {
+        S::INPUTS
+    }
+
+    fn mass_matrix(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
+        for (t, q, v) in each(points) {
+            out.extend_from_slice(self.system.mass_matrix(t, q, v).transpose().as_slice());
+        }
+    }
+
+    fn bias(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
+        for (t, q, v) in each::<N>(points) {
+            out.extend_from_slice(self.system.bias(t, q, v).as_slice());
+        }
+    }
+
+    fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError> {
+        let (q, v) = (vector::<N>(q, "number of coordinates")?, vector::<N>(v, "number of velocities")?);
+        self.system.linearization(t, q, v).map(Linear::from)
+    }
+
+    fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError> {
+        Rest::of(&self.system.equilibrium(t, vector::<N>(guess, "number of coordinates")?)?)
+    }
+}
+
+/// The points (t, q, v) of flat columns.
+fn each<const N: usize>([t, q, v]: [&[f64]; 3]) -> impl Iterator<Item = (f64, SVector<f64, N>, SVector<f64, N>)> {
+    let of = SVector::<f64, N>::from_column_slice;
+    t.iter().zip(q.chunks_exact(N)).zip(v.chunks_exact(N)).map(move |((t, q), v)| (*t, of(q), of(v)))
+}
