@@ -56,6 +56,14 @@ impl<const N: usize> Axis<N> {
         matches!(self.outside, Outside::Periodic)
     }
 
+    /// The axis with another continuation beyond both ends; a periodic one stays.
+    pub(super) const fn continued(mut self, outside: Outside) -> Self {
+        if !self.is_periodic() {
+            self.outside = outside;
+        }
+        self
+    }
+
     /// Whether a function is defined at x.
     pub(super) fn covers(&self, x: f64) -> bool {
         let [from, to] = self.range;

@@ -90,13 +90,7 @@ impl<const N: usize> Table<N, 4> {
     /// one.
     #[must_use]
     pub const fn periodic(self) -> Self {
-        let mut values = [0.0; N];
-        let mut i = 0;
-        while i < N {
-            values[i] = self.pieces[i][0];
-            i += 1;
-        }
-        Self::joined(self.axis.knots, values, self.kind, Outside::Periodic)
+        Self::joined(self.axis.knots, self.values(), self.kind, Outside::Periodic)
     }
 
     const fn joined(knots: [f64; N], values: [f64; N], kind: Kind, outside: Outside) -> Self {
@@ -130,14 +124,8 @@ impl<const N: usize> Table<N, 6> {
     /// the first one.
     #[must_use]
     pub const fn periodic(self) -> Self {
-        let mut values = [0.0; N];
-        let mut i = 0;
-        while i < N {
-            values[i] = self.pieces[i][0];
-            i += 1;
-        }
         let knots = self.axis.knots;
-        Self::new(knots, quintic::pieces(&knots, &values, true), Kind::Spline, Outside::Periodic)
+        Self::new(knots, quintic::pieces(&knots, &self.values(), true), Kind::Spline, Outside::Periodic)
     }
 }
 
@@ -149,22 +137,27 @@ impl<const N: usize, const C: usize> Table<N, C> {
         Self { axis: Axis::new(knots, knots[N - 1], outside), pieces, kind }
     }
 
+    /// The values at the knots.
+    const fn values(&self) -> [f64; N] {
+        let mut values = [0.0; N];
+        let mut i = 0;
+        while i < N {
+            values[i] = self.pieces[i][0];
+            i += 1;
+        }
+        values
+    }
+
     /// The value of each end beyond it. Of no effect on a periodic table.
     #[must_use]
-    pub const fn hold(mut self) -> Self {
-        if !self.axis.is_periodic() {
-            self.axis.outside = Outside::Hold;
-        }
-        self
+    pub const fn hold(self) -> Self {
+        Self { axis: self.axis.continued(Outside::Hold), ..self }
     }
 
     /// The straight line with the slope of each end beyond it. Of no effect on a periodic table.
     #[must_use]
-    pub const fn extend(mut self) -> Self {
-        if !self.axis.is_periodic() {
-            self.axis.outside = Outside::Extend;
-        }
-        self
+    pub const fn extend(self) -> Self {
+        Self { axis: self.axis.continued(Outside::Extend), ..self }
     }
 
     /// The first and the last knot.

@@ -100,20 +100,14 @@ impl<const N: usize> Uniform<N> {
 
     /// The value of each end beyond it. Of no effect on a periodic table.
     #[must_use]
-    pub const fn hold(mut self) -> Self {
-        if !self.axis.is_periodic() {
-            self.axis.outside = Outside::Hold;
-        }
-        self
+    pub const fn hold(self) -> Self {
+        Self { axis: self.axis.continued(Outside::Hold), ..self }
     }
 
     /// The straight line with the slope of each end beyond it. Of no effect on a periodic table.
     #[must_use]
-    pub const fn extend(mut self) -> Self {
-        if !self.axis.is_periodic() {
-            self.axis.outside = Outside::Extend;
-        }
-        self
+    pub const fn extend(self) -> Self {
+        Self { axis: self.axis.continued(Outside::Extend), ..self }
     }
 
     /// Both ends of the range.
