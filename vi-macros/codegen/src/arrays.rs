@@ -53,6 +53,8 @@ pub enum ArrayMistake {
     IndexComma,
     /// `q[0..2]`, `q[0:2]`.
     Slice,
+    /// `[1 2]`, `[1, 2; 3, 4]`.
+    Separator { is_row: bool },
     /// `M^T`.
     Transposed { name: Option<String> },
 }
@@ -115,6 +117,8 @@ impl ArrayMistake {
     #[must_use]
     pub fn what(&self) -> String {
         match self {
+            Self::Separator { is_row: true } => "`;` does not separate rows".to_owned(),
+            Self::Separator { .. } => "a `,` is missing between two entries".to_owned(),
             Self::NumberNeeded { given, .. } => format!("a number is needed here, not {}", words(given)),
             Self::ShapeNeeded { needs, given, .. } => {
                 format!("{} is needed here, not {}", words(needs), words(given))
@@ -156,8 +160,9 @@ impl ArrayMistake {
     #[must_use]
     pub fn help(&self) -> String {
         match self {
+            Self::Separator { .. } => "write a vector as `[a, b, c]`, and a matrix by its rows, `[[a, b], [c, d]]`".to_owned(),
             Self::NumberNeeded { given, name: Some(name) } if given.len() == 1 => {
-                format!("write one entry, `{name}[0]`, or the inner product `{name} * {name}`")
+                format!("write one entry, `{name}[0]`, the inner product `{name} * {name}`, or the length `norm({name})`")
             }
             Self::NumberNeeded { given, name: Some(name) } => format!("write one entry, `{name}{}`", first(given)),
             Self::NumberNeeded { given, .. } if given.len() == 1 => {

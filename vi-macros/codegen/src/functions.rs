@@ -26,12 +26,22 @@ pub enum FunctionMistake {
     Table { name: String, what: String, help: String },
     /// A word after a table that is no kind of interpolation.
     Word { word: String, near: Option<String> },
+    /// A choice of fewer than two numbers.
+    Few { name: String, given: usize },
+    /// A text where a number is needed.
+    Text,
     /// An `if` without both arms.
     Else,
     /// An `if` without a comparison.
     Comparison,
     /// An L that is discontinuous where this expression changes its sign.
     Jump { condition: String },
+}
+
+/// "`sin` takes 1 argument, not 2".
+pub(crate) fn takes(name: &str, count: usize, given: usize) -> String {
+    let arguments = if count == 1 { "argument" } else { "arguments" };
+    format!("`{name}` takes {count} {arguments}, not {given}")
 }
 
 impl FunctionMistake {
@@ -41,9 +51,9 @@ impl FunctionMistake {
         match self {
             Self::Arguments { name } => format!("`{name}` is declared without arguments"),
             Self::Typed { name, .. } => format!("`{name}` is declared with types or braces"),
-            Self::Arity { name, arguments, given } => {
-                format!("`{name}` takes {} argument(s), not {given}", arguments.len())
-            }
+            Self::Arity { name, arguments, given } => takes(name, arguments.len(), *given),
+            Self::Few { name, given } => format!("`{name}` takes two arguments or more, not {given}"),
+            Self::Text => "a text is no number".to_owned(),
             Self::TooManyArguments { name, limit } => format!("`{name}` has more than {limit} arguments"),
             Self::Recursive { name } => format!("`{name}` calls itself"),
             Self::Unused { name } => format!("`{name}` is never used"),
@@ -51,7 +61,7 @@ impl FunctionMistake {
             Self::Table { name, what, .. } => format!("the table `{name}` {what}"),
             Self::Word { word, .. } => format!("unknown kind of table `{word}`"),
             Self::Else => "`if` needs two values in braces".to_owned(),
-            Self::Comparison => "`if` needs one comparison of two numbers".to_owned(),
+            Self::Comparison => "`if` needs one comparison by `>`, `>=`, `<` or `<=`".to_owned(),
             Self::Jump { condition } => format!("`L` jumps where `{condition}` is zero"),
         }
     }
@@ -84,10 +94,11 @@ impl FunctionMistake {
                 near.as_ref(),
                 "the words are cubic, quintic, monotone, linear; periodic, hold, extend",
             ),
+            Self::Few { name, .. } => format!("write `{name}(a, b)`"),
+            Self::Text => "write `table drag(v) = \"drag.csv\";` for the values of a file, and `drag(…)` for one of them".to_owned(),
             Self::Else => "write `if a > b { x } else { y }`".to_owned(),
             Self::Comparison => {
-                "write `if a > b { x } else { y }`, with `>`, `>=`, `<` or `<=`; write an `if` inside another for two conditions"
-                    .to_owned()
+                "write `if a > b { x } else { y }`; write an `if` inside another for two conditions".to_owned()
             }
             Self::Jump { .. } => {
                 "an infinite force would act there: make both expressions equal where the condition changes, as in `if x > 0 { k * x^2 / 2 } \

@@ -51,6 +51,8 @@ pub enum Habit {
     Condition,
     /// `a % b`, `n!`.
     NoOperator { sign: char },
+    /// `A @ B`, `a .* b`.
+    OtherProduct { sign: &'static str },
     /// `{a + b}`, `2 * [a + b]`.
     OtherBrackets,
     /// `self.m`, `x.dot`.
@@ -77,6 +79,8 @@ pub enum Habit {
     RangeOf { function: String },
     /// `x(t - 1)`, of a coordinate.
     CoordinateWithArguments { name: String },
+    /// `q(1)`, of an array.
+    EntryInParentheses { name: String },
     /// A clause, or a line of a rule, without `;` at its end.
     MissingSemicolon { after: String },
     /// A definition without `=`.
@@ -118,6 +122,7 @@ impl Habit {
                 "a number needs a digit before its point and before its exponent".to_owned()
             }
             Self::Condition => "a comparison is part of an `if`".to_owned(),
+            Self::OtherProduct { sign } => format!("`{sign}` is not an operator"),
             Self::NoOperator { sign } => format!("`{sign}` is not an operator"),
             Self::OtherBrackets => "only parentheses group an expression".to_owned(),
             Self::Field { name } => format!("`.{name}`: names have no fields"),
@@ -131,6 +136,7 @@ impl Habit {
             Self::IndexBehind => "only a name can have an index".to_owned(),
             Self::UnitInBrackets => "a number cannot have a unit".to_owned(),
             Self::RangeOf { function } => format!("`{function}` does not take a range"),
+            Self::EntryInParentheses { name } => format!("`{name}` is an array, not a function"),
             Self::CoordinateWithArguments { name } => format!("`{name}` is a coordinate, not a function"),
             Self::MissingSemicolon { after } => format!("`;` is missing after `{after}`"),
             Self::MissingValue { name, .. } => format!("`{name}` has no value"),
@@ -179,6 +185,9 @@ impl Habit {
             Self::Conversion => "remove `as`; an index is a number, as in `i / 2`".to_owned(),
             Self::PointWithoutDigits { number } => format!("write `{number}`"),
             Self::Condition => CONDITION.to_owned(),
+            Self::OtherProduct { .. } => {
+                "write `*`: `M * v`, `v * w` for the inner product; products entry by entry are `a[i] * b[i]`".to_owned()
+            }
             Self::NoOperator { sign: '%' } => {
                 "the operators are `+ - * / ^`; angles need no remainder, since `sin` and `cos` are periodic".to_owned()
             }
@@ -203,6 +212,7 @@ impl Habit {
                     .to_owned()
             }
             Self::RangeOf { .. } => "only `sum` takes a range, as in `sum(i in 0..8, q[i])`".to_owned(),
+            Self::EntryInParentheses { name } => format!("write an entry as `{name}[0]`; indices start at 0"),
             Self::CoordinateWithArguments { name } => format!(
                 "write `{name}` for its value at the time `t`, `{name} * (…)` for a product; delays (values at other times) are not \
                  supported"
@@ -282,7 +292,7 @@ const CLAUSES: [(&[&str], &str); 16] = [
 ];
 
 /// Functions.
-const FUNCTIONS: [(&[&str], &str); 42] = [
+const FUNCTIONS: [(&[&str], &str); 43] = [
     (&["log"], "write `ln(a)` for the natural logarithm, `ln(a) / ln(b)` for the one to the base b"),
     (&["log10"], "write `ln(a) / ln(10)`"),
     (&["log2"], "write `ln(a) / ln(2)`"),
@@ -316,7 +326,8 @@ const FUNCTIONS: [(&[&str], &str); 42] = [
     (&["outer"], "write `let M[i in 0..3][j in 0..3] = a[i] * b[j];`"),
     (&["inner", "scalar_product", "dotp", "matmul", "mul"], "write `a * b`, also for vectors and matrices"),
     (&["normalize", "normalized", "unit", "versor"], "write `v / norm(v)`"),
-    (&["eye", "identity", "diag", "zeros", "ones"], "write the rows: `[[1, 0], [0, 1]]`"),
+    (&["eye", "identity", "zeros", "ones"], "write the rows: `[[1, 0], [0, 1]]`"),
+    (&["diag"], "write the rows: `[[a, 0], [0, b]]`"),
     (
         &["vec", "vector", "Vector", "matrix", "Matrix", "array"],
         "write `[a, b, c]`, and a matrix by its rows, `[[a, b], [c, d]]`",
@@ -373,6 +384,11 @@ const FUNCTIONS: [(&[&str], &str); 42] = [
         "delays are not supported: an expression depends on the state at one time only",
     ),
 ];
+
+/// Whether other languages write a condition by a function of this name.
+pub(crate) fn is_condition(name: &str) -> bool {
+    FUNCTIONS.iter().any(|(names, help)| *help == CONDITION && names.contains(&name))
+}
 
 /// Derivatives with respect to time, which are one function here, and with respect to coordinates.
 const DERIVATIVES: [&str; 12] =
@@ -476,8 +492,7 @@ pub(crate) const CONSTRAINT: &str = "constraints are not supported: choose coord
     approximate them with a stiff spring, `- k * (…)^2 / 2` in `L`";
 
 /// Help for a condition.
-const CONDITION: &str =
-    "write `if a > b { x } else { y }`, with `>`, `>=`, `<` or `<=`; write an `if` inside another for two conditions";
+const CONDITION: &str = "write `if a > b { x } else { y }`; write an `if` inside another for two conditions";
 
 /// Help for a table.
 const TABLE: &str =

@@ -4,7 +4,7 @@
 //! collects its errors in [`Errors`] and reports them all before the next stage starts.
 
 use crate::arrays::ArrayMistake;
-use crate::functions::FunctionMistake;
+use crate::functions::{self, FunctionMistake};
 use crate::habits::{self, Habit};
 use crate::rules;
 use proc_macro2::Span;
@@ -275,7 +275,13 @@ fn another_name(name: &str) -> String {
 /// Help for an unknown clause; `is_defined` if `=` follows it.
 fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
     let clauses = "the clauses are const, param, input, coord, angle, fn, table, let, L, force, dissipation, time_scale, discretize, check";
-    let part = || if is_defined { format!("write `let {found} = …;` to name a part") } else { clauses.to_owned() };
+    let part = || {
+        if is_defined {
+            format!("write `param {found} = …;` for a parameter, `let {found} = …;` to name a part")
+        } else {
+            clauses.to_owned()
+        }
+    };
     habits::clause(found).unwrap_or_else(|| did_you_mean(near, &part()))
 }
 
@@ -343,7 +349,7 @@ impl Message {
             Self::Unknown { name, .. } => format!("unknown name `{name}`"),
             Self::Absent { name, absence } => absence.what(name),
             Self::UnknownFunction { name, .. } => format!("unknown function `{name}`"),
-            Self::Arity { name, takes, given } => format!("`{name}` takes {takes} argument(s), not {given}"),
+            Self::Arity { name, takes, given } => functions::takes(name, *takes, *given),
             Self::FunctionWithoutArguments { name } => format!("`{name}` is a function"),
             Self::DotOfOther { name } => format!("`dot({name})`: `{name}` is not a coordinate"),
             Self::DotOfConstant { name } => format!("`dot({name})`: `{name}` does not change with time"),

@@ -33,7 +33,7 @@ fn shapes_of_sums_and_products() {
     value("x * M * M * «r»", "a 2 × 2 matrix and a 3 × 3 matrix cannot be multiplied");
     value(
         "1 / «q»",
-        "a number is needed here, not a vector of 3\nhelp: write one entry, `q[0]`, or the inner product `q * q`",
+        "a number is needed here, not a vector of 3\nhelp: write one entry, `q[0]`, the inner product `q * q`, or the length `norm(q)`",
     );
     value("[1, «s»]", "a number and a vector of 2 in one list\nhelp: write numbers, or rows of equal length");
     value("[[1, 2], «[»3]]", "a vector of 2 and one of 1 in one list");
@@ -46,7 +46,9 @@ fn numbers_are_needed() {
     let number = "a number is needed here, not a vector of 3";
     clause(
         "force x = «r»[1];",
-        &format!("{number}\nhelp: write one entry, `r[1][0]`, or the inner product `r[1] * r[1]`"),
+        &format!(
+            "{number}\nhelp: write one entry, `r[1][0]`, the inner product `r[1] * r[1]`, or the length `norm(r[1])`"
+        ),
     );
     clause("force x = «M»;", "a number is needed here, not a 2 × 2 matrix\nhelp: write one entry, `M[0][0]`");
     clause("force x = «2» * q;", &format!("{number}\nhelp: write an inner product, `v * w`"));
@@ -93,9 +95,13 @@ fn functions_and_powers_of_arrays() {
     value("«norm»(M)", "`norm` takes a vector, not a 2 × 2 matrix");
     value("«cross»(q, s)", "`cross` takes two vectors of 3, or two of 2, not a vector of 3 and a vector of 2");
     value("«cross»(q, x)", "`cross` takes two vectors of 3, or two of 2, not a vector of 3 and a number");
-    value("«cross»(q)", "`cross` takes 2 argument(s), not 1\nhelp: write `cross(a, b)`");
+    value("«cross»(q)", "`cross` takes 2 arguments, not 1\nhelp: write `cross(a, b)`");
     value("«transpose»(q)", "`transpose` takes a matrix, not a vector of 3\nhelp: write `v * M * w` as it is");
     value("«cross»", "`cross` is a function");
+    value("«q»(1)", "`q` is an array, not a function\nhelp: write an entry as `q[0]`; indices start at 0");
+    value("M «@» q", "`@` is not an operator\nhelp: write `*`: `M * v`");
+    value("q «.»* q", "`.*` is not an operator\nhelp: write `*`: `M * v`");
+    value("«diag»(q)", "unknown function `diag`\nhelp: write the rows: `[[a, 0], [0, b]]`");
     value("«cros»(q, q)", "unknown function `cros`\nhelp: did you mean `cross`?");
 }
 

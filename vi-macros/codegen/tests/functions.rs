@@ -47,6 +47,14 @@ fn functions_of_the_language_are_substituted() {
     // `dot` inside a function is the derivative of its argument.
     let energy = lagrangian("coord x; fn energy(m, s) = m * dot(s)^2 / 2; L = energy(2, x^2);");
     assert_eq!(energy, lagrangian("coord x; L = dot(x^2)^2;"));
+    // An argument of the calling function has its outer meaning in the called one.
+    let hidden =
+        "param k = 2; coord x, y; fn a(u) = u * y * k; fn b(y, k) = a(y) + k; L = dot(x)^2 + dot(y)^2 - b(x, 3) - y;";
+    assert_eq!(lagrangian(hidden), lagrangian("param k = 2; coord x, y; L = dot(x)^2 + dot(y)^2 - x * y * k - 3 - y;"));
+    let again = "coord x, y; fn b(y) = c(a(y), y); fn a(u) = u * y; fn c(u, w) = u + 3 * w * y; L = dot(x)^2 + dot(y)^2 - b(x);";
+    assert_eq!(lagrangian(again), lagrangian("coord x, y; L = dot(x)^2 + dot(y)^2 - x * y - 3 * x * y;"));
+    let scaled = "coord x; fn g(a) = 1 + a^2; L = dot(x)^2 / 2 - x^2; time_scale = g(x);";
+    assert_eq!(lagrangian(scaled), lagrangian("coord x; L = dot(x)^2 / 2 - x^2;"));
     let sum = "coord q[3]; fn well(s) = s^4 / 4 - s^2 / 2; L = sum(i in 0..3, dot(q[i])^2 / 2 - well(q[i]));";
     assert!(lagrangian(sum).contains("q[2]^4/4"), "{}", lagrangian(sum));
 }
@@ -117,11 +125,11 @@ fn mistakes_in_functions() {
     case("fn g(a) = a * «b»; coord x; L = dot(x)^2 / 2 - g(x);", "unknown name `b`\nhelp: declare it");
     case(
         "fn g(a, b) = a * b; coord x; L = dot(x)^2 / 2 - «g»(x);",
-        "`g` takes 2 argument(s), not 1\nhelp: write `g(a, b)`",
+        "`g` takes 2 arguments, not 1\nhelp: write `g(a, b)`",
     );
     case(
         "fn g(a, b) = crate::g; coord x; L = dot(x)^2 / 2 - «g»(x);",
-        "`g` takes 2 argument(s), not 1\nhelp: write `g(a, b)`",
+        "`g` takes 2 arguments, not 1\nhelp: write `g(a, b)`",
     );
     case(
         "fn «g»(a, b, c, d) = crate::g; coord x; L = dot(x)^2 / 2 - g(x, 1, 2, 3);",
@@ -135,6 +143,7 @@ fn mistakes_in_functions() {
     case("fn «g»(a) = a; coord x; L = dot(x)^2 / 2;", "`g` is never used\nhelp: use it in `L`");
     case("fn g(a) = a; coord x; L = dot(x)^2 / 2 - «g» * x;", "`g` is a function\nhelp: write its argument: `g(…)`");
     case("fn g(a) = a; coord «g», x; L = dot(x)^2 / 2 - x;", "the name `g` is declared twice");
+    case("coord x; fn a(u) = u * «w»; fn b(w) = a(3) * w; L = dot(x)^2 / 2 - b(x);", "unknown name `w`");
     case("fn g(a) = a * «i»; coord q[2]; L = sum(i in 0..2, dot(q[i])^2 / 2 - g(q[i]));", "unknown name `i`");
     case(
         "«extern» fn cl(a); coord x; L = dot(x)^2 / 2;",
@@ -143,25 +152,42 @@ fn mistakes_in_functions() {
     let typed = "`g` is declared with types or braces\nhelp: write `fn g(a) = …;`: arguments and values are numbers";
     case("fn g(a«:» f64) -> f64 { a } coord x; L = dot(x)^2 / 2;", typed);
     case("fn g(a) «-»> f64 { a } coord x; L = dot(x)^2 / 2;", typed);
-    case("fn g(a) «{ a }» coord x; L = dot(x)^2 / 2;", typed);
+    case("fn g(a) «{» a } coord x; L = dot(x)^2 / 2;", typed);
     case("fn «g»: (a) = a; coord x; L = dot(x)^2 / 2;", "`g` is declared without arguments");
+}
+
+/// A comparison of indices is decided where it stands: the other value need not exist.
+#[test]
+fn conditions_on_indices_are_decided_at_once() {
+    let system = |sum: &str| lagrangian(&format!("const N = 3; coord q[N]; L = dot(q) * dot(q) - {sum};"));
+    let pairs = system("sum(i in 0..N, j in 0..N, if i < j { 1 / abs(q[i] - q[j]) } else { 0 })");
+    assert_eq!(pairs, system("sum(i in 0..N, j in i + 1..N, 1 / abs(q[i] - q[j]))"));
+    let first = system("sum(i in 0..N, if i >= 1 { (q[i] - q[i - 1])^2 } else { q[i]^2 })");
+    assert_eq!(first, system("(q[0]^2 + sum(i in 1..N, (q[i] - q[i - 1])^2))"));
+    assert_eq!(system("if 2 <= 1 { q[7] } else { q[0] }"), system("q[0]"));
+    assert_eq!(system("if pi > 3 { q[1] } else { q[0] }"), system("q[1]"));
 }
 
 #[test]
 fn mistakes_in_conditions() {
     let potential = |written: &str, message: &str| case(&format!("coord x; L = dot(x)^2 / 2 - {written};"), message);
     potential("«if» x > 0 { x }", "`if` needs two values in braces\nhelp: write `if a > b { x } else { y }`");
-    potential("if x «=»= 0 { x } else { 0 }", "`if` needs one comparison of two numbers");
+    potential("if x «=»= 0 { x } else { 0 }", "`if` needs one comparison by `>`, `>=`, `<` or `<=`");
     potential(
         "if x > 0 «&»& x < 1 { x } else { 0 }",
-        "`if` needs one comparison of two numbers\nhelp: write `if a > b { x } else { y }`",
+        "`if` needs one comparison by `>`, `>=`, `<` or `<=`\nhelp: write `if a > b { x } else { y }`",
     );
-    potential("«if» (x) { x } else { 0 }", "`if` needs one comparison of two numbers");
-    potential("if (x > 0 «&»& x < 1) { x } else { 0 }", "`if` needs one comparison of two numbers");
-    potential("if (x > 0) «&»& (x < 1) { x } else { 0 }", "`if` needs one comparison of two numbers");
-    potential("«max»(x)", "`max` takes 2 argument(s), not 1\nhelp: write `max(a, b)`");
-    potential("«clamp»(x, 1)", "`clamp` takes 3 argument(s), not 2\nhelp: write `clamp(x, a, b)`");
+    potential("«if» (x) { x } else { 0 }", "`if` needs one comparison by `>`, `>=`, `<` or `<=`");
+    potential("if (x > 0 «&»& x < 1) { x } else { 0 }", "`if` needs one comparison by `>`, `>=`, `<` or `<=`");
+    potential("if (x > 0) «&»& (x < 1) { x } else { 0 }", "`if` needs one comparison by `>`, `>=`, `<` or `<=`");
+    potential("«max»(x)", "`max` takes two arguments or more, not 1\nhelp: write `max(a, b)`");
+    potential("«clamp»(x, 1)", "`clamp` takes 3 arguments, not 2\nhelp: write `clamp(x, a, b)`");
     potential("«max» * x", "unknown name `max`");
+    potential("(x^2 «if» x > 0 else 0)", "`if` needs two values in braces\nhelp: write `if a > b { x } else { y }`");
+    let piecewise = "unknown function `Piecewise`\nhelp: write `if a > b { x } else { y }`";
+    potential("«Piecewise»((x^2, x > 0), (0, 1))", piecewise);
+    potential("«select»(x > 0, x, 0)", "unknown function `select`\nhelp: write `if a > b { x } else { y }`");
+    potential("«\"x\"»", "a text is no number\nhelp: write `table drag(v) = \"drag.csv\";`");
 }
 
 /// An L that jumps is refused; a kink, and a jump of a force, are not.
@@ -172,6 +198,8 @@ fn a_lagrangian_that_jumps_is_refused() {
         "x * if x > 1 { 1 } else { x^2 + 1 }",
         "if x + y > 3 { 1 } else { 0 }",
         "y * if x > c { 1 } else { 0 }",
+        "if x > 1e5 { 1 } else { 0 }",
+        "1e9 * y^2 + if x > 1 { 1e-3 } else { 0 }",
     ] {
         let message = "`L` jumps where `";
         case(&format!("param c = 0.3; coord x, y; «L» = dot(x)^2 + c * dot(y)^2 - {jumps};"), message);
@@ -197,22 +225,35 @@ fn mistakes_in_tables() {
     };
     of("table g(a) = «3»;", "these are not the values of a table\nhelp: write the path of a file");
     of("table g(a) = «\"no such file.csv\"»;", "the table `g` cannot be read from its file\nhelp: `");
-    of("table «g»(a) = [(0, 1)];", "the table `g` has 1 values\nhelp: write at least 2 values");
+    of("table «g»(a) = [(0, 1)];", "the table `g` has 1 value\nhelp: write at least 2 values");
     of(
         "table «g»(a) = [(0, 1), (2, 3), (1, 5)];",
         "the table `g` has the place 1 after 2\nhelp: write the places in ascending order",
     );
     of("table «g»(a) = [(0, 1), (1, 3, 4)];", "the table `g` has no place and value in each point");
+    of(
+        "table «g»(a in 0..1) = [[0, 1], [1, 2], [2, 4]];",
+        "the table `g` has 3 rows of values\nhelp: write points in parentheses, `[(0, 0.1), (1, 0.3)]`",
+    );
     of("table g(«a») = [1, 2, 3];", "the table `g` has values without places in `a`\nhelp: write the range");
     of("table g(a in 0..«0») = [1, 2, 3];", "the table `g` has a range that ends before it begins");
     of("table g(a in 0..1) = «d»;", "the table `g` has the values `d`, which is no array of parameters");
     of("table g(«a») = c;", "the table `g` has values without places in `a`");
+    of("table g(«a» in 0..1) = [(0, 1), (1, 2)];", "the table `g` has places in its points and a range");
+    of(
+        "table g(a) = «\"/dev/zero\"»;",
+        "the table `g` cannot be read from its file\nhelp: `/dev/zero`: write the path",
+    );
     of("table «g»(a in 0..1) = c quintic;", "the table `g` cannot be `quintic`");
     of("table g(a in 0..1) = c «cubci»;", "unknown kind of table `cubci`\nhelp: did you mean `cubic`?");
     of("table g(a in 0..1) = c linear «cubic»;", "the table `g` cannot also be `cubic`");
     of(
         "table «g»(a) = [(0, 1), (1, 2), (2, 3), (3, 5)] periodic;",
         "the table `g` is `periodic`, but its first and last values differ",
+    );
+    case(
+        "param c[5] = [0, 1, 0, -1, 0]; coord x; table «g»(a in 0..4) = c periodic; L = dot(x)^2 / 2 - g(x);",
+        "the table `g` is `periodic`, and has its first value again at the end\nhelp: parameters stand for one period",
     );
     of("table g(a) = [(0, 1), (1, «x»)];", "the value of `g` is not a constant");
 }
@@ -252,6 +293,8 @@ fn files_of_tables() {
     assert_eq!(table_of_grid.values, wanted);
     for (name, content, message) in [
         ("e.csv", "0,1\n1,2\n2,abc\n", "the table `g` has `abc` in line 3 of its file, which is no number"),
+        ("h.csv", "0.O,1\n1,2\n2,3\n", "the table `g` has `0.O` in line 1 of its file, which is no number"),
+        ("k.csv", "1,\n2,3\n", "the table `g` has an empty cell in line 1 of its file, which is no number"),
         ("f.csv", "0,1\n1\n", "the table `g` has 1 columns in line 2 of its file, and 2 before"),
         ("g.csv", "v,drag\n", "the table `g` has no numbers in its file"),
         ("h.csv", "0,1,2\n1,2,3\n", "the table `g` has 3 columns in its file"),

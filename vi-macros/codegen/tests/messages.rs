@@ -68,9 +68,9 @@ fn names() {
         "coord x; L = dot(x)^2 * «sinn»(x); discretize midpoint;",
         "unknown function `sinn`\nhelp: did you mean `sin`?",
     );
-    case("coord x; L = dot(x)^2 * «atan2»(x); discretize midpoint;", "`atan2` takes 2 argument(s), not 1");
-    case("coord x; L = dot(x)^2 * «sin»(x, 1); discretize midpoint;", "`sin` takes 1 argument(s), not 2");
-    case("coord x; L = dot(x)^2 * «sin»(); discretize midpoint;", "`sin` takes 1 argument(s), not 0");
+    case("coord x; L = dot(x)^2 * «atan2»(x); discretize midpoint;", "`atan2` takes 2 arguments, not 1");
+    case("coord x; L = dot(x)^2 * «sin»(x, 1); discretize midpoint;", "`sin` takes 1 argument, not 2");
+    case("coord x; L = dot(x)^2 * «sin»(); discretize midpoint;", "`sin` takes 1 argument, not 0");
 }
 
 #[test]
@@ -298,7 +298,7 @@ fn constants() {
         "the number `2` is followed directly by `x`\nhelp: write `2 * x`",
     );
     case("coord x; L = dot(x)^2 * «0x10»; discretize midpoint;", "not a decimal number");
-    case("coord x; L = dot(x)^2 * «\"a\"»; discretize midpoint;", "not a decimal number");
+    case("coord x; L = dot(x)^2 * «\"a\"»; discretize midpoint;", "a text is no number");
     case("coord x; L = dot(x)^2 * «1e400»; discretize midpoint;", "this number is outside the range of `f64`");
 }
 
@@ -461,7 +461,7 @@ fn habits() {
     says("«.»5 * x", "a number needs a digit before its point and before its exponent\nhelp: write `0.5`");
     says(
         "«if» x { 1 } else { 2 }",
-        "`if` needs one comparison of two numbers\nhelp: write `if a > b { x } else { y }`, with `>`",
+        "`if` needs one comparison by `>`, `>=`, `<` or `<=`\nhelp: write `if a > b { x } else { y }`",
     );
     says("«|»x|", "bars do not denote the absolute value\nhelp: write `abs(x)`");
     says("2«|»x|", "bars do not denote the absolute value\nhelp: write `abs(x)`");
@@ -534,7 +534,10 @@ fn habits() {
     );
     clause("«for» i in 0..3 {};", "unknown clause `for`\nhelp: write `force q[i in 0..8] = …;`");
     clause("«parameter» m = 1;", "unknown clause `parameter`\nhelp: write `param a = 1.0;`");
-    clause("«T» = dot(x)^2 / 2;", "unknown clause `T`\nhelp: write `let T = …;` to name a part");
+    clause(
+        "«T» = dot(x)^2 / 2;",
+        "unknown clause `T`\nhelp: write `param T = …;` for a parameter, `let T = …;` to name a part",
+    );
     case(
         "coord «λ», x, y; L = (dot(x)^2 + dot(y)^2) / 2 + λ * (x^2 + y^2 - 1); discretize midpoint;",
         "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `λ` multiplies a constraint; constraints are not supp",
@@ -549,7 +552,7 @@ fn unsupported_features_are_reported() {
     says("«x»(0)", delay);
     case(
         "coord q[2], x; L = dot(x)^2 + dot(q[0])^2 - «q»(1) * x; discretize midpoint;",
-        "`q` is a coordinate, not a fun",
+        "`q` is an array, not a function",
     );
     says("«delay»(x, 1)", "unknown function `delay`\nhelp: delays are not supported");
     says(
@@ -819,7 +822,8 @@ fn arrays_of_parameters() {
     case(&system("param m[«x»] = 1"), "`x` is a coordinate: it has no value");
     case(&system("param m[«i» in 0..2] = 1"), "expected a length, as in `q[8]`");
     case(&system("param m[2«,» 2] = 1"), "an index is one number");
-    case(&system("param m[2] = [1 «2»]"), "an operator is missing between `1` and `2`");
+    case(&system("param m[2] = [1 «2»]"), "a `,` is missing between two entries\nhelp: write a vector as `[a, b, c]`");
+    case(&system("param m[2] = [[1, 2«;» 3, 4]]"), "`;` does not separate rows\nhelp: write a vector as `[a, b, c]`");
     case(&system("param m[2] = [1, «x»]"), "`x` is a coordinate: it has no value");
     case(&system("param m[2] = [1, «exp»(1000)]"), "the value of `m` is not finite");
     case(&system("param «m»[2]"), "`m` has no value\nhelp: write `m = 1.0`");
@@ -933,7 +937,7 @@ fn rules() {
     );
     case(
         &system(&format!("{ld} {forces} gd_plus = «L»(t0, q0);")),
-        "`L` takes 3 argument(s), not 2\nhelp: write `L(t0, q0, (q1 - q0)/h)`",
+        "`L` takes 3 arguments, not 2\nhelp: write `L(t0, q0, (q1 - q0)/h)`",
     );
     case(&system(&format!("{ld} {forces} gd_plus = L(«q0», q0, q1);")), "a number is needed here");
     case(&system(&format!("{ld} {forces} gd_plus = L(t0, «t0», q1);")), "a vector is needed here");

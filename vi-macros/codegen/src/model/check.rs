@@ -37,7 +37,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let parameters = context.parameters(parameters);
     let coordinates = context.coordinates(coordinates, &system.name);
     context.scope.expect(lets.iter().map(|named| &named.name), Absence::Below);
-    let functions = function::functions(&mut context, system);
+    let functions = function::functions(&mut context, system, &parameters);
     lets::lets(&mut context, lets);
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
     let forces = force::forces(&mut context, &system.forces, &system.dissipations, &parameters, coordinates.len());

@@ -1,7 +1,7 @@
 //! Expressions of which one of two applies: `if`, `max`, `min` and `clamp`.
 //!
 //! In: a comparison and two expressions. Out: one expression that is the first or the second, depending on a sign.
-//! Both are computed, and one is selected.
+//! Both are computed, and one is selected. A comparison of constants is decided at once.
 
 use super::scope::Scope;
 use super::value::Value;
@@ -10,6 +10,7 @@ use crate::functions::FunctionMistake;
 use crate::messages::{Message, error};
 use crate::symbol::Symbol;
 use crate::syntax::{Comparison, Expression};
+use core::cmp::Ordering;
 use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, Pool};
@@ -28,6 +29,11 @@ impl Scope {
         let Comparison { larger, smaller, or_equal, .. } = comparison;
         let sides = self.each_of(pool, [larger, smaller], Self::expression)?;
         let difference = if *or_equal { pool.sub(sides[1], sides[0]) } else { pool.sub(sides[0], sides[1]) };
+        // Indices decide now: the other value may not exist for them, as `q[i - 1]` for i = 0.
+        if let Ok(sign) = pool.constant_sign(difference) {
+            let holds = (sign == Ordering::Greater) != *or_equal;
+            return self.value(pool, &arms[usize::from(!holds)]);
+        }
         let values = self.each_of(pool, arms, Self::value)?;
         let [then, otherwise] = <[Value; 2]>::try_from(values)
             .map_err(|_| error(arms[0].span, &Message::Function(FunctionMistake::Else)))?;
@@ -52,10 +58,12 @@ impl Scope {
     ) -> Result<Value> {
         let (name, given) = (function.to_string(), written.len());
         let is_clamp = name == "clamp";
-        if is_clamp && given != 3 || given < 2 {
-            let arguments: &[&str] = if is_clamp { &["x", "a", "b"] } else { &["a", "b"] };
-            let arguments = arguments.iter().map(|&argument| argument.to_owned()).collect();
+        if is_clamp && given != 3 {
+            let arguments = ["x", "a", "b"].map(str::to_owned).to_vec();
             return Err(error(function.span(), &Message::Function(FunctionMistake::Arity { name, arguments, given })));
+        }
+        if given < 2 {
+            return Err(error(function.span(), &Message::Function(FunctionMistake::Few { name, given })));
         }
         let values = self.each_of(pool, written, Self::expression)?;
         let chosen = match values.as_slice() {

@@ -3,6 +3,7 @@
 //! In: the clauses `fn` and `table`. Out: the meaning of their names. A function of the language is replaced by its body
 //! at each call. The others are opaque: the [`Model`](super::Model) lists them for the code that evaluates them.
 
+use super::Parameter;
 use super::context::Context;
 use super::lets;
 use super::scope::{Meaning, Scope};
@@ -81,7 +82,7 @@ impl PartialEq for Called {
 impl Eq for Called {}
 
 /// Declares all functions and tables. Returns those that the generated code evaluates.
-pub(super) fn functions(context: &mut Context, written: &syntax::System) -> Vec<Function> {
+pub(super) fn functions(context: &mut Context, written: &syntax::System, declared: &[Parameter]) -> Vec<Function> {
     let mut functions = Vec::new();
     for function in &written.functions {
         let arguments: Vec<String> = function.arguments.iter().map(Ident::to_string).collect();
@@ -112,7 +113,7 @@ pub(super) fn functions(context: &mut Context, written: &syntax::System) -> Vec<
     }
     for written_table in &written.tables {
         let name = &written_table.name;
-        let Some((table, parameters)) = table::table(context, written_table, &written.folder) else {
+        let Some((table, parameters)) = table::table(context, written_table, (&written.folder, declared)) else {
             context.declare(name, Meaning::Wrong);
             continue;
         };
@@ -174,7 +175,8 @@ impl Scope {
         }
     }
 
-    /// The value of a body with these arguments. Indices of ranges around the call have no meaning in it.
+    /// The value of a body with these arguments. Indices of ranges around the call, and arguments of the calling
+    /// function, have no meaning in it.
     fn body_value(
         &mut self,
         pool: &mut Pool<Symbol>,
@@ -185,19 +187,10 @@ impl Scope {
         let hidden = self.enter(&name.to_string()).ok_or_else(|| {
             error(name.span(), &Message::Function(FunctionMistake::Recursive { name: name.to_string() }))
         })?;
-        let bound: Vec<(String, Option<Meaning>)> = arguments
-            .iter()
-            .zip(values)
-            .map(|(argument, value)| {
-                let argument = argument.to_string();
-                let before = self.replace(&argument, Some(lets::meaning(&value)));
-                (argument, before)
-            })
-            .collect();
+        let arguments = arguments.iter().zip(values);
+        let bound = self.bind(arguments.map(|(name, value)| (name.to_string(), lets::meaning(&value))).collect());
         let value = self.value(pool, body);
-        for (argument, before) in bound.into_iter().rev() {
-            self.replace(&argument, before);
-        }
+        self.unbind(bound);
         self.leave(&name.to_string(), hidden);
         value
     }

@@ -306,6 +306,9 @@ impl Scope {
             if name == "ddot" {
                 return Err(error(function.span(), &Message::Acceleration { name: "ddot(…)".to_owned() }));
             }
+            if matches!(self.meaning(&name), Some(Meaning::Array(_) | Meaning::Coordinates { .. })) {
+                return Err(error(function.span(), &Message::Habit(Habit::EntryInParentheses { name })));
+            }
             if self.is_coordinate(&name) {
                 return Err(error(function.span(), &Message::Habit(Habit::CoordinateWithArguments { name })));
             }

@@ -11,7 +11,9 @@ use crate::habits::{self, Habit};
 use crate::messages::{Absence, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Ident;
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 use syn::Result;
 use vi_expr::{Expr, Function, Pool};
 
@@ -32,8 +34,10 @@ pub(super) struct Scope {
     indices: Vec<String>,
     /// Functions of the language whose bodies are being evaluated.
     open: Vec<String>,
-    /// Declared functions that some expression has called.
-    called: BTreeSet<String>,
+    /// Arguments of the function whose body is being evaluated, with the meanings that they hide.
+    bound: Vec<(String, Option<Meaning>)>,
+    /// Declared functions that some expression has called; shared with the scopes of a rule and of a time scale.
+    called: Rc<RefCell<BTreeSet<String>>>,
     /// The array of `let`s whose entries are being defined.
     growing: Option<Growing>,
 }
@@ -107,8 +111,16 @@ impl Scope {
     }
 
     fn with_names(names: BTreeMap<String, Meaning>) -> Self {
-        let (absent, called) = (BTreeMap::new(), BTreeSet::new());
-        Self { names, absent, points: Vec::new(), indices: Vec::new(), open: Vec::new(), called, growing: None }
+        Self {
+            names,
+            absent: BTreeMap::new(),
+            points: Vec::new(),
+            indices: Vec::new(),
+            open: Vec::new(),
+            bound: Vec::new(),
+            called: Rc::default(),
+            growing: None,
+        }
     }
 
     /// Adds the declarations of a system. Names that already have a meaning keep it, as do numbers of constants and
@@ -124,6 +136,7 @@ impl Scope {
             };
             self.names.entry(name.clone()).or_insert(meaning);
         }
+        self.called = Rc::clone(&system.called);
         self
     }
 
@@ -138,7 +151,7 @@ impl Scope {
             _ => meaning.clone(),
         };
         let names = self.names.iter().map(|(name, known)| (name.clone(), meaning(known))).collect();
-        Self::with_names(names)
+        Self { called: Rc::clone(&self.called), ..Self::with_names(names) }
     }
 
     /// The number of an evaluation point; equal points have the same number.
@@ -208,6 +221,31 @@ impl Scope {
         }
     }
 
+    /// Gives the arguments of a function their meanings, and the names that are arguments of the calling function those
+    /// outside of it. Returns what [`Scope::unbind`] needs.
+    pub(super) fn bind(&mut self, arguments: Vec<(String, Meaning)>) -> [Vec<(String, Option<Meaning>)>; 2] {
+        let of_caller = core::mem::take(&mut self.bound);
+        let hidden = self.exchange(of_caller.iter().rev().cloned().collect());
+        self.bound = self.exchange(arguments.into_iter().map(|(name, meaning)| (name, Some(meaning))).collect());
+        [of_caller, hidden]
+    }
+
+    /// Restores the meanings before [`Scope::bind`].
+    pub(super) fn unbind(&mut self, [of_caller, hidden]: [Vec<(String, Option<Meaning>)>; 2]) {
+        let bound = core::mem::replace(&mut self.bound, of_caller);
+        self.exchange(bound.into_iter().rev().collect());
+        self.exchange(hidden.into_iter().rev().collect());
+    }
+
+    /// Replaces meanings one after the other, and returns those before.
+    fn exchange(&mut self, names: Vec<(String, Option<Meaning>)>) -> Vec<(String, Option<Meaning>)> {
+        let replaced = names.into_iter().map(|(name, meaning)| {
+            let before = self.replace(&name, meaning);
+            (name, before)
+        });
+        replaced.collect()
+    }
+
     /// Begins the body of a function: hides and returns the indices of ranges around the call. `None` if the body is
     /// already being evaluated.
     pub(super) fn enter(&mut self, function: &str) -> Option<Vec<(String, Option<Meaning>)>> {
@@ -230,12 +268,12 @@ impl Scope {
 
     /// Records that an expression has called a declared function.
     pub(super) fn record_call(&mut self, function: &str) {
-        self.called.insert(function.to_owned());
+        self.called.borrow_mut().insert(function.to_owned());
     }
 
     /// Whether an expression has called a declared function.
     pub(super) fn was_called(&self, function: &str) -> bool {
-        self.called.contains(function)
+        self.called.borrow().contains(function)
     }
 
     /// Changes the meaning of a declared name: the next value of an index.

@@ -16,8 +16,11 @@ const PAIRS: u32 = 40;
 const BORDERS: usize = 10;
 /// Bisections of the way between two points: the bits of a number.
 const BISECTIONS: u32 = 60;
-/// Difference at a border that counts as a jump, relative to the values around it. A root has an infinite slope there, and differs by 1e-8.
+/// Difference at a border that counts as a jump, relative to the differences around it. A root has an infinite slope
+/// there, and differs by 1e-8.
 const JUMP: f64 = 1e-6;
+/// Difference of two expressions that are equal but for roundings, relative to them.
+const ROUNDING: f64 = 1e-12;
 /// Number of continuous derivatives that leave nothing to say: a quintic spline has four.
 const SMOOTH: usize = 5;
 
@@ -102,7 +105,8 @@ fn directional(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
 /// A condition of an expression at whose border the expression jumps.
 ///
 /// The border is sought between points of a fixed sequence. There the expression is evaluated with either arm of the
-/// condition. Parameters have their defaults.
+/// condition. Parameters have their defaults. A condition with tables or Rust functions is not judged: their values are
+/// not known here.
 pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]) -> Option<Expr> {
     let selects: Vec<(Expr, [Expr; 3])> = pool
         .reachable(&[expr])
@@ -110,12 +114,20 @@ pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]
         .filter_map(|node| if let Node::Select(parts) = pool.node(node) { Some((node, *parts)) } else { None })
         .collect();
     for (select, [condition, then, otherwise]) in selects {
-        let sides = [then, otherwise].map(|arm| pool.replace(expr, select, arm));
+        let parts = pool.reachable(&[condition, then, otherwise]);
+        if parts.into_iter().any(|node| matches!(pool.node(node), Node::Opaque(..))) {
+            continue;
+        }
+        let [then, otherwise] = [then, otherwise].map(|arm| pool.replace(expr, select, arm));
+        // What both have in common cancels, however large it is.
+        let difference = pool.sub(then, otherwise);
         let mut borders = 0;
         for pair in 0..PAIRS {
-            let Some(values) = border(pool, condition, pair, &sides, parameters) else { continue };
-            let [then, otherwise, scale] = values;
-            if (then - otherwise).abs() > JUMP * scale {
+            let Some(values) = border(pool, condition, pair, &[difference, then, otherwise], parameters) else {
+                continue;
+            };
+            let [difference, around, size] = values;
+            if difference > JUMP * around && difference > ROUNDING * size {
                 return Some(condition);
             }
             borders += 1;
@@ -127,13 +139,14 @@ pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]
     None
 }
 
-/// The values of two expressions at a point where a condition changes its sign, and their size around it; `None` if it does not between the two
-/// points of this pair, or if a value is not finite.
+/// The absolute difference of two expressions at a point where a condition changes its sign, the largest one around it,
+/// and the size of both; `None` if the condition does not change its sign between the two points of this pair, or if a
+/// value is not finite.
 fn border(
     pool: &Pool<Symbol>,
     condition: Expr,
     pair: u32,
-    sides: &[Expr; 2],
+    exprs: &[Expr; 3],
     parameters: &[Parameter],
 ) -> Option<[f64; 3]> {
     let mut ends: BTreeMap<Symbol, [f64; 2]> = BTreeMap::new();
@@ -160,9 +173,13 @@ fn border(
         let middle = f64::midpoint(low, high);
         if (sign(middle) > 0.0) == first { low = middle } else { high = middle }
     }
-    let values = at(high, sides);
-    let [then, otherwise] = values[..] else { return None };
-    let around = [at(0.0, sides), at(1.0, sides)].concat().into_iter().chain(values);
-    let scale = around.filter(|value| value.is_finite()).fold(0.0_f64, |scale, value| scale.max(value.abs()));
-    (then.is_finite() && otherwise.is_finite()).then_some([then, otherwise, scale])
+    let values = at(high, exprs);
+    let [difference, then, otherwise] = values[..] else { return None };
+    let mut around = difference.abs();
+    for way in [0.0, 1.0] {
+        let size = at(way, &exprs[..1]).first().map_or(0.0, |value| value.abs());
+        around = around.max(if size.is_finite() { size } else { 0.0 });
+    }
+    let is_finite = values.iter().all(|value| value.is_finite());
+    is_finite.then_some([difference.abs(), around, then.abs().max(otherwise.abs())])
 }

@@ -3,6 +3,7 @@
 //! In: a clause `table`. Out: its places and values as numbers, or the parameters that are its values. A file is read
 //! here; the generated code makes cargo build again when it changes.
 
+use super::Parameter;
 use super::context::Context;
 use super::scope::Meaning;
 use crate::functions::FunctionMistake;
@@ -15,6 +16,8 @@ use vi_expr::Expr;
 
 /// Maximum number of values of a table.
 const VALUES: usize = 4096;
+/// Largest file, in bytes.
+const LARGEST_FILE: u64 = 16_000_000;
 /// Maximum number of parameters that are values of a table: each evaluation reads all of them.
 const PARAMETERS: usize = 64;
 /// Minimum number of values of a periodic table: with fewer, no spline is determined.
@@ -147,7 +150,11 @@ impl Table {
 }
 
 /// Checks a table. Returns it with the parameters that are its values; reports every mistake.
-pub(super) fn table(context: &mut Context, written: &syntax::Table, folder: &Path) -> Option<(Table, Vec<Expr>)> {
+pub(super) fn table(
+    context: &mut Context,
+    written: &syntax::Table,
+    (folder, declared): (&Path, &[Parameter]),
+) -> Option<(Table, Vec<Expr>)> {
     let mut reader = Reader { context, written, wrong: false };
     let (kind, outside) = reader.words();
     if !(1..=2).contains(&written.arguments.len()) {
@@ -161,6 +168,7 @@ pub(super) fn table(context: &mut Context, written: &syntax::Table, folder: &Pat
     let (values, parameters, file) = reader.values(folder)?;
     let table = Table { kind, outside, values, file };
     reader.check(&table);
+    reader.check_period(&table, &parameters, declared);
     (!reader.wrong).then_some((table, parameters))
 }
 
@@ -231,6 +239,11 @@ impl Reader<'_, '_> {
                     );
                     return None;
                 }
+                if let Some(argument) = self.written.arguments.iter().find(|argument| argument.range.is_some()) {
+                    let help = format!("write `{}` without a range, or values without places", argument.name);
+                    self.report(argument.name.span(), "has places in its points and a range".to_owned(), help);
+                    return None;
+                }
                 let (places, values) = rows.iter().map(|row| (row[0], row[1])).unzip();
                 Some((Values::Points { places, values }, Vec::new(), None))
             }
@@ -267,6 +280,11 @@ impl Reader<'_, '_> {
     /// Values at equal distances: one row, or a grid.
     fn at_equal_distances(&mut self, mut rows: Vec<Vec<f64>>) -> Option<Values> {
         let written = self.written;
+        if written.arguments.len() == 1 && rows.len() > 1 && rows.iter().all(|row| row.len() == 2) {
+            let help = "write points in parentheses, `[(0, 0.1), (1, 0.3)]`".to_owned();
+            self.report(written.name.span(), format!("has {} rows of values", rows.len()), help);
+            return None;
+        }
         let ends: Option<Vec<[f64; 2]>> = written.arguments.iter().map(|argument| self.ends(argument)).collect();
         let ends = ends?;
         if let ([ends], 1) = (ends.as_slice(), rows.len()) {
@@ -315,8 +333,16 @@ impl Reader<'_, '_> {
         Some(Values::Grid { places: [first, second], rows })
     }
 
-    /// The numbers of a file, row by row. Its first row may be a header; a corner of a grid may be text.
+    /// The numbers of a file, row by row. Its first row may be a header, in which no cell begins as a number; the corner
+    /// of a grid may be text.
     fn file(&mut self, file: &Path, span: Span) -> Option<Vec<Vec<f64>>> {
+        // A device has no end.
+        let is_readable = |about: std::fs::Metadata| about.is_file() && about.len() <= LARGEST_FILE;
+        if std::fs::metadata(file).is_ok_and(|about| !is_readable(about)) {
+            let help = format!("`{}`: write the path of a file of at most 16 MB", file.display());
+            self.report(span, "cannot be read from its file".to_owned(), help);
+            return None;
+        }
         let text = match std::fs::read_to_string(file) {
             Ok(text) => text,
             Err(reason) => {
@@ -340,12 +366,14 @@ impl Reader<'_, '_> {
             let row: Result<Vec<f64>, &str> = places.iter().map(|cell| finite(cell).ok_or(*cell)).collect();
             match row {
                 Ok(row) => rows.push(if is_grid && is_header { [vec![0.0], row].concat() } else { row }),
-                Err(_) if is_header && !is_grid => {}
+                Err(_) if is_header && !is_grid && !cells.iter().any(|cell| begins_number(cell)) => {}
                 Err(cell) => {
                     let cell: String = cell.chars().take(20).collect();
-                    let help = "write numbers separated by commas, semicolons, tabs or spaces; `#` starts a comment"
+                    let help = "write numbers with a decimal point, separated by commas, semicolons, tabs or spaces; the first line may hold \
+                                names, and `#` starts a comment"
                         .to_owned();
-                    self.report(span, format!("has `{cell}` in line {number} of its file, which is no number"), help);
+                    let cell = if cell.is_empty() { "an empty cell".to_owned() } else { format!("`{cell}`") };
+                    self.report(span, format!("has {cell} in line {number} of its file, which is no number"), help);
                     return None;
                 }
             }
@@ -393,6 +421,24 @@ impl Reader<'_, '_> {
         Some((values, entries, None))
     }
 
+    /// Reports parameters of a periodic table whose last default is the first one again, as constants need it.
+    fn check_period(&mut self, table: &Table, entries: &[Expr], declared: &[Parameter]) {
+        let default = |entry: &Expr| match self.context.pool.as_symbol(*entry) {
+            Some(Symbol::Parameter { index, .. }) => declared.get(*index).map(|parameter| parameter.default.to_bits()),
+            _ => None,
+        };
+        let defaults: Vec<u64> = entries.iter().filter_map(default).collect();
+        let repeats = defaults.first() == defaults.last() && defaults.windows(2).any(|pair| pair[0] != pair[1]);
+        if table.outside == Outside::Periodic && repeats {
+            let help = "parameters stand for one period without its end: declare one entry less".to_owned();
+            self.report(
+                self.written.name.span(),
+                "is `periodic`, and has its first value again at the end".to_owned(),
+                help,
+            );
+        }
+    }
+
     /// Reports too few or too many values, places that do not ascend, and a kind that these values do not have.
     fn check(&mut self, table: &Table) {
         let span = self.written.name.span();
@@ -426,7 +472,12 @@ impl Reader<'_, '_> {
         let is_periodic = table.outside == Outside::Periodic;
         let least = if is_periodic { LEAST_PERIODIC } else { 2 };
         if let Some(few) = counts.iter().find(|count| **count < least) {
-            self.report(span, format!("has {few} values"), format!("write at least {least} values for each argument"));
+            let values = if *few == 1 { "value" } else { "values" };
+            self.report(
+                span,
+                format!("has {few} {values}"),
+                format!("write at least {least} values for each argument"),
+            );
         }
         let all: usize = counts.iter().product();
         if all > VALUES {
@@ -463,6 +514,11 @@ fn cells(line: &str) -> Vec<&str> {
         Some(separator) => line.split(separator).map(str::trim).collect(),
         None => line.split_whitespace().collect(),
     }
+}
+
+/// Whether a cell begins as a number, with a digit, a sign or a point.
+fn begins_number(cell: &str) -> bool {
+    cell.trim_matches('"').starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first))
 }
 
 /// A finite number.

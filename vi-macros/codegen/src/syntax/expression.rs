@@ -17,7 +17,7 @@
 //!
 //! A list may end with a comma. A power `a^1/2` is rejected: it means `(a^1)/2`, which is never intended.
 
-use super::{INSIDE_BRACKETS, unexpected};
+use super::{INSIDE_BRACKETS, INSIDE_LIST, unexpected};
 use crate::functions::FunctionMistake;
 use crate::habits::Habit;
 use crate::messages::{Message, error};
@@ -234,7 +234,7 @@ impl Expression {
         if input.peek(syn::token::Bracket) {
             let inner;
             syn::bracketed!(inner in input);
-            let entries = Self::list(&inner, depth + 1, "an operator, `,` or `]`")?;
+            let entries = Self::list(&inner, depth + 1, INSIDE_LIST)?;
             return Ok(Self { span, kind: Kind::List(entries) });
         }
         let Ok(name) = input.parse::<Ident>() else {
@@ -276,7 +276,9 @@ impl Expression {
         if inner.peek(syn::Ident) && inner.peek2(Token![in]) {
             return Err(error(span, &Message::Habit(Habit::RangeOf { function: name.to_string() })));
         }
-        let arguments = Self::list(&inner, depth + 1, "an operator, `,` or `)`")?;
+        let arguments = Self::list(&inner, depth + 1, "an operator, `,` or `)`");
+        // `Piecewise((x, x > 0), …)`: the name is the mistake, not what stands in the parentheses.
+        let arguments = arguments.map_err(|failure| unexpected::call(&name).unwrap_or(failure))?;
         Ok(Self { span, kind: Kind::Call(name, arguments) })
     }
 
@@ -287,7 +289,12 @@ impl Expression {
         }
         let span = input.span();
         input.parse::<Token![if]>()?;
-        let comparison = if input.peek(syn::token::Paren) && input.peek2(syn::token::Brace) {
+        let in_parentheses = input.peek(syn::token::Paren);
+        if in_parentheses && (input.peek2(Token![&&]) || input.peek2(Token![||])) {
+            input.parse::<TokenTree>()?;
+            return Err(error(input.span(), &Message::Function(FunctionMistake::Comparison)));
+        }
+        let comparison = if in_parentheses && input.peek2(syn::token::Brace) {
             let inner;
             syn::parenthesized!(inner in input);
             Self::comparison(&inner, depth + 1, span)?
@@ -369,7 +376,9 @@ fn number(literal: &Literal) -> Result<Rational> {
     let text = literal.to_string();
     let based = ["0x", "0o", "0b"].iter().any(|base| text.starts_with(base));
     if based || !text.starts_with(|first: char| first.is_ascii_digit()) {
-        return Err(error(span, &Message::NotDecimal));
+        let is_text = literal.to_string().starts_with('"');
+        let text = Message::Function(FunctionMistake::Text);
+        return Err(error(span, if is_text { &text } else { &Message::NotDecimal }));
     }
     if text.len() > DIGITS {
         return Err(error(span, &Message::NumberRange));

@@ -10,7 +10,7 @@
 
 use super::expression::Expression;
 use super::parse::name;
-use super::unexpected;
+use super::{INSIDE_LIST, unexpected};
 use crate::functions::FunctionMistake;
 use crate::messages::{Message, error};
 use proc_macro2::{Ident, Span};
@@ -178,7 +178,7 @@ fn rows(input: ParseStream) -> Result<TableData> {
         } else if inner.peek(syn::token::Bracket) {
             let row;
             syn::bracketed!(row in inner);
-            rows.push(Expression::list(&row, 1, "an operator, `,` or `]`")?);
+            rows.push(Expression::list(&row, 1, INSIDE_LIST)?);
         } else {
             only.push(Expression::parse(&inner)?);
         }

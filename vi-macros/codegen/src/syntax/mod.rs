@@ -35,6 +35,8 @@ const CLAUSES: [&str; 14] = [
 
 /// The tokens expected after an index or a length.
 const INSIDE_BRACKETS: &str = "an operator or `]`";
+/// What the end of an entry of a list expects.
+const INSIDE_LIST: &str = "an operator, `,` or `]`";
 
 /// A `lagrangian!` as written.
 pub struct System {

@@ -3,9 +3,10 @@
 //! In: the input at the token, and the start of the clause. Out: the error at the wrong token: the correction for a
 //! known habit of notation, otherwise what the grammar expects.
 
-use super::{CLAUSES, INSIDE_BRACKETS};
+use super::{CLAUSES, INSIDE_BRACKETS, INSIDE_LIST};
 use crate::arrays::ArrayMistake;
-use crate::habits::Habit;
+use crate::functions::FunctionMistake;
+use crate::habits::{self, Habit};
 use crate::messages::{Message, error};
 use proc_macro2::{Delimiter, Span, TokenTree};
 use syn::buffer::Cursor;
@@ -38,6 +39,12 @@ pub(super) fn operand(input: ParseStream) -> Error {
     unexpected(input.span(), habit, "a number, a name or `(`")
 }
 
+/// The error for a call of a function that other languages have and this one writes without a function.
+pub(super) fn call(name: &Ident) -> Option<Error> {
+    let name_of = name.to_string();
+    habits::is_condition(&name_of).then(|| error(name.span(), &Message::UnknownFunction { name: name_of, near: None }))
+}
+
 /// The error after an expression that starts at `start`: neither an operator nor its end, which `what` names.
 pub(super) fn operator(input: ParseStream, start: Cursor, what: &'static str) -> Error {
     let Some((next, behind)) = input.cursor().token_tree() else {
@@ -52,8 +59,22 @@ pub(super) fn operator(input: ParseStream, start: Cursor, what: &'static str) ->
             return error(input.span(), &Message::Array(mistake));
         }
     }
+    if input.peek(Token![if]) {
+        return error(input.span(), &Message::Function(FunctionMistake::Else));
+    }
+    if what == INSIDE_LIST && !input.peek(Token![..]) {
+        let is_row = input.peek(Token![;]);
+        let is_entry = matches!(next, TokenTree::Literal(_) | TokenTree::Ident(_)) && previous.is_some();
+        if is_row || is_entry {
+            return error(input.span(), &Message::Array(ArrayMistake::Separator { is_row }));
+        }
+    }
     let habit = match &next {
         TokenTree::Punct(punct) => match punct.as_char() {
+            '@' => Some(Habit::OtherProduct { sign: "@" }),
+            '.' if behind.punct().is_some_and(|(sign, _)| sign.as_char() == '*') => {
+                Some(Habit::OtherProduct { sign: ".*" })
+            }
             '.' => {
                 let (word, habit) = behind_point(behind, previous.as_ref());
                 return unexpected(word.unwrap_or_else(|| punct.span()), habit, what);
