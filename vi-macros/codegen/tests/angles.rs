@@ -149,3 +149,26 @@ fn except_for_the_flag_the_code_is_that_of_a_coordinate() {
     assert!(of_angle.contains("ANGLES"));
     assert_eq!(line(&without), line(&of_coordinate));
 }
+
+/// A written rule has to move with an angle: if both ends make a turn, each point of the rule makes it too.
+#[test]
+fn written_rules_move_with_angles() {
+    let system =
+        |rule: &str| format!("angle θ; coord x; L = dot(θ)^2 / 2 + dot(x)^2 / 2 + cos(θ) * x; discretize {{ {rule} }}");
+    for rule in [
+        "«Ld» = h * L((t0 + t1) / 2, (q0 + q1) / 3, (q1 - q0) / h);",
+        "«Ld» = h * L(t0, 2 * q0 - q1 / 2, (q1 - q0) / h);",
+        "«Ld» = h * L(t0, q0, (q1 - q0 / 2) / h);",
+        "«Ld» = h * L(t0, q0, (q1 - q0) / h) + h^3 * q0[0] * q1[0];",
+    ] {
+        case(&system(rule), "the rule is not periodic in the angle `θ`");
+    }
+    for rule in [
+        "Ld = h * L((t0 + t1) / 2, (q0 + q1) / 2, (q1 - q0) / h);",
+        "Ld = h * (L(t0, q0, (q1 - q0) / h) + 2 * L(t1, (q0 + 2 * q1) / 3, (q1 - q0) / h)) / 3 + h^3 * (q1[0] - q0[0])^2;",
+        "Ld = h * L(t0, q0, (q1 - q0) / h) + h^3 * q0[1] * q1[1];",
+    ] {
+        let code = emitted(&system(rule)).unwrap_or_else(|found| panic!("{rule}\n{found:#?}"));
+        assert!(code.contains("const ANGLES : [bool ; 2usize] = [true , false]"), "{rule}");
+    }
+}

@@ -199,6 +199,7 @@ fn a_lagrangian_that_jumps_is_refused() {
         "if x + y > 3 { 1 } else { 0 }",
         "y * if x > c { 1 } else { 0 }",
         "if x > 1e5 { 1 } else { 0 }",
+        "if y > 3 { if x > 0 { 1 } else { 0 } } else { 0 }",
         "1e9 * y^2 + if x > 1 { 1e-3 } else { 0 }",
     ] {
         let message = "`L` jumps where `";

@@ -7,6 +7,8 @@
 
 use super::context::Context;
 use super::force::{self, Entries};
+use super::point::Point;
+use super::rule::Rule;
 use super::{Coordinate, Parameter, probe};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
@@ -30,11 +32,23 @@ pub(super) fn check(
     context: &mut Context,
     system: &System,
     (coordinates, parameters): (&[Coordinate], &[Parameter]),
-    (lagrangian, time_scale): (Option<Expr>, Option<Expr>),
+    (lagrangian, time_scale, rule): (Option<Expr>, Option<Expr>, Option<&Rule>),
 ) {
     let are_angles: Vec<bool> = coordinates.iter().map(|coordinate| coordinate.is_angle).collect();
     if !are_angles.contains(&true) || !context.errors.is_empty() {
         return;
+    }
+    let written_out = rule.filter(|rule| rule.named.is_none());
+    if let Some((rule, angle)) =
+        written_out.and_then(|rule| Some((rule, angle_of_rule(context.pool, rule, &are_angles)?)))
+    {
+        let Coordinate { name, .. } = &coordinates[angle];
+        let message = Message::NotPeriodic {
+            what: "the rule".to_owned(),
+            angle: coordinates[angle].text(),
+            name: name.to_string(),
+        };
+        context.errors.at(rule.span, &message);
     }
     for Clause { exprs, span, what } in clauses(context, system, lagrangian, time_scale) {
         let probe = |expr: &Expr| Probe { pool: context.pool, expr: *expr, are_angles: &are_angles, parameters };
@@ -44,6 +58,35 @@ pub(super) fn check(
             context.errors.at(span, &message);
         }
     }
+}
+
+/// An angle with which a written rule does not move: if both ends make the same turn, so has the angle at each point of
+/// the rule, and nothing else may change. Points of about 1 suffice, since rules are linear in the ends.
+fn angle_of_rule(pool: &Pool<Symbol>, rule: &Rule, are_angles: &[bool]) -> Option<usize> {
+    let exprs: Vec<Expr> = rule.expressions().collect();
+    // L_d comes first, discrete forces last.
+    let arguments = rule.points.iter().flat_map(Point::arguments).map(|(variable, _)| Some(variable));
+    let places = [None].into_iter().chain(arguments).chain(core::iter::repeat(None));
+    let places: Vec<Option<Variable>> = places.take(exprs.len()).collect();
+    let fails = |angle: &usize| {
+        let values = |point: u32, turn: f64| {
+            let mut drawn = BTreeMap::new();
+            pool.evaluate_all(&exprs, &mut |symbol| {
+                let index = drawn.len();
+                let number = *drawn.entry(symbol.clone()).or_insert_with(|| probe::near_one(point, index));
+                let is_moved = matches!(symbol, Symbol::Q0(end) | Symbol::Q1(end) if end == angle);
+                if is_moved { number + turn } else { number }
+            })
+        };
+        (0..NEAR).any(|point| {
+            let (before, after) = (values(point, 0.0), values(point, 1.0));
+            places.iter().zip(before).zip(after).any(|((place, before), after)| {
+                let turn = f64::from(u8::from(*place == Some(Variable::Coordinate(*angle))));
+                (after - before - turn).abs() > 1e-9 * (1.0 + before.abs())
+            })
+        })
+    };
+    (0..are_angles.len()).filter(|angle| are_angles[*angle]).find(fails)
 }
 
 /// A clause that has to be periodic.

@@ -45,7 +45,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let time_scale = time_scale::time_scale(&mut context, &system.time_scales);
     let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
     let check_state = check_state::check_state(&mut context, &system.checks, &parameters, coordinates.len());
-    angles::check(&mut context, system, (&coordinates, &parameters), (lagrangian, time_scale));
+    angles::check(&mut context, system, (&coordinates, &parameters), (lagrangian, time_scale, rule.as_ref()));
     if context.errors.is_empty() {
         let of_rule = rule.iter().flat_map(Rule::expressions);
         let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);

@@ -130,7 +130,8 @@ pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]
             if difference > JUMP * around && difference > ROUNDING * size {
                 return Some(condition);
             }
-            borders += 1;
+            // Where another condition hides this one, both are equal all around.
+            borders += usize::from(around > 0.0);
             if borders == BORDERS {
                 break;
             }
