@@ -133,6 +133,8 @@ impl ArrayMistake {
                 let needs = match *function {
                     "cross" => "two vectors of 3, or two of 2",
                     "norm" => "a vector",
+                    "rate" | "spin" => "a rotation",
+                    "turn" => "a rotation and a vector of 3",
                     _ => "a matrix",
                 };
                 let given: Vec<String> = given.iter().map(|shape| words(shape)).collect();
@@ -201,6 +203,9 @@ impl ArrayMistake {
             Self::Inverse => INVERSE.to_owned(),
             Self::OfVectors { function: "cross", .. } => "write `cross(a, b)` of two vectors, as in `cross([x, y, z], v)`".to_owned(),
             Self::OfVectors { function: "norm", .. } => "write `abs(x)` for a number, `norm([x, y])` for a vector".to_owned(),
+            Self::OfVectors { function: "rate" | "spin" | "turn", .. } => {
+                "declare `rotation R;`, and write `rate(R)`, `spin(R)` and `turn(R, [a, b, c])`".to_owned()
+            }
             Self::OfVectors { .. } => "write `v * M * w` as it is: a vector is a row on the left and a column on the right".to_owned(),
             Self::Length { limit, .. } => format!("a constant has 1 to {limit} entries"),
             Self::EmptyList => "write its entries, as in `[a, b, c]`".to_owned(),

@@ -13,8 +13,10 @@
 //!
 //! The findings select the form of A and of the mass matrix, and the solver of a step.
 
+mod elimination;
 mod pattern;
 
+pub use elimination::Block;
 pub use pattern::Pattern;
 
 use crate::discrete::DiscreteSystem;
@@ -23,6 +25,9 @@ use crate::program::{Function, FunctionId, Operation, OperationId, Output, Progr
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
 use vi_expr::Table;
+
+/// The matrices of the derivatives of the equations of motion.
+const POINT_DERIVATIVES: [Output; 4] = [Output::Mass, Output::MomentumDq, Output::ForceDq, Output::ForceDv];
 
 /// Largest size of a non-diagonal matrix that is solved in closed form.
 pub const CLOSED: usize = 3;
@@ -37,7 +42,7 @@ pub struct Findings {
     pub autonomous: bool,
     /// A force acts.
     pub forced: bool,
-    /// Indices of the coordinates that are cyclic: absent from L, and without a force.
+    /// Indices of the coordinates that are cyclic: absent from L, and without a force or a reaction.
     pub cyclic: Vec<usize>,
     /// Indices of the angles, which a run reduces to a turn.
     pub angles: Vec<usize>,
@@ -47,14 +52,37 @@ pub struct Findings {
     pub constant_mass: bool,
     /// L_v is M v with a constant mass matrix M, and neither L_q nor f depends on v: the acceleration is a function of t and q.
     pub force_of_position: bool,
+    /// L_v is M v with a constant diagonal M, and L_q + f depends on the time alone.
+    pub point_masses: bool,
     /// Zero pattern of the mass matrix.
     pub mass: Pattern,
     /// Common zero pattern of the derivatives of L_v and L_q + f with respect to q and v.
     pub point_derivatives: Pattern,
     /// The smoothness of L and f, if tables or conditions limit it.
     pub smoothness: Option<Smoothness>,
+    /// The names of the holonomic and of the nonholonomic constraints, with the number of their indices.
+    pub constraints: [Vec<(String, usize)>; 2],
+    /// A constraint on velocities has a part without velocities: it does work.
+    pub driven: bool,
+    /// Zero patterns of the constraints, and the order of elimination, if there are any.
+    pub elimination: Option<Elimination>,
     /// Properties of the steps, if the system has a rule.
     pub steps: Option<StepFindings>,
+}
+
+/// Zero patterns of the functions of constraints, and the order of elimination in their steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Elimination {
+    /// The columns of the entries of each row of A.
+    pub gradients: Vec<Vec<usize>>,
+    /// The same of ∂(A v + a)/∂q.
+    pub rates_dq: Vec<Vec<usize>>,
+    /// The same of ∂(Aᵀλ)/∂q.
+    pub reaction_dq: Vec<Vec<usize>>,
+    /// The blocks in the order of their elimination; multiplier r is the unknown N + r.
+    pub blocks: Vec<Block>,
+    /// M and the derivatives of L_v and L_q + f with respect to q and v depend on parameters only.
+    pub is_constant: bool,
 }
 
 /// Properties of the steps under one rule.
@@ -95,7 +123,7 @@ pub enum Dependence {
 pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Findings {
     let cyclic = system.continuous.cyclic.iter().enumerate().filter(|(_, cyclic)| **cyclic).map(|(index, _)| index);
     let matrix = |id: FunctionId, output: Output| program.function(id).map(|of| (of, of.results.matrix(output)));
-    let mass = matrix(FunctionId::Acceleration, Output::Mass);
+    let mass = matrix(FunctionId::Acceleration, Output::Mass).or_else(|| matrix(FunctionId::Point, Output::Mass));
     let momentum = program.function(FunctionId::Momentum);
     let velocities =
         |symbol: &Symbol| matches!(symbol, Symbol::Parameter { .. } | Symbol::Continuous(Variable::Velocity(_)));
@@ -104,6 +132,13 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         mass.is_some_and(|(function, rows)| inputs(function, rows.iter().flatten()).iter().all(parameters));
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     let rate = program.function(FunctionId::Point);
+    let mass = mass.map_or(Pattern::Dense, |(function, rows)| filled(function, rows));
+    let point_derivatives = program.function(FunctionId::PointDerivatives).map(|of| together(of, &POINT_DERIVATIVES));
+    let places =
+        |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Coordinate(_) | Variable::Velocity(_)));
+    let rate_is_uniform =
+        rate.is_some_and(|of| !inputs(of, of.results.vector(Output::AppliedForce).iter()).iter().any(places));
+    let is_constrained = !model.constraints.is_empty();
     let rate_moves = rate.is_none_or(|of| inputs(of, of.results.vector(Output::AppliedForce).iter()).iter().any(moves));
     Findings {
         size: model.dimension(),
@@ -114,12 +149,24 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         separable: momentum.is_some_and(|function| inputs(function, function.results.entries()).iter().all(velocities)),
         constant_mass,
         force_of_position: constant_mass && system.continuous.momentum_is_mass_times_velocity && !rate_moves,
-        mass: mass.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
-        point_derivatives: filled_together(
-            program.function(FunctionId::PointDerivatives),
-            &[Output::Mass, Output::MomentumDq, Output::ForceDq, Output::ForceDv],
-        ),
+        point_masses: constant_mass
+            && rate_is_uniform
+            && system.continuous.momentum_is_mass_times_velocity
+            && matches!(mass, Pattern::Scalar | Pattern::Diagonal),
+        elimination: is_constrained.then(|| elimination(model, program, &mass, point_derivatives.as_deref())),
+        mass,
+        point_derivatives: point_derivatives.map_or(Pattern::Dense, |entries| {
+            if is_constrained { pattern::by_rows(&entries) } else { pattern::pattern(&entries) }
+        }),
         smoothness: model.smoothness.clone(),
+        constraints: [true, false].map(|is_holonomic| {
+            let of_kind = model.constraints.iter().filter(|constraint| constraint.is_holonomic == is_holonomic);
+            of_kind.map(|constraint| (constraint.name.to_string(), constraint.indices.len())).collect()
+        }),
+        driven: program.function(FunctionId::ConstraintGradients).is_some_and(|function| {
+            let is_zero = |id: &OperationId| function.operations.as_constant(*id) == Some(0.0);
+            !function.results.vector(Output::Rates).iter().all(is_zero)
+        }),
         steps: program.function(FunctionId::MomentumEquation).map(|equation| steps(equation, program)),
     }
 }
@@ -153,7 +200,11 @@ fn entries(function: &Function, rows: &[Vec<OperationId>]) -> Vec<Vec<bool>> {
 
 /// The common zero pattern of these matrices among the results of a function.
 fn filled_together(function: Option<&Function>, outputs: &[Output]) -> Pattern {
-    let Some(function) = function else { return Pattern::Dense };
+    function.map_or(Pattern::Dense, |function| pattern::pattern(&together(function, outputs)))
+}
+
+/// Which entries are nonzero in any of these matrices among the results of a function.
+fn together(function: &Function, outputs: &[Output]) -> Vec<Vec<bool>> {
     let mut matrices = outputs.iter().map(|output| entries(function, function.results.matrix(*output)));
     let mut all = matrices.next().unwrap_or_default();
     for matrix in matrices {
@@ -161,7 +212,45 @@ fn filled_together(function: Option<&Function>, outputs: &[Output]) -> Pattern {
             *entry |= other;
         }
     }
-    pattern::pattern(&all)
+    all
+}
+
+/// The zero patterns of constraints and the order of elimination, with the form of M and the entries of the derivatives
+/// of the equations of motion.
+fn elimination(model: &Model, program: &Program, mass: &Pattern, derivatives: Option<&[Vec<bool>]>) -> Elimination {
+    let columns = |id: FunctionId, output: Output| {
+        let found = program.function(id).map(|of| pattern::columns(&entries(of, of.results.matrix(output))));
+        found.unwrap_or_default()
+    };
+    let gradients = columns(FunctionId::ConstraintGradients, Output::Gradients);
+    let rates_dq = columns(FunctionId::ConstraintRateDerivatives, Output::RatesDq);
+    let reaction_dq = columns(FunctionId::ReactionDerivatives, Output::ReactionDq);
+    let size = model.dimension();
+    let square = |members: &[usize]| members.iter().flat_map(|i| members.iter().map(|j| (*i, *j))).collect();
+    let masses: Vec<(usize, usize)> = match mass {
+        Pattern::Diagonal => Vec::new(),
+        Pattern::Blocks(blocks) => blocks.iter().flat_map(|members| square(members)).collect::<Vec<_>>(),
+        _ => square(&(0..size).collect::<Vec<_>>()),
+    };
+    let pairs = |rows: &[Vec<usize>], from: usize| {
+        let of = |(row, columns): (usize, &Vec<usize>)| {
+            columns.iter().map(|column| (from + row, *column)).collect::<Vec<_>>()
+        };
+        rows.iter().enumerate().flat_map(of).collect::<Vec<_>>()
+    };
+    let derivatives = match derivatives {
+        Some(entries) if pattern::by_rows(entries) != Pattern::Dense => pattern::columns(entries),
+        _ => vec![(0..size).collect(); size],
+    };
+    let mut couplings = pairs(&derivatives, 0);
+    couplings.extend(pairs(&reaction_dq, 0));
+    couplings.extend(pairs(&gradients, size).into_iter().chain(pairs(&rates_dq, size)));
+    let blocks = elimination::blocks([size, model.constraints.len()], &masses, &couplings);
+    let is_constant = program.function(FunctionId::PointDerivatives).is_some_and(|of| {
+        let entries = POINT_DERIVATIVES.iter().flat_map(|output| of.results.matrix(*output)).flatten();
+        inputs(of, entries).iter().all(|symbol| matches!(symbol, Symbol::Parameter { .. }))
+    });
+    Elimination { gradients, rates_dq, reaction_dq, blocks, is_constant }
 }
 
 /// Whether a function has no kink and no jump.
@@ -241,9 +330,45 @@ fn smoothness_in_words(Smoothness { derivatives, cause }: &Smoothness) -> String
     format!("`L` has {derivatives} continuous {noun} because of {cause}: {left}")
 }
 
+/// Names of constraints, each array once with the number of its entries.
+fn in_arrays(names: &[(String, usize)]) -> String {
+    let arrays = names.chunk_by(|left, right| left == right && left.1 > 0);
+    let text = |array: &[(String, usize)]| match array {
+        [(name, 0)] => name.clone(),
+        [(name, _), ..] => format!("{name} ({})", array.len()),
+        [] => String::new(),
+    };
+    arrays.map(text).collect::<Vec<_>>().join(", ")
+}
+
+/// The order that `GaussLobatto` keeps with so many continuous derivatives of L.
+fn constrained_smoothness_in_words(Smoothness { derivatives, cause }: &Smoothness) -> String {
+    let noun = if *derivatives == 1 { "derivative" } else { "derivatives" };
+    let order = derivatives + 1;
+    format!("`L` has {derivatives} continuous {noun} because of {cause}: `GaussLobatto` has order {order} across it")
+}
+
 /// The names of coordinates, separated by commas.
 fn list(name: &dyn Fn(usize) -> String, indices: &[usize]) -> String {
     indices.iter().map(|index| name(*index)).collect::<Vec<_>>().join(", ")
+}
+
+impl Elimination {
+    /// How a step solves its linear systems.
+    fn in_words(&self, point_masses: bool) -> String {
+        let matrix = match (point_masses, self.is_constant) {
+            (true, _) => "Velocities are affine in the impulses: a midpoint step solves for the impulses alone; ",
+            (false, true) => "The derivatives of the momentum rows are constant; ",
+            (false, false) => "The derivatives of the momentum rows depend on the state; ",
+        };
+        let size = |block: &Block| block.own.len() + block.border.len();
+        let largest = self.blocks.iter().map(size).max().unwrap_or(0);
+        let blocks = match self.blocks.len() {
+            0 | 1 => format!("coordinates and multipliers form one block of {largest}"),
+            count => format!("coordinates and multipliers are eliminated in {count} blocks of at most {largest}"),
+        };
+        format!("{matrix}{blocks}")
+    }
 }
 
 impl StepFindings {
@@ -262,7 +387,7 @@ impl StepFindings {
             Pattern::Banded(_) => "by elimination inside the band",
             Pattern::Blocks(_) => "block by block",
             Pattern::Dense if self.symmetric => "by `L D Lᵀ`",
-            Pattern::Dense => "by elimination with pivoting",
+            Pattern::Sparse(_) | Pattern::Dense => "by elimination with pivoting",
         }
     }
 }
@@ -278,8 +403,16 @@ impl Findings {
     /// The findings in words, one per line, with formulas between backticks; `name` names a coordinate.
     #[must_use]
     pub fn lines(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
+        let is_constrained = self.constraints.iter().any(|names| !names.is_empty());
         let mut lines = vec![
             match (self.autonomous, self.forced) {
+                (true, false) if self.driven => "Autonomous; no force acts, but a constraint does work",
+                (false, false) if is_constrained => {
+                    "Not autonomous: `L` or a constraint depends on the time `t`; no force acts"
+                }
+                (false, true) if is_constrained => {
+                    "Not autonomous: `L`, `f` or a constraint depends on the time `t`; a force acts"
+                }
                 (true, false) => "Autonomous and without a force: the energy is conserved",
                 (true, true) => "Autonomous; a force acts",
                 (false, false) => "Not autonomous: `L` depends on the time `t`; no force acts",
@@ -300,7 +433,16 @@ impl Findings {
             (false, true) => "The mass matrix is constant".to_owned(),
             (false, false) => "The mass matrix depends on the state".to_owned(),
         });
-        lines.extend(self.smoothness.as_ref().map(smoothness_in_words));
+        let in_words = if is_constrained { constrained_smoothness_in_words } else { smoothness_in_words };
+        lines.extend(self.smoothness.as_ref().map(in_words));
+        for (names, kind) in self.constraints.iter().zip(["positions", "velocities"]) {
+            if !names.is_empty() {
+                lines.push(format!("Constraints on {kind}: {}", in_arrays(names)));
+            }
+        }
+        lines.extend(
+            self.elimination.as_ref().map(|of| of.in_words(self.point_masses && self.constraints[1].is_empty())),
+        );
         lines.extend(self.of_steps(name));
         lines
     }

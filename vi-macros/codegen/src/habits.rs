@@ -3,6 +3,7 @@
 //! In: the notation found. Out: a message with the error and its correction; for a single word, the help only.
 
 use crate::arrays::INVERSE;
+use crate::constraints;
 use crate::rules;
 
 /// Notation that this language writes differently. The fields of a variant are the words that its text names.
@@ -275,7 +276,7 @@ const CLAUSES: [(&[&str], &str); 16] = [
          Hamiltonians are not supported",
     ),
     (&["rayleigh", "Rayleigh", "damping", "friction"], "write `dissipation = …;`, Rayleigh's function"),
-    (&["constraint", "constraints", "constrain", "subject", "holonomic"], CONSTRAINT),
+    (&["constraints", "constrain", "subject", "holonomic", "nonholonomic"], constraints::NAMED),
     (
         &["for", "while", "loop"],
         "write `force q[i in 0..8] = …;` or `let e[i in 0..8] = …;` for each entry, and `sum(i in 0..8, …)`",
@@ -417,7 +418,7 @@ const NAMES: [(&[&str], &str); 9] = [
         "declare it with `param`, `const` or `coord`; write a momentum in terms of the velocity, as `m * dot(x)`",
     ),
     (&["dt", "ddt"], "write `dot(x)` for the derivative of `x` with respect to time"),
-    (&["lambda", "λ", "multiplier"], CONSTRAINT),
+    (&["lambda", "λ", "multiplier"], constraints::NAMED),
 ];
 
 /// Rules.
@@ -486,10 +487,6 @@ pub(crate) fn other_alphabet(name: &str) -> Option<String> {
     let pairs = GREEK.into_iter().flat_map(|(word, letter)| [(word, letter), (letter, word)]);
     pairs.into_iter().find_map(|(one, other)| name.strip_prefix(one).map(|rest| format!("{other}{rest}")))
 }
-
-/// Help for a constraint.
-pub(crate) const CONSTRAINT: &str = "constraints are not supported: choose coordinates that satisfy them, such as the angle of a rod, or \
-    approximate them with a stiff spring, `- k * (…)^2 / 2` in `L`";
 
 /// Help for a condition.
 const CONDITION: &str = "write `if a > b { x } else { y }`; write an `if` inside another for two conditions";

@@ -26,6 +26,21 @@ const OF_MOTION: [(&str, &[FunctionId]); 3] = [
     ("Gauss in transformed time", &[FunctionId::ScaledPoint]),
 ];
 
+/// The method of systems with constraints, and the functions that it calls.
+const OF_CONSTRAINTS: (&str, &[FunctionId]) = (
+    "GaussLobatto",
+    &[
+        FunctionId::Point,
+        FunctionId::PointDerivatives,
+        FunctionId::Power,
+        FunctionId::Applied,
+        FunctionId::Constraints,
+        FunctionId::ConstraintGradients,
+        FunctionId::ConstraintRateDerivatives,
+        FunctionId::ReactionDerivatives,
+    ],
+);
+
 /// The methods of a rule with the functions that they call.
 const OF_RULE: [(&str, &[FunctionId]); 3] = [
     (
@@ -69,6 +84,11 @@ pub(crate) fn header(derivations: &Derivations) -> String {
         own.pool.render_within(CHARACTERS, own.system.continuous.lagrangian, &|symbol| own.model.spell(symbol));
     let mut lines =
         vec![format!("`{}`: L = {lagrangian}", own.model.name), String::new(), "Operation counts by method".to_owned()];
+    if own.system.constraints.is_some() {
+        let [every, ..] = OF_MOTION;
+        lines.extend([every, OF_CONSTRAINTS].into_iter().filter_map(|of| counted(own, "", of)));
+        return commented(lines);
+    }
     lines.extend(OF_MOTION.iter().filter_map(|of| counted(own, "", *of)));
     for derived in derivations.all() {
         let Some(rule) = &derived.model.rule else { continue };
@@ -81,6 +101,11 @@ pub(crate) fn header(derivations: &Derivations) -> String {
                 .to_owned(),
         );
     }
+    commented(lines)
+}
+
+/// The lines as comments, with an empty line after them.
+fn commented(lines: Vec<String>) -> String {
     let comment = |line: String| if line.is_empty() { "//\n".to_owned() } else { format!("// {line}\n") };
     lines.into_iter().map(comment).chain(["\n".to_owned()]).collect()
 }

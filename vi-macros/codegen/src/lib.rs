@@ -11,6 +11,7 @@
 //! parsing run once for each declared rule.
 
 mod arrays;
+mod constraints;
 mod derived;
 pub mod discrete;
 pub mod emit;

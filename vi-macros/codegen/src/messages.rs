@@ -4,6 +4,7 @@
 //! collects its errors in [`Errors`] and reports them all before the next stage starts.
 
 use crate::arrays::ArrayMistake;
+use crate::constraints::{self, ConstraintMistake};
 use crate::functions::{self, FunctionMistake};
 use crate::habits::{self, Habit};
 use crate::rules;
@@ -55,6 +56,8 @@ pub enum Absence {
     Coordinate,
     /// It is a `let`; the expression is a constant.
     Let,
+    /// It is a constraint.
+    Constraint,
 }
 
 impl Absence {
@@ -64,11 +67,13 @@ impl Absence {
             Self::Parameter => format!("`{name}` is a parameter: it has no value at compile time"),
             Self::Coordinate => format!("`{name}` is a coordinate: it has no value at compile time"),
             Self::Let => format!("`{name}` is a `let`, which a constant cannot use"),
+            Self::Constraint => ConstraintMistake::Value { name: name.to_owned() }.what(),
         }
     }
 
-    fn help(self) -> String {
+    fn help(self, name: &str) -> String {
         match self {
+            Self::Constraint => return ConstraintMistake::Value { name: name.to_owned() }.help(),
             Self::Below => "move its declaration up: a `let` or `const` uses earlier declarations only",
             Self::Parameter | Self::Coordinate | Self::Let => {
                 "write defaults, `const`s and lengths with numbers and `const`s; name an expression of parameters or coordinates with \
@@ -90,6 +95,8 @@ pub enum Singular {
     Homogeneous,
     /// Some directions of motion have no kinetic energy.
     Dependent,
+    /// Some directions of motion that the constraints allow have no kinetic energy, with a coordinate that they move.
+    Allowed(Option<String>),
 }
 
 /// How L depends on a coordinate that contributes nothing to the mass matrix.
@@ -161,6 +168,8 @@ pub enum Message {
     NotArray { name: String },
     /// A mistake with vectors, matrices and arrays.
     Array(ArrayMistake),
+    /// A mistake with constraints.
+    Constraint(ConstraintMistake),
     /// An unused parameter.
     UnusedParameter { name: String, is_input: bool },
     /// A second line `dissipation = …;`.
@@ -274,7 +283,7 @@ fn another_name(name: &str) -> String {
 
 /// Help for an unknown clause; `is_defined` if `=` follows it.
 fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
-    let clauses = "the clauses are const, param, input, coord, angle, fn, table, let, L, force, dissipation, time_scale, discretize, check";
+    let clauses = "the clauses are const, param, input, coord, angle, rotation, fn, table, let, L, force, torque, space_torque, dissipation, constraint, time_scale, discretize, check";
     let part = || {
         if is_defined {
             format!("write `param {found} = …;` for a parameter, `let {found} = …;` to name a part")
@@ -312,7 +321,7 @@ fn with_arguments(name: &str, takes: usize) -> String {
 fn kinetic_energy_help(why: &Singular) -> String {
     match why {
         Singular::Massless(name, Massless::Multiplier) => {
-            format!("`{name}` multiplies a constraint; {}", habits::CONSTRAINT)
+            format!("`{name}` multiplies a constraint: remove `{name}`, and {}", constraints::NAMED)
         }
         Singular::Massless(name, Massless::Absent) => format!(
             "`{name}` has no kinetic energy, and coordinates without mass are not supported: add a term with `dot({name})^2`, or make \
@@ -331,7 +340,10 @@ fn kinetic_energy_help(why: &Singular) -> String {
              coordinate, as in `-m * c^2 * sqrt(1 - dot(x)^2 / c^2)`"
                 .to_owned()
         }
-        Singular::Dependent => {
+        Singular::Allowed(Some(name)) => format!(
+            "a motion of `{name}` has no kinetic energy, and no constraint determines it: add a term with `dot({name})^2`, or a constraint"
+        ),
+        Singular::Allowed(None) | Singular::Dependent => {
             "every direction of motion needs kinetic energy; remove coordinates that depend on others".to_owned()
         }
     }
@@ -370,6 +382,7 @@ impl Message {
             Self::BackwardRange { from, to } => format!("the range {from}..{to} ends before it begins"),
             Self::NotArray { name } => format!("`{name}` is not an array"),
             Self::Array(mistake) => mistake.what(),
+            Self::Constraint(mistake) => mistake.what(),
             Self::UnusedParameter { name, is_input: true } => format!("the input `{name}` is never used"),
             Self::UnusedParameter { name, .. } => format!("the parameter `{name}` is never used"),
             Self::SecondDissipation => "a second `dissipation`".to_owned(),
@@ -394,6 +407,10 @@ impl Message {
             Self::ForceOnOther { name, .. } => format!("`{name}` has a force but is not a coordinate"),
             Self::SecondForce { name } => format!("a second force on `{name}`"),
             Self::NoVelocity => "`L` does not depend on any velocity".to_owned(),
+            Self::SingularMass { why: Singular::Allowed(_) } => {
+                "the mass matrix ∂²L/∂v² is singular for every state, in a direction that the constraints allow"
+                    .to_owned()
+            }
             Self::SingularMass { .. } => "the mass matrix ∂²L/∂v² is singular for every state".to_owned(),
             Self::UnknownRule { name, .. } => format!("unknown rule `{name}`"),
             Self::RepeatedRule { name } => format!("the rule `{name}` is listed twice"),
@@ -439,7 +456,7 @@ impl Message {
             Self::SecondDerive { name } => format!("remove `{name}`; other traits may be derived"),
             Self::AttributeOfClause => ATTRIBUTES.to_owned(),
             Self::Unknown { name, near } => name_for(name, near.as_ref()),
-            Self::Absent { absence, .. } => absence.help(),
+            Self::Absent { name, absence } => absence.help(name),
             Self::UnknownFunction { name, near } => {
                 habits::function(name).unwrap_or_else(|| did_you_mean(near.as_ref(), FUNCTIONS))
             }
@@ -470,6 +487,7 @@ impl Message {
             Self::BackwardRange { .. } => "write the smaller bound first; the second one is not included".to_owned(),
             Self::NotArray { name } => format!("write `{name}` without an index"),
             Self::Array(mistake) => mistake.help(),
+            Self::Constraint(mistake) => mistake.help(),
             Self::UnusedParameter { .. } => "use it in `L` or in a force, or remove it".to_owned(),
             Self::NoDissipation => {
                 "Rayleigh's function is half the dissipated power, as in `c * dot(x)^2 / 2`".to_owned()

@@ -49,6 +49,8 @@ pub enum Symbol {
     Continuous(Variable),
     /// Acceleration a_i; appears in the step density only.
     Acceleration(usize),
+    /// Multiplier of a constraint; appears in the derivatives of the reaction only.
+    Multiplier(usize),
     /// Slot t0, the time at the start of the interval.
     T0,
     /// Slot q0, component i.
@@ -87,6 +89,7 @@ impl Symbol {
             Self::Q1(index) => Some((Self::Q1(0), *index)),
             Self::P0(index) => Some((Self::P0(0), *index)),
             Self::StepVelocity(index) => Some((Self::StepVelocity(0), *index)),
+            Self::Multiplier(index) => Some((Self::Multiplier(0), *index)),
             Self::Acceleration(index) => Some((Self::Acceleration(0), *index)),
             Self::Continuous(variable) => of_variable(variable).map(|(of, index)| (Self::Continuous(of), index)),
             Self::AtPoint(point, variable) => {

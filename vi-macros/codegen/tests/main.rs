@@ -4,6 +4,8 @@ mod angles;
 mod arbitrary;
 mod array_messages;
 mod constants;
+mod constraint_messages;
+mod constraints;
 mod effort;
 mod families;
 mod forms;

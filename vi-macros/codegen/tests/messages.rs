@@ -494,7 +494,7 @@ fn habits() {
     says("«π»", "unknown name `π`\nhelp: write `pi`");
     says("«e»^x", "unknown name `e`\nhelp: write `exp(x)` for e^x");
     says("«time»", "unknown name `time`\nhelp: write `t`");
-    says("«lambda» * x", "unknown name `lambda`\nhelp: constraints are not supported: choose coordinates");
+    says("«lambda» * x", "unknown name `lambda`\nhelp: write `constraint rod = x^2 + y^2 - l^2;`: the expression is 0");
     for (function, help) in [
         ("fmin", "write `min(a, b)`"),
         ("saturation", "write `clamp(x, a, b)`"),
@@ -529,8 +529,8 @@ fn habits() {
         "the number `9.81` is followed directly by `m`\nhelp: write `9.81 * m` for a product; units are not",
     );
     clause(
-        "«constraint» x^2 + y^2 = 1;",
-        "unknown clause `constraint`\nhelp: constraints are not supported: choose coord",
+        "«constraints» x^2 + y^2 = 1;",
+        "unknown clause `constraints`\nhelp: write `constraint rod = x^2 + y^2 - l^2;`: the expression is 0",
     );
     clause("«for» i in 0..3 {};", "unknown clause `for`\nhelp: write `force q[i in 0..8] = …;`");
     clause("«parameter» m = 1;", "unknown clause `parameter`\nhelp: write `param a = 1.0;`");
@@ -540,7 +540,7 @@ fn habits() {
     );
     case(
         "coord «λ», x, y; L = (dot(x)^2 + dot(y)^2) / 2 + λ * (x^2 + y^2 - 1); discretize midpoint;",
-        "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `λ` multiplies a constraint; constraints are not supp",
+        "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `λ` multiplies a constraint: remove `λ`, and write `constraint rod = x^2 + y^2 - l^2;`: the expr",
     );
 }
 
@@ -669,7 +669,7 @@ fn each_mistake_has_its_correction() {
         ("heaviside(x)", "`if a > 0 { 1 } else { 0 }`"),
         ("crate::aero::cl(x)", "`fn cl(a) = crate::aero::cl;`"),
         ("sum(i in 0..=3, i * x)", "`0..N + 1`"),
-        ("lambda * x", "constraints are not supported"),
+        ("lambda * x", "`constraint rod = x^2 + y^2 - l^2;`"),
         ("mm * x", "declare it with `param`, `const`, `coord`, or an earlier `let`"),
         ("gravity * x", "declare it with `param`, `const`, `coord`, or an earlier `let`"),
     ] {
@@ -686,7 +686,7 @@ fn each_mistake_has_its_correction() {
         ("param g = 9.81 m/s^2;", "units are not supported"),
         ("coord y = 1;", "`coord x;`"),
         ("force = -x;", "`force x = …;`"),
-        ("constraint x^2 = 1;", "choose coordinates that satisfy them"),
+        ("constraint x^2 = 1;", "`constraint rod = x^2 + y^2 - l^2;`"),
         ("T = dot(x)^2 / 2;", "`let T = …;`"),
         ("let a = 1", "every clause ends with `;`"),
         ("order = 4;", "`integrate(Gauss::<S>, h)`"),

@@ -47,9 +47,9 @@ pub struct Continuous {
     pub watched: Vec<Expr>,
     /// Calls of Rust functions and tables in L, f and the time scale, with their arguments, inner calls first.
     pub calls: Vec<(Expr, Vec<Expr>)>,
-    /// Neither L nor f depends on the time.
+    /// Neither L, f nor a constraint depends on the time.
     pub autonomous: bool,
-    /// Whether the coordinate is absent from L and has no force, per coordinate.
+    /// Whether the coordinate is absent from L, has no force and no reaction, per coordinate.
     pub cyclic: Vec<bool>,
 }
 
@@ -197,7 +197,8 @@ fn time_scale(pool: &mut Pool<Symbol>, g: Expr, dimension: usize) -> TimeScale {
 }
 
 fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
-    let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).copied().collect();
+    let constraints = model.constraints.iter().map(|constraint| constraint.value);
+    let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).copied().chain(constraints).collect();
     let one = Rational::from_integer(1.into());
     // Constant subexpressions may exceed the range of numbers.
     let is_part = |expr: &Expr| !pool.is_constant(*expr) || pool.as_number(*expr).is_some();
@@ -215,7 +216,13 @@ fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
 }
 
 fn calls(pool: &Pool<Symbol>, model: &Model) -> Vec<(Expr, Vec<Expr>)> {
-    let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).chain(&model.time_scale).copied().collect();
+    let constraints = model.constraints.iter().map(|constraint| constraint.value);
+    let wholes: Vec<Expr> = [model.lagrangian]
+        .into_iter()
+        .chain(model.forces.iter().copied())
+        .chain(model.time_scale)
+        .chain(constraints)
+        .collect();
     let nodes = pool.reachable(&wholes).into_iter();
     let call = |node| match pool.node(node) {
         Node::Opaque(function, arguments) => Some((node, arguments[..function.arity].to_vec())),
@@ -272,18 +279,20 @@ fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Expr {
     pool.sub(gains, still)
 }
 
-/// Whether f depends on time, and whether L does.
+/// Whether f depends on time, and whether neither L nor a constraint does.
 fn dependence(pool: &Pool<Symbol>, model: &Model) -> (bool, bool) {
     let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
     let forced = model.forces.iter().any(|force| pool.depends_on(*force, &time));
-    (forced, !pool.depends_on(model.lagrangian, &time))
+    let mut wholes = model.constraints.iter().map(|constraint| constraint.value).chain([model.lagrangian]);
+    (forced, !wholes.any(|whole| pool.depends_on(whole, &time)))
 }
 
 fn cyclic(pool: &Pool<Symbol>, model: &Model) -> Vec<bool> {
     (0..model.dimension())
         .map(|index| {
             let itself = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Coordinate(index));
-            !pool.depends_on(model.lagrangian, &itself) && pool.is_zero(model.forces[index])
+            let reacts = model.constraints.iter().any(|constraint| constraint.acts_on(pool, index));
+            !pool.depends_on(model.lagrangian, &itself) && pool.is_zero(model.forces[index]) && !reacts
         })
         .collect()
 }

@@ -5,6 +5,7 @@
 //! exactly for every L, and L is differentiated once, in `(t, q, v)`.
 //! AFTER THIS every expression contains only fields, slots, the unknowns `(v, h)` and parameters.
 
+mod constraints;
 mod continuous;
 mod fields;
 mod forces;
@@ -13,6 +14,7 @@ mod slots;
 mod step;
 pub mod system;
 
+pub use constraints::Constraints;
 pub use continuous::{Continuous, PointDerivatives, TimeScale};
 pub use fields::Fields;
 pub use slots::SlotDerivatives;
@@ -28,6 +30,8 @@ pub struct DiscreteSystem {
     pub continuous: Continuous,
     /// Derivatives of the continuous equations with respect to coordinates and velocities.
     pub point_derivatives: PointDerivatives,
+    /// The functions of the constraints, if there are any.
+    pub constraints: Option<Constraints>,
     /// Partial derivatives of L and f computed so far.
     pub fields: Fields,
     /// The discretization by the rule; `None` for a system with Gauss steps only.

@@ -7,7 +7,7 @@ use super::fields::Fields;
 use super::forces::discrete_forces;
 use super::interval::in_step;
 use super::slots::SlotDerivatives;
-use super::{ByRule, DiscreteSystem, continuous, slots, step};
+use super::{ByRule, Constraints, DiscreteSystem, constraints, continuous, slots, step};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Rule, rule};
@@ -29,6 +29,8 @@ pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> 
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
     let continuous = continuous::continuous(pool, &mut fields, model).map_err(too_large)?;
     check_derivatives(pool, &fields, &continuous, model)?;
+    let constraints = constraints::constraints(pool, model).map_err(too_large)?;
+    check_constraints(pool, constraints.as_ref(), model)?;
     let by_rule = match &model.rule {
         Some(rule) => Some(by_rule(pool, &mut fields, model, rule)?),
         None => None,
@@ -36,7 +38,7 @@ pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> 
     let point_derivatives = continuous::point_derivatives(pool, &mut fields, model.dimension()).map_err(too_large)?;
     bounded(pool).map_err(too_large)?;
     check_derivatives(pool, &fields, &continuous, model)?;
-    Ok(DiscreteSystem { continuous, point_derivatives, fields, by_rule })
+    Ok(DiscreteSystem { continuous, point_derivatives, constraints, fields, by_rule })
 }
 
 /// Discretizes a model with a rule.
@@ -67,6 +69,17 @@ fn check_derivatives(pool: &mut Pool<Symbol>, fields: &Fields, continuous: &Cont
     });
     let expression = pool.render_within(CHARACTERS, part.unwrap_or(whole), &|symbol| model.spell(symbol));
     Err(error(span, &Message::NoDerivative { expression, by: model.spell(&by) }))
+}
+
+/// Reports a constraint with a derivative that has no value in any state.
+fn check_constraints(pool: &mut Pool<Symbol>, found: Option<&Constraints>, model: &Model) -> Result<()> {
+    let Some(constraint) = found.and_then(|found| found.undefined(pool)).map(|index| &model.constraints[index]) else {
+        return Ok(());
+    };
+    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge(found)))?;
+    let expression = pool.render_within(CHARACTERS, constraint.value, &|symbol| model.spell(symbol));
+    let by = "a coordinate or the time".to_owned();
+    Err(error(constraint.name.span(), &Message::NoDerivative { expression, by }))
 }
 
 /// The time scale, and the variable for which its derivative has no value in any state.

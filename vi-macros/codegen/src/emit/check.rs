@@ -2,7 +2,8 @@
 //!
 //! The table of rules, the forces and the cyclic coordinates decide which checks apply. A rule outside the table is
 //! expected to have order 1 and no other property. A system with several rules has the tests once per rule. A system
-//! without a rule has the tests of its motion and of its Gauss steps.
+//! without a rule has the tests of its motion and of its Gauss steps; one with constraints those of its Gauss–Lobatto
+//! steps.
 
 use super::formula::number;
 use super::lagrangian::monotone_table;
@@ -43,7 +44,11 @@ pub(super) fn tests(
         };
         (Some(system), quote!(system()), quote!(super::system()))
     };
-    let applying = steps.map_or_else(|| of_motion(source), of_steps);
+    let applying = match steps {
+        Some(steps) => of_steps(steps),
+        None if source.model.constraints.is_empty() => of_motion(source),
+        None => of_constraints(source),
+    };
     let tests = tests_of(applying, &own, &quote!(place()));
     let by_further = further.iter().map(|steps| {
         let rule = format_ident!("{}", steps.rule.title());
@@ -100,6 +105,19 @@ fn of_motion(source: &Source) -> Vec<Check> {
         ("gauss_order", true),
         ("gauss_momenta", source.system.continuous.cyclic.contains(&true)),
         ("gauss_symplecticity", !source.model.forced),
+    ];
+    each.into_iter().filter(|(_, applies)| *applies).map(|(check, _)| (check, TokenStream::new())).collect()
+}
+
+/// The checks that apply to a system with constraints and to its Gauss–Lobatto steps.
+fn of_constraints(source: &Source) -> Vec<Check> {
+    let are_holonomic = source.model.constraints.iter().all(|constraint| constraint.is_holonomic);
+    let each = [
+        ("constrained_derivatives", true),
+        ("constraints", true),
+        ("reaction", true),
+        ("lobatto_order", true),
+        ("lobatto_symplecticity", are_holonomic && !source.model.forced),
     ];
     each.into_iter().filter(|(_, applies)| *applies).map(|(check, _)| (check, TokenStream::new())).collect()
 }

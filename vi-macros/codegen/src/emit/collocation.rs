@@ -45,7 +45,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
 }
 
 /// The form of the mass matrix, and the function that computes L_v, L_q + f and M.
-fn point(source: &Source) -> (TokenStream, TokenStream) {
+pub(super) fn point(source: &Source) -> (TokenStream, TokenStream) {
     let dimension = source.dimension();
     let of = &source.system.continuous;
     let formula = format!("L_v, M, and\n\n{}", source.formulas("L_q + f", &of.applied_force));
@@ -72,7 +72,7 @@ fn point(source: &Source) -> (TokenStream, TokenStream) {
 }
 
 /// The form of the matrices, and the function that computes M and the derivatives of L_v and L_q + f.
-fn point_derivatives(source: &Source) -> (TokenStream, TokenStream) {
+pub(super) fn point_derivatives(source: &Source) -> (TokenStream, TokenStream) {
     let dimension = source.dimension();
     let formula = "M = ∂L_v/∂v, ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.";
     let Some((body, documentation)) = source.documented(FunctionId::PointDerivatives, formula, VelocityFrom::Argument)

@@ -21,7 +21,7 @@ use quote::{ToTokens, quote};
 use std::ops::Range;
 
 /// Minimum number of rows in a loop.
-const LEAST: usize = 8;
+pub(super) const LEAST: usize = 8;
 
 /// One result.
 pub(super) struct ResultEntry {

@@ -2,6 +2,7 @@
 
 use super::Source;
 use super::body::{Body, VelocityFrom, body, state_parts};
+use super::constrained;
 use super::entries::{self, ResultEntry};
 use super::functions;
 use super::matrix::matrix;
@@ -32,13 +33,17 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let inputs =
         (!inputs.is_empty()).then(|| quote!(const INPUTS: &'static [::core::primitive::usize] = &[#(#inputs),*];));
     let monotone = monotone(source);
+    let [acceleration, flow] = match source.system.constraints {
+        Some(_) => constrained::motion(source),
+        None => [acceleration(source), flow(source)],
+    };
     let functions = [
         number(source, FunctionId::Lagrangian, &source.formula("L", of.lagrangian)),
         number(source, FunctionId::Energy, &source.formula("v·L_v − L", of.energy)),
         vector(source, FunctionId::Momentum, &source.formulas("p", &of.momentum)),
         vector(source, FunctionId::Force, &source.formulas("f", &of.force)),
-        acceleration(source),
-        flow(source),
+        acceleration,
+        flow,
         non_finite(source),
         undefined(source),
     ];
@@ -162,7 +167,8 @@ pub(super) fn number(source: &Source, id: FunctionId, formula: &str) -> TokenStr
     }
 }
 
-fn vector(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
+/// A vector function of (t, q, v).
+pub(super) fn vector(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
     let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
         return TokenStream::new();
     };

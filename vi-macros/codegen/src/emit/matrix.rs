@@ -19,6 +19,10 @@ pub(super) fn matrix(pattern: &Pattern, symmetric: bool, rows: &[Vec<ResultEntry
         Pattern::Tridiagonal => tridiagonal(rows),
         Pattern::Banded(width) => banded(rows, *width),
         Pattern::Blocks(blocks) => in_blocks(rows, blocks),
+        Pattern::Sparse(columns) => {
+            let width = columns.iter().map(Vec::len).max().unwrap_or(0);
+            (sparse_type(rows.len(), width), sparse(rows, columns, width, &all_columns(columns)))
+        }
         Pattern::Scalar | Pattern::Dense => dense(rows, symmetric),
     }
 }
@@ -58,14 +62,43 @@ fn in_blocks(rows: &[Vec<ResultEntry>], blocks: &[Vec<usize>]) -> (TokenStream, 
         let entries = (0..largest).map(|place| entry(rows, row, members.get(place).copied()));
         quote!([#(#entries),*])
     });
-    let members = blocks.iter().map(|members| {
-        let members = members.iter().map(|row| Literal::usize_unsuffixed(*row));
-        quote!(&[#(#members),*])
-    });
+    let members = blocks.iter().map(|members| literals(members));
     (
         quote!(::vi_core::linear::Blocks<#size, #width, T>),
         quote!(::vi_core::linear::Blocks { members: &[#(#members),*], rows: [#(#block_rows),*] }),
     )
+}
+
+/// The type of rows with at most `width` entries each.
+pub(super) fn sparse_type(count: usize, width: usize) -> TokenStream {
+    let (count, width) = (Literal::usize_unsuffixed(count), Literal::usize_unsuffixed(width));
+    quote!(::vi_core::linear::Sparse<#count, #width, T>)
+}
+
+/// Rows by their entries in these columns, which `named` refers to.
+pub(super) fn sparse(
+    rows: &[Vec<ResultEntry>],
+    columns: &[Vec<usize>],
+    width: usize,
+    named: &TokenStream,
+) -> TokenStream {
+    let place = |row: usize, place: usize| entry(rows, row, columns.get(row).and_then(|of| of.get(place)).copied());
+    let parts: Vec<Vec<Part>> = (0..rows.len()).map(|row| (0..width).map(|at| place(row, at)).collect()).collect();
+    let (empty, places) = (zero(), Literal::usize_unsuffixed(width));
+    let values = array(&parts, &quote!([#empty; #places]), |parts| quote!([#(#parts),*]));
+    quote!(::vi_core::linear::Sparse { columns: #named, rows: #values })
+}
+
+/// A reference to the columns of each row.
+pub(super) fn all_columns(columns: &[Vec<usize>]) -> TokenStream {
+    let columns = columns.iter().map(|columns| literals(columns));
+    quote!(&[#(#columns),*])
+}
+
+/// A reference to these numbers.
+pub(super) fn literals(numbers: &[usize]) -> TokenStream {
+    let numbers = numbers.iter().map(|number| Literal::usize_unsuffixed(*number));
+    quote!(&[#(#numbers),*])
 }
 
 /// Omits entries that are identically zero.

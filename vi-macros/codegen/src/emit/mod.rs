@@ -8,6 +8,7 @@ mod angles;
 mod body;
 mod check;
 mod collocation;
+mod constrained;
 mod discrete;
 mod entries;
 mod folds;
@@ -86,13 +87,16 @@ pub fn items(derivations: &Derivations) -> TokenStream {
     let structure = structure::structure(&source, &further);
     let (functions, parameters) = (functions::items(&source), structure::parameters(&source));
     let lagrangian = lagrangian::item(&source);
-    let collocation = collocation::item(&source);
-    let convertible = structure::convertible(&source);
+    let motion = if let Some(of) = &source.system.constraints {
+        constrained::item(&source, of)
+    } else {
+        let (collocation, convertible) = (collocation::item(&source), structure::convertible(&source));
+        quote!(#collocation #convertible)
+    };
     let batch = own.as_ref().map(|_| structure::batch(&source));
     let by_own = own.as_ref().map(by_rule);
     let by_further = further.iter().map(by_rule);
-    let implementations =
-        quote!(#functions #parameters #lagrangian #collocation #convertible #by_own #batch #(#by_further)*);
+    let implementations = quote!(#functions #parameters #lagrangian #motion #by_own #batch #(#by_further)*);
     let conditions: Vec<_> = conditions(&source.model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests(&source, own.as_ref(), &further, &conditions);

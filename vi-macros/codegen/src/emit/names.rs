@@ -54,6 +54,7 @@ impl<'a> Names<'a> {
             Symbol::Q1(_) => "q1".to_owned(),
             Symbol::P0(_) => "p0".to_owned(),
             Symbol::Acceleration(_) => "a".to_owned(),
+            Symbol::Multiplier(_) => "lambda".to_owned(),
             Symbol::Low(of) => format!("{}_low", self.vector_name(of)),
             Symbol::AtPoint(point, variable) => {
                 let variable = self.vector_name(&Symbol::Continuous(*variable));
@@ -110,6 +111,7 @@ impl<'a> Names<'a> {
                 format!("{}_dot", coordinate(index))
             }
             Symbol::Acceleration(index) => format!("{}_ddot", coordinate(index)),
+            Symbol::Multiplier(index) => format!("lambda_{}", self.model.constraints[*index].ident()),
             Symbol::T0 => "t0".to_owned(),
             Symbol::T1 => "t1".to_owned(),
             Symbol::Step => "h".to_owned(),

@@ -1,9 +1,9 @@
 //! The struct of a system: its parameters as public fields, their defaults, their names.
 
 use super::formula::number;
-use super::{Source, Steps, conditions, limit};
+use super::{Source, Steps, conditions, constrained, limit};
 use crate::limits::{COORDINATES, PARAMETERS};
-use crate::model::{Model, Parameter};
+use crate::model::{COMPONENTS, Model, Parameter};
 use crate::rules::{GAUSS, RULES};
 use crate::syntax::{self, Discretization, Expression, Kind, System};
 use num_traits::ToPrimitive;
@@ -219,6 +219,9 @@ fn findings_documentation(source: &Source) -> TokenStream {
     let model = source.model;
     let rule = match &model.rule {
         Some(rule) => format!(" Discretized by the rule `{}`. Properties found by the generator:", rule.title()),
+        None if source.system.constraints.is_some() => {
+            " Integrated by `GaussLobatto`. Properties found by the generator:".to_owned()
+        }
         None => " Integrated by Gauss methods only. Properties found by the generator:".to_owned(),
     };
     let findings = source.findings.lines(&|index| format!("`{}`", model.coordinates[index].text()));
@@ -282,9 +285,15 @@ fn stub(system: &System) -> TokenStream {
     let zeros = lengths.iter().map(|lengths| array_of(lengths, quote!(0.0)));
     let (marker, marker_value) = marker(names.is_empty());
     let size = Size::of(system);
-    let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &size, rule.as_ref()));
     let (parameters, lagrangian) = (stub_parameters(name, &size), stub_lagrangian(name, &size));
-    let traits = quote!(#parameters #lagrangian #(#by_rules)*);
+    let motion = if system.is_constrained {
+        constrained::stub(name, &size.n, size.generic.as_ref())
+    } else {
+        let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &size, rule.as_ref()));
+        let motion = stub_motion(name, &size);
+        quote!(#motion #(#by_rules)*)
+    };
+    let traits = quote!(#parameters #lagrangian #motion);
     let (derived, conditions) = (derived(), conditions(&system.attributes).collect::<Vec<_>>());
     quote! {
         #(#conditions)*
@@ -311,7 +320,8 @@ fn dimension(system: &System) -> Option<Literal> {
     let lengths = system.coordinates.iter().map(|coordinate| {
         let lengths = coordinate.lengths.iter().map(|length| plain_length(system, length));
         let product = |before: usize, length: Option<usize>| before.checked_mul(length?);
-        lengths.into_iter().try_fold(1, product).filter(|length| *length <= COORDINATES)
+        let components = if coordinate.is_rotation { COMPONENTS } else { 1 };
+        lengths.into_iter().try_fold(components, product).filter(|length| *length <= COORDINATES)
     });
     lengths.sum::<Option<usize>>().filter(|dimension| *dimension > 0).map(Literal::usize_unsuffixed)
 }
@@ -420,6 +430,14 @@ fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
             fn acceleration(#at) -> #or_vector #none
             fn flow(#at) -> #or_flow #none
         }
+    }
+}
+
+/// The stub of the equations of motion of a system without constraints.
+fn stub_motion(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
+    let none = quote!({ loop {} });
+    let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
+    quote! {
         impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#n, T> for #name<T> {
             type Mass = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #n, #n>;

@@ -3,6 +3,7 @@
 //! In: which entries are nonzero. Out: the narrowest [`Pattern`] that contains them. An entry (i, j) implies (j, i), as
 //! elimination needs both.
 
+use super::CLOSED;
 use std::collections::BTreeSet;
 
 /// Zero pattern of a square matrix.
@@ -18,6 +19,8 @@ pub enum Pattern {
     Tridiagonal,
     /// Half-bandwidth. At least half of each row is outside the band.
     Banded(usize),
+    /// Other zeros: the columns of the entries of each row.
+    Sparse(Vec<Vec<usize>>),
     /// Dense, or nearly so.
     Dense,
 }
@@ -34,6 +37,7 @@ impl Pattern {
             }
             Self::Tridiagonal => "tridiagonal".to_owned(),
             Self::Banded(width) => format!("banded, with {width} diagonals on each side"),
+            Self::Sparse(_) => "sparse".to_owned(),
             Self::Dense => "dense".to_owned(),
         }
     }
@@ -55,6 +59,24 @@ pub(super) fn pattern(rows: &[Vec<bool>]) -> Pattern {
         _ if 2 * (2 * width + 1) <= size => Pattern::Banded(width),
         _ => Pattern::Dense,
     }
+}
+
+/// The pattern of a square matrix that is not inverted: that of its rows, if at most half of it is filled.
+pub(super) fn by_rows(rows: &[Vec<bool>]) -> Pattern {
+    let columns = columns(rows);
+    let filled: usize = columns.iter().map(Vec::len).sum();
+    match pattern(rows) {
+        found @ (Pattern::Scalar | Pattern::Diagonal) => found,
+        _ if 2 * filled <= rows.len() * rows.len() && rows.len() > CLOSED => Pattern::Sparse(columns),
+        _ => Pattern::Dense,
+    }
+}
+
+/// The columns of the nonzero entries of each row.
+pub(super) fn columns(rows: &[Vec<bool>]) -> Vec<Vec<usize>> {
+    let of =
+        |row: &Vec<bool>| row.iter().enumerate().filter(|(_, filled)| **filled).map(|(column, _)| column).collect();
+    rows.iter().map(of).collect()
 }
 
 /// Groups of coupled indices; each group is ascending, and so are the first members.

@@ -11,6 +11,9 @@ use crate::symbol::Symbol;
 
 /// Points, slots, equations of a step.
 pub(super) fn sections(derived: &Derived) -> Vec<Section> {
+    if derived.system.constraints.is_some() {
+        return Vec::new();
+    }
     let Some(of) = &derived.system.by_rule else {
         let lines = vec![Line::words("None: the system is declared without a rule and takes Gauss steps")];
         return vec![Section { title: "Discrete Lagrangian", lines }];

@@ -30,6 +30,25 @@ pub(super) fn sections(derived: &mut Derived, stages: usize) -> Vec<Section> {
     sections
 }
 
+/// The equations of a step with constraints (`docs/mathematics.md`).
+pub(super) fn constrained() -> Section {
+    let momentum = equation(
+        "L_v(t_i, q_i, v_i)",
+        "p0 + h*sum_j a_ij*F_j + h*sum_j b_ij*A_j^T*λ_j",
+        "L_v(t_i, q_i, v_i)",
+        "p_0 + h \\sum_{j} a_{ij} F_{j} + h \\sum_{j} \\hat{a}_{ij} A_{j}^T \\lambda_{j}",
+    );
+    let projected = equation("p1", "p_minus + A_1^T*μ", "p_1", "p^- + A_1^T \\mu");
+    let lines = vec![
+        Line::words("At each Gauss point i, with the multipliers λ_j at the Lobatto nodes:"),
+        momentum,
+        Line::words("g = 0 at each Lobatto node, and A v + a = 0 at each Gauss point of a constraint on velocities."),
+        Line::words("At the end of the step, μ follows from A v + a = 0:"),
+        projected,
+    ];
+    Section { title: "Equations of a GaussLobatto step", lines }
+}
+
 /// The equation for the length of an energy-preserving step (`docs/theory.md`); `None` beyond three stages, where
 /// rounding hides it.
 fn length(stages: usize) -> Option<Section> {

@@ -83,6 +83,10 @@ pub fn explain(tokens: TokenStream) -> Result<Explanation> {
 pub fn explain_gauss(tokens: TokenStream, stages: usize) -> Result<Explanation> {
     let Derivations { mut own, .. } = derive(&parse::system(tokens)?)?;
     let mut sections = model::sections(&own);
+    if own.system.constraints.is_some() {
+        sections.push(gauss::constrained());
+        return Ok(Explanation { title: own.model.name.to_string(), sections });
+    }
     sections.extend(gauss::sections(&mut own, stages.clamp(1, GAUSS_STAGES)));
     Ok(Explanation { title: own.model.name.to_string(), sections })
 }

@@ -6,6 +6,7 @@ use super::explanation::{Line, Section};
 use super::name;
 use crate::Derived;
 use crate::discrete::TimeScale;
+use crate::findings::{Block, Elimination};
 use crate::model::{Coordinate, Model, Rule};
 
 /// The heading of the sections for a further rule.
@@ -36,7 +37,9 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
             latex: format!("{title} `{symbol}`, by default `{}`", parameter.default_text()),
         });
     }
-    lines.push(Line::words(format!("rule {}", title(model))));
+    if model.constraints.is_empty() {
+        lines.push(Line::words(format!("rule {}", title(model))));
+    }
     let of = &derived.system.continuous;
     let mut functions = vec![Line::equation(derived, ("L", "L"), of.lagrangian)];
     if model.forced {
@@ -50,6 +53,7 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
         title = "Lagrangian L, force f, momentum p, energy E, step density D";
     }
     let mut sections = vec![Section { title: "System", lines }, Section { title, lines: functions }];
+    sections.extend(constraints(derived));
     if let Some(TimeScale { g, g_dq, g_dt }) = &of.time_scale {
         let mut lines = vec![Line::equation(derived, ("g", "g"), *g)];
         lines.extend(Line::equations(derived, ("(∂g/∂q)", "(\\partial g/\\partial q)"), g_dq));
@@ -58,4 +62,60 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     }
     sections.extend(super::functions::sections(derived));
     sections
+}
+
+/// g of the constraints on positions; A and a of all of them.
+fn constraints(derived: &Derived) -> Vec<Section> {
+    let Some(of) = &derived.system.constraints else { return Vec::new() };
+    let mut positions = Vec::new();
+    let mut velocities = Vec::new();
+    for (index, constraint) in derived.model.constraints.iter().enumerate() {
+        let (text, latex) = (constraint.text(), name::constraint(constraint));
+        let named = |letter: &str| (format!("{letter}_{text}"), name::indexed(letter, &[&latex]));
+        if constraint.is_holonomic {
+            let (left, left_latex) = named("g");
+            positions.push(Line::equation(derived, (&left, &left_latex), of.values[index]));
+        }
+        for (entry, coordinate) in of.gradients[index].iter().zip(&derived.model.coordinates) {
+            if !derived.pool.is_zero(*entry) {
+                let left = format!("A_{text},{}", coordinate.text());
+                let left_latex = name::indexed("A", &[&latex, &name::coordinate(coordinate).text()]);
+                velocities.push(Line::equation(derived, (&left, &left_latex), *entry));
+            }
+        }
+        if !derived.pool.is_zero(of.rates[index]) {
+            let (left, left_latex) = named("a");
+            velocities.push(Line::equation(derived, (&left, &left_latex), of.rates[index]));
+        }
+    }
+    let mut sections = Vec::new();
+    if !positions.is_empty() {
+        sections.push(Section { title: "Constraints on positions, g = 0", lines: positions });
+    }
+    let title = "Constraints on velocities, A v + a = 0; the reaction is A^T times the multipliers";
+    sections.push(Section { title, lines: velocities });
+    sections.extend(derived.findings.elimination.as_ref().map(|of| elimination(derived, of)));
+    sections
+}
+
+/// The blocks of coordinates and multipliers λ, in the order of their elimination.
+fn elimination(derived: &Derived, of: &Elimination) -> Section {
+    let Derived { model, .. } = derived;
+    let name = |unknown: &usize, is_latex: bool| match unknown.checked_sub(model.dimension()) {
+        None if is_latex => name::coordinate(&model.coordinates[*unknown]).text(),
+        None => model.coordinates[*unknown].text(),
+        Some(r) if is_latex => name::indexed("\\lambda", &[&name::constraint(&model.constraints[r])]),
+        Some(r) => format!("λ_{}", model.constraints[r].text()),
+    };
+    let block = |Block { own, border }: &Block| {
+        let words = |is_latex: bool| {
+            let list = |unknowns: &[usize]| {
+                let names: Vec<String> = unknowns.iter().map(|unknown| name(unknown, is_latex)).collect();
+                if is_latex { format!("`{}`", names.join(", ")) } else { names.join(", ") }
+            };
+            if border.is_empty() { list(own) } else { format!("{}; coupled to {}", list(own), list(border)) }
+        };
+        Line::Words { text: words(false), latex: words(true) }
+    };
+    Section { title: "Order of elimination, block by block", lines: of.blocks.iter().map(block).collect() }
 }

@@ -5,7 +5,7 @@
 //! Greek letters and their English names become commands. Names of several letters are upright.
 
 use crate::Derived;
-use crate::model::Coordinate;
+use crate::model::{Constraint, Coordinate};
 use crate::symbol::{Field, Quantity, Symbol, Variable};
 use proc_macro2::Ident;
 
@@ -120,6 +120,12 @@ pub(super) fn coordinate(of: &Coordinate) -> Name {
     entry(&of.name, &of.indices)
 }
 
+/// The name of a constraint in LaTeX.
+pub(super) fn constraint(of: &Constraint) -> String {
+    let name = of.indices.iter().fold(Name::of(&of.name.to_string()), |name, index| name.with(index.to_string()));
+    name.text()
+}
+
 /// A name with its indices in an array.
 fn entry(name: &Ident, indices: &[usize]) -> Name {
     indices.iter().fold(Name::of(&name.to_string()), |name, index| name.with(index.to_string()))
@@ -147,6 +153,10 @@ fn named(derived: &Derived, symbol: &Symbol) -> Name {
         Symbol::Continuous(Variable::Coordinate(index)) => of(index),
         Symbol::Continuous(Variable::Velocity(index)) => of(index).under("dot"),
         Symbol::Acceleration(index) => of(index).under("ddot"),
+        Symbol::Multiplier(index) => {
+            let of = derived.model.constraints.get(*index).map(constraint);
+            Name::of("lambda").with(of.unwrap_or_default())
+        }
         Symbol::T0 => Name::of("t0"),
         Symbol::T1 => Name::of("t1"),
         Symbol::Step => Name::of("h"),

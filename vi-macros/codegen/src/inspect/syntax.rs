@@ -15,7 +15,8 @@ pub(super) fn text(system: &System) -> String {
     lines.extend(system.constants.iter().map(constant));
     lines.extend(system.parameters.iter().map(parameter));
     for coordinate in &system.coordinates {
-        lines.push(format!("coord {}{};", coordinate.name, brackets(&coordinate.lengths)));
+        let word = if coordinate.is_rotation { "rotation" } else { "coord" };
+        lines.push(format!("{word} {}{};", coordinate.name, brackets(&coordinate.lengths)));
     }
     lines.extend(system.functions.iter().map(|of| {
         let arguments: Vec<String> = of.arguments.iter().map(ToString::to_string).collect();
@@ -29,7 +30,10 @@ pub(super) fn text(system: &System) -> String {
     lines.extend(system.lets.iter().map(|of| format!("let {}", definition(of))));
     lines.extend(system.lagrangians.iter().map(definition));
     lines.extend(system.forces.iter().map(|of| format!("force {}", definition(of))));
+    lines.extend(system.torques.iter().map(|of| format!("torque {}", definition(of))));
+    lines.extend(system.space_torques.iter().map(|of| format!("space_torque {}", definition(of))));
     lines.extend(system.dissipations.iter().map(definition));
+    lines.extend(system.constraints.iter().map(|of| format!("constraint {}", definition(of))));
     lines.extend(system.time_scales.iter().map(definition));
     for discretization in &system.discretizations {
         match discretization {

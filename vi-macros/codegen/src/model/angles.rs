@@ -1,4 +1,4 @@
-//! Checks that L, the forces, the dissipation and the time scale are 2π-periodic in each angle.
+//! Checks that L, the forces, the dissipation, the constraints and the time scale are 2π-periodic in each angle.
 //!
 //! In: the clauses of a system with angles. Out: nothing, or a message at the first clause that is not periodic, with
 //! the angle. Each expression is evaluated at points of a fixed sequence, and at the same points with each angle moved
@@ -9,7 +9,7 @@ use super::context::Context;
 use super::force::{self, Entries};
 use super::point::Point;
 use super::rule::Rule;
-use super::{Coordinate, Parameter, probe};
+use super::{Constraint, Coordinate, Parameter, probe};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, System};
@@ -33,6 +33,7 @@ pub(super) fn check(
     system: &System,
     (coordinates, parameters): (&[Coordinate], &[Parameter]),
     (lagrangian, time_scale, rule): (Option<Expr>, Option<Expr>, Option<&Rule>),
+    constraints: &[Constraint],
 ) {
     let are_angles: Vec<bool> = coordinates.iter().map(|coordinate| coordinate.is_angle).collect();
     if !are_angles.contains(&true) || !context.errors.is_empty() {
@@ -50,7 +51,13 @@ pub(super) fn check(
         };
         context.errors.at(rule.span, &message);
     }
-    for Clause { exprs, span, what } in clauses(context, system, lagrangian, time_scale) {
+    let mut clauses = clauses(context, system, lagrangian, time_scale);
+    clauses.extend(constraints.chunk_by(|left, right| left.name == right.name).filter_map(|array| {
+        let name = &array.first()?.name;
+        let exprs = array.iter().map(|constraint| constraint.value).collect();
+        Some(Clause { exprs, span: name.span(), what: format!("the constraint `{name}`") })
+    }));
+    for Clause { exprs, span, what } in clauses {
         let probe = |expr: &Expr| Probe { pool: context.pool, expr: *expr, are_angles: &are_angles, parameters };
         if let Some(angle) = exprs.iter().find_map(|expr| probe(expr).failing_angle()) {
             let Coordinate { name, .. } = &coordinates[angle];

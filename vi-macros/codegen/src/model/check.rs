@@ -3,11 +3,12 @@
 //! In: a [`System`]. Out: a [`Model`], or all messages.
 
 use super::context::Context;
+use super::rotation::{self, COMPONENTS};
 use super::scope::Meaning;
 use super::value::Value;
 use super::{
-    Coordinate, Model, Parameter, Rule, angles, check_state, force, function, indices, lets, mass, rule, smoothness,
-    time_scale,
+    Coordinate, Model, Parameter, Rule, angles, check_state, constraint, force, function, indices, lets, mass, rule,
+    smoothness, time_scale,
 };
 use crate::arrays::ArrayMistake;
 use crate::functions::FunctionMistake;
@@ -32,6 +33,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     context.scope.expect(lets.iter().map(|named| &named.name), Absence::Let);
     context.scope.expect(coordinates.iter().map(|coordinate| &coordinate.name), Absence::Coordinate);
     context.scope.expect(parameters.iter().map(|parameter| &parameter.name), Absence::Parameter);
+    context.scope.expect(system.constraints.iter().map(|constraint| &constraint.name), Absence::Constraint);
     context.scope.expect(constants.iter().map(|constant| &constant.name), Absence::Below);
     context.constants(constants);
     let parameters = context.parameters(parameters);
@@ -39,16 +41,24 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     context.scope.expect(lets.iter().map(|named| &named.name), Absence::Below);
     let functions = function::functions(&mut context, system, &parameters);
     lets::lets(&mut context, lets);
+    let constraints = constraint::constraints(&mut context, &system.constraints, &coordinates);
+    if system.is_constrained {
+        constraint::check_clauses(&mut context, system);
+    }
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
-    let forces = force::forces(&mut context, &system.forces, &system.dissipations, &parameters, coordinates.len());
+    let mut forces = force::forces(&mut context, &system.forces, &system.dissipations, &parameters, coordinates.len());
+    rotation::torques(&mut context, &system.torques, false, &coordinates, &mut forces);
+    rotation::torques(&mut context, &system.space_torques, true, &coordinates, &mut forces);
     let forced = forces.iter().any(|force| !context.pool.is_zero(*force));
     let time_scale = time_scale::time_scale(&mut context, &system.time_scales);
     let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
-    let check_state = check_state::check_state(&mut context, &system.checks, &parameters, coordinates.len());
-    angles::check(&mut context, system, (&coordinates, &parameters), (lagrangian, time_scale, rule.as_ref()));
+    let check_state = check_state::check_state(&mut context, &system.checks, &parameters, &coordinates);
+    let clauses = (lagrangian, time_scale, rule.as_ref());
+    angles::check(&mut context, system, (&coordinates, &parameters), clauses, &constraints);
     if context.errors.is_empty() {
         let of_rule = rule.iter().flat_map(Rule::expressions);
         let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
+        let acting = acting.chain(constraints.iter().map(|constraint| constraint.value));
         let acting: Vec<Expr> = acting.chain(of_rule).collect();
         context.check_parameters_used(&parameters, &acting);
         function::check_used(&mut context, system);
@@ -58,11 +68,12 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let Some(lagrangian) = lagrangian else {
         return Err(error(system.name.span(), &Message::MissingLagrangian));
     };
+    let lagrangian = rotation::with_inertia(pool, lagrangian, &coordinates, &parameters);
     let lagrangian_span = system.lagrangians[0].name.span();
-    let singular = mass::check(pool, (&coordinates, &parameters), lagrangian, lagrangian_span);
+    let rows = constraint::rows(pool, &constraints, coordinates.len());
+    let singular = mass::check(pool, (&coordinates, &parameters), (lagrangian, lagrangian_span), &rows);
     // Values from an exhausted pool are meaningless.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
-    singular?;
     let mut model = Model {
         attributes: system.attributes.clone(),
         visibility: system.visibility.clone(),
@@ -75,10 +86,16 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         smoothness: None,
         forced,
         forces,
+        constraints,
         time_scale,
         rule,
         check_state,
     };
+    let dependent = constraint::check(pool, &model);
+    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge(found)))?;
+    dependent?;
+    singular?;
+    constraint::check_smoothness(pool, &model)?;
     if let Some(condition) = smoothness::jump(pool, lagrangian, &model.parameters) {
         let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
         return Err(error(lagrangian_span, &Message::Function(FunctionMistake::Jump { condition })));
@@ -138,21 +155,28 @@ impl Context<'_> {
             self.errors.at(system.span(), &Message::MissingCoordinates);
         }
         let (mut coordinates, mut too_many) = (Vec::new(), None);
-        for syntax::Coordinate { name, lengths, is_angle } in declared {
+        for syntax::Coordinate { name, lengths, is_angle, is_rotation } in declared {
             let first = coordinates.len();
             if lengths.is_empty() && first == COORDINATES {
                 self.declare(name, Meaning::Wrong);
                 too_many = too_many.or(Some(name.span()));
                 continue;
             }
-            let left = COORDINATES - first.min(COORDINATES);
+            let components = if *is_rotation { COMPONENTS } else { 1 };
+            let left = (COORDINATES - first.min(COORDINATES)) / components;
             let too_long = |given| Message::Length { given, limit: COORDINATES };
-            let Some(lengths) = self.lengths(lengths, left, too_long) else {
+            let Some(mut lengths) = self.lengths(lengths, left, too_long).filter(|_| left > 0) else {
                 self.declare(name, Meaning::Wrong);
                 continue;
             };
+            lengths.extend(is_rotation.then_some(COMPONENTS));
             let each = indices(&lengths).into_iter();
-            coordinates.extend(each.map(|indices| Coordinate { name: name.clone(), indices, is_angle: *is_angle }));
+            coordinates.extend(each.map(|indices| Coordinate {
+                name: name.clone(),
+                indices,
+                is_angle: *is_angle,
+                is_rotation: *is_rotation,
+            }));
             let is_one = lengths.is_empty();
             let meaning = if is_one { Meaning::Coordinate(first) } else { Meaning::Coordinates { first, lengths } };
             self.declare(name, meaning);

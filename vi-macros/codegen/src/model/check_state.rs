@@ -1,12 +1,12 @@
 //! The state of the checks.
 //!
 //! In: the clauses `check { x = 1, dot(x) = 0, k = 2; h = 0.01; }`. Out: one numeric [`CheckState`]. Unnamed
-//! coordinates and velocities are zero; unnamed parameters have their defaults, unnamed inputs are 1, so that the checks
+//! coordinates and velocities are zero, unnamed rotations the identity; unnamed parameters have their defaults, unnamed inputs are 1, so that the checks
 //! see them. The last plain `h` is the step, so a coordinate or a parameter may also be called h.
 
-use super::Parameter;
 use super::context::Context;
 use super::force::{self, Entries};
+use super::{Coordinate, Parameter, rotation};
 use crate::messages::Message;
 use crate::syntax::{self, CheckEntry, Definition};
 
@@ -37,7 +37,7 @@ pub(super) fn check_state(
     context: &mut Context,
     written: &[syntax::Check],
     parameters: &[Parameter],
-    dimension: usize,
+    coordinates: &[Coordinate],
 ) -> Option<CheckState> {
     let (first, others) = written.split_first()?;
     for other in others {
@@ -49,6 +49,7 @@ pub(super) fn check_state(
     if h.is_none() {
         context.errors.at(first.span, &Message::MissingStep);
     }
+    let dimension = coordinates.len();
     let mut t = None;
     let [q, v] = [vec![None; dimension], vec![None; dimension]];
     let mut given = Given { q, v, parameters: vec![None; parameters.len()] };
@@ -66,6 +67,12 @@ pub(super) fn check_state(
         if twice {
             let name = definition.name.to_string();
             context.errors.at(definition.name.span(), &Message::SecondEntry { name });
+        }
+    }
+    for (first, _) in rotation::rotations(coordinates) {
+        let components = &mut given.q[first..first + rotation::COMPONENTS];
+        if components.iter().all(Option::is_none) {
+            components[0] = Some(1.0);
         }
     }
     let numbers = |entries: Vec<Option<f64>>| entries.into_iter().map(Option::unwrap_or_default).collect();

@@ -13,6 +13,7 @@ use super::dissipation;
 use super::scope::{Meaning, Scope};
 use super::value::not_a_number;
 use crate::arrays::ArrayMistake;
+use crate::constraints::ConstraintMistake;
 use crate::messages::{Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Indices};
@@ -32,6 +33,9 @@ pub(super) fn forces(
     for line in lines {
         let coordinates = Entries::of_coordinate(context, &line.name.to_string());
         let on_other = |context: &Context, name: String| {
+            if context.scope.meaning(&name) == Some(&Meaning::Constraint) {
+                return Message::Constraint(ConstraintMistake::Force { name });
+            }
             let near = context.scope.near_of(context.pool, &name, |known| context.scope.is_coordinate(known));
             Message::ForceOnOther { name, near }
         };
@@ -123,10 +127,16 @@ fn array_values(
 }
 
 /// The operation at the entries of a line.
-type Make<'a> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, &[i64]) -> Result<()>;
+pub(super) type Make<'a> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, &[i64]) -> Result<()>;
 
 /// Applies an operation to the values of the indices of the ranges, in order.
-fn over(scope: &mut Scope, pool: &mut Pool<Symbol>, levels: &[Indices], at: &mut Vec<i64>, make: Make) -> Result<()> {
+pub(super) fn over(
+    scope: &mut Scope,
+    pool: &mut Pool<Symbol>,
+    levels: &[Indices],
+    at: &mut Vec<i64>,
+    make: Make,
+) -> Result<()> {
     match levels.split_first() {
         None => make(scope, pool, at),
         Some((Indices::One(_), inner)) => over(scope, pool, inner, at, make),
@@ -143,7 +153,12 @@ fn over(scope: &mut Scope, pool: &mut Pool<Symbol>, levels: &[Indices], at: &mut
 }
 
 /// The indices of an entry with their places, from those of its ranges.
-fn path(scope: &mut Scope, pool: &mut Pool<Symbol>, levels: &[Indices], at: &[i64]) -> Result<Vec<(i64, Span)>> {
+pub(super) fn path(
+    scope: &mut Scope,
+    pool: &mut Pool<Symbol>,
+    levels: &[Indices],
+    at: &[i64],
+) -> Result<Vec<(i64, Span)>> {
     let mut of_ranges = at.iter();
     let index = |level: &Indices| match level {
         Indices::One(index) => Ok((scope.integer(pool, index)?, index.span)),

@@ -1,6 +1,12 @@
-//! Checks that the mass matrix M = ∂²L/∂v², which every method inverts, is regular.
+//! Checks that the mass matrix M = ∂²L/∂v², which every method inverts, is regular; with constraints A v + a = 0, that
+//! the bordered matrix is:
 //!
-//! In: L. Out: nothing, or a message that M is singular in every state. M is evaluated at points of a fixed sequence.
+//! ```text
+//! M  Aᵀ
+//! A  0
+//! ```
+//!
+//! In: L and A. Out: nothing, or a message that M is singular in every state. M is evaluated at points of a fixed sequence.
 //! If a pivot vanishes to rounding at all of them, M is singular everywhere, except with negligible probability.
 //! Scaling rows and columns to entries of about 1 makes the test independent of units: masses of 1 and 1e-12 are as
 //! good as two of 1. The points have several sizes: at one of them an angle of 1e15 times a coordinate keeps its
@@ -15,11 +21,11 @@ use syn::Result;
 use vi_expr::{Expr, Pool, Rounded};
 
 /// Maximum number of points, used while the matrix has no value or is singular.
-const POINTS: u32 = 42;
+pub(super) const POINTS: u32 = 42;
 /// Sizes of the first points. Symbols are positive at every other point, and of both signs at the rest.
 const SIZES: [f64; 10] = [1.0, 1.0, 1.0, 1.0, 1e-8, 1e-8, 1e-16, 1e-16, 1e-40, 1e-40];
 /// A pivot below this multiple of the rounding of the entries, per row, counts as zero.
-const MARGIN: f64 = 64.0;
+pub(super) const MARGIN: f64 = 64.0;
 /// Rounds of scaling. Each takes the square root of the distance of a row from its size: ratios of 1e300 become 1.2.
 const ROUNDS: usize = 12;
 
@@ -28,11 +34,14 @@ const ROUNDS: usize = 12;
 pub(super) fn check(
     pool: &mut Pool<Symbol>,
     (coordinates, parameters): (&[Coordinate], &[Parameter]),
-    lagrangian: Expr,
-    span: Span,
+    (lagrangian, span): (Expr, Span),
+    rows: &[Vec<Expr>],
 ) -> Result<()> {
     let dimension = coordinates.len();
     let Some((momenta, mass)) = mass(pool, lagrangian, dimension) else { return Ok(()) };
+    if !rows.is_empty() {
+        return check_bordered(pool, (coordinates, parameters), (lagrangian, &mass), rows);
+    }
     let is_empty = |row: &[Expr]| row.iter().all(|entry| pool.is_zero(*entry));
     let empty = mass.chunks(dimension).position(is_empty);
     if empty.is_none() && !is_singular(pool, &mass, dimension, parameters) {
@@ -48,6 +57,54 @@ pub(super) fn check(
         None => (Singular::Dependent, span),
     };
     Err(error(span, &Message::SingularMass { why }))
+}
+
+/// Reports a bordered matrix that is singular in every state. Its rows A are independent, so that M is singular in a
+/// direction that they allow.
+fn check_bordered(
+    pool: &mut Pool<Symbol>,
+    (coordinates, parameters): (&[Coordinate], &[Parameter]),
+    (lagrangian, mass): (Expr, &[Expr]),
+    rows: &[Vec<Expr>],
+) -> Result<()> {
+    let (dimension, size) = (coordinates.len(), coordinates.len() + rows.len());
+    let whole = bordered(pool, mass, rows, dimension);
+    if !is_singular(pool, &whole, size, parameters) {
+        return Ok(());
+    }
+    let is_free =
+        |place: usize| whole.chunks(size).nth(place).unwrap_or_default().iter().all(|entry| pool.is_zero(*entry));
+    let free = (0..dimension).find(|place| is_free(*place));
+    // The matrix with masses on the coordinates up to one that moves in such a direction is regular.
+    let mut heavier = whole.clone();
+    let mut with_mass = |pool: &mut Pool<Symbol>, place: usize| {
+        let (entry, one) = (heavier[place * size + place], pool.one());
+        heavier[place * size + place] = pool.add(entry, one);
+        !is_singular(pool, &heavier, size, parameters)
+    };
+    let place = free.or_else(|| (0..dimension).find(|place| with_mass(pool, *place)));
+    let name = place.map(|place| coordinates[place].text());
+    let why = match (free, name) {
+        (Some(row), Some(name)) => Singular::Massless(name, massless(pool, lagrangian, row)),
+        (_, name) => Singular::Allowed(name),
+    };
+    let span = coordinates[place.unwrap_or(0)].name.span();
+    Err(error(span, &Message::SingularMass { why }))
+}
+
+/// The matrix M, row by row, with the rows A below it and on its right.
+pub(super) fn bordered(pool: &Pool<Symbol>, mass: &[Expr], rows: &[Vec<Expr>], dimension: usize) -> Vec<Expr> {
+    let size = dimension + rows.len();
+    pool.spend(size * size);
+    let mut whole = vec![pool.zero(); size * size];
+    for row in 0..dimension {
+        whole[row * size..row * size + dimension].copy_from_slice(&mass[row * dimension..(row + 1) * dimension]);
+        for (place, of) in rows.iter().enumerate() {
+            whole[row * size + dimension + place] = of[row];
+            whole[(dimension + place) * size + row] = of[row];
+        }
+    }
+    whole
 }
 
 /// Whether v·L_v = L to rounding at every point with values, and at one such point at least.
@@ -110,8 +167,8 @@ fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Option<(
     is_defined.then_some((momenta, mass))
 }
 
-/// Whether M is singular at every point with a value, and at one such point at least.
-fn is_singular(pool: &Pool<Symbol>, mass: &[Expr], dimension: usize, parameters: &[Parameter]) -> bool {
+/// Whether a matrix is singular at every point with a value, and at one such point at least.
+pub(super) fn is_singular(pool: &Pool<Symbol>, mass: &[Expr], dimension: usize, parameters: &[Parameter]) -> bool {
     let mut singular_somewhere = false;
     for point in 0..POINTS {
         let entries = values(pool, mass, point, parameters);
@@ -127,7 +184,7 @@ fn is_singular(pool: &Pool<Symbol>, mass: &[Expr], dimension: usize, parameters:
 }
 
 /// The values of expressions at a point.
-fn values(pool: &Pool<Symbol>, exprs: &[Expr], point: u32, parameters: &[Parameter]) -> Vec<Rounded> {
+pub(super) fn values(pool: &Pool<Symbol>, exprs: &[Expr], point: u32, parameters: &[Parameter]) -> Vec<Rounded> {
     let mut values = BTreeMap::new();
     pool.evaluate_rounded(exprs, &mut |symbol| {
         let drawn = number(point, values.len(), symbol, parameters);

@@ -9,6 +9,7 @@ mod array;
 pub mod check;
 mod check_state;
 mod condition;
+pub(crate) mod constraint;
 mod context;
 mod dissipation;
 mod force;
@@ -19,6 +20,7 @@ mod mass;
 mod point;
 mod probe;
 mod resolve;
+mod rotation;
 pub(crate) mod rule;
 mod scope;
 mod smoothness;
@@ -28,8 +30,10 @@ mod value;
 mod vector;
 
 pub use check_state::CheckState;
+pub use constraint::Constraint;
 pub use function::{Function, FunctionKind};
 pub use point::Point;
+pub(crate) use rotation::COMPONENTS;
 pub use rule::{DiscreteForces, Rule};
 pub use smoothness::Smoothness;
 pub use table::{Outside, Table, TableKind, Values};
@@ -66,6 +70,8 @@ pub struct Model {
     pub smoothness: Option<Smoothness>,
     /// Whether a force is declared that is not identically zero.
     pub forced: bool,
+    /// The constraints, the holonomic ones first.
+    pub constraints: Vec<Constraint>,
     /// g(t, q) of the time transformation dt = g dτ, if declared.
     pub time_scale: Option<Expr>,
     /// The rule from L to L_d; `None` for a system with Gauss steps only.
@@ -83,6 +89,8 @@ pub struct Coordinate {
     pub indices: Vec<usize>,
     /// Whether L, f and the time scale are 2π-periodic in it, and a run reduces it.
     pub is_angle: bool,
+    /// Whether it is a component of a rotation.
+    pub is_rotation: bool,
 }
 
 impl Coordinate {
@@ -182,6 +190,7 @@ impl Model {
             Symbol::Continuous(Variable::Coordinate(index)) => coordinate(*index),
             Symbol::Continuous(Variable::Velocity(index)) => format!("dot({})", coordinate(*index)),
             Symbol::Acceleration(index) => format!("dot(dot({}))", coordinate(*index)),
+            Symbol::Multiplier(index) => format!("λ_{}", self.constraints[*index].text()),
             Symbol::T0 => "t0".to_owned(),
             Symbol::T1 => "t1".to_owned(),
             Symbol::Step => "h".to_owned(),

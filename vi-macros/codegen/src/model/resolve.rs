@@ -10,6 +10,7 @@ use super::scope::{Meaning, Scope};
 use super::value::{Value, brackets, not_a_number, spelled};
 use super::vector;
 use crate::arrays::ArrayMistake;
+use crate::constraints::ConstraintMistake;
 use crate::habits::Habit;
 use crate::limits::bounded;
 use crate::messages::{Errors, Message, error, nearest};
@@ -236,6 +237,7 @@ impl Scope {
                 return self.whole(pool, name);
             }
             Some(Meaning::OfState) => Message::NotInRule { name: text },
+            Some(Meaning::Constraint) => Message::Constraint(ConstraintMistake::Value { name: text }),
             Some(Meaning::Moving) => Message::VelocityInTimeScale { name: text },
             Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_) | Meaning::Function(_)) => {
                 Message::FunctionWithoutArguments { name: text }
@@ -249,6 +251,7 @@ impl Scope {
     pub(super) fn no_array(&self, pool: &Pool<Symbol>, name: String) -> Message {
         match self.meaning(&name) {
             Some(Meaning::OfState) => Message::NotInRule { name },
+            Some(Meaning::Constraint) => Message::Constraint(ConstraintMistake::Value { name }),
             Some(Meaning::Moving) => Message::VelocityInTimeScale { name },
             Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_) | Meaning::Function(_)) => {
                 Message::FunctionWithoutArguments { name }
@@ -303,6 +306,9 @@ impl Scope {
         }
         let known = Function::from_name(&name);
         let Some(takes) = known.map(Function::arity).or_else(|| (name == "sqrt").then_some(1)) else {
+            if name == "reaction" && !self.is_declared(&name) {
+                return Err(error(function.span(), &Message::Constraint(ConstraintMistake::Reaction)));
+            }
             if name == "ddot" {
                 return Err(error(function.span(), &Message::Acceleration { name: "ddot(…)".to_owned() }));
             }
@@ -317,6 +323,9 @@ impl Scope {
                 return Err(error(function.span(), &Message::Habit(product)));
             }
             if let Some(value) = self.of_vectors(pool, function, arguments)? {
+                return Ok(value);
+            }
+            if let Some(value) = self.of_rotation(pool, function, arguments)? {
                 return Ok(value);
             }
             let near = nearest(&name, self.functions());
@@ -376,7 +385,7 @@ impl Scope {
     /// ```
     ///
     /// and the same of each entry of a vector or a matrix.
-    fn rate(&mut self, pool: &mut Pool<Symbol>, span: Span, arguments: &[Expression]) -> Result<Value> {
+    pub(super) fn rate(&mut self, pool: &mut Pool<Symbol>, span: Span, arguments: &[Expression]) -> Result<Value> {
         let [argument] = arguments else {
             if let [_, _] = arguments {
                 return Err(error(span, &Message::Array(ArrayMistake::InnerProduct)));

@@ -76,6 +76,8 @@ pub(super) enum Meaning {
     Force(usize),
     /// A declared function.
     Function(Called),
+    /// A constraint, which has no value.
+    Constraint,
     /// A quantity that depends on the state; in a rule it may only appear in arguments of L and f.
     OfState,
     /// A quantity that depends on velocities; a time scale cannot use it.
@@ -387,7 +389,9 @@ impl Scope {
 
     /// The declared name nearest to a misspelt one.
     pub(super) fn near(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
-        let is_no_value = |meaning: &Meaning| matches!(meaning, Meaning::OfState | Meaning::Moving | Meaning::Dot);
+        let is_no_value = |meaning: &Meaning| {
+            matches!(meaning, Meaning::OfState | Meaning::Moving | Meaning::Dot | Meaning::Constraint)
+        };
         let is_meant = |known: &str| !self.meaning(known).is_some_and(is_no_value);
         let other = habits::other_alphabet(name).filter(|other| self.names.contains_key(other) && is_meant(other));
         other.or_else(|| self.near_of(pool, name, is_meant))

@@ -8,7 +8,7 @@ use super::results::{FunctionId, Output, Results};
 use super::rounding_scale::rounding_scale;
 use super::verify::{self, Expressions};
 use super::{Function, Program, vanishing};
-use crate::discrete::{ByRule, Continuous, DiscreteSystem, Fields, SlotDerivatives, TimeScale};
+use crate::discrete::{ByRule, Constraints, Continuous, DiscreteSystem, Fields, SlotDerivatives, TimeScale};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Point};
@@ -64,7 +64,11 @@ impl<'a> Assembly<'a> {
             }
         }
         let Continuous { lagrangian, force, .. } = &system.continuous;
-        let sources: Vec<Expr> = [lagrangian].into_iter().chain(force).copied().collect();
+        let of_constraints = system
+            .constraints
+            .iter()
+            .flat_map(|of| of.values.iter().chain(&of.rates).chain(of.gradients.iter().flatten()));
+        let sources: Vec<Expr> = [lagrangian].into_iter().chain(force).chain(of_constraints).copied().collect();
         let known = Known { products: vanishing::Known::of(pool, &sources), ..Known::default() };
         Self { pool, fields: &system.fields, arguments, known }
     }
@@ -161,11 +165,17 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         assembly.function(FunctionId::Energy, number(of.energy))?,
         assembly.function(FunctionId::Momentum, vector(&of.momentum))?,
         assembly.function(FunctionId::Force, vector(&of.force))?,
-        assembly.function(FunctionId::Acceleration, vec![mass.clone(), mass_times_acceleration])?,
+        match &system.constraints {
+            None => assembly.function(FunctionId::Acceleration, vec![mass.clone(), mass_times_acceleration])?,
+            Some(_) => assembly.function(FunctionId::Applied, vector(&of.mass_times_acceleration))?,
+        },
         assembly.function(FunctionId::Point, vec![momentum.clone(), applied_force.clone(), mass.clone()])?,
         assembly.function(FunctionId::PointDerivatives, point_derivatives)?,
         assembly.function(FunctionId::Power, number(of.power))?,
     ];
+    if let Some(of) = &system.constraints {
+        functions.extend(constraints(assembly, of)?);
+    }
     if system.has_energy_steps() {
         functions.push(assembly.function(FunctionId::StepDensity, number(of.step_density))?);
     }
@@ -188,6 +198,18 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         functions.push(assembly.function(FunctionId::ScaledPoint, quantities)?);
     }
     Ok(functions)
+}
+
+/// The functions of the constraints.
+fn constraints(assembly: &mut Assembly, of: &Constraints) -> Assembled {
+    let gradients = vec![(Output::Gradients, of.gradients.clone()), (Output::Rates, vec![of.rates.clone()])];
+    let derivatives = vec![(Output::RatesDq, of.rates_dq.clone()), (Output::RatesDt, vec![of.rates_dt.clone()])];
+    Ok(vec![
+        assembly.function(FunctionId::Constraints, vector(&of.values))?,
+        assembly.function(FunctionId::ConstraintGradients, gradients)?,
+        assembly.function(FunctionId::ConstraintRateDerivatives, derivatives)?,
+        assembly.function(FunctionId::ReactionDerivatives, vec![(Output::ReactionDq, of.reaction_dq.clone())])?,
+    ])
 }
 
 /// A number as the value of a function.

@@ -22,6 +22,16 @@ pub enum FunctionId {
     PointDerivatives,
     /// f·v − L_t.
     Power,
+    /// M a without reactions.
+    Applied,
+    /// g of the constraints.
+    Constraints,
+    /// A and a of the constraints.
+    ConstraintGradients,
+    /// Derivatives of A v + a.
+    ConstraintRateDerivatives,
+    /// Σ λ ∂A/∂q.
+    ReactionDerivatives,
     /// L_v, L_q + f, M, v·L_v − L, f·v − L_t, and the time scale with its derivatives.
     ScaledPoint,
     /// D.
@@ -77,6 +87,11 @@ impl FunctionId {
             Self::Point => "point",
             Self::PointDerivatives => "point_derivatives",
             Self::Power => "power",
+            Self::Applied => "applied",
+            Self::Constraints => "constraints",
+            Self::ConstraintGradients => "constraint_gradients",
+            Self::ConstraintRateDerivatives => "constraint_rate_derivatives",
+            Self::ReactionDerivatives => "reaction_derivatives",
             Self::ScaledPoint => "scaled_point",
             Self::StepDensity => "step_density",
             Self::NonFinite => "non_finite",
@@ -124,6 +139,16 @@ pub enum Output {
     Energy,
     /// f·v − L_t.
     Power,
+    /// A of the constraints.
+    Gradients,
+    /// a of the constraints.
+    Rates,
+    /// ∂(A v + a)/∂q.
+    RatesDq,
+    /// ∂(A v + a)/∂t.
+    RatesDt,
+    /// Σ λ ∂A/∂q.
+    ReactionDq,
     /// g of dt = g dτ.
     TimeScale,
     /// ∂g/∂q.

@@ -16,18 +16,22 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 /// The words that start a clause.
-const CLAUSES: [&str; 14] = [
+const CLAUSES: [&str; 18] = [
     "const",
     "param",
     "input",
     "coord",
     "angle",
+    "rotation",
     "fn",
     "table",
     "let",
     "L",
     "force",
+    "torque",
+    "space_torque",
     "dissipation",
+    "constraint",
     "time_scale",
     "discretize",
     "check",
@@ -50,7 +54,7 @@ pub struct System {
     pub constants: Vec<Constant>,
     /// `param a = …, m[3] = …;` and `input u = …;` in order.
     pub parameters: Vec<Parameter>,
-    /// `coord x, q[8];` and `angle θ;` in order.
+    /// `coord x, q[8];`, `angle θ;` and `rotation R;` in order.
     pub coordinates: Vec<Coordinate>,
     /// `fn f(a) = …;` in order.
     pub functions: Vec<Rc<Function>>,
@@ -64,8 +68,16 @@ pub struct System {
     pub lagrangians: Vec<Definition>,
     /// `force x = …;` in order; the name is the coordinate's.
     pub forces: Vec<Definition>,
+    /// `torque R = …;` in order; the name is the rotation's.
+    pub torques: Vec<Definition>,
+    /// `space_torque R = …;` in order.
+    pub space_torques: Vec<Definition>,
     /// `dissipation = …;`, each occurrence.
     pub dissipations: Vec<Definition>,
+    /// `constraint rod = …;` in order.
+    pub constraints: Vec<Definition>,
+    /// Whether a `constraint` or a `rotation` is declared, readable or not.
+    pub is_constrained: bool,
     /// `time_scale = …;`, each occurrence.
     pub time_scales: Vec<Definition>,
     /// `discretize …;`, each occurrence.
@@ -153,6 +165,8 @@ pub struct Coordinate {
     pub lengths: Vec<Expression>,
     /// Whether it is declared as an `angle`, modulo 2π.
     pub is_angle: bool,
+    /// Whether it is declared as a `rotation`, with four components.
+    pub is_rotation: bool,
 }
 
 /// The rule from L to L_d.
@@ -161,6 +175,17 @@ pub enum Discretization {
     Named(Vec<Ident>),
     /// `discretize { Ld = …; … }`
     Written(Rule),
+}
+
+impl Discretization {
+    /// Its location: the first name, or the lines.
+    #[must_use]
+    pub fn span(&self) -> Span {
+        match self {
+            Self::Named(names) => names.first().map_or_else(Span::call_site, Ident::span),
+            Self::Written(rule) => rule.span,
+        }
+    }
 }
 
 /// A written-out rule: its lines, in order.

@@ -10,6 +10,7 @@ use super::{
     CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression, INSIDE_BRACKETS, Indices,
     Kind, Parameter, Rule, System, clause_of,
 };
+use crate::constraints::ConstraintMistake;
 use crate::habits::Habit;
 use crate::messages::{Errors, Message, bounded, error, nearest};
 use num_traits::Zero;
@@ -153,7 +154,11 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         lets: Vec::new(),
         lagrangians: Vec::new(),
         forces: Vec::new(),
+        torques: Vec::new(),
+        space_torques: Vec::new(),
         dissipations: Vec::new(),
+        constraints: Vec::new(),
+        is_constrained: false,
         time_scales: Vec::new(),
         discretizations: Vec::new(),
         checks: Vec::new(),
@@ -230,9 +235,9 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             let is_input = word == "input";
             list(input, &mut |input| parameter(input, is_input, &attributes, &mut system.parameters))?;
         }
-        "coord" | "angle" => {
-            let is_angle = word == "angle";
-            list(input, &mut |input| coordinate(input, is_angle).map(|one| system.coordinates.push(one)))?;
+        "coord" | "angle" | "rotation" => {
+            system.is_constrained |= word == "rotation";
+            list(input, &mut |input| coordinate(input, &word).map(|one| system.coordinates.push(one)))?;
             return end_of_names(input, start);
         }
         "fn" => system.functions.push(Rc::new(function::function(input)?)),
@@ -242,8 +247,16 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             return Err(error(input.span(), &Message::Habit(Habit::ForceWithoutCoordinate)));
         }
         "force" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.forces.push(one)))?,
+        "torque" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.torques.push(one)))?,
+        "space_torque" => {
+            list(input, &mut |input| indexed(input, &attributes).map(|one| system.space_torques.push(one)))?;
+        }
         "L" => system.lagrangians.push(value_of(word, input, attributes)?),
         "dissipation" => system.dissipations.push(value_of(word, input, attributes)?),
+        "constraint" => {
+            system.is_constrained = true;
+            list(input, &mut |input| constraint(input, &attributes).map(|one| system.constraints.push(one)))?;
+        }
         "time_scale" => system.time_scales.push(value_of(word, input, attributes)?),
         "discretize" if input.peek(syn::token::Brace) => {
             let lines;
@@ -383,6 +396,29 @@ fn indexed(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
     Ok(Definition { indices, ..value_of(name, input, attributes.to_vec())? })
 }
 
+/// `rod = 1` or `link[i in 1..8] = 1`
+fn constraint(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
+    let mistake = |span: Span, mistake| error(span, &Message::Constraint(mistake));
+    let first = input.span();
+    if !input.peek(syn::Ident) {
+        return Err(mistake(first, ConstraintMistake::NoName));
+    }
+    let (name, indices) = (name(input)?, indices(input)?);
+    let has_value = input.peek(Token![=]) && !input.peek(Token![==]);
+    let is_unfinished = input.is_empty() || input.peek(Token![;]) || input.peek(Token![,]) || input.peek(Token![:]);
+    if !has_value && !is_unfinished {
+        return Err(mistake(first, ConstraintMistake::NoName));
+    }
+    let definition = Definition { indices, ..value_of(name, input, attributes.to_vec())? };
+    if input.peek(Token![=]) || input.peek(Token![!=]) {
+        return Err(mistake(input.span(), ConstraintMistake::Equation));
+    }
+    if input.peek(Token![<]) || input.peek(Token![>]) {
+        return Err(mistake(input.span(), ConstraintMistake::Inequality));
+    }
+    Ok(definition)
+}
+
 /// Pairs of brackets: `[i in 0..8]` or `[0]` each
 fn indices(input: ParseStream) -> Result<Vec<Indices>> {
     let mut indices = Vec::new();
@@ -436,10 +472,10 @@ fn parameter(
     outcome
 }
 
-/// `x` or `q[8]`
-fn coordinate(input: ParseStream, is_angle: bool) -> Result<Coordinate> {
+/// `x` or `q[8]`, after the word `coord`, `angle` or `rotation`
+fn coordinate(input: ParseStream, word: &Ident) -> Result<Coordinate> {
     let name = name(input)?;
-    Ok(Coordinate { name, lengths: lengths(input)?, is_angle })
+    Ok(Coordinate { name, lengths: lengths(input)?, is_angle: word == "angle", is_rotation: word == "rotation" })
 }
 
 /// The lengths of an array, `[8]` or `[8][3]`; none of a number

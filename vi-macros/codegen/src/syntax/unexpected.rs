@@ -119,7 +119,8 @@ pub(super) fn end_of_definition(input: ParseStream, start: Cursor, what: &'stati
 
 /// The error for a clause of names that starts at `start` and does not end with `;`.
 pub(super) fn end_of_names(input: ParseStream, start: Cursor) -> Error {
-    let is_coordinates = start.ident().is_some_and(|(word, _)| word == "coord" || word == "angle");
+    let is_coordinates =
+        start.ident().is_some_and(|(word, _)| word == "coord" || word == "angle" || word == "rotation");
     let is_argument =
         input.peek(syn::token::Paren) || input.peek(Token![=]) || input.peek(Token![<]) || input.peek(syn::Lit);
     match previous(input, start) {
@@ -159,7 +160,7 @@ pub(super) fn begins_clause(input: ParseStream) -> bool {
     match word.to_string().as_str() {
         "L" => input.peek2(Token![=]),
         // May also be the name of a parameter.
-        "input" => input.peek2(syn::Ident),
+        "input" | "constraint" | "rotation" | "torque" | "space_torque" => input.peek2(syn::Ident),
         other => CLAUSES.contains(&other),
     }
 }

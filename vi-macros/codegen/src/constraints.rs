@@ -1,0 +1,142 @@
+//! Mistakes with constraints.
+//!
+//! In: the names and expressions found. Out: a message with the error and its correction.
+
+/// A mistake with constraints. The fields of a variant are the words that its text names.
+#[allow(missing_docs)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ConstraintMistake {
+    /// A constraint without a name.
+    NoName,
+    /// `constraint rod = a = b;`
+    Equation,
+    /// `constraint floor = y > 0;`
+    Inequality,
+    /// A constraint declared twice.
+    Twice { name: String },
+    /// A constraint without a coordinate and a velocity.
+    Constant { name: String },
+    /// As many constraints as coordinates, or more.
+    TooMany { count: usize, size: usize },
+    /// A constraint that is a multiple of an earlier one.
+    Same { name: String, other: String },
+    /// A constraint that follows from earlier ones.
+    Dependent { name: String },
+    /// A term that is not linear in the velocities.
+    Nonlinear,
+    /// A constraint on velocities that is the derivative of a function, with the function if it is known.
+    Integrable { name: String, function: Option<String> },
+    /// A constraint that has a jump or a kink at the border of this condition.
+    Jump { name: String, condition: String },
+    /// A constraint with a linear table.
+    LinearTable { name: String, table: String },
+    /// A force on a constraint.
+    Force { name: String },
+    /// The name of a constraint in an expression.
+    Value { name: String },
+    /// `reaction(…)` in an expression.
+    Reaction,
+    /// A torque on a name that is not a rotation.
+    Torque { name: String },
+    /// A torque on a whole array of rotations.
+    TorqueIndex { name: String },
+    /// A second torque on one rotation.
+    SecondTorque { name: String },
+    /// A clause that a system with constraints cannot have.
+    Clause { clause: &'static str },
+}
+
+impl ConstraintMistake {
+    /// What is wrong.
+    #[must_use]
+    pub fn what(&self) -> String {
+        match self {
+            Self::NoName => "this constraint has no name".to_owned(),
+            Self::Equation => "a constraint is one expression, which is 0".to_owned(),
+            Self::Inequality => "inequalities are not supported as constraints".to_owned(),
+            Self::Twice { name } => format!("the constraint `{name}` is declared twice"),
+            Self::Constant { name } => format!("the constraint `{name}` contains no coordinate"),
+            Self::TooMany { count, size } => {
+                format!("{count} constraint(s) on {size} coordinate(s) leave no motion")
+            }
+            Self::Same { name, other } => format!("the constraint `{name}` repeats `{other}` up to a factor"),
+            Self::Dependent { name } => format!("the constraint `{name}` follows from those before it"),
+            Self::Nonlinear => "a constraint must be linear in the velocities".to_owned(),
+            Self::Integrable { name, function: Some(function) } => {
+                format!("the constraint `{name}` is the time derivative of `{function}`")
+            }
+            Self::Integrable { name, function: None } => {
+                format!("the constraint `{name}` is the time derivative of a function of the coordinates")
+            }
+            Self::Jump { name, condition } => {
+                format!("the constraint `{name}` has a jump or a kink where `{condition}` is zero")
+            }
+            Self::LinearTable { name, table } => {
+                format!("the constraint `{name}` has a kink at each place of the linear table `{table}`")
+            }
+            Self::Force { name } => format!("`{name}` has a force but is a constraint"),
+            Self::Value { name } => format!("`{name}` is a constraint, not a number"),
+            Self::Reaction => "an expression cannot contain a reaction".to_owned(),
+            Self::Torque { name } => format!("`{name}` has a torque but is not a rotation"),
+            Self::TorqueIndex { name } => format!("`{name}` is an array of rotations"),
+            Self::SecondTorque { name } => format!("a second torque on `{name}`"),
+            Self::Clause { clause } => format!("`{clause}` is not supported with constraints"),
+        }
+    }
+
+    /// What to write instead.
+    #[must_use]
+    pub fn help(&self) -> String {
+        match self {
+            Self::NoName => NAMED.to_owned(),
+            Self::Equation => "write the difference of both sides, as in `constraint rod = x^2 + y^2 - l^2;`".to_owned(),
+            Self::Inequality => {
+                "write an expression that is 0; an event with `set_state` models an impact on a stop".to_owned()
+            }
+            Self::Twice { .. } => "rename one of them, or give it another index".to_owned(),
+            Self::Constant { .. } => {
+                "write an expression of coordinates that is 0, as in `constraint rod = x^2 + y^2 - l^2;`".to_owned()
+            }
+            Self::TooMany { .. } => "write fewer constraints than coordinates".to_owned(),
+            Self::Same { .. } | Self::Dependent { .. } => {
+                "remove it: its reaction would have no unique value".to_owned()
+            }
+            Self::Nonlinear => {
+                "write terms `a * dot(x)`; constraints with powers, functions or products of velocities are not supported"
+                    .to_owned()
+            }
+            Self::Integrable { name, function: Some(function) } => format!(
+                "constrain that, with its constant as a parameter: `constraint {name} = {function} - c0;`; a constraint on its velocity would \
+                 drift"
+            ),
+            Self::Integrable { .. } => {
+                "constrain that function, with its constant as a parameter; a constraint on its velocity would drift".to_owned()
+            }
+            Self::Jump { .. } => {
+                "velocities would jump there: make both expressions and their derivatives equal where the condition changes"
+                    .to_owned()
+            }
+            Self::LinearTable { .. } => "velocities would jump there: make the table `cubic` or `monotone`".to_owned(),
+            Self::Force { name } => format!(
+                "a force acts on a coordinate: `force x = …;`; the reaction of `{name}` follows from the motion"
+            ),
+            Self::Value { .. } => "name its expression with `let`, and use that name in both places".to_owned(),
+            Self::Reaction => {
+                "friction that depends on a reaction is not supported; a run computes reactions at its states and for events"
+                    .to_owned()
+            }
+            Self::Torque { .. } => "a torque acts on a body that `rotation R;` declares; write `force θ = …;` for a coordinate".to_owned(),
+            Self::TorqueIndex { name } => format!("write `torque {name}[i in 0..8] = [a, b, c];` or `torque {name}[0] = [a, b, c];`"),
+            Self::SecondTorque { .. } => "add them up in one line".to_owned(),
+            Self::Clause { clause: "discretize" } => {
+                "remove it: `GaussLobatto::<1>` is the midpoint rule with constraints, `GaussLobatto::<3>` has order 6"
+                    .to_owned()
+            }
+            Self::Clause { .. } => "remove it; `GaussLobatto` takes steps in t".to_owned(),
+        }
+    }
+}
+
+/// Help for a constraint without a name, or in another notation.
+pub(crate) const NAMED: &str = "write `constraint rod = x^2 + y^2 - l^2;`: the expression is 0, and `rod` names the constraint and its \
+    reaction";
