@@ -100,6 +100,17 @@ impl<const N: usize, const D: usize, T: Real> Matrix<N, T> for Banded<N, D, T> {
     }
 
     #[inline]
+    fn each_entry(&self, mut f: impl FnMut(usize, usize, T)) {
+        for (row, entries) in self.rows.iter().enumerate() {
+            for (place, value) in entries.iter().enumerate() {
+                if let Some(column) = (row + place).checked_sub(Self::WIDTH).filter(|column| *column < N) {
+                    f(row, column, *value);
+                }
+            }
+        }
+    }
+
+    #[inline]
     fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
         SVector::from_fn(|row, _| {
             let columns = row.saturating_sub(Self::WIDTH)..N.min(row + Self::WIDTH + 1);

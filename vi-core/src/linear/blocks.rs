@@ -76,6 +76,17 @@ impl<const N: usize, const B: usize, T: Real> Matrix<N, T> for Blocks<N, B, T> {
     }
 
     #[inline]
+    fn each_entry(&self, mut f: impl FnMut(usize, usize, T)) {
+        for members in self.members {
+            for row in *members {
+                for (column, value) in members.iter().zip(&self.rows[*row]) {
+                    f(*row, *column, *value);
+                }
+            }
+        }
+    }
+
+    #[inline]
     fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
         let mut product = SVector::zeros();
         for members in self.members {

@@ -10,6 +10,10 @@
 //! | [`Tridiagonal`] | neighbours only | elimination of two rows at a time, from both ends at once |
 //! | [`Banded`] | entries near the diagonal | elimination inside the band |
 //! | [`Blocks`] | disjoint blocks | each block separately |
+//! | [`Sparse`] | any nonzeros | dense elimination |
+//!
+//! Gradients of constraints have N columns and the form [`Sparse`] or that of dense rows ([`Rectangular`]). `fronts` solves
+//! for coordinates and multipliers together, by the [`Block`]s of their graph.
 //!
 //! The matrices are mass matrices plus terms of order h. Elimination in the order of the rows is stable for almost all
 //! of them, in any units of their rows and columns. If it loses a pivot, the solution by [`Tridiagonal`] and [`Banded`]
@@ -17,14 +21,21 @@
 
 mod banded;
 mod blocks;
+mod bordered;
 mod dense;
+mod fronts;
 mod pivoted;
+mod rectangular;
 mod symmetric;
 mod tridiagonal;
 
 pub use banded::Banded;
 pub use blocks::Blocks;
+pub(crate) use bordered::{Bordered, Unsolvable, scale};
+pub use fronts::Block;
+pub(crate) use fronts::{Factored, Fronts, reciprocal_power, reciprocal_root};
 pub(crate) use pivoted::Pivoted;
+pub use rectangular::{Rectangular, Row, Sparse};
 pub use symmetric::Symmetric;
 pub use tridiagonal::Tridiagonal;
 
@@ -74,6 +85,15 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Send + Sync + Debug + PartialE
     }
     /// The entry of a row and a column.
     fn entry(&self, row: usize, column: usize) -> T;
+    /// Calls `f` with row, column and value of each entry that may be nonzero, always in the same order.
+    #[inline]
+    fn each_entry(&self, mut f: impl FnMut(usize, usize, T)) {
+        for row in 0..N {
+            for column in 0..N {
+                f(row, column, self.entry(row, column));
+            }
+        }
+    }
     /// `A x`.
     fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N>;
     /// A as a dense matrix.

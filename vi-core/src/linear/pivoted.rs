@@ -3,35 +3,37 @@
 //! `P A = L U` with partial pivoting gives x with `A x = b`, not finite if A is singular. Only the constructor
 //! allocates.
 
+use crate::real::Real;
 use nalgebra::DMatrix;
 
 /// The factors of a matrix; see the [module](self).
 #[derive(Clone, Debug)]
-pub(crate) struct Pivoted {
-    factors: DMatrix<f64>,
+pub(crate) struct Pivoted<T: Real = f64> {
+    factors: DMatrix<T>,
     /// Pivot row of each column.
     rows: Vec<usize>,
 }
 
-impl Pivoted {
+impl<T: Real> Pivoted<T> {
     /// Allocates for matrices of `size` rows.
     pub(crate) fn new(size: usize) -> Self {
         Self { factors: DMatrix::zeros(size, size), rows: vec![0; size] }
     }
 
     /// Factors a matrix of the allocated size.
-    pub(crate) fn factor(&mut self, matrix: &DMatrix<f64>) {
+    pub(crate) fn factor(&mut self, matrix: &DMatrix<T>) {
         self.factors.copy_from(matrix);
         let size = self.rows.len();
         for column in 0..size {
-            let below = self.factors.view((column, column), (size - column, 1));
-            let pivot = column + below.iamax_full().0;
+            let length = |row: usize| self.factors[(row, column)].to_f64().abs();
+            let larger = |pivot, row| if length(row) > length(pivot) { row } else { pivot };
+            let pivot = (column + 1..size).fold(column, larger);
             self.rows[column] = pivot;
             self.factors.swap_rows(column, pivot);
             let (left, right) = self.factors.as_mut_slice().split_at_mut((column + 1) * size);
             let (upper, multipliers) = left[column * size..].split_at_mut(column + 1);
             for entry in &mut *multipliers {
-                *entry /= upper[column];
+                *entry = *entry / upper[column];
             }
             for next in right.chunks_exact_mut(size) {
                 let (upper, below) = next.split_at_mut(column + 1);
@@ -41,7 +43,7 @@ impl Pivoted {
     }
 
     /// Replaces b by the x with `A x = b`.
-    pub(crate) fn solve(&self, b: &mut [f64]) {
+    pub(crate) fn solve(&self, b: &mut [T]) {
         let size = self.rows.len();
         for (column, row) in self.rows.iter().enumerate() {
             b.swap(column, *row);
@@ -52,21 +54,21 @@ impl Pivoted {
         }
         for column in (0..size).rev() {
             let (rest, known) = b.split_at_mut(column);
-            known[0] /= self.factors[(column, column)];
+            known[0] = known[0] / self.factors[(column, column)];
             subtract(rest, known[0], &self.column(column)[..column]);
         }
     }
 
-    fn column(&self, index: usize) -> &[f64] {
+    fn column(&self, index: usize) -> &[T] {
         let size = self.rows.len();
         &self.factors.as_slice()[index * size..][..size]
     }
 }
 
 /// Subtracts `factor * column` from `from`.
-fn subtract(from: &mut [f64], factor: f64, column: &[f64]) {
+fn subtract<T: Real>(from: &mut [T], factor: T, column: &[T]) {
     for (entry, multiplier) in from.iter_mut().zip(column) {
-        *entry -= factor * multiplier;
+        *entry -= factor * *multiplier;
     }
 }
 
@@ -92,7 +94,7 @@ mod tests {
     fn a_singular_matrix_solves_nothing() {
         let mut pivoted = Pivoted::new(2);
         pivoted.factor(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0]));
-        let mut b = [1.0, 0.0];
+        let mut b = [1.0_f64, 0.0];
         pivoted.solve(&mut b);
         assert!(b.iter().all(|entry| !entry.is_finite()));
     }

@@ -242,6 +242,19 @@ impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
     }
 
     #[inline]
+    fn each_entry(&self, mut f: impl FnMut(usize, usize, T)) {
+        for row in 0..N {
+            if row > 0 {
+                f(row, row - 1, self.lower[row]);
+            }
+            f(row, row, self.diagonal[row]);
+            if row + 1 < N {
+                f(row, row + 1, self.upper[row]);
+            }
+        }
+    }
+
+    #[inline]
     fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
         SVector::from_fn(|row, _| {
             let mut sum = self.diagonal[row] * x[row];
