@@ -25,12 +25,18 @@
 //! | [`gauss_order()`] | the error of Gauss steps decreases with h⁴ | all |
 //! | [`gauss_momenta()`] | momenta of cyclic coordinates are constant bit for bit over Gauss steps | with a cyclic coordinate |
 //! | [`gauss_symplecticity()`] | the derivatives at a point are those of a Lagrangian | without force |
+//! | [`constrained_derivatives()`] | momentum, energy, the equations at a point and their derivatives equal those of dual numbers | with constraints |
+//! | [`constraints()`] | gradients, rates and reactions equal those of dual numbers; the constraints hold at the nodes of `GaussLobatto` | with constraints |
+//! | [`reaction()`] | acceleration and multipliers satisfy the equations of motion and keep the rates of the constraints | with constraints |
+//! | [`lobatto_order()`] | the error of steps with two stages decreases with h⁴ | with constraints |
+//! | [`lobatto_symplecticity()`] | the derivatives at a point and the gradients are those of functions | holonomic constraints, without force |
 //!
 //! The clause `check { … }` of `lagrangian!` writes one test for each applicable check; for a system without a rule,
-//! the checks of Gauss steps. No check can detect that L is not the intended Lagrangian.
+//! the checks of Gauss steps; for one with constraints, those of Gauss–Lobatto steps. No check can detect that L is not the intended Lagrangian.
 
 mod bounded;
 mod comparison;
+mod constrained;
 mod derivatives;
 mod energy;
 mod energy_equations;
@@ -47,6 +53,7 @@ mod steps;
 mod subject;
 mod symmetries;
 
+pub use constrained::{constrained_derivatives, constraints, lobatto_order, lobatto_symplecticity, reaction};
 pub use derivatives::derivatives;
 pub use energy::energy;
 pub use energy_equations::energy_equations;
@@ -57,5 +64,5 @@ pub use report::{CheckFailure, Report};
 pub use slots::slots;
 pub use step_law::step_law;
 pub use steps::steps;
-pub use subject::{Checked, EnergyChecked, MotionChecked, Place};
+pub use subject::{Checked, ConstrainedChecked, EnergyChecked, MotionChecked, Place};
 pub use symmetries::{momenta, reversibility, symplecticity};

@@ -22,6 +22,10 @@ use nalgebra::SVector;
 /// The equations of motion in first order; see the [module](self).
 ///
 /// Systems are small and `Copy`. Cold paths get a copy, so that the hot loop stays in registers.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no equations of motion without constraints",
+    note = "`GaussLobatto` integrates a system with constraints; `Gauss`, `FixedStep` and the other methods would ignore them"
+)]
 pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// Matrix type of M, with its zero pattern.
     type Mass: Matrix<N, T>;

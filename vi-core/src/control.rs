@@ -12,15 +12,18 @@
 //! | file | contents |
 //! |---|---|
 //! | `equilibrium` | states of rest, with their matrices and frequencies |
+//! | `constrained` | linearization and equilibria with constraints |
 //! | `spectrum` | eigenvalues of matrices of a size known at run time |
 
+mod constrained;
 mod equilibrium;
 mod spectrum;
 
+pub use constrained::{ConstrainedDynamics, ConstrainedEquilibrium};
 pub use equilibrium::Equilibrium;
 
 use crate::collocation::Collocation;
-use crate::derivatives::{Differentiable, TOGETHER, Tangent, Variation, Varied};
+use crate::derivatives::{Differentiable, TOGETHER, Tangent, Unconstrained, Variation, Varied, Varying};
 use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::node::Node;
@@ -64,36 +67,7 @@ pub trait Dynamics<const N: usize>: Collocation<N> + Convertible<N> {
     /// [`StepError::Singular`] if the mass matrix is singular, [`StepError::NonFinite`] if L, f or a derivative is not
     /// finite.
     fn linearization(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Linearization, StepError> {
-        let (q, v) = (q.vector(), v.vector());
-        let node = Node::new(State { t, q, p: SVector::zeros() }, 0.0);
-        let explained = |failure: StepError| failure.explained(self, &node, 0.0, &v);
-        let acceleration = self.acceleration(t, &q, &v).map_err(explained)?;
-        let value = DVector::from_iterator(2 * N, v.iter().chain(&acceleration).copied());
-        let columns: Vec<usize> = (0..2 * N + Self::INPUTS.len()).collect();
-        // The derivative of q' = v is known, that of v' comes from dual numbers.
-        let mut derivatives = DMatrix::zeros(2 * N, columns.len());
-        derivatives.view_mut((0, N), (N, N)).fill_with_identity();
-        for columns in columns.chunks(TOGETHER) {
-            let mut system = self.convert::<Varied>();
-            let (mut q, mut v) = (q.map(Varied::fixed), v.map(Varied::fixed));
-            for (direction, column) in columns.iter().enumerate() {
-                let varied = match *column {
-                    column if column < N => q.get_mut(column),
-                    column if column < 2 * N => v.get_mut(column - N),
-                    column => system.parameter_mut(Self::PARAMETERS[Self::INPUTS[column - 2 * N]]),
-                };
-                if let Some(number) = varied {
-                    number.slope.0[direction] = 1.0;
-                }
-            }
-            let varied = system.acceleration(Dual::fixed(t), &q, &v).map_err(explained)?;
-            for (direction, column) in columns.iter().enumerate() {
-                for (row, entry) in varied.iter().enumerate() {
-                    derivatives[(N + row, *column)] = entry.slope.0[direction];
-                }
-            }
-        }
-        Linearization::new(t, value, &derivatives)
+        linearized::<Self, Unconstrained, N>(self, t, q.vector(), v.vector())
     }
 
     /// The equilibrium near a guess of the coordinates, at the time t: a state of rest without acceleration,
@@ -111,6 +85,44 @@ pub trait Dynamics<const N: usize>: Collocation<N> + Convertible<N> {
 }
 
 impl<S: Collocation<N> + Convertible<N>, const N: usize> Dynamics<N> for S {}
+
+/// The linearization of x = (q, v) with the acceleration of a system.
+fn linearized<S: Varying<N, K>, K, const N: usize>(
+    system: &S,
+    t: f64,
+    q: SVector<f64, N>,
+    v: SVector<f64, N>,
+) -> Result<Linearization, StepError> {
+    let node = Node::new(State { t, q, p: SVector::zeros() }, 0.0);
+    let explained = |failure: StepError| failure.explained(system, &node, 0.0, &v);
+    let acceleration = system.acceleration(t, &q, &v).map_err(explained)?;
+    let value = DVector::from_iterator(2 * N, v.iter().chain(&acceleration).copied());
+    let columns: Vec<usize> = (0..2 * N + S::INPUTS.len()).collect();
+    // The derivative of q' = v is known, that of v' comes from dual numbers.
+    let mut derivatives = DMatrix::zeros(2 * N, columns.len());
+    derivatives.view_mut((0, N), (N, N)).fill_with_identity();
+    for columns in columns.chunks(TOGETHER) {
+        let mut varying = system.over::<Varied>();
+        let (mut q, mut v) = (q.map(Varied::fixed), v.map(Varied::fixed));
+        for (direction, column) in columns.iter().enumerate() {
+            let varied = match *column {
+                column if column < N => q.get_mut(column),
+                column if column < 2 * N => v.get_mut(column - N),
+                column => varying.parameter_mut(S::PARAMETERS[S::INPUTS[column - 2 * N]]),
+            };
+            if let Some(number) = varied {
+                number.slope.0[direction] = 1.0;
+            }
+        }
+        let varied = varying.acceleration(Dual::fixed(t), &q, &v).map_err(explained)?;
+        for (direction, column) in columns.iter().enumerate() {
+            for (row, entry) in varied.iter().enumerate() {
+                derivatives[(N + row, *column)] = entry.slope.0[direction];
+            }
+        }
+    }
+    Linearization::new(t, value, &derivatives)
+}
 
 /// A linearization: `f(x + δx, u + δu) = value + A δx + B δu` to first order, where f is the rate of change of x =
 /// (q, v), or the end (q, p) of a step.
@@ -158,10 +170,13 @@ fn no_eigenvalues(t: f64) -> StepError {
 impl<M, S, const N: usize> Run<M, S, N>
 where
     M: Differentiable<S, N>,
-    S: Convertible<N> + Collocation<N>,
+    S: Varying<N, M::Kind>,
 {
     /// The linearization of the next step: how (q, p) at its end changes with (q, p) at the node, and with the inputs
     /// over the step. It is exact to rounding, and the run does not change.
+    ///
+    /// With constraints, A is the derivative along the nearest admissible changes of (q, p): it has the eigenvalue zero
+    /// twice for each holonomic constraint and once for each other.
     ///
     /// If the method finds the length of its steps, the end is that of the changed step. A change of the state or of
     /// the inputs changes the preserved energy as [`Run::set_state`] and [`Run::set_parameters`] do.
@@ -174,6 +189,7 @@ where
             variations.push(Variation::of_parameter::<S>(S::PARAMETERS[*input])?);
         }
         let mut tangent = Tangent::from_change(self.clone(), variations)?;
+        tangent.project()?;
         let State { q, p, .. } = tangent.step()?;
         let columns = tangent.variations();
         let derivatives = DMatrix::from_fn(2 * N, columns.len(), |row, column| {

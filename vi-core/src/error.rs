@@ -94,6 +94,9 @@ pub enum StepError {
         residual: f64,
         /// The residuals of the last iterations.
         residuals: Residuals,
+        /// The angle in degrees by which the gradient of a constraint turns in a step at the velocity of its start; zero
+        /// without constraints. Beyond 57 degrees a step may not exist. A short number keeps errors small.
+        turn: f32,
     },
     /// The stages of a Gauss step converged neither by fixed-point iteration nor by Newton iteration.
     StagesUnsettled {
@@ -133,6 +136,11 @@ pub enum StepError {
         /// Name of the system.
         system: &'static str,
     },
+    /// The system has constraints, which the method does not keep.
+    HasConstraints {
+        /// Name of the system.
+        system: &'static str,
+    },
     /// Two velocities have the same momenta: L is not defined at rest and has a branch on each side.
     Ambiguous {
         /// Time of this state.
@@ -144,6 +152,58 @@ pub enum StepError {
         t: f64,
         /// Name of the matrix.
         matrix: &'static str,
+    },
+    /// The state at the start does not satisfy a constraint.
+    InconsistentStart {
+        /// Name of the constraint.
+        constraint: &'static str,
+        /// `g(t, q)`, in the unit of the constraint; zero for a nonholonomic constraint.
+        residual: f64,
+        /// `A v + a`, with the velocity v of the momenta, in the unit of the constraint over time for a holonomic one. If
+        /// the mass matrix is singular, the momentum along the gradient that no velocity has.
+        rate: f64,
+    },
+    /// A constraint that followed from the others at the start, and was dropped, does not hold at the end of a step.
+    DroppedConstraint {
+        /// Time at the end of the step.
+        t: f64,
+        /// Name of the constraint.
+        constraint: &'static str,
+        /// `g(t, q)`, in the unit of the constraint, or `A v + a` of a nonholonomic constraint.
+        residual: f64,
+    },
+    /// No state on the constraints was found from a guess: their residuals cannot shrink together past this point.
+    NotAssembled {
+        /// Time of the state.
+        t: f64,
+        /// The constraint that is farthest from being satisfied.
+        constraint: &'static str,
+        /// Its value g(t, x) at the last place, in its own unit.
+        residual: f64,
+        /// The length of the move along its gradient that would satisfy it, in the units of the coordinates.
+        gap: f64,
+        /// The part by which the residuals of the guess shrank, from 0 to 1.
+        passed: f64,
+    },
+    /// A tangent vector does not satisfy the derivatives of a constraint and of its rate.
+    InconsistentTangent {
+        /// Time of the node.
+        t: f64,
+        /// Name of the constraint.
+        constraint: &'static str,
+        /// `A δq + g_t δt + g_θ δθ`, in the unit of the constraint; zero for a nonholonomic constraint.
+        residual: f64,
+        /// The multiplier of the gradient of the constraint in the momenta that no admissible velocity has.
+        impulse: f64,
+    },
+    /// The constraints depend on each other at the start.
+    Redundant {
+        /// Name of a constraint that follows from the others.
+        constraint: &'static str,
+        /// The number of constraints.
+        of: usize,
+        /// The number of independent constraints.
+        rank: usize,
     },
     /// No equilibrium was found near the guess.
     NoEquilibrium {
@@ -250,6 +310,7 @@ impl StepError {
 struct Reason<'a>(&'a StepError);
 
 impl fmt::Display for Reason<'_> {
+    #[allow(clippy::too_many_lines)] // one arm for each variant
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             StepError::NoForwardStep { t, h, excess, density } => write!(
@@ -276,13 +337,17 @@ impl fmt::Display for Reason<'_> {
                 f,
                 "the forward step from t = {t:.9} has h = {found:.3e}, outside the bounds {h_min:.3e} to {h_max:.3e}"
             ),
-            StepError::NotConverged { t, h, iterations, residual, residuals } => {
+            StepError::NotConverged { t, h, iterations, residual, residuals, turn } => {
                 if *h == 0.0 {
                     write!(f, "no velocity found for the momenta at t = {t:.9}")?;
                 } else {
                     write!(f, "no solution found from t = {t:.9} with h = {h:.3e}")?;
                 }
-                write!(f, ": residual {residual:.3e} ulp after {iterations} iterations{residuals}")
+                write!(f, ": residual {residual:.3e} ulp after {iterations} iterations{residuals}")?;
+                if *turn > 0.0 {
+                    write!(f, " (a constraint turns by about {turn:.0} degrees in this step)")?;
+                }
+                Ok(())
             }
             StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness } => write!(
                 f,
@@ -305,8 +370,31 @@ impl fmt::Display for Reason<'_> {
                 )
             }
             StepError::NoRule { system } => write!(f, "`{system}` declares no quadrature rule"),
+            StepError::HasConstraints { system } => {
+                write!(f, "`{system}` has constraints, which this method does not keep")
+            }
             StepError::Ambiguous { t } => write!(f, "two velocities have the same momenta at t = {t:.9}"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
+            StepError::InconsistentStart { constraint, residual, rate } => write!(
+                f,
+                "the start does not satisfy the constraint `{constraint}`: residual {residual:.3e}, rate {rate:.3e}"
+            ),
+            StepError::DroppedConstraint { t, constraint, residual } => {
+                write!(f, "the dropped constraint `{constraint}` does not hold at t = {t:.9}: residual {residual:.3e}")
+            }
+            StepError::NotAssembled { t, constraint, residual, gap, passed } => write!(
+                f,
+                "the constraints cannot be satisfied together from this guess at t = {t:.9}: `{constraint}` stays {residual:.3e}, a gap of {gap:.3e}, with {:.0} % of the residuals removed",
+                100.0 * passed
+            ),
+            StepError::InconsistentTangent { t, constraint, residual, impulse } => write!(
+                f,
+                "a tangent vector at t = {t:.9} does not satisfy the constraint `{constraint}`: residual {residual:.3e}, impulse {impulse:.3e}"
+            ),
+            StepError::Redundant { constraint, of, rank } => write!(
+                f,
+                "the constraint `{constraint}` follows from the others: {rank} of {of} constraints are independent at the start"
+            ),
             StepError::NoEquilibrium { t, coordinate, force } => write!(
                 f,
                 "no equilibrium was found near the guess at t = {t:.9}: the force {force:.3e} on `{coordinate}` is not balanced"
@@ -366,17 +454,17 @@ impl fmt::Display for StepError {
         match self {
             Self::DegenerateStep { h, .. } => write!(
                 f,
-                "; continue by `with_fallback(Fallback::FixedSteps)` or by fixed steps of h = {h:.3e}, or try longer steps, fewer stages, or `EnergyPreservingGauss` with another shift"
+                "; continue by `with_fallback(Fallback::FixedSteps)` or by fixed steps of h = {h:.3e}, or try longer steps, fewer stages, or another shift by `with_shift` of energy-preserving Gauss steps"
             ),
             Self::NoForwardStep { h, .. } | Self::StepRatio { previous: h, .. } => {
                 write!(
                     f,
-                    "; continue by `with_fallback(Fallback::FixedSteps)`, by `FixedStep` with h = {h:.3e}, or by `EnergyPreservingGauss` with a shift, which `with_shift_from(duration)` measures"
+                    "; continue by `with_fallback(Fallback::FixedSteps)`, by fixed steps of h = {h:.3e}, or by energy-preserving Gauss steps with a shift, which `with_shift_from(duration)` measures"
                 )
             }
             Self::NoForwardGaussStep { h, largest, .. } => write!(
                 f,
-                "; use `with_shift({:.3e})`, which exceeds the largest |D| so far, another number of stages, `with_fallback(Fallback::FixedSteps)`, or `Gauss` with h = {h:.3e}",
+                "; use `with_shift_from(duration)`, or `with_shift({:.3e})`, which exceeds the largest |D| so far, another number of stages, `with_fallback(Fallback::FixedSteps)`, or fixed steps of h = {h:.3e}",
                 2.0 * largest
             ),
             Self::ShiftTooLarge { shorter, .. } => write!(f, "; start with steps of {shorter:.1e} or shorter"),
@@ -401,6 +489,7 @@ impl fmt::Display for StepError {
             }
             Self::NoStepDensity { .. } => f.write_str("; make the table `cubic`, or take `FixedStep` or `Gauss`"),
             Self::NoRule { .. } => f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`"),
+            Self::HasConstraints { .. } => f.write_str("; take `GaussLobatto`"),
             Self::Ambiguous { .. } => {
                 f.write_str("; L is not defined at rest and has a branch on each side: write an L with one branch")
             }
@@ -422,6 +511,23 @@ impl fmt::Display for StepError {
             Self::Undefined { range: None, .. } => {
                 f.write_str("; return a finite number there, or stop the run before it gets there")
             }
+            Self::InconsistentStart { .. } => f.write_str(
+                "; `State::projected(&system, t, q, v)` moves a state onto the constraints and returns how far",
+            ),
+            Self::DroppedConstraint { .. } => f.write_str(
+                "; it follows from the others at the start only, or contradicts them: start elsewhere, or correct its lengths",
+            ),
+            Self::NotAssembled { constraint, .. } => write!(
+                f,
+                "; check lengths and anchors of `{constraint}` and its neighbours, or start from another guess"
+            ),
+            Self::InconsistentTangent { .. } => {
+                f.write_str("; `Tangent::project` moves tangent vectors to admissible ones")
+            }
+            Self::Redundant { constraint, .. } => write!(
+                f,
+                "; drop `{constraint}`, start elsewhere, or integrate `Independent::at(system, t, q)`, which keeps an independent subset"
+            ),
             Self::NoEquilibrium { coordinate, .. } => write!(
                 f,
                 "; start nearer to it, or set inputs and parameters so that the forces on `{coordinate}` can balance"
@@ -447,9 +553,8 @@ impl core::error::Error for StepError {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "Vec<f64>"))]
 pub struct Residuals {
-    /// The newest residual is last. Unused entries are zero.
+    /// The newest residual is last. Unused entries are negative.
     kept: [f64; Self::KEPT],
-    count: usize,
 }
 
 impl Residuals {
@@ -458,7 +563,7 @@ impl Residuals {
 
     /// An empty list.
     pub(crate) fn new() -> Self {
-        Self { kept: [0.0; Self::KEPT], count: 0 }
+        Self { kept: [-1.0; Self::KEPT] }
     }
 
     /// Adds the newest residual, and ignores one that is not finite.
@@ -468,13 +573,12 @@ impl Residuals {
             if let Some(newest) = self.kept.last_mut() {
                 *newest = residual;
             }
-            self.count = Self::KEPT.min(self.count + 1);
         }
     }
 
     /// The residuals, the oldest first.
     pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
-        self.kept.iter().copied().skip(Self::KEPT - self.count)
+        self.kept.iter().copied().filter(|residual| *residual >= 0.0)
     }
 }
 

@@ -31,6 +31,7 @@
 //! | [`discrete`] | the discrete Lagrangian of a rule, with its derivatives |
 //! | [`stepping`] | the momentum and energy equations of one step, and their derivatives |
 //! | [`collocation`] | the equations of motion at one point, for Gauss steps |
+//! | [`constrained`] | systems with constraints, for Gauss–Lobatto steps |
 //! | [`rules`] | markers of the quadrature rules that `discretize` can name |
 //! | [`state`], [`node`] | states, intervals and steps; nodes with compensated sums |
 //! | [`method`] | the integrators, one file each |
@@ -49,7 +50,8 @@
 //! | `compensated`, `angles` | compensated summation; angles as a reduced angle and a count of turns |
 //! | [`called`], `delegate`, `forward` | wrappers of a system, for example with functions that are not inlined |
 //!
-//! Nothing here panics or prints. Stepping does not allocate, except for one buffer at the first stiff Gauss step.
+//! Nothing here panics or prints. Stepping does not allocate, except for buffers at the first stiff Gauss step and at the
+//! first step with constraints.
 
 // A call that is not inlined spills the run's state out of registers.
 #![allow(clippy::inline_always)]
@@ -61,6 +63,7 @@ pub mod check;
 pub mod collocation;
 mod compensated;
 pub mod condition;
+pub mod constrained;
 pub mod control;
 mod delegate;
 pub mod derivatives;
@@ -91,13 +94,14 @@ pub mod table;
 mod vector;
 
 pub use called::Called;
-pub use control::Dynamics;
+pub use constrained::{Constrained, ConvertibleConstrained};
+pub use control::{ConstrainedDynamics, Dynamics};
 pub use discrete::DiscreteLagrangian;
 pub use error::StepError;
 pub use lagrangian::Lagrangian;
 pub use method::{
-    Composition, Connected, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
-    Method,
+    Composed, Composition, Connected, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback,
+    FixedStep, Gauss, GaussLobatto, InTransformedTime, Method,
 };
 pub use nalgebra;
 pub use nalgebra::SVector;
@@ -107,9 +111,12 @@ pub use vi_macros::lagrangian;
 
 /// The names that a typical program needs.
 pub mod prelude {
-    pub use crate::control::Dynamics as _;
+    pub use crate::control::{ConstrainedDynamics as _, Dynamics as _};
     pub use crate::error::StepError;
-    pub use crate::method::{Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method};
+    pub use crate::method::{
+        Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep, Gauss,
+        GaussLobatto, Method,
+    };
     pub use crate::real::Number;
     pub use crate::run::{Crossing, Event, Moment, Monitored, Run, Solution, Start, Starts as _, Tolerance};
     pub use crate::state::State;

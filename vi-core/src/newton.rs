@@ -82,7 +82,7 @@ impl Failure {
             Self::NonFinite => StepError::NonFinite { t, quantity: "momentum equation", expression: None },
             Self::InfiniteJacobian => StepError::NonFinite { t, quantity: matrix, expression: None },
             Self::Stalled { iterations, residual, residuals } => {
-                StepError::NotConverged { t, h, iterations, residual, residuals }
+                StepError::NotConverged { t, h, iterations, residual, residuals, turn: 0.0 }
             }
         }
     }

@@ -96,6 +96,11 @@ impl<const N: usize, T: Real> Node<N, T> {
         compensated::add_vector(&mut self.p, &mut self.p_low, increment);
     }
 
+    /// Adds to the momenta.
+    pub(crate) fn add_momentum(&mut self, increment: &SVector<T, N>) {
+        compensated::add_vector(&mut self.p, &mut self.p_low, increment);
+    }
+
     /// This node moved to another state, with the same energy.
     pub(crate) fn with_state(&self, state: State<N, T>) -> Self {
         Self { energy_low: self.energy_low, ..Self::new(state, self.energy) }

@@ -21,7 +21,8 @@ use nalgebra::{SMatrix, SVector};
 #[diagnostic::on_unimplemented(
     message = "`{Self}` takes no fixed steps by the rule `{R}`",
     note = "add `discretize midpoint;` to `{Self}`; `Own` is the first rule of that clause, and `discretize midpoint, trapezoidal;` adds another",
-    note = "`Gauss` and `EnergyPreservingGauss` need no rule"
+    note = "`Gauss` and `EnergyPreservingGauss` need no rule",
+    note = "a system with constraints takes the steps of `GaussLobatto`; `GaussLobatto::<1>` is its midpoint rule"
 )]
 pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T> + Copy {
     /// Matrix type of A, with its zero pattern.

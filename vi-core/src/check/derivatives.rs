@@ -24,7 +24,7 @@ use std::array;
 
 /// Dual numbers for first derivatives, and for second ones.
 pub(super) type First = Dual<Bounded>;
-type Second = Dual<First>;
+pub(super) type Second = Dual<First>;
 
 /// Tests momentum, energy, acceleration, the equations at a point and their derivatives against dual numbers.
 ///
@@ -40,7 +40,7 @@ pub fn derivatives<const N: usize, S: MotionChecked<N>>(system: &S, place: &Plac
 }
 
 /// `∂L/∂q`, and its rate and that of `∂L/∂t` along the trajectory (1, v, a), by second-order dual numbers.
-fn gradient_and_rates<const N: usize>(
+pub(super) fn gradient_and_rates<const N: usize>(
     system: &impl Lagrangian<N, Second>,
     t: f64,
     [q, v, a]: [&SVector<Bounded, N>; 3],

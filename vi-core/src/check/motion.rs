@@ -70,7 +70,14 @@ impl<const N: usize> Motion<N> {
                 _ if goes_on => (h, before) = (step / 2.0, error),
                 Ok((_, error)) => {
                     let (residual, residuals) = (error / f64::EPSILON, Residuals::new());
-                    return Err(StepError::NotConverged { t: self.t, h, iterations: ROWS, residual, residuals });
+                    return Err(StepError::NotConverged {
+                        t: self.t,
+                        h,
+                        iterations: ROWS,
+                        residual,
+                        residuals,
+                        turn: 0.0,
+                    });
                 }
                 Err(error) => return Err(error),
             }

@@ -19,7 +19,7 @@ use super::ladder::{Law, Measured};
 use super::motion::Motion;
 use super::report::{CheckFailure, Report};
 use super::sample::SampledMotion;
-use super::subject::{Checked, MotionChecked, Place, STEPS};
+use super::subject::{Checked, Place, STEPS};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::{FixedStep, Method};
@@ -44,7 +44,7 @@ pub fn order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, order:
 }
 
 /// The same for the runs that `begin` starts from a state with a step.
-pub(super) fn judged<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
+pub(super) fn judged<const N: usize, S: Lagrangian<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
     check: &Comparison,
     system: &S,
     place: &Place<N>,
@@ -107,7 +107,7 @@ struct Path<const N: usize> {
 
 impl<const N: usize> Path<N> {
     /// The reference over [`STEPS`] steps h, each integrated in this many parts.
-    fn from<S: MotionChecked<N>>(system: &S, start: Motion<N>, h: f64, parts: u32) -> Result<Self, StepError> {
+    fn from<S: Lagrangian<N>>(system: &S, start: Motion<N>, h: f64, parts: u32) -> Result<Self, StepError> {
         let mut states = vec![start];
         let mut now = start;
         for index in 1..=STEPS * parts {
@@ -126,7 +126,7 @@ impl<const N: usize> Path<N> {
     }
 
     /// Errors of steps of the length h, after this many halvings, along the reference.
-    fn errors<S: MotionChecked<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
+    fn errors<S: Lagrangian<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
         &self,
         system: &S,
         halvings: u32,

@@ -9,12 +9,14 @@
 use super::comparison::Comparison;
 use super::motion::Motion;
 use super::report::CheckFailure;
-use super::subject::{Checked, MotionChecked, Place, STEPS};
+use super::subject::{Checked, ConstrainedChecked, MotionChecked, Place, STEPS};
+use crate::constrained::Constrained;
 use crate::error::StepError;
+use crate::lagrangian::{Lagrangian, Parameters};
 use crate::linear::Matrix;
 use crate::node::Node;
 use crate::state::{Interval, State};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// Samples per place.
 const SAMPLES: u32 = 8;
@@ -58,7 +60,7 @@ impl<const N: usize> SampledMotion<N> {
     ///
     /// # Errors
     /// A failed integration over the place's own steps; [`CheckFailure::Vacuous`] if nothing moves.
-    pub(super) fn from<S: MotionChecked<N>>(
+    pub(super) fn from<S: Lagrangian<N>>(
         system: &S,
         place: &Place<N>,
         check: &Comparison,
@@ -86,12 +88,7 @@ impl<const N: usize> SampledMotion<N> {
     }
 
     /// The trajectory over [`STEPS`] steps h, with a limit of trial steps from one state to the next.
-    pub(super) fn over<S: MotionChecked<N>>(
-        system: &S,
-        place: &Place<N>,
-        h: f64,
-        trials: u32,
-    ) -> Result<Self, StepError> {
+    pub(super) fn over<S: Lagrangian<N>>(system: &S, place: &Place<N>, h: f64, trials: u32) -> Result<Self, StepError> {
         let mut now = Motion { t: place.t, q: place.q, v: place.v };
         let mut states = vec![now];
         for index in 1..SAMPLES {
@@ -103,7 +100,7 @@ impl<const N: usize> SampledMotion<N> {
     }
 
     /// Whether a coordinate has passed a substantial phase, if its acceleration is `−ω² q` plus a constant.
-    fn has_turned<S: MotionChecked<N>>(&self, system: &S) -> Result<bool, StepError> {
+    fn has_turned<S: Lagrangian<N>>(&self, system: &S) -> Result<bool, StepError> {
         let accelerations = self.states.iter().map(|state| system.acceleration(state.t, &state.q, &state.v));
         let accelerations: Vec<_> = accelerations.collect::<Result<_, _>>()?;
         let (acceleration, distance) = (range(accelerations.into_iter()), self.range(|state| state.q));
@@ -123,9 +120,9 @@ impl<const N: usize> SampledMotion<N> {
 
     /// Nonzero distances for each coordinate and velocity: their extents or, if these are tiny, the extents of a fixed
     /// part of the same kinetic energy.
-    fn extent<S: MotionChecked<N>>(&self, system: &S) -> [SVector<f64, N>; 2] {
+    fn extent(&self, mass: impl Fn(&Motion<N>) -> SMatrix<f64, N, N>) -> [SVector<f64, N>; 2] {
         let Some(first) = self.states.first() else { return [SVector::zeros(); 2] };
-        let mass = system.point(first.t, &first.q, &first.v).mass.dense();
+        let mass = mass(first);
         let weights = SVector::<f64, N>::from_fn(|row, _| match mass[(row, row)].abs().sqrt() {
             weight if weight > 0.0 => weight,
             _ => mass.row(row).amax().sqrt(),
@@ -141,8 +138,13 @@ impl<const N: usize> SampledMotion<N> {
     }
 
     /// The samples near this trajectory, each with values of the system.
-    fn samples<S: MotionChecked<N>>(&self, system: &S, is_defined: fn(&Sample<S, N>) -> bool) -> Vec<Sample<S, N>> {
-        let extent = self.extent(system);
+    fn samples<S: Lagrangian<N> + Parameters + Copy>(
+        &self,
+        system: &S,
+        mass: impl Fn(&Motion<N>) -> SMatrix<f64, N, N>,
+        is_defined: fn(&Sample<S, N>) -> bool,
+    ) -> Vec<Sample<S, N>> {
+        let extent = self.extent(mass);
         let mut draw = Sequence(7);
         let sample = |state: &Motion<N>| {
             let drawn = draw;
@@ -170,7 +172,21 @@ pub(super) fn samples<const N: usize, S: MotionChecked<N>>(
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    Ok(SampledMotion::from(system, place, check)?.samples(system, Sample::has_values))
+    let mass = |at: &Motion<N>| system.point(at.t, &at.q, &at.v).mass.dense();
+    Ok(SampledMotion::from(system, place, check)?.samples(system, mass, Sample::has_values))
+}
+
+/// The samples near the trajectory from a place on the constraints, most of them off the constraints.
+///
+/// # Errors
+/// As [`SampledMotion::from`].
+pub(super) fn constrained_samples<const N: usize, S: ConstrainedChecked<N>>(
+    system: &S,
+    place: &Place<N>,
+    check: &Comparison,
+) -> Result<Vec<Sample<S, N>>, CheckFailure> {
+    let mass = |at: &Motion<N>| Constrained::point(system, at.t, &at.q, &at.v).mass.dense();
+    Ok(SampledMotion::from(system, place, check)?.samples(system, mass, Sample::has_values))
 }
 
 /// The same samples, restricted to those from which a step also has values.
@@ -182,7 +198,8 @@ pub(super) fn step_samples<const N: usize, S: Checked<N>>(
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    Ok(SampledMotion::from(system, place, check)?.samples(system, Sample::has_step))
+    let mass = |at: &Motion<N>| system.point(at.t, &at.q, &at.v).mass.dense();
+    Ok(SampledMotion::from(system, place, check)?.samples(system, mass, Sample::has_step))
 }
 
 /// The largest distances from the first vector, entry by entry.
@@ -192,7 +209,7 @@ fn range<const N: usize>(mut vectors: impl Iterator<Item = SVector<f64, N>>) -> 
 }
 
 /// The sample near a state: part 1 is the largest distance, part 0 the state itself.
-fn beside<const N: usize, S: MotionChecked<N>>(
+fn beside<const N: usize, S: Lagrangian<N> + Parameters + Copy>(
     system: &S,
     state: &Motion<N>,
     h: f64,
@@ -211,7 +228,7 @@ fn beside<const N: usize, S: MotionChecked<N>>(
     Sample { system: varied, t: state.t, q, v, h }
 }
 
-impl<S: MotionChecked<N>, const N: usize> Sample<S, N> {
+impl<S: Lagrangian<N>, const N: usize> Sample<S, N> {
     /// The interval that starts here, with the velocity of the sample.
     pub(super) fn interval(&self) -> Interval<N> {
         Interval { t0: self.t, q0: self.q, t1: self.t + self.h, q1: self.q + self.v * self.h }

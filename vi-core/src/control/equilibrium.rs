@@ -59,13 +59,7 @@ impl<const N: usize> Equilibrium<N> {
         let dense = |matrix: &SMatrix<f64, N, N>| DMatrix::from_fn(N, N, |i, j| matrix[(i, j)]);
         let is_conservative = damping.iter().all(|entry| *entry == 0.0) && is_symmetric(stiffness);
         if is_conservative && let Some(squares) = spectrum::squared_frequencies(&dense(stiffness), &dense(mass)) {
-            let pair = |square: &f64| {
-                let rate = Complex::new(0.0, 1.0) * Complex::new(*square, 0.0).sqrt();
-                [-rate, rate]
-            };
-            let mut rates: Vec<_> = squares.iter().flat_map(pair).collect();
-            spectrum::sort(&mut rates);
-            return Ok(rates);
+            return Ok(oscillations(&squares));
         }
         let singular = StepError::Singular { t: *t, matrix: "mass matrix" };
         let accelerations = |forces| linear::solve(mass, forces).ok_or(singular);
@@ -86,6 +80,17 @@ impl<const N: usize> Equilibrium<N> {
     pub fn frequencies(&self) -> Result<Vec<f64>, StepError> {
         Ok(self.rates()?.into_iter().map(|rate| rate.im).filter(|frequency| *frequency > 0.0).collect())
     }
+}
+
+/// The rates ±iω of these ω², sorted.
+pub(super) fn oscillations(squares: &[f64]) -> Vec<Complex<f64>> {
+    let pair = |square: &f64| {
+        let rate = Complex::new(0.0, 1.0) * Complex::new(*square, 0.0).sqrt();
+        [-rate, rate]
+    };
+    let mut rates: Vec<_> = squares.iter().flat_map(pair).collect();
+    spectrum::sort(&mut rates);
+    rates
 }
 
 /// Whether a matrix equals its transpose, to a few roundings of the entries.

@@ -13,16 +13,17 @@
 //! The run is stored at every √K-th node and repeated between them. The memory is that of `2 √K` runs, and the extra
 //! work is one run (Griewank and Walther, *Evaluating Derivatives*, chapter 12). If the caller allows storage for all
 //! nodes, no step is repeated. Each step follows 2N directions, those of the energy and of the time if steps depend on
-//! them, and one for each requested parameter.
+//! them, and one for each requested parameter. With constraints, each direction is the nearest admissible one, so that
+//! a covector is that of admissible tangent vectors.
 
 use super::steps::Differentiable;
 use super::variation::{Variation, changes_of_energy};
+use super::varying::Varying;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::run::Run;
 use crate::state::State;
-use crate::stepping::Convertible;
 use nalgebra::SVector;
 
 /// Derivatives of a number with respect to a node.
@@ -97,7 +98,7 @@ pub fn gradient<M, S, const N: usize>(
 ) -> Result<Gradient<N>, StepError>
 where
     M: Differentiable<S, N>,
-    S: Convertible<N> + Lagrangian<N> + Copy,
+    S: Varying<N, M::Kind>,
 {
     let named = objective.parameters().iter().map(|name| Variation::of_parameter::<S>(name));
     let of_parameters: Vec<_> = named.collect::<Result<_, _>>()?;
@@ -138,13 +139,14 @@ where
             let before = place.checked_sub(1).map_or(&station, |place| &inner[place]);
             let after = inner.get(place).unwrap_or(&end);
             variations.clone_from_slice(&directions);
+            M::project(after.system(), before.node(), &mut variations)?;
             after.vary(before.node(), &mut variations)?;
             changes.clear();
             changes.extend(variations.iter().map(|variation| slope.of(variation)));
             if M::KEEPS_ENERGY && (are_varied || !have_equal_parameters(before.system(), after.system())) {
                 let state = before.node().state();
-                let gained = changes_of_energy(after.system(), &state, &directions)?;
-                let lost = changes_of_energy(before.system(), &state, &directions)?;
+                let gained = changes_of_energy::<S, M::Kind, N>(after.system(), &state, &directions)?;
+                let lost = changes_of_energy::<S, M::Kind, N>(before.system(), &state, &directions)?;
                 // The run still has the parameters of the previous step.
                 let of_energy = changes[2 * N];
                 for (index, change) in changes.iter_mut().enumerate() {

@@ -36,18 +36,26 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<
     /// reproducible.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] unless `count` is 1 to 2N.
+    /// [`StepError::InvalidInput`] unless `count` is 1 to 2N, less 2 for each holonomic and 1 for each nonholonomic
+    /// constraint.
     pub fn new(run: Run<M, S, N>, count: usize) -> Result<Self, StepError> {
-        if count == 0 || count > 2 * N {
+        if count == 0 || count > M::dimension() {
             #[allow(clippy::cast_precision_loss)] // for the message
             let value = count as f64;
-            let allowed = "1 to twice the number of coordinates";
+            let allowed =
+                "1 to twice the number of coordinates, less 2 for each holonomic constraint and 1 for each other";
             return Err(StepError::InvalidInput { input: "the number of Lyapunov exponents", allowed, value });
         }
         let start = run.t();
         let mut variations = Variation::of_state();
-        variations.truncate(count);
-        variations.iter_mut().for_each(turn);
+        if M::dimension() == 2 * N {
+            variations.truncate(count);
+            variations.iter_mut().for_each(turn);
+        } else {
+            variations.iter_mut().for_each(turn);
+            M::project(run.system(), run.node(), &mut variations)?;
+            keep_independent(&mut variations, count);
+        }
         orthogonalize(&mut variations);
         Ok(Self { tangent: Tangent::new(run, variations), start, end: start, growth: vec![(0.0, 0.0); count] })
     }
@@ -61,7 +69,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<
         for _ in 0..steps {
             let before = self.tangent.run().t();
             let t = self.tangent.step()?.t;
-            let lengths = orthogonalize(self.tangent.variations_mut());
+            let lengths = orthogonalize(self.tangent.combined());
             if lengths.iter().any(|length| !length.is_normal()) {
                 return Err(StepError::NonFinite { t: before, quantity: "Lyapunov exponent", expression: None });
             }
@@ -94,6 +102,29 @@ fn turn<const N: usize>(variation: &mut Variation<N>) {
         *entry += part;
         part *= -0.9;
     }
+}
+
+/// Moves the directions with the largest parts across those before to the front, and keeps this number of them.
+fn keep_independent<const N: usize>(variations: &mut Vec<Variation<N>>, count: usize) {
+    let mut rest = variations.clone();
+    for index in 0..count {
+        let length = |of: &Variation<N>| of.q.norm().hypot(of.p.norm());
+        let largest = (index + 1..rest.len())
+            .fold(index, |best, other| if length(&rest[other]) > length(&rest[best]) { other } else { best });
+        rest.swap(index, largest);
+        variations.swap(index, largest);
+        let (chosen, others) = rest.split_at_mut(index + 1);
+        let chosen = &chosen[index];
+        let square = length(chosen).powi(2);
+        // Twice, so that the rest is orthogonal to rounding.
+        for other in others {
+            for _ in 0..2 {
+                let along = (chosen.q.dot(&other.q) + chosen.p.dot(&other.p)) / square;
+                other.add(chosen, -along);
+            }
+        }
+    }
+    variations.truncate(count);
 }
 
 /// Orthonormalizes directions in order, and returns their previous lengths.

@@ -12,10 +12,15 @@
 //! not that of the continuous flow. The tangent map of a variational integrator without force is therefore symplectic
 //! to rounding. An energy-preserving step also varies in its length.
 //!
+//! With constraints, tangent vectors satisfy the derivative of the constraints, `A δq + g_t δt + g_θ δθ = 0`, and of
+//! their rates. [`Tangent::project`] moves them there. They have 2(n − k) dimensions with k holonomic constraints, and
+//! 2n − k with k nonholonomic ones.
+//!
 //! | file | contents |
 //! |---|---|
 //! | `variation` | tangent vectors, and their dual numbers |
 //! | `steps` | tangent vectors of one step, for each method |
+//! | `varying` | what they need of a system, with and without constraints |
 //! | `tangent` | tangent vectors along a run, to times, events and across changes |
 //! | `adjoint` | the gradient of an objective, by one backward pass |
 //! | `lyapunov` | Lyapunov exponents |
@@ -25,6 +30,7 @@ mod lyapunov;
 mod steps;
 mod tangent;
 mod variation;
+mod varying;
 
 pub use adjoint::{Covector, Gradient, Objective, gradient};
 pub use lyapunov::Lyapunov;
@@ -33,3 +39,4 @@ pub(crate) use steps::{Sought, check_fallback, not_last, singular};
 pub use tangent::Tangent;
 pub use variation::Variation;
 pub(crate) use variation::{TOGETHER, Varied, changes_of_energy, more_parameters, not_finite};
+pub use varying::{Unconstrained, Varying, WithConstraints};

@@ -14,15 +14,13 @@
 
 use super::steps::Differentiable;
 use super::variation::{Variation, changes_of_energy, not_finite};
-use crate::collocation::Collocation;
+use super::varying::{Varying, varied};
 use crate::error::StepError;
 use crate::lagrangian::{Flow, Lagrangian, Parameters};
-use crate::linear;
 use crate::method::Method;
 use crate::real::Dual;
 use crate::run::{Crossing, Event, Moment, Run};
 use crate::state::State;
-use crate::stepping::Convertible;
 
 /// A run with tangent vectors at its node.
 #[derive(Clone, Debug)]
@@ -30,13 +28,15 @@ pub struct Tangent<M: Method<S, N>, S, const N: usize> {
     run: Run<M, S, N>,
     variations: Vec<Variation<N>>,
     failure: Option<StepError>,
+    /// Whether the tangent vectors are known to be admissible.
+    are_admissible: bool,
 }
 
 impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M, S, N> {
     /// Combines a run and tangent vectors at its current node.
     #[must_use]
     pub fn new(run: Run<M, S, N>, variations: Vec<Variation<N>>) -> Self {
-        Self { run, variations, failure: None }
+        Self { run, variations, failure: None, are_admissible: false }
     }
 
     /// A run before its first step, started by [`Start::integrate`](crate::Start::integrate), with tangent vectors of
@@ -50,13 +50,30 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
         Ok(Self::new(run, variations))
     }
 
+    /// Moves the tangent vectors to admissible ones, which satisfy the derivatives of the constraints and of their rates
+    /// at the node: coordinates and momenta by the least changes in the metric of the mass matrix, for the given
+    /// changes of time and parameters. Without constraints every tangent vector is admissible.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] if the constraints are redundant at the node, [`StepError::NonFinite`].
+    pub fn project(&mut self) -> Result<(), StepError> {
+        self.latched(|tangent| {
+            let Run { system, node, .. } = &tangent.run;
+            M::project(system, node, &mut tangent.variations)?;
+            tangent.are_admissible = true;
+            Ok(())
+        })
+    }
+
     /// Takes a step, and returns its end state.
     ///
     /// # Errors
-    /// Those of the step; run and tangent vectors then do not change. Those of [`Run::vary`]; the tangent vectors are
-    /// then invalid. Further calls return the same error.
+    /// Those of the step; run and tangent vectors then do not change. [`StepError::InconsistentTangent`] for given
+    /// vectors that are not admissible. Those of [`Run::vary`]; the tangent vectors are then invalid. Further calls
+    /// return the same error.
     pub fn step(&mut self) -> Result<State<N>, StepError> {
         self.latched(|tangent| {
+            tangent.check()?;
             let before = *tangent.run.node();
             let state = tangent.run.step()?;
             tangent.run.vary(&before, &mut tangent.variations).map(|()| state)
@@ -70,6 +87,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
     /// As [`Run::step_of`] and [`Run::vary`]. Further calls return the same error.
     pub fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
         self.latched(|tangent| {
+            tangent.check()?;
             let mut after = tangent.run.clone();
             after.step_of(h)?;
             tangent.end_at(h, after, |_, _| Ok(0.0))
@@ -82,7 +100,10 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
     /// # Errors
     /// As [`Run::until`] and [`Run::vary`]. Further calls return the same error.
     pub fn until(&mut self, t: f64) -> Result<State<N>, StepError> {
-        self.latched(|tangent| tangent.end_at_time(t))
+        self.latched(|tangent| {
+            tangent.check()?;
+            tangent.end_at_time(t)
+        })
     }
 
     /// The run.
@@ -98,7 +119,22 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
 
     /// The tangent vectors, mutably, for example to rescale or orthogonalize them.
     pub fn variations_mut(&mut self) -> &mut [Variation<N>] {
+        self.are_admissible = false;
         &mut self.variations
+    }
+
+    /// The tangent vectors, for linear combinations of them.
+    pub(super) fn combined(&mut self) -> &mut [Variation<N>] {
+        &mut self.variations
+    }
+
+    /// Checks vectors that the caller gave or changed.
+    fn check(&mut self) -> Result<(), StepError> {
+        if !self.are_admissible {
+            M::check_admissible(&self.run, &self.variations)?;
+            self.are_admissible = true;
+        }
+        Ok(())
     }
 
     /// Runs a function unless an earlier one failed, and stores its failure.
@@ -162,7 +198,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
 impl<M, S, const N: usize> Tangent<M, S, N>
 where
     M: Differentiable<S, N>,
-    S: Convertible<N> + Collocation<N>,
+    S: Varying<N, M::Kind>,
 {
     /// A run at any node with tangent vectors of its present state and parameters. They vary as by
     /// [`Run::set_state`] and [`Run::set_parameters`]: the function sets `energy` of each vector to the derivative of H.
@@ -171,7 +207,7 @@ where
     /// As [`State::velocity`].
     pub fn from_change(run: Run<M, S, N>, mut variations: Vec<Variation<N>>) -> Result<Self, StepError> {
         if M::KEEPS_ENERGY {
-            let changes = changes_of_energy(run.system(), &run.node().state(), &variations)?;
+            let changes = changes_of_energy::<S, M::Kind, N>(run.system(), &run.node().state(), &variations)?;
             variations.iter_mut().zip(changes).for_each(|(variation, change)| variation.energy = change);
         }
         Ok(Self::new(run, variations))
@@ -185,7 +221,10 @@ where
     /// As [`Run::until_event`] and [`Run::vary`]; [`StepError::NoDerivative`] for an event without a derivative, or
     /// with a derivative along the trajectory that is zero or not finite. Further calls return the same error.
     pub fn until_event(&mut self, event: &Event<N>, end: f64) -> Result<Option<Crossing<N>>, StepError> {
-        self.latched(|tangent| tangent.end_at_event(event, end))
+        self.latched(|tangent| {
+            tangent.check()?;
+            tangent.end_at_event(event, end)
+        })
     }
 
     /// Changes parameters, as [`Run::set_parameters`] does. The function of dual numbers also changes their
@@ -196,16 +235,16 @@ where
     /// # Errors
     /// As [`Run::set_parameters`]; [`StepError::NonFinite`] if a derivative is not finite. Further calls return the
     /// same error.
-    pub fn set_parameters(&mut self, change: impl Fn(&mut S::In<Dual<f64>>)) -> Result<(), StepError>
+    pub fn set_parameters(&mut self, change: impl Fn(&mut S::Over<Dual<f64>>)) -> Result<(), StepError>
     where
         S: Parameters,
     {
         self.latched(|tangent| {
             let state = tangent.run.node().state();
-            let before = changes_of_energy(tangent.run.system(), &state, &tangent.variations)?;
+            let before = changes_of_energy::<S, M::Kind, N>(tangent.run.system(), &state, &tangent.variations)?;
             let plain = Variation::zero();
             let numbers = |variation: &Variation<N>, run: &Run<M, S, N>| {
-                let mut system = varied(run.system(), variation);
+                let mut system = varied::<S, M::Kind, N>(run.system(), variation);
                 change(&mut system);
                 let named = S::PARAMETERS.iter().map(|name| system.parameter_mut(name).copied());
                 named.map(|number| number.unwrap_or(Dual::fixed(0.0))).collect::<Vec<_>>()
@@ -223,7 +262,7 @@ where
             for (variation, slopes) in tangent.variations.iter_mut().zip(slopes) {
                 variation.parameters = slopes.into_iter().map(|number| number.slope).collect();
             }
-            let after = changes_of_energy(tangent.run.system(), &state, &tangent.variations)?;
+            let after = changes_of_energy::<S, M::Kind, N>(tangent.run.system(), &state, &tangent.variations)?;
             tangent.gain_energy(&before, &after)
         })
     }
@@ -238,16 +277,16 @@ where
     /// error.
     pub fn set_state(
         &mut self,
-        map: impl Fn(&S::In<Dual<f64>>, State<N, Dual<f64>>) -> State<N, Dual<f64>>,
+        map: impl Fn(&S::Over<Dual<f64>>, State<N, Dual<f64>>) -> State<N, Dual<f64>>,
     ) -> Result<(), StepError> {
         self.latched(|tangent| {
             let State { t, q, p } = tangent.run.state();
             let node = tangent.run.node().state();
-            let before = changes_of_energy(tangent.run.system(), &node, &tangent.variations)?;
+            let before = changes_of_energy::<S, M::Kind, N>(tangent.run.system(), &node, &tangent.variations)?;
             let mapped = |variation: &Variation<N>, run: &Run<M, S, N>| {
                 let along = |value: f64, slope: f64| Dual { value, slope };
                 let (q, p) = (q.zip_map(&variation.q, along), p.zip_map(&variation.p, along));
-                map(&varied(run.system(), variation), State { t: along(t, variation.t), q, p })
+                map(&varied::<S, M::Kind, N>(run.system(), variation), State { t: along(t, variation.t), q, p })
             };
             let State { t, q, p } = mapped(&Variation::zero(), &tangent.run);
             let varied: Vec<_> = tangent.variations.iter().map(|variation| mapped(variation, &tangent.run)).collect();
@@ -257,13 +296,15 @@ where
                 let slope = |number: Dual<f64>| number.slope;
                 (variation.t, variation.q, variation.p) = (t.slope, q.map(slope), p.map(slope));
             }
-            let after = changes_of_energy(tangent.run.system(), &tangent.run.state(), &tangent.variations)?;
+            let after =
+                changes_of_energy::<S, M::Kind, N>(tangent.run.system(), &tangent.run.state(), &tangent.variations)?;
             tangent.gain_energy(&before, &after)
         })
     }
 
-    /// Adds the change of the derivatives of H to those of the preserved energy.
+    /// Adds the change of the derivatives of H to those of the preserved energy, after a change of the vectors.
     fn gain_energy(&mut self, before: &[f64], after: &[f64]) -> Result<(), StepError> {
+        self.are_admissible = false;
         if M::KEEPS_ENERGY {
             for (variation, (before, after)) in self.variations.iter_mut().zip(before.iter().zip(after)) {
                 variation.energy += after - before;
@@ -283,8 +324,7 @@ where
         let Some(crossing) = after.next_event(event, end)? else {
             return self.end_at_time(end).map(|_| None);
         };
-        let Crossing { state: State { t, q, .. }, v, length, .. } = crossing;
-        let reduced = after.node().q;
+        let Crossing { state: State { t, q, p }, v, length, .. } = crossing;
         // The search takes the same steps up to the node before the event.
         let missed = 4.0 * f64::EPSILON * t.abs();
         while self.run.time_to(t).abs() > length.abs() + missed {
@@ -293,16 +333,12 @@ where
             self.run.vary(&before, &mut self.variations)?;
         }
         let system = *self.run.system();
-        let matrix = system.point(t, &reduced, &v).mass;
+        let reduced = State { t, q: after.node().q, p };
         let slope = |variation: &Variation<N>| {
             let along = |value: f64, slope: f64| Dual { value, slope };
-            let t = along(t, variation.t);
-            let [q, reduced] = [q, reduced].map(|q| q.zip_map(&variation.q, along));
-            // L_v(t, q, v) = p
-            let momentum = varied(&system, variation).point(t, &reduced, &v.map(Dual::fixed)).momentum;
-            let of_v = linear::solve(&matrix, &(variation.p - momentum.map(|entry| entry.slope)));
-            let of_v = of_v.ok_or(StepError::Singular { t: t.value, matrix: "mass matrix" })?;
-            event.slope(&Moment { t, q, v: v.zip_map(&of_v, along) }).ok_or(not_finite(t.value))
+            let of_v = system.velocity_along(&reduced, &v, variation)?;
+            let (q, v) = (q.zip_map(&variation.q, along), v.zip_map(&of_v, along));
+            event.slope(&Moment { t: along(t, variation.t), q, v }).ok_or(not_finite(t))
         };
         self.end_at(length, after, |varied, along| {
             let change = -slope(varied)? / slope(along)?;
@@ -311,15 +347,4 @@ where
         })?;
         Ok(Some(crossing))
     }
-}
-
-/// A system with parameters that vary in one direction.
-fn varied<S: Convertible<N> + Lagrangian<N>, const N: usize>(system: &S, variation: &Variation<N>) -> S::In<Dual<f64>> {
-    let mut varied = system.convert::<Dual<f64>>();
-    for (name, slope) in S::PARAMETERS.iter().zip(&variation.parameters) {
-        if let Some(parameter) = varied.parameter_mut(name) {
-            parameter.slope = *slope;
-        }
-    }
-    varied
 }

@@ -1,5 +1,6 @@
 //! Tangent vectors of nodes and parameters, and their dual numbers.
 
+use super::varying::Varying;
 use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::node::Node;
@@ -189,7 +190,7 @@ impl<const N: usize> Variation<N> {
     }
 
     /// A system whose parameters of these names vary in each direction.
-    fn vary_parameters<Y: Parameters<Varied<W>>, const W: usize>(
+    pub(crate) fn vary_parameters<Y: Parameters<Varied<W>>, const W: usize>(
         variations: &[Self],
         names: &[&str],
         mut system: Y,
@@ -211,7 +212,7 @@ impl<const N: usize> Variation<N> {
     }
 
     /// The node with derivatives in each direction.
-    pub(super) fn node<const W: usize>(variations: &[Self], node: &Node<N>) -> Node<N, Varied<W>> {
+    pub(crate) fn node<const W: usize>(variations: &[Self], node: &Node<N>) -> Node<N, Varied<W>> {
         let mut varied = node.map(Varied::<W>::fixed);
         for (direction, variation) in variations.iter().enumerate() {
             varied.t.slope.0[direction] = variation.t;
@@ -226,20 +227,21 @@ impl<const N: usize> Variation<N> {
 }
 
 /// Derivative of H at a state in each direction: `v·δp − δL` at fixed v.
-pub(crate) fn changes_of_energy<S, const N: usize>(
+pub(crate) fn changes_of_energy<S, K, const N: usize>(
     system: &S,
     state: &State<N>,
     directions: &[Variation<N>],
 ) -> Result<Vec<f64>, StepError>
 where
-    S: Lagrangian<N> + Convertible<N>,
+    S: Varying<N, K>,
 {
     let v = state.velocity(system)?;
     let node = Node::new(*state, 0.0);
     let mut changes = Vec::with_capacity(directions.len());
     for directions in directions.chunks(TOGETHER) {
         let node = Variation::node::<TOGETHER>(directions, &node);
-        let varied = Variation::system(directions, system).lagrangian(node.t, &node.q, &v.map(Dual::fixed));
+        let varied = Variation::vary_parameters(directions, S::PARAMETERS, system.over::<Varied>());
+        let varied = varied.lagrangian(node.t, &node.q, &v.map(Dual::fixed));
         let of_lagrangian = varied.slope.0.into_iter();
         changes.extend(directions.iter().zip(of_lagrangian).map(|(direction, slope)| v.dot(&direction.p) - slope));
     }

@@ -146,7 +146,7 @@ fn polished<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         NoStep::NoRoot(residuals) => {
             let iterations = u32::try_from(residuals.iter().count()).unwrap_or(u32::MAX);
             let residual = residuals.iter().last().unwrap_or(point.roundings());
-            StepError::NotConverged { t, h, iterations, residual, residuals }
+            StepError::NotConverged { t, h, iterations, residual, residuals, turn: 0.0 }
         }
     })?;
     let found = step.h.to_f64();

@@ -8,7 +8,7 @@ use crate::method::bounds::{Control, check_forward};
 /// Memory of a run beside its node and its stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct StepHistory {
+pub struct StepHistory {
     /// Length of the last step.
     h: f64,
     /// `(H − E) √(h₋ h₊)` at the last nodes between two steps, the newest first, and their count.

@@ -5,6 +5,7 @@
 //! | file | part of a step |
 //! |---|---|
 //! | `tableau` | the coefficients, computed at compile time in twice the precision (`pair`) |
+//! | `lobatto` | the nodes between which constraints act, for [`GaussLobatto`](crate::method::GaussLobatto) |
 //! | `stages` | arrays of stage values, laid out for SIMD |
 //! | `separable`, `general` | the stage equations: forces of the position alone, and any system |
 //! | `fixed_point` | fixed-point iteration to convergence |
@@ -29,6 +30,7 @@ pub(crate) mod energies;
 pub(crate) mod fixed_point;
 mod general;
 pub(crate) mod history;
+pub(crate) mod lobatto;
 mod modes;
 pub mod newton;
 mod pair;
@@ -39,7 +41,7 @@ mod separable;
 mod slots;
 pub mod solve;
 pub(crate) mod stages;
-mod tableau;
+pub(crate) mod tableau;
 pub mod transformed;
 mod variation;
 

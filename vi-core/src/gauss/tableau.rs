@@ -97,10 +97,10 @@ impl<const S: usize> Tableau<S> {
     }
 }
 
-const HALF: Pair = Pair::new(0.5);
+pub(super) const HALF: Pair = Pair::new(0.5);
 
 /// The polynomials P_k, k = 0 … S − 1, at x, one row each.
-const fn polynomials<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
+pub(super) const fn polynomials<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
     let mut values = [[Pair::ZERO; S]; S];
     let mut i = 0;
     while i < S {
@@ -117,7 +117,7 @@ const fn polynomials<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
 }
 
 /// `(2k + 1) ∫_0^c P_k = (P_{k+1} − P_{k−1})/2` up to each node x of c, from the polynomials there, one row each.
-const fn integrals<const S: usize>(x: &[Pair; S], legendre: &[[Pair; S]; S]) -> [[Pair; S]; S] {
+pub(super) const fn integrals<const S: usize>(x: &[Pair; S], legendre: &[[Pair; S]; S]) -> [[Pair; S]; S] {
     let mut integrals = [[Pair::ZERO; S]; S];
     let mut i = 0;
     while i < S {
@@ -157,7 +157,11 @@ const fn beyond<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
 
 /// `Σ_k left_ki right_jk` over this number of k. For `(2k + 1) P_k` and P_k(x_j) it is `l_j / b_j` truncated in degree;
 /// for their integrals it is the integral of that; for `b_k a_ik / b_k` and `a_kj / b_j` it is `(A²)_ij / b_j`.
-const fn product<const S: usize>(left: &[[Pair; S]; S], right: &[[Pair; S]; S], terms: usize) -> [[Pair; S]; S] {
+pub(super) const fn product<const S: usize>(
+    left: &[[Pair; S]; S],
+    right: &[[Pair; S]; S],
+    terms: usize,
+) -> [[Pair; S]; S] {
     let mut product = [[Pair::ZERO; S]; S];
     let mut j = 0;
     while j < S {
@@ -176,7 +180,7 @@ const fn product<const S: usize>(left: &[[Pair; S]; S], right: &[[Pair; S]; S], 
 }
 
 /// Transposes a matrix.
-const fn transposed<const S: usize>(matrix: &[[Pair; S]; S]) -> [[Pair; S]; S] {
+pub(super) const fn transposed<const S: usize>(matrix: &[[Pair; S]; S]) -> [[Pair; S]; S] {
     let mut transposed = *matrix;
     let mut j = 0;
     while j < S {
@@ -221,7 +225,7 @@ const fn nearest<const S: usize>(matrix: &[[Pair; S]; S]) -> [[f64; S]; S] {
 }
 
 /// Rounds a number in (−1, 1) to a multiple of 2⁻⁵³: adding 1 or 2 drops the lower bits.
-const fn on_grid(value: Pair) -> f64 {
+pub(super) const fn on_grid(value: Pair) -> f64 {
     let shift = if value.high < 0.0 { -1.0 } else { 1.0 };
     // Numbers in [1, 2) are multiples of 2⁻⁵², so half of the doubled number is a multiple of 2⁻⁵³.
     let doubled = if value.high.abs() < 0.5 { 2.0 * value.high } else { return value.high };
@@ -229,7 +233,7 @@ const fn on_grid(value: Pair) -> f64 {
 }
 
 /// Node i of s on [−1, 1], ascending: the root of P_s by Newton iteration from Tricomi's estimate.
-const fn node(s: usize, i: usize) -> Pair {
+pub(super) const fn node(s: usize, i: usize) -> Pair {
     if 2 * i + 1 == s {
         return Pair::ZERO;
     }
@@ -253,7 +257,7 @@ const fn weight(s: usize, x: Pair) -> Pair {
 }
 
 /// P_s(x) and its derivative, from `(1 − x²) P_s' = s (P_{s−1} − x P_s)`.
-const fn legendre(s: usize, x: Pair) -> (Pair, Pair) {
+pub(super) const fn legendre(s: usize, x: Pair) -> (Pair, Pair) {
     let mut last = [Pair::ONE, x];
     let mut k = 1;
     while k < s {

@@ -21,7 +21,7 @@ use super::stages::{AtStages, LOOPED, Stages, gathered, maximum, product, scaled
 use super::tableau::Tableau;
 use crate::collocation::{Collocation, PointDerivatives};
 use crate::derivatives::{
-    Differentiable, Sought, TOGETHER, Variation, Varied, check_fallback, not_finite, not_last, singular,
+    Differentiable, Sought, TOGETHER, Unconstrained, Variation, Varied, check_fallback, not_finite, not_last, singular,
 };
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -41,6 +41,8 @@ impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for Gauss<STAG
 where
     S: Collocation<N> + Convertible<N>,
 {
+    type Kind = Unconstrained;
+
     /// Allocates the joint matrix of all stages.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { system, node, memory, .. } = run;
@@ -56,6 +58,7 @@ impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for EnergyPres
 where
     S: Collocation<N> + Convertible<N>,
 {
+    type Kind = Unconstrained;
     const KEEPS_ENERGY: bool = true;
 
     /// As for [`EnergyPreserving`](crate::EnergyPreserving). The shift does not vary.

@@ -103,7 +103,7 @@ impl Composition {
     pub const ALL: [Self; 4] = [Self::TRIPLE_JUMP_4, Self::SUZUKI_4, Self::KAHAN_LI_6, Self::KAHAN_LI_8];
 
     /// Lengths of the substeps of a step of the length h.
-    fn lengths<T: Real>(&self, h: T) -> impl Iterator<Item = T> + '_ {
+    pub(super) fn lengths<T: Real>(&self, h: T) -> impl Iterator<Item = T> + '_ {
         self.weights.iter().map(move |weight| h * T::real(*weight))
     }
 }

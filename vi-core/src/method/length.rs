@@ -199,6 +199,6 @@ impl<T: Trial> Search<'_, T> {
             return Ok(best);
         }
         let (t, h, residual) = (self.t, best.h(), best.roundings());
-        Err(StepError::NotConverged { t, h, iterations: BISECTIONS, residual, residuals })
+        Err(StepError::NotConverged { t, h, iterations: BISECTIONS, residual, residuals, turn: 0.0 })
     }
 }

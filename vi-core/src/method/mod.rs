@@ -8,28 +8,42 @@
 //! |---|---|
 //! | `fixed` | [`FixedStep`]: the rule of the system, order 2 |
 //! | `composition` | [`Composition`]: fixed steps of order 4, 6, 8 |
+//! | `composed` | [`Composed`]: compositions of steps with constraints, order 4, 6, 8 |
 //! | `gauss` | [`Gauss`]: collocation at S Gauss points, order 2S |
+//! | `gauss_lobatto` | [`GaussLobatto`]: Gauss steps of systems with constraints, order 2S |
 //! | `transformed` | [`InTransformedTime`]: Gauss steps of constant length in transformed time |
 //! | `energy` | [`EnergyPreserving`]: steps of order 2 whose length preserves the discrete energy |
 //! | `energy_gauss` | [`EnergyPreservingGauss`]: the same with Gauss steps, order 2S |
 //! | `bounds` | bounds of a step length, and fixed steps if no energy-preserving step exists |
+//! | `energy_gauss_lobatto` | [`EnergyPreservingGaussLobatto`]: the same for systems with constraints |
+//! | `preserving` | energy-preserving steps among steps of any length |
+//! | `shift` | the shift of the step density |
 //! | `length` | the search for the step length |
 
 pub mod bounds;
+pub mod composed;
 pub mod composition;
 pub mod energy;
 pub mod energy_gauss;
+pub mod energy_gauss_lobatto;
 pub mod fixed;
 pub mod gauss;
+pub mod gauss_lobatto;
 pub(crate) mod length;
+pub(crate) mod preserving;
+pub mod shift;
 pub mod transformed;
 
 pub use bounds::{Control, Controlled, Fallback, Switches};
+pub use composed::Composed;
 pub use composition::Composition;
 pub use energy::EnergyPreserving;
 pub use energy_gauss::EnergyPreservingGauss;
+pub use energy_gauss_lobatto::EnergyPreservingGaussLobatto;
 pub use fixed::{Connected, FixedStep};
 pub use gauss::Gauss;
+pub use gauss_lobatto::GaussLobatto;
+pub use shift::{ShiftedEnergy, StepPower};
 pub use transformed::InTransformedTime;
 
 use crate::error::StepError;
@@ -91,6 +105,7 @@ pub struct Report {
     message = "`{Self}` cannot integrate `{S}`",
     label = "this method needs something that `{S}` does not have",
     note = "`FixedStep`, `Composition`, `EnergyPreserving` need the clause `discretize midpoint;`, `Gauss` and `EnergyPreservingGauss` take every system",
+    note = "a system with constraints needs `GaussLobatto` or `EnergyPreservingGaussLobatto`, which take no other system",
     note = "a method in transformed time needs the clause `time_scale = …;`"
 )]
 pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Sync {

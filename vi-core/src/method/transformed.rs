@@ -164,7 +164,7 @@ where
             let halfway = if high.is_finite() { 0.5 * (low + high) } else { bound };
             length = if next > low && next < bound { next } else { halfway };
         }
-        Err(StepError::NotConverged { t, h, iterations: TRIALS, residual, residuals })
+        Err(StepError::NotConverged { t, h, iterations: TRIALS, residual, residuals, turn: 0.0 })
     }
 
     fn with_length(

@@ -64,7 +64,7 @@ impl Series {
     }
 
     /// The derivative with respect to τ; it has no last term.
-    fn slope(&self) -> Self {
+    pub(crate) fn slope(&self) -> Self {
         Self::from_fn(|k| self.term(k + 1) * real(k + 1))
     }
 

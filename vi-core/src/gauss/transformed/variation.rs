@@ -22,7 +22,8 @@ use super::rates::LastRates;
 use crate::angles;
 use crate::collocation::{Collocation, ScaledPoint, TimeScale};
 use crate::derivatives::{
-    Differentiable, TOGETHER, Variation, Varied, changes_of_energy, more_parameters, not_finite, not_last, singular,
+    Differentiable, TOGETHER, Unconstrained, Variation, Varied, changes_of_energy, more_parameters, not_finite,
+    not_last, singular,
 };
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -38,6 +39,7 @@ impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for InTransfor
 where
     S: TimeScale<N> + Convertible<N>,
 {
+    type Kind = Unconstrained;
     const KEEPS_ENERGY: bool = true;
     /// Steps also depend on the time through g.
     const DEPENDS_ON_TIME: bool = true;
@@ -67,7 +69,7 @@ where
     }
 
     fn vary_start(run: &Run<Self, S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let energies = changes_of_energy(&run.system, &run.node.state(), variations)?;
+        let energies = changes_of_energy::<_, Unconstrained, _>(&run.system, &run.node.state(), variations)?;
         for (variation, energy) in variations.iter_mut().zip(energies) {
             variation.energy = energy;
         }

@@ -1,0 +1,395 @@
+//! The equations of a step of s Gauss stages with constraints.
+//!
+//! With the Gauss coefficients c, b, a, and the Lobatto nodes and weights c̃, b̃ (`crate::gauss::lobatto`), the unknowns
+//! are the velocities V_i at the stages and the impulses `λ_j = h b̃_j Λ_j` at the Lobatto nodes j = 0 … s − 1:
+//!
+//! ```text
+//! Q_i = q0 + h Σ a_ij V_j        Q̃_i = q0 + h Σ ã_ij V_j        A_j = A(T̃_j, Q̃_j)
+//!
+//! momentum        L_v(T_i, Q_i, V_i) − p0 − h Σ a_ij F_j − Σ_j (1 − ã_ji/b_i) A_jᵀ λ_j = 0
+//! holonomic       g(T̃_i, Q̃_i)/h = 0                    i = 1 … s, at the Lobatto nodes
+//! nonholonomic    (A V + a)(T_i, Q_i, V_i) = 0          i = 1 … s, at the Gauss points
+//! ```
+//!
+//! A dropped constraint has its impulse as row. The rows are generic over the numbers: `Rounded` numbers give their rounding-error bounds.
+
+// One index addresses several arrays.
+#![allow(clippy::needless_range_loop)]
+
+use super::{Constrained, diagonal, inertia, reaction_of, reaction_terms, spread};
+use crate::gauss::lobatto::Lobatto;
+use crate::gauss::tableau::Tableau;
+use crate::linear::{Fronts, Matrix, Rectangular, Row, determinant_sign, scale};
+use crate::newton::roundings;
+use crate::node::Node;
+use crate::real::{Real, Rounded};
+use crate::vector::worse;
+use nalgebra::{SMatrix, SVector};
+
+/// The number of unknowns of a step: velocities first, then impulses.
+pub(crate) const fn unknowns<const N: usize, const S: usize>(constraints: usize) -> usize {
+    S * (N + constraints)
+}
+
+/// The velocity at stage i.
+pub(crate) fn stage_velocity<const N: usize, T: Real>(u: &[T], i: usize) -> SVector<T, N> {
+    SVector::from_column_slice(&u[i * N..(i + 1) * N])
+}
+
+/// The impulses at Lobatto node j.
+pub(crate) fn impulses<const N: usize, const S: usize, T>(u: &[T], constraints: usize, j: usize) -> &[T] {
+    &u[S * N + j * constraints..][..constraints]
+}
+
+/// The part of the impulse at Lobatto node j that acts on stage i.
+fn part_of_node<const S: usize>(j: usize, i: usize) -> f64 {
+    if j == 0 { 1.0 } else { 1.0 - const { &Lobatto::<S>::VALUES }.part[i][j - 1] }
+}
+
+/// Time and coordinates of a point in a step.
+pub(crate) type Place<const N: usize, T> = (T, SVector<T, N>);
+
+/// The equations at some unknowns.
+pub(crate) struct Rows<S: Constrained<N, T>, const N: usize, const STAGES: usize, T: Real = f64> {
+    momentum: [SVector<T, N>; STAGES],
+    constraint: [S::Multipliers; STAGES],
+    /// The diagonal of M at the first stage.
+    mass: SVector<T, N>,
+    /// The terms of each row.
+    momentum_scale: [SVector<T, N>; STAGES],
+    constraint_scale: [S::Multipliers; STAGES],
+    /// `Σ b_i V_i`.
+    pub(crate) velocity: SVector<T, N>,
+    /// `h Σ b_i F_i + Σ A_jᵀ λ_j`.
+    pub(crate) increment: SVector<T, N>,
+    stages: [Place<N, T>; STAGES],
+    /// The Lobatto nodes 1 … s.
+    nodes: [Place<N, T>; STAGES],
+    /// A at the Lobatto nodes 0 … s.
+    first: S::Gradients,
+    gradients: [S::Gradients; STAGES],
+}
+
+/// Times and coordinates of the stages, and of the Lobatto nodes 1 … s; the mean velocity.
+pub(crate) fn places<const N: usize, const STAGES: usize, T: Real>(
+    node: &Node<N, T>,
+    h: T,
+    u: &[T],
+) -> ([Place<N, T>; STAGES], [Place<N, T>; STAGES], SVector<T, N>) {
+    let Tableau { b, c, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
+    let lobatto = const { &Lobatto::<STAGES>::VALUES };
+    let v: [SVector<T, N>; STAGES] = core::array::from_fn(|i| stage_velocity(u, i));
+    let weights = b.map(|b| h * T::real(b));
+    // The coordinates after a displacement are those that `Node::advance` gives.
+    let moved = |displacement: SVector<T, N>| node.q + (node.q_low + displacement);
+    let later = |c: f64| node.t + (node.t_low + h * T::real(c));
+    let displaced = |parts: &[[f64; STAGES]; STAGES], i: usize| {
+        let terms = (0..STAGES).map(|j| v[j] * (weights[j] * T::real(parts[j][i])));
+        moved(terms.fold(SVector::zeros(), |sum, term| sum + term))
+    };
+    let velocity = (0..STAGES).fold(SVector::zeros(), |sum, i| sum + v[i] * T::real(b[i]));
+    let stages = core::array::from_fn(|i| (later(c[i]), displaced(part, i)));
+    let nodes = core::array::from_fn(|i| {
+        let q = if i + 1 == STAGES { moved(velocity * h) } else { displaced(&lobatto.part, i) };
+        (later(lobatto.c[i]), q)
+    });
+    (stages, nodes, velocity)
+}
+
+impl<S: Constrained<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, STAGES, T> {
+    /// Evaluates the equations of the step of length h from `node`.
+    pub(crate) fn at(system: &S, node: &Node<N, T>, h: T, u: &[T]) -> Self {
+        let start = system.constraint_gradients(node.t, &node.q);
+        Self::from_start(system, (node, h), &start, u)
+    }
+
+    /// The same with A and a at the node.
+    pub(crate) fn from_start(
+        system: &S,
+        (node, h): (&Node<N, T>, T),
+        (first, rest): &(S::Gradients, S::Multipliers),
+        u: &[T],
+    ) -> Self {
+        let Tableau { b, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
+        let constraints = S::CONSTRAINTS.len();
+        let zeros = SVector::<T, N>::zeros();
+        let abs = |vector: SVector<T, N>| vector.map(T::abs);
+        let v: [SVector<T, N>; STAGES] = core::array::from_fn(|i| stage_velocity(u, i));
+        let (stages, nodes, velocity) = places::<N, STAGES, T>(node, h, u);
+
+        let at_nodes = nodes.map(|(t, q)| system.constraint_gradients(t, &q));
+        let gradients_at = |j: usize| if j == 0 { first } else { &at_nodes[j - 1].0 };
+        let impulses_at = |j: usize| impulses::<N, STAGES, T>(u, constraints, j);
+        let reactions: [SVector<T, N>; STAGES] = core::array::from_fn(|j| reaction_of(gradients_at(j), impulses_at(j)));
+        let reaction_scales: [SVector<T, N>; STAGES] =
+            core::array::from_fn(|j| reaction_terms(gradients_at(j), impulses_at(j)));
+        let points: [_; STAGES] = core::array::from_fn(|i| system.point(stages[i].0, &stages[i].1, &v[i]));
+        let increments: [SVector<T, N>; STAGES] = core::array::from_fn(|i| points[i].force * (h * T::real(b[i])));
+
+        let (mut momentum, mut momentum_scale) = ([zeros; STAGES], [zeros; STAGES]);
+        for i in 0..STAGES {
+            let inertia = inertia(&points[i].mass, &v[i]);
+            let [least, _] = spread(&points[i].mass, &v[i], &node.p);
+            let (mut sum, mut scale) = (zeros, abs(node.p) + abs(points[i].momentum) + inertia + least);
+            for j in 0..STAGES {
+                let of_force = increments[j] * T::real(part[j][i]);
+                let part = part_of_node::<STAGES>(j, i);
+                sum += of_force + reactions[j] * T::real(part);
+                scale += abs(of_force) + reaction_scales[j] * T::real(part.abs());
+            }
+            momentum[i] = ((points[i].momentum - node.p) - node.p_low) - sum;
+            momentum_scale[i] = scale;
+        }
+        let (mut constraint, mut constraint_scale) = ([*rest; STAGES], [*rest; STAGES]);
+        for i in 0..STAGES {
+            let (residual, scale) = (constraint[i].as_mut(), constraint_scale[i].as_mut());
+            let (t, q) = &nodes[i];
+            let (gradients, rates) = &at_nodes[i];
+            let values = system.constraints(*t, q);
+            let own = impulses::<N, STAGES, T>(u, constraints, i);
+            let masses = diagonal(&points[i].mass);
+            // A velocity is known to the terms of its momentum.
+            let of_momentum = |row: Row<'_, T>| {
+                row.iter().fold(T::zero(), |sum, (k, entry)| match masses[k] {
+                    mass if mass.is_positive() => sum + (entry * momentum_scale[i][k]).abs() / mass,
+                    _ => sum,
+                })
+            };
+            for r in 0..S::HOLONOMIC {
+                if system.is_dropped(r) {
+                    (residual[r], scale[r]) = (own[r], own[r].abs());
+                    continue;
+                }
+                let row = gradients.row(r);
+                residual[r] = values.as_ref()[r] / h;
+                scale[r] = row.terms(q) / h.abs() + rates.as_ref()[r].abs() + of_momentum(row);
+            }
+            if S::HOLONOMIC == constraints {
+                continue;
+            }
+            let (gradients, rates) = system.constraint_gradients(stages[i].0, &stages[i].1);
+            for r in S::HOLONOMIC..constraints {
+                if system.is_dropped(r) {
+                    (residual[r], scale[r]) = (own[r], own[r].abs());
+                    continue;
+                }
+                let row = gradients.row(r);
+                residual[r] = row.dot(&v[i]) + rates.as_ref()[r];
+                scale[r] = row.terms(&v[i]) + rates.as_ref()[r].abs() + of_momentum(row);
+            }
+        }
+        let sum = |vectors: &[SVector<T, N>; STAGES]| vectors.iter().fold(zeros, |sum, entry| sum + entry);
+        let increment = sum(&increments) + sum(&reactions);
+        let gradients = at_nodes.map(|(gradients, _)| gradients);
+        Self {
+            momentum,
+            constraint,
+            mass: diagonal(&points[0].mass),
+            momentum_scale,
+            constraint_scale,
+            velocity,
+            increment,
+            stages,
+            nodes,
+            first: *first,
+            gradients,
+        }
+    }
+
+    /// The largest row over a rounding of its terms. NaN if a row is not finite.
+    pub(crate) fn residual(&self) -> f64 {
+        self.largest(roundings)
+    }
+
+    fn largest(&self, over: impl Fn(T, T) -> f64) -> f64 {
+        let mut worst = 0.0;
+        for i in 0..STAGES {
+            for (row, scale) in self.momentum[i].iter().zip(self.momentum_scale[i].iter()) {
+                worst = worse(over(*row, *scale), worst);
+            }
+            for (row, scale) in self.constraint[i].as_ref().iter().zip(self.constraint_scale[i].as_ref()) {
+                worst = worse(over(*row, *scale), worst);
+            }
+        }
+        worst
+    }
+
+    /// Writes the rows, in the order of the unknowns.
+    pub(crate) fn write(&self, rows: &mut [T]) {
+        let entries = self.momentum.iter().flat_map(|row| row.iter());
+        let entries = entries.chain(self.constraint.iter().flat_map(AsRef::as_ref));
+        for (row, entry) in rows.iter_mut().zip(entries) {
+            *row = *entry;
+        }
+    }
+
+    /// Time and coordinates at the end of the step.
+    pub(crate) fn end(&self) -> Place<N, T> {
+        self.nodes[STAGES - 1]
+    }
+
+    /// A at the end of the step.
+    pub(crate) fn end_gradients(&self) -> &S::Gradients {
+        &self.gradients[STAGES - 1]
+    }
+}
+
+impl<S: Constrained<N, Rounded>, const N: usize, const STAGES: usize> Rows<S, N, STAGES, Rounded> {
+    /// The largest row over its rounding-error bound, by running error analysis.
+    pub(crate) fn bounded_residual(&self) -> f64 {
+        self.largest(|row, _| roundings(row.to_f64(), row.ulps()))
+    }
+}
+
+impl<S: Constrained<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
+    /// Writes the Jacobian of the rows with respect to the unknowns: copy i of the row of a coordinate is the momentum
+    /// row of stage i, copy k of its column the velocity of stage k; those of a constraint are row and impulse k.
+    pub(crate) fn jacobian(&self, system: &S, h: f64, u: &[f64], jacobian: &mut Fronts) {
+        let Tableau { b, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
+        let lobatto = const { &Lobatto::<STAGES>::VALUES };
+        let constraints = S::CONSTRAINTS.len();
+        let weights = b.map(|b| h * b);
+        scale(jacobian.scales(), self.mass.iter().copied(), self.first.rows());
+        for i in 0..STAGES {
+            let (t, q) = &self.stages[i];
+            let v = stage_velocity(u, i);
+            let at = system.point_derivatives(*t, q, &v);
+            at.mass.each_entry(|row, column, value| {
+                let entry = jacobian.entry(row, column);
+                jacobian.add(entry, [i, i], value);
+            });
+            at.momentum_dq.each_entry(|row, column, value| {
+                let entry = jacobian.entry(row, column);
+                for k in 0..STAGES {
+                    jacobian.add(entry, [i, k], value * (part[k][i] * weights[k]));
+                }
+            });
+            // The force at stage i acts on the momentum of stage k.
+            at.force_dv.each_entry(|row, column, value| {
+                let entry = jacobian.entry(row, column);
+                for k in 0..STAGES {
+                    jacobian.add(entry, [k, i], -part[i][k] * (value * weights[i]));
+                }
+            });
+            at.force_dq.each_entry(|row, column, value| {
+                let entry = jacobian.entry(row, column);
+                for k in 0..STAGES {
+                    let of_force = value * weights[i] * (part[k][i] * weights[k]);
+                    for l in 0..STAGES {
+                        jacobian.add(entry, [l, k], -part[i][l] * of_force);
+                    }
+                }
+            });
+            for r in 0..S::HOLONOMIC {
+                for (column, slope) in self.gradients[i].row(r).iter() {
+                    let entry = jacobian.entry(N + r, column);
+                    for k in 0..STAGES {
+                        jacobian.add(entry, [i, k], slope * lobatto.part[k][i] * b[k]);
+                    }
+                }
+            }
+            if S::HOLONOMIC < constraints {
+                let (gradients, _) = system.constraint_gradients(*t, q);
+                let (rates_dq, _) = system.constraint_rate_derivatives(*t, q, &v);
+                for r in S::HOLONOMIC..constraints {
+                    for (column, slope) in gradients.row(r).iter() {
+                        let entry = jacobian.entry(N + r, column);
+                        jacobian.add(entry, [i, i], slope);
+                    }
+                    for (column, slope) in rates_dq.row(r).iter() {
+                        let entry = jacobian.entry(N + r, column);
+                        for k in 0..STAGES {
+                            jacobian.add(entry, [i, k], slope * (part[k][i] * weights[k]));
+                        }
+                    }
+                }
+            }
+            for r in (0..constraints).filter(|r| system.is_dropped(*r)) {
+                // The row is the impulse.
+                let entry = jacobian.entry(N + r, N + r);
+                jacobian.add(entry, [i, i], 1.0);
+            }
+            self.reactions(system, i, u, &weights, jacobian);
+        }
+    }
+
+    /// Adds the derivatives of the reaction at Lobatto node j.
+    fn reactions(&self, system: &S, j: usize, u: &[f64], weights: &[f64; STAGES], jacobian: &mut Fronts) {
+        let lobatto = const { &Lobatto::<STAGES>::VALUES };
+        let gradients = if j == 0 { &self.first } else { &self.gradients[j - 1] };
+        for (r, row) in gradients.rows().enumerate() {
+            for (column, slope) in row.iter() {
+                let entry = jacobian.entry(column, N + r);
+                for i in 0..STAGES {
+                    jacobian.add(entry, [i, j], -part_of_node::<STAGES>(j, i) * slope);
+                }
+            }
+        }
+        // The first node does not move.
+        if j == 0 {
+            return;
+        }
+        let (t, q) = &self.nodes[j - 1];
+        let mut multipliers = self.constraint[0];
+        let of_node = impulses::<N, STAGES, f64>(u, S::CONSTRAINTS.len(), j);
+        multipliers.as_mut().copy_from_slice(of_node);
+        let derivatives = system.reaction_derivatives(*t, q, &multipliers);
+        for (row, entries) in derivatives.rows().enumerate() {
+            for (column, slope) in entries.iter() {
+                let entry = jacobian.entry(row, column);
+                for k in 0..STAGES {
+                    let displacement = lobatto.part[k][j - 1] * weights[k];
+                    for i in 0..STAGES {
+                        jacobian.add(entry, [i, k], -part_of_node::<STAGES>(j, i) * displacement * slope);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The sign of the determinant of the Jacobian for short steps, with this sign of the bordered mass matrix.
+///
+/// For h → 0 that determinant is a product of s bordered mass matrices, of the matrix of ã for each holonomic
+/// constraint, and of the matrix of the parts of the impulses for each constraint.
+pub(crate) fn expected_sign<const STAGES: usize>(bordered: i8, [holonomic, constraints]: [usize; 2]) -> i8 {
+    // Both of these matrices are 1.
+    if STAGES == 1 {
+        return bordered;
+    }
+    let lobatto = const { &Lobatto::<STAGES>::VALUES };
+    let displacement = SMatrix::<f64, STAGES, STAGES>::from_fn(|i, k| lobatto.part[k][i]);
+    let impulse = SMatrix::<f64, STAGES, STAGES>::from_fn(|i, j| part_of_node::<STAGES>(j, i));
+    let power = |sign: i8, exponent: usize| if exponent.is_multiple_of(2) { sign * sign } else { sign };
+    power(determinant_sign(&displacement), holonomic)
+        * power(determinant_sign(&impulse), constraints)
+        * power(bordered, STAGES)
+}
+
+/// The discrete energy at the end of a step with these unknowns and the impulse μ of its projection:
+///
+/// ```text
+/// E1 = Σ b_i En_i − h Σ b_i c_i (L_t − f·V)_i − Σ_j c̃_j λ_j·a_j − μ·a_s
+/// ```
+///
+/// with the energies En_i at the stages.
+pub(crate) fn discrete_energy<S: Constrained<N>, const N: usize, const STAGES: usize>(
+    system: &S,
+    (node, h): (&Node<N>, f64),
+    u: &[f64],
+    mu: &[f64],
+) -> f64 {
+    let Tableau { b, c, .. } = const { &Tableau::<STAGES>::VALUES };
+    let lobatto = const { &Lobatto::<STAGES>::VALUES };
+    let (stages, nodes, _) = places::<N, STAGES, f64>(node, h, u);
+    let of_stages = (0..STAGES).fold(0.0, |sum, i| {
+        let ((t, q), v) = (&stages[i], stage_velocity(u, i));
+        sum + b[i] * (system.energy(*t, q, &v) + h * c[i] * system.power(*t, q, &v))
+    });
+    (0..STAGES).fold(of_stages, |sum, i| {
+        let (_, rates) = system.constraint_gradients(nodes[i].0, &nodes[i].1);
+        let impulse = if i + 1 == STAGES { mu } else { impulses::<N, STAGES, f64>(u, S::CONSTRAINTS.len(), i + 1) };
+        let c = if i + 1 == STAGES { 1.0 } else { lobatto.c[i] };
+        sum - c * rates.as_ref().iter().zip(impulse).map(|(rate, impulse)| rate * impulse).sum::<f64>()
+    })
+}

@@ -1,0 +1,84 @@
+//! The initial guess of a step, extrapolated from the unknowns of the last steps, as in `crate::predictor`. The number
+//! of constraints is no constant of a type, so that the unknowns are a list.
+
+use crate::predictor::weights;
+use crate::vector::worse;
+
+/// Highest degree of the extrapolation.
+const HIGHEST: usize = 5;
+
+/// The unknowns of the last steps.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Extrapolation {
+    /// The newest first; initially all equal to the first guess.
+    last: Vec<Vec<f64>>,
+    degree: usize,
+}
+
+impl Extrapolation {
+    /// Starts from a guess of the first step. Allocates.
+    pub(crate) fn new(guess: &[f64]) -> Self {
+        Self { last: vec![guess.to_vec(); HIGHEST + 1], degree: 0 }
+    }
+
+    /// The unknowns of the last step, or the first guess.
+    pub(crate) fn newest(&self) -> &[f64] {
+        &self.last[0]
+    }
+
+    /// Writes the guess of the next step.
+    pub(crate) fn guess(&self, guess: &mut [f64]) {
+        let weights: [f64; HIGHEST + 1] = weights(self.degree);
+        guess.fill(0.0);
+        for (u, weight) in self.last.iter().zip(weights).rev() {
+            for (entry, u) in guess.iter_mut().zip(u) {
+                *entry += u * weight;
+            }
+        }
+    }
+
+    fn extrapolated(&self, weights: &[f64], index: usize) -> f64 {
+        self.last.iter().zip(weights).rev().fold(0.0, |sum, (u, weight)| sum + u[index] * weight)
+    }
+
+    /// Adds the unknowns of a step. The degree grows by one if its guess would not have been worse.
+    pub(crate) fn push(&mut self, unknowns: &[f64]) {
+        let error = |degree: usize| {
+            let weights: [f64; HIGHEST + 1] = weights(degree);
+            let errors = unknowns.iter().enumerate().map(|(index, u)| u - self.extrapolated(&weights, index));
+            errors.fold(0.0, |sum, error| sum + error * error)
+        };
+        if self.degree < HIGHEST {
+            self.degree += usize::from(error(self.degree + 1) <= error(self.degree));
+        }
+        self.last.rotate_right(1);
+        self.last[0].copy_from_slice(unknowns);
+    }
+
+    /// Whether it stores finite unknowns of this number. A file may contain anything.
+    pub(crate) fn is_valid(&self, count: usize) -> bool {
+        let longest = |u: &Vec<f64>| u.iter().fold(0.0, |longest, entry| worse(entry.abs(), longest));
+        let is_valid = |u: &Vec<f64>| u.len() == count && longest(u).is_finite();
+        self.degree <= HIGHEST && self.last.len() == HIGHEST + 1 && self.last.iter().all(is_valid)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Extrapolation, HIGHEST};
+
+    #[test]
+    fn a_polynomial_is_extrapolated() {
+        let sequence = |step: u32| f64::from(step).powi(5) - 7.0 * f64::from(step).powi(2);
+        let mut extrapolation = Extrapolation::new(&[sequence(0), 1.0]);
+        (1..=20).for_each(|step| extrapolation.push(&[sequence(step), 1.0]));
+        assert_eq!(extrapolation.degree, HIGHEST);
+        let mut guess = [0.0; 2];
+        extrapolation.guess(&mut guess);
+        // Integers below 2⁵³: no rounding.
+        assert_eq!(guess.map(f64::to_bits), [sequence(21), 1.0].map(f64::to_bits));
+        assert_eq!(extrapolation.newest(), [sequence(20), 1.0]);
+        assert!(extrapolation.is_valid(2) && !extrapolation.is_valid(3));
+    }
+}

@@ -1,0 +1,209 @@
+//! Systems with redundant constraints: an independent subset, chosen at one place.
+//!
+//! A dropped constraint has no gradient and no multiplier: the motion is unique, and the reaction of the others is that
+//! of all. Every step measures the dropped constraints at its end, because elsewhere they may become independent.
+
+use super::start::independent_rows;
+use super::{Constrained, ConvertibleConstrained, constrained_acceleration, constrained_flow};
+use crate::collocation::{Point, PointDerivatives};
+use crate::error::StepError;
+use crate::forward;
+use crate::lagrangian::{Flow, Lagrangian, Parameters};
+use crate::linear::{Block, Bordered, Rectangular};
+use crate::node::Node;
+use crate::real::Real;
+use crate::state::{Numbers, State};
+use nalgebra::SVector;
+
+/// Numbers of 64 bits for the set of dropped constraints.
+const WORDS: usize = 8;
+/// Largest value of a dropped constraint at a node over the size of its terms.
+const HOLDS: f64 = 1e-9;
+
+/// A system without those of its constraints that follow from the others; see [`Independent::at`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Independent<S> {
+    system: S,
+    dropped: [u64; WORDS],
+}
+
+impl<S> Independent<S> {
+    /// Keeps an independent subset of the constraints of a system at time t and coordinates q that satisfy them. Runs of
+    /// the result have a unique motion; dropped constraints have the reaction 0.
+    ///
+    /// Every step checks that the dropped constraints hold at its end. It fails with [`StepError::DroppedConstraint`] if
+    /// one does not: its lengths contradict those of the others, or it follows from them at this place only, as in a
+    /// linkage that is flat.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for more than 512 constraints, [`StepError::Singular`], [`StepError::NonFinite`].
+    pub fn at<const N: usize>(system: S, t: f64, q: impl Numbers<N>) -> Result<Self, StepError>
+    where
+        S: Constrained<N>,
+    {
+        let of = S::CONSTRAINTS.len();
+        if of > 64 * WORDS {
+            #[allow(clippy::cast_precision_loss)] // for the message
+            let value = of as f64;
+            let (input, allowed) = ("the number of constraints", "at most 512 if some are redundant");
+            return Err(StepError::InvalidInput { input, allowed, value });
+        }
+        let q = q.vector();
+        let rest = SVector::zeros();
+        Node::new(State { t, q, p: rest }, 0.0).check_finite(0.0)?;
+        let mass = system.point(t, &q, &rest).mass;
+        let (gradients, _) = system.constraint_gradients(t, &q);
+        let is_regular = Bordered::new(N, 0, S::BLOCKS).factor(&mass, &gradients).is_ok();
+        let all: Vec<usize> = (0..of).collect();
+        let kept = independent_rows(&gradients, &all, &mass, is_regular);
+        let mut dropped = [0; WORDS];
+        for r in (0..of).filter(|r| !kept.contains(r)) {
+            dropped[r / 64] |= 1 << (r % 64);
+        }
+        Ok(Self { system, dropped })
+    }
+
+    /// The system with all constraints.
+    pub fn system(&self) -> &S {
+        &self.system
+    }
+
+    /// Whether the constraint of this index in [`Constrained::CONSTRAINTS`] is dropped.
+    pub fn is_dropped(&self, constraint: usize) -> bool {
+        self.dropped.get(constraint / 64).is_some_and(|word| word >> (constraint % 64) & 1 == 1)
+    }
+
+    /// The dropped constraints, with the values at a state that they should not have: g, or `A v + a` of a nonholonomic
+    /// constraint.
+    ///
+    /// # Errors
+    /// As [`State::velocity`].
+    pub fn dropped<const N: usize>(&self, state: &State<N>) -> Result<Vec<(&'static str, f64)>, StepError>
+    where
+        S: Constrained<N>,
+    {
+        let v = state.velocity(self)?;
+        Ok(self.measured(state.t, &state.q, &v).map(|(r, value, _)| (S::CONSTRAINTS[r], value)).collect())
+    }
+
+    /// Index, value and terms of each dropped constraint.
+    fn measured<const N: usize, T: Real>(
+        &self,
+        t: T,
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
+    ) -> impl Iterator<Item = (usize, T, T)>
+    where
+        S: Constrained<N, T>,
+    {
+        let values = self.system.constraints(t, q);
+        let (gradients, rates) = self.system.constraint_gradients(t, q);
+        let dropped = (0..S::CONSTRAINTS.len()).filter(|r| self.is_dropped(*r));
+        let measured = dropped.map(move |r| {
+            let (gradient, rate) = (gradients.row(r), rates.as_ref()[r]);
+            if r < S::HOLONOMIC {
+                (r, values.as_ref()[r], gradient.terms(q) + (rate * t).abs())
+            } else {
+                (r, gradient.dot(v) + rate, gradient.terms(v) + rate.abs())
+            }
+        });
+        measured.collect::<Vec<_>>().into_iter()
+    }
+
+    /// Removes the rows of dropped constraints.
+    fn without<const N: usize, T: Real>(
+        &self,
+        mut rows: (S::Gradients, S::Multipliers),
+    ) -> (S::Gradients, S::Multipliers)
+    where
+        S: Constrained<N, T>,
+    {
+        for r in (0..S::CONSTRAINTS.len()).filter(|r| self.is_dropped(*r)) {
+            rows.0.row_mut(r).1.fill(T::zero());
+            rows.1.as_mut()[r] = T::zero();
+        }
+        rows
+    }
+}
+
+impl<const N: usize, T: Real, S: Constrained<N, T>> Lagrangian<N, T> for Independent<S> {
+    forward! { [N T S] self => &self.system; [] lagrangian_constants non_finite undefined }
+    forward! { [N T S] self => &self.system; [#[inline]] lagrangian energy momentum force }
+
+    fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
+        constrained_acceleration(self, t, q, v)
+    }
+
+    fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
+        constrained_flow(self, t, q, p)
+    }
+}
+
+impl<const N: usize, T: Real, S: Constrained<N, T>> Constrained<N, T> for Independent<S> {
+    type Mass = S::Mass;
+    type PointMatrix = S::PointMatrix;
+    const CONSTANT_MASS: bool = S::CONSTANT_MASS;
+    const CONSTRAINTS: &'static [&'static str] = S::CONSTRAINTS;
+    const HOLONOMIC: usize = S::HOLONOMIC;
+    type Multipliers = S::Multipliers;
+    type Gradients = S::Gradients;
+    type ReactionMatrix = S::ReactionMatrix;
+    const BLOCKS: &'static [Block] = S::BLOCKS;
+
+    fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass> {
+        self.system.point(t, q, v)
+    }
+    fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix> {
+        self.system.point_derivatives(t, q, v)
+    }
+    fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+        self.system.power(t, q, v)
+    }
+    fn applied(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        self.system.applied(t, q, v)
+    }
+    fn constraints(&self, t: T, q: &SVector<T, N>) -> Self::Multipliers {
+        self.system.constraints(t, q)
+    }
+    fn constraint_gradients(&self, t: T, q: &SVector<T, N>) -> (Self::Gradients, Self::Multipliers) {
+        self.without(self.system.constraint_gradients(t, q))
+    }
+    fn constraint_rate_derivatives(
+        &self,
+        t: T,
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
+    ) -> (Self::Gradients, Self::Multipliers) {
+        self.without(self.system.constraint_rate_derivatives(t, q, v))
+    }
+    fn reaction_derivatives(&self, t: T, q: &SVector<T, N>, multipliers: &Self::Multipliers) -> Self::ReactionMatrix {
+        let mut kept = *multipliers;
+        for r in (0..S::CONSTRAINTS.len()).filter(|r| self.is_dropped(*r)) {
+            kept.as_mut()[r] = T::zero();
+        }
+        self.system.reaction_derivatives(t, q, &kept)
+    }
+    fn is_dropped(&self, constraint: usize) -> bool {
+        Self::is_dropped(self, constraint)
+    }
+    fn broken(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<(usize, T)> {
+        let mut measured = self.measured(t, q, v);
+        // False for NaN.
+        let holds = |value: T, scale: T| value.to_f64().abs() <= HOLDS * scale.to_f64();
+        measured.find(|(_, value, scale)| !holds(*value, *scale)).map(|(r, value, _)| (r, value))
+    }
+}
+
+impl<const N: usize, S: ConvertibleConstrained<N>> ConvertibleConstrained<N> for Independent<S> {
+    type In<T: Real> = Independent<S::In<T>>;
+
+    fn convert<T: Real>(&self) -> Self::In<T> {
+        Independent { system: self.system.convert(), dropped: self.dropped }
+    }
+}
+
+impl<T: Real, S: Parameters<T>> Parameters<T> for Independent<S> {
+    fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
+        self.system.parameter_mut(name)
+    }
+}

@@ -1,0 +1,235 @@
+//! Acceleration, flow and reaction of a system with constraints at a state.
+//!
+//! Velocities of momenta satisfy the constraints too. With multipliers μ, which are zero for consistent momenta,
+//!
+//! ```text
+//! L_v(t, q, v) = p + Aᵀμ        A v + a = 0
+//! ```
+
+use super::{Constrained, border, bordered, diagonal, inertia, is_reduced, reaction_of, reaction_terms, spread};
+use crate::error::{Residuals, StepError};
+use crate::lagrangian::Flow;
+use crate::linear::{Bordered, Rectangular, Unsolvable};
+use crate::newton::{FLOOR, roundings};
+use crate::node::Node;
+use crate::real::{Real, Scalar};
+use crate::state::State;
+use crate::vector::worse;
+use nalgebra::SVector;
+
+const ITERATIONS: u32 = 40;
+const HALVINGS: u32 = 12;
+/// Largest residual, in ulps of the terms that this module sees, if corrections no longer reduce it: terms that cancel
+/// inside of L_v are larger.
+const STALLED: f64 = 64.0;
+/// A reduction of the residual by this factor shows that the factors of the bordered matrix are still good.
+const GOOD: f64 = 1e-3;
+
+/// A velocity of momenta.
+pub(crate) struct Velocity<const N: usize, T, M> {
+    pub(crate) v: SVector<T, N>,
+    /// `L_v(v)`.
+    pub(crate) momentum: SVector<T, N>,
+    /// `L_v(v) − p = Aᵀμ`.
+    pub(crate) mu: M,
+    pub(crate) residual: f64,
+}
+
+/// Name of the bordered matrix in errors.
+const MATRIX: &str = "mass matrix bordered by the constraints";
+
+/// The error of a bordered matrix at the time t.
+pub(crate) fn unsolvable(failure: Unsolvable, t: f64) -> StepError {
+    match failure {
+        Unsolvable::Singular => StepError::Singular { t, matrix: MATRIX },
+        Unsolvable::NonFinite => StepError::NonFinite { t, quantity: MATRIX, expression: None },
+    }
+}
+
+/// Acceleration and multipliers Λ of the motion at (t, q, v). Factors the bordered matrix.
+///
+/// # Errors
+/// [`StepError::Singular`] and [`StepError::NonFinite`].
+pub(crate) fn accelerations<S: Constrained<N, T>, const N: usize, T: Real>(
+    system: &S,
+    (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
+    bordered: &mut Bordered<T>,
+) -> Result<(SVector<T, N>, S::Multipliers), StepError> {
+    let (gradients, _) = system.constraint_gradients(t, q);
+    let (rates_dq, mut multipliers) = system.constraint_rate_derivatives(t, q, v);
+    let factored = border(bordered, system, &system.point(t, q, v).mass, &gradients);
+    factored.map_err(|failure| unsolvable(failure, t.to_f64()))?;
+    let mut a = system.applied(t, q, v);
+    for (entry, row) in multipliers.as_mut().iter_mut().zip(rates_dq.rows()) {
+        *entry = -(*entry + row.dot(v));
+    }
+    bordered.solve(&mut a, multipliers.as_mut());
+    if a.iter().chain(multipliers.as_ref()).all(|entry| entry.is_finite()) {
+        Ok((a, multipliers))
+    } else {
+        Err(StepError::NonFinite { t: t.to_f64(), quantity: "acceleration", expression: None })
+    }
+}
+
+/// The velocity of the momenta p by Newton iteration from a guess. It satisfies the constraints; the multipliers are
+/// the impulse that makes p consistent. Factors the bordered matrix.
+///
+/// # Errors
+/// [`StepError::Singular`], [`StepError::NonFinite`], and [`StepError::NotConverged`] with h = 0.
+pub(crate) fn velocity<S: Constrained<N, T>, const N: usize, T: Real>(
+    system: &S,
+    (t, q, p): (T, &SVector<T, N>, &SVector<T, N>),
+    guess: &SVector<T, N>,
+    bordered: &mut Bordered<T>,
+) -> Result<Velocity<N, T, S::Multipliers>, StepError> {
+    let (gradients, offsets) = system.constraint_gradients(t, q);
+    let mut zero = offsets;
+    zero.as_mut().fill(T::zero());
+    let at = |v: SVector<T, N>, mu: S::Multipliers| {
+        let point = system.point(t, q, &v);
+        let reaction = reaction_of(&gradients, mu.as_ref());
+        let of_reaction = reaction_terms(&gradients, mu.as_ref());
+        let momentum = (point.momentum - p) - reaction;
+        let inertia = inertia(&point.mass, &v);
+        let mass = diagonal(&point.mass);
+        let [momenta, _] = spread(&point.mass, &v, p);
+        let mut residual = 0.0;
+        let mut known = SVector::<T, N>::zeros();
+        for i in 0..N {
+            let scale = point.momentum[i].abs() + p[i].abs() + inertia[i] + of_reaction[i] + momenta[i];
+            residual = worse(roundings(momentum[i], scale), residual);
+            // A velocity is known to the terms of its momentum.
+            known[i] = if mass[i].is_positive() { scale / mass[i] } else { T::zero() };
+        }
+        let mut strict = residual;
+        let mut rates = offsets;
+        for (rate, gradient) in rates.as_mut().iter_mut().zip(gradients.rows()) {
+            let scale = rate.abs() + gradient.terms(&v);
+            *rate += gradient.dot(&v);
+            strict = worse(roundings(*rate, scale), strict);
+            residual = worse(roundings(*rate, scale + gradient.terms(&known)), residual);
+        }
+        (Velocity { v, momentum: point.momentum, mu, residual }, momentum, rates, point.mass, strict)
+    };
+    // `strict` is the residual over the terms of the rates alone, which may be smaller than the roundings of velocities.
+    let (mut found, mut momentum, mut rates, mut mass, mut strict) = at(*guess, zero);
+    let (mut iterations, mut residuals, mut is_factored) = (0, Residuals::new(), false);
+    loop {
+        residuals.push(found.residual);
+        if found.residual.is_nan() {
+            return Err(StepError::NonFinite { t: t.to_f64(), quantity: "momentum equation", expression: None });
+        }
+        // Regular at every accepted velocity.
+        if !is_factored {
+            let factored = border(bordered, system, &mass, &gradients);
+            factored.map_err(|failure| unsolvable(failure, t.to_f64()))?;
+        }
+        if strict <= 1.0 {
+            return Ok(found);
+        }
+        let (mut correction, mut impulses) = (momentum, rates);
+        bordered.solve(&mut correction, impulses.as_mut());
+        // Near the floor a shorter correction changes nothing.
+        let halvings = if found.residual <= FLOOR { 0 } else { HALVINGS };
+        let next = (0..=halvings).find_map(|halved| {
+            let part = T::real(0.5_f64.powi(i32::try_from(halved).unwrap_or(0)));
+            let mut mu = found.mu;
+            for (mu, impulse) in mu.as_mut().iter_mut().zip(impulses.as_ref()) {
+                *mu -= *impulse * part;
+            }
+            let next = at(found.v - correction * part, mu);
+            let is_nearer = found.residual > FLOOR && next.0.residual < found.residual;
+            Some(next).filter(|next| is_nearer || is_reduced(next.4, strict))
+        });
+        match next {
+            Some(next) if iterations < ITERATIONS => {
+                is_factored = next.0.residual < GOOD * found.residual;
+                (found, momentum, rates, mass, strict) = next;
+            }
+            _ if found.residual <= STALLED => return Ok(found),
+            _ => {
+                let (t, residual) = (t.to_f64(), found.residual);
+                return Err(StepError::NotConverged { t, h: 0.0, iterations, residual, residuals, turn: 0.0 });
+            }
+        }
+        iterations += 1;
+    }
+}
+
+/// The acceleration of a system with constraints at (t, q, v).
+///
+/// # Errors
+/// [`StepError::Singular`] if the bordered mass matrix is singular, [`StepError::NonFinite`] if a derivative is not
+/// finite.
+pub fn constrained_acceleration<S: Constrained<N, T>, const N: usize, T: Real>(
+    system: &S,
+    t: T,
+    q: &SVector<T, N>,
+    v: &SVector<T, N>,
+) -> Result<SVector<T, N>, StepError> {
+    let bordered = &mut bordered::<S, N, T>();
+    accelerations(system, (t, q, v), bordered).map(|(acceleration, _)| acceleration)
+}
+
+/// The flow of a system with constraints at (t, q, p): the force is `L_q + f + AᵀΛ`, the power `f·v − L_t − Λ·a`.
+///
+/// The velocity satisfies the constraints. Inconsistent momenta have that of the nearest consistent ones.
+///
+/// # Errors
+/// As [`constrained_acceleration`]; [`StepError::NotConverged`] if no velocity has these momenta.
+pub fn constrained_flow<S: Constrained<N, T>, const N: usize, T: Real>(
+    system: &S,
+    t: T,
+    q: &SVector<T, N>,
+    p: &SVector<T, N>,
+) -> Result<Flow<N, T>, StepError> {
+    let bordered = &mut bordered::<S, N, T>();
+    let Velocity { v, .. } = from_rest(system, (t, q, p), bordered)?;
+    let (_, multipliers) = accelerations(system, (t, q, &v), bordered)?;
+    let (gradients, offsets) = system.constraint_gradients(t, q);
+    let reaction = reaction_of(&gradients, multipliers.as_ref());
+    let of_constraints = offsets.as_ref().iter().zip(multipliers.as_ref());
+    let power = of_constraints.fold(system.power(t, q, &v), |sum, (a, multiplier)| sum - *a * *multiplier);
+    Ok(Flow { v, force: system.point(t, q, &v).force + reaction, power })
+}
+
+/// [`velocity`] from rest; from the momenta as a guess if that fails.
+///
+/// # Errors
+/// Those of the second guess.
+pub(crate) fn from_rest<S: Constrained<N, T>, const N: usize, T: Real>(
+    system: &S,
+    (t, q, p): (T, &SVector<T, N>, &SVector<T, N>),
+    bordered: &mut Bordered<T>,
+) -> Result<Velocity<N, T, S::Multipliers>, StepError> {
+    velocity(system, (t, q, p), &SVector::zeros(), bordered).or_else(|failure| match failure {
+        StepError::Singular { .. } => Err(failure),
+        _ => velocity(system, (t, q, p), p, bordered),
+    })
+}
+
+impl<const N: usize, T: Scalar> State<N, T> {
+    /// The multipliers Λ of the motion at this state, one for each constraint, in the order of
+    /// [`Constrained::CONSTRAINTS`]. They are as accurate as the state. Their unit is that of energy over that of the
+    /// constraint; for a nonholonomic constraint, of power over that of the constraint.
+    ///
+    /// # Errors
+    /// As [`State::velocity`]; [`StepError::Singular`] if the constraints are redundant here.
+    pub fn reaction<S: Constrained<N, T>>(&self, system: &S) -> Result<S::Multipliers, StepError> {
+        let node = Node::new(*self, T::zero());
+        let bordered = &mut bordered::<S, N, T>();
+        let found = node.check_finite(T::zero()).and_then(|()| from_rest(system, (self.t, &self.q, &self.p), bordered));
+        let found = found.and_then(|Velocity { v, .. }| accelerations(system, (self.t, &self.q, &v), bordered));
+        found.map(|(_, multipliers)| multipliers).map_err(|failure| failure.explained_at(system, &node, T::zero()))
+    }
+
+    /// The reaction `AᵀΛ` at this state: the generalized force of all constraints on each coordinate.
+    ///
+    /// # Errors
+    /// As [`State::reaction`].
+    pub fn reaction_force<S: Constrained<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
+        let multipliers = self.reaction(system)?;
+        let (gradients, _) = system.constraint_gradients(self.t, &self.q);
+        Ok(reaction_of(&gradients, multipliers.as_ref()))
+    }
+}

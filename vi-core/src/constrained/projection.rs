@@ -1,0 +1,232 @@
+//! The state on the constraints that is nearest to a given one, in the metric of the mass matrix M at that state.
+//!
+//! ```text
+//! M (x − q) = Aᵀκ     g(t, x) = 0           coordinates
+//! M (w − v) = Aᵀμ     A w + a = 0           velocities, at x
+//! ```
+//!
+//! Held coordinates and their velocities do not change: they have no gradients here.
+
+use super::start::CONSISTENT;
+use super::{Constrained, border, is_reduced, reaction_of, reaction_terms, spread, unsolvable};
+use crate::error::{Residuals, StepError};
+use crate::linear::{Bordered, Matrix, Rectangular};
+use crate::newton::roundings;
+use crate::node::Node;
+use crate::state::{Numbers, State};
+use crate::vector::worse;
+use nalgebra::{SMatrix, SVector};
+
+const ITERATIONS: u32 = 40;
+const HALVINGS: u32 = 12;
+
+/// A state on the constraints, and how far it is from the given one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projected<const N: usize> {
+    /// The state.
+    pub state: State<N>,
+    /// Change of the coordinates.
+    pub moved_q: SVector<f64, N>,
+    /// Change of the velocities.
+    pub moved_v: SVector<f64, N>,
+    /// The energy at the new coordinates with the given velocities, less that of the state: the loss of a plastic
+    /// impact, `½ moved_v·M moved_v` for constraints at rest. Constraints that move may also do work.
+    pub energy_lost: f64,
+}
+
+/// Moves states onto the constraints of a system; [`State::projected`] without held coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection<'a, S, const N: usize> {
+    pub(super) system: &'a S,
+    pub(super) held: [bool; N],
+}
+
+impl<const N: usize> State<N> {
+    /// The state on the constraints that is nearest to time t, coordinates q and velocities v, in the metric of the mass
+    /// matrix: first the coordinates, with the mass matrix at (t, q, v), then the velocities. Returns both changes, and
+    /// the energy lost with the velocities.
+    ///
+    /// [`Projection::holding`] holds coordinates. [`State::assembled`] starts from far guesses.
+    ///
+    /// # Errors
+    /// [`StepError::NotConverged`] with h = 0 if no coordinates near q satisfy the constraints, [`StepError::Singular`]
+    /// if the constraints are redundant on the way, [`StepError::NonFinite`].
+    pub fn projected<S: Constrained<N>>(
+        system: &S,
+        t: f64,
+        q: impl Numbers<N>,
+        v: impl Numbers<N>,
+    ) -> Result<Projected<N>, StepError> {
+        Projection::of(system).projected(t, q, v)
+    }
+}
+
+impl<'a, S: Constrained<N>, const N: usize> Projection<'a, S, N> {
+    /// Moves every coordinate.
+    #[must_use]
+    pub fn of(system: &'a S) -> Self {
+        Self { system, held: [false; N] }
+    }
+
+    /// Holds the coordinates of these indices, from 0, and their velocities.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for an index out of range.
+    pub fn holding(mut self, indices: &[usize]) -> Result<Self, StepError> {
+        for index in indices {
+            #[allow(clippy::cast_precision_loss)] // for the message
+            let value = *index as f64;
+            let (input, allowed) = ("the index of a coordinate", "below the number of coordinates");
+            *self.held.get_mut(*index).ok_or(StepError::InvalidInput { input, allowed, value })? = true;
+        }
+        Ok(self)
+    }
+
+    /// The nearest state with the held coordinates.
+    ///
+    /// # Errors
+    /// As [`State::projected`]; [`StepError::Singular`] also if the held coordinates leave no motion.
+    pub fn projected(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Projected<N>, StepError> {
+        let (q, v) = (q.vector(), v.vector());
+        self.explained((t, &q, &v), || {
+            let x = self.nearest((t, &q, &v), &q, None)?;
+            self.with_velocities(t, [&q, &x], &v)
+        })
+    }
+
+    /// The result of `find` for a finite place; its failure names the expression that is not finite.
+    pub(super) fn explained<R>(
+        &self,
+        (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>),
+        find: impl FnOnce() -> Result<R, StepError>,
+    ) -> Result<R, StepError> {
+        let given = Node::new(State { t, q: *q, p: *v }, 0.0);
+        given.check_finite(0.0)?;
+        find().map_err(|failure| failure.explained(self.system, &given, 0.0, v))
+    }
+
+    /// The mass matrix without the coupling of held coordinates.
+    fn mass(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+        let mass = self.system.point(t, q, v).mass.dense();
+        SMatrix::from_fn(|i, j| match (self.held[i] || self.held[j], i == j) {
+            (false, _) => mass[(i, j)],
+            (true, is_diagonal) => f64::from(u8::from(is_diagonal)),
+        })
+    }
+
+    /// A and a, without gradients along held coordinates.
+    fn gradients(&self, t: f64, q: &SVector<f64, N>) -> (S::Gradients, S::Multipliers) {
+        let (mut gradients, rates) = self.system.constraint_gradients(t, q);
+        for r in 0..S::CONSTRAINTS.len() {
+            let (columns, values) = gradients.row_mut(r);
+            for (column, value) in columns.iter().zip(values) {
+                if self.held[*column] {
+                    *value = 0.0;
+                }
+            }
+        }
+        (gradients, rates)
+    }
+
+    /// The state at x with the velocities nearest to v.
+    pub(super) fn with_velocities(
+        &self,
+        t: f64,
+        [q, x]: [&SVector<f64, N>; 2],
+        v: &SVector<f64, N>,
+    ) -> Result<Projected<N>, StepError> {
+        let system = self.system;
+        let bordered = &mut Bordered::new(N, S::CONSTRAINTS.len(), &[]);
+        let (gradients, _) = self.gradients(t, x);
+        border(bordered, system, &self.mass(t, x, v), &gradients).map_err(|failure| unsolvable(failure, t))?;
+        let (all, rates) = system.constraint_gradients(t, x);
+        let mut w = *v;
+        // The second correction removes the rounding errors of the first.
+        for _ in 0..2 {
+            let (mut correction, mut rows) = (SVector::zeros(), rates);
+            for (row, gradient) in rows.as_mut().iter_mut().zip(all.rows()) {
+                *row += gradient.dot(&w);
+            }
+            bordered.solve(&mut correction, rows.as_mut());
+            w -= correction;
+        }
+        let state = State::at(system, t, *x, w);
+        let energy_lost = system.energy(t, x, v) - system.energy(t, x, &w);
+        if !state.q.iter().chain(&state.p).chain(&[energy_lost]).all(|entry| entry.is_finite()) {
+            return Err(StepError::NonFinite { t, quantity: "momentum or energy", expression: None });
+        }
+        Ok(Projected { state, moved_q: x - q, moved_v: w - v, energy_lost })
+    }
+
+    /// The coordinates with the values `target` of g, zero without, that are nearest to `from` by the mass matrix at (t,
+    /// q, v), by Newton iteration.
+    pub(super) fn nearest(
+        &self,
+        (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>),
+        from: &SVector<f64, N>,
+        target: Option<&S::Multipliers>,
+    ) -> Result<SVector<f64, N>, StepError> {
+        let (system, holonomic) = (self.system, S::HOLONOMIC);
+        let mass = self.mass(t, q, v);
+        let [_, positions] = spread(&mass, q, &SVector::zeros());
+        let bordered = &mut Bordered::new(N, holonomic, &[]);
+        let mut zero = system.constraints(t, q);
+        zero.as_mut().fill(0.0);
+        let target = target.unwrap_or(&zero).as_ref();
+        let at = |x: SVector<f64, N>, kappa: S::Multipliers| {
+            let mut values = system.constraints(t, &x);
+            let (gradients, rates) = self.gradients(t, &x);
+            let (all, _) = system.constraint_gradients(t, &x);
+            let reaction = reaction_of(&gradients, kappa.as_ref());
+            let row = mass * (x - from) - reaction;
+            let scale = mass.abs() * (x.abs() + from.abs()) + reaction_terms(&gradients, kappa.as_ref());
+            let residual =
+                row.iter().zip(&scale).fold(0.0, |worst, (row, scale)| worse(roundings(*row, *scale), worst));
+            let residual = (0..holonomic).fold(residual, |worst, r| {
+                let value = &mut values.as_mut()[r];
+                *value = if system.is_dropped(r) { 0.0 } else { *value - target[r] };
+                let row = all.row(r);
+                let scale = row.terms(&x) + row.terms(&positions) + (rates.as_ref()[r] * t).abs() + target[r].abs();
+                worse(roundings(*value, scale), worst)
+            });
+            (x, kappa, row, values, gradients, residual)
+        };
+        let mut found = at(*from, zero);
+        let (mut iterations, mut residuals) = (0, Residuals::new());
+        loop {
+            let (x, kappa, row, values, gradients, residual) = found;
+            residuals.push(residual);
+            if residual.is_nan() {
+                return Err(StepError::NonFinite { t, quantity: "constraints", expression: None });
+            }
+            let bend = system.reaction_derivatives(t, &x, &kappa);
+            let mut curved = mass;
+            for (i, row) in bend.rows().enumerate() {
+                for (j, slope) in row.iter().filter(|(j, _)| !self.held[i] && !self.held[*j]) {
+                    curved[(i, j)] -= slope;
+                }
+            }
+            let factored = border(bordered, system, &curved, &gradients);
+            factored.map_err(|failure| unsolvable(failure, t))?;
+            if residual <= 0.5 {
+                return Ok(x);
+            }
+            let (mut correction, mut change) = (row, values);
+            bordered.solve(&mut correction, &mut change.as_mut()[..holonomic]);
+            let next = (0..=HALVINGS).find_map(|halved| {
+                let part = 0.5_f64.powi(i32::try_from(halved).unwrap_or(0));
+                let mut next = kappa;
+                for (kappa, change) in next.as_mut().iter_mut().zip(change.as_ref()).take(holonomic) {
+                    *kappa -= change * part;
+                }
+                Some(at(x - correction * part, next)).filter(|next| is_reduced(next.5, residual))
+            });
+            match next {
+                Some(next) if iterations < ITERATIONS => found = next,
+                _ if residual <= CONSISTENT => return Ok(x),
+                _ => return Err(StepError::NotConverged { t, h: 0.0, iterations, residual, residuals, turn: 0.0 }),
+            }
+            iterations += 1;
+        }
+    }
+}

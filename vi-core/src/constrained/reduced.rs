@@ -1,0 +1,418 @@
+//! Midpoint steps of point masses in a uniform field, in the impulses alone.
+//!
+//! With a constant diagonal M and a force F(t), the velocity is affine in the impulses λ, and k equations remain:
+//!
+//! ```text
+//! v = M⁻¹(p0 + (h/2) F + A0ᵀλ)        g(t1, q0 + h v)/h = 0        S = A1 M⁻¹ A0ᵀ
+//! p1 = p0 + h F + A0ᵀλ + A1ᵀμ         A1 M⁻¹ p1 + a1 = 0           S = A1 M⁻¹ A1ᵀ
+//! ```
+//!
+//! S couples constraints that share a coordinate: three diagonals for a chain. Its pivots are positive for short steps,
+//! in any order of elimination; the fewest couplings come first. Whatever is unusual is left to the general solver: a
+//! pivot that is not positive, a residual above the floor, rows that fill S.
+
+use super::equations::Place;
+use super::solve::Solved;
+use super::{Constrained, diagonal};
+use crate::linear::{Rectangular, Row};
+use crate::newton::{FLOOR, roundings};
+use crate::node::Node;
+use crate::vector::worse;
+use nalgebra::SVector;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Largest number of entries of S for each constraint, those of its elimination included.
+const FILLED: usize = 12;
+/// Smallest part of a diagonal entry that elimination may leave.
+const KEPT: f64 = 1e-8;
+/// The factors of S serve a further iteration if the residual fell by this factor.
+const FALLEN: f64 = 0.1;
+const ITERATIONS: u32 = 12;
+
+/// Buffers and patterns of the solver. No result depends on them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reduced {
+    /// Columns of the entries of A, row by row.
+    columns: Vec<usize>,
+    /// Start of each row.
+    rows: Vec<usize>,
+    schur: Schur,
+    /// The diagonal of M⁻¹.
+    inverse: Vec<f64>,
+    /// A at the start of the step, and M⁻¹Aᵀ.
+    first: Vec<f64>,
+    weighted: Vec<f64>,
+    /// A and a at the end of the step.
+    last: Vec<f64>,
+    rates: Vec<f64>,
+    /// Coordinates of `last`.
+    end: Vec<f64>,
+    known: Vec<f64>,
+}
+
+/// S and its factors.
+#[derive(Clone, Debug, Default)]
+struct Schur {
+    values: Vec<f64>,
+    reciprocals: Vec<f64>,
+    /// The pairs of entries of A whose products add to each original entry of S.
+    products: Vec<[u32; 2]>,
+    /// The entry of S, and the end of its pairs.
+    sums: Vec<[u32; 2]>,
+    /// The pivots in order.
+    pivots: Vec<Pivot>,
+    /// For each pivot its later rows, and the entries of S in its column and in its row.
+    later: Vec<[u32; 3]>,
+    /// For each pivot, the entries of S in these rows and columns, by rows.
+    targets: Vec<u32>,
+}
+
+/// A step of the elimination.
+#[derive(Clone, Copy, Debug)]
+struct Pivot {
+    unknown: u32,
+    entry: u32,
+    /// End of its later rows, and of its targets.
+    later: u32,
+    targets: u32,
+}
+
+impl Schur {
+    /// Of the rows of A; `None` if elimination fills it.
+    fn new(columns: &[usize], rows: &[usize]) -> Option<Self> {
+        let count = rows.len() - 1;
+        let index = |index: usize| u32::try_from(index).ok();
+        let mut at_column: BTreeMap<usize, Vec<[usize; 2]>> = BTreeMap::new();
+        for row in 0..count {
+            let entries = rows[row]..rows[row + 1];
+            for (column, entry) in columns[entries.clone()].iter().zip(entries) {
+                at_column.entry(*column).or_default().push([row, entry]);
+            }
+        }
+        let mut pairs: BTreeMap<[usize; 2], Vec<[u32; 2]>> = BTreeMap::new();
+        for entries in at_column.values() {
+            for [row, left] in entries {
+                for [column, right] in entries {
+                    pairs.entry([*row, *column]).or_default().push([index(*left)?, index(*right)?]);
+                }
+            }
+            if pairs.len() > FILLED * count.max(4) {
+                return None;
+            }
+        }
+        let mut coupled: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); count];
+        for [row, column] in pairs.keys().filter(|[row, column]| row != column) {
+            coupled[*row].insert(*column);
+        }
+        let mut places: BTreeMap<[usize; 2], u32> = BTreeMap::new();
+        let place = |at: [usize; 2], places: &mut BTreeMap<[usize; 2], u32>| {
+            let next = index(places.len())?;
+            Some(*places.entry(at).or_insert(next))
+        };
+        let mut schur = Self::default();
+        for (at, products) in &pairs {
+            schur.products.extend(products);
+            schur.sums.push([place(*at, &mut places)?, index(schur.products.len())?]);
+        }
+        let mut left: BTreeSet<usize> = (0..count).collect();
+        while let Some(pivot) = left.iter().copied().min_by_key(|row| coupled[*row].len()) {
+            left.remove(&pivot);
+            let later: Vec<usize> = core::mem::take(&mut coupled[pivot]).into_iter().collect();
+            for row in &later {
+                let [column, upper] = [[*row, pivot], [pivot, *row]].map(|at| place(at, &mut places));
+                schur.later.push([index(*row)?, column?, upper?]);
+                coupled[*row].remove(&pivot);
+                coupled[*row].extend(later.iter().filter(|other| *other != row));
+                for other in &later {
+                    schur.targets.push(place([*row, *other], &mut places)?);
+                }
+            }
+            let entry = place([pivot, pivot], &mut places)?;
+            let (later, targets) = (index(schur.later.len())?, index(schur.targets.len())?);
+            schur.pivots.push(Pivot { unknown: index(pivot)?, entry, later, targets });
+            if places.len() > FILLED * count.max(4) {
+                return None;
+            }
+        }
+        schur.values = vec![0.0; places.len()];
+        schur.reciprocals = vec![0.0; count];
+        Some(schur)
+    }
+
+    /// Forms S from rows of A and columns of M⁻¹Aᵀ, and factors it. False if a pivot is not positive.
+    fn factor(&mut self, left: &[f64], right: &[f64]) -> bool {
+        let Self { values, reciprocals, products, sums, pivots, later, targets } = self;
+        // Entries of the elimination follow those of S.
+        values[sums.len()..].fill(0.0);
+        let mut start = 0;
+        for [entry, end] in sums.iter() {
+            let pairs = &products[start..*end as usize];
+            values[*entry as usize] =
+                pairs.iter().fold(0.0, |sum, [a, b]| sum + left[*a as usize] * right[*b as usize]);
+            start = *end as usize;
+        }
+        let (mut start, mut first_target) = (0, 0);
+        let mut is_positive = true;
+        for pivot in pivots.iter() {
+            let diagonal = values[pivot.entry as usize];
+            let reciprocal = diagonal.recip();
+            is_positive &= diagonal > 0.0;
+            reciprocals[pivot.unknown as usize] = reciprocal;
+            let rows = &later[start..pivot.later as usize];
+            let targets = &targets[first_target..pivot.targets as usize];
+            for (place, [_, column, _]) in rows.iter().enumerate() {
+                let multiplier = values[*column as usize] * reciprocal;
+                values[*column as usize] = multiplier;
+                for ([_, _, upper], target) in rows.iter().zip(&targets[place * rows.len()..]) {
+                    let eliminated = multiplier * values[*upper as usize];
+                    values[*target as usize] -= eliminated;
+                }
+                // A small rest of the diagonal has lost its digits.
+                let own = targets[place * rows.len() + place] as usize;
+                is_positive &= values[own] > KEPT * (multiplier * values[rows[place][2] as usize]).abs();
+            }
+            (start, first_target) = (pivot.later as usize, pivot.targets as usize);
+        }
+        is_positive
+    }
+
+    /// Replaces b by the x with `S x = b`.
+    fn solve(&self, b: &mut [f64]) {
+        let Self { values, reciprocals, pivots, later, .. } = self;
+        let mut start = 0;
+        for pivot in pivots {
+            let known = b[pivot.unknown as usize];
+            for [row, column, _] in &later[start..pivot.later as usize] {
+                b[*row as usize] -= values[*column as usize] * known;
+            }
+            start = pivot.later as usize;
+        }
+        for (index, pivot) in pivots.iter().enumerate().rev() {
+            let start = if index == 0 { 0 } else { pivots[index - 1].later as usize };
+            let rows = &later[start..pivot.later as usize];
+            let known = b[pivot.unknown as usize];
+            let rest =
+                rows.iter().fold(known, |rest, [row, _, upper]| rest - values[*upper as usize] * b[*row as usize]);
+            b[pivot.unknown as usize] = rest * reciprocals[pivot.unknown as usize];
+        }
+    }
+}
+
+impl Reduced {
+    /// Allocates; `None` if the system needs the general solver.
+    pub(crate) fn new<S: Constrained<N>, const N: usize>(system: &S, node: &Node<N>) -> Option<Self> {
+        let count = S::CONSTRAINTS.len();
+        if !S::POINT_MASSES || S::HOLONOMIC < count {
+            return None;
+        }
+        let (gradients, _) = system.constraint_gradients(node.t, &node.q);
+        let (mut columns, mut rows) = (Vec::new(), vec![0]);
+        for row in gradients.rows() {
+            columns.extend(row.columns);
+            rows.push(columns.len());
+        }
+        let schur = Schur::new(&columns, &rows)?;
+        let zeros = vec![0.0; columns.len()];
+        let [first, weighted, last] = [zeros.clone(), zeros.clone(), zeros];
+        let (inverse, end, rates, known) = (vec![0.0; N], vec![f64::NAN; N], vec![0.0; count], vec![0.0; count]);
+        Some(Self { columns, rows, schur, inverse, first, weighted, last, rates, end, known })
+    }
+
+    /// A and M⁻¹ at the start of a step. `is_next` if the step follows the last one of the same system.
+    fn begin<S: Constrained<N>, const N: usize>(&mut self, system: &S, node: &Node<N>, is_next: bool) -> bool {
+        if is_next && node.q.as_slice() == self.end {
+            core::mem::swap(&mut self.first, &mut self.last);
+        } else {
+            let masses = diagonal(&system.point(node.t, &node.q, &SVector::zeros()).mass);
+            for (inverse, mass) in self.inverse.iter_mut().zip(&masses) {
+                *inverse = mass.recip();
+            }
+            let (gradients, _) = system.constraint_gradients(node.t, &node.q);
+            write(&gradients, &mut self.first);
+        }
+        for ((weighted, entry), column) in self.weighted.iter_mut().zip(&self.first).zip(&self.columns) {
+            *weighted = entry * self.inverse[*column];
+        }
+        self.inverse.iter().all(|inverse| *inverse > 0.0)
+    }
+
+    /// Adds `AᵀΛ` of these entries.
+    #[inline(always)]
+    fn add<const N: usize>(&self, entries: &[f64], multipliers: &[f64], sum: &mut SVector<f64, N>) {
+        for (row, multiplier) in self.rows.windows(2).zip(multipliers) {
+            let range = row[0]..row[1];
+            for (column, entry) in self.columns[range.clone()].iter().zip(&entries[range]) {
+                sum[*column] += entry * multiplier;
+            }
+        }
+    }
+
+    /// Adds the absolute values of the terms of `A0ᵀλ`.
+    #[inline(always)]
+    fn add_sizes<const N: usize>(&self, lambda: &[f64], sum: &mut SVector<f64, N>) {
+        for (row, multiplier) in self.rows.windows(2).zip(lambda) {
+            let range = row[0]..row[1];
+            for (column, entry) in self.columns[range.clone()].iter().zip(&self.first[range]) {
+                sum[*column] += (entry * multiplier).abs();
+            }
+        }
+    }
+
+    /// Writes `A1 v + a1` to `known`. Returns the largest one over its rounding, with v = M⁻¹ p.
+    #[inline(always)]
+    fn rate<const N: usize>(&mut self, p: &SVector<f64, N>) -> f64 {
+        let v = SVector::<f64, N>::from_fn(|i, _| p[i] * self.inverse[i]);
+        let mut worst = 0.0;
+        for (row, (known, rate)) in self.rows.windows(2).zip(self.known.iter_mut().zip(&self.rates)) {
+            let (mut sum, mut scale) = (*rate, rate.abs());
+            let range = row[0]..row[1];
+            for (column, entry) in self.columns[range.clone()].iter().zip(&self.last[range]) {
+                let term = entry * v[*column];
+                sum += term;
+                scale += term.abs();
+            }
+            *known = sum;
+            // p and v are rounded too.
+            worst = worse(roundings(sum, 3.0 * scale), worst);
+        }
+        worst
+    }
+}
+
+/// Writes the entries of A.
+#[inline(always)]
+fn write<const N: usize>(gradients: &impl Rectangular<N, f64>, entries: &mut [f64]) {
+    let values = gradients.rows().flat_map(|Row { values, .. }| values);
+    for (entry, value) in entries.iter_mut().zip(values) {
+        *entry = *value;
+    }
+}
+
+/// Solves the step of length h from `node`, with the guess of the impulses in `u`; replaces it by velocities and
+/// impulses. `None` if the general solver has to.
+pub(crate) fn step<S: Constrained<N>, const N: usize>(
+    system: &S,
+    (node, h, is_next): (&Node<N>, f64, bool),
+    u: &mut [f64],
+    reduced: &mut Reduced,
+) -> Option<Solved<N, S::Multipliers>> {
+    if !reduced.begin(system, node, is_next) {
+        return None;
+    }
+    let (velocity, lambda) = u.split_at_mut(N);
+    let (middle, t1) = (node.t + (node.t_low + h * 0.5), node.t + (node.t_low + h));
+    let force = system.point(middle, &node.q, &SVector::zeros()).force;
+    let mut v =
+        SVector::<f64, N>::from_fn(|i, _| (node.p[i] + (node.p_low[i] + force[i] * (h * 0.5))) * reduced.inverse[i]);
+    reduced.add(&reduced.weighted, lambda, &mut v);
+
+    let (mut iterations, mut before, mut is_factored) = (0, f64::INFINITY, false);
+    let residual = loop {
+        let end: Place<N, f64> = (t1, node.q + (node.q_low + v * h));
+        let residual = constraints(system, &end, h, reduced);
+        if !is_factored || residual > FLOOR && residual > FALLEN * before {
+            is_factored = reduced.schur.factor(&reduced.last, &reduced.weighted);
+        }
+        if !is_factored || residual.is_nan() || iterations == ITERATIONS {
+            return None;
+        }
+        if residual <= 1.0 || residual <= FLOOR && iterations > 0 {
+            reduced.end.copy_from_slice(end.1.as_slice());
+            break residual;
+        }
+        reduced.schur.solve(&mut reduced.known);
+        for (lambda, correction) in lambda.iter_mut().zip(&mut reduced.known) {
+            *correction = -*correction;
+            *lambda += *correction;
+        }
+        reduced.add(&reduced.weighted, &reduced.known, &mut v);
+        (before, iterations) = (residual, iterations + 1);
+    };
+    velocity.copy_from_slice(v.as_slice());
+    let mut reaction = SVector::zeros();
+    reduced.add(&reduced.first, lambda, &mut reaction);
+    let mut terms = SVector::zeros();
+    reduced.add_sizes(lambda, &mut terms);
+    let residual = worse(momenta(system, (node, h, &v), &reaction, &terms), residual);
+    let (end, mu, of_velocity) = projected(system, (node, h, &v), force * h + reaction, reduced)?;
+    let residual = worse(of_velocity, residual);
+    // False for NaN.
+    (residual <= FLOOR).then_some(Solved { end, mu, residual, iterations })
+}
+
+/// g/h at the end of a step, in `known`, and A and a there. Returns the largest row over its rounding.
+#[inline(always)]
+fn constraints<S: Constrained<N>, const N: usize>(
+    system: &S,
+    (t, q): &Place<N, f64>,
+    h: f64,
+    reduced: &mut Reduced,
+) -> f64 {
+    let values = system.constraints(*t, q);
+    let (gradients, rates) = system.constraint_gradients(*t, q);
+    write(&gradients, &mut reduced.last);
+    reduced.rates.copy_from_slice(rates.as_ref());
+    let mut worst = 0.0;
+    for (r, (value, rate)) in values.as_ref().iter().zip(rates.as_ref()).enumerate() {
+        reduced.known[r] = value / h;
+        let scale = gradients.row(r).terms(q) / h.abs() + rate.abs();
+        worst = worse(roundings(reduced.known[r], scale), worst);
+    }
+    worst
+}
+
+/// The largest momentum row over its rounding.
+#[inline(always)]
+fn momenta<S: Constrained<N>, const N: usize>(
+    system: &S,
+    (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
+    reaction: &SVector<f64, N>,
+    terms: &SVector<f64, N>,
+) -> f64 {
+    let (t, q) = node.midpoint(h, v);
+    let point = system.point(t, &q, v);
+    (0..N).fold(0.0, |worst, i| {
+        let of_force = point.force[i] * (h * 0.5);
+        let row = ((point.momentum[i] - node.p[i]) - node.p_low[i]) - (of_force + reaction[i]);
+        // M v is the only term of its row.
+        let scale = node.p[i].abs() + 2.0 * point.momentum[i].abs() + of_force.abs() + terms[i];
+        worse(roundings(row, scale), worst)
+    })
+}
+
+/// The end of a step with consistent momenta, the impulse for that, and the residual of `A v + a`.
+#[inline(always)]
+fn projected<S: Constrained<N>, const N: usize>(
+    system: &S,
+    (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
+    mut increment: SVector<f64, N>,
+    reduced: &mut Reduced,
+) -> Option<(Node<N>, S::Multipliers, f64)> {
+    for ((weighted, entry), column) in reduced.weighted.iter_mut().zip(&reduced.last).zip(&reduced.columns) {
+        *weighted = entry * reduced.inverse[*column];
+    }
+    if !reduced.schur.factor(&reduced.last, &reduced.weighted) {
+        return None;
+    }
+    let mut mu = system.constraints(node.t, &node.q);
+    reduced.rate(&(node.p + (node.p_low + increment)));
+    reduced.schur.solve(&mut reduced.known);
+    for (mu, rate) in mu.as_mut().iter_mut().zip(&reduced.known) {
+        *mu = -rate;
+    }
+    reduced.add(&reduced.last, mu.as_ref(), &mut increment);
+    let mut end = *node;
+    end.advance(h, v, &increment);
+    // The increment of the momenta was rounded. Its part across the constraints goes into a second, tiny impulse.
+    reduced.rate(&(end.p + end.p_low));
+    reduced.schur.solve(&mut reduced.known);
+    let mut rest = SVector::zeros();
+    for (mu, rate) in mu.as_mut().iter_mut().zip(&mut reduced.known) {
+        *rate = -*rate;
+        *mu += *rate;
+    }
+    reduced.add(&reduced.last, &reduced.known, &mut rest);
+    end.add_momentum(&rest);
+    let residual = reduced.rate(&(end.p + end.p_low));
+    end.is_finite().then_some((end, mu, residual))
+}

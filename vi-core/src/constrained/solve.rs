@@ -1,0 +1,312 @@
+//! The solution of a step with constraints: Newton iteration to the rounding floor, then the projection of the momenta.
+//!
+//! ```text
+//! L_v(t1, q1, v1) = p1 = p0 + h Σ b_i F_i + Σ A_jᵀ λ_j + A_sᵀ μ        A_s v1 + a_s = 0
+//! ```
+//!
+//! The Jacobian at the guess serves every iteration while the residual falls fast; otherwise it is evaluated anew. Its
+//! determinant has the sign that it has for short steps. Beyond a zero of the determinant lies a second root, in which
+//! a rod has flipped over.
+
+use super::equations::{Rows, expected_sign, stage_velocity, unknowns};
+use super::motion::{Velocity, velocity};
+use super::reduced::{self, Reduced};
+use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, reaction_of};
+use crate::error::{Residuals, StepError};
+use crate::linear::{Bordered, Factored, Rectangular, Row};
+use crate::newton::FLOOR;
+use crate::node::Node;
+use crate::real::Rounded;
+use nalgebra::SVector;
+
+const ITERATIONS: u32 = 40;
+const HALVINGS: u32 = 12;
+/// The Jacobian serves a further iteration if the residual fell by this factor.
+const FALLEN: f64 = 0.1;
+/// A solution after more iterations has its determinant evaluated anew.
+const FEW: u32 = 8;
+
+/// Buffers of the solver. No result depends on them.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    /// Coordinates, constraints, stages.
+    sizes: [usize; 3],
+    jacobian: Factored,
+    /// The solver of midpoint steps in the impulses alone, if the system allows it.
+    reduced: Option<Box<Reduced>>,
+    /// Right-hand side and solution in the order of elimination.
+    eliminated: Vec<f64>,
+    correction: Vec<f64>,
+    trial: Vec<f64>,
+    bordered: Bordered,
+    /// The buffer of the unknowns of a step.
+    pub(crate) unknowns: Vec<f64>,
+}
+
+/// A solved step; its unknowns are in the list of the caller.
+pub(crate) struct Solved<const N: usize, M> {
+    pub(crate) end: Node<N>,
+    /// The impulse of the projection.
+    pub(crate) mu: M,
+    pub(crate) residual: f64,
+    pub(crate) iterations: u32,
+}
+
+/// The equations of a step at its solution.
+pub(crate) struct Solution<R> {
+    pub(crate) rows: R,
+    pub(crate) residual: f64,
+    pub(crate) iterations: u32,
+}
+
+/// Solves the step of length h from `node`, with the guess in `u`; replaces it by the unknowns. `sign` is the sign of
+/// the determinant of the bordered mass matrix, `is_next` says that the step follows the last one of the workspace.
+///
+/// # Errors
+/// [`StepError::NotConverged`], [`StepError::Singular`], [`StepError::NonFinite`].
+pub(crate) fn step<S, const N: usize, const STAGES: usize>(
+    system: &S,
+    (node, h, sign, is_next): (&Node<N>, f64, i8, bool),
+    u: &mut Vec<f64>,
+    workspace: &mut Workspace,
+) -> Result<Solved<N, S::Multipliers>, StepError>
+where
+    S: Constrained<N> + ConvertibleConstrained<N>,
+{
+    let reduced = workspace.reduced.as_mut().filter(|_| S::POINT_MASSES && sign > 0);
+    if let Some(solved) = reduced.and_then(|reduced| reduced::step(system, (node, h, is_next), u, reduced)) {
+        return Ok(solved);
+    }
+    let of = (node, h, sign);
+    let solution = unprojected::<S, N, STAGES>(system, of, u, workspace, false)?;
+    projected(system, of, (&solution, u), workspace).map(|(solved, _)| solved)
+}
+
+/// Solves the equations of a step, without its projection. If `is_factored`, the workspace holds the factors of a step
+/// of nearly this length from the same node.
+///
+/// # Errors
+/// As [`step`].
+pub(crate) fn unprojected<S, const N: usize, const STAGES: usize>(
+    system: &S,
+    (node, h, sign): (&Node<N>, f64, i8),
+    u: &mut Vec<f64>,
+    workspace: &mut Workspace,
+    mut is_factored: bool,
+) -> Result<Solution<Rows<S, N, STAGES>>, StepError>
+where
+    S: Constrained<N> + ConvertibleConstrained<N>,
+{
+    let kept = [S::HOLONOMIC, S::CONSTRAINTS.len()].map(|count| (0..count).filter(|r| !system.is_dropped(*r)).count());
+    let of_short_steps = expected_sign::<STAGES>(sign, kept);
+    let start = system.constraint_gradients(node.t, &node.q);
+    let rows = |u: &[f64]| Rows::<S, N, STAGES>::from_start(system, (node, h), &start, u);
+    let mut at = rows(u);
+    let mut residual = at.residual();
+    let (mut iterations, mut residuals) = (0, Residuals::new());
+    let mut has_right_sign = is_factored && workspace.jacobian.determinant_sign() == of_short_steps;
+    let failed = |iterations, residual, residuals: &Residuals| {
+        let turn = turn(system, node, h);
+        StepError::NotConverged { t: node.t, h, iterations, residual, residuals: *residuals, turn }
+    };
+    loop {
+        residuals.push(residual);
+        if residual.is_nan() {
+            return Err(StepError::NonFinite { t: node.t, quantity: "step equations", expression: None });
+        }
+        if !is_factored {
+            has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
+        }
+        let is_last = residual <= 1.0 || iterations == ITERATIONS;
+        let next = if is_last { None } else { workspace.corrected(&at, u, residual, rows) };
+        let Some((next, next_residual)) = next else {
+            if residual > FLOOR {
+                residual = bounded::<S, N, STAGES>(system, node, h, u);
+            }
+            // False for NaN.
+            if residual <= FLOOR {
+                break;
+            }
+            return Err(failed(iterations, residual, &residuals));
+        };
+        iterations += 1;
+        core::mem::swap(u, &mut workspace.trial);
+        is_factored = next_residual <= FLOOR || next_residual < FALLEN * residual;
+        (at, residual) = (next, next_residual);
+    }
+    if iterations > FEW || !has_right_sign {
+        has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
+    }
+    if has_right_sign {
+        Ok(Solution { rows: at, residual, iterations })
+    } else {
+        Err(failed(iterations, residual, &residuals))
+    }
+}
+
+/// The end of a solved step, with its projection, and the velocity there.
+///
+/// # Errors
+/// As [`step`].
+pub(crate) fn projected<S, const N: usize, const STAGES: usize>(
+    system: &S,
+    (node, h, sign): (&Node<N>, f64, i8),
+    (solution, u): (&Solution<Rows<S, N, STAGES>>, &[f64]),
+    workspace: &mut Workspace,
+) -> Result<(Solved<N, S::Multipliers>, SVector<f64, N>), StepError>
+where
+    S: Constrained<N>,
+{
+    let Solution { rows: at, residual, iterations } = solution;
+    let (t, q) = at.end();
+    let p = node.p + (node.p_low + at.increment);
+    let projected = velocity(system, (t, &q, &p), &stage_velocity(u, STAGES - 1), &mut workspace.bordered)?;
+    let Velocity { v, momentum, mut mu, residual: of_velocity } = projected;
+    if let Some((constraint, residual)) = system.broken(t, &q, &v) {
+        let constraint = S::CONSTRAINTS[constraint];
+        return Err(StepError::DroppedConstraint { t, constraint, residual });
+    }
+    if workspace.bordered.determinant_sign() != sign {
+        let (iterations, residual, residuals) = (*iterations, *residual, Residuals::new());
+        let turn = turn(system, node, h);
+        return Err(StepError::NotConverged { t: node.t, h, iterations, residual, residuals, turn });
+    }
+    let gradients = at.end_gradients();
+    let mut end = *node;
+    end.advance(h, &at.velocity, &(at.increment + reaction_of(gradients, mu.as_ref())));
+    // The increment of the momenta was rounded. Its part across the constraints goes into a second, tiny impulse.
+    let mut lost = (momentum - end.p) - end.p_low;
+    let mut last = mu;
+    last.as_mut().fill(0.0);
+    workspace.bordered.solve(&mut lost, last.as_mut());
+    for (mu, last) in mu.as_mut().iter_mut().zip(last.as_mut()) {
+        *last = -*last;
+        *mu += *last;
+    }
+    end.add_momentum(&reaction_of(gradients, last.as_ref()));
+    end.check_finite(node.t)?;
+    Ok((Solved { end, mu, residual: residual.max(of_velocity), iterations: *iterations }, v))
+}
+
+impl Workspace {
+    /// Allocates for the steps of a system.
+    pub(crate) fn new<S: Constrained<N>, const N: usize, const STAGES: usize>() -> Self {
+        let constraints = S::CONSTRAINTS.len();
+        let unknowns = unknowns::<N, STAGES>(constraints);
+        Self {
+            sizes: [N, constraints, STAGES],
+            jacobian: Factored::new(S::BLOCKS, N + constraints, STAGES),
+            reduced: None,
+            eliminated: vec![0.0; unknowns],
+            correction: vec![0.0; unknowns],
+            trial: vec![0.0; unknowns],
+            bordered: bordered::<S, N, f64>(),
+            unknowns: vec![0.0; unknowns],
+        }
+    }
+
+    /// The same for fixed steps from a node on, in the impulses alone if the system has such steps.
+    pub(crate) fn of_steps<S: Constrained<N>, const N: usize, const STAGES: usize>(system: &S, node: &Node<N>) -> Self {
+        let reduced = if STAGES == 1 { Reduced::new(system, node).map(Box::new) } else { None };
+        Self { reduced, ..Self::new::<S, N, STAGES>() }
+    }
+
+    /// Factors the Jacobian at u, and returns the sign of its determinant.
+    pub(crate) fn factor<S: Constrained<N>, const N: usize, const STAGES: usize>(
+        &mut self,
+        at: &Rows<S, N, STAGES>,
+        system: &S,
+        h: f64,
+        u: &[f64],
+    ) -> i8 {
+        self.jacobian.factor(|fronts| at.jacobian(system, h, u, fronts));
+        self.jacobian.determinant_sign()
+    }
+
+    /// Replaces rows of the equations, in their order, by the solution of the linear system of the factored Jacobian, in
+    /// the order of the unknowns. NaN if the Jacobian is singular.
+    pub(crate) fn solve(&mut self, rows: &mut [f64]) {
+        let Self { sizes, jacobian, eliminated, .. } = self;
+        let places = || {
+            let [n, constraints, stages] = *sizes;
+            let of = move |unknown: usize, copy: usize| match unknown.checked_sub(n) {
+                None => copy * n + unknown,
+                Some(constraint) => stages * n + copy * constraints + constraint,
+            };
+            (0..n + constraints)
+                .flat_map(move |unknown| (0..stages).map(move |copy| (unknown, copy, of(unknown, copy))))
+        };
+        for (unknown, copy, place) in places() {
+            let (position, scale) = jacobian.position(unknown);
+            eliminated[position + copy] = rows[place] * scale;
+        }
+        jacobian.solve(eliminated);
+        for (unknown, copy, place) in places() {
+            let (position, scale) = jacobian.position(unknown);
+            rows[place] = eliminated[position + copy] * scale;
+        }
+    }
+
+    /// Writes u less a correction to `trial`: the longest of its halves that reduces the residual. Returns the rows
+    /// there and their residual; `None` if there is none.
+    fn corrected<S: Constrained<N>, const N: usize, const STAGES: usize>(
+        &mut self,
+        at: &Rows<S, N, STAGES>,
+        u: &[f64],
+        residual: f64,
+        rows: impl Fn(&[f64]) -> Rows<S, N, STAGES>,
+    ) -> Option<(Rows<S, N, STAGES>, f64)> {
+        let mut correction = core::mem::take(&mut self.correction);
+        at.write(&mut correction);
+        self.solve(&mut correction);
+        self.correction = correction;
+        // Near the floor a shorter correction changes nothing.
+        let halvings = if residual <= FLOOR { 0 } else { HALVINGS };
+        for halved in 0..=halvings {
+            let part = 0.5_f64.powi(i32::try_from(halved).unwrap_or(0));
+            for ((trial, u), entry) in self.trial.iter_mut().zip(u).zip(&self.correction) {
+                *trial = u - entry * part;
+            }
+            let next = rows(&self.trial);
+            let next_residual = next.residual();
+            if is_reduced(next_residual, residual) {
+                return Some((next, next_residual));
+            }
+        }
+        None
+    }
+}
+
+/// The largest row over its rounding-error bound, by running error analysis.
+#[cold]
+fn bounded<S, const N: usize, const STAGES: usize>(system: &S, node: &Node<N>, h: f64, u: &[f64]) -> f64
+where
+    S: ConvertibleConstrained<N>,
+{
+    let u: Vec<Rounded> = u.iter().map(|entry| Rounded::nearest(*entry)).collect();
+    let node = node.map(Rounded::exact);
+    Rows::<_, N, STAGES, Rounded>::at(&system.convert::<Rounded>(), &node, Rounded::exact(h), &u).bounded_residual()
+}
+
+/// The part of a step over which the turn of a gradient is measured.
+const PART: f64 = 1.0 / 1024.0;
+
+/// The angle in degrees by which the gradient of a constraint turns in a step of the length h, at the velocity of its
+/// start. Lengths are by the diagonal of the mass matrix.
+#[cold]
+fn turn<S: Constrained<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> f32 {
+    let Ok(flow) = system.flow(node.t, &node.q, &node.p) else { return 0.0 };
+    let mass = diagonal(&system.point(node.t, &node.q, &flow.v).mass);
+    let weights = mass.map(|entry| if entry > 0.0 { entry.sqrt().recip() } else { 1.0 });
+    let (before, _) = system.constraint_gradients(node.t, &node.q);
+    let (after, _) = system.constraint_gradients(node.t + h * PART, &(node.q + flow.v * (h * PART)));
+    let angle = |(before, after): (Row<f64>, Row<f64>)| {
+        let unit = |row: Row<f64>| row.dense::<N>().component_mul(&weights).normalize();
+        let [before, after] = [unit(before), unit(after)];
+        (after - before * before.dot(&after)).norm() / PART
+    };
+    let largest = before.rows().zip(after.rows()).map(angle).fold(0.0, f64::max).to_degrees();
+    #[allow(clippy::cast_possible_truncation)] // for a message
+    let short = largest as f32;
+    if short.is_finite() { short } else { 0.0 }
+}

@@ -1,0 +1,136 @@
+//! Checks of the constraints at a start.
+
+use super::motion::{Velocity, from_rest};
+use super::{Constrained, ConvertibleConstrained, diagonal, reaction_of, spread};
+use crate::error::StepError;
+use crate::linear::{Bordered, Matrix, Rectangular};
+use crate::newton::roundings;
+use crate::node::Node;
+use crate::real::{Real, Rounded};
+use nalgebra::{DMatrix, SVector};
+
+/// Largest g and `A v + a` of a start, in roundings of their terms.
+pub(super) const CONSISTENT: f64 = 16.0;
+/// Rows of A, scaled to 1, whose part across the others is below this are redundant.
+const INDEPENDENT: f64 = 1e-10;
+
+/// Checks that the constraints are independent at a node and that the node satisfies them. Returns its velocity.
+///
+/// # Errors
+/// [`StepError::Redundant`], [`StepError::InconsistentStart`], [`StepError::DroppedConstraint`], [`StepError::Singular`], [`StepError::NonFinite`],
+/// [`StepError::NotConverged`].
+pub(crate) fn checked<S, const N: usize>(
+    system: &S,
+    node: &Node<N>,
+    bordered: &mut Bordered,
+) -> Result<SVector<f64, N>, StepError>
+where
+    S: Constrained<N> + ConvertibleConstrained<N>,
+{
+    node.check_finite(0.0)?;
+    let Node { t, q, p, .. } = node;
+    let (gradients, _) = system.constraint_gradients(*t, q);
+    let found = from_rest(system, (*t, q, p), bordered);
+    let v = found.as_ref().map_or(SVector::zeros(), |found| found.v);
+    let mass = system.point(*t, q, &v).mass;
+    // The name of a redundant constraint says more than a singular matrix.
+    let inverse = &mut Bordered::new(N, 0, S::BLOCKS);
+    let is_regular = inverse.factor(&mass, &gradients).is_ok();
+    let given: Vec<usize> = (0..S::CONSTRAINTS.len()).filter(|r| !system.is_dropped(*r)).collect();
+    let kept = independent_rows(&gradients, &given, &mass, is_regular);
+    if kept.len() < given.len() {
+        // The last declared of those that follow from the others.
+        let last = (0..given.len()).rfind(|index| !kept.contains(index)).unwrap_or(0);
+        let (constraint, of, rank) = (S::CONSTRAINTS[given[last]], given.len(), kept.len());
+        return Err(StepError::Redundant { constraint, of, rank });
+    }
+    let Velocity { mu, .. } = found?;
+
+    let [_, positions] = spread(&mass, q, &SVector::zeros());
+    let [_, velocities] = spread(&mass, &v, p);
+    let rounded = system.convert::<Rounded>();
+    let (t, q) = (Rounded::exact(*t), q.map(Rounded::nearest));
+    let values = rounded.constraints(t, &q);
+    let (rounded_gradients, offsets) = rounded.constraint_gradients(t, &q);
+    // L_v(v) − p = Aᵀμ: the velocity of p is v − M⁻¹ Aᵀμ. Without an inverse, momenta are compared.
+    let impulse = reaction_of(&gradients, mu.as_ref());
+    let (mut excess, mut uncertainty) = (impulse, p.abs());
+    if is_regular {
+        inverse.solve(&mut excess, &mut []);
+        // |M⁻¹| |p|: roundings of momenta do not cancel as the momenta may.
+        uncertainty = SVector::zeros();
+        for (j, momentum) in p.iter().enumerate() {
+            let mut column = SVector::<f64, N>::zeros();
+            column[j] = *momentum;
+            inverse.solve(&mut column, &mut []);
+            uncertainty += column.abs();
+        }
+    }
+    for (r, constraint) in S::CONSTRAINTS.iter().enumerate().filter(|(r, _)| !system.is_dropped(*r)) {
+        let value = values.as_ref()[r];
+        let of_velocity = rounded_gradients.row(r).iter().map(|(column, entry)| entry * Rounded::nearest(v[column]));
+        let bound = of_velocity.fold(offsets.as_ref()[r], |sum, term| sum + term).ulps();
+        let row = gradients.row(r);
+        let of_momentum = row.terms(&uncertainty) + row.terms(&velocities);
+        let of_value = value.ulps() + row.terms(&positions);
+        let rate = -row.dot(&excess);
+        let is_consistent =
+            roundings(value.to_f64(), of_value) <= CONSISTENT && roundings(rate, bound + of_momentum) <= CONSISTENT;
+        if !is_consistent {
+            return Err(StepError::InconsistentStart { constraint, residual: value.to_f64(), rate });
+        }
+    }
+    match system.broken(node.t, &node.q, &v) {
+        Some((r, residual)) => Err(StepError::DroppedConstraint { t: node.t, constraint: S::CONSTRAINTS[r], residual }),
+        None => Ok(v),
+    }
+}
+
+/// The places among `given` of independent constraints, by orthogonalization with column pivoting in the metric of the
+/// inverse mass matrix, or of its diagonal if it is singular or not positive definite. Gradients are compared at length
+/// 1; one without length is never independent.
+pub(super) fn independent_rows<const N: usize>(
+    gradients: &impl Rectangular<N, f64>,
+    given: &[usize],
+    mass: &impl Matrix<N, f64>,
+    is_regular: bool,
+) -> Vec<usize> {
+    let of = given.len();
+    let mut columns = DMatrix::zeros(N, of);
+    for (place, r) in given.iter().enumerate() {
+        gradients.row(*r).iter().for_each(|(column, value)| columns[(column, place)] = value);
+    }
+    let mut root = DMatrix::zeros(N, N);
+    mass.each_entry(|row, column, value| root[(row, column)] = value);
+    let root = root.cholesky();
+    if let Some(root) = root.filter(|_| is_regular) {
+        root.l_dirty().solve_lower_triangular_mut(&mut columns);
+    } else {
+        for (mut row, entry) in columns.row_iter_mut().zip(&diagonal(mass)) {
+            let entry = *entry;
+            row /= if entry > 0.0 { entry.sqrt() } else { 1.0 };
+        }
+    }
+    let lengths: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
+    let (mut kept, mut rest) = (Vec::with_capacity(of), (0..of).collect::<Vec<_>>());
+    while !rest.is_empty() {
+        let part = |r: usize| columns.column(r).norm() / lengths[r];
+        // The largest; of equal ones the first declared.
+        let index =
+            (1..rest.len()).fold(0, |best, index| if part(rest[index]) > part(rest[best]) { index } else { best });
+        // False for a row without length.
+        let is_independent = part(rest[index]) > INDEPENDENT;
+        if !is_independent {
+            break;
+        }
+        let r = rest.remove(index);
+        kept.push(r);
+        let chosen = columns.column(r).normalize();
+        // Twice, so that the rest is orthogonal to rounding.
+        for r in rest.iter().chain(&rest) {
+            let shadow = chosen.dot(&columns.column(*r));
+            columns.column_mut(*r).axpy(-shadow, &chosen, 1.0);
+        }
+    }
+    kept
+}

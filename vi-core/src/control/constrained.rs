@@ -1,0 +1,282 @@
+//! Linearization and equilibria of systems with constraints.
+//!
+//! At rest the reactions balance the forces, and small motions y about an equilibrium lie along a basis Z of the
+//! directions with `A x = 0`:
+//!
+//! ```text
+//! L_q + f − L_vt + AᵀΛ = 0       g(t, q) = 0
+//! Zᵀ M Z y'' + Zᵀ C Z y' + Zᵀ (K − ∂(AᵀΛ)/∂q) Z y = 0
+//! ```
+
+use super::equilibrium::oscillations;
+use super::{Linearization, linearized, no_eigenvalues, spectrum};
+use crate::collocation::Point;
+use crate::constrained::{
+    Constrained, ConvertibleConstrained, Projection, accelerations, border, bordered, is_reduced, reaction_of,
+};
+use crate::derivatives::WithConstraints;
+use crate::error::StepError;
+use crate::linear::{Bordered, Matrix, Rectangular, Row};
+use crate::newton::{FLOOR, roundings};
+use crate::real::{Dual, Rounded};
+use crate::state::Numbers;
+use crate::vector::worse;
+use nalgebra::{Complex, DMatrix, DVector, SMatrix, SVector};
+
+const ITERATIONS: u32 = 100;
+const HALVINGS: i32 = 20;
+/// Largest difference of a matrix from its transpose, relative to its entries: roundings of products.
+const SYMMETRIC: f64 = 32.0 * f64::EPSILON;
+
+/// Linearization and equilibria of a system with constraints, for every generated one.
+pub trait ConstrainedDynamics<const N: usize>: Constrained<N> + ConvertibleConstrained<N> {
+    /// The linearization of x = (q, v) at (t, q, v): `x' = value + A δx + B δu` with the constrained acceleration, exact
+    /// to rounding. A has 2N rows and columns, B one column for each input.
+    ///
+    /// Changes δx that satisfy the derivatives of the constraints keep to them. A has the eigenvalue zero twice for each
+    /// holonomic constraint, and once for each other.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] if the constraints are redundant at q, [`StepError::NonFinite`] if L, f or a derivative is
+    /// not finite.
+    fn linearization(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Linearization, StepError> {
+        linearized::<Self, WithConstraints, N>(self, t, q.vector(), v.vector())
+    }
+
+    /// The equilibrium near a guess of the coordinates, at the time t: a state of rest on the constraints without
+    /// acceleration. The guess may be off the constraints; [`State::assembled`](crate::State::assembled) moves it first.
+    /// With constraints on velocities the equilibria form families: the result is reached from the guess along
+    /// directions that these constraints allow.
+    ///
+    /// # Errors
+    /// Those of [`State::assembled`](crate::State::assembled); [`StepError::InconsistentStart`] if a constraint moves;
+    /// [`StepError::NoEquilibrium`] if there is none near the guess; [`StepError::Singular`] if the forces do not change
+    /// along some direction, or the constraints are redundant; [`StepError::NonFinite`].
+    fn equilibrium(&self, t: f64, guess: impl Numbers<N>) -> Result<ConstrainedEquilibrium<N>, StepError> {
+        let place = Projection::of(self).assembled(t, guess, [0.0; N])?;
+        let (_, rates) = self.constraint_gradients(t, &place.state.q);
+        let moving = rates.as_ref().iter().zip(Self::CONSTRAINTS).find(|(rate, _)| **rate != 0.0);
+        if let Some((rate, constraint)) = moving {
+            return Err(StepError::InconsistentStart { constraint, residual: 0.0, rate: *rate });
+        }
+        Rest::<Self, N> { system: self, t }.equilibrium(place.state.q)
+    }
+}
+
+impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> ConstrainedDynamics<N> for S {}
+
+/// A state of rest without acceleration on constraints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstrainedEquilibrium<const N: usize> {
+    /// Time.
+    pub t: f64,
+    /// Coordinates.
+    pub q: SVector<f64, N>,
+    /// The multipliers Λ, in the order of [`Constrained::CONSTRAINTS`]: the reaction is AᵀΛ.
+    pub multipliers: Vec<f64>,
+    /// The basis Z of the directions that the constraints allow, orthonormal columns: `x = Z y`.
+    pub directions: DMatrix<f64>,
+    /// `Zᵀ M Z`.
+    pub mass: DMatrix<f64>,
+    /// `Zᵀ C Z`, with `C = −∂F/∂v`: damping and gyroscopic terms.
+    pub damping: DMatrix<f64>,
+    /// `Zᵀ (K − ∂(AᵀΛ)/∂q) Z`, with `K = −∂F/∂q`.
+    pub stiffness: DMatrix<f64>,
+    /// Largest unbalanced force and largest constraint, in units of their rounding-error bounds.
+    pub residual: f64,
+}
+
+impl<const N: usize> ConstrainedEquilibrium<N> {
+    /// The rates λ of small motions e^(λt) along the constraints, two for each direction, in radians per unit of time,
+    /// ascending by the size of their imaginary part, then by their real part. The equilibrium is unstable if a real
+    /// part is positive. Without damping and gyroscopic terms, real parts of oscillations are exactly zero.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] if the mass matrix is singular along the constraints, [`StepError::NonFinite`] if the QR
+    /// iteration does not converge.
+    pub fn rates(&self) -> Result<Vec<Complex<f64>>, StepError> {
+        let Self { t, mass, damping, stiffness, .. } = self;
+        let count = mass.nrows();
+        let is_symmetric = (stiffness - stiffness.transpose()).amax() <= SYMMETRIC * stiffness.amax();
+        if damping.iter().all(|entry| *entry == 0.0)
+            && is_symmetric
+            && let Some(squares) = spectrum::squared_frequencies(stiffness, mass)
+        {
+            return Ok(oscillations(&squares));
+        }
+        let factors = mass.clone().lu();
+        let singular = StepError::Singular { t: *t, matrix: "mass matrix along the constraints" };
+        let solved = |forces: &DMatrix<f64>| factors.solve(forces).ok_or(singular);
+        let (by_q, by_v) = (solved(stiffness)?, solved(damping)?);
+        let a = DMatrix::from_fn(2 * count, 2 * count, |i, j| match (i < count, j < count) {
+            (true, _) => f64::from(u8::from(j == count + i)),
+            (false, true) => -by_q[(i - count, j)],
+            (false, false) => -by_v[(i - count, j - count)],
+        });
+        spectrum::eigenvalues(&a).ok_or(no_eigenvalues(*t))
+    }
+
+    /// The frequencies of the oscillations about it, ascending, in radians per unit of time: the positive imaginary
+    /// parts of [`ConstrainedEquilibrium::rates`].
+    ///
+    /// # Errors
+    /// As [`ConstrainedEquilibrium::rates`].
+    pub fn frequencies(&self) -> Result<Vec<f64>, StepError> {
+        Ok(self.rates()?.into_iter().map(|rate| rate.im).filter(|frequency| *frequency > 0.0).collect())
+    }
+}
+
+/// A system at rest.
+struct Rest<'a, S, const N: usize> {
+    system: &'a S,
+    t: f64,
+}
+
+/// −F − AᵀΛ and g at a place, with their derivatives.
+struct Balance<S: Constrained<N>, const N: usize> {
+    q: SVector<f64, N>,
+    multipliers: S::Multipliers,
+    force: SVector<f64, N>,
+    values: S::Multipliers,
+    gradients: S::Gradients,
+    mass: SMatrix<f64, N, N>,
+    damping: SMatrix<f64, N, N>,
+    stiffness: SMatrix<f64, N, N>,
+    /// Rows over their rounding errors.
+    roundings: SVector<f64, N>,
+    residual: f64,
+}
+
+impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, N> {
+    fn at(&self, q: SVector<f64, N>, multipliers: S::Multipliers) -> Balance<S, N> {
+        let Self { system, t } = *self;
+        let dual = system.convert::<Dual<f64>>();
+        let (time, place, still) = (Dual::variable(t), q.map(Dual::fixed), SVector::zeros());
+        let Point { momentum, force, .. } = dual.point(time, &place, &still);
+        let of = dual.point_derivatives(time, &place, &still);
+        let [momentum_dq, mass, force_dq, force_dv] =
+            [of.momentum_dq, of.mass, of.force_dq, of.force_dv].map(|matrix| matrix.dense());
+        let (gradients, _) = system.constraint_gradients(t, &q);
+        let reaction = reaction_of(&gradients, multipliers.as_ref());
+        let unbalanced = momentum.zip_map(&force, |momentum, force| momentum.slope - force.value) - reaction;
+
+        let rounded = system.convert::<Dual<Rounded>>();
+        let time = Dual { value: Rounded::exact(t), slope: Rounded::exact(1.0) };
+        let place = q.map(|number| Dual::fixed(Rounded::nearest(number)));
+        let Point { momentum, force, .. } = rounded.point(time, &place, &SVector::zeros());
+        let fixed: Vec<_> = multipliers.as_ref().iter().map(|number| Dual::fixed(Rounded::nearest(*number))).collect();
+        let reaction = reaction_of(&rounded.constraint_gradients(time, &place).0, &fixed);
+        let scale = SVector::<f64, N>::from_fn(|i, _| (momentum[i].slope - force[i].value - reaction[i].value).ulps());
+        // By the largest scale, at equal kinetic energies: a force that vanishes has terms that vanish.
+        let weights = SVector::<f64, N>::from_fn(|i, _| match mass[(i, i)].value.sqrt() {
+            weight if weight > 0.0 => weight,
+            _ => 1.0,
+        });
+        let largest = scale.component_div(&weights).amax();
+        let over = unbalanced.zip_map(&weights, |row, weight| roundings(row, weight * largest));
+        let mut values = system.constraints(t, &q);
+        let mut residual = over.iter().fold(0.0, |worst, row| worse(*row, worst));
+        for (r, value) in values.as_mut().iter_mut().enumerate() {
+            if r >= S::HOLONOMIC || system.is_dropped(r) {
+                *value = 0.0;
+            }
+            residual = worse(roundings(*value, gradients.row(r).terms(&SVector::<f64, N>::repeat(q.amax()))), residual);
+        }
+        // L_vqt − ∂(L_q + f)/∂q − ∂(AᵀΛ)/∂q
+        let mut stiffness = momentum_dq.zip_map(&force_dq, |momentum, force| momentum.slope - force.value);
+        for (i, row) in system.reaction_derivatives(t, &q, &multipliers).rows().enumerate() {
+            row.iter().for_each(|(j, slope)| stiffness[(i, j)] -= slope);
+        }
+        Balance {
+            q,
+            multipliers,
+            force: unbalanced,
+            values,
+            mass: mass.map(|entry| entry.value),
+            // L_vvt + L_vq − ∂(L_q + f)/∂v
+            damping: SMatrix::from_fn(|i, j| mass[(i, j)].slope + (momentum_dq[(i, j)].value - force_dv[(i, j)].value)),
+            stiffness,
+            gradients,
+            roundings: over,
+            residual,
+        }
+    }
+
+    /// Damped Newton iteration from a place on the constraints, with the multipliers of the motion from rest there.
+    fn equilibrium(&self, q: SVector<f64, N>) -> Result<ConstrainedEquilibrium<N>, StepError> {
+        let Self { system, t } = *self;
+        let (_, multipliers) = accelerations(system, (t, &q, &SVector::zeros()), &mut bordered::<S, N, f64>())?;
+        let bordered = &mut Bordered::new(N, S::CONSTRAINTS.len(), &[]);
+        let mut found = self.at(q, multipliers);
+        for _ in 0..ITERATIONS {
+            if found.residual.is_nan() {
+                return Err(StepError::NonFinite { t, quantity: "generalized force", expression: None });
+            }
+            let factored = border(bordered, system, &found.stiffness, &found.gradients);
+            factored.map_err(|_| StepError::Singular { t, matrix: "stiffness matrix bordered by the constraints" })?;
+            let (mut correction, mut change) = (found.force, found.values);
+            bordered.solve(&mut correction, change.as_mut());
+            let next = (0..HALVINGS).find_map(|halved| {
+                let part = 0.5_f64.powi(halved);
+                let mut next = found.multipliers;
+                for (multiplier, change) in next.as_mut().iter_mut().zip(change.as_ref()) {
+                    *multiplier -= change * part;
+                }
+                Some(self.at(found.q - correction * part, next))
+                    .filter(|next| is_reduced(next.residual, found.residual))
+            });
+            match next {
+                Some(next) => found = next,
+                None => break,
+            }
+        }
+        if found.residual <= FLOOR {
+            return Ok(self.reduced(&found));
+        }
+        let worst = found.roundings.iamax();
+        Err(StepError::NoEquilibrium { t, coordinate: S::COORDINATES[worst], force: -found.force[worst] })
+    }
+
+    /// The equilibrium with its matrices along the constraints.
+    fn reduced(&self, found: &Balance<S, N>) -> ConstrainedEquilibrium<N> {
+        let directions = directions(&found.gradients);
+        let along = |matrix: &SMatrix<f64, N, N>| {
+            let matrix = DMatrix::from_fn(N, N, |i, j| matrix[(i, j)]);
+            directions.transpose() * matrix * &directions
+        };
+        ConstrainedEquilibrium {
+            t: self.t,
+            q: found.q,
+            multipliers: found.multipliers.as_ref().to_vec(),
+            mass: along(&found.mass),
+            damping: along(&found.damping),
+            stiffness: along(&found.stiffness),
+            residual: found.residual,
+            directions,
+        }
+    }
+}
+
+/// An orthonormal basis of the vectors across these gradients, by orthogonalization with pivoting.
+fn directions<const N: usize>(gradients: &impl Rectangular<N, f64>) -> DMatrix<f64> {
+    let mut known: Vec<DVector<f64>> = Vec::with_capacity(N);
+    let across = |mut vector: DVector<f64>, known: &[DVector<f64>]| {
+        // Twice, so that the rest is orthogonal to rounding.
+        for other in known.iter().chain(known) {
+            let shadow = other.dot(&vector);
+            vector.axpy(-shadow, other, 1.0);
+        }
+        vector
+    };
+    for gradient in gradients.rows().map(Row::dense::<N>).filter(|gradient| gradient.norm() > 0.0) {
+        let gradient = DVector::from_column_slice(gradient.normalize().as_slice());
+        known.push(across(gradient, &known).normalize());
+    }
+    let rank = known.len();
+    while known.len() < N {
+        let units = (0..N).map(|i| across(DVector::from_fn(N, |row, _| f64::from(u8::from(row == i))), &known));
+        let Some(longest) = units.max_by(|one, other| one.norm().total_cmp(&other.norm())) else { break };
+        known.push(longest.normalize());
+    }
+    DMatrix::from_fn(N, N - rank, |row, column| known[rank + column][row])
+}

@@ -1,0 +1,188 @@
+//! Composition of steps with constraints: fixed steps of order 4, 6 and 8 from the midpoint rule [`GaussLobatto<1>`].
+//!
+//! As [`Composition`], of which it takes the weights: one step consists of the steps `γ_1 h, γ_2 h, …`, each of which
+//! satisfies the constraints at its end. It is symmetric, and for holonomic constraints without force symplectic.
+//! [`GaussLobatto`] with more stages has the same orders with positive substeps, and tolerates damping.
+//!
+//! Each substep is extrapolated from the same substep of earlier steps. A step allocates the unknowns of its substeps.
+
+use super::gauss_lobatto::{ConstrainedStep, ConstrainedSteps};
+use super::{Composition, GaussLobatto, Memory, Method, Problem, Report};
+use crate::constrained::solve::Workspace;
+use crate::constrained::{Constrained, ConvertibleConstrained};
+use crate::error::StepError;
+use crate::node::Node;
+use crate::run::Hermite;
+use crate::state::State;
+
+/// A symmetric composition of steps of order 2; see the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Composed<M> {
+    /// The method of a substep.
+    pub method: M,
+    /// Weights and order.
+    pub scheme: Composition,
+}
+
+impl GaussLobatto<1> {
+    /// Steps of the order of a composition, each of which consists of steps of this method.
+    ///
+    /// ```
+    /// use vi_core::prelude::*;
+    /// use vi_core::{Composition, GaussLobatto};
+    /// # mod pendulum {
+    /// # use vi_core::lagrangian;
+    /// lagrangian! {
+    ///     pub struct Pendulum {
+    ///         coord x, y;
+    ///         L = (dot(x)^2 + dot(y)^2) / 2 - 9.81 * y;
+    ///         constraint rod = x^2 + y^2 - 1;
+    ///     }
+    /// }
+    /// # }
+    /// # use pendulum::Pendulum;
+    ///
+    /// let method = GaussLobatto::<1>.composed(Composition::KAHAN_LI_6);
+    /// let mut run = Pendulum::default().at(0.0, [0.6, -0.8], [0.0, 0.0]).integrate(method, 0.05)?;
+    /// run.step()?;
+    /// # Ok::<(), StepError>(())
+    /// ```
+    #[must_use]
+    pub fn composed(self, scheme: Composition) -> Composed<Self> {
+        Composed { method: self, scheme }
+    }
+}
+
+/// Memory of a composition: one for each substep.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ComposedSteps<const N: usize> {
+    pub(crate) all: Vec<ConstrainedSteps<N>>,
+    /// Whether no step was taken yet: all memories are those of the first substep.
+    is_new: bool,
+}
+
+impl<const N: usize> Memory for ComposedSteps<N> {}
+
+impl<S, const N: usize> Method<S, N> for Composed<GaussLobatto<1>>
+where
+    S: Constrained<N> + ConvertibleConstrained<N>,
+{
+    type Prepared = ();
+    type Memory = ComposedSteps<N>;
+    type Cache = Option<Box<Workspace>>;
+    type Step = Vec<ConstrainedStep<N, S::Multipliers>>;
+    type Left = StepError;
+    type DenseOutput = Hermite<N>;
+
+    fn order(&self) -> u32 {
+        self.scheme.order
+    }
+
+    fn prepare(&self, _system: &S, _h: f64) {}
+
+    fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
+        let all = self.scheme.lengths(h).map(|h| self.method.begin(system, node, h)).collect::<Result<_, _>>()?;
+        Ok(ComposedSteps { all, is_new: true })
+    }
+
+    fn attempt(
+        &self,
+        at: Problem<'_, S, (), N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
+    ) -> Result<Self::Step, StepError> {
+        let Problem { system, node, h, .. } = at;
+        let mut after = *node;
+        let mut steps = Vec::with_capacity(memory.all.len());
+        for (own, h) in memory.all.iter().zip(self.scheme.lengths(h)) {
+            let problem = Problem { system, prepared: &(), node: &after, h };
+            let step = if memory.is_new {
+                // Before the first step, a substep is guessed from its own start.
+                let own = self.method.with_length(system, own, &after, h);
+                own.and_then(|own| self.method.solve(problem, &own, cache))
+            } else {
+                self.method.solve(problem, own, cache)
+            };
+            let step = step.map_err(|failure| failure.explained_at(system, &after, h))?;
+            after = step.end;
+            steps.push(step);
+        }
+        Ok(steps)
+    }
+
+    fn recover(
+        &self,
+        _at: Problem<'_, S, (), N>,
+        _memory: &Self::Memory,
+        _cache: &mut Self::Cache,
+        left: StepError,
+    ) -> Result<Self::Step, StepError> {
+        Err(left)
+    }
+
+    fn take(
+        &self,
+        h: f64,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        cache: &mut Self::Cache,
+        steps: Self::Step,
+    ) {
+        for ((memory, step), h) in memory.all.iter_mut().zip(steps).zip(self.scheme.lengths(h)) {
+            Method::<S, N>::take(&self.method, h, (node, memory), cache, step);
+        }
+        memory.is_new = false;
+    }
+
+    fn with_length(
+        &self,
+        system: &S,
+        memory: &Self::Memory,
+        node: &Node<N>,
+        h: f64,
+    ) -> Result<Self::Memory, StepError> {
+        let substeps = memory.all.iter().zip(self.scheme.lengths(h));
+        let all = substeps.map(|(memory, h)| self.method.with_length(system, memory, node, h));
+        Ok(ComposedSteps { all: all.collect::<Result<_, _>>()?, is_new: true })
+    }
+
+    fn with_system(
+        &self,
+        [_, after]: [&S; 2],
+        node: &mut Node<N>,
+        h: f64,
+        _memory: &Self::Memory,
+    ) -> Result<Self::Memory, StepError> {
+        self.begin(after, node, h)
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N>,
+        node: &Node<N>,
+        h: f64,
+        _memory: &Self::Memory,
+    ) -> Result<Hermite<N>, StepError> {
+        Hermite::between(system, before, &node.state(), h)
+    }
+
+    fn report(&self, memory: &Self::Memory) -> Report {
+        let reports = memory.all.iter().map(|memory| Method::<S, N>::report(&self.method, memory));
+        reports.fold(Report::default(), |sum, report| Report {
+            residual: sum.residual.max(report.residual),
+            iterations: sum.iterations + report.iterations,
+        })
+    }
+
+    fn check(&self, memory: &Self::Memory, h: f64, t: f64) -> Result<(), StepError> {
+        if memory.all.len() != self.scheme.weights.len() {
+            #[allow(clippy::cast_precision_loss)] // a few substeps
+            let value = memory.all.len() as f64;
+            let allowed = "those of the composition of the restarted run";
+            return Err(StepError::InvalidInput { input: "the substeps of a checkpoint", allowed, value });
+        }
+        let mut substeps = memory.all.iter().zip(self.scheme.lengths(h));
+        substeps.try_for_each(|(memory, h)| Method::<S, N>::check(&self.method, memory, h, t))
+    }
+}

@@ -1,0 +1,298 @@
+//! Fixed steps of order 2S of systems with constraints.
+//!
+//! Velocities are at the S Gauss points, multipliers Λ at the S + 1 Lobatto nodes of a step. S = 1 is the midpoint rule
+//! with an impulse λ at the start and an impulse μ at the end:
+//!
+//! ```text
+//! L_v = p0 + (h/2)(L_q + f) + A(t0, q0)ᵀ λ    at (t0 + h/2, q0 + (h/2) v, v)
+//! g(t1, q1) = 0,   q1 = q0 + h v              nonholonomic: A v + a = 0 at the midpoint
+//! p1 = p0 + h (L_q + f) + A(t0, q0)ᵀ λ + A(t1, q1)ᵀ μ
+//! ```
+//!
+//! μ is the impulse with which the velocity of p1 satisfies `A v1 + a = 0`. So g and A v + a vanish at every node to
+//! rounding, in a run of any length. The step is time-symmetric. With holonomic constraints and without force it is
+//! symplectic, and preserves the momenta of symmetries of L and g.
+//!
+//! Source: L. O. Jay, Symplectic partitioned Runge–Kutta methods for constrained Hamiltonian systems, 1996; Marsden and
+//! West, Discrete mechanics and variational integrators, 2001, section 3.5. `constrained::solve` solves the equations.
+//!
+//! L is evaluated off the constraint, where g = O(h²), and has to be smooth there. A step does not exist if the gradient
+//! of a constraint turns by about a radian in it: [`StepError::NotConverged`].
+
+use super::{Memory, Method, Problem, Report};
+use crate::constrained::guess::Extrapolation;
+use crate::constrained::lengths::from_node;
+use crate::constrained::solve::{self, Solved, Workspace};
+use crate::constrained::{Constrained, ConvertibleConstrained, bordered, discrete_energy, impulses, start, unknowns};
+use crate::error::StepError;
+use crate::linear::Bordered;
+use crate::node::Node;
+use crate::run::{Hermite, Run};
+use crate::state::State;
+use nalgebra::SVector;
+
+/// Fixed steps of order 2 STAGES of a system with constraints, with 1 to 16 stages: `GaussLobatto::<2>`. See the
+/// [module](self).
+///
+/// Dense output is a cubic: between nodes it leaves the constraints by O(h⁴).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GaussLobatto<const STAGES: usize>;
+
+/// Memory of steps with constraints: the velocities and impulses of the last steps.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ConstrainedSteps<const N: usize> {
+    pub(super) unknowns: Extrapolation,
+    /// The impulse of the last projection.
+    pub(super) mu: Vec<f64>,
+    /// The start node of the last step; the current node before the first step.
+    pub(super) before: Node<N>,
+    pub(super) h: f64,
+    /// Sign of the determinant of the bordered mass matrix.
+    pub(super) sign: i8,
+    pub(super) residual: f64,
+    iterations: u32,
+}
+
+impl<const N: usize> Memory for ConstrainedSteps<N> {}
+
+/// A solved step.
+#[derive(Clone, Debug)]
+pub struct ConstrainedStep<const N: usize, M> {
+    pub(super) end: Node<N>,
+    unknowns: Vec<f64>,
+    mu: M,
+    residual: f64,
+    iterations: u32,
+}
+
+/// The impulses of a step: its constraints add `Σ_j A_jᵀ λ_j + A_Sᵀ μ` to the momenta, with A_j at the Lobatto nodes j.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impulses<M, const STAGES: usize> {
+    /// λ at the Lobatto nodes 0 … S − 1, `h b̃_j` times the multipliers; one impulse for each constraint.
+    pub lambda: [M; STAGES],
+    /// μ at the end of the step.
+    pub mu: M,
+}
+
+impl<const N: usize> ConstrainedSteps<N> {
+    /// Before the first step of the length h from a node with the velocity v.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] and [`StepError::NonFinite`].
+    fn from_node<S: Constrained<N>, const STAGES: usize>(
+        system: &S,
+        (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
+        bordered: &mut Bordered,
+    ) -> Result<Self, StepError> {
+        let guess = from_node::<S, N, STAGES>(system, (node, h, v), bordered)?;
+        Ok(Self::new::<S>((node, h), &guess, bordered.determinant_sign()))
+    }
+
+    /// Before the first step of the length h from a node, with a guess of its unknowns and the sign of the determinant
+    /// of the bordered mass matrix.
+    pub(super) fn new<S: Constrained<N>>((node, h): (&Node<N>, f64), guess: &[f64], sign: i8) -> Self {
+        let mu = vec![0.0; S::CONSTRAINTS.len()];
+        Self { unknowns: Extrapolation::new(guess), mu, before: *node, h, sign, residual: 0.0, iterations: 0 }
+    }
+
+    /// Adds a step of the length h from `before`.
+    pub(super) fn take(&mut self, (before, h): (&Node<N>, f64), unknowns: &[f64], mu: &[f64], residual: f64) {
+        (self.before, self.h, self.residual) = (*before, h, residual);
+        self.unknowns.push(unknowns);
+        self.mu.copy_from_slice(mu);
+    }
+
+    /// The impulses of the step that led to the node.
+    pub(super) fn impulses<S: Constrained<N>, const STAGES: usize>(
+        &self,
+        system: &S,
+        node: &Node<N>,
+    ) -> Option<Impulses<S::Multipliers, STAGES>> {
+        let constraints = S::CONSTRAINTS.len();
+        let of = |slice: &[f64]| {
+            let mut multipliers = system.constraints(node.t, &node.q);
+            multipliers.as_mut().copy_from_slice(slice);
+            multipliers
+        };
+        let newest = self.unknowns.newest();
+        self.has_step(node).then(|| Impulses {
+            lambda: core::array::from_fn(|j| of(impulses::<N, STAGES, f64>(newest, constraints, j))),
+            mu: of(&self.mu),
+        })
+    }
+
+    /// Checks stored data of steps with these numbers of unknowns and constraints. A file may contain any numbers.
+    ///
+    /// # Errors
+    /// [`StepError::NonFinite`].
+    pub(super) fn check(&self, [unknowns, constraints]: [usize; 2], t: f64) -> Result<(), StepError> {
+        self.before.check_finite(t)?;
+        let are_valid = self.unknowns.is_valid(unknowns)
+            && self.mu.len() == constraints
+            && self.mu.iter().chain(&[self.h, self.residual]).all(|entry| entry.is_finite())
+            && self.sign.abs() == 1;
+        if are_valid { Ok(()) } else { Err(StepError::NonFinite { t, quantity: "last stages", expression: None }) }
+    }
+
+    /// Whether the unknowns belong to the step that led to the node. After a change of parameters they do not.
+    fn has_step(&self, node: &Node<N>) -> bool {
+        // A shift changes the energy of the node alone.
+        Node { energy: node.energy, energy_low: node.energy_low, ..self.before } != *node
+    }
+
+    /// The start node of the last step; the current node before the first step.
+    pub(crate) fn start(&self) -> &Node<N> {
+        &self.before
+    }
+
+    /// The step that led to the node: its start, length, unknowns and the impulse of its projection.
+    pub(crate) fn last(&self, node: &Node<N>) -> Option<(&Node<N>, f64, &[f64], &[f64])> {
+        let Self { unknowns, mu, before, h, .. } = self;
+        self.has_step(node).then(|| (before, *h, unknowns.newest(), mu.as_slice()))
+    }
+}
+
+impl<S, const N: usize, const STAGES: usize> Method<S, N> for GaussLobatto<STAGES>
+where
+    S: Constrained<N> + ConvertibleConstrained<N>,
+{
+    type Prepared = ();
+    type Memory = ConstrainedSteps<N>;
+    type Cache = Option<Box<Workspace>>;
+    type Step = ConstrainedStep<N, S::Multipliers>;
+    type Left = StepError;
+    type DenseOutput = Hermite<N>;
+
+    #[allow(clippy::cast_possible_truncation)] // 16 stages at most
+    fn order(&self) -> u32 {
+        2 * STAGES as u32
+    }
+
+    fn prepare(&self, _system: &S, _h: f64) {}
+
+    fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
+        let bordered = &mut bordered::<S, N, f64>();
+        let v = start::checked(system, node, bordered)?;
+        ConstrainedSteps::from_node::<S, STAGES>(system, (node, h, &v), bordered)
+    }
+
+    fn attempt(
+        &self,
+        at: Problem<'_, S, (), N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
+    ) -> Result<Self::Step, StepError> {
+        let Problem { system, node, h, .. } = at;
+        let constraints = S::CONSTRAINTS.len();
+        let count = unknowns::<N, STAGES>(constraints);
+        let workspace = cache.get_or_insert_with(|| Box::new(Workspace::of_steps::<S, N, STAGES>(system, node)));
+        let mut unknowns = core::mem::take(&mut workspace.unknowns);
+        unknowns.resize(count, 0.0);
+        memory.unknowns.guess(&mut unknowns);
+        let is_next = memory.has_step(node);
+        let solved = solve::step::<S, N, STAGES>(system, (node, h, memory.sign, is_next), &mut unknowns, workspace)?;
+        let Solved { end, mu, residual, iterations } = solved;
+        Ok(ConstrainedStep { end, unknowns, mu, residual, iterations })
+    }
+
+    fn recover(
+        &self,
+        at: Problem<'_, S, (), N>,
+        _memory: &Self::Memory,
+        cache: &mut Self::Cache,
+        left: StepError,
+    ) -> Result<Self::Step, StepError> {
+        // The last unknowns may not extrapolate: a step from the node alone.
+        let Problem { system, node, h, .. } = at;
+        let flow = node.state().raw_flow(system).map_err(|_| left)?;
+        let bordered = &mut bordered::<S, N, f64>();
+        let memory =
+            ConstrainedSteps::from_node::<S, STAGES>(system, (node, h, &flow.v), bordered).map_err(|_| left)?;
+        self.attempt(at, &memory, cache)
+    }
+
+    fn take(
+        &self,
+        h: f64,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        cache: &mut Self::Cache,
+        step: Self::Step,
+    ) {
+        let ConstrainedStep { end, unknowns, mu, residual, iterations } = step;
+        memory.take((node, h), &unknowns, mu.as_ref(), residual);
+        memory.iterations = iterations;
+        *node = end;
+        // The buffer serves the next step.
+        if let Some(workspace) = cache {
+            workspace.unknowns = unknowns;
+        }
+    }
+
+    fn with_length(
+        &self,
+        system: &S,
+        _memory: &Self::Memory,
+        node: &Node<N>,
+        h: f64,
+    ) -> Result<Self::Memory, StepError> {
+        let v = node.state().velocity(system)?;
+        let bordered = &mut bordered::<S, N, f64>();
+        ConstrainedSteps::from_node::<S, STAGES>(system, (node, h, &v), bordered)
+    }
+
+    fn with_system(
+        &self,
+        [_, after]: [&S; 2],
+        node: &mut Node<N>,
+        h: f64,
+        _memory: &Self::Memory,
+    ) -> Result<Self::Memory, StepError> {
+        self.begin(after, node, h)
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N>,
+        node: &Node<N>,
+        h: f64,
+        _memory: &Self::Memory,
+    ) -> Result<Hermite<N>, StepError> {
+        Hermite::between(system, before, &node.state(), h)
+    }
+
+    fn report(&self, memory: &Self::Memory) -> Report {
+        Report { residual: memory.residual, iterations: memory.iterations }
+    }
+
+    fn discrete_energy(&self, system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {
+        let ConstrainedSteps { unknowns, mu, before, h, .. } = memory;
+        let energy = discrete_energy::<S, N, STAGES>(system, (before, *h), unknowns.newest(), mu);
+        (memory.has_step(node) && energy.is_finite()).then_some(energy)
+    }
+
+    fn check(&self, memory: &Self::Memory, h: f64, t: f64) -> Result<(), StepError> {
+        if memory.h.to_bits() != h.to_bits() {
+            let (input, allowed) = ("the step of a checkpoint", "that of its run");
+            return Err(StepError::InvalidInput { input, allowed, value: memory.h });
+        }
+        let constraints = S::CONSTRAINTS.len();
+        memory.check([unknowns::<N, STAGES>(constraints), constraints], t)
+    }
+}
+
+impl<S, const N: usize, const STAGES: usize> Run<GaussLobatto<STAGES>, S, N>
+where
+    S: Constrained<N> + ConvertibleConstrained<N>,
+{
+    /// The impulses λ and μ of the constraints in the last step, which balance the momenta: `p1 − p0 = h Σ b_i (L_q +
+    /// f)_i + Σ A_jᵀ λ_j + A_Sᵀ μ`. `None` before the first step, and after [`Run::set_parameters`], [`Run::set_state`]
+    /// or [`Run::step_of`].
+    ///
+    /// An impulse alone is not a mean of the multipliers: for S = 1, `2λ/h` differs from Λ by O(h). The impulses on both
+    /// sides of a node are: `(μ_k + λ_{k+1})/h = Λ(t_k) + O(h²)`. [`State::reaction`] returns Λ itself.
+    pub fn impulses(&self) -> Option<Impulses<S::Multipliers, STAGES>> {
+        self.memory.impulses(&self.system, &self.node)
+    }
+}

@@ -1,0 +1,314 @@
+//! Energy-preserving steps of order 2s among the steps of any length from a node.
+//!
+//! A method solves steps of a given length, with their discrete energies ([`StepsOfAnyLength`]). This module finds the
+//! length whose step has the energy of the node, or takes fixed steps if the user allows them.
+
+use super::bounds::{Alternating, Control, RATIO};
+use super::length::{Search, Trial};
+use crate::error::StepError;
+use crate::gauss::density::power;
+use crate::gauss::history::StepHistory;
+use crate::lagrangian::Lagrangian;
+use crate::newton::{FLOOR, roundings};
+use crate::node::Node;
+use crate::state::State;
+use core::cell::Cell;
+
+/// Steps of any length from a node, of order 2K, with their discrete energies.
+pub(crate) trait StepsOfAnyLength<const N: usize, const K: usize> {
+    /// A solved step. Its residual is `E0(h) − C_s h^2s D_*` less the energy of the node.
+    type Trial: Trial;
+    /// The data of a step that its run keeps.
+    type Taken;
+
+    /// Solves the step of length h with the shift D_*, guessed from another step from the same node if there is one,
+    /// otherwise from the last step.
+    ///
+    /// # Errors
+    /// Those of a step; [`StepError::NonFinite`] if its energy is not finite.
+    fn tried(&self, node: &Node<N>, h: f64, shift: f64, beside: Option<&Self::Trial>)
+    -> Result<Self::Trial, StepError>;
+    /// Rounding-error bound of the energy of a trial by running error analysis, in units of `ε`.
+    fn rounding_of(&self, node: &Node<N>, trial: &Self::Trial) -> f64;
+    /// Iterations of a trial.
+    fn iterations(trial: &Self::Trial) -> u32;
+    /// The step density D_s at a state.
+    ///
+    /// # Errors
+    /// The reason why it has no value.
+    fn density(&self, state: &State<N>) -> Result<f64, StepError>;
+    /// `H − E'` at a node, and the size of the terms of H.
+    ///
+    /// # Errors
+    /// As [`measured`].
+    fn measured(&self, node: &Node<N>) -> Result<[f64; 2], StepError>;
+    /// The end of a trial.
+    ///
+    /// # Errors
+    /// [`StepError::NonFinite`] and the reason why H has no value there.
+    fn ended(&self, node: &Node<N>, trial: &Self::Trial) -> Result<Ended<Self::Taken>, StepError>;
+}
+
+/// The end of a step.
+pub(crate) struct Ended<T> {
+    pub(crate) taken: T,
+    /// `E1 − E0`.
+    pub(crate) gain: f64,
+    /// `H − E'` there, and the size of the terms of H.
+    pub(crate) measured: [f64; 2],
+}
+
+/// A solved step, with its energies and density.
+#[derive(Clone, Copy, Debug)]
+pub struct PreservingStep<T> {
+    pub(crate) taken: T,
+    /// Increment of the energy of the node.
+    pub(crate) gain: f64,
+    pub(crate) course: StepHistory,
+}
+
+/// Largest accepted rounding error of an energy, relative to its terms. With fewer digits the energy is not preserved.
+const KNOWN: f64 = 1e-10;
+
+/// The order 2K: to leading order the slope of `ln (H − E0)` over ln h.
+#[allow(clippy::cast_precision_loss)] // at most three stages
+pub(crate) const fn order<const K: usize>() -> f64 {
+    2.0 * K as f64
+}
+
+/// The smallest `|H − E|` that determines a length, for energies with this rounding error.
+fn least_excess<const K: usize>(rounding: f64) -> f64 {
+    // Relative accuracy of the length that the numbers of its step need.
+    const PARTS: f64 = 1000.0;
+    PARTS * rounding / order::<K>()
+}
+
+/// A run at a node: the inputs of the search for a step.
+pub(crate) struct Preserving<'a, P, const N: usize, const K: usize> {
+    pub(crate) steps: &'a P,
+    pub(crate) node: &'a Node<N>,
+    pub(crate) course: &'a StepHistory,
+}
+
+impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P, N, K> {
+    fn tried(&self, h: f64, beside: Option<&P::Trial>) -> Result<P::Trial, StepError> {
+        self.steps.tried(self.node, h, self.course.shift, beside)
+    }
+
+    /// Whether the energy of a trial equals the preserved one within its rounding error.
+    ///
+    /// # Errors
+    /// [`StepError::DegenerateStep`] if it does, but `H − E` is too small to determine the length.
+    #[cold]
+    fn is_kept(&self, trial: &P::Trial) -> Result<bool, StepError> {
+        let rounding = f64::EPSILON * self.steps.rounding_of(self.node, trial);
+        // At a turning point H may be zero although the energies of the trajectory are not.
+        let size = trial.size().max(self.course.largest_size);
+        if !(trial.residual().abs() <= FLOOR * rounding && rounding <= KNOWN * size) {
+            return Ok(false);
+        }
+        if self.course.excess.abs() < least_excess::<K>(rounding) { Err(self.degenerate()) } else { Ok(true) }
+    }
+
+    /// The error if `H − E` does not determine a length.
+    fn degenerate(&self) -> StepError {
+        let h = self.course.h();
+        StepError::DegenerateStep { t: self.node.t, h, density: self.course.excess / power::<K>(h) }
+    }
+
+    /// The error if no forward step exists.
+    #[cold]
+    fn no_step(&self) -> StepError {
+        let Self { steps, node, course } = *self;
+        let told = || course.initial_density::<K>() - course.shift;
+        let density = steps.density(&node.state()).unwrap_or_else(|_| told());
+        let StepHistory { excess, shift, largest, .. } = *course;
+        let largest = largest.max(density.abs());
+        StepError::NoForwardGaussStep { t: node.t, h: course.h(), stages: K, excess, density, shift, largest }
+    }
+
+    /// The energy-preserving step within the bounds, the slope of its energy over its length, and the iterations of all
+    /// trials.
+    fn found(&self) -> Result<(P::Trial, f64, u32), StepError> {
+        let Self { node, course, .. } = *self;
+        let (t, last) = (node.t, course.h());
+        let StepHistory { excess, size, largest_size, shift, .. } = *course;
+        if excess.abs() < least_excess::<K>(f64::EPSILON * size) {
+            return Err(self.degenerate());
+        }
+        // A trajectory that has only gained speed so far does not show the size of its energies.
+        if size < largest_size {
+            check_shift(t, [last, power::<K>(last)], shift, largest_size, order::<K>())?;
+        }
+        // Beyond a sign change of D lies another root.
+        if course.density().is_some_and(|density| excess * density < 0.0) {
+            return Err(self.no_step());
+        }
+        let iterations = Cell::new(0);
+        let search = Search {
+            solve: &|h, beside| {
+                let tried = self.tried(h, beside)?;
+                iterations.set(iterations.get() + P::iterations(&tried));
+                Ok(tried)
+            },
+            is_rounding: &|trial| self.is_kept(trial),
+            t,
+            predicted: course.predicted_length(),
+            last,
+            ratio: RATIO,
+            excess,
+            noise: 0.0,
+            slope: course.slope,
+            order: order::<K>(),
+        };
+        let (step, slope) = match search.root() {
+            Some(found) => found,
+            None => match search.smallest() {
+                Ok(found) => (found.ok_or_else(|| self.no_step())?, course.slope),
+                // With constraints longer steps do not exist: a constraint turns too far.
+                Err(StepError::NotConverged { h, turn, .. }) if turn > 0.0 && h > last => return Err(self.no_step()),
+                Err(failure) => return Err(failure),
+            },
+        };
+        let h = step.h();
+        if h > last * RATIO || last > h * RATIO {
+            return Err(StepError::StepRatio { t, previous: last, found: h });
+        }
+        course.control.check_bounds(t, h)?;
+        Ok((step, slope, iterations.get()))
+    }
+
+    /// Computes the energies at the end of a step.
+    fn after(&self, trial: &P::Trial) -> Result<PreservingStep<P::Taken>, StepError> {
+        let Self { steps, node, course } = *self;
+        let Ended { taken, gain, measured } = steps.ended(node, trial)?;
+        let mut course = *course;
+        // The mean of `H − E0` at the start and of `H − E1` at the end.
+        let mean = 0.5 * (course.excess + measured[0]) - trial.residual();
+        course.push(trial.h(), mean / power::<K>(trial.h()));
+        course.set_excess(measured);
+        Ok(PreservingStep { taken, gain, course })
+    }
+}
+
+impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Alternating<f64> for Preserving<'_, P, N, K> {
+    const POWER: f64 = order::<K>() + 1.0;
+    type StepSolution = PreservingStep<P::Taken>;
+
+    fn control(&self) -> &Control {
+        &self.course.control
+    }
+
+    fn t(&self) -> f64 {
+        self.node.t
+    }
+
+    fn last(&self) -> [f64; 2] {
+        [self.course.h(), self.course.initial_density::<K>()]
+    }
+
+    fn preserving(&self, gap: f64) -> Result<(PreservingStep<P::Taken>, f64), StepError> {
+        let (mut node, mut course) = (*self.node, *self.course);
+        if gap != 0.0 {
+            node.add_energy(gap);
+            course.set_excess(self.steps.measured(&node)?);
+        }
+        let here = Preserving { steps: self.steps, node: &node, course: &course };
+        let (trial, slope, iterations) = here.found()?;
+        let mut found = here.after(&trial)?;
+        found.gain += gap;
+        found.course.residual = match trial.roundings() {
+            few if few <= FLOOR => few,
+            _ => roundings(trial.residual(), self.steps.rounding_of(&node, &trial)),
+        };
+        (found.course.slope, found.course.iterations) = (slope, iterations);
+        Ok((found, trial.h()))
+    }
+
+    fn fixed(&self, h: f64) -> Result<(PreservingStep<P::Taken>, [f64; 2]), StepError> {
+        let trial = self.tried(h, None)?;
+        let last = self.course.initial_density::<K>();
+        let mut found = self.after(&trial)?;
+        found.course.residual = 0.0;
+        found.course.forget_lengths();
+        found.course.iterations = P::iterations(&trial);
+        let density = found.course.initial_density::<K>();
+        // The next interval has the same length.
+        Ok((found, [trial.residual(), density + (density - last)]))
+    }
+
+    fn control_of(found: &mut PreservingStep<P::Taken>) -> &mut Control {
+        &mut found.course.control
+    }
+}
+
+/// `H − E'` at a node, and the size of the terms of H.
+///
+/// # Errors
+/// As [`State::velocity`]; [`StepError::NonFinite`] if H is not finite.
+pub(crate) fn measured<S: Lagrangian<N>, const N: usize>(system: &S, node: &Node<N>) -> Result<[f64; 2], StepError> {
+    excess_of(energy_at(system, &node.state())?, node)
+}
+
+/// `H − E'` at a node with this energy, and the size of the terms of H.
+///
+/// # Errors
+/// [`StepError::NonFinite`].
+pub(crate) fn excess_of<const N: usize>(
+    NodeEnergy { total, size }: NodeEnergy,
+    node: &Node<N>,
+) -> Result<[f64; 2], StepError> {
+    let excess = (total - node.energy) - node.energy_low;
+    if excess.is_finite() && size.is_finite() {
+        Ok([excess, size])
+    } else {
+        Err(StepError::NonFinite { t: node.t, quantity: "energy", expression: None })
+    }
+}
+
+/// The energy at a state.
+pub(crate) struct NodeEnergy {
+    /// H.
+    pub(crate) total: f64,
+    /// The size of its terms, `|v·p| + |H|`.
+    pub(crate) size: f64,
+}
+
+/// The energy at a state.
+///
+/// # Errors
+/// As [`State::velocity`].
+pub(crate) fn energy_at<S: Lagrangian<N>, const N: usize>(
+    system: &S,
+    State { t, q, p }: &State<N>,
+) -> Result<NodeEnergy, StepError> {
+    let v = system.flow(*t, q, p)?.v;
+    let total = system.energy(*t, q, &v);
+    Ok(NodeEnergy { total, size: v.dot(p).abs() + total.abs() })
+}
+
+/// Rejects a shift that adds more to the energy of a step of the length h with this `C_s h^2s` than `size`, the size of
+/// the energy terms along the trajectory.
+///
+/// # Errors
+/// [`StepError::ShiftTooLarge`].
+pub(crate) fn check_shift(t: f64, [h, power]: [f64; 2], shift: f64, size: f64, order: f64) -> Result<(), StepError> {
+    let part = power * shift.abs();
+    if part <= size {
+        return Ok(());
+    }
+    let shorter = h * (0.1 * size / part).powf(order.recip());
+    Err(StepError::ShiftTooLarge { t, h, shift, part, size, shorter })
+}
+
+/// Checks that a first step is so long that `C_s h^2s` is a number.
+///
+/// # Errors
+/// [`StepError::InvalidInput`].
+pub(crate) fn check_power<const K: usize>(h: f64) -> Result<(), StepError> {
+    if power::<K>(h).is_normal() {
+        return Ok(());
+    }
+    let (input, allowed) = ("the step h", "so long that C h^2s is a number");
+    Err(StepError::InvalidInput { input, allowed, value: h })
+}
