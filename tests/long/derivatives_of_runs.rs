@@ -2,7 +2,9 @@
 
 use crate::gauss::Everything;
 use nalgebra::{DMatrix, DVector};
-use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
+use vi_core::derivatives::{
+    Covector, Differentiable, Lyapunov, Objective, Tangent, Unconstrained, Variation, gradient,
+};
 use vi_core::linear::Matrix;
 use vi_core::node::Node;
 use vi_core::real::Dual;
@@ -335,7 +337,7 @@ fn of_time<const N: usize>() -> Variation<N> {
 
 #[test]
 fn adjoint_and_tangent_agree() {
-    fn worst<M: Differentiable<Everything, 2>>(run: &Run<M, Everything, 2>, steps: u64) -> f64 {
+    fn worst<M: Differentiable<Everything, 2, Kind = Unconstrained>>(run: &Run<M, Everything, 2>, steps: u64) -> f64 {
         let mut all: Vec<_> =
             [1, 5, 1000].map(|kept| gradient(run, steps, kept, &SquaredDistances).expect("solvable")).into();
         let found = all.pop().expect("three");
@@ -399,8 +401,8 @@ fn the_time_of_an_autonomous_run_is_carried_back() {
     /// the initial time.
     fn worst<M, S>(run: &Run<M, S, 1>, steps: u64) -> (f64, f64)
     where
-        M: Differentiable<S, 1>,
-        S: Convertible<1> + Lagrangian<1> + Copy,
+        M: Differentiable<S, 1, Kind = Unconstrained>,
+        S: Convertible<1> + vi_core::collocation::Collocation<1>,
     {
         let start = gradient(run, steps, 3, &Squares).expect("solvable").start;
         let mut varied = Variation::of_state();
@@ -550,7 +552,7 @@ impl Driven {
 
 #[test]
 fn gradients_of_inputs_that_bring_energy() {
-    fn worst<M: Differentiable<Everything, 2>>(run: &Run<M, Everything, 2>) -> f64 {
+    fn worst<M: Differentiable<Everything, 2, Kind = Unconstrained>>(run: &Run<M, Everything, 2>) -> f64 {
         let inputs = [0.0, 8.4, 9.1, 1.4, -7.6, -9.6, -2.8, 6.6, 9.9, 4.1, -5.4, -10.0].map(|part| 1.4 + 1e-3 * part);
         let found = gradient(run, 12, 3, &Driven { inputs }).expect("solvable");
         let mut worst = 0.0_f64;

@@ -1,7 +1,9 @@
 //! Derivatives of runs by every method, over steps, times, events and changes: against differences of the same runs, tangent against adjoint, symplecticity.
 
 use vi_core::collocation::Collocation;
-use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
+use vi_core::derivatives::{
+    Covector, Differentiable, Lyapunov, Objective, Tangent, Unconstrained, Variation, gradient,
+};
 use vi_core::lagrangian::Parameters;
 use vi_core::nalgebra::{DMatrix, SVector};
 use vi_core::real::{Dual, Number, Real};
@@ -78,7 +80,7 @@ fn follow<M: Differentiable<S, 2>, S: Lagrangian<2> + Parameters + Copy>(run: &m
 
 fn follow_tangent<M, S>(tangent: &mut Tangent<M, S, 2>, legs: &[Leg])
 where
-    M: Differentiable<S, 2>,
+    M: Differentiable<S, 2, Kind = Unconstrained>,
     S: Convertible<2> + Parameters + Collocation<2>,
 {
     for leg in legs {
@@ -141,7 +143,7 @@ struct Case<M: Differentiable<S, 2>, S: Lagrangian<2> + Copy> {
 /// The largest difference of derivatives over some legs from central differences, relative to their size.
 fn differs<M, S>(case: &Case<M, S>, legs: &[Leg]) -> f64
 where
-    M: Differentiable<S, 2>,
+    M: Differentiable<S, 2, Kind = Unconstrained>,
     S: Convertible<2> + Parameters + Collocation<2>,
 {
     let directions = directions::<S>(case.is_given_length);
@@ -190,7 +192,7 @@ const LEGS: [&[Leg]; 7] = [
 fn derivatives_of_every_method_are_those_of_differences() {
     fn all<M, S>(case: &Case<M, S>, bound: f64)
     where
-        M: Differentiable<S, 2>,
+        M: Differentiable<S, 2, Kind = Unconstrained>,
         S: Convertible<2> + Parameters + Collocation<2>,
     {
         let errors = LEGS.map(|legs| differs(case, legs));
@@ -267,7 +269,7 @@ fn maps_of_steps_that_find_their_length_are_symplectic() {
 /// Squares of times, coordinates and momenta at the nodes, c an input of each step.
 struct Squares;
 
-impl<M: Differentiable<Driven, 2>> Objective<M, Driven, 2> for Squares {
+impl<M: Differentiable<Driven, 2, Kind = Unconstrained>> Objective<M, Driven, 2> for Squares {
     fn prepare(&self, step: u64, run: &mut Run<M, Driven, 2>) -> Result<(), StepError> {
         let input = if step.is_multiple_of(2) { 0.07 } else { 0.12 };
         run.set_parameters(|system| system.c = input)
@@ -283,7 +285,7 @@ impl<M: Differentiable<Driven, 2>> Objective<M, Driven, 2> for Squares {
 
 #[test]
 fn the_adjoint_agrees_with_tangents() {
-    fn worst<M: Differentiable<Driven, 2>>(method: M, h: f64, steps: u64) -> f64 {
+    fn worst<M: Differentiable<Driven, 2, Kind = Unconstrained>>(method: M, h: f64, steps: u64) -> f64 {
         let run = Driven::default().at_state(START).integrate(method, h).expect("a start");
         let found = gradient(&run, steps, 2, &Squares).expect("regular");
         let mut varied = directions::<Driven>(false);
@@ -338,7 +340,10 @@ fn the_adjoint_agrees_with_tangents() {
 }
 
 /// What H at the node of a run changes by along a variation: by the energy that a run started there in transformed time keeps.
-fn energy_slope<M: Differentiable<Driven, 2>>(run: &Run<M, Driven, 2>, along: &Variation<2>) -> f64 {
+fn energy_slope<M: Differentiable<Driven, 2, Kind = Unconstrained>>(
+    run: &Run<M, Driven, 2>,
+    along: &Variation<2>,
+) -> f64 {
     let beside = run.system().at_state(run.state()).integrate(Gauss::<1>.in_transformed_time(), 0.1).expect("a start");
     Tangent::from_start(beside, vec![along.clone()]).expect("regular").variations()[0].energy
 }

@@ -4,6 +4,7 @@ mod branches;
 mod checkpoints;
 mod checks;
 mod checks_of_many;
+mod constrained;
 mod derivatives;
 mod equations;
 mod failures;

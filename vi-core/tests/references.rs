@@ -9,21 +9,21 @@ use vi_core::{EnergyPreserving, FixedStep, Run, SVector, Starts, State};
 const FIXED: f64 = 5e-14;
 const ENERGY_PRESERVING: f64 = 5e-10;
 
-fn reference(name: &str) -> Value {
+pub(crate) fn reference(name: &str) -> Value {
     let path = format!("{}/../tests/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
 /// The number at `key`, written as a decimal or as a quotient.
-fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     let text = value.as_str().unwrap_or_else(|| panic!("not a number: {value}"));
     let parse = |text: &str| text.parse::<f64>().unwrap_or_else(|_| panic!("not a number: {text}"));
     text.split_once('/').map_or_else(|| parse(text), |(above, below)| parse(above) / parse(below))
 }
 
 /// The vector at `key`: a list, or a single number.
-fn vector<const N: usize>(value: &Value) -> SVector<f64, N> {
+pub(crate) fn vector<const N: usize>(value: &Value) -> SVector<f64, N> {
     match value.as_array() {
         Some(entries) => SVector::from_iterator(entries.iter().map(number)),
         None => SVector::repeat(number(value)),

@@ -1,0 +1,159 @@
+//! Linearization and equilibria with constraints, against the same systems in angles.
+
+use vi_core::nalgebra::{DVector, SVector};
+use vi_core::prelude::*;
+use vi_core::{Lagrangian, State, StepError, lagrangian};
+
+lagrangian! {
+    /// Two rods, with friction.
+    struct Rods {
+        param m = 1.5, g = 9.81, l = 1.2, c = 0.0;
+        input push = 0.0;
+        coord x, y, u, w;
+        L = m / 2 * (dot(x)^2 + dot(y)^2) + (dot(u)^2 + dot(w)^2) / 2 - g * (m * y + w);
+        force u = push - c * dot(u);
+        force w = -c * dot(w);
+        constraint upper = x^2 + y^2 - l^2;
+        constraint lower = (u - x)^2 + (w - y)^2 - 1;
+    }
+}
+
+lagrangian! {
+    /// The same in angles.
+    struct Angles {
+        param m = 1.5, g = 9.81, l = 1.2, c = 0.0;
+        coord a, b;
+        let du = l * cos(a) * dot(a) + cos(b) * dot(b), dw = l * sin(a) * dot(a) + sin(b) * dot(b);
+        L = m / 2 * l^2 * dot(a)^2 + (du^2 + dw^2) / 2 + g * (m * l * cos(a) + l * cos(a) + cos(b));
+        dissipation = c / 2 * (du^2 + dw^2);
+    }
+}
+
+lagrangian! {
+    /// A point on springs with a blade.
+    struct Blade {
+        param k = 3.0;
+        coord x, y, θ;
+        L = (dot(x)^2 + dot(y)^2 + dot(θ)^2 - k * x^2 - k * y^2 - θ^2) / 2;
+        constraint blade = dot(x) * sin(θ) - dot(y) * cos(θ);
+    }
+}
+
+lagrangian! {
+    /// A pendulum on a pivot that moves.
+    struct Lifted {
+        param s = 0.5;
+        coord x, y;
+        L = (dot(x)^2 + dot(y)^2) / 2 - 9.81 * y;
+        constraint rod = x^2 + (y - s * t)^2 - 1;
+    }
+}
+
+#[test]
+fn rods_hang_as_angles_do() {
+    for c in [0.0, 0.4] {
+        let rods = Rods { c, ..Rods::default() };
+        // From a guess off the constraints.
+        let rest = rods.equilibrium(0.0, [0.3, -1.0, 0.1, -2.0]).unwrap_or_else(|failure| panic!("{failure}"));
+        let place = SVector::from([0.0, -1.2, 0.0, -2.2]);
+        assert!((rest.q - place).amax() < 1e-15, "{rest:?}");
+        // 2 l Λ carries both weights, 2 Λ the lower one.
+        assert!((rest.multipliers[0] + 2.5 * 9.81 / 2.4).abs() < 4e-15, "{rest:?}");
+        assert!((rest.multipliers[1] + 9.81 / 2.0).abs() < 4e-15 && rest.residual <= 4.0, "{rest:?}");
+        let angles = Angles { c, ..Angles::default() }.equilibrium(0.0, [0.1, -0.1]).expect("an equilibrium");
+        let (found, wanted) = (rest.rates().expect("rates"), angles.rates().expect("rates"));
+        assert_eq!(found.len(), wanted.len());
+        for (found, wanted) in found.iter().zip(&wanted) {
+            println!("{found} {wanted} {:e}", (found - wanted).norm());
+            // Measured: at most 1.1e-14.
+            assert!((found - wanted).norm() < 2e-14, "{found} {wanted}");
+        }
+        assert_eq!(rest.frequencies().expect("frequencies").len(), 2);
+        assert!(found.iter().all(|rate| if c == 0.0 { rate.re == 0.0 } else { rate.re < -0.01 }), "{found:?}");
+    }
+}
+
+#[test]
+fn rods_that_stand_are_unstable() {
+    let rest = Rods::default().equilibrium(0.0, [0.1, 1.2, 0.05, 2.2]).unwrap_or_else(|failure| panic!("{failure}"));
+    assert!((rest.q - SVector::from([0.0, 1.2, 0.0, 2.2])).amax() < 1e-14, "{rest:?}");
+    let rates = rest.rates().expect("rates");
+    assert_eq!(rates.iter().filter(|rate| rate.re > 1.0).count(), 2, "{rates:?}");
+    assert!(rest.frequencies().expect("rates").is_empty());
+}
+
+#[test]
+fn a_push_holds_the_rods_aside() {
+    // The lower rod lies along the force on its mass.
+    let rods = Rods { push: 9.81, ..Rods::default() };
+    let rest = rods.equilibrium(0.0, [0.3, -1.1, 1.0, -1.8]).unwrap_or_else(|failure| panic!("{failure}"));
+    let lower = SVector::<f64, 2>::from([rest.q[2] - rest.q[0], rest.q[3] - rest.q[1]]);
+    assert!((lower - SVector::from([0.5_f64.sqrt(), -0.5_f64.sqrt()])).amax() < 1e-15, "{rest:?}");
+    let state = State::at(&rods, 0.0, rest.q, [0.0; 4]);
+    let reaction = state.reaction(&rods).expect("regular");
+    assert!(reaction.iter().zip(&rest.multipliers).all(|(one, other)| (one - other).abs() < 1e-14), "{reaction:?}");
+    let acceleration = rods.acceleration(0.0, &rest.q, &SVector::zeros()).expect("regular");
+    assert!(acceleration.amax() < 1e-14, "{acceleration}");
+}
+
+#[test]
+fn linearizations_are_differences() {
+    let rods = Rods { push: 0.3, c: 0.2, ..Rods::default() };
+    let state = State::projected(&rods, 0.0, [0.6, -0.9, 1.1, -1.7], [0.5, 0.4, 0.3, 0.2]).expect("nearest").state;
+    let (q, v) = (state.q, state.velocity(&rods).expect("regular"));
+    let found = rods.linearization(0.0, q, v).unwrap_or_else(|failure| panic!("{failure}"));
+    let rate = |column: usize, by: f64| {
+        let (mut rods, mut q, mut v) = (rods, q, v);
+        match column {
+            0..4 => q[column] += by,
+            4..8 => v[column - 4] += by,
+            _ => rods.push += by,
+        }
+        let acceleration = rods.acceleration(0.0, &q, &v).expect("regular");
+        DVector::from_iterator(8, v.iter().chain(&acceleration).copied())
+    };
+    for column in 0..9 {
+        let by = 1e-5;
+        let difference = (rate(column, by) - rate(column, -by)) / (2.0 * by);
+        let exact = if column < 8 { found.a.column(column) } else { found.b.column(0) };
+        let off = (exact - &difference).amax() / (1.0 + difference.amax());
+        println!("{column} {off:e}");
+        // Measured: at most 3.7e-10.
+        assert!(off < 1e-9, "{column}: {off:e}");
+    }
+    // Twice zero for each rod: a change across it neither grows nor swings.
+    let rest = Rods::default().equilibrium(0.0, [0.3, -1.0, 0.1, -2.0]).expect("an equilibrium");
+    let of_rest =
+        Rods::default().linearization(0.0, rest.q, [0.0; 4]).expect("regular").eigenvalues().expect("a spectrum");
+    println!("{of_rest:?}");
+    // Double zeros: the root of the rounding errors.
+    assert_eq!(of_rest.iter().filter(|rate| rate.norm() < 1e-6).count(), 4, "{of_rest:?}");
+    let (fast, wanted) = (of_rest.iter().map(|rate| rate.im).fold(0.0, f64::max), rest.frequencies().expect("rates"));
+    assert!((fast - wanted[1]).abs() < 1e-12, "{fast} {wanted:?}");
+}
+
+#[test]
+fn a_blade_carries_what_it_forbids() {
+    let rest = Blade::default().equilibrium(0.0, [0.5, 0.3, 0.0]).unwrap_or_else(|failure| panic!("{failure}"));
+    assert!((rest.q - SVector::from([0.0, 0.3, 0.0])).amax() < 1e-15, "{rest:?}");
+    // −k y − Λ = 0.
+    assert!((rest.multipliers[0] + 0.9).abs() < 1e-15, "{rest:?}");
+    // The reaction turns with the blade: it pushes along x by Λ θ.
+    assert_eq!(rest.rates().expect("rates").len(), 4);
+}
+
+#[test]
+fn places_without_an_equilibrium_are_errors() {
+    let moving = Lifted::default().equilibrium(0.0, [0.0, -1.0]);
+    assert!(
+        matches!(moving, Err(StepError::InconsistentStart { constraint: "rod", rate, .. }) if (rate - 1.0).abs() < 1e-15),
+        "{moving:?}"
+    );
+    // Without weight the rods rest anywhere.
+    let family = Rods { g: 0.0, ..Rods::default() }.equilibrium(0.0, [0.3, -1.0, 0.1, -2.0]);
+    assert!(matches!(family, Err(StepError::Singular { .. })), "{family:?}");
+    let lost = Rods::default().equilibrium(0.0, [f64::NAN, -1.0, 0.1, -2.0]);
+    assert!(matches!(lost, Err(StepError::NonFinite { .. })), "{lost:?}");
+    let open = Rods::default().equilibrium(0.0, [0.0, 0.0, 0.0, 0.0]);
+    assert!(open.is_err(), "{open:?}");
+}

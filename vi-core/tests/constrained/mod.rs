@@ -1,0 +1,17 @@
+//! Steps of systems with constraints.
+
+mod assembly;
+mod blocks;
+mod checks;
+mod composed;
+mod control;
+mod derivatives;
+mod energy;
+mod energy_runs;
+mod errors;
+mod redundant;
+mod references;
+mod runs;
+mod structure;
+mod switching;
+pub(crate) mod systems;

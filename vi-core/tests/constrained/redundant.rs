@@ -1,0 +1,145 @@
+//! Redundant constraints: an independent subset has the motion of all.
+
+use super::systems::{Auto, Twice};
+use vi_core::constrained::{Independent, Projection};
+use vi_core::derivatives::{Tangent, Variation};
+use vi_core::{Constrained, Gauss, GaussLobatto, Starts, State, StepError, lagrangian};
+
+lagrangian! {
+    /// A coupler on three parallel cranks, two of which would hold it, and a mass on a spring.
+    struct Parallelogram {
+        param g = 9.81, third = 1.0;
+        coord x, y, u, w, s;
+        L = (dot(x)^2 + dot(y)^2 + dot(u)^2 + dot(w)^2 + dot(s)^2 - s^2) / 2 - g * (y + w);
+        constraint left = x^2 + y^2 - 1;
+        constraint middle = ((x + u) / 2 - 1)^2 + ((y + w) / 2)^2 - third^2;
+        constraint right = (u - 2)^2 + w^2 - 1;
+        constraint coupler = (u - x)^2 + (w - y)^2 - 4;
+    }
+}
+
+lagrangian! {
+    /// The same with two cranks.
+    struct TwoCranks {
+        param g = 9.81;
+        coord x, y, u, w, s;
+        L = (dot(x)^2 + dot(y)^2 + dot(u)^2 + dot(w)^2 + dot(s)^2 - s^2) / 2 - g * (y + w);
+        constraint left = x^2 + y^2 - 1;
+        constraint right = (u - 2)^2 + w^2 - 1;
+        constraint coupler = (u - x)^2 + (w - y)^2 - 4;
+    }
+}
+
+lagrangian! {
+    /// The coupler moves on a circle like a pendulum.
+    struct Angle {
+        param g = 9.81;
+        coord a;
+        L = dot(a)^2 - g * (-2 * cos(a));
+    }
+}
+
+/// The cranks at an angle from straight down, and the speed.
+fn place(angle: f64, speed: f64) -> ([f64; 5], [f64; 5]) {
+    let (sine, cosine) = angle.sin_cos();
+    ([sine, -cosine, 2.0 + sine, -cosine, 0.1], [cosine * speed, sine * speed, cosine * speed, sine * speed, 0.0])
+}
+
+#[test]
+fn a_third_crank_changes_nothing() {
+    let system = Parallelogram::default();
+    let (q, v) = place(0.5, 1.0);
+    let refused = system.at(0.0, q, v).integrate(GaussLobatto::<2>, 0.02).err();
+    let Some(StepError::Redundant { of: 4, rank: 3, .. }) = refused else { panic!("{refused:?}") };
+    assert!(refused.expect("an error").to_string().contains("Independent::at"));
+
+    let kept = Independent::at(system, 0.0, q).unwrap_or_else(|failure| panic!("{failure}"));
+    let dropped: Vec<usize> = (0..4).filter(|r| kept.is_dropped(*r)).collect();
+    assert_eq!(dropped.len(), 1, "{dropped:?}");
+    let mut run = kept.at(0.0, q, v).integrate(GaussLobatto::<3>, 0.02).unwrap_or_else(|failure| panic!("{failure}"));
+    let mut two = TwoCranks::default().at(0.0, q, v).integrate(GaussLobatto::<3>, 0.02).expect("independent");
+    let mut angle = Angle::default().at(0.0, [0.5], [1.0]).integrate(Gauss::<6>, 0.02).expect("regular");
+    let mut worst = [0.0_f64; 4];
+    for _ in 0..500 {
+        let state = run.step().unwrap_or_else(|failure| panic!("{failure}"));
+        let other = two.step().unwrap_or_else(|failure| panic!("{failure}"));
+        let exact = angle.step().unwrap_or_else(|failure| panic!("{failure}")).q[0];
+        let measured = kept.dropped(&state).unwrap_or_else(|failure| panic!("{failure}"));
+        let reaction = state.reaction(&kept).unwrap_or_else(|failure| panic!("{failure}"));
+        assert!(reaction[dropped[0]].abs() <= 0.0);
+        assert!(run.impulses().expect("a step").mu[dropped[0]].abs() <= 0.0);
+        worst[0] = worst[0].max(measured[0].1.abs());
+        worst[1] = worst[1].max((state.q - other.q).amax().max((state.p - other.p).amax()));
+        worst[2] = worst[2].max((state.q[0] - exact.sin()).abs());
+        // The weight and the acceleration of all masses: the force of all reactions.
+        let force = state.reaction_force(&kept).expect("regular");
+        let of_two = state.reaction_force(&TwoCranks::default()).expect("regular");
+        worst[3] = worst[3].max((force - of_two).amax());
+    }
+    println!("{worst:?}");
+    // Measured: 4.5e-16, 0, 2.7e-11 (the error of order 6), 0.
+    assert!(worst[0] < 1e-15 && worst[1] < 1e-13 && worst[2] < 6e-11 && worst[3] < 1e-13, "{worst:?}");
+}
+
+#[test]
+fn dropped_constraints_are_measured() {
+    let system = Parallelogram::default();
+    let (q, v) = place(0.5, 1.0);
+    let kept = Independent::at(system, 0.0, q).unwrap_or_else(|failure| panic!("{failure}"));
+    // A crank of another length contradicts the others.
+    let mut run = kept.at(0.0, q, v).integrate(GaussLobatto::<1>, 0.02).expect("a start");
+    let failure = run.set_parameters(|kept| {
+        *vi_core::lagrangian::Parameters::parameter_mut(kept, "third").expect("a parameter") = 1.1;
+    });
+    assert!(
+        matches!(failure, Err(StepError::DroppedConstraint { .. } | StepError::InconsistentStart { .. })),
+        "{failure:?}"
+    );
+    // With all cranks in line the others are redundant too, and the linkage may leave the parallelogram. No step
+    // crosses this place, and no state before is wrong.
+    for speed in [6.0, 6.5, 7.0, 8.0] {
+        let (q, v) = place(0.3, speed);
+        let kept = Independent::at(system, 0.0, q).expect("a subset");
+        let mut run = kept.at(0.0, q, v).integrate(GaussLobatto::<2>, 0.01).expect("a start");
+        for _ in 0..400 {
+            match run.step() {
+                Ok(state) => {
+                    let values = system.constraints(0.0, &state.q);
+                    assert!(values.iter().all(|value| value.abs() < 1e-13), "{speed}: {values:?}");
+                }
+                Err(failure) => {
+                    let is_flat = matches!(
+                        failure,
+                        StepError::NotConverged { .. }
+                            | StepError::Singular { .. }
+                            | StepError::DroppedConstraint { .. }
+                    );
+                    assert!(is_flat && run.state().q[1].abs() < 0.1, "{speed}: {failure}");
+                    break;
+                }
+            }
+        }
+        assert!(run.step().is_err(), "{speed}");
+    }
+}
+
+#[test]
+fn runs_with_dropped_constraints_have_the_rest() {
+    // Twice the same rod, in different units.
+    let kept = Independent::at(Auto(Twice), 0.0, [0.6, -0.8]).unwrap_or_else(|failure| panic!("{failure}"));
+    assert!(!kept.is_dropped(0) && kept.is_dropped(1));
+    let projected = State::projected(&kept, 0.0, [0.9, -1.2], [1.0, 0.5]).unwrap_or_else(|failure| panic!("{failure}"));
+    assert!((projected.state.q[0] - 0.6).abs() < 4e-16, "{projected:?}");
+    let held = Projection::of(&kept).holding(&[0]).expect("an index").assembled(0.0, [0.6, -1.2], [0.0, 0.0]);
+    assert!((held.unwrap_or_else(|failure| panic!("{failure}")).state.q[1] + 0.8).abs() < 4e-16);
+    let run = kept.at_state(projected.state).integrate(GaussLobatto::<2>, 0.02).expect("a start");
+    let mut tangent = Tangent::new(run, Variation::of_state());
+    tangent.project().unwrap_or_else(|failure| panic!("{failure}"));
+    for _ in 0..5 {
+        tangent.step().unwrap_or_else(|failure| panic!("{failure}"));
+    }
+    let energy = tangent.run().energy().expect("regular");
+    assert!((energy - projected.state.energy(&kept).expect("regular")).abs() < 1e-6, "{energy}");
+    let all = Independent::at(Auto(Twice), 0.0, [f64::NAN, 0.0]);
+    assert!(matches!(all, Err(StepError::NonFinite { .. })));
+}

@@ -1,0 +1,136 @@
+//! What every run has, for systems with constraints.
+
+use super::systems::{Auto, Driven, Model, PENDULUM, Pendulum};
+use vi_core::prelude::{Event, Moment};
+use vi_core::run::{Checkpoint, DenseOutput};
+use vi_core::{Constrained, GaussLobatto, Run, SVector, Starts, State, StepError, Tolerance};
+
+fn pendulum<const STAGES: usize>(h: f64) -> Run<GaussLobatto<STAGES>, Auto<Pendulum, 1>, 2> {
+    PENDULUM
+        .at(0.0, [0.6, -0.8], [0.8, 0.6])
+        .integrate(GaussLobatto::<STAGES>, h)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// g at a state.
+fn off<M: Model<2, 1>>(system: &Auto<M, 1>, state: &State<2>) -> f64 {
+    system.constraints(state.t, &state.q)[0].abs()
+}
+
+#[test]
+fn output_at_times_is_on_the_constraint() {
+    let mut run = pendulum::<3>(0.05);
+    let times = [0.013, 0.5, 0.777, 1.234];
+    let solution = run.at_times(times).unwrap_or_else(|error| panic!("{error}"));
+    for (state, t) in solution.states.iter().zip(times) {
+        assert_eq!(state.t.to_bits(), t.to_bits());
+        assert!(off(&PENDULUM, state) < 1e-15, "{state:?}");
+        let mut exact = pendulum::<8>(t / 16.0);
+        let exact = exact.until(t).unwrap_or_else(|error| panic!("{error}"));
+        println!("{t}: {:.1e}", (exact.q - state.q).amax());
+        // Measured: at most 9.6e-10, the error of order 6.
+        assert!((exact.q - state.q).amax() < 2e-9, "{t}: {:e}", (exact.q - state.q).amax());
+    }
+    let state = run.until(2.0).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(state.t.to_bits(), 2.0_f64.to_bits());
+    let count = (&mut run).take(5).flatten().count();
+    assert_eq!((count, run.iterations() > 0), (5, true));
+}
+
+#[test]
+fn dense_output_is_near_the_constraint_between_nodes() {
+    let off_at = |h: f64| {
+        let mut run = pendulum::<2>(h);
+        let before = run.state();
+        let after = run.step().unwrap_or_else(|error| panic!("{error}"));
+        let output = run.dense_output(&before).unwrap_or_else(|error| panic!("{error}"));
+        // At both ends it is the node.
+        assert!((output.state(before.t).q - before.q).amax() + (output.state(after.t).q - after.q).amax() < 1e-15);
+        off(&PENDULUM, &output.state(0.5 * h))
+    };
+    let [coarse, fine] = [0.05, 0.025].map(off_at);
+    println!("{coarse:e} {fine:e}");
+    // O(h⁴).
+    assert!(coarse < 1e-4 && (coarse / fine - 16.0).abs() < 2.0, "{coarse:e} {fine:e}");
+}
+
+#[test]
+fn a_rod_goes_slack_where_its_reaction_vanishes() {
+    // From the bottom with v² = 36: 2Λ = g y − |v|² is zero at y = (36 − 2g)/(3g).
+    let start = PENDULUM.at(0.0, [0.0, -1.0], [6.0, 0.0]);
+    let mut run = start.integrate(GaussLobatto::<3>, 0.01).unwrap_or_else(|error| panic!("{error}"));
+    let slack = Event::rising(|moment: &Moment<2>| {
+        let state = State::at(&PENDULUM, moment.t, moment.q, moment.v);
+        state.reaction(&PENDULUM).map_or(f64::NAN, |[multiplier]| multiplier)
+    });
+    let met = run.until_event(slack, 5.0).unwrap_or_else(|error| panic!("{error}")).expect("an event");
+    let height = (36.0 - 2.0 * 9.81) / (3.0 * 9.81);
+    println!("{:e} {:e}", met.state.q[1] - height, off(&PENDULUM, &met.state));
+    // Measured: 9.7e-13, the error of order 6.
+    assert!((met.state.q[1] - height).abs() < 2e-12, "{}", met.state.q[1]);
+    // The state is the end of a step, on the constraint.
+    assert!(off(&PENDULUM, &met.state) < 1e-15);
+}
+
+#[test]
+fn a_stored_run_resumes_bit_for_bit() {
+    let system = Auto(Driven);
+    let start = system.at(0.0, [0.6, -0.8], [0.8, 1.2]);
+    let mut run = start.integrate(GaussLobatto::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
+    for _ in 0..20 {
+        run.step().unwrap_or_else(|error| panic!("{error}"));
+    }
+    let text = serde_json::to_string(&run.checkpoint()).expect("a text");
+    let stored: Checkpoint<_, 2> = serde_json::from_str(&text).expect("a checkpoint");
+    let mut resumed = Run::restart(system, GaussLobatto::<2>, stored).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(resumed.impulses(), run.impulses());
+    assert_eq!(resumed.discrete_energy(), run.discrete_energy());
+    for _ in 0..20 {
+        assert_eq!(run.step(), resumed.step());
+        assert_eq!((run.residual().to_bits(), run.iterations()), (resumed.residual().to_bits(), resumed.iterations()));
+    }
+    // Of another number of stages.
+    let other: Checkpoint<_, 2> = serde_json::from_str(&text).expect("a checkpoint");
+    assert!(Run::restart(system, GaussLobatto::<3>, other).is_err());
+}
+
+#[test]
+fn parameters_that_break_a_constraint_are_refused() {
+    let mut run = pendulum::<2>(0.05);
+    run.step().unwrap_or_else(|error| panic!("{error}"));
+    assert!(run.impulses().is_some() && run.discrete_energy().is_some());
+    let before = run.clone();
+    let failure = run.set_parameters(|system| system.0.length = 1.1).expect_err("another circle");
+    let StepError::InconsistentStart { constraint: "rod", residual, .. } = failure else { panic!("{failure}") };
+    assert!((residual + 0.21).abs() < 1e-14, "{residual}");
+    assert_eq!((run.state(), run.system().0.length.to_bits()), (before.state(), 1.0_f64.to_bits()));
+    // Another weight is fine.
+    run.set_parameters(|system| system.0.g = 1.62).unwrap_or_else(|error| panic!("{error}"));
+    assert!(run.impulses().is_none() && run.discrete_energy().is_none());
+    let state = run.step().unwrap_or_else(|error| panic!("{error}"));
+    assert!(off(&PENDULUM, &state) < 1e-15);
+    let lost = run.set_state(State { t: 0.0, q: SVector::from([1.0, 1.0]), p: SVector::zeros() });
+    assert!(matches!(lost, Err(StepError::InconsistentStart { .. })), "{lost:?}");
+    run.set_state(State { t: 0.0, q: SVector::from([1.0, 0.0]), p: SVector::from([0.0, 0.5]) })
+        .unwrap_or_else(|error| panic!("{error}"));
+    run.step().unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn a_tolerance_finds_a_step() {
+    let start = PENDULUM.at(0.0, [0.6, -0.8], [0.8, 0.6]);
+    let mut run = start.integrate(GaussLobatto::<2>, Tolerance(1e-8)).unwrap_or_else(|error| panic!("{error}"));
+    println!("{}", run.h());
+    assert!(run.h() > 1e-3 && run.h() < 0.2, "{}", run.h());
+    run.step().unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn a_reference_to_a_system_is_integrated() {
+    let mut by_value = pendulum::<2>(0.05);
+    let start = (&PENDULUM).at(0.0, [0.6, -0.8], [0.8, 0.6]);
+    let mut by_reference = start.integrate(GaussLobatto::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
+    for _ in 0..5 {
+        assert_eq!(by_value.step(), by_reference.step());
+    }
+}
