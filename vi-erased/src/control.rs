@@ -1,8 +1,9 @@
 //! What a controller asks of a system and of a run, type-erased. Matrices are flat, row by row.
 
-use crate::simulation::{Runnable, vector};
+use crate::mechanics::Mechanics;
+use crate::simulation::{Parametric, vector};
 use crate::system::Typed;
-use vi_core::control::{Dynamics as _, Equilibrium, Linearization};
+use vi_core::control::{Equilibrium, Linearization};
 use vi_core::lagrangian::Described;
 use vi_core::nalgebra::DMatrix;
 use vi_core::{SVector, StepError};
@@ -45,7 +46,7 @@ pub struct Rest {
 }
 
 impl Rest {
-    fn of<const N: usize>(of: &Equilibrium<N>) -> Result<Self, StepError> {
+    pub(crate) fn of<const N: usize>(of: &Equilibrium<N>) -> Result<Self, StepError> {
         Ok(Self {
             t: of.t,
             q: of.q.as_slice().to_vec(),
@@ -69,7 +70,7 @@ pub trait Control {
     ///
     /// # Errors
     /// As [`vi_core::control::Dynamics::linearization`]; [`StepError::InvalidInput`] for another number of coordinates
-    /// or velocities, here and below.
+    /// or velocities, [`StepError::NoDerivative`] for a system with constraints, here and below.
     fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError>;
     /// The equilibrium near a guess of the coordinates.
     ///
@@ -78,30 +79,30 @@ pub trait Control {
     fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError>;
 }
 
-impl<S: Runnable<N> + Described, const N: usize> Control for Typed<S, N> {
+impl<S: Parametric<N> + Described, C: Mechanics<S, N>, const N: usize> Control for Typed<S, N, C> {
     fn inputs(&self) -> &'static [usize] {
         S::INPUTS
     }
 
     fn mass_matrix(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
         for (t, q, v) in each(points) {
-            out.extend_from_slice(self.system.mass_matrix(t, q, v).transpose().as_slice());
+            out.extend_from_slice(C::mass_matrix(&self.system, (t, &q, &v)).transpose().as_slice());
         }
     }
 
     fn bias(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
         for (t, q, v) in each::<N>(points) {
-            out.extend_from_slice(self.system.bias(t, q, v).as_slice());
+            out.extend_from_slice(C::bias(&self.system, (t, &q, &v)).as_slice());
         }
     }
 
     fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError> {
-        let (q, v) = (vector::<N>(q, "number of coordinates")?, vector::<N>(v, "number of velocities")?);
-        self.system.linearization(t, q, v).map(Linear::from)
+        let (q, v) = (vector(q, "number of coordinates")?, vector(v, "number of velocities")?);
+        C::linearization(&self.system, (t, &q, &v))
     }
 
     fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError> {
-        Rest::of(&self.system.equilibrium(t, vector::<N>(guess, "number of coordinates")?)?)
+        C::equilibrium(&self.system, t, vector(guess, "number of coordinates")?)
     }
 }
 

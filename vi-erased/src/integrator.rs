@@ -4,17 +4,25 @@
 //! optimised for the system; the others take [`Called`] systems, which build in a third of the time and differ by
 //! rounding.
 
+use crate::mechanics::{Unconstrained, WithConstraints};
 use crate::plan::{Built, Method, Plan, Shift, Start};
-use crate::simulation::{Erasable, Runnable, ShiftedEnergy, Simulation, Supported, erased, erased_with};
+use crate::simulation::{
+    AtConstraints, Erasable, Runnable, RunnableWithConstraints, ShiftedEnergy, Simulation, Supported, at_constraints,
+    erased, erased_with,
+};
 use crate::start;
+use core::marker::PhantomData;
 use vi_core::collocation::Collocation;
 use vi_core::method::Controlled;
 use vi_core::run::Length as _;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{
-    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime, Run,
-    Starts, State, StepError,
+    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, GaussLobatto,
+    InTransformedTime, Run, Starts, State, StepError,
 };
+
+#[cfg(feature = "checkpoints")]
+use crate::simulation::Parametric;
 
 /// Starts a run of a plan from a state.
 type Begin<S, const N: usize> = fn(S, &Plan, State<N>) -> Result<Box<dyn Simulation>, StepError>;
@@ -22,25 +30,26 @@ type Begin<S, const N: usize> = fn(S, &Plan, State<N>) -> Result<Box<dyn Simulat
 #[cfg(feature = "checkpoints")]
 type Restart<S> = fn(S, &str) -> Result<Box<dyn Simulation>, String>;
 
-/// An integrator that is built for a system.
+/// An integrator that is built for a system of the kind C of [`Mechanics`](crate::mechanics::Mechanics).
 #[derive(Clone, Copy)]
-pub struct Integrator<S, const N: usize> {
+pub struct Integrator<S, const N: usize, C = Unconstrained> {
     /// Which one it is.
     pub built: Built,
     pub(crate) begin: Begin<S, N>,
     #[cfg(feature = "checkpoints")]
     pub(crate) restart: Restart<S>,
+    kind: PhantomData<C>,
 }
 
 /// Integrators of several words of [`kind!`](crate::kind).
 #[must_use]
-pub fn all<S, const N: usize, const K: usize>(of: [Vec<Integrator<S, N>>; K]) -> Vec<Integrator<S, N>> {
+pub fn all<S, C, const N: usize, const K: usize>(of: [Vec<Integrator<S, N, C>>; K]) -> Vec<Integrator<S, N, C>> {
     of.into_iter().flatten().collect()
 }
 
 /// Reads a stored run of the method M.
 #[cfg(feature = "checkpoints")]
-fn restarted<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
+fn restarted<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(
     system: S,
     method: M,
     stored: &str,
@@ -58,6 +67,7 @@ macro_rules! integrator {
             begin: $begin,
             #[cfg(feature = "checkpoints")]
             restart: |system, stored| restarted($system(system), $method, stored),
+            kind: PhantomData,
         }
     };
 }
@@ -181,6 +191,22 @@ where
     )
 }
 
+/// Steps of the given number of stages that keep constraints.
+#[must_use]
+pub fn gauss_lobatto<S, const N: usize, const STAGES: usize>() -> Integrator<S, N, WithConstraints>
+where
+    S: RunnableWithConstraints<N>,
+    GaussLobatto<STAGES>: Erasable<S, N>,
+{
+    integrator!((Method::GaussLobatto, Some(STAGES), false), |system| system, GaussLobatto::<STAGES>, |system: S,
+                                                                                                       plan: &Plan,
+                                                                                                       state: State<
+        N,
+    >| {
+        Ok(erased(system.at_state(state).integrate(GaussLobatto::<STAGES>, plan.length())?))
+    })
+}
+
 /// The action if there is no energy-preserving step.
 fn fallback(plan: &Plan) -> Fallback {
     if plan.fallback { Fallback::FixedSteps } else { Fallback::Stop }
@@ -255,5 +281,18 @@ where
 
     fn shifted_energy(run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
         Some(ShiftedEnergy { energy: run.shifted_energy(), shift: run.shift() })
+    }
+}
+
+impl<S: RunnableWithConstraints<N>, const N: usize, const STAGES: usize> Erasable<S, N> for GaussLobatto<STAGES>
+where
+    GaussLobatto<STAGES>: Supported<S, N>,
+{
+    fn evaluations(run: &Run<Self, S, N>) -> u64 {
+        u64::from(run.iterations()) * STAGES as u64
+    }
+
+    fn constraints(system: &S, state: &State<N>) -> Option<AtConstraints> {
+        Some(at_constraints(system, state))
     }
 }

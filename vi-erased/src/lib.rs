@@ -10,15 +10,20 @@
 //! | [`plan`] | the description of a run |
 //! | [`integrator`] | an integrator that is built for a system |
 //! | [`system`] | a system with its parameters |
+//! | [`mechanics`] | with or without constraints |
 //! | [`simulation`] | a started run |
 //! | `session` | a run in the hands of a program; feature `sessions` |
 //! | `control` | mass matrix, linearizations, equilibria; feature `derivatives` |
+//! | `derivatives` | tangent vectors and gradients of runs; feature `derivatives` |
 //! | [`start`] | an accurate second node |
 //! | [`section`] | events of a run, type-erased |
 
 #[cfg(feature = "derivatives")]
 pub mod control;
+#[cfg(feature = "derivatives")]
+pub mod derivatives;
 pub mod integrator;
+pub mod mechanics;
 pub mod plan;
 pub mod section;
 #[cfg(feature = "sessions")]
@@ -45,12 +50,13 @@ pub use system::{System, Typed};
 /// | `transformed 4, 8` | the same in transformed time, for a system with a `time_scale` |
 /// | `energy` | energy-preserving steps of order 2 |
 /// | `energy 2, 3` | energy-preserving Gauss steps of 2 and of 3 stages |
+/// | `gauss_lobatto 1, 3` | steps of 1 and of 3 stages that keep constraints; a system with constraints has no others |
 ///
 /// `fixed`, `fixed_2` and `energy` without stages need the clause `discretize midpoint;`.
 #[macro_export]
 macro_rules! kind {
     ($system:ty, { $($method:ident $($stages:literal),*);* $(;)? }) => {
-        $crate::system::erased::<$system, _>($crate::integrator::all([
+        $crate::system::erased::<$system, _, _>($crate::integrator::all([
             $($crate::integrators!($method $($stages),*)),*
         ]))
     };
@@ -73,6 +79,9 @@ macro_rules! integrators {
     };
     (transformed $($stages:literal),+) => {
         vec![$($crate::integrator::transformed::<_, _, $stages>()),+]
+    };
+    (gauss_lobatto $($stages:literal),+) => {
+        vec![$($crate::integrator::gauss_lobatto::<_, _, $stages>()),+]
     };
     (energy $($stages:literal),+) => {
         vec![$($crate::integrator::energy_gauss::<_, _, $stages>()),+]

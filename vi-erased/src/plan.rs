@@ -19,6 +19,8 @@ pub enum Method {
     KahanLi8,
     /// Gauss collocation, of order 2S with S stages.
     Gauss,
+    /// Steps that keep constraints, of order 2S with S stages.
+    GaussLobatto,
     /// The integrator that solves for its own step and preserves the discrete energy.
     Energy,
 }
@@ -32,9 +34,15 @@ pub const DEFAULT_STAGES: usize = 8;
 /// Numbers of stages of energy-preserving Gauss steps: with more, rounding hides their length.
 pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 
+/// Numbers of stages of steps that keep constraints, for each system with constraints.
+pub const LOBATTO_STAGES: [usize; 3] = [1, 2, 3];
+/// The default number of these stages: the highest order that is built.
+pub const DEFAULT_LOBATTO_STAGES: usize = 3;
+
 impl Method {
     /// All integrators.
-    pub const ALL: [Self; 6] = [Self::Fixed, Self::Suzuki4, Self::KahanLi6, Self::KahanLi8, Self::Gauss, Self::Energy];
+    pub const ALL: [Self; 7] =
+        [Self::Fixed, Self::Suzuki4, Self::KahanLi6, Self::KahanLi8, Self::Gauss, Self::GaussLobatto, Self::Energy];
 
     /// The scheme of a composition.
     #[must_use]
@@ -43,7 +51,7 @@ impl Method {
             Self::Suzuki4 => Some(Composition::SUZUKI_4),
             Self::KahanLi6 => Some(Composition::KAHAN_LI_6),
             Self::KahanLi8 => Some(Composition::KAHAN_LI_8),
-            Self::Fixed | Self::Gauss | Self::Energy => None,
+            Self::Fixed | Self::Gauss | Self::GaussLobatto | Self::Energy => None,
         }
     }
 }
@@ -94,6 +102,7 @@ impl Named for Method {
             Self::KahanLi6 => "kahan-li-6",
             Self::KahanLi8 => "kahan-li-8",
             Self::Gauss => "gauss",
+            Self::GaussLobatto => "gauss-lobatto",
             Self::Energy => "energy",
         }
     }
@@ -105,6 +114,7 @@ impl Named for Method {
             Self::KahanLi6 => "Nine fixed steps composed to order 6, by Kahan and Li",
             Self::KahanLi8 => "Seventeen fixed steps composed to order 8, by Kahan and Li",
             Self::Gauss => "Gauss collocation, of order 2S for --stages S",
+            Self::GaussLobatto => "Steps that keep constraints, of order 2S for --stages S",
             Self::Energy => "The integrator that solves for its own step and preserves the discrete energy",
         }
     }
@@ -149,7 +159,8 @@ pub struct Plan {
     pub method: Method,
     /// The start of the energy-preserving integrator without stages and shift; unused by others.
     pub start: Start,
-    /// The stages of Gauss steps, one of [`STAGES`], or of energy-preserving ones, one of [`ENERGY_STAGES`].
+    /// The stages of Gauss steps, one of [`STAGES`], of steps that keep constraints, one of [`LOBATTO_STAGES`], or of
+    /// energy-preserving ones, one of [`ENERGY_STAGES`].
     pub stages: Option<usize>,
     /// The shift of energy-preserving steps.
     pub shift: Option<Shift>,
@@ -191,10 +202,15 @@ impl Plan {
         (self.method, self.energy_stages().or(self.gauss_stages()), self.dtau.is_some())
     }
 
-    /// The stages of Gauss steps; `None` for other methods.
+    /// The stages of Gauss steps, and of those that keep constraints; `None` for other methods.
     #[must_use]
     pub fn gauss_stages(&self) -> Option<usize> {
-        (self.method == Method::Gauss).then(|| self.stages.unwrap_or(DEFAULT_STAGES))
+        let usual = match self.method {
+            Method::Gauss => DEFAULT_STAGES,
+            Method::GaussLobatto => DEFAULT_LOBATTO_STAGES,
+            _ => return None,
+        };
+        Some(self.stages.unwrap_or(usual))
     }
 
     /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); `None` for

@@ -7,11 +7,9 @@
 #[cfg(feature = "derivatives")]
 use crate::control::Linear;
 use crate::section::Section;
-use crate::simulation::{Erasable, Met, Runnable, Simulated, Simulation, met, vector};
+use crate::simulation::{Erasable, Met, Parametric, Simulated, Simulation, met, vector};
 #[cfg(feature = "derivatives")]
-use vi_core::Method;
-#[cfg(feature = "derivatives")]
-use vi_core::derivatives::{Covector, Objective, Tangent, Variation, gradient};
+use vi_core::derivatives::Covector;
 #[cfg(feature = "checkpoints")]
 use vi_core::run::Checkpoint;
 use vi_core::run::DenseOutput;
@@ -133,7 +131,7 @@ pub trait Session {
     /// The linearization of the next step. The run does not change.
     ///
     /// # Errors
-    /// As [`Run::linearization`].
+    /// As [`Run::linearization`]; here and below [`StepError::NoDerivative`] for a system with constraints.
     #[cfg(feature = "derivatives")]
     fn linearization(&self) -> Result<Linear, StepError>;
     /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
@@ -165,7 +163,7 @@ pub trait Session {
     ) -> Result<Option<Vec<f64>>, StepError>;
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
     /// Takes one step toward the time `end`; returns whether the run is there.
     #[inline(never)]
     fn approach(&mut self, end: f64) -> Result<bool, StepError> {
@@ -176,7 +174,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     }
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<M, S, N> {
     fn velocity(&self) -> Result<Vec<f64>, StepError> {
         Ok(self.run.velocity()?.as_slice().to_vec())
     }
@@ -282,7 +280,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
         let events: Vec<_> = sections.iter().map(Section::event).collect();
         let crossing = self.run.next_event(events, end);
         self.resume();
-        Ok(crossing?.map(|crossing| met(self.run.system(), &crossing)))
+        Ok(crossing?.map(|crossing| met::<M, S, N>(self.run.system(), &crossing)))
     }
 
     fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError> {
@@ -306,7 +304,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
 
     #[cfg(feature = "derivatives")]
     fn linearization(&self) -> Result<Linear, StepError> {
-        self.run.linearization().map(Linear::from)
+        M::linearization(&self.run)
     }
 
     #[cfg(feature = "derivatives")]
@@ -316,17 +314,12 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
         parameters: &[usize],
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Vec<f64>>>, StepError> {
-        let mut tangent = self.varied(parameters)?;
-        for _ in 0..steps {
-            if !goes_on() {
-                return Ok(None);
-            }
-            tangent.step()?;
-        }
-        self.run = tangent.run().clone();
-        self.resume();
-        let of_node = |of: &Variation<N>| of.q.iter().chain(&of.p).copied().collect();
-        Ok(Some(tangent.variations().iter().map(of_node).collect()))
+        let found = M::tangent(&self.run, self.begins(), steps, parameters, goes_on)?;
+        Ok(found.map(|(run, of)| {
+            self.run = run;
+            self.resume();
+            of
+        }))
     }
 
     #[cfg(feature = "derivatives")]
@@ -341,93 +334,20 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
             Some((q, p)) => state::<N>(0.0, q, p)?,
             None => state::<N>(0.0, slope, &[])?,
         };
-        let names: Vec<&'static str> =
-            parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
-        // The run at the start of each stretch; the pass goes back from the last one.
-        let (mut ahead, mut stretches, mut left) = (self.run.clone(), Vec::new(), steps);
-        while left > 0 {
-            let few = left.min(STRETCH);
-            stretches.push((ahead.clone(), few));
-            for _ in 0..few {
-                if !goes_on() {
-                    return Ok(None);
-                }
-                ahead.single_step()?;
-            }
-            left -= few;
-        }
-        let mut slope = Covector { q, p, ..Covector::zero() };
-        let mut sums = vec![0.0; names.len()];
-        for (run, few) in stretches.iter().rev() {
-            // A stretch takes as long as on the way ahead.
-            if !(0..*few).all(|_| goes_on()) {
-                return Ok(None);
-            }
-            let objective = AtTheEnd { steps: *few, slope, parameters: &names };
-            let found = gradient(run, *few, usize::MAX, &objective)?;
-            slope = found.start;
-            for of_a_step in &found.parameters {
-                sums.iter_mut().zip(of_a_step).for_each(|(sum, slope)| *sum += slope);
-            }
-            // The sum includes a change of the kept energy, by H at the start of each stretch.
-            let changed = Tangent::from_change(run.clone(), directions(parameters))?;
-            for (sum, direction) in sums.iter_mut().zip(&changed.variations()[2 * N..]) {
-                *sum -= slope.energy * direction.energy;
-            }
-        }
-        let directions = self.varied(parameters)?;
-        let mut of: Vec<f64> = directions.variations().iter().map(|direction| slope.of(direction)).collect();
-        of[2 * N..].iter_mut().zip(&sums).for_each(|(of, sum)| *of += sum);
-        self.run = ahead;
-        self.resume();
-        Ok(Some(of))
+        let slope = Covector { q, p, ..Covector::zero() };
+        let found = M::gradient(&self.run, self.begins(), (steps, slope), parameters, goes_on)?;
+        Ok(found.map(|(run, of)| {
+            self.run = run;
+            self.resume();
+            of
+        }))
     }
 }
 
-/// Steps of a stretch of a gradient, whose states are all kept.
 #[cfg(feature = "derivatives")]
-const STRETCH: u64 = 2048;
-
-/// A linear function of the node at the end.
-#[cfg(feature = "derivatives")]
-struct AtTheEnd<'a, const N: usize> {
-    steps: u64,
-    slope: Covector<N>,
-    parameters: &'a [&'static str],
-}
-
-#[cfg(feature = "derivatives")]
-impl<M: Method<S, N>, S: Runnable<N>, const N: usize> Objective<M, S, N> for AtTheEnd<'_, N> {
-    fn parameters(&self) -> &[&str] {
-        self.parameters
-    }
-
-    fn slope(&self, step: u64, _state: &State<N>) -> Covector<N> {
-        if step == self.steps { self.slope } else { Covector::zero() }
-    }
-}
-
-/// The directions of the coordinates, the momenta, and the parameters of these indices.
-#[cfg(feature = "derivatives")]
-fn directions<const N: usize>(parameters: &[usize]) -> Vec<Variation<N>> {
-    let of_parameter = |index: &usize| {
-        let mut parameters = vec![0.0; index + 1];
-        parameters[*index] = 1.0;
-        Variation { parameters, ..Variation::zero() }
-    };
-    Variation::of_state().into_iter().chain(parameters.iter().map(of_parameter)).collect()
-}
-
-#[cfg(feature = "derivatives")]
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
-    /// The run with its directions. Where it began, the energy that it keeps follows from its start; later it changes as
-    /// H does.
-    ///
-    /// # Errors
-    /// As [`Tangent::from_start`] and [`Tangent::from_change`].
-    fn varied(&self, parameters: &[usize]) -> Result<Tangent<M, S, N>, StepError> {
-        let begins = self.start.as_ref() == Some(self.run.node());
-        let of = if begins { Tangent::from_start } else { Tangent::from_change };
-        of(self.run.clone(), directions(parameters))
+impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
+    /// Whether the run is where it began.
+    fn begins(&self) -> bool {
+        self.start.as_ref() == Some(self.run.node())
     }
 }

@@ -4,18 +4,21 @@
 //! node. The numbers are those of the generic integrators, to the last bit, and loops over steps are inside, without
 //! virtual calls.
 
+#[cfg(feature = "derivatives")]
+use crate::derivatives::Derived;
+use crate::mechanics::{Mechanics, WithConstraints, largest};
 use crate::section::Section;
 #[cfg(feature = "sessions")]
 use crate::session::Session;
 use std::borrow::Cow;
 use vi_core::collocation::Collocation;
-use vi_core::lagrangian::Parameters;
+use vi_core::lagrangian::{Lagrangian, Parameters};
 #[cfg(feature = "derivatives")]
 use vi_core::node::Node;
 use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor};
 use vi_core::stepping::Convertible;
 use vi_core::support::has_angles;
-use vi_core::{Method, Run, SVector, StepError};
+use vi_core::{Constrained, ConvertibleConstrained, Method, Run, SVector, State, StepError};
 
 /// A node, its energies, and the length of the step that led to it.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,26 +36,40 @@ pub struct Row {
     pub discrete_energy: Option<f64>,
     /// E', the energy conserved by steps with a shift; `None` for other methods, whose rows have no such column.
     pub shifted_energy: Option<f64>,
+    /// The constraints at the node; `None` for systems without, whose rows have no such columns.
+    pub constraints: Option<AtConstraints>,
     /// Length of the step; in the first row the requested length.
     pub h: f64,
 }
 
+/// The constraints of a system at a node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtConstraints {
+    /// The multiplier Λ of each; `None` if the state has none.
+    pub reactions: Vec<Option<f64>>,
+    /// The largest of `|g|` and `|A v + a|`; `None` if the momenta have no velocity.
+    pub residual: Option<f64>,
+}
+
 impl Row {
-    /// The names of the columns for these coordinates, with or without a shift.
+    /// The names of the columns for these coordinates and constraints, with or without a shift.
     #[must_use]
-    pub fn columns(coordinates: &[&str], is_shifted: bool) -> Vec<String> {
+    pub fn columns(coordinates: &[&str], constraints: &[&str], is_shifted: bool) -> Vec<String> {
         let q = coordinates.iter().map(|&name| name.to_owned());
         let p = coordinates.iter().map(|name| format!("p_{name}"));
+        let reactions = constraints.iter().map(|name| format!("Λ_{name}"));
+        let residual = (!constraints.is_empty()).then(|| "residual".to_owned());
         let last: &[&str] = if is_shifted { &["H", "E", "E'", "h"] } else { &["H", "E", "h"] };
         let last = last.iter().map(|&name| name.to_owned());
-        ["t".to_owned()].into_iter().chain(q).chain(p).chain(last).collect()
+        ["t".to_owned()].into_iter().chain(q).chain(p).chain(reactions).chain(residual).chain(last).collect()
     }
 
     /// The entries in the order of the columns.
     pub fn entries(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         let numbers = core::iter::once(&self.t).chain(&self.q).chain(&self.p).copied().map(Some);
+        let constraints = self.constraints.iter().flat_map(|of| of.reactions.iter().copied().chain([of.residual]));
         let energies = [self.energy, self.discrete_energy];
-        numbers.chain(energies).chain(self.shifted_energy.map(Some)).chain([Some(self.h)])
+        numbers.chain(constraints).chain(energies).chain(self.shifted_energy.map(Some)).chain([Some(self.h)])
     }
 }
 
@@ -84,6 +101,10 @@ pub trait Steps {
     fn discrete_energy(&self) -> Option<f64>;
     /// E', conserved by steps with a shift, and that shift; `None` for other methods.
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
+        None
+    }
+    /// The constraints at the last node; `None` for systems without.
+    fn constraints(&self) -> Option<AtConstraints> {
         None
     }
     /// Takes one step.
@@ -146,6 +167,7 @@ impl dyn Steps + '_ {
             energy: self.energy().ok(),
             discrete_energy: self.discrete_energy(),
             shifted_energy: self.shifted_energy().map(|of| of.energy),
+            constraints: self.constraints(),
             h: self.h(),
         }
     }
@@ -193,7 +215,7 @@ pub(crate) fn wrong_size(values: &[f64], input: &'static str) -> StepError {
 }
 
 /// A method whose runs are erased: what its rows and its evaluations are.
-pub trait Erasable<S: Runnable<N>, const N: usize>: Supported<S, N> {
+pub trait Erasable<S: Parametric<N>, const N: usize>: Supported<S, N> {
     /// Evaluations of the equations in the last step of a run.
     fn evaluations(run: &Run<Self, S, N>) -> u64;
 
@@ -209,28 +231,56 @@ pub trait Erasable<S: Runnable<N>, const N: usize>: Supported<S, N> {
     fn shifted_energy(_run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
         None
     }
+
+    /// The constraints at a state.
+    fn constraints(_system: &S, _state: &State<N>) -> Option<AtConstraints> {
+        None
+    }
 }
 
-/// A system whose runs are erased.
-pub trait Runnable<const N: usize>: Collocation<N> + Convertible<N> + Parameters + Send + Sync + 'static {}
-impl<S: Collocation<N> + Convertible<N> + Parameters + Send + Sync + 'static, const N: usize> Runnable<N> for S {}
+/// The constraints at a state.
+pub(crate) fn at_constraints<S: RunnableWithConstraints<N>, const N: usize>(
+    system: &S,
+    state: &State<N>,
+) -> AtConstraints {
+    let mut reactions = Vec::new();
+    let outcome = WithConstraints::reaction(system, state, &mut reactions);
+    let has_reaction = |reaction: f64| Some(reaction).filter(|_| outcome.is_ok());
+    reactions.resize(S::CONSTRAINTS.len(), f64::NAN);
+    let residual = state.velocity(system).ok().map(|v| {
+        let mut residuals = Vec::new();
+        WithConstraints::residuals(system, (state.t, &state.q, &v), &mut residuals);
+        largest(&residuals)
+    });
+    AtConstraints { reactions: reactions.into_iter().map(has_reaction).collect(), residual }
+}
+
+/// A system with parameters.
+pub trait Parametric<const N: usize>: Lagrangian<N> + Parameters + Copy + Send + Sync + 'static {}
+impl<S: Lagrangian<N> + Parameters + Copy + Send + Sync + 'static, const N: usize> Parametric<N> for S {}
+
+/// A system without constraints whose runs are erased.
+pub trait Runnable<const N: usize>: Parametric<N> + Collocation<N> + Convertible<N> {}
+impl<S: Parametric<N> + Collocation<N> + Convertible<N>, const N: usize> Runnable<N> for S {}
+
+/// A system with constraints whose runs are erased.
+pub trait RunnableWithConstraints<const N: usize>: Parametric<N> + Constrained<N> + ConvertibleConstrained<N> {}
+impl<S: Parametric<N> + Constrained<N> + ConvertibleConstrained<N>, const N: usize> RunnableWithConstraints<N> for S {}
 
 #[cfg(not(feature = "derivatives"))]
 use Method as Derived;
-#[cfg(feature = "derivatives")]
-use vi_core::derivatives::Differentiable as Derived;
 
 /// A method with all that the features ask of it.
 #[cfg(not(feature = "checkpoints"))]
-pub trait Supported<S: Runnable<N>, const N: usize>: Derived<S, N> + 'static {}
+pub trait Supported<S: Parametric<N>, const N: usize>: Derived<S, N> + 'static {}
 #[cfg(not(feature = "checkpoints"))]
-impl<M: Derived<S, N> + 'static, S: Runnable<N>, const N: usize> Supported<S, N> for M {}
+impl<M: Derived<S, N> + 'static, S: Parametric<N>, const N: usize> Supported<S, N> for M {}
 
 /// A method with all that the features ask of it.
 #[cfg(feature = "checkpoints")]
-pub trait Supported<S: Runnable<N>, const N: usize>: Derived<S, N, Memory: Storable> + 'static {}
+pub trait Supported<S: Parametric<N>, const N: usize>: Derived<S, N, Memory: Storable> + 'static {}
 #[cfg(feature = "checkpoints")]
-impl<M: Derived<S, N, Memory: Storable> + 'static, S: Runnable<N>, const N: usize> Supported<S, N> for M {}
+impl<M: Derived<S, N, Memory: Storable> + 'static, S: Parametric<N>, const N: usize> Supported<S, N> for M {}
 
 /// A memory that serde writes and reads.
 #[cfg(feature = "checkpoints")]
@@ -257,12 +307,12 @@ pub(crate) struct Simulated<M: Method<S, N>, S, const N: usize> {
 const ROUNDED: f64 = 1e-9;
 
 /// The same run, type-erased.
-pub fn erased<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(run: Run<M, S, N>) -> Box<dyn Simulation> {
+pub fn erased<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(run: Run<M, S, N>) -> Box<dyn Simulation> {
     erased_with(run, false)
 }
 
 /// The same, with E' in its rows if `is_shifted`.
-pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
+pub(crate) fn erased_with<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(
     run: Run<M, S, N>,
     is_shifted: bool,
 ) -> Box<dyn Simulation> {
@@ -277,7 +327,7 @@ pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
     })
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
     /// Takes notice of the last step.
     pub(crate) fn count(&mut self) {
         self.evaluations += M::evaluations(&self.run);
@@ -313,7 +363,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
 }
 
 /// A crossing of a run of the system, type-erased.
-pub(crate) fn met<S: Runnable<N>, const N: usize>(system: &S, crossing: &Crossing<N>) -> Met {
+pub(crate) fn met<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(system: &S, crossing: &Crossing<N>) -> Met {
     let Crossing { events, state, length, .. } = crossing;
     let row = Row {
         t: state.t,
@@ -322,12 +372,13 @@ pub(crate) fn met<S: Runnable<N>, const N: usize>(system: &S, crossing: &Crossin
         energy: state.energy(system).ok(),
         discrete_energy: None,
         shifted_energy: None,
+        constraints: M::constraints(system, state),
         h: *length,
     };
     Met { row, events: events.iter().map(|met| (met.event, met.is_rising)).collect() }
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Steps for Simulated<M, S, N> {
     fn t(&self) -> f64 {
         self.run.t()
     }
@@ -360,6 +411,10 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S
 
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
         M::shifted_energy(&self.run).filter(|of| self.is_shifted || of.shift != 0.0)
+    }
+
+    fn constraints(&self) -> Option<AtConstraints> {
+        M::constraints(self.run.system(), &self.run.node().state())
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
@@ -404,7 +459,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S
     }
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulation for Simulated<M, S, N> {
     fn evaluations(&self) -> u64 {
         self.evaluations
     }
@@ -426,7 +481,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
         let mut outcome = Ok(());
         for crossing in self.run.events(events, end) {
             match crossing {
-                Ok(crossing) if take(met(&system, &crossing)) => {}
+                Ok(crossing) if take(met::<M, S, N>(&system, &crossing)) => {}
                 Ok(_) => break,
                 Err(error) => outcome = Err(error),
             }

@@ -5,9 +5,11 @@
 #[cfg(feature = "derivatives")]
 use crate::control::Control;
 use crate::integrator::Integrator;
+use crate::mechanics::{Mechanics, Unconstrained};
 use crate::plan::{Built, Method, PhasePoint, Plan};
-use crate::simulation::{Runnable, Simulation, vector, wrong_size};
+use crate::simulation::{Parametric, Simulation, vector, wrong_size};
 use std::sync::Arc;
+use vi_core::constrained::Projected;
 use vi_core::lagrangian::Described;
 use vi_core::{SVector, State, StepError};
 
@@ -28,6 +30,23 @@ pub enum Quantity {
     Acceleration,
     /// The velocity at (t, q, p).
     Velocity,
+    /// The multiplier Λ of each constraint at (t, q, p).
+    Reaction,
+    /// The generalized force `AᵀΛ` of all constraints at (t, q, p).
+    ReactionForce,
+    /// g of each constraint at (t, q, v), zero for nonholonomic ones, then `A v + a` of each.
+    Residuals,
+}
+
+/// A point on the constraints, and how far it is from the given one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OnConstraints {
+    /// The point.
+    pub point: PhasePoint,
+    /// Changes of the coordinates.
+    pub moved_q: Vec<f64>,
+    /// Changes of the velocities.
+    pub moved_v: Vec<f64>,
 }
 
 /// A system with its parameters.
@@ -40,6 +59,8 @@ pub trait System: Send + Sync {
     fn definition(&self) -> &'static str;
     /// Names of the coordinates.
     fn coordinates(&self) -> Vec<&'static str>;
+    /// Names of the constraints, holonomic ones first; none for a system without.
+    fn constraints(&self) -> &'static [&'static str];
     /// Names and values of the parameters.
     fn parameters(&self) -> Vec<(&'static str, f64)>;
     /// Documentation of each parameter.
@@ -53,12 +74,18 @@ pub trait System: Send + Sync {
     /// Whether the energy of a motion is constant: L and f are autonomous, and there is no force.
     fn conserves_energy(&self) -> bool;
     /// A function at as many points as there are times; `q` and `v`, or momenta, have N numbers for each. Appends to
-    /// `out`, N numbers for each point if the function is a vector.
+    /// `out`, N numbers for each point if the function is a vector; of the constraints as [`Quantity`] says.
     ///
     /// # Errors
     /// [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] of the first point without a
     /// value.
     fn evaluate(&self, of: Quantity, points: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError>;
+    /// The point on the constraints that is nearest to a point, as [`State::projected`]. Without constraints it is the
+    /// same point.
+    ///
+    /// # Errors
+    /// As [`State::projected`]; [`StepError::InvalidInput`] for a point with another number of coordinates.
+    fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
     /// What a controller asks of it.
     #[cfg(feature = "derivatives")]
     fn control(&self) -> &dyn Control;
@@ -67,7 +94,7 @@ pub trait System: Send + Sync {
     /// # Errors
     /// The error of the integrators for the initial state. [`StepError::InvalidInput`] for wrong numbers of coordinates
     /// or velocities, and for stages that are not built; [`StepError::NoRule`] for a method that needs a rule which the
-    /// system does not have.
+    /// system does not have, [`StepError::HasConstraints`] for one that does not keep its constraints.
     fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
     /// The run of an integrator as [`Session::checkpoint`](crate::Session::checkpoint) stored it.
     ///
@@ -114,38 +141,42 @@ impl dyn System + '_ {
     }
 }
 
-/// A system of a known type.
+/// A system of a known type, and of the kind C of [`Mechanics`].
 #[derive(Clone)]
-pub struct Typed<S, const N: usize> {
+pub struct Typed<S, const N: usize, C = Unconstrained> {
     /// The system.
     pub system: S,
-    integrators: Arc<[Integrator<S, N>]>,
+    integrators: Arc<[Integrator<S, N, C>]>,
 }
 
-impl<S: Runnable<N> + Described + Default, const N: usize> Typed<S, N> {
+impl<S: Parametric<N> + Described + Default, C: Mechanics<S, N>, const N: usize> Typed<S, N, C> {
     /// The system with its default parameters.
     #[must_use]
-    pub fn new(integrators: Vec<Integrator<S, N>>) -> Self {
+    pub fn new(integrators: Vec<Integrator<S, N, C>>) -> Self {
         Self { system: S::default(), integrators: integrators.into() }
     }
 }
 
 /// The system with its default parameters, type-erased.
 #[must_use]
-pub fn erased<S: Runnable<N> + Described + Default, const N: usize>(
-    integrators: Vec<Integrator<S, N>>,
-) -> Box<dyn System> {
+pub fn erased<S, C, const N: usize>(integrators: Vec<Integrator<S, N, C>>) -> Box<dyn System>
+where
+    S: Parametric<N> + Described + Default,
+    C: Mechanics<S, N> + Clone,
+{
     Box::new(Typed::new(integrators))
 }
 
-impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
+impl<S: Parametric<N> + Described, C: Mechanics<S, N>, const N: usize> Typed<S, N, C> {
     /// An integrator.
     ///
     /// # Errors
     /// As [`System::begin`].
-    fn integrator(&self, wanted: Built) -> Result<&Integrator<S, N>, StepError> {
+    fn integrator(&self, wanted: Built) -> Result<&Integrator<S, N, C>, StepError> {
         let found = self.integrators.iter().find(|integrator| integrator.built == wanted);
+        let has_method = self.integrators.iter().any(|integrator| integrator.built.0 == wanted.0);
         found.ok_or(match wanted {
+            _ if !C::CONSTRAINTS.is_empty() && !has_method => StepError::HasConstraints { system: S::NAME },
             #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
             (_, Some(stages), _) => StepError::InvalidInput {
                 input: "number of stages",
@@ -158,7 +189,7 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
     }
 }
 
-impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
+impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> System for Typed<S, N, C> {
     fn name(&self) -> &'static str {
         S::NAME
     }
@@ -173,6 +204,10 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
 
     fn coordinates(&self) -> Vec<&'static str> {
         S::COORDINATES.to_vec()
+    }
+
+    fn constraints(&self) -> &'static [&'static str] {
+        C::CONSTRAINTS
     }
 
     fn parameters(&self) -> Vec<(&'static str, f64)> {
@@ -207,8 +242,17 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
                 Quantity::Lagrangian => system.lagrangian(t, &q, &v),
                 Quantity::Energy => system.energy(t, &q, &v),
                 Quantity::Hamiltonian => State { t, q, p: v }.energy(system)?,
+                Quantity::Reaction => {
+                    C::reaction(system, &State { t, q, p: v }, out)?;
+                    continue;
+                }
+                Quantity::Residuals => {
+                    C::residuals(system, (t, &q, &v), out);
+                    continue;
+                }
                 _ => {
                     let vector = match of {
+                        Quantity::ReactionForce => C::reaction_force(system, &State { t, q, p: v })?,
                         Quantity::Momentum => system.momentum(t, &q, &v),
                         Quantity::Force => system.force(t, &q, &v),
                         Quantity::Acceleration => system.acceleration(t, &q, &v)?,
@@ -221,6 +265,15 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
             out.push(number);
         }
         Ok(())
+    }
+
+    fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError> {
+        let PhasePoint { t, q, v } = at;
+        let (q, v) = (vector(q, "number of coordinates")?, vector(v, "number of velocities")?);
+        let Projected { state, moved_q, moved_v, .. } = C::projected(&self.system, (*t, &q, &v))?;
+        // The velocity itself: that of the momenta has a further rounding.
+        let [q, v, moved_q, moved_v] = [state.q, v + moved_v, moved_q, moved_v].map(|of| of.as_slice().to_vec());
+        Ok(OnConstraints { point: PhasePoint { t: *t, q, v }, moved_q, moved_v })
     }
 
     #[cfg(feature = "derivatives")]

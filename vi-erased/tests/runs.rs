@@ -1,8 +1,8 @@
 //! Erased runs are those of the generic integrators, bit for bit.
 
-use vi_core::{Composition, EnergyPreserving, FixedStep, Gauss, Run, Starts, StepError};
+use vi_core::{Composition, EnergyPreserving, FixedStep, Gauss, GaussLobatto, Run, Starts, StepError};
 use vi_erased::{Method, PhasePoint, Plan, System, kind};
-use vi_systems::{Kepler, Pendulum};
+use vi_systems::{Kepler, Pendulum, RodPendulum};
 
 fn kepler() -> Box<dyn System> {
     kind!(Kepler, { fixed; gauss 4, 8; transformed 8; energy; energy 2 })
@@ -38,6 +38,40 @@ fn erased_runs_have_the_bits_of_generic_ones() {
     same(&from_the_state, start.integrate(EnergyPreserving, 0.01).expect("a start"));
     let from_the_middle = EnergyPreserving::from_midpoint(Kepler::default(), 0.5, [0.4, 0.0], [0.0, 2.0], 0.01);
     same(&plan(Method::Energy, 0.01), from_the_middle.expect("a start"));
+}
+
+#[test]
+fn runs_with_constraints_have_the_bits_of_generic_ones() {
+    let system = kind!(RodPendulum, { gauss_lobatto 1, 3 });
+    assert_eq!(system.constraints(), ["rod"]);
+    let typed = RodPendulum::default();
+    let (q, v) = typed.start();
+    let mut run = typed.at(0.0, q, v).integrate(GaussLobatto::<3>, 0.01).expect("a start");
+    let start = PhasePoint { t: 0.0, q: q.to_vec(), v: v.to_vec() };
+    let plan = Plan::new(Method::GaussLobatto, 0.01, start.clone());
+    let mut erased = system.begin(&plan).expect("a start");
+    for _ in 0..50 {
+        erased.advance().expect("a step");
+        let state = run.step().expect("a step");
+        assert_eq!((erased.t(), &*erased.q(), erased.p()), (state.t, state.q.as_slice(), state.p.as_slice()));
+        let row = erased.row();
+        let constraints = row.constraints.clone().expect("constraints");
+        let [reaction] = state.reaction(&typed).expect("a reaction");
+        assert_eq!(constraints.reactions, [Some(reaction)]);
+        // |g| and |A v + a|, measured: at most 4.4e-16.
+        assert!(constraints.residual.is_some_and(|residual| residual < 2e-15), "{constraints:?}");
+        let columns = vi_erased::Row::columns(&["x", "y"], system.constraints(), false);
+        assert_eq!(columns, ["t", "x", "y", "p_x", "p_y", "Λ_rod", "residual", "H", "E", "h"]);
+        assert_eq!(row.entries().count(), columns.len());
+    }
+    let refused = |plan: &Plan| system.begin(plan).err();
+    assert_eq!(
+        refused(&Plan::new(Method::Gauss, 0.01, start)),
+        Some(StepError::HasConstraints { system: "RodPendulum" })
+    );
+    assert!(matches!(refused(&Plan { stages: Some(2), ..plan.clone() }), Some(StepError::InvalidInput { .. })));
+    let off = Plan { q: vec![1.0, -0.5], ..plan };
+    assert!(matches!(refused(&off), Some(StepError::InconsistentStart { constraint: "rod", .. })));
 }
 
 #[test]

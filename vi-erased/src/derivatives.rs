@@ -1,0 +1,232 @@
+//! Derivatives of runs.
+//!
+//! In: a run of known types. Out: its linearization, tangent vectors and gradients as plain numbers, and the run at
+//! their end. With constraints, the change of one coordinate alone is no motion: there is a linearization only.
+
+use crate::control::Linear;
+use crate::simulation::{Parametric, Runnable, RunnableWithConstraints};
+use vi_core::derivatives::{
+    Covector, Differentiable, Objective, Tangent, Unconstrained, Variation, WithConstraints, gradient,
+};
+use vi_core::{
+    Composition, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, GaussLobatto, InTransformedTime, Method,
+    Run, State, StepError,
+};
+
+/// The reason why a run with constraints has no derivative by single coordinates.
+const OF_CONSTRAINTS: &str =
+    "a change of one coordinate alone leaves the constraints; use the linearization of the run";
+
+/// A value at the end of some steps, and the run there; `None` if it was interrupted.
+type AtEnd<M, S, Y, const N: usize> = Result<Option<(Run<M, S, N>, Y)>, StepError>;
+
+/// A method whose runs have derivatives, or report that they have none.
+pub trait Derived<S: Parametric<N>, const N: usize>: Method<S, N> {
+    /// As [`Session::linearization`](crate::Session::linearization).
+    ///
+    /// # Errors
+    /// As there.
+    fn linearization(run: &Run<Self, S, N>) -> Result<Linear, StepError>;
+    /// As [`Session::tangent`](crate::Session::tangent); `begins` if the run is where it began.
+    ///
+    /// # Errors
+    /// As there.
+    fn tangent(
+        run: &Run<Self, S, N>,
+        begins: bool,
+        steps: u64,
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> AtEnd<Self, S, Vec<Vec<f64>>, N>;
+    /// As [`Session::gradient`](crate::Session::gradient), for a number of steps and the slope at their end.
+    ///
+    /// # Errors
+    /// As there.
+    fn gradient(
+        run: &Run<Self, S, N>,
+        begins: bool,
+        end: (u64, Covector<N>),
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> AtEnd<Self, S, Vec<f64>, N>;
+}
+
+/// A method with derivatives.
+macro_rules! derived {
+    ($method:ty $(, $stages:ident)?) => {
+        impl<S: Runnable<N>, const N: usize $(, const $stages: usize)?> Derived<S, N> for $method
+        where
+            $method: Differentiable<S, N, Kind = Unconstrained>,
+        {
+            fn linearization(run: &Run<Self, S, N>) -> Result<Linear, StepError> {
+                run.linearization().map(Linear::from)
+            }
+
+            fn tangent(
+                run: &Run<Self, S, N>,
+                begins: bool,
+                steps: u64,
+                parameters: &[usize],
+                goes_on: &mut dyn FnMut() -> bool,
+            ) -> AtEnd<Self, S, Vec<Vec<f64>>, N> {
+                tangent_of(run, begins, steps, parameters, goes_on)
+            }
+
+            fn gradient(
+                run: &Run<Self, S, N>,
+                begins: bool,
+                end: (u64, Covector<N>),
+                parameters: &[usize],
+                goes_on: &mut dyn FnMut() -> bool,
+            ) -> AtEnd<Self, S, Vec<f64>, N> {
+                gradient_of(run, begins, end, parameters, goes_on)
+            }
+        }
+    };
+}
+
+derived!(FixedStep);
+derived!(Composition);
+derived!(EnergyPreserving);
+derived!(Gauss<STAGES>, STAGES);
+derived!(InTransformedTime<Gauss<STAGES>>, STAGES);
+derived!(EnergyPreservingGauss<STAGES>, STAGES);
+
+impl<S: RunnableWithConstraints<N>, const N: usize, const STAGES: usize> Derived<S, N> for GaussLobatto<STAGES>
+where
+    Self: Differentiable<S, N, Kind = WithConstraints>,
+{
+    fn linearization(run: &Run<Self, S, N>) -> Result<Linear, StepError> {
+        run.linearization().map(Linear::from)
+    }
+
+    fn tangent(
+        run: &Run<Self, S, N>,
+        _begins: bool,
+        _steps: u64,
+        _parameters: &[usize],
+        _goes_on: &mut dyn FnMut() -> bool,
+    ) -> AtEnd<Self, S, Vec<Vec<f64>>, N> {
+        Err(StepError::NoDerivative { t: run.t(), because: OF_CONSTRAINTS })
+    }
+
+    fn gradient(
+        run: &Run<Self, S, N>,
+        _begins: bool,
+        _end: (u64, Covector<N>),
+        _parameters: &[usize],
+        _goes_on: &mut dyn FnMut() -> bool,
+    ) -> AtEnd<Self, S, Vec<f64>, N> {
+        Err(StepError::NoDerivative { t: run.t(), because: OF_CONSTRAINTS })
+    }
+}
+
+/// Derivatives of the node after steps by the start.
+fn tangent_of<M: Differentiable<S, N, Kind = Unconstrained>, S: Runnable<N>, const N: usize>(
+    run: &Run<M, S, N>,
+    begins: bool,
+    steps: u64,
+    parameters: &[usize],
+    goes_on: &mut dyn FnMut() -> bool,
+) -> AtEnd<M, S, Vec<Vec<f64>>, N> {
+    let mut tangent = varied(run, begins, parameters)?;
+    for _ in 0..steps {
+        if !goes_on() {
+            return Ok(None);
+        }
+        tangent.step()?;
+    }
+    let of_node = |of: &Variation<N>| of.q.iter().chain(&of.p).copied().collect();
+    let found = tangent.variations().iter().map(of_node).collect();
+    Ok(Some((tangent.run().clone(), found)))
+}
+
+/// Steps of a stretch of a gradient, whose states are all kept.
+const STRETCH: u64 = 2048;
+
+/// The gradient of a linear function of the node after steps, by one backward pass.
+fn gradient_of<M: Differentiable<S, N, Kind = Unconstrained>, S: Runnable<N>, const N: usize>(
+    run: &Run<M, S, N>,
+    begins: bool,
+    (steps, mut slope): (u64, Covector<N>),
+    parameters: &[usize],
+    goes_on: &mut dyn FnMut() -> bool,
+) -> AtEnd<M, S, Vec<f64>, N> {
+    let names: Vec<&'static str> = parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
+    // The run at the start of each stretch; the pass goes back from the last one.
+    let (mut ahead, mut stretches, mut left) = (run.clone(), Vec::new(), steps);
+    while left > 0 {
+        let few = left.min(STRETCH);
+        stretches.push((ahead.clone(), few));
+        for _ in 0..few {
+            if !goes_on() {
+                return Ok(None);
+            }
+            ahead.single_step()?;
+        }
+        left -= few;
+    }
+    let mut sums = vec![0.0; names.len()];
+    for (run, few) in stretches.iter().rev() {
+        // A stretch takes as long as on the way ahead.
+        if !(0..*few).all(|_| goes_on()) {
+            return Ok(None);
+        }
+        let objective = AtTheEnd { steps: *few, slope, parameters: &names };
+        let found = gradient(run, *few, usize::MAX, &objective)?;
+        slope = found.start;
+        for of_a_step in &found.parameters {
+            sums.iter_mut().zip(of_a_step).for_each(|(sum, slope)| *sum += slope);
+        }
+        // The sum includes a change of the kept energy, by H at the start of each stretch.
+        let changed = Tangent::from_change(run.clone(), directions(parameters))?;
+        for (sum, direction) in sums.iter_mut().zip(&changed.variations()[2 * N..]) {
+            *sum -= slope.energy * direction.energy;
+        }
+    }
+    let directions = varied(run, begins, parameters)?;
+    let mut of: Vec<f64> = directions.variations().iter().map(|direction| slope.of(direction)).collect();
+    of[2 * N..].iter_mut().zip(&sums).for_each(|(of, sum)| *of += sum);
+    Ok(Some((ahead, of)))
+}
+
+/// A linear function of the node at the end.
+struct AtTheEnd<'a, const N: usize> {
+    steps: u64,
+    slope: Covector<N>,
+    parameters: &'a [&'static str],
+}
+
+impl<M: Method<S, N>, S: Runnable<N>, const N: usize> Objective<M, S, N> for AtTheEnd<'_, N> {
+    fn parameters(&self) -> &[&str] {
+        self.parameters
+    }
+
+    fn slope(&self, step: u64, _state: &State<N>) -> Covector<N> {
+        if step == self.steps { self.slope } else { Covector::zero() }
+    }
+}
+
+/// The directions of the coordinates, the momenta, and the parameters of these indices.
+fn directions<const N: usize>(parameters: &[usize]) -> Vec<Variation<N>> {
+    let of_parameter = |index: &usize| {
+        let mut parameters = vec![0.0; index + 1];
+        parameters[*index] = 1.0;
+        Variation { parameters, ..Variation::zero() }
+    };
+    Variation::of_state().into_iter().chain(parameters.iter().map(of_parameter)).collect()
+}
+
+/// The run with its directions. Where it began, the energy that it keeps follows from its start; later it changes as H
+/// does.
+///
+/// # Errors
+/// As [`Tangent::from_start`] and [`Tangent::from_change`].
+fn varied<M: Differentiable<S, N, Kind = Unconstrained>, S: Runnable<N>, const N: usize>(
+    run: &Run<M, S, N>,
+    begins: bool,
+    parameters: &[usize],
+) -> Result<Tangent<M, S, N>, StepError> {
+    let of = if begins { Tangent::from_start } else { Tangent::from_change };
+    of(run.clone(), directions(parameters))
+}
