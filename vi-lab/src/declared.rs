@@ -1,14 +1,16 @@
-//! Entries for the systems listed in `vi_lab::main!`, with or without a rule.
+//! Entries for the systems listed in `vi_lab::main!`, with or without a rule, or with constraints.
 //!
-//! In: a type. Out: its [`Entry`]. The call `(&&Declared::<S>::new()).entry(…)` resolves to [`WithRule`] if the system
-//! has a rule with a step density, otherwise to [`WithoutRule`], one reference deeper. The macro knows the type at its
-//! expansion.
+//! In: a type. Out: its [`Entry`]. The call `(&&&Declared::<S>::new()).entry(…)` resolves to [`WithRule`] if the system
+//! has a rule with a step density, to [`WithConstraints`], one reference deeper, if it has constraints, otherwise to
+//! [`WithoutRule`]. The macro knows the type at its expansion.
 
 use crate::Entry;
 use core::marker::PhantomData;
+use vi_core::GaussLobatto;
 use vi_core::lagrangian::Described;
 use vi_core::stepping::EnergyStepping;
-use vi_erased::simulation::Runnable;
+use vi_erased::plan::LOBATTO_STAGES;
+use vi_erased::simulation::{Erasable, Runnable, RunnableWithConstraints};
 
 /// A system declared by a program.
 #[derive(Debug)]
@@ -29,18 +31,36 @@ pub trait WithRule<const N: usize> {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry;
 }
 
+/// A system with constraints.
+pub trait WithConstraints<const N: usize> {
+    /// Builds the entry from a description, initial coordinates and velocities, and a step.
+    fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry;
+}
+
 /// A system without a rule.
 pub trait WithoutRule<const N: usize> {
     /// Builds the entry from a description, initial coordinates and velocities, and a step.
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry;
 }
 
-impl<S, const N: usize> WithRule<N> for &Declared<S>
+impl<S, const N: usize> WithRule<N> for &&Declared<S>
 where
     S: EnergyStepping<N> + Runnable<N> + Described + Default,
 {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
         Entry::new::<S, N>(about, q, v, h)
+    }
+}
+
+impl<S, const N: usize> WithConstraints<N> for &Declared<S>
+where
+    S: RunnableWithConstraints<N> + Described + Default,
+    GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
+    GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
+    GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
+{
+    fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
+        Entry::with_constraints::<S, N>(about, q, v, h)
     }
 }
 
@@ -56,7 +76,7 @@ where
 #[cfg(test)]
 #[allow(clippy::needless_borrow, reason = "the calls are those of the macro")]
 mod tests {
-    use super::{Declared, WithRule as _, WithoutRule as _};
+    use super::{Declared, WithConstraints as _, WithRule as _, WithoutRule as _};
     use vi_core::{StepError, lagrangian};
     use vi_erased::plan::{Method, PhasePoint, Plan};
 
@@ -75,9 +95,32 @@ mod tests {
         }
     }
 
+    lagrangian! {
+        struct Rod {
+            param l = 1.0;
+            coord x, y;
+            L = (dot(x)^2 + dot(y)^2) / 2 - y;
+            constraint rod = x^2 + y^2 - l^2;
+        }
+    }
+
+    #[test]
+    fn a_system_with_constraints_runs_by_steps_that_keep_them() {
+        let entry = (&&&Declared::<Rod>::new()).entry("a rod", [0.6, -0.8], [0.0, 0.0], 0.01);
+        assert!(entry.system.has_constraints() && !entry.system.has_rule());
+        let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
+        let mut run = entry.system.begin(&Plan::new(Method::GaussLobatto, entry.h, start.clone())).expect("a start");
+        run.advance_by(10).expect("steps");
+        assert!(run.t() > 0.05 && run.q()[0] < 0.6, "{}", run.t());
+        for method in [Method::Fixed, Method::Gauss, Method::Energy] {
+            let error = entry.system.begin(&Plan::new(method, entry.h, start.clone())).err();
+            assert_eq!(error, Some(StepError::HasConstraints { system: "Rod" }));
+        }
+    }
+
     #[test]
     fn a_system_without_a_rule_runs_by_gauss_steps() {
-        let entry = (&&Declared::<Alone>::new()).entry("two springs", [1.0, 0.2], [0.0, 0.0], 0.01);
+        let entry = (&&&Declared::<Alone>::new()).entry("two springs", [1.0, 0.2], [0.0, 0.0], 0.01);
         assert!(!entry.system.has_rule() && entry.system.step_density(&entry.q, &entry.v).is_none());
         let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
         let by = |method, stages| Plan { stages, ..Plan::new(method, entry.h, start.clone()) };
@@ -99,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_system_with_a_rule_keeps_it() {
-        let entry = (&&Declared::<Ruled>::new()).entry("a spring", [1.0], [0.0], 0.01);
+        let entry = (&&&Declared::<Ruled>::new()).entry("a spring", [1.0], [0.0], 0.01);
         assert!(entry.system.has_rule() && entry.system.step_density(&entry.q, &entry.v).is_some());
         let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
         let mut run = entry.system.begin(&Plan::new(Method::Fixed, entry.h, start)).expect("a start");

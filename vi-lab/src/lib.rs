@@ -86,20 +86,20 @@ enum Action {
 /// ```
 ///
 /// A system needs `Default`, which every parameter with a value provides. A system without a rule runs with Gauss
-/// methods only. `q`, `v` and `h` are the default initial coordinates, initial velocities and step.
+/// methods only, a system with constraints with `gauss-lobatto`. `q`, `v` and `h` are the default initial coordinates, initial velocities and step.
 #[macro_export]
 macro_rules! main {
     (
         sources: [$($source:literal),* $(,)?],
         systems: [$($system:ident { about: $about:expr, q: $q:expr, v: $v:expr, h: $h:expr $(,)? }),+ $(,)?] $(,)?
     ) => {
-        #[allow(clippy::needless_borrow, reason = "for a system with a rule both references are needed")]
+        #[allow(clippy::needless_borrow, reason = "for a system with a rule all references are needed")]
         fn main() -> ::std::process::ExitCode {
             $crate::main_with($crate::Systems {
                 sources: &[$(include_str!($source)),*],
                 entries: || {
-                    use $crate::declared::{Declared, WithRule as _, WithoutRule as _};
-                    vec![$((&&Declared::<$system>::new()).entry($about, $q, $v, $h)),+]
+                    use $crate::declared::{Declared, WithConstraints as _, WithRule as _, WithoutRule as _};
+                    vec![$((&&&Declared::<$system>::new()).entry($about, $q, $v, $h)),+]
                 },
             })
         }

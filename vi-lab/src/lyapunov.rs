@@ -54,6 +54,12 @@ const LONGER: f64 = 5.0;
 /// Wrong input; a failed step, after printing the estimates so far.
 pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let Arguments { target, count, h, steps, set, q, v } = arguments;
+    if let Ok(entry) = catalogue.named(target.as_deref())
+        && entry.system.has_constraints()
+    {
+        let name = kebab(entry.system.name());
+        return Err(Failure::Input(format!("{name} has constraints: exponents of such motions are not supported")));
+    }
     let wanted = run::Arguments {
         target: target.clone(),
         method: Some(Method::Gauss),

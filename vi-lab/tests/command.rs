@@ -108,6 +108,9 @@ fn the_list_names_every_system_with_its_parameters() {
     for name in SYSTEMS {
         assert!(list.contains(name), "{name} is missing");
     }
+    for name in WITH_CONSTRAINTS {
+        assert!(list.contains(name), "{name} is missing");
+    }
     assert!(list.contains("m = 1, k = 4, c = 0.04"), "{list}");
 }
 
@@ -131,6 +134,81 @@ const SYSTEMS: [&str; 17] = [
     "fpu-chain",
     "outer-solar-system",
 ];
+
+/// The names of all predefined systems with constraints.
+const WITH_CONSTRAINTS: [&str; 10] = [
+    "rod-pendulum",
+    "double-rod-pendulum",
+    "rod-chain",
+    "four-bar",
+    "slider-crank",
+    "andrews-squeezer",
+    "heavy-top",
+    "chaplygin-sleigh",
+    "rolling-disk",
+    "rolling-ball",
+];
+
+#[test]
+fn every_system_with_constraints_runs_and_is_explained() {
+    for name in WITH_CONSTRAINTS {
+        for stages in ["1", "2", "3"] {
+            let (status, csv, errors) = lab(&["run", name, "--stages", stages, "--steps", "10"]);
+            assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}, {stages} stages");
+            let rows = rows(&csv);
+            assert_eq!(rows.len(), 11, "{name}, {stages} stages");
+            let columns = csv.lines().find(|line| line.starts_with("t,")).expect("a head");
+            let residual = columns.split(',').position(|column| column == "residual").expect("a column");
+            assert!(columns.contains(",Λ_") && columns.ends_with(",residual,H,E,h"), "{columns}");
+            for row in &rows {
+                // Measured: at most 1.1e-14, of terms of about 100.
+                assert!(row[residual] < 2e-14, "{name}, {stages} stages: {}", row[residual]);
+            }
+        }
+        let (status, text, errors) = lab(&["explain", name]);
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}");
+        assert!(text.contains("constraint"), "{name}: {text}");
+    }
+}
+
+#[test]
+fn initial_states_keep_or_meet_the_constraints() {
+    // The default initial state follows the parameters; a given one is refused with both residuals, or moved.
+    let (status, csv, errors) = lab(&["run", "rod-pendulum", "--set", "l=0.5", "--steps", "1"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let first = &rows(&csv)[0];
+    assert!((first[1].hypot(first[2]) - 0.5).abs() < 1e-15, "{csv}");
+    // Λ of a rod at rest: the tension m g cos 1 is −2 Λ l.
+    assert!((first[5] + 9.81 * 1.0_f64.cos() / (2.0 * 0.5)).abs() < 1e-14, "{csv}");
+    let off = ["run", "rod-pendulum", "--q", "0.6,-0.9", "--v", "1,0", "--steps", "1"];
+    let (status, csv, errors) = lab(&[off.as_slice(), &["--project"]].concat());
+    assert_eq!(status, Some(0), "{errors}");
+    // The nearest point is on the ray: √1.17 is 1.0816654.
+    assert_eq!(errors, "note: the initial coordinates moved by up to 0.0679, the velocities by up to 0.462\n");
+    let first = &rows(&csv)[0];
+    assert!((first[1] - 0.6 / 1.17_f64.sqrt()).abs() < 1e-15 && (first[2] + 0.9 / 1.17_f64.sqrt()).abs() < 1e-15);
+    assert_refused(&[
+        (
+            &off,
+            "the start does not satisfy the constraint `rod`: residual 1.700e-1, rate 1.200e0; --project moves the initial \
+             state onto the constraints",
+        ),
+        (
+            &["run", "rod-pendulum", "--method", "gauss"],
+            "rod-pendulum has constraints, which --method gauss does not keep: use --method gauss-lobatto (--stages 1, 2, 3)",
+        ),
+        (
+            &["run", "kepler", "--method", "gauss-lobatto"],
+            "kepler has no constraints, and --method gauss-lobatto is for systems with some: use --method gauss",
+        ),
+        (
+            &["run", "rod-pendulum", "--stages", "4"],
+            "steps with constraints have 1, 2 or 3 stages in the command, not 4",
+        ),
+        (&["run", "kepler", "--project"], "kepler has no constraints to --project onto; remove it"),
+        (&["lyapunov", "heavy-top"], "heavy-top has constraints: exponents of such motions are not supported"),
+    ]);
+}
 
 #[test]
 fn every_system_runs_by_every_method_and_is_explained() {
@@ -272,7 +350,7 @@ fn wrong_input_is_one_line_and_status_2() {
         (&["run", "double-well", "--steps", "1", "--q", "1e400"], "the coordinates (--q) must be finite, not inf"),
         (
             &["run", "double-well", "--steps", "1", "--method", "euler"],
-            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, gauss, energy]",
+            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, gauss, gauss-lobatto, energy]",
         ),
         (
             &["run", "double-well", "--steps", "1", "--method", "gauss", "--stages", "5"],

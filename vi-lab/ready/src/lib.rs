@@ -5,9 +5,10 @@
 
 use vi_runs::entry::Entry;
 use vi_systems::{
-    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
-    HarmonicOscillator, HenonHeiles, Kepler, NPendulum, OuterSolarSystem, ParametricPendulum, Pendulum, RotatingHoop,
-    SphericalPendulum, ThreeBody,
+    AndrewsSqueezer, ChaplyginSleigh, ChargedParticle, DampedOscillator, DoublePendulum, DoubleRodPendulum, DoubleWell,
+    DoubleWellDuffing, FourBar, FpuChain, HardDuffing, HarmonicOscillator, HeavyTop, HenonHeiles, Kepler, NPendulum,
+    OuterSolarSystem, ParametricPendulum, Pendulum, RodChain, RodPendulum, RollingBall, RollingDisk, RotatingHoop,
+    SliderCrank, SphericalPendulum, ThreeBody,
 };
 
 /// sin(π (i + 1)/17), to three digits: the lowest mode of 16 masses between walls.
@@ -65,5 +66,15 @@ pub fn systems() -> Vec<Entry> {
             OuterSolarSystem::VELOCITIES,
             10.0,
         ),
+        Entry::placed::<RodPendulum, 2>("mass on a rod, in Cartesian coordinates", RodPendulum::start, 0.01),
+        Entry::placed::<DoubleRodPendulum, 4>("two masses on two rods", DoubleRodPendulum::start, 0.01),
+        Entry::placed::<RodChain, 20>("ten masses on a chain of rods", RodChain::start, 0.01),
+        Entry::placed::<FourBar, 4>("four-bar linkage: a closed loop", FourBar::start, 0.01),
+        Entry::placed::<SliderCrank, 3>("crank, connecting rod and slider", SliderCrank::start, 0.01),
+        Entry::placed::<AndrewsSqueezer, 7>("Andrews' squeezer: seven bodies, SI units", AndrewsSqueezer::start, 2e-5),
+        Entry::placed::<HeavyTop, 4>("spinning top, by a unit quaternion", HeavyTop::start, 0.005),
+        Entry::placed::<ChaplyginSleigh, 3>("sleigh on a blade", ChaplyginSleigh::start, 0.01),
+        Entry::placed::<RollingDisk, 5>("disk that rolls on a plane", RollingDisk::start, 0.01),
+        Entry::placed::<RollingBall, 6>("ball that rolls on a turntable", RollingBall::start, 0.01),
     ]
 }

@@ -126,6 +126,11 @@ pub fn with_rule(entry: Entry, page: &str) -> Result<Entry, Failure> {
         return Ok(entry);
     }
     let name = entry.system.name();
+    if entry.system.has_constraints() {
+        return Err(Failure::Input(format!(
+            "{page} compares steps by a rule, which {name} cannot have because of its constraints"
+        )));
+    }
     Err(Failure::Input(format!(
         "{page} compares steps by a rule, and {name} has none: add `discretize midpoint;` to it"
     )))

@@ -87,6 +87,9 @@ impl Failure {
         let Plan { t, q, v, .. } = plan;
         match error {
             StepError::InvalidInput { .. } => Self::Input(error.to_string()),
+            StepError::InconsistentStart { .. } => {
+                Self::Input(format!("{}; --project moves the initial state onto the constraints", error.reason()))
+            }
             _ => Self::Step {
                 advice: advice(&error, plan).map(str::to_owned),
                 error: Box::new(error),
@@ -167,6 +170,7 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<&'static str> {
         (StepError::TimeScale { .. }, _) => Some(
             "use shorter steps with --dtau, or steps in time with --h, or write a `time_scale` that is positive there",
         ),
+        (StepError::Redundant { .. }, _) => Some("start elsewhere with --q, or remove this constraint from the system"),
         _ => None,
     }
 }

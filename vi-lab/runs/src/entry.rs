@@ -2,10 +2,12 @@
 //!
 //! In: the type of a system, and its start. Out: an [`Entry`], the type erased: there the compiler meets all that is generic over systems.
 
-use crate::system::{self, System};
+use crate::system::{self, StartOf, System};
+use vi_core::GaussLobatto;
 use vi_core::lagrangian::Described;
 use vi_core::stepping::EnergyStepping;
-use vi_erased::simulation::Runnable;
+use vi_erased::plan::LOBATTO_STAGES;
+use vi_erased::simulation::{Erasable, Runnable, RunnableWithConstraints};
 
 /// A system with a place to start from.
 pub struct Entry {
@@ -38,5 +40,30 @@ impl Entry {
         S: Runnable<N> + Described + Default,
     {
         Self { system: system::gauss_only::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
+    }
+
+    /// The same of a system with constraints.
+    #[must_use]
+    pub fn with_constraints<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
+    where
+        S: RunnableWithConstraints<N> + Described + Default,
+        GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
+        GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
+        GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
+    {
+        Self { system: system::with_constraints::<S, N>(None), about, q: q.to_vec(), v: v.to_vec(), h }
+    }
+
+    /// The same of a system with constraints whose initial state follows from its parameters, by `start`.
+    #[must_use]
+    pub fn placed<S, const N: usize>(about: &'static str, start: StartOf<S, N>, h: f64) -> Self
+    where
+        S: RunnableWithConstraints<N> + Described + Default,
+        GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
+        GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
+        GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
+    {
+        let (q, v) = start(&S::default());
+        Self { system: system::with_constraints::<S, N>(Some(start)), about, q: q.to_vec(), v: v.to_vec(), h }
     }
 }

@@ -12,10 +12,11 @@ use vi_core::check::Motion;
 use vi_core::gauss::step_density;
 use vi_core::lagrangian::Described;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{Called, SVector, State, StepError};
+use vi_core::{Called, GaussLobatto, SVector, State, StepError};
 use vi_erased::integrator::{self, Integrator};
-use vi_erased::plan::{ENERGY_STAGES, STAGES};
-use vi_erased::simulation::{Runnable, vector};
+use vi_erased::mechanics::WithConstraints;
+use vi_erased::plan::{ENERGY_STAGES, LOBATTO_STAGES, STAGES};
+use vi_erased::simulation::{Erasable, Parametric, Runnable, RunnableWithConstraints, vector};
 use vi_erased::{Method, PhasePoint, Plan, Typed};
 
 /// A system with its parameters.
@@ -26,6 +27,8 @@ pub trait System: Send + Sync {
     fn erased_mut(&mut self) -> &mut (dyn vi_erased::System + 'static);
     /// A system of the same type with the same parameters.
     fn copy(&self) -> Box<dyn System>;
+    /// The default initial coordinates and velocities, if they follow from the parameters.
+    fn start(&self) -> Option<[Vec<f64>; 2]>;
     /// Step density D at t = 0; `None` without a value or without a rule.
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
     /// Step densities of 1, 2 and 3 stages at a node with its time, coordinates and momenta; `None` without a value.
@@ -73,6 +76,22 @@ impl DerefMut for dyn System + '_ {
 }
 
 impl dyn System + '_ {
+    /// Whether the system has constraints.
+    #[must_use]
+    pub fn has_constraints(&self) -> bool {
+        !self.constraints().is_empty()
+    }
+
+    /// The default method of the system.
+    #[must_use]
+    pub fn usual_method(&self) -> Method {
+        match (self.has_constraints(), self.has_rule()) {
+            (true, _) => Method::GaussLobatto,
+            (false, true) => Method::Fixed,
+            (false, false) => Method::Gauss,
+        }
+    }
+
     /// Whether the system has a rule, and with it fixed and energy-preserving steps of order 2.
     #[must_use]
     pub fn has_rule(&self) -> bool {
@@ -134,6 +153,10 @@ impl<S: Runnable<N> + Described, const N: usize> System for Studied<S, N> {
         Box::new(Self { typed: self.typed.clone(), density: self.density })
     }
 
+    fn start(&self) -> Option<[Vec<f64>; 2]> {
+        None
+    }
+
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64> {
         let sized = q.len() == N && v.len() == N;
         let density =
@@ -172,16 +195,105 @@ impl<S: Runnable<N> + Described, const N: usize> System for Studied<S, N> {
         end: f64,
         tolerance: f64,
         evaluations: &Cell<u64>,
-        mut watch: Option<&mut dyn FnMut(f64, f64)>,
+        watch: Option<&mut dyn FnMut(f64, f64)>,
     ) -> Result<PhasePoint, Ended> {
-        let system = self.typed.system;
-        let mut show = |motion: &Motion<N>| {
-            if let Some(watch) = &mut watch {
-                watch(motion.t, system.energy(motion.t, &motion.q, &motion.v));
-            }
-        };
-        rival::motion(system, &sized(from)?, end, tolerance, evaluations, &mut show).map(erased_point)
+        by_rival(self.typed.system, (from, end), tolerance, evaluations, watch)
     }
+}
+
+/// Initial coordinates and velocities of a system with its parameters.
+pub type StartOf<S, const N: usize> = fn(&S) -> ([f64; N], [f64; N]);
+
+/// A system of a known type with constraints.
+struct StudiedWithConstraints<S, const N: usize> {
+    typed: Typed<S, N, WithConstraints>,
+    start: Option<StartOf<S, N>>,
+}
+
+/// The system `S` with its default parameters and its constraints, and every integrator that keeps them; its initial
+/// state, if it follows from the parameters.
+#[must_use]
+pub fn with_constraints<S, const N: usize>(start: Option<StartOf<S, N>>) -> Box<dyn System>
+where
+    S: RunnableWithConstraints<N> + Described + Default,
+    GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
+    GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
+    GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
+{
+    let integrators = vec![
+        integrator::gauss_lobatto::<S, N, { LOBATTO_STAGES[0] }>(),
+        integrator::gauss_lobatto::<S, N, { LOBATTO_STAGES[1] }>(),
+        integrator::gauss_lobatto::<S, N, { LOBATTO_STAGES[2] }>(),
+    ];
+    Box::new(StudiedWithConstraints { typed: Typed::new(integrators), start })
+}
+
+impl<S: RunnableWithConstraints<N> + Described, const N: usize> System for StudiedWithConstraints<S, N> {
+    fn erased(&self) -> &(dyn vi_erased::System + 'static) {
+        &self.typed
+    }
+
+    fn erased_mut(&mut self) -> &mut (dyn vi_erased::System + 'static) {
+        &mut self.typed
+    }
+
+    fn copy(&self) -> Box<dyn System> {
+        Box::new(Self { typed: self.typed.clone(), start: self.start })
+    }
+
+    fn start(&self) -> Option<[Vec<f64>; 2]> {
+        self.start.map(|start| {
+            let (q, v) = start(&self.typed.system);
+            [q.to_vec(), v.to_vec()]
+        })
+    }
+
+    fn step_density(&self, _q: &[f64], _v: &[f64]) -> Option<f64> {
+        None
+    }
+
+    fn step_densities(&self, _t: f64, _q: &[f64], _p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()] {
+        [None; ENERGY_STAGES.len()]
+    }
+
+    fn time_scale(&self, _at: &PhasePoint) -> Option<f64> {
+        None
+    }
+
+    fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {
+        sized(from)?.at(&self.typed.system, end).map(erased_point)
+    }
+
+    fn lyapunov(&self, plan: &Plan, _count: usize) -> Result<Box<dyn Exponents>, StepError> {
+        Err(StepError::NoDerivative { t: plan.t, because: "exponents of motions with constraints are not supported" })
+    }
+
+    fn rival(
+        &self,
+        from: &PhasePoint,
+        end: f64,
+        tolerance: f64,
+        evaluations: &Cell<u64>,
+        watch: Option<&mut dyn FnMut(f64, f64)>,
+    ) -> Result<PhasePoint, Ended> {
+        by_rival(self.typed.system, (from, end), tolerance, evaluations, watch)
+    }
+}
+
+/// [`System::rival`].
+fn by_rival<S: Parametric<N>, const N: usize>(
+    system: S,
+    (from, end): (&PhasePoint, f64),
+    tolerance: f64,
+    evaluations: &Cell<u64>,
+    mut watch: Option<&mut dyn FnMut(f64, f64)>,
+) -> Result<PhasePoint, Ended> {
+    let mut show = |motion: &Motion<N>| {
+        if let Some(watch) = &mut watch {
+            watch(motion.t, system.energy(motion.t, &motion.q, &motion.v));
+        }
+    };
+    rival::motion(system, &sized(from)?, end, tolerance, evaluations, &mut show).map(erased_point)
 }
 
 /// A point with the system's number of coordinates.

@@ -94,7 +94,7 @@ fn head(request: &Request) -> String {
         short(plan.t),
         plan.q,
         plan.v,
-        energies(plan),
+        energies(system.as_ref(), plan),
         columns.join(","),
     )
 }
@@ -138,6 +138,7 @@ mod tests {
             energy: Some(1e-300),
             discrete_energy: None,
             shifted_energy: None,
+            constraints: None,
             h: 0.01,
         };
         line(&mut block, &row);

@@ -1,16 +1,15 @@
 //! The integrator of a run in words: `energy, 2 stages, shift 0.5, with fallback`.
 
 use vi_erased::plan::Named as _;
-use vi_erased::plan::{DEFAULT_STAGES, Method, Plan, Shift, Start};
+use vi_erased::plan::{Method, Plan, Shift, Start};
 use vi_report::numbers::short;
 
 /// The integrator of a plan and its start, in the terms of the command line.
 pub(crate) fn in_words(plan: &Plan) -> String {
     let start = |name: &str| format!("start {name}");
-    let of_the_method = match (plan.method, plan.energy_stages(), plan.start) {
-        (Method::Gauss, _, _) => Some(format!("{} stages", plan.stages.unwrap_or(DEFAULT_STAGES))),
-        (Method::Energy, Some(1), _) => Some("1 stage".to_owned()),
-        (Method::Energy, Some(stages), _) => Some(format!("{stages} stages")),
+    let of_the_method = match (plan.method, plan.energy_stages().or(plan.gauss_stages()), plan.start) {
+        (_, Some(1), _) => Some("1 stage".to_owned()),
+        (_, Some(stages), _) => Some(format!("{stages} stages")),
         (Method::Energy, None, Start::Midpoint) => Some(start("midpoint")),
         (Method::Energy, None, Start::Points) => Some(start("points")),
         _ => None,

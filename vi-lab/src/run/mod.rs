@@ -1,13 +1,15 @@
 //! `vi-lab run`: simulates one system and writes its nodes as CSV or NPY, or draws them.
 //!
 //! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`. H is
-//! the energy at the node, E the discrete energy of the interval that ends there; steps with a shift add E' before h.
+//! the energy at the node, E the discrete energy of the interval that ends there; steps with a shift add E' before h,
+//! constraints add their multipliers and the largest residual before H.
 //! AFTER A RUN THAT ENDS EARLY, by a failed step or a signal, output and plot contain every row so far and the last
 //! node, for any `--every`.
 //!
 //! | module | part of a run |
 //! |---|---|
 //! | [`request`], [`scene`] | the request: command line and scene, checked |
+//! | [`placement`] | initial states that follow from parameters, or move onto constraints |
 //! | [`shift`] | the notation of a shift |
 //! | [`resolution`], [`extent`] | rejected runs: steps below rounding, outputs of gigabytes |
 //! | [`ways_out`] | alternatives if an energy-preserving step does not exist |
@@ -17,6 +19,7 @@ mod csv;
 mod extent;
 pub(crate) mod method;
 mod npy;
+mod placement;
 mod plot;
 mod request;
 mod resolution;
@@ -27,6 +30,7 @@ mod ways_out;
 use crate::entries::named;
 use clap::Args;
 use extent::Extent;
+pub(crate) use placement::Placement;
 use request::Output;
 pub(crate) use request::{Length, Request};
 use shift::Wanted;
@@ -53,8 +57,13 @@ const ENERGIES: &str = "H: energy at the node; E: discrete energy of the interva
 /// `C_s` for 1, 2 and 3 stages: H − E is `C_s h^2s D` to leading order, with the step density D.
 const CONSTANTS: [&str; ENERGY_STAGES.len()] = ["1/8", "1/864", "1/288000"];
 
-/// Description of the energy columns for a plan, and which energy is conserved.
-fn energies(plan: &Plan) -> String {
+/// Description of the columns of constraints.
+const CONSTRAINTS: &str =
+    "Λ: multiplier of each constraint at the node; residual: the largest |g| and |A v + a| there; ";
+
+/// Description of the columns of constraints and energies for a plan, and which energy is conserved.
+fn energies(system: &dyn System, plan: &Plan) -> String {
+    let constraints = if system.has_constraints() { CONSTRAINTS } else { "" };
     let kept = match (plan.method, plan.shift) {
         (Method::Energy, Some(Shift::Of(shift))) => {
             let stages = plan.energy_stages().unwrap_or(1);
@@ -66,7 +75,7 @@ fn energies(plan: &Plan) -> String {
         (Method::Energy, _) => "; E is conserved".to_owned(),
         _ => String::new(),
     };
-    format!("{ENERGIES}{kept}")
+    format!("{constraints}{ENERGIES}{kept}")
 }
 
 /// Arguments of `vi-lab run`.
@@ -77,7 +86,9 @@ discrete energy of the interval that ends at the node, which --method energy pre
 O(h^2S) with Gauss steps of S stages. With --method energy or fixed, H and E differ by h²D/8 to leading order, with the step density D. \
 With --shift D* a column E' precedes h: E' = E − C h^2S D*, C = 1/8, 1/864, 1/288000 for S = 1, 2, 3. E' is then conserved, and E and H oscillate. E is empty (NaN in .npy) \
 in the first row of a run of fixed or Gauss steps, and for compositions, whose step is not one interval. The last step to --until T may be shorter; then it has no E. H is empty if the momenta have no velocity; \
-standard error reports the number of such rows. h is the length of the step before the node.
+standard error reports the number of such rows. h is the length of the step before the node. \
+With constraints, columns Λ_… and residual follow the momenta: the multiplier of each constraint at the node, \
+and the largest violation |g| or |A v + a|.
 
 --plot draws the rows selected by --every: energies relative to the initial H; up to 24 coordinates over time and with their momenta; \
 the trajectory of two coordinates in their plane. Memory is bounded: long runs keep the extremes of each stretch, and phase portraits become dots.
@@ -101,13 +112,14 @@ pub(crate) struct Arguments {
     /// One run of a scene with [sweep], by number
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub(crate) item: Option<u64>,
-    /// Integrator [default: fixed]
+    /// Integrator [default: fixed; gauss without a rule; gauss-lobatto with constraints]
     #[arg(long, value_parser = named::<Method>())]
     pub(crate) method: Option<Method>,
     /// First interval of energy-preserving steps without --stages and --shift [default: midpoint]
     #[arg(long, value_parser = named::<Start>())]
     pub(crate) start: Option<Start>,
-    /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3 (order 2, 4 or 6)
+    /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3 (order 2, 4 or 6); of
+    /// --method gauss-lobatto: 1, 2 or 3 [default: 3]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = count)]
     pub(crate) stages: Option<u64>,
     /// Shift of the step density of --method energy, for steps across its sign changes: a number, or auto
@@ -144,6 +156,9 @@ pub(crate) struct Arguments {
     /// Initial velocities, separated by commas [default: those of the system]
     #[arg(long, value_name = "V,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
     pub(crate) v: Option<Vec<f64>>,
+    /// Move the initial state to the nearest one on the constraints, and print by how much
+    #[arg(long)]
+    pub(crate) project: bool,
     /// Write every Nth node and the last [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) every: Option<u64>,
@@ -203,6 +218,9 @@ pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         return Err(Failure::Input(format!("the first node, at t = {}, is after --until", short(simulation.t()))));
     }
     let mut sinks = sinks(&request)?;
+    if let Some(moved) = &request.moved {
+        let _ = writeln!(io::stderr(), "{moved}");
+    }
     simulation.monitor();
     let interrupt = Interrupt::install().map_err(|error| Failure::file("signals", error))?;
     let mut course = RunLoop::new(&request, extent, &mut sinks);
@@ -342,8 +360,9 @@ impl<'a> RunLoop<'a> {
 
 /// A node as text.
 fn describe(row: &Row, steps: u64) -> String {
-    let Row { t, q, p, energy, discrete_energy, shifted_energy, h } = row;
-    let energies: String = [("H", energy), ("E", discrete_energy), ("E'", shifted_energy)]
+    let Row { t, q, p, energy, discrete_energy, shifted_energy, constraints, h } = row;
+    let residual = constraints.as_ref().and_then(|of| of.residual);
+    let energies: String = [("residual", &residual), ("H", energy), ("E", discrete_energy), ("E'", shifted_energy)]
         .into_iter()
         .filter_map(|(name, energy)| energy.map(|energy| format!(", {name} = {}", short(energy))))
         .collect();

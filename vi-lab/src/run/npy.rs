@@ -76,7 +76,7 @@ fn description(request: &Request) -> serde_json::Value {
     json!({
         "version": VERSION, "command": command_line(), "system": system.name(), "parameters": parameters,
         "method": method::in_words(plan), "h": plan.h, "t": plan.t, "q": plan.q, "v": plan.v, "every": every,
-        "columns": request.columns(), "energies": energies(plan),
+        "columns": request.columns(), "energies": energies(system.as_ref(), plan),
     })
 }
 

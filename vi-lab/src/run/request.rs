@@ -1,6 +1,7 @@
 //! The request: command line, then scene, then defaults of the system, with every input checked.
 
 use super::Arguments;
+use super::placement::Placement;
 use super::scene::Scene;
 use super::shift::Wanted;
 use crate::place;
@@ -11,12 +12,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use vi_core::StepError;
 use vi_erased::plan::Named as _;
-use vi_erased::plan::{ENERGY_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Start};
+use vi_erased::plan::{ENERGY_STAGES, LOBATTO_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Start};
 use vi_erased::simulation::{Row, Steps};
 use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::Failure;
 use vi_report::input::number;
-use vi_report::numbers::short;
+use vi_report::numbers::{about, short};
 use vi_runs::system::System;
 
 /// Default number of steps.
@@ -40,6 +41,10 @@ pub(crate) struct Request {
     pub(super) plot: Option<PathBuf>,
     /// Whether the output may exceed a gigabyte.
     pub(super) large_output: bool,
+    /// What determines the initial state beside the numbers of the plan.
+    pub(crate) placement: Placement,
+    /// How far the initial state moved onto the constraints, in words.
+    pub(super) moved: Option<String>,
 }
 
 /// The end of a run.
@@ -210,13 +215,13 @@ impl Request {
             }
             set(system.as_mut(), name, value)?;
         }
-        let start = PhasePoint {
-            t: arguments.t.or(scene.t).unwrap_or(0.0),
-            q: arguments.q.clone().or(scene.q.clone()).unwrap_or(entry.q),
-            v: arguments.v.clone().or(scene.v.clone()).unwrap_or(entry.v),
-        };
-        let usual = if system.has_rule() { Method::Fixed } else { Method::Gauss };
-        let method = arguments.method.or(scene.method).unwrap_or(usual);
+        let [q, v] = [arguments.q.clone().or(scene.q.clone()), arguments.v.clone().or(scene.v.clone())];
+        let is_default = q.is_none() && v.is_none();
+        let projects = arguments.project || scene.project.unwrap_or(false);
+        let placement = Placement::of(system.as_ref(), is_default, projects)?;
+        let t = arguments.t.or(scene.t).unwrap_or(0.0);
+        let start = PhasePoint { t, q: q.unwrap_or(entry.q), v: v.unwrap_or(entry.v) };
+        let method = arguments.method.or(scene.method).unwrap_or(system.usual_method());
         let options = Options::of(arguments, &scene);
         options.check(method)?;
         check_rule(system.as_ref(), method, &options)?;
@@ -229,10 +234,13 @@ impl Request {
             fallback: options.fallback,
             ..Plan::new(method, h, start)
         };
+        placement.follow(system.as_ref(), &mut plan);
         if let (Some(sweep), Some(item)) = (&scene.sweep, arguments.item) {
-            set_item(sweep, item, system.as_mut(), &mut plan)?;
+            set_item((sweep, item), placement, system.as_mut(), &mut plan)?;
         }
         check_initial(system.as_ref(), &plan)?;
+        let given = plan.clone();
+        let moved = placement.project(system.as_ref(), &mut plan).map_err(|error| Failure::start(error, &given))?;
         if let Some(dtau) = options.dtau {
             scale_time(system.as_ref(), &mut plan, dtau)?;
         }
@@ -255,17 +263,37 @@ impl Request {
         };
         let plot = arguments.plot.clone();
         plot.as_deref().map_or(Ok(()), check_plot)?;
-        Ok((Self { system, plan, length, every, output, plot, large_output: arguments.large_output }, scene.sweep))
+        let large_output = arguments.large_output;
+        let moved = moved.map(|[q, v]| {
+            format!("note: the initial coordinates moved by up to {}, the velocities by up to {}", about(q), about(v))
+        });
+        Ok((Self { system, plan, length, every, output, plot, large_output, placement, moved }, scene.sweep))
     }
 
     /// Names of the columns of a row.
     pub(crate) fn columns(&self) -> Vec<String> {
-        Row::columns(&self.system.coordinates(), self.plan.shift.is_some())
+        Row::columns(&self.system.coordinates(), self.system.constraints(), self.plan.shift.is_some())
     }
 }
 
-/// Rejects steps by a rule for a system without one.
+/// Rejects steps by a rule for a system without one, and steps that do not keep constraints for a system with some.
 fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<(), Failure> {
+    let name = kebab(system.name());
+    if system.has_constraints() && system.has(method) {
+        return Ok(());
+    }
+    if system.has_constraints() {
+        return Err(Failure::Input(format!(
+            "{name} has constraints, which --method {} does not keep: use --method {}",
+            method.name(),
+            methods(system)
+        )));
+    }
+    if method == Method::GaussLobatto && !system.has_constraints() {
+        return Err(Failure::Input(format!(
+            "{name} has no constraints, and --method gauss-lobatto is for systems with some: use --method gauss"
+        )));
+    }
     let needs_none = match method {
         Method::Gauss => true,
         Method::Energy => options.stages.is_some() || options.shift.is_some(),
@@ -279,6 +307,18 @@ fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<
         system.name(),
         method.name()
     )))
+}
+
+/// The methods of a system with constraints, with their stages.
+fn methods(system: &dyn System) -> String {
+    let integrators = system.integrators();
+    let of_method = |method: &Method| {
+        let stages: Vec<String> =
+            integrators.iter().filter(|of| of.0 == *method).filter_map(|of| of.1).map(|s| s.to_string()).collect();
+        format!("{} (--stages {})", method.name(), stages.join(", "))
+    };
+    let has = |method: &&Method| integrators.iter().any(|of| of.0 == **method);
+    Method::ALL.iter().filter(has).map(of_method).collect::<Vec<_>>().join(" or ")
 }
 
 /// Options that apply to some methods only.
@@ -320,7 +360,7 @@ impl Options {
                 format!("{energy} --shift; add --method energy, or remove it")
             }
             () if fallback && !is_energy => format!("{energy} --fallback; add --method energy, or remove it"),
-            () if stages.is_some() && !is_energy && !is_gauss => {
+            () if stages.is_some() && !is_energy && !is_gauss && method != Method::GaussLobatto => {
                 "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it"
                     .to_owned()
             }
@@ -338,13 +378,20 @@ impl Options {
 
 /// A number of stages that is built into the command.
 fn stages(method: Method, wanted: u64) -> Result<usize, Failure> {
-    let built: &[usize] = if method == Method::Energy { &ENERGY_STAGES } else { &STAGES };
+    let built: &[usize] = match method {
+        Method::Energy => &ENERGY_STAGES,
+        Method::GaussLobatto => &LOBATTO_STAGES,
+        _ => &STAGES,
+    };
     let found = built.iter().copied().find(|built| *built as u64 == wanted);
     found.ok_or_else(|| {
         Failure::Input(match method {
             Method::Energy => format!(
                 "energy-preserving steps have 1, 2 or 3 stages, not {wanted}: with more, rounding hides the length"
             ),
+            Method::GaussLobatto => {
+                format!("steps with constraints have 1, 2 or 3 stages in the command, not {wanted}")
+            }
             _ => format!("Gauss steps of {wanted} stages are not built into the command; --stages may be 4 or 8"),
         })
     })
@@ -421,8 +468,13 @@ fn parse_assignment(text: &str) -> Result<(&str, f64), Failure> {
 }
 
 /// Sets a system and a plan to one run of a sweep.
-fn set_item(sweep: &Sweep, item: u64, system: &mut dyn System, plan: &mut Plan) -> Result<(), Failure> {
-    let items = Items::of(sweep, system)?;
+fn set_item(
+    (sweep, item): (&Sweep, u64),
+    placement: Placement,
+    system: &mut dyn System,
+    plan: &mut Plan,
+) -> Result<(), Failure> {
+    let items = Items::of(sweep, system)?.with_placement(placement);
     if item >= items.count() {
         let last = items.count() - 1;
         return Err(Failure::Input(format!("there is no --item {item}: the runs are numbered from 0 to {last}")));

@@ -13,6 +13,7 @@
 //! t = 0.0
 //! q = [1.0]
 //! v = [0.0]
+//! project = true                    # moves q and v onto the constraints
 //! [parameters]
 //! c = 0.04
 //! ```
@@ -68,6 +69,8 @@ pub(super) struct Scene {
     pub(super) q: Option<Vec<f64>>,
     /// Initial velocities.
     pub(super) v: Option<Vec<f64>>,
+    /// Whether the initial state moves onto the constraints.
+    pub(super) project: Option<bool>,
     /// Parameters by name.
     #[serde(default)]
     pub(super) parameters: BTreeMap<String, f64>,
@@ -184,7 +187,7 @@ mod tests {
             ("h = 1.0\n", "the scene names no system; add a line such as `system = \"kepler\"`"),
             (
                 "system = \"a\"\nmethod = \"euler\"\n",
-                "line 2: unknown variant `euler`, expected one of `fixed`, `suzuki-4`, `kahan-li-6`, `kahan-li-8`, `gauss`, `energy`",
+                "line 2: unknown variant `euler`, expected one of `fixed`, `suzuki-4`, `kahan-li-6`, `kahan-li-8`, `gauss`, `gauss-lobatto`, `energy`",
             ),
         ] {
             let message = Scene::parse(text).err().unwrap_or_default();

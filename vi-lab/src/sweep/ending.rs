@@ -7,7 +7,7 @@ use vi_core::StepError;
 pub(super) struct Ending(u8);
 
 impl Ending {
-    pub(super) const WORDS: [&str; 14] = [
+    pub(super) const WORDS: [&str; 16] = [
         "reached its end",
         "no forward step",
         "degenerate step",
@@ -22,6 +22,8 @@ impl Ending {
         "steps became too short",
         "section not found",
         "another failure",
+        "inconsistent start",
+        "redundant constraints",
     ];
     pub(super) const REACHED: Self = Self(0);
     pub(super) const WRONG_INPUT: Self = Self(10);
@@ -43,6 +45,8 @@ impl Ending {
             StepError::Singular { .. } => 8,
             StepError::NonFinite { .. } | StepError::Undefined { .. } => 9,
             StepError::InvalidInput { .. } => 10,
+            StepError::InconsistentStart { .. } => 14,
+            StepError::Redundant { .. } => 15,
             _ => 13,
         })
     }

@@ -8,6 +8,7 @@ use super::axis::Axis;
 use super::random::bits;
 use super::scene::Sweep;
 use super::schema::MOST;
+use crate::run::Placement;
 use vi_erased::plan::Plan;
 use vi_report::failure::Failure;
 use vi_runs::system::System;
@@ -19,6 +20,7 @@ pub(crate) struct Items {
     samples: u64,
     seed: u64,
     count: u64,
+    placement: Placement,
 }
 
 impl Items {
@@ -53,7 +55,12 @@ impl Items {
         let Some(count) = count.filter(|count| *count < MOST) else {
             return wrong("the sweep has more runs than can be counted; give fewer values");
         };
-        Ok(Self { axes, samples, seed: sweep.seed, count })
+        Ok(Self { axes, samples, seed: sweep.seed, count, placement: Placement::default() })
+    }
+
+    /// The same runs, with initial states that follow from the parameters or move onto the constraints.
+    pub(crate) fn with_placement(self, placement: Placement) -> Self {
+        Self { placement, ..self }
     }
 
     /// The number of runs.
@@ -83,9 +90,23 @@ impl Items {
 
     /// Sets a system and a plan to the values of a run.
     pub(crate) fn set(&self, item: u64, system: &mut dyn System, plan: &mut Plan) {
-        for (axis, value) in self.axes.iter().zip(self.values(item)) {
-            axis.quantity.set(value, system, plan);
-        }
+        let values = self.values(item);
+        // The initial state follows from the parameters, then its own axes change it.
+        let set = |system: &mut dyn System, plan: &mut Plan| {
+            for (axis, value) in self.axes.iter().zip(&values) {
+                axis.quantity.set(*value, system, plan);
+            }
+        };
+        set(system, plan);
+        self.placement.follow(system, plan);
+        set(system, plan);
+    }
+
+    /// The same, and moves the initial state onto the constraints if the sweep asks for it. A state that cannot move
+    /// stays, and its run is refused.
+    pub(crate) fn set_and_project(&self, item: u64, system: &mut dyn System, plan: &mut Plan) {
+        self.set(item, system, plan);
+        let _ = self.placement.project(system, plan);
     }
 
     /// Descriptions of the quantities and of the random numbers.

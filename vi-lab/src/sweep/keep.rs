@@ -22,6 +22,8 @@ pub(super) const STEP_ERROR: &str = "step_error";
 pub(super) struct Kept {
     kinds: Vec<Keep>,
     pub(super) section: Option<Section>,
+    /// The constraints of the system, which add columns to rows.
+    constraints: &'static [&'static str],
     /// Whether rows contain the shifted energy.
     is_shifted: bool,
 }
@@ -31,13 +33,17 @@ impl Kept {
     ///
     /// # Errors
     /// [`Failure::Input`] if there are none, or no such section.
-    pub(super) fn of(sweep: &Sweep, coordinates: &[&str], plan: &Plan) -> Result<Self, Failure> {
+    pub(super) fn of(
+        sweep: &Sweep,
+        (coordinates, constraints): (&[&str], &'static [&'static str]),
+        plan: &Plan,
+    ) -> Result<Self, Failure> {
         let section = sweep.section.as_ref().map(|cut| section(cut, coordinates, plan)).transpose();
         let section = section.map_err(|message| Failure::Input(format!("the section {message}")))?;
         if sweep.keep.is_empty() && section.is_none() {
             return Err(Failure::Input("`keep` is empty; remove it to keep the end of each run".to_owned()));
         }
-        Ok(Self { kinds: sweep.keep.clone(), section, is_shifted: plan.shift.is_some() })
+        Ok(Self { kinds: sweep.keep.clone(), section, constraints, is_shifted: plan.shift.is_some() })
     }
 
     pub(super) fn has(&self, keep: Keep) -> bool {
@@ -54,7 +60,7 @@ impl Kept {
         if self.has(Keep::Accuracy) {
             runs.push(Column::number(STEP_ERROR));
         }
-        let rows = Row::columns(coordinates, self.is_shifted);
+        let rows = Row::columns(coordinates, self.constraints, self.is_shifted);
         if self.has(Keep::End) {
             runs.extend(rows.iter().map(|name| Column::number(format!("end_{name}"))));
         }

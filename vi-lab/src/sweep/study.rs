@@ -37,9 +37,9 @@ impl Study {
     /// [`Failure::Input`] for the first wrong entry.
     pub(super) fn read(scene: &str, catalogue: &Catalogue) -> Result<Self, Failure> {
         let (request, sweep) = Request::with_sweep(scene, catalogue)?;
-        let items = Items::of(&sweep, request.system.as_ref())?;
+        let items = Items::of(&sweep, request.system.as_ref())?.with_placement(request.placement);
         let coordinates = request.system.coordinates();
-        let kept = Kept::of(&sweep, &coordinates, &request.plan)?;
+        let kept = Kept::of(&sweep, (&coordinates, request.system.constraints()), &request.plan)?;
         let sources = fingerprint(&catalogue.sources().collect::<Vec<_>>());
         let study = Self { request, items, kept, sources };
         study.check_series()?;
@@ -110,8 +110,10 @@ impl Study {
         });
         if let Some((section, crossings)) = section {
             let crossed = outcome.cross(&member, section, &mut |row| {
-                crossings.extend([number, row.t].into_iter().chain(row.q).chain(row.p));
-                crossings.push(row.energy.unwrap_or(f64::NAN));
+                // As a node, but for E, E' and h.
+                let columns = row.entries().count() - 2;
+                crossings.push(number);
+                crossings.extend(row.entries().take(columns).map(|entry| entry.unwrap_or(f64::NAN)));
             });
             if outcome.ending == Ending::REACHED && crossed.is_err() {
                 outcome.ending = Ending::NO_SECTION;
@@ -142,7 +144,7 @@ impl Study {
         let Request { system, plan, length, every, .. } = &self.request;
         let mut system = system.copy();
         let mut plan = plan.clone();
-        self.items.set(item, system.as_mut(), &mut plan);
+        self.items.set_and_project(item, system.as_mut(), &mut plan);
         let is_watched = self.kept.has(Keep::Extremes) || self.kept.has(Keep::Energy);
         let is_measured = self.kept.has(Keep::Accuracy);
         Member { system, plan, length: *length, every: *every, is_watched, is_measured }

@@ -68,7 +68,7 @@ impl Method {
             Self::Own(plan::Method::KahanLi6) => six,
             Self::Own(plan::Method::KahanLi8) => eight,
             Self::Gauss(4) => few,
-            Self::Gauss(_) | Self::Own(plan::Method::Gauss) => many,
+            Self::Gauss(_) | Self::Own(plan::Method::Gauss | plan::Method::GaussLobatto) => many,
             Self::Own(plan::Method::Energy) => Look::ENERGY,
             Self::Rival => Look::RIVAL,
             Self::Heyoka => Look::ELSEWHERE,
