@@ -14,6 +14,7 @@ TYPES = {
     "u32": "int",
     "usize": "int",
     "&'static str": "str",
+    "f32": "float",
     "Option<&'static str>": "str | None",
     "&'static [&'static str]": "list[str]",
     "Residuals": "list[float]",

@@ -22,6 +22,7 @@ except ImportError as error:
 from ._binding import _bind
 from ._cell import load_ipython_extension
 from ._compile import CompileError, compile, warm
+from ._constraints import Projected
 from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble
 from ._errors import *  # noqa: F403
@@ -40,6 +41,6 @@ systems: list[str] = _bind(_core, globals(), __name__)
 
 __all__ = [
     "CompileError", "Ensemble", "Equilibrium", "Event", "Events", "Explanation", "Linearization", "LocalError",
-    "Period", "Run", "Solution", "System", "compile", "load_ipython_extension", "stubs", "systems", "warm",
+    "Period", "Projected", "Run", "Solution", "System", "compile", "load_ipython_extension", "stubs", "systems", "warm",
     *_error_names, *systems,
 ]  # fmt: skip

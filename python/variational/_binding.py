@@ -10,7 +10,7 @@ import numpy as np
 from ._names import spelled
 from ._system import Parameter, System
 
-CONTRACT = 1
+CONTRACT = 2
 """The version of the interface to compiled modules."""
 
 
@@ -54,6 +54,7 @@ def class_of(kind: Any, module: str, metaclass: type = type) -> type[System]:
         "_kind": kind,
         "_defaults": np.array([default for _, default, _ in kind.parameters]),
         "coordinates": coordinates,
+        "constraints": tuple(spelled(name) for name in kind.constraints),
         "parameters": tuple(fields),
         "inputs": tuple(name for name, field in fields.items() if field.start in kind.inputs),
         "integrators": tuple(kind.integrators),
@@ -86,6 +87,8 @@ def _parameters(kind: Any) -> dict[str, Parameter]:
 def _documentation(kind: Any, coordinates: tuple[str, ...], fields: dict[str, Parameter]) -> str:
     about = inspect.cleandoc(kind.about) or f"The system {kind.name}."
     lines = [about, "", f"Coordinates: {', '.join(coordinates)}."]
+    if kind.constraints:
+        lines += ["", f"Constraints: {', '.join(kind.constraints)}."]
     if fields:
         lines += ["", "Parameters", "----------"]
     for name, field in fields.items():

@@ -112,7 +112,7 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
 
     `methods` lists the integrators to build: "fixed; compositions; gauss 4, 8; energy; energy 2". The default is
     "fixed; gauss 8", without "fixed" for a system without the clause `discretize`, and with "transformed 8" for one
-    with a `time_scale`.
+    with a `time_scale`. A system with constraints has "gauss-lobatto 3" or other stages, and no other methods.
 
     It needs cargo, https://rustup.rs. The first build takes about a minute and later ones seconds; a system that was
     compiled before is loaded in milliseconds.
@@ -159,6 +159,9 @@ def _without_comments(definition: str) -> str:
     return re.sub(r"//[^\n]*|/\*.*?\*/", "", definition, flags=re.DOTALL)
 
 
+_MOST_STAGES = {"fixed": 0, "compositions": 0, "energy": 3, "gauss": 16, "gauss-lobatto": 16, "transformed": 16}
+
+
 def _methods(methods: str | None, code: str) -> str:
     """The integrators to build, in one spelling.
 
@@ -166,24 +169,33 @@ def _methods(methods: str | None, code: str) -> str:
     """
     has_rule = re.search(r"\bdiscretize\b", code) is not None
     has_scale = re.search(r"\btime_scale\b", code) is not None
+    has_constraints = _CONSTRAINT.search(code) is not None
+    if methods is None and has_constraints:
+        return "gauss-lobatto 3"
     if methods is None:
         return "; ".join(["fixed"] * has_rule + ["gauss 8"] + ["transformed 8"] * has_scale)
     found = []
     for part in filter(None, (part.strip() for part in methods.split(";"))):
         word, _, rest = part.partition(" ")
         stages = [stage.strip() for stage in rest.split(",")] if rest.strip() else []
-        most = {"fixed": 0, "compositions": 0, "energy": 3, "gauss": 16, "transformed": 16}.get(word)
+        most = _MOST_STAGES.get(word)
         if most is None:
             composed = " (compositions has suzuki-4, kahan-li-6 and kahan-li-8)" if "-" in word else ""
             raise CompileError(
                 f"there is no method {word!r}{composed}: "
-                "write fixed, compositions, gauss 8, transformed 8, energy, energy 2"
+                "write fixed, compositions, gauss 8, transformed 8, energy, energy 2, gauss-lobatto 3"
             )
         if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):
             limits = f"stages from 1 to {most}" if most else "no stages"
             raise CompileError(f"{word} has {limits}, not {rest!r}")
         if word in ("gauss", "transformed") and not stages:
             raise CompileError(f'{word} needs its stages, such as "{word} 8"')
+        if word == "gauss-lobatto" and not stages:
+            raise CompileError('gauss-lobatto needs its stages, such as "gauss-lobatto 3"')
+        if has_constraints and word != "gauss-lobatto":
+            raise CompileError(f'the method {word} does not keep constraints: write "gauss-lobatto 3"')
+        if word == "gauss-lobatto" and not has_constraints:
+            raise CompileError('the method gauss-lobatto is for definitions with a constraint: write "gauss 8"')
         if not stages and not has_rule:
             raise CompileError(f"the method {word} needs the clause `discretize midpoint;` in the definition")
         if word == "transformed" and not has_scale:
@@ -201,7 +213,12 @@ def _words(methods: str) -> str:
         words = ["fixed", *(word for word in words if word not in ("fixed", "compositions"))]
     else:
         words = ["fixed_2" if word == "fixed" else word for word in words]
-    return "; ".join(words)
+    # A name with a hyphen is no word of Rust.
+    return "; ".join(words).replace("gauss-lobatto", "gauss_lobatto")
+
+
+_CONSTRAINT = re.compile(r"(?:^|[;{}])\s*(?:constraint|rotation)\s+[^\W\d]")
+"""A clause that declares a constraint."""
 
 
 _TABLE = re.compile(r'(\btable\b[^;"]*=\s*")([^"]+)(")')

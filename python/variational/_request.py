@@ -38,7 +38,7 @@ def checked(
     h: float | None,
     tolerance: float | None,
     dtau: float | None,
-    method: str,
+    method: str | None,
     stages: int | None,
     shift: float | None,
     shift_from: float | None,
@@ -50,16 +50,19 @@ def checked(
     """
     if (h is None) + (tolerance is None) + (dtau is None) != 2:
         raise TypeError("give one of h, tolerance and dtau: h=0.05 is a step of this length")
+    if method is None:
+        method = "gauss-lobatto" if cls.constraints else "gauss"
     if method not in cls._methods:
         known = ", ".join(f'"{name}"' for name in cls._methods)
         close = meant(method, cls._methods) if isinstance(method, str) else ""
         more = "" if getattr(cls, "_source", None) is None else ". The argument methods of compile builds others"
-        raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}{more}")
+        why = ", and has constraints, which other methods do not keep" if cls.constraints else ""
+        raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}{why}{more}")
     if method != "energy" and (shift is not None or shift_from is not None or fallback):
         raise ValueError('shift, shift_from and fallback are options of method="energy"')
     if shift is not None and shift_from is not None:
         raise TypeError("give one of shift and shift_from, not both")
-    if stages is not None and method not in ("gauss", "energy"):
+    if stages is not None and method not in ("gauss", "gauss-lobatto", "energy"):
         raise ValueError(f"method={method!r} has no stages: leave out stages=")
     request = Request(
         method=method,

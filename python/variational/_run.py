@@ -67,6 +67,11 @@ class Run:
         return self._run.v
 
     @property
+    def reactions(self) -> Array:
+        """The multiplier Λ of each constraint at the last node, in the order of `system.constraints`."""
+        return self.system.reaction(self.t, self.q, self.p)
+
+    @property
     def h(self) -> float:
         """Length of the last step; before the first one the requested length."""
         return self._run.h
@@ -351,8 +356,8 @@ def _joined(system: System, parts: list[Solution], error: Any) -> Solution:
         return Solution(system, np.zeros(0), np.zeros((0, n)), np.zeros((0, n)), error)
     joined = Solution(system, all_of("t"), all_of("q"), all_of("p"), error)
     if any(part.system != system for part in parts):
-        # Velocity and energy of each row belong to the parameters of its step.
-        joined.__dict__.update({name: all_of(name) for name in ("v", "energy")})
+        # Velocity, energy and reactions of each row belong to the parameters of its step.
+        joined.__dict__.update({name: all_of(name) for name in ("v", "energy", "reactions")})
     return joined
 
 

@@ -38,7 +38,7 @@ class ByName:
 
 
 class Solution(ByName):
-    """The rows of a run: `t` (K,), `q`, `p`, `v` (K, N), `energy` (K,).
+    """The rows of a run: `t` (K,), `q`, `p`, `v` (K, N), `energy` (K,), and for C constraints `reactions` (K, C).
 
     `sol["x"]` and `sol["dot(x)"]` are the values of a coordinate and of its velocity. Names and shapes of
     `scipy.integrate.solve_ivp` are there too: `y` = (q, v) of shape (2N, K), `success`, `status`, `message`, and with
@@ -62,6 +62,17 @@ class Solution(ByName):
     def energy(self) -> Array:
         """The energy H."""
         return np.asarray(self.system._at("hamiltonian", self.t, self.q, self.p, second="p"))
+
+    @cached_property
+    def reactions(self) -> Array:
+        """The multiplier Λ of each constraint, (K, C) in the order of `system.constraints`."""
+        return self.system.reaction(self.t, self.q, self.p)
+
+    @property
+    def residual(self) -> Array:
+        """The largest |g| and |A v + a| of the constraints in each row, (K,); zero without constraints."""
+        found = np.abs(self.system.residuals(self.t, self.q, self.v))
+        return found.max(axis=(-2, -1), initial=0.0)
 
     @property
     def y(self) -> Array:
@@ -133,10 +144,12 @@ class Solution(ByName):
         for label, values in (("{}", self.q), ("dot({})", self.v), ("p_{}", self.p)):
             for index, name in enumerate(names):
                 yield label.format(name), values[:, index]
+        for index, name in enumerate(self.system.constraints):
+            yield f"Λ_{name}", self.reactions[:, index]
         yield "energy", self.energy
 
     def to_dataframe(self) -> Any:
-        """The rows as a pandas DataFrame with the columns t, q, dot(q), p_q and energy."""
+        """The rows as a pandas DataFrame with the columns t, q, dot(q), p_q, Λ of each constraint, and energy."""
         try:
             import pandas
         except ImportError:

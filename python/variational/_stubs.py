@@ -19,6 +19,7 @@ from numpy import float64
 
 from ._cell import load_ipython_extension as load_ipython_extension
 from ._compile import CompileError as CompileError, compile as compile, warm as warm
+from ._constraints import Projected as Projected
 from ._control import Equilibrium as Equilibrium, Linearization as Linearization
 from ._ensemble import Ensemble as Ensemble
 from ._events import Event as Event, Period as Period

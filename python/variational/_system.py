@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Array, array, finite, number, vector
+from ._constraints import Projected
 from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble
 from ._explanation import Explanation
@@ -70,6 +71,8 @@ class System:
     _methods: ClassVar[tuple[str, ...]] = ()
     coordinates: ClassVar[tuple[str, ...]] = ()
     """Names of the coordinates."""
+    constraints: ClassVar[tuple[str, ...]] = ()
+    """Names of the constraints, holonomic ones first."""
     parameters: ClassVar[tuple[str, ...]] = ()
     """Names of the parameters."""
     inputs: ClassVar[tuple[str, ...]] = ()
@@ -156,12 +159,37 @@ class System:
         """The acceleration at (t, q, v)."""
         return self._at("acceleration", t, q, v, self._shape)
 
+    def reaction(self, t: ArrayLike, q: ArrayLike, p: ArrayLike) -> Array:
+        """The multiplier Λ of each constraint at (t, q, p), of shape (..., K) in the order of `constraints`."""
+        return self._at("reaction", t, q, p, (len(self.constraints),), "p")
+
+    def reaction_force(self, t: ArrayLike, q: ArrayLike, p: ArrayLike) -> Array:
+        """The generalized force of all constraints on the coordinates at (t, q, p)."""
+        return self._at("reaction_force", t, q, p, self._shape, "p")
+
+    def residuals(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
+        """How far (t, q, v) is off the constraints: g and A v + a of each, of shape (..., 2, K). g of a constraint on
+        velocities is 0."""
+        return self._at("residuals", t, q, v, (2, len(self.constraints)))
+
+    def project(self, q: ArrayLike, v: ArrayLike | None = None, *, t: float = 0.0) -> Projected:
+        """The state on the constraints nearest to (t, q, v) in the metric of the mass matrix, and how far it is.
+
+        Raises NotConverged if no coordinates near q satisfy the constraints, Singular if the constraints depend on each
+        other on the way.
+        """
+        (n,), names = self._shape, self.coordinates
+        q = vector(q, n, "q", names)
+        v = np.zeros(n) if v is None else vector(v, n, "v", names)
+        return Projected(*self._kind.project(self._values, number(t, "t"), q, v))
+
     def mass_matrix(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
         """The mass matrix M = ∂²L/∂v² at (t, q, v): (..., N, N)."""
         return self._at("mass_matrix", t, q, v, (len(self.coordinates),) * 2)
 
     def bias(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
-        """The bias b at (t, q, v): along the motion M a + b = 0. Inputs have the values that are set."""
+        """The bias b at (t, q, v): along the motion M a + b is 0, or the force of the constraints. Inputs have the
+        values that are set."""
         return self._at("bias", t, q, v, self._shape)
 
     def inverse_dynamics(self, t: ArrayLike, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
@@ -239,7 +267,7 @@ class System:
         h: float | None = None,
         tolerance: float | None = None,
         dtau: float | None = None,
-        method: str = "gauss",
+        method: str | None = None,
         stages: int | None = None,
         shift: float | None = None,
         shift_from: float | None = None,
@@ -256,9 +284,10 @@ class System:
         dtau : float
             In place of h: length of a step in transformed time, for a system with a `time_scale`.
         method : str
-            "gauss", "fixed", "suzuki-4", "kahan-li-6", "kahan-li-8" or "energy".
+            "gauss", the default, "fixed", "suzuki-4", "kahan-li-6", "kahan-li-8" or "energy". A system with constraints
+            has "gauss-lobatto".
         stages : int
-            Stages of Gauss steps, whose order is twice that number; of energy-preserving steps.
+            Stages of Gauss steps, whose order is twice that number, also with constraints; of energy-preserving steps.
         shift, shift_from : float
             The shift of the step density of energy-preserving steps, or the duration over which it is measured.
         fallback : bool
@@ -291,7 +320,7 @@ class System:
         h: float | None = None,
         tolerance: float | None = None,
         dtau: float | None = None,
-        method: str = "gauss",
+        method: str | None = None,
         stages: int | None = None,
         shift: float | None = None,
         shift_from: float | None = None,

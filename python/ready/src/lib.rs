@@ -2,9 +2,10 @@
 
 use vi_erased::{System, kind};
 use vi_systems::{
-    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
-    HarmonicOscillator, HenonHeiles, Kepler, NPendulum, OuterSolarSystem, ParametricPendulum, Pendulum, RotatingHoop,
-    SphericalPendulum, ThreeBody,
+    AndrewsSqueezer, ChaplyginSleigh, ChargedParticle, DampedOscillator, DoublePendulum, DoubleRodPendulum, DoubleWell,
+    DoubleWellDuffing, FourBar, FpuChain, HardDuffing, HarmonicOscillator, HeavyTop, HenonHeiles, Kepler, NPendulum,
+    OuterSolarSystem, ParametricPendulum, Pendulum, RodChain, RodPendulum, RollingBall, RollingDisk, RotatingHoop,
+    SliderCrank, SphericalPendulum, ThreeBody,
 };
 
 macro_rules! systems {
@@ -13,7 +14,13 @@ macro_rules! systems {
     };
 }
 
-/// The systems with their default parameters, in alphabetical order but for Kepler, which is last.
+macro_rules! with_constraints {
+    ($($system:ident),* $(,)?) => {
+        vec![$(kind!($system, { gauss_lobatto 1, 2, 3 })),*]
+    };
+}
+
+/// The systems with their default parameters: those with constraints are after the others, Kepler is last.
 #[must_use]
 pub fn systems() -> Vec<Box<dyn System>> {
     let mut systems = systems!(
@@ -34,6 +41,18 @@ pub fn systems() -> Vec<Box<dyn System>> {
         SphericalPendulum,
         ThreeBody,
     );
+    systems.extend(with_constraints!(
+        AndrewsSqueezer,
+        ChaplyginSleigh,
+        DoubleRodPendulum,
+        FourBar,
+        HeavyTop,
+        RodChain,
+        RodPendulum,
+        RollingBall,
+        RollingDisk,
+        SliderCrank,
+    ));
     // Steps in transformed time are built only for the system that declares a time scale.
     systems.push(kind!(Kepler, { fixed; gauss 4, 8; transformed 4, 8; energy; energy 1, 2, 3 }));
     systems

@@ -9,8 +9,8 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArr
 use pyo3::prelude::*;
 use vi_erased::System;
 use vi_erased::control::Rest;
-use vi_erased::plan::{Method, Named as _, Plan};
-use vi_erased::system::Quantity;
+use vi_erased::plan::{Method, Named as _, PhasePoint, Plan};
+use vi_erased::system::{OnConstraints, Quantity};
 
 /// A system's type.
 #[pyclass(frozen, module = "variational._core")]
@@ -62,6 +62,11 @@ impl Kind {
         self.of.coordinates()
     }
 
+    #[getter]
+    fn constraints(&self) -> &'static [&'static str] {
+        self.of.constraints()
+    }
+
     /// Name, default and documentation of each parameter.
     #[getter]
     fn parameters(&self) -> Vec<(&'static str, f64, &'static str)> {
@@ -80,7 +85,7 @@ impl Kind {
     }
 
     /// A function at points: t (K,), q and v (K, N). Returns (K,) numbers, (K·N,) for a
-    /// vector, or (K·N·N,) for the mass matrix.
+    /// vector, (K·N·N,) for the mass matrix, (K·C,) for the reactions of C constraints, (K·2·C,) for their residuals.
     #[allow(clippy::too_many_arguments)] // Python's keywords
     fn evaluate<'py>(
         &self,
@@ -111,6 +116,9 @@ impl Kind {
             "force" => Quantity::Force,
             "acceleration" => Quantity::Acceleration,
             "velocity" => Quantity::Velocity,
+            "reaction" => Quantity::Reaction,
+            "reaction_force" => Quantity::ReactionForce,
+            "residuals" => Quantity::Residuals,
             _ => return Err(wrong(format!("there is no function {of:?}"))),
         };
         py.detach(|| system.evaluate(quantity, [&t, &q, &v], &mut out)).raise(py)?;
@@ -152,6 +160,22 @@ impl Kind {
             system.control().equilibrium(t, &vector(&guess, self.n, "guess")?).raise(py)?;
         let matrices: PyResult<_> = matrices.map(|of| rows(py, of, self.n)).into_iter().collect();
         Ok((PyArray1::from_vec(py, q), matrices?, free, residual, rates))
+    }
+
+    /// The nearest coordinates and velocities on the constraints, and their changes.
+    #[allow(clippy::type_complexity)] // fields of a Python class
+    fn project<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray1<'py, f64>,
+        t: f64,
+        q: PyReadonlyArray1<'py, f64>,
+        v: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<[Bound<'py, PyArray1<f64>>; 4]> {
+        let system = self.with(parameters.as_slice()?)?;
+        let at = PhasePoint { t, q: vector(&q, self.n, "q")?, v: vector(&v, self.n, "v")? };
+        let OnConstraints { point, moved_q, moved_v } = system.project(&at).raise(py)?;
+        Ok([point.q, point.v, moved_q, moved_v].map(|of| PyArray1::from_vec(py, of)))
     }
 
     /// Starts a run from velocities, or from momenta.

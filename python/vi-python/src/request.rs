@@ -3,7 +3,9 @@
 use crate::failure::wrong;
 use pyo3::prelude::*;
 use vi_erased::System;
-use vi_erased::plan::{Built, DEFAULT_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start};
+use vi_erased::plan::{
+    Built, DEFAULT_LOBATTO_STAGES, DEFAULT_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start,
+};
 
 /// Method and options of a run. Python has checked their names.
 #[derive(Clone, Debug, FromPyObject)]
@@ -54,12 +56,17 @@ impl Request {
 
 /// The stages of a plan: if none are given, the default if it is built, else the most that are built.
 fn stages(plan: &Plan, system: &dyn System) -> Option<usize> {
-    if plan.stages.is_some() || plan.method != Method::Gauss {
+    let usual = match plan.method {
+        Method::Gauss => DEFAULT_STAGES,
+        Method::GaussLobatto => DEFAULT_LOBATTO_STAGES,
+        _ => return plan.stages,
+    };
+    if plan.stages.is_some() {
         return plan.stages;
     }
-    let built = system.integrators().into_iter().filter(|of| of.0 == Method::Gauss && of.2 == plan.dtau.is_some());
+    let built = system.integrators().into_iter().filter(|of| of.0 == plan.method && of.2 == plan.dtau.is_some());
     let built: Vec<usize> = built.filter_map(|of| of.1).collect();
-    if built.contains(&DEFAULT_STAGES) { None } else { built.into_iter().max() }
+    if built.contains(&usual) { None } else { built.into_iter().max() }
 }
 
 /// An integrator in the words of Python.

@@ -1,0 +1,20 @@
+"""States on constraints."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ._arrays import Array
+
+
+class Projected(NamedTuple):
+    """A state on the constraints, and how far it is from the given one."""
+
+    q: Array
+    """Coordinates, (N,)."""
+    v: Array
+    """Velocities, (N,)."""
+    moved_q: Array
+    """Changes of the coordinates, (N,)."""
+    moved_v: Array
+    """Changes of the velocities, (N,)."""
