@@ -10,12 +10,13 @@ use crate::hand::{self, Compensated, Plain};
 use crate::newton::{Difference, Dual, Newton};
 use crate::pendulum::TriplePendulum;
 use crate::problem::Problem;
-use crate::run::Adjoint;
+use crate::rods::{AngleChain, RodChain, straight};
+use crate::run::{Adjoint, Other};
 use core::array::from_fn;
 use std::hint::black_box;
-use vi_core::derivatives::{Differentiable, Tangent, Variation};
-use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, Gauss, Lagrangian, Run, SVector, Starts, State};
+use vi_core::derivatives::{Differentiable, Tangent, Variation, Varying};
+use vi_core::stepping::{Batch, EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, FixedStep, Gauss, GaussLobatto, Run, SVector, Starts, State};
 use vi_ensemble::Ensemble;
 use vi_systems::{DoublePendulum, DoubleWell, FpuChain, Kepler, NPendulum};
 
@@ -57,6 +58,7 @@ pub fn all() -> Vec<Contest> {
         pendula("Four pendula, fixed step, h = 0.01", &black_box(NPendulum::default())),
         chain::<_, 16, 17>("Chain of 16, fixed step, h = 0.1", &black_box(FpuChain::default()), 10.0),
         chain::<_, 64, 65>("Chain of 64, fixed step, h = 0.1", &black_box(LongChain::default()), 60.0),
+        rods(),
     ]
 }
 
@@ -140,7 +142,7 @@ fn double_pendulum() -> Contest {
 fn derivatives<M, S, const N: usize>(name: &'static str, run: &Run<M, S, N>) -> Contest
 where
     M: Differentiable<S, N> + 'static,
-    S: Convertible<N> + Lagrangian<N> + Copy + 'static,
+    S: Varying<N, M::Kind> + 'static,
 {
     let along = |count: usize| Tangent::new(run.clone(), Variation::of_state().into_iter().take(count).collect());
     Contest::new(name, run.clone())
@@ -216,6 +218,20 @@ where
         )
         .rival(BY_HAND_PLAIN, LOST, Target::None, hand::chain::Fixed::<Plain, Series, N, M>::new(springs(), q, h))
         .rival(DENSE, LOST, Target::Faster(faster), hand::chain::Fixed::<Plain, Lu, N, M>::new(springs(), q, h))
+}
+
+/// A chain of ten rods with constraints, and in angles. Angles have other steps: only their time is compared.
+fn rods() -> Contest {
+    let (system, start, h) = (black_box(RodChain::default()), straight::<20>(), black_box(0.01));
+    let run = system.at(0.0, start[0], start[1]).integrate(GaussLobatto::<1>, h).expect("a regular start");
+    let angle = 0.75_f64.atan();
+    let angles = fixed(&black_box(AngleChain::default()), ([angle; 10], [0.1; 10]), h);
+    Contest::new("Ten rods with constraints, h = 0.01", run).rival(
+        "in ten angles",
+        f64::INFINITY,
+        Target::Faster(2.5),
+        Other(angles, 41),
+    )
 }
 
 fn fixed<S: FixedStepping<N> + Clone, const N: usize>(

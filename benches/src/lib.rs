@@ -10,5 +10,6 @@ pub mod hand;
 pub mod newton;
 pub mod pendulum;
 pub mod problem;
+pub mod rods;
 pub mod run;
 pub mod time;

@@ -4,8 +4,8 @@
 //! inside, so that a step is inlined into it as in a user's program.
 
 use std::cell::Cell;
-use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, gradient};
-use vi_core::stepping::{Batch, Convertible};
+use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, Varying, gradient};
+use vi_core::stepping::Batch;
 use vi_core::{Lagrangian, Method, State, StepError};
 use vi_ensemble::Ensemble;
 
@@ -81,6 +81,24 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Stepper f
     }
 }
 
+/// A stepper of the same system in other coordinates: its state is cut or filled up to the length of that of the others.
+#[derive(Clone, Debug)]
+pub struct Other<S>(pub S, pub usize);
+
+impl<S: Stepper> Stepper for Other<S> {
+    #[inline]
+    fn step(&mut self) {
+        self.0.step();
+    }
+
+    fn state(&self) -> Vec<f64> {
+        let Self(stepper, length) = self;
+        let mut state = stepper.state();
+        state.resize(*length, 0.0);
+        state
+    }
+}
+
 /// The gradient of the last coordinate that a run reaches, and whether all of its nodes are kept, or as few as may be.
 pub struct Adjoint<M: Method<S, N>, S, const N: usize> {
     /// The run.
@@ -89,7 +107,7 @@ pub struct Adjoint<M: Method<S, N>, S, const N: usize> {
     pub keeps_all: bool,
 }
 
-impl<M: Differentiable<S, N>, S: Convertible<N> + Lagrangian<N> + Copy, const N: usize> Run for Adjoint<M, S, N> {
+impl<M: Differentiable<S, N>, S: Varying<N, M::Kind>, const N: usize> Run for Adjoint<M, S, N> {
     fn run(&self, steps: usize) -> Vec<f64> {
         let end = Cell::new(None);
         let kept = if self.keeps_all { steps } else { 0 };
