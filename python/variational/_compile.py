@@ -112,7 +112,7 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
 
     `methods` lists the integrators to build: "fixed; compositions; gauss 4, 8; energy; energy 2". The default is
     "fixed; gauss 8", without "fixed" for a system without the clause `discretize`, and with "transformed 8" for one
-    with a `time_scale`. A system with constraints has "gauss-lobatto 3" or other stages, and no other methods.
+    with a `time_scale`. A system with constraints has "gauss-lobatto 3", "energy 2" and other stages of both.
 
     It needs cargo, https://rustup.rs. The first build takes about a minute and later ones seconds; a system that was
     compiled before is loaded in milliseconds.
@@ -192,8 +192,10 @@ def _methods(methods: str | None, code: str) -> str:
             raise CompileError(f'{word} needs its stages, such as "{word} 8"')
         if word == "gauss-lobatto" and not stages:
             raise CompileError('gauss-lobatto needs its stages, such as "gauss-lobatto 3"')
-        if has_constraints and word != "gauss-lobatto":
-            raise CompileError(f'the method {word} does not keep constraints: write "gauss-lobatto 3"')
+        if has_constraints and word not in ("gauss-lobatto", "energy"):
+            raise CompileError(f'the method {word} does not keep constraints: write "gauss-lobatto 3" or "energy 2"')
+        if has_constraints and not stages:
+            raise CompileError('energy needs its stages with constraints: write "energy 2"')
         if word == "gauss-lobatto" and not has_constraints:
             raise CompileError('the method gauss-lobatto is for definitions with a constraint: write "gauss 8"')
         if not stages and not has_rule:
@@ -206,15 +208,17 @@ def _methods(methods: str | None, code: str) -> str:
     return "; ".join(found)
 
 
-def _words(methods: str) -> str:
+def _words(methods: str, has_constraints: bool) -> str:
     """The integrators in the words of Rust's macro: its `fixed` has the compositions."""
+    if has_constraints:
+        # A name with a hyphen is no word of Rust.
+        return methods.replace("gauss-lobatto", "gauss_lobatto").replace("energy", "energy_lobatto")
     words = methods.split("; ")
     if "compositions" in words:
         words = ["fixed", *(word for word in words if word not in ("fixed", "compositions"))]
     else:
         words = ["fixed_2" if word == "fixed" else word for word in words]
-    # A name with a hyphen is no word of Rust.
-    return "; ".join(words).replace("gauss-lobatto", "gauss_lobatto")
+    return "; ".join(words)
 
 
 _CONSTRAINT = re.compile(r"(?:^|[;{}])\s*(?:constraint|rotation)\s+[^\W\d]")
@@ -266,7 +270,9 @@ def _build(definition: str, name: str, library: str, built: Path, methods: str, 
             # Another process may have built it meanwhile.
             if not built.exists():
                 workspace = _workspace(folder)
-                text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=_words(methods))
+                has_constraints = _CONSTRAINT.search(_without_comments(definition)) is not None
+                words = _words(methods, has_constraints)
+                text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=words)
                 (workspace / "compiled" / "src" / "lib.rs").write_text(text, encoding="utf-8")
                 _cargo(cargo, workspace, folder / "target", verbose)
                 part = built.with_suffix(".part")

@@ -1,7 +1,7 @@
 //! Derivatives of runs.
 //!
 //! In: a run of known types. Out: its linearization, tangent vectors and gradients as plain numbers, and the run at
-//! their end. With constraints, the change of one coordinate alone is no motion: there is a linearization only.
+//! their end. With constraints, the change of one coordinate alone is no motion: fixed steps have a linearization only.
 
 use crate::control::Linear;
 use crate::simulation::{Parametric, Runnable, RunnableWithConstraints};
@@ -9,13 +9,15 @@ use vi_core::derivatives::{
     Covector, Differentiable, Objective, Tangent, Unconstrained, Variation, WithConstraints, gradient,
 };
 use vi_core::{
-    Composition, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, GaussLobatto, InTransformedTime, Method,
-    Run, State, StepError,
+    Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, FixedStep, Gauss, GaussLobatto,
+    InTransformedTime, Method, Run, State, StepError,
 };
 
 /// The reason why a run with constraints has no derivative by single coordinates.
 const OF_CONSTRAINTS: &str =
     "a change of one coordinate alone leaves the constraints; use the linearization of the run";
+/// The reason why steps with constraints that find their length have no linearization.
+const OF_LENGTHS: &str = "steps that keep constraints and an energy have no linearization; use fixed steps";
 
 /// A value at the end of some steps, and the run there; `None` if it was interrupted.
 type AtEnd<M, S, Y, const N: usize> = Result<Option<(Run<M, S, N>, Y)>, StepError>;
@@ -25,30 +27,36 @@ pub trait Derived<S: Parametric<N>, const N: usize>: Method<S, N> {
     /// As [`Session::linearization`](crate::Session::linearization).
     ///
     /// # Errors
-    /// As there.
-    fn linearization(run: &Run<Self, S, N>) -> Result<Linear, StepError>;
+    /// As there. [`StepError::NoDerivative`] by default.
+    fn linearization(run: &Run<Self, S, N>) -> Result<Linear, StepError> {
+        Err(StepError::NoDerivative { t: run.t(), because: OF_LENGTHS })
+    }
     /// As [`Session::tangent`](crate::Session::tangent); `begins` if the run is where it began.
     ///
     /// # Errors
-    /// As there.
+    /// As there. [`StepError::NoDerivative`] by default.
     fn tangent(
         run: &Run<Self, S, N>,
-        begins: bool,
-        steps: u64,
-        parameters: &[usize],
-        goes_on: &mut dyn FnMut() -> bool,
-    ) -> AtEnd<Self, S, Vec<Vec<f64>>, N>;
+        _begins: bool,
+        _steps: u64,
+        _parameters: &[usize],
+        _goes_on: &mut dyn FnMut() -> bool,
+    ) -> AtEnd<Self, S, Vec<Vec<f64>>, N> {
+        Err(StepError::NoDerivative { t: run.t(), because: OF_CONSTRAINTS })
+    }
     /// As [`Session::gradient`](crate::Session::gradient), for a number of steps and the slope at their end.
     ///
     /// # Errors
-    /// As there.
+    /// As there. [`StepError::NoDerivative`] by default.
     fn gradient(
         run: &Run<Self, S, N>,
-        begins: bool,
-        end: (u64, Covector<N>),
-        parameters: &[usize],
-        goes_on: &mut dyn FnMut() -> bool,
-    ) -> AtEnd<Self, S, Vec<f64>, N>;
+        _begins: bool,
+        _end: (u64, Covector<N>),
+        _parameters: &[usize],
+        _goes_on: &mut dyn FnMut() -> bool,
+    ) -> AtEnd<Self, S, Vec<f64>, N> {
+        Err(StepError::NoDerivative { t: run.t(), because: OF_CONSTRAINTS })
+    }
 }
 
 /// A method with derivatives.
@@ -99,26 +107,11 @@ where
     fn linearization(run: &Run<Self, S, N>) -> Result<Linear, StepError> {
         run.linearization().map(Linear::from)
     }
+}
 
-    fn tangent(
-        run: &Run<Self, S, N>,
-        _begins: bool,
-        _steps: u64,
-        _parameters: &[usize],
-        _goes_on: &mut dyn FnMut() -> bool,
-    ) -> AtEnd<Self, S, Vec<Vec<f64>>, N> {
-        Err(StepError::NoDerivative { t: run.t(), because: OF_CONSTRAINTS })
-    }
-
-    fn gradient(
-        run: &Run<Self, S, N>,
-        _begins: bool,
-        _end: (u64, Covector<N>),
-        _parameters: &[usize],
-        _goes_on: &mut dyn FnMut() -> bool,
-    ) -> AtEnd<Self, S, Vec<f64>, N> {
-        Err(StepError::NoDerivative { t: run.t(), because: OF_CONSTRAINTS })
-    }
+impl<S: RunnableWithConstraints<N>, const N: usize, const STAGES: usize> Derived<S, N>
+    for EnergyPreservingGaussLobatto<STAGES>
+{
 }
 
 /// Derivatives of the node after steps by the start.

@@ -7,22 +7,19 @@
 use crate::mechanics::{Unconstrained, WithConstraints};
 use crate::plan::{Built, Method, Plan, Shift, Start};
 use crate::simulation::{
-    AtConstraints, Erasable, Runnable, RunnableWithConstraints, ShiftedEnergy, Simulation, Supported, at_constraints,
-    erased, erased_with,
+    AtConstraints, Erasable, Parametric, Runnable, RunnableWithConstraints, ShiftedEnergy, Simulation, Supported,
+    at_constraints, erased, erased_with,
 };
 use crate::start;
 use core::marker::PhantomData;
 use vi_core::collocation::Collocation;
-use vi_core::method::Controlled;
+use vi_core::method::{Controlled, Shiftable};
 use vi_core::run::Length as _;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{
-    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, GaussLobatto,
-    InTransformedTime, Run, Starts, State, StepError,
+    Called, Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep,
+    Gauss, GaussLobatto, InTransformedTime, Run, Starts, State, StepError,
 };
-
-#[cfg(feature = "checkpoints")]
-use crate::simulation::Parametric;
 
 /// Starts a run of a plan from a state.
 type Begin<S, const N: usize> = fn(S, &Plan, State<N>) -> Result<Box<dyn Simulation>, StepError>;
@@ -180,13 +177,41 @@ where
         Called,
         EnergyPreservingGauss::<STAGES>,
         |system: S, plan: &Plan, state: State<N>| {
-            let run = Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.length())?;
-            let run = match plan.shift {
-                None => run,
-                Some(Shift::Of(shift)) => run.with_shift(shift)?,
-                Some(Shift::Over(time)) => run.with_shift_from(time)?,
-            };
-            Ok(erased_with(run.with_fallback(fallback(plan)), plan.shift.is_some()))
+            shifted(Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.length())?, plan)
+        }
+    )
+}
+
+/// A run of energy-preserving steps with the shift and the fallback of a plan.
+///
+/// # Errors
+/// Those of the shift.
+fn shifted<M, S, const N: usize>(run: Run<M, S, N>, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>
+where
+    M: Shiftable<S, N> + Erasable<S, N, Memory: Controlled<f64>>,
+    S: Parametric<N>,
+{
+    let run = match plan.shift {
+        None => run,
+        Some(Shift::Of(shift)) => run.with_shift(shift)?,
+        Some(Shift::Over(time)) => run.with_shift_from(time)?,
+    };
+    Ok(erased_with(run.with_fallback(fallback(plan)), plan.shift.is_some()))
+}
+
+/// Energy-preserving steps of the given number of stages that keep constraints.
+#[must_use]
+pub fn energy_lobatto<S, const N: usize, const STAGES: usize>() -> Integrator<S, N, WithConstraints>
+where
+    S: RunnableWithConstraints<N>,
+    EnergyPreservingGaussLobatto<STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
+{
+    integrator!(
+        (Method::Energy, Some(STAGES), false),
+        |system| system,
+        EnergyPreservingGaussLobatto::<STAGES>,
+        |system: S, plan: &Plan, state: State<N>| {
+            shifted(system.at_state(state).integrate(EnergyPreservingGaussLobatto::<STAGES>, plan.length())?, plan)
         }
     )
 }
@@ -290,6 +315,24 @@ where
 {
     fn evaluations(run: &Run<Self, S, N>) -> u64 {
         u64::from(run.iterations()) * STAGES as u64
+    }
+
+    fn constraints(system: &S, state: &State<N>) -> Option<AtConstraints> {
+        Some(at_constraints(system, state))
+    }
+}
+
+impl<S: RunnableWithConstraints<N>, const N: usize, const STAGES: usize> Erasable<S, N>
+    for EnergyPreservingGaussLobatto<STAGES>
+where
+    EnergyPreservingGaussLobatto<STAGES>: Supported<S, N>,
+{
+    fn evaluations(run: &Run<Self, S, N>) -> u64 {
+        u64::from(run.iterations()) * STAGES as u64
+    }
+
+    fn shifted_energy(run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
+        Some(ShiftedEnergy { energy: run.shifted_energy(), shift: run.shift() })
     }
 
     fn constraints(system: &S, state: &State<N>) -> Option<AtConstraints> {

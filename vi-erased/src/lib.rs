@@ -50,9 +50,11 @@ pub use system::{System, Typed};
 /// | `transformed 4, 8` | the same in transformed time, for a system with a `time_scale` |
 /// | `energy` | energy-preserving steps of order 2 |
 /// | `energy 2, 3` | energy-preserving Gauss steps of 2 and of 3 stages |
-/// | `gauss_lobatto 1, 3` | steps of 1 and of 3 stages that keep constraints; a system with constraints has no others |
+/// | `gauss_lobatto 1, 3` | steps of 1 and of 3 stages that keep constraints |
+/// | `energy_lobatto 2` | energy-preserving steps of 2 stages that keep constraints |
 ///
-/// `fixed`, `fixed_2` and `energy` without stages need the clause `discretize midpoint;`.
+/// `fixed`, `fixed_2` and `energy` without stages need the clause `discretize midpoint;`. A system with constraints has
+/// only those methods that keep them.
 #[macro_export]
 macro_rules! kind {
     ($system:ty, { $($method:ident $($stages:literal),*);* $(;)? }) => {
@@ -82,6 +84,9 @@ macro_rules! integrators {
     };
     (gauss_lobatto $($stages:literal),+) => {
         vec![$($crate::integrator::gauss_lobatto::<_, _, $stages>()),+]
+    };
+    (energy_lobatto $($stages:literal),+) => {
+        vec![$($crate::integrator::energy_lobatto::<_, _, $stages>()),+]
     };
     (energy $($stages:literal),+) => {
         vec![$($crate::integrator::energy_gauss::<_, _, $stages>()),+]

@@ -38,6 +38,8 @@ pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 pub const LOBATTO_STAGES: [usize; 3] = [1, 2, 3];
 /// The default number of these stages: the highest order that is built.
 pub const DEFAULT_LOBATTO_STAGES: usize = 3;
+/// The number of stages of energy-preserving steps that keep constraints, for each system with constraints.
+pub const ENERGY_LOBATTO_STAGES: usize = 2;
 
 impl Method {
     /// All integrators.
@@ -160,7 +162,7 @@ pub struct Plan {
     /// The start of the energy-preserving integrator without stages and shift; unused by others.
     pub start: Start,
     /// The stages of Gauss steps, one of [`STAGES`], of steps that keep constraints, one of [`LOBATTO_STAGES`], or of
-    /// energy-preserving ones, one of [`ENERGY_STAGES`].
+    /// energy-preserving ones, one of [`ENERGY_STAGES`], with constraints [`ENERGY_LOBATTO_STAGES`].
     pub stages: Option<usize>,
     /// The shift of energy-preserving steps.
     pub shift: Option<Shift>,
@@ -213,8 +215,8 @@ impl Plan {
         Some(self.stages.unwrap_or(usual))
     }
 
-    /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); `None` for
-    /// steps with [`EnergyPreserving`](vi_core::EnergyPreserving).
+    /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss), or with
+    /// constraints; `None` for steps with [`EnergyPreserving`](vi_core::EnergyPreserving).
     #[must_use]
     pub fn energy_stages(&self) -> Option<usize> {
         self.stages.or(self.shift.map(|_| 1)).filter(|_| self.method == Method::Energy)

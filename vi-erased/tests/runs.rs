@@ -1,6 +1,9 @@
 //! Erased runs are those of the generic integrators, bit for bit.
 
-use vi_core::{Composition, EnergyPreserving, FixedStep, Gauss, GaussLobatto, Run, Starts, StepError};
+use vi_core::{
+    Composition, EnergyPreserving, EnergyPreservingGaussLobatto, FixedStep, Gauss, GaussLobatto, Run, Starts, StepError,
+};
+use vi_erased::plan::Shift;
 use vi_erased::{Method, PhasePoint, Plan, System, kind};
 use vi_systems::{Kepler, Pendulum, RodPendulum};
 
@@ -63,6 +66,18 @@ fn runs_with_constraints_have_the_bits_of_generic_ones() {
         let columns = vi_erased::Row::columns(&["x", "y"], system.constraints(), false);
         assert_eq!(columns, ["t", "x", "y", "p_x", "p_y", "Λ_rod", "residual", "H", "E", "h"]);
         assert_eq!(row.entries().count(), columns.len());
+    }
+    let energies = kind!(RodPendulum, { energy_lobatto 2 });
+    let shifted =
+        Plan { stages: Some(2), shift: Some(Shift::Over(3.0)), ..Plan::new(Method::Energy, 0.05, start.clone()) };
+    let mut run = typed.at(0.0, q, v).integrate(EnergyPreservingGaussLobatto::<2>, 0.05).expect("a start");
+    run = run.with_shift_from(3.0).expect("a shift");
+    let mut erased = energies.begin(&shifted).expect("a start");
+    for _ in 0..50 {
+        erased.advance().expect("a step");
+        let state = run.step().expect("a step");
+        assert_eq!((erased.t(), &*erased.q(), erased.p()), (state.t, state.q.as_slice(), state.p.as_slice()));
+        assert_eq!(erased.row().shifted_energy, Some(run.shifted_energy()));
     }
     let refused = |plan: &Plan| system.begin(plan).err();
     assert_eq!(

@@ -6,10 +6,11 @@
 
 use crate::Entry;
 use core::marker::PhantomData;
-use vi_core::GaussLobatto;
 use vi_core::lagrangian::Described;
+use vi_core::method::Controlled;
 use vi_core::stepping::EnergyStepping;
-use vi_erased::plan::LOBATTO_STAGES;
+use vi_core::{EnergyPreservingGaussLobatto, GaussLobatto};
+use vi_erased::plan::{ENERGY_LOBATTO_STAGES, LOBATTO_STAGES};
 use vi_erased::simulation::{Erasable, Runnable, RunnableWithConstraints};
 
 /// A system declared by a program.
@@ -58,6 +59,7 @@ where
     GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
     GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
     GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
+    EnergyPreservingGaussLobatto<ENERGY_LOBATTO_STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
 {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
         Entry::with_constraints::<S, N>(about, q, v, h)

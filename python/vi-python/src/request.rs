@@ -4,7 +4,7 @@ use crate::failure::wrong;
 use pyo3::prelude::*;
 use vi_erased::System;
 use vi_erased::plan::{
-    Built, DEFAULT_LOBATTO_STAGES, DEFAULT_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start,
+    Built, DEFAULT_LOBATTO_STAGES, DEFAULT_STAGES, ENERGY_LOBATTO_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start,
 };
 
 /// Method and options of a run. Python has checked their names.
@@ -59,6 +59,7 @@ fn stages(plan: &Plan, system: &dyn System) -> Option<usize> {
     let usual = match plan.method {
         Method::Gauss => DEFAULT_STAGES,
         Method::GaussLobatto => DEFAULT_LOBATTO_STAGES,
+        Method::Energy if !system.constraints().is_empty() => ENERGY_LOBATTO_STAGES,
         _ => return plan.stages,
     };
     if plan.stages.is_some() {
@@ -66,7 +67,7 @@ fn stages(plan: &Plan, system: &dyn System) -> Option<usize> {
     }
     let built = system.integrators().into_iter().filter(|of| of.0 == plan.method && of.2 == plan.dtau.is_some());
     let built: Vec<usize> = built.filter_map(|of| of.1).collect();
-    if built.contains(&usual) { None } else { built.into_iter().max() }
+    if built.contains(&usual) { Some(usual) } else { built.into_iter().max() }
 }
 
 /// An integrator in the words of Python.

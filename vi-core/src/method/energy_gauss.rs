@@ -37,7 +37,7 @@ use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, check_forw
 use super::gauss::{Gauss, GaussOutput, LastStages};
 use super::length::Trial;
 use super::preserving::{Ended, Preserving, PreservingStep, StepsOfAnyLength, check_power, measured, order};
-use super::shift::{ShiftedEnergy, StepPower};
+use super::shift::{Shiftable, StepPower};
 use super::{Memory, Method, Problem, Report};
 use crate::collocation::Collocation;
 use crate::energy_preserving::start::check_density;
@@ -425,7 +425,7 @@ impl<const STAGES: usize> StepPower for EnergyPreservingGauss<STAGES> {
     }
 }
 
-impl<S, const N: usize, const STAGES: usize> ShiftedEnergy<S, N> for EnergyPreservingGauss<STAGES>
+impl<S, const N: usize, const STAGES: usize> Shiftable<S, N> for EnergyPreservingGauss<STAGES>
 where
     S: Collocation<N> + Convertible<N>,
 {

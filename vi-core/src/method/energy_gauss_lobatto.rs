@@ -22,7 +22,7 @@ use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, check_forw
 use super::gauss_lobatto::{ConstrainedSteps, GaussLobatto, Impulses};
 use super::length::Trial;
 use super::preserving::{Preserving, PreservingStep, StepsOfAnyLength, check_power, measured, order};
-use super::shift::{ShiftedEnergy, StepPower};
+use super::shift::{Shiftable, StepPower};
 use super::{Memory, Method, Problem, Report};
 use crate::constrained::lengths::{ConstrainedLengths, TakenLength, TriedLength, from_node};
 use crate::constrained::solve::Workspace;
@@ -307,7 +307,7 @@ impl<const STAGES: usize> StepPower for EnergyPreservingGaussLobatto<STAGES> {
     }
 }
 
-impl<S, const N: usize, const STAGES: usize> ShiftedEnergy<S, N> for EnergyPreservingGaussLobatto<STAGES>
+impl<S, const N: usize, const STAGES: usize> Shiftable<S, N> for EnergyPreservingGaussLobatto<STAGES>
 where
     S: Constrained<N> + ConvertibleConstrained<N>,
 {

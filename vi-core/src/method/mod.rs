@@ -43,7 +43,7 @@ pub use energy_gauss_lobatto::EnergyPreservingGaussLobatto;
 pub use fixed::{Connected, FixedStep};
 pub use gauss::Gauss;
 pub use gauss_lobatto::GaussLobatto;
-pub use shift::{ShiftedEnergy, StepPower};
+pub use shift::{Shiftable, StepPower};
 pub use transformed::InTransformedTime;
 
 use crate::error::StepError;

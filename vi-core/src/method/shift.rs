@@ -21,7 +21,7 @@ pub trait StepPower {
 }
 
 /// A method of order 2s whose steps preserve a discrete energy, which a shift D_* of the step density changes.
-pub trait ShiftedEnergy<S, const N: usize>: Method<S, N> + StepPower {
+pub trait Shiftable<S, const N: usize>: Method<S, N> + StepPower {
     /// Fixed steps of the same order.
     type Fixed: Method<S, N>;
     /// The method of these steps.
@@ -48,7 +48,7 @@ pub trait ShiftedEnergy<S, const N: usize>: Method<S, N> + StepPower {
 /// Options and results that only such a run has.
 impl<M, S, const N: usize> Run<M, S, N>
 where
-    M: ShiftedEnergy<S, N> + StepPower,
+    M: Shiftable<S, N> + StepPower,
     S: Lagrangian<N> + Copy,
 {
     /// Adds `shift`, in the units of the step density, to the step density of every step: a step exists while `D_s +

@@ -3,10 +3,11 @@
 //! In: the type of a system, and its start. Out: an [`Entry`], the type erased: there the compiler meets all that is generic over systems.
 
 use crate::system::{self, StartOf, System};
-use vi_core::GaussLobatto;
 use vi_core::lagrangian::Described;
+use vi_core::method::Controlled;
 use vi_core::stepping::EnergyStepping;
-use vi_erased::plan::LOBATTO_STAGES;
+use vi_core::{EnergyPreservingGaussLobatto, GaussLobatto};
+use vi_erased::plan::{ENERGY_LOBATTO_STAGES, LOBATTO_STAGES};
 use vi_erased::simulation::{Erasable, Runnable, RunnableWithConstraints};
 
 /// A system with a place to start from.
@@ -50,6 +51,7 @@ impl Entry {
         GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
         GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
         GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
+        EnergyPreservingGaussLobatto<ENERGY_LOBATTO_STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
     {
         Self { system: system::with_constraints::<S, N>(None), about, q: q.to_vec(), v: v.to_vec(), h }
     }
@@ -62,6 +64,7 @@ impl Entry {
         GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
         GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
         GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
+        EnergyPreservingGaussLobatto<ENERGY_LOBATTO_STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
     {
         let (q, v) = start(&S::default());
         Self { system: system::with_constraints::<S, N>(Some(start)), about, q: q.to_vec(), v: v.to_vec(), h }

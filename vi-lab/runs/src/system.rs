@@ -11,11 +11,12 @@ use core::ops::{Deref, DerefMut};
 use vi_core::check::Motion;
 use vi_core::gauss::step_density;
 use vi_core::lagrangian::Described;
+use vi_core::method::Controlled;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{Called, GaussLobatto, SVector, State, StepError};
+use vi_core::{Called, EnergyPreservingGaussLobatto, GaussLobatto, SVector, State, StepError};
 use vi_erased::integrator::{self, Integrator};
 use vi_erased::mechanics::WithConstraints;
-use vi_erased::plan::{ENERGY_STAGES, LOBATTO_STAGES, STAGES};
+use vi_erased::plan::{ENERGY_LOBATTO_STAGES, ENERGY_STAGES, LOBATTO_STAGES, STAGES};
 use vi_erased::simulation::{Erasable, Parametric, Runnable, RunnableWithConstraints, vector};
 use vi_erased::{Method, PhasePoint, Plan, Typed};
 
@@ -219,11 +220,13 @@ where
     GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
     GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
     GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
+    EnergyPreservingGaussLobatto<ENERGY_LOBATTO_STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
 {
     let integrators = vec![
         integrator::gauss_lobatto::<S, N, { LOBATTO_STAGES[0] }>(),
         integrator::gauss_lobatto::<S, N, { LOBATTO_STAGES[1] }>(),
         integrator::gauss_lobatto::<S, N, { LOBATTO_STAGES[2] }>(),
+        integrator::energy_lobatto::<S, N, ENERGY_LOBATTO_STAGES>(),
     ];
     Box::new(StudiedWithConstraints { typed: Typed::new(integrators), start })
 }

@@ -12,7 +12,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use vi_core::StepError;
 use vi_erased::plan::Named as _;
-use vi_erased::plan::{ENERGY_STAGES, LOBATTO_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Start};
+use vi_erased::plan::{
+    ENERGY_LOBATTO_STAGES, ENERGY_STAGES, LOBATTO_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Start,
+};
 use vi_erased::simulation::{Row, Steps};
 use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::Failure;
@@ -225,7 +227,7 @@ impl Request {
         let options = Options::of(arguments, &scene);
         options.check(method)?;
         check_rule(system.as_ref(), method, &options)?;
-        let stages = options.stages.map(|wanted| stages(method, wanted)).transpose()?;
+        let stages = stages(system.as_ref(), method, options.stages)?;
         let usual = entry.h * usual_length(method, stages);
         let h = arguments.h.or(scene.h).unwrap_or(usual);
         let mut plan = Plan {
@@ -279,6 +281,9 @@ impl Request {
 /// Rejects steps by a rule for a system without one, and steps that do not keep constraints for a system with some.
 fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<(), Failure> {
     let name = kebab(system.name());
+    if system.has_constraints() && options.start.is_some() {
+        return Err(Failure::Input("steps with constraints start from the initial state; remove --start".to_owned()));
+    }
     if system.has_constraints() && system.has(method) {
         return Ok(());
     }
@@ -376,16 +381,24 @@ impl Options {
     }
 }
 
-/// A number of stages that is built into the command.
-fn stages(method: Method, wanted: u64) -> Result<usize, Failure> {
+/// A number of stages that is built into the command; `None` for the default of the method.
+fn stages(system: &dyn System, method: Method, wanted: Option<u64>) -> Result<Option<usize>, Failure> {
+    let of_constraints = method == Method::Energy && system.has_constraints();
+    let Some(wanted) = wanted else {
+        return Ok(of_constraints.then_some(ENERGY_LOBATTO_STAGES));
+    };
     let built: &[usize] = match method {
+        Method::Energy if of_constraints => &[ENERGY_LOBATTO_STAGES],
         Method::Energy => &ENERGY_STAGES,
         Method::GaussLobatto => &LOBATTO_STAGES,
         _ => &STAGES,
     };
     let found = built.iter().copied().find(|built| *built as u64 == wanted);
-    found.ok_or_else(|| {
+    found.map(Some).ok_or_else(|| {
         Failure::Input(match method {
+            Method::Energy if of_constraints => format!(
+                "energy-preserving steps with constraints have {ENERGY_LOBATTO_STAGES} stages in the command, not {wanted}"
+            ),
             Method::Energy => format!(
                 "energy-preserving steps have 1, 2 or 3 stages, not {wanted}: with more, rounding hides the length"
             ),

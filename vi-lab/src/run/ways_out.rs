@@ -50,7 +50,11 @@ pub(super) fn of(request: &Request, error: &StepError, node: &Row) -> Option<Str
         ways.push(format!("other orders have other step densities: {}", others.join("; ")));
     }
     ways.push(format!("--fallback continues with fixed steps of h = {}", about(node.h)));
-    ways.push("--method fixed and --method gauss need no step density".to_owned());
+    ways.push(if request.system.has_constraints() {
+        "--method gauss-lobatto needs no step density".to_owned()
+    } else {
+        "--method fixed and --method gauss need no step density".to_owned()
+    });
     Some(ways.join("; "))
 }
 
