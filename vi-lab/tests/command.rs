@@ -165,6 +165,15 @@ fn every_system_with_constraints_runs_and_is_explained() {
                 assert!(row[residual] < 2e-14, "{name}, {stages} stages: {}", row[residual]);
             }
         }
+        let energy = ["run", name, "--method", "energy", "--shift", "auto", "--steps", "10"];
+        let (status, csv, errors) = lab(&energy);
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}");
+        let rows = rows(&csv);
+        let column = rows[0].len() - 2;
+        assert!(rows.len() == 11 && csv.contains(",H,E,E',h\n"), "{name}: {csv}");
+        // A motor, and a turntable, do work.
+        let is_kept = rows.iter().all(|row| row[column].to_bits() == rows[0][column].to_bits());
+        assert_eq!(is_kept, !["andrews-squeezer", "rolling-ball"].contains(&name), "{name}: {csv}");
         let (status, text, errors) = lab(&["explain", name]);
         assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}");
         assert!(text.contains("constraint"), "{name}: {text}");
@@ -195,7 +204,7 @@ fn initial_states_keep_or_meet_the_constraints() {
         ),
         (
             &["run", "rod-pendulum", "--method", "gauss"],
-            "rod-pendulum has constraints, which --method gauss does not keep: use --method gauss-lobatto (--stages 1, 2, 3)",
+            "rod-pendulum has constraints, which --method gauss does not keep: use --method gauss-lobatto (--stages 1, 2, 3) or energy (--stages 2)",
         ),
         (
             &["run", "kepler", "--method", "gauss-lobatto"],
@@ -204,6 +213,14 @@ fn initial_states_keep_or_meet_the_constraints() {
         (
             &["run", "rod-pendulum", "--stages", "4"],
             "steps with constraints have 1, 2 or 3 stages in the command, not 4",
+        ),
+        (
+            &["run", "rod-pendulum", "--method", "energy", "--stages", "3"],
+            "energy-preserving steps with constraints have 2 stages in the command, not 3",
+        ),
+        (
+            &["run", "rod-pendulum", "--method", "energy", "--start", "midpoint"],
+            "steps with constraints start from the initial state; remove --start",
         ),
         (&["run", "kepler", "--project"], "kepler has no constraints to --project onto; remove it"),
         (&["lyapunov", "heavy-top"], "heavy-top has constraints: exponents of such motions are not supported"),

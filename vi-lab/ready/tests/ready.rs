@@ -1,7 +1,7 @@
 //! Every predefined system starts with every method.
 
 use vi_core::StepError;
-use vi_erased::plan::{Method, PhasePoint, Plan};
+use vi_erased::plan::{ENERGY_LOBATTO_STAGES, Method, PhasePoint, Plan, Shift};
 
 #[test]
 fn every_entry_starts_and_keeps_its_parameters() {
@@ -10,13 +10,17 @@ fn every_entry_starts_and_keeps_its_parameters() {
         let name = entry.system.name();
         assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
         let methods: &[Method] = if entry.system.has_constraints() {
-            &[Method::GaussLobatto]
+            &[Method::GaussLobatto, Method::Energy]
         } else {
             &[Method::Fixed, Method::KahanLi6, Method::Gauss, Method::Energy]
         };
         for &method in methods {
             let start = PhasePoint { t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
-            let plan = Plan::new(method, entry.h, start);
+            let mut plan = Plan::new(method, entry.h, start);
+            if method == Method::Energy && entry.system.has_constraints() {
+                let shift = Some(Shift::Over(20.0 * entry.h));
+                plan = Plan { stages: Some(ENERGY_LOBATTO_STAGES), shift, ..plan };
+            }
             let begun = entry.system.begin(&plan);
             let mut run = begun.unwrap_or_else(|error| panic!("{name}: {error}"));
             let first = run.t();

@@ -118,7 +118,7 @@ pub(crate) struct Arguments {
     /// First interval of energy-preserving steps without --stages and --shift [default: midpoint]
     #[arg(long, value_parser = named::<Start>())]
     pub(crate) start: Option<Start>,
-    /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3 (order 2, 4 or 6); of
+    /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3 (order 2, 4 or 6), 2 with constraints; of
     /// --method gauss-lobatto: 1, 2 or 3 [default: 3]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = count)]
     pub(crate) stages: Option<u64>,

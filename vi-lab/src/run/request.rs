@@ -228,7 +228,8 @@ impl Request {
         options.check(method)?;
         check_rule(system.as_ref(), method, &options)?;
         let stages = stages(system.as_ref(), method, options.stages)?;
-        let usual = entry.h * usual_length(method, stages);
+        // Short energy-preserving steps with constraints keep their length.
+        let usual = if system.has_constraints() { entry.h } else { entry.h * usual_length(method, stages) };
         let h = arguments.h.or(scene.h).unwrap_or(usual);
         let mut plan = Plan {
             start: options.start.unwrap_or(Start::Midpoint),
