@@ -9,8 +9,8 @@
 //! ```
 //!
 //! So cost and memory follow the graph of the unknowns: both are linear for chains and trees, if leaves are eliminated
-//! first. One block of all unknowns is dense elimination with partial pivoting. Every unknown stands for `copies`
-//! unknowns in a row: the stages of a step have one graph.
+//! first. With all unknowns in one block, this is dense elimination with partial pivoting. Every unknown stands for
+//! `copies` unknowns in a row: the stages of a step have one graph.
 //!
 //! Source: J. W. H. Liu, The multifrontal method for sparse matrix solution, 1992.
 
@@ -64,6 +64,9 @@ pub(crate) struct Fronts<T: Real = f64> {
     reciprocals: Vec<T>,
     /// Places of the entries in the order in which the matrix is written.
     places: Vec<Place>,
+    /// Their rows and columns.
+    #[cfg(debug_assertions)]
+    names: Vec<[usize; 2]>,
     next: usize,
     /// Scale factor of each unknown: of its row and of its column.
     scales: Vec<f64>,
@@ -150,6 +153,8 @@ impl<T: Real> Fronts<T> {
             pivots: vec![0; first],
             reciprocals: vec![T::zero(); first],
             places: Vec::new(),
+            #[cfg(debug_assertions)]
+            names: Vec::new(),
             next: 0,
             scales: vec![1.0; homes.len()],
             homes,
@@ -181,6 +186,8 @@ impl<T: Real> Fronts<T> {
         if self.next == self.places.len() {
             self.find(row, column);
         }
+        #[cfg(debug_assertions)]
+        assert_eq!(self.names[self.next], [row, column], "entry {} in the order of the first matrix", self.next);
         let place = self.places[self.next];
         self.next += 1;
         Entry { place, scale: T::real(self.scales[row] * self.scales[column]) }
@@ -189,6 +196,8 @@ impl<T: Real> Fronts<T> {
     /// An entry outside of its front has no place: the blocks are not those of this matrix.
     #[cold]
     fn find(&mut self, row: usize, column: usize) {
+        #[cfg(debug_assertions)]
+        self.names.push([row, column]);
         let front = self.homes[row].0.min(self.homes[column].0);
         let Front { values, size, .. } = self.matrices[front];
         let member = |unknown| self.members[front].iter().position(|member| *member == unknown);

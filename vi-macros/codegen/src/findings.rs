@@ -341,7 +341,7 @@ fn in_arrays(names: &[(String, usize)]) -> String {
     arrays.map(text).collect::<Vec<_>>().join(", ")
 }
 
-/// The order that `GaussLobatto` keeps with so many continuous derivatives of L.
+/// The order of `GaussLobatto` steps across a point where L has only so many continuous derivatives.
 fn constrained_smoothness_in_words(Smoothness { derivatives, cause }: &Smoothness) -> String {
     let noun = if *derivatives == 1 { "derivative" } else { "derivatives" };
     let order = derivatives + 1;

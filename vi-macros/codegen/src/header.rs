@@ -26,9 +26,9 @@ const OF_MOTION: [(&str, &[FunctionId]); 3] = [
     ("Gauss in transformed time", &[FunctionId::ScaledPoint]),
 ];
 
-/// The method of systems with constraints, and the functions that it calls.
+/// The methods of systems with constraints, and the functions that it calls.
 const OF_CONSTRAINTS: (&str, &[FunctionId]) = (
-    "GaussLobatto",
+    "GaussLobatto, EnergyPreservingGaussLobatto",
     &[
         FunctionId::Point,
         FunctionId::PointDerivatives,

@@ -342,8 +342,8 @@ fn explanations_show_constraints() {
     let written = vi_codegen::inspect::stage(tokens.clone(), vi_codegen::inspect::Stage::Syntax).expect("clauses");
     assert!(written.contains("    constraint rod[i in 2..3] = x^2 + y^2 - l^2;\n"), "{written}");
     let rust = vi_codegen::inspect::stage(tokens, vi_codegen::inspect::Stage::Rust).expect("items");
-    assert!(rust.contains("  GaussLobatto: point "), "{rust}");
-    assert!(!rust.contains("Gauss, EnergyPreservingGauss"), "{rust}");
+    assert!(rust.contains("  GaussLobatto, EnergyPreservingGaussLobatto: point"), "{rust}");
+    assert!(!rust.contains("  Gauss, EnergyPreservingGauss:"), "{rust}");
 }
 
 /// The value of an expression of a system with the rotation `R` and this head, at R and Ṙ.

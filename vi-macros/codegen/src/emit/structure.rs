@@ -220,7 +220,8 @@ fn findings_documentation(source: &Source) -> TokenStream {
     let rule = match &model.rule {
         Some(rule) => format!(" Discretized by the rule `{}`. Properties found by the generator:", rule.title()),
         None if source.system.constraints.is_some() => {
-            " Integrated by `GaussLobatto`. Properties found by the generator:".to_owned()
+            " Integrated by `GaussLobatto` and `EnergyPreservingGaussLobatto`. Properties found by the generator:"
+                .to_owned()
         }
         None => " Integrated by Gauss methods only. Properties found by the generator:".to_owned(),
     };
