@@ -348,22 +348,25 @@ impl<S: Constrained<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> 
     }
 }
 
+/// Signs of the determinants of the matrix of ã, and of that of the parts of the impulses.
+pub(crate) fn signs<const STAGES: usize>() -> [i8; 2] {
+    let lobatto = const { &Lobatto::<STAGES>::VALUES };
+    let displacement = SMatrix::<f64, STAGES, STAGES>::from_fn(|i, k| lobatto.part[k][i]);
+    let impulse = SMatrix::<f64, STAGES, STAGES>::from_fn(|i, j| part_of_node::<STAGES>(j, i));
+    [determinant_sign(&displacement), determinant_sign(&impulse)]
+}
+
 /// The sign of the determinant of the Jacobian for short steps, with this sign of the bordered mass matrix.
 ///
 /// For h → 0 that determinant is a product of s bordered mass matrices, of the matrix of ã for each holonomic
 /// constraint, and of the matrix of the parts of the impulses for each constraint.
-pub(crate) fn expected_sign<const STAGES: usize>(bordered: i8, [holonomic, constraints]: [usize; 2]) -> i8 {
-    // Both of these matrices are 1.
-    if STAGES == 1 {
-        return bordered;
-    }
-    let lobatto = const { &Lobatto::<STAGES>::VALUES };
-    let displacement = SMatrix::<f64, STAGES, STAGES>::from_fn(|i, k| lobatto.part[k][i]);
-    let impulse = SMatrix::<f64, STAGES, STAGES>::from_fn(|i, j| part_of_node::<STAGES>(j, i));
+pub(crate) fn expected_sign(
+    [displacement, impulse]: [i8; 2],
+    (bordered, stages): (i8, usize),
+    [holonomic, constraints]: [usize; 2],
+) -> i8 {
     let power = |sign: i8, exponent: usize| if exponent.is_multiple_of(2) { sign * sign } else { sign };
-    power(determinant_sign(&displacement), holonomic)
-        * power(determinant_sign(&impulse), constraints)
-        * power(bordered, STAGES)
+    power(displacement, holonomic) * power(impulse, constraints) * power(bordered, stages)
 }
 
 /// The discrete energy at the end of a step with these unknowns and the impulse μ of its projection:

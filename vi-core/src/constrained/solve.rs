@@ -8,7 +8,7 @@
 //! determinant has the sign that it has for short steps. Beyond a zero of the determinant lies a second root, in which
 //! a rod has flipped over.
 
-use super::equations::{Rows, expected_sign, stage_velocity, unknowns};
+use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, velocity};
 use super::reduced::{self, Reduced};
 use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, reaction_of};
@@ -31,6 +31,8 @@ const FEW: u32 = 8;
 pub struct Workspace {
     /// Coordinates, constraints, stages.
     sizes: [usize; 3],
+    /// Of the coefficients of a step.
+    signs: [i8; 2],
     jacobian: Factored,
     /// The solver of midpoint steps in the impulses alone, if the system allows it.
     reduced: Option<Box<Reduced>>,
@@ -98,7 +100,7 @@ where
     S: Constrained<N> + ConvertibleConstrained<N>,
 {
     let kept = [S::HOLONOMIC, S::CONSTRAINTS.len()].map(|count| (0..count).filter(|r| !system.is_dropped(*r)).count());
-    let of_short_steps = expected_sign::<STAGES>(sign, kept);
+    let of_short_steps = expected_sign(workspace.signs, (sign, STAGES), kept);
     let start = system.constraint_gradients(node.t, &node.q);
     let rows = |u: &[f64]| Rows::<S, N, STAGES>::from_start(system, (node, h), &start, u);
     let mut at = rows(u);
@@ -195,6 +197,7 @@ impl Workspace {
         let unknowns = unknowns::<N, STAGES>(constraints);
         Self {
             sizes: [N, constraints, STAGES],
+            signs: signs::<STAGES>(),
             jacobian: Factored::new(S::BLOCKS, N + constraints, STAGES),
             reduced: None,
             eliminated: vec![0.0; unknowns],
