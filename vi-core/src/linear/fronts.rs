@@ -247,7 +247,10 @@ impl<T: Real> Fronts<T> {
                 }
                 for next in right.chunks_exact_mut(size) {
                     let (upper, below) = next.split_at_mut(column + 1);
-                    subtract(below, upper[column], multipliers);
+                    // Rows of constraints have many zeros.
+                    if upper[column] != T::zero() {
+                        subtract(below, upper[column], multipliers);
+                    }
                 }
             }
             if own == size {
@@ -336,13 +339,18 @@ impl Place {
 /// The pivot of a column among the rows of the block, and its reciprocal; `None` if it is too small.
 #[inline(always)]
 fn pivot<T: Real>(entries: &[T], column: usize, own: usize) -> Option<(usize, T)> {
-    let length = |row: usize| entries[row].to_f64().abs();
-    let larger = |pivot, row| if length(row) > length(pivot) { row } else { pivot };
-    let pivot = (column + 1..own).fold(column, larger);
-    let border = entries[own..].iter().fold(0.0, |largest: f64, entry| largest.max(entry.to_f64().abs()));
+    let (inside, border) = entries.split_at(own);
+    let (mut pivot, mut longest) = (column, inside[column].to_f64().abs());
+    for (row, entry) in inside.iter().enumerate().skip(column + 1) {
+        let length = entry.to_f64().abs();
+        if length > longest {
+            (pivot, longest) = (row, length);
+        }
+    }
+    let border = border.iter().fold(0.0, |largest: f64, entry| largest.max(entry.to_f64().abs()));
     let reciprocal = entries[pivot].recip();
     // False for NaN.
-    let is_kept = border <= GROWTH * length(pivot) && reciprocal.is_finite() && length(pivot) > 0.0;
+    let is_kept = border <= GROWTH * longest && reciprocal.is_finite() && longest > 0.0;
     is_kept.then_some((pivot, reciprocal))
 }
 
