@@ -16,6 +16,7 @@ pub mod chain;
 pub mod double_pendulum;
 pub mod double_well;
 pub mod kepler;
+pub mod rods;
 mod sine;
 
 use core::array::from_fn;
