@@ -4,7 +4,8 @@ use crate::failure::wrong;
 use pyo3::prelude::*;
 use vi_erased::System;
 use vi_erased::plan::{
-    Built, DEFAULT_LOBATTO_STAGES, DEFAULT_STAGES, ENERGY_LOBATTO_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start,
+    Built, DEFAULT_LOBATTO_STAGES, DEFAULT_STAGES, ENERGY_LOBATTO_STAGES, Method, Named as _, PhasePoint, Plan, Shift,
+    Start,
 };
 
 /// Method and options of a run. Python has checked their names.
