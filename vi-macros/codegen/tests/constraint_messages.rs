@@ -233,7 +233,11 @@ fn jumps_and_kinks() {
         "constraint «c» = y - if x > 0 { x } else { 1 };",
         "the constraint `c` has a jump or a kink where `x` is zero\nhelp: velocities would jump there",
     );
-    clause("constraint «c» = y - max(x, 0);", "the constraint `c` has a jump or a kink where `x` is zero");
+    for kink in ["max(x, 0)", "abs(x)", "abs(x) + x", "sin(y) * sign(x)"] {
+        let text = format!("constraint «c» = y - {kink};");
+        clause(&text, "the constraint `c` has a jump or a kink where `x` is zero");
+    }
+    clause("constraint «c» = dot(x) * z - sign(x) * dot(y);", "the constraint `c` has a jump or a kink where `x` is");
     clause(
         "constraint «c» = dot(x) * z - if x > l { 1 } else { 2 } * dot(y);",
         "the constraint `c` has a jump or a kink",
@@ -242,7 +246,7 @@ fn jumps_and_kinks() {
         "table hill(s) = [(0, 0), (1, 1), (2, 0)] linear; constraint «c» = y - hill(x);",
         "the constraint `c` has a kink at each place of the linear table `hill`\nhelp: velocities would jump",
     );
-    for smooth in ["y - max(x, 0)^2", "y - hill(x)", "dot(y) * z - max(x, 0) * dot(x)"] {
+    for smooth in ["y - max(x, 0)^2", "y - abs(x)^3", "y - hill(x)", "dot(y) * z - abs(x) * dot(x)"] {
         let text = format!(
             "struct System {{ table hill(s) = [(0, 0), (1, 1), (2, 0)]; constraint c = {smooth}; force x = hill(x); {REST} }}"
         );

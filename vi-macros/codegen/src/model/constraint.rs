@@ -409,6 +409,24 @@ fn of_term(pool: &mut Pool<Symbol>, term: Expr, by: Variable) -> Option<Expr> {
     Some(pool.mul(fixed, part))
 }
 
+/// An expression with conditions in place of `abs` and `sign`.
+fn with_conditions(pool: &mut Pool<Symbol>, mut expr: Expr) -> Expr {
+    let of_sign = |pool: &Pool<Symbol>, node: Expr| match pool.node(node) {
+        Node::Call(function @ (Function::Abs | Function::Sign), arguments) => Some((*function, *arguments.first()?)),
+        _ => None,
+    };
+    while let Some((node, (function, argument))) =
+        pool.reachable(&[expr]).into_iter().find_map(|node| Some((node, of_sign(pool, node)?)))
+    {
+        let one = pool.integer(1);
+        let then = if function == Function::Abs { argument } else { one };
+        let otherwise = pool.neg(then);
+        let condition = pool.select(argument, then, otherwise);
+        expr = pool.replace(expr, node, condition);
+    }
+    expr
+}
+
 /// Reports a constraint with a jump or a kink: velocities would jump there.
 pub(super) fn check_smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
     for constraint in &model.constraints {
@@ -425,6 +443,7 @@ pub(super) fn check_smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Result
         }
         let Rate { row, rest } = constraint.rate(pool, model.dimension());
         for expr in [constraint.value, rest].into_iter().chain(row) {
+            let expr = with_conditions(pool, expr);
             if let Some(condition) = jump(pool, expr, &model.parameters) {
                 let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
                 return Err(mistake(ConstraintMistake::Jump { name, condition }));
