@@ -2,6 +2,9 @@
 
 use core::fmt;
 
+/// Name of the bordered mass matrix in errors.
+pub(crate) const BORDERED_MASS: &str = "mass matrix bordered by the constraints";
+
 /// The reason why a step failed.
 ///
 /// The integrator still holds the last good state, and a further call returns the same error.
@@ -375,9 +378,12 @@ impl fmt::Display for Reason<'_> {
             }
             StepError::Ambiguous { t } => write!(f, "two velocities have the same momenta at t = {t:.9}"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
+            // Plus zero: −0 is 0.
             StepError::InconsistentStart { constraint, residual, rate } => write!(
                 f,
-                "the start does not satisfy the constraint `{constraint}`: residual {residual:.3e}, rate {rate:.3e}"
+                "the start does not satisfy the constraint `{constraint}`: residual {:.3e}, rate {:.3e}",
+                residual + 0.0,
+                rate + 0.0
             ),
             StepError::DroppedConstraint { t, constraint, residual } => {
                 write!(f, "the dropped constraint `{constraint}` does not hold at t = {t:.9}: residual {residual:.3e}")
@@ -535,6 +541,9 @@ impl fmt::Display for StepError {
             Self::FreeMotion { coordinate, .. } => write!(
                 f,
                 "; start nearer to an equilibrium; if the equilibria form a family, hold `{coordinate}` by a weak spring"
+            ),
+            Self::Singular { matrix: BORDERED_MASS, .. } => f.write_str(
+                "; there the constraints depend on each other, as at a dead point with bars in one line, or a motion along them has no mass",
             ),
             Self::Singular { .. }
             | Self::NonFinite { .. }

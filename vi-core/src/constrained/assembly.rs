@@ -49,7 +49,10 @@ impl<S: Constrained<N>, const N: usize> Projection<'_, S, N> {
         let (q, v) = (q.vector(), v.vector());
         self.explained((t, &q, &v), || {
             let place = (t, &q, &v);
-            let x = self.nearest(place, &q, None).or_else(|_| self.continued(place))?;
+            let x = self.nearest(place, &q, None).or_else(|failure| match failure {
+                StepError::NonFinite { .. } => Err(failure),
+                _ => self.continued(place),
+            })?;
             self.with_velocities(t, [&q, &x], &v)
         })
     }

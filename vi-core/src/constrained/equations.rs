@@ -26,6 +26,9 @@ use crate::real::{Real, Rounded};
 use crate::vector::worse;
 use nalgebra::{SMatrix, SVector};
 
+/// The cosine of the largest angle by which a gradient turns in a step that is not too long.
+const STRAIGHT: f64 = 0.9;
+
 /// The number of unknowns of a step: velocities first, then impulses.
 pub(crate) const fn unknowns<const N: usize, const S: usize>(constraints: usize) -> usize {
     S * (N + constraints)
@@ -242,6 +245,14 @@ impl<S: Constrained<N, Rounded>, const N: usize, const STAGES: usize> Rows<S, N,
 }
 
 impl<S: Constrained<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
+    /// Whether no gradient turns far: a shorter step would have a determinant of the same sign.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.first.rows().zip(self.end_gradients().rows()).all(|(before, after)| {
+            let [before, after] = [before, after].map(Row::dense::<N>);
+            before.dot(&after) >= STRAIGHT * (before.norm() * after.norm())
+        })
+    }
+
     /// Writes the Jacobian of the rows with respect to the unknowns: copy i of the row of a coordinate is the momentum
     /// row of stage i, copy k of its column the velocity of stage k; those of a constraint are row and impulse k.
     pub(crate) fn jacobian(&self, system: &S, h: f64, u: &[f64], jacobian: &mut Fronts) {

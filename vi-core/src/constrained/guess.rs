@@ -27,6 +27,11 @@ impl Extrapolation {
         &self.last[0]
     }
 
+    /// The number of unknowns.
+    pub(crate) fn count(&self) -> usize {
+        self.last.first().map_or(0, Vec::len)
+    }
+
     /// Writes the guess of the next step.
     pub(crate) fn guess(&self, guess: &mut [f64]) {
         let weights: [f64; HIGHEST + 1] = weights(self.degree);

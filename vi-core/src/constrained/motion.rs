@@ -7,7 +7,7 @@
 //! ```
 
 use super::{Constrained, border, bordered, diagonal, inertia, is_reduced, reaction_of, reaction_terms, spread};
-use crate::error::{Residuals, StepError};
+use crate::error::{BORDERED_MASS, Residuals, StepError};
 use crate::lagrangian::Flow;
 use crate::linear::{Bordered, Rectangular, Unsolvable};
 use crate::newton::{FLOOR, roundings};
@@ -35,14 +35,11 @@ pub(crate) struct Velocity<const N: usize, T, M> {
     pub(crate) residual: f64,
 }
 
-/// Name of the bordered matrix in errors.
-const MATRIX: &str = "mass matrix bordered by the constraints";
-
 /// The error of a bordered matrix at the time t.
 pub(crate) fn unsolvable(failure: Unsolvable, t: f64) -> StepError {
     match failure {
-        Unsolvable::Singular => StepError::Singular { t, matrix: MATRIX },
-        Unsolvable::NonFinite => StepError::NonFinite { t, quantity: MATRIX, expression: None },
+        Unsolvable::Singular => StepError::Singular { t, matrix: BORDERED_MASS },
+        Unsolvable::NonFinite => StepError::NonFinite { t, quantity: BORDERED_MASS, expression: None },
     }
 }
 

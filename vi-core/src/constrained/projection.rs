@@ -197,7 +197,7 @@ impl<'a, S: Constrained<N>, const N: usize> Projection<'a, S, N> {
             let (x, kappa, row, values, gradients, residual) = found;
             residuals.push(residual);
             if residual.is_nan() {
-                return Err(StepError::NonFinite { t, quantity: "constraints", expression: None });
+                return Err(StepError::NonFinite { t, quantity: "constraint", expression: None });
             }
             let bend = system.reaction_derivatives(t, &x, &kappa);
             let mut curved = mass;

@@ -6,14 +6,14 @@
 //!
 //! The Jacobian at the guess serves every iteration while the residual falls fast; otherwise it is evaluated anew. Its
 //! determinant has the sign that it has for short steps. Beyond a zero of the determinant lies a second root, in which
-//! a rod has flipped over.
+//! a rod has flipped over; or the motion has met a place where the constraints depend on each other.
 
 use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
-use super::motion::{Velocity, velocity};
+use super::motion::{Velocity, unsolvable, velocity};
 use super::reduced::{self, Reduced};
 use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, reaction_of};
 use crate::error::{Residuals, StepError};
-use crate::linear::{Bordered, Factored, Rectangular, Row};
+use crate::linear::{Bordered, Factored, Rectangular, Row, Unsolvable};
 use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::Rounded;
@@ -114,7 +114,7 @@ where
     loop {
         residuals.push(residual);
         if residual.is_nan() {
-            return Err(StepError::NonFinite { t: node.t, quantity: "step equations", expression: None });
+            return Err(StepError::NonFinite { t: node.t, quantity: "step equation", expression: None });
         }
         if !is_factored {
             has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
@@ -141,6 +141,8 @@ where
     }
     if has_right_sign {
         Ok(Solution { rows: at, residual, iterations })
+    } else if at.is_straight() {
+        Err(unsolvable(Unsolvable::Singular, node.t))
     } else {
         Err(failed(iterations, residual, &residuals))
     }
@@ -169,6 +171,9 @@ where
         return Err(StepError::DroppedConstraint { t, constraint, residual });
     }
     if workspace.bordered.determinant_sign() != sign {
+        if at.is_straight() {
+            return Err(unsolvable(Unsolvable::Singular, node.t));
+        }
         let (iterations, residual, residuals) = (*iterations, *residual, Residuals::new());
         let turn = turn(system, node, h);
         return Err(StepError::NotConverged { t: node.t, h, iterations, residual, residuals, turn });

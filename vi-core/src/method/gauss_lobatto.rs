@@ -128,8 +128,13 @@ impl<const N: usize> ConstrainedSteps<N> {
     /// [`StepError::NonFinite`].
     pub(super) fn check(&self, [unknowns, constraints]: [usize; 2], t: f64) -> Result<(), StepError> {
         self.before.check_finite(t)?;
+        let count = self.unknowns.count();
+        if count != unknowns || self.mu.len() != constraints {
+            let (input, allowed) = ("the number of unknowns of a checkpoint", "that of its method and its system");
+            #[allow(clippy::cast_precision_loss)] // a few thousand
+            return Err(StepError::InvalidInput { input, allowed, value: count as f64 });
+        }
         let are_valid = self.unknowns.is_valid(unknowns)
-            && self.mu.len() == constraints
             && self.mu.iter().chain(&[self.h, self.residual]).all(|entry| entry.is_finite())
             && self.sign.abs() == 1;
         if are_valid { Ok(()) } else { Err(StepError::NonFinite { t, quantity: "last stages", expression: None }) }

@@ -286,13 +286,13 @@ fn stub(system: &System) -> TokenStream {
     let zeros = lengths.iter().map(|lengths| array_of(lengths, quote!(0.0)));
     let (marker, marker_value) = marker(names.is_empty());
     let size = Size::of(system);
-    let (parameters, lagrangian) = (stub_parameters(name, &size), stub_lagrangian(name, &size));
+    let (parameters, lagrangian) = (stub_parameters(name), stub_lagrangian(name, &size));
     let motion = if system.is_constrained {
         constrained::stub(name, &size.n, size.generic.as_ref())
     } else {
         let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &size, rule.as_ref()));
-        let motion = stub_motion(name, &size);
-        quote!(#motion #(#by_rules)*)
+        let (motion, batch) = (stub_motion(name, &size), stub_batch(name, &size));
+        quote!(#motion #batch #(#by_rules)*)
     };
     let traits = quote!(#parameters #lagrangian #motion);
     let (derived, conditions) = (derived(), conditions(&system.attributes).collect::<Vec<_>>());
@@ -389,9 +389,8 @@ impl Size {
     }
 }
 
-/// The stub of everything independent of L: parameters, conversions, and a time scale, since its clause may have the
-/// error.
-fn stub_parameters(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
+/// The stub of parameters and conversions.
+fn stub_parameters(name: &Ident) -> TokenStream {
     let none = quote!({ loop {} });
     quote! {
         impl<T: ::vi_core::real::Real> #name<T> {
@@ -401,6 +400,14 @@ fn stub_parameters(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
         impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for #name<T> {
             fn parameter_mut(&mut self, _: &str) -> ::core::option::Option<&mut T> #none
         }
+    }
+}
+
+/// The stub of runs side by side, and of a time scale, since its clause may have the error. A system with constraints
+/// has neither.
+fn stub_batch(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
+    let none = quote!({ loop {} });
+    quote! {
         impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<#n, T> for #name<T> {}
         impl<#generic> ::vi_core::stepping::Batch<#n> for #name<f64> {
             type Rows<const W: ::core::primitive::usize> = Self;
