@@ -176,7 +176,10 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N>, const N: usize> Typed<S, 
         let found = self.integrators.iter().find(|integrator| integrator.built == wanted);
         let has_method = self.integrators.iter().any(|integrator| integrator.built.0 == wanted.0);
         found.ok_or(match wanted {
-            _ if !C::CONSTRAINTS.is_empty() && !has_method => StepError::HasConstraints { system: S::NAME },
+            // Methods that keep constraints have stages.
+            (_, stages, _) if !C::CONSTRAINTS.is_empty() && (!has_method || stages.is_none()) => {
+                StepError::HasConstraints { system: S::NAME }
+            }
             #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
             (_, Some(stages), _) => StepError::InvalidInput {
                 input: "number of stages",
