@@ -158,6 +158,25 @@ def test_energies_kept_on_constraints():
         run.linearization()
 
 
+def test_a_linkage_at_rest():
+    pendulum = vi.DoubleRodPendulum()
+    rest = pendulum.equilibrium([0.3, -0.9, 0.2, -2.1])
+    assert np.abs(rest.q - [0.0, -1.0, 0.0, -2.0]).max() < 1e-14
+    # The same in angles, and the weight of both masses on the upper rod: -2 Λ l.
+    angles = vi.DoublePendulum().equilibrium([0.1, -0.1])
+    assert np.abs(rest.frequencies - angles.frequencies).max() < 1e-14
+    assert np.abs(-2.0 * rest.multipliers - [2 * 9.81, 9.81]).max() < 1e-13
+    # Without constraints all directions, and no multiplier.
+    assert np.array_equal(angles.directions, np.eye(2)) and angles.multipliers.shape == (0,)
+    assert rest.directions.shape == (4, 2) and rest.mass.shape == (2, 2) and rest.free == (False,) * 4
+    linear = pendulum.linearization(0.0, rest.q, [0.0, 0.0, 0.0, 0.0])
+    # Twice zero for each rod, and the oscillations.
+    rates = np.sort(np.abs(np.linalg.eigvals(linear.A).imag))
+    assert np.abs(rates[4:] - np.repeat(rest.frequencies, 2)).max() < 1e-12 and rates[:4].max() < 1e-6
+    with pytest.raises(vi.Singular):
+        vi.RodPendulum(g=0.0).equilibrium([1.0, 0.0])
+
+
 def test_a_text_with_constraints(warm_cache):
     Bead = vi.compile("""
     struct Bead {

@@ -29,24 +29,31 @@ class Linearization:
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A state of rest. Small motions x about it satisfy `mass @ x'' + damping @ x' + stiffness @ x = 0`."""
+    """A state of rest.
+
+    Small motions about it are `q + directions @ x` with `mass @ x'' + damping @ x' + stiffness @ x = 0`.
+    """
 
     t: float
     """Time."""
     q: Array
     """Coordinates, (N,)."""
+    multipliers: Array
+    """The multiplier of each constraint, (C,)."""
+    directions: Array
+    """A basis of the D directions that the constraints allow, (N, D); without constraints the identity."""
     mass: Array
-    """The mass matrix, (N, N)."""
+    """The mass matrix along the directions, (D, D)."""
     damping: Array
-    """Damping and gyroscopic terms, (N, N)."""
+    """Damping and gyroscopic terms along them, (D, D)."""
     stiffness: Array
-    """Stiffness, (N, N)."""
+    """Stiffness along them, (D, D)."""
     free: tuple[bool, ...]
     """For each coordinate, whether nothing depends on it here. It then has the value of the guess."""
     residual: float
     """Largest unbalanced force, in units of its rounding error."""
     rates: NDArray[np.complex128]
-    """The 2N rates of small motions exp(rate t), in radians per unit of time. One with a positive real part grows."""
+    """The 2D rates of small motions exp(rate t), in radians per unit of time. One with a positive real part grows."""
 
     @property
     def frequencies(self) -> Array:

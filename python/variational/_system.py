@@ -209,14 +209,15 @@ class System:
     def equilibrium(self, guess: ArrayLike, t: float = 0.0) -> Equilibrium:
         """The equilibrium near a guess of the coordinates, with its matrices and frequencies.
 
-        Raises NoEquilibrium if there is none near the guess, FreeMotion if equilibria form a family.
+        With constraints the guess may be off them. Raises NoEquilibrium if there is none near the guess, FreeMotion if
+        equilibria form a family, with constraints Singular.
         """
         t = number(t, "t")
-        q, matrices, free, residual, rates = self._kind.equilibrium(
+        (q, multipliers), matrices, free, residual, rates = self._kind.equilibrium(
             self._values, t, vector(guess, self._shape[0], "guess", self.coordinates)
         )
         rates = np.array(rates)
-        return Equilibrium(t, q, *matrices, tuple(free), residual, rates[:, 0] + 1j * rates[:, 1])
+        return Equilibrium(t, q, multipliers, *matrices, tuple(free), residual, rates[:, 0] + 1j * rates[:, 1])
 
     def rhs(self, t: float, y: ArrayLike) -> Array:
         """dy/dt of y = (q, v), for `scipy.integrate.solve_ivp`. y has the shape (2N,) or (2N, K)."""

@@ -3,9 +3,9 @@
 use crate::mechanics::Mechanics;
 use crate::simulation::{Parametric, vector};
 use crate::system::Typed;
-use vi_core::control::{Equilibrium, Linearization};
+use vi_core::control::{ConstrainedEquilibrium, Equilibrium, Linearization};
 use vi_core::lagrangian::Described;
-use vi_core::nalgebra::DMatrix;
+use vi_core::nalgebra::{Complex, DMatrix, SMatrix};
 use vi_core::{SVector, StepError};
 
 /// A linearization: `value + A δx + B δu`.
@@ -28,14 +28,20 @@ impl From<Linearization> for Linear {
     }
 }
 
-/// A state of rest without acceleration, as [`Equilibrium`].
+/// A state of rest without acceleration, as [`Equilibrium`] or [`ConstrainedEquilibrium`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
     /// Time.
     pub t: f64,
     /// Coordinates.
     pub q: Vec<f64>,
-    /// M, C and K of `M x'' + C x' + K x = 0`, each N rows of N numbers.
+    /// The multiplier Λ of each constraint.
+    pub multipliers: Vec<f64>,
+    /// Number D of directions that the constraints allow: N without constraints.
+    pub freedom: usize,
+    /// A basis of these directions, N rows of D numbers: the unit vectors without constraints.
+    pub directions: Vec<f64>,
+    /// M, C and K of `M x'' + C x' + K x = 0` along these directions, each D rows of D numbers.
     pub matrices: [Vec<f64>; 3],
     /// For each coordinate, whether nothing depends on it.
     pub free: Vec<bool>,
@@ -50,12 +56,35 @@ impl Rest {
         Ok(Self {
             t: of.t,
             q: of.q.as_slice().to_vec(),
+            multipliers: Vec::new(),
+            freedom: N,
+            directions: SMatrix::<f64, N, N>::identity().as_slice().to_vec(),
             matrices: [of.mass, of.damping, of.stiffness].map(|matrix| matrix.transpose().as_slice().to_vec()),
             free: of.free.to_vec(),
             residual: of.residual,
-            rates: of.rates()?.into_iter().map(|rate| [rate.re, rate.im]).collect(),
+            rates: pairs(of.rates()?),
         })
     }
+
+    pub(crate) fn on_constraints<const N: usize>(of: &ConstrainedEquilibrium<N>) -> Result<Self, StepError> {
+        let rows = |matrix: &DMatrix<f64>| matrix.transpose().as_slice().to_vec();
+        Ok(Self {
+            t: of.t,
+            q: of.q.as_slice().to_vec(),
+            multipliers: of.multipliers.clone(),
+            freedom: of.directions.ncols(),
+            directions: rows(&of.directions),
+            matrices: [&of.mass, &of.damping, &of.stiffness].map(rows),
+            free: vec![false; N],
+            residual: of.residual,
+            rates: pairs(of.rates()?),
+        })
+    }
+}
+
+/// Real and imaginary part of each number.
+fn pairs(of: Vec<Complex<f64>>) -> Vec<[f64; 2]> {
+    of.into_iter().map(|number| [number.re, number.im]).collect()
 }
 
 /// What a controller asks of a system.
@@ -69,13 +98,15 @@ pub trait Control {
     /// The linearization of x = (q, v).
     ///
     /// # Errors
-    /// As [`vi_core::control::Dynamics::linearization`]; [`StepError::InvalidInput`] for another number of coordinates
-    /// or velocities, [`StepError::NoDerivative`] for a system with constraints, here and below.
+    /// As [`vi_core::control::Dynamics::linearization`], or with constraints
+    /// [`vi_core::control::ConstrainedDynamics::linearization`]; [`StepError::InvalidInput`] for another number of
+    /// coordinates or velocities, here and below.
     fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError>;
     /// The equilibrium near a guess of the coordinates.
     ///
     /// # Errors
-    /// As [`vi_core::control::Dynamics::equilibrium`].
+    /// As [`vi_core::control::Dynamics::equilibrium`], or with constraints
+    /// [`vi_core::control::ConstrainedDynamics::equilibrium`].
     fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError>;
 }
 

@@ -10,18 +10,13 @@ use crate::control::{Linear, Rest};
 use crate::simulation::{Parametric, RunnableWithConstraints};
 use vi_core::constrained::Projected;
 #[cfg(feature = "derivatives")]
-use vi_core::control::Dynamics as _;
+use vi_core::control::{ConstrainedDynamics, Dynamics as _};
 #[cfg(feature = "derivatives")]
 use vi_core::linear::Matrix as _;
 use vi_core::linear::Rectangular as _;
 #[cfg(feature = "derivatives")]
 use vi_core::nalgebra::SMatrix;
 use vi_core::{SVector, State, StepError};
-
-/// The reason why a system with constraints has no linearization at a state.
-#[cfg(feature = "derivatives")]
-const AT_A_STATE: &str =
-    "a state with constraints has no linearization in single coordinates; use the linearization of a run";
 
 /// Time, coordinates and velocities.
 pub(crate) type Point<'a, const N: usize> = (f64, &'a SVector<f64, N>, &'a SVector<f64, N>);
@@ -57,13 +52,13 @@ pub trait Mechanics<S: Parametric<N>, const N: usize>: Send + Sync + 'static {
     /// The linearization at a point.
     ///
     /// # Errors
-    /// As [`vi_core::control::Dynamics::linearization`]; [`StepError::NoDerivative`] with constraints.
+    /// As [`vi_core::control::Dynamics::linearization`], or [`vi_core::control::ConstrainedDynamics::linearization`].
     #[cfg(feature = "derivatives")]
     fn linearization(system: &S, at: Point<'_, N>) -> Result<Linear, StepError>;
     /// The equilibrium near coordinates.
     ///
     /// # Errors
-    /// As [`vi_core::control::Dynamics::equilibrium`]; [`StepError::NoDerivative`] with constraints.
+    /// As [`vi_core::control::Dynamics::equilibrium`], or [`vi_core::control::ConstrainedDynamics::equilibrium`].
     #[cfg(feature = "derivatives")]
     fn equilibrium(system: &S, t: f64, guess: SVector<f64, N>) -> Result<Rest, StepError>;
 }
@@ -154,13 +149,13 @@ impl<S: RunnableWithConstraints<N>, const N: usize> Mechanics<S, N> for WithCons
     }
 
     #[cfg(feature = "derivatives")]
-    fn linearization(_: &S, (t, ..): Point<'_, N>) -> Result<Linear, StepError> {
-        Err(StepError::NoDerivative { t, because: AT_A_STATE })
+    fn linearization(system: &S, (t, q, v): Point<'_, N>) -> Result<Linear, StepError> {
+        ConstrainedDynamics::linearization(system, t, *q, *v).map(Linear::from)
     }
 
     #[cfg(feature = "derivatives")]
-    fn equilibrium(_: &S, t: f64, _: SVector<f64, N>) -> Result<Rest, StepError> {
-        Err(StepError::NoDerivative { t, because: AT_A_STATE })
+    fn equilibrium(system: &S, t: f64, guess: SVector<f64, N>) -> Result<Rest, StepError> {
+        Rest::on_constraints(&ConstrainedDynamics::equilibrium(system, t, guess)?)
     }
 }
 

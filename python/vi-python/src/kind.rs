@@ -145,8 +145,8 @@ impl Kind {
         linearized(py, system.control().linearization(t, &q, &v).raise(py)?)
     }
 
-    /// The equilibrium near a guess: q, the matrices M, C and K, whether coordinates are free, the residual, and the
-    /// real and imaginary parts of the rates.
+    /// The equilibrium near a guess: q and the multipliers; the directions with the matrices M, C and K along them;
+    /// whether coordinates are free, the residual, and the real and imaginary parts of the rates.
     #[allow(clippy::type_complexity)] // fields of a Python class
     fn equilibrium<'py>(
         &self,
@@ -154,12 +154,22 @@ impl Kind {
         parameters: PyReadonlyArray1<'py, f64>,
         t: f64,
         guess: PyReadonlyArray1<'py, f64>,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Vec<Bound<'py, PyArray2<f64>>>, Vec<bool>, f64, Vec<[f64; 2]>)> {
+    ) -> PyResult<([Bound<'py, PyArray1<f64>>; 2], Vec<Bound<'py, PyArray2<f64>>>, Vec<bool>, f64, Vec<[f64; 2]>)> {
         let system = self.with(parameters.as_slice()?)?;
-        let Rest { q, matrices, free, residual, rates, .. } =
-            system.control().equilibrium(t, &vector(&guess, self.n, "guess")?).raise(py)?;
-        let matrices: PyResult<_> = matrices.map(|of| rows(py, of, self.n)).into_iter().collect();
-        Ok((PyArray1::from_vec(py, q), matrices?, free, residual, rates))
+        let Rest {
+            q,
+            multipliers,
+            freedom,
+            directions,
+            matrices: [mass, damping, stiffness],
+            free,
+            residual,
+            rates,
+            ..
+        } = system.control().equilibrium(t, &vector(&guess, self.n, "guess")?).raise(py)?;
+        let matrices = [directions, mass, damping, stiffness].into_iter().map(|of| rows(py, of, freedom));
+        let vectors = [q, multipliers].map(|of| PyArray1::from_vec(py, of));
+        Ok((vectors, matrices.collect::<PyResult<_>>()?, free, residual, rates))
     }
 
     /// The nearest coordinates and velocities on the constraints, and their changes.
