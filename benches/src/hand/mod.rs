@@ -15,6 +15,7 @@
 pub mod chain;
 pub mod double_pendulum;
 pub mod double_well;
+pub mod heavy_top;
 pub mod kepler;
 pub mod rods;
 mod sine;
