@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import pickle
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -209,10 +209,7 @@ class Run:
 
     def set(self, **parameters: Any) -> Run:
         """Changes parameters from here on. Coordinates and momenta stay."""
-        cls = self._cls
-        changes = [(cls._parameter(name), value) for name, value in parameters.items()]
-        pairs = [(parameter.indices, parameter.numbers(value).tolist()) for parameter, value in changes]
-        self._run.set_parameters([pair for indices, values in pairs for pair in zip(indices, values, strict=True)])
+        self._run.set_parameters(_pairs(self._cls, parameters))
         return self
 
     def set_state(
@@ -222,18 +219,20 @@ class Run:
         q: ArrayLike | None = None,
         v: ArrayLike | None = None,
         p: ArrayLike | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> Run:
         """Continues from another state, for example after an impact. What is not given stays; without v the momenta
-        stay."""
+        stay. `parameters` change with it: another length or place of a constraint needs a state on it."""
         if v is not None and p is not None:
             raise TypeError("give one of v and p, not both")
         names = self._cls.coordinates
         t = self.t if t is None else number(t, "t")
         q = self.q if q is None else vector(q, len(names), "q", names)
         if v is not None:
-            p = self.system.momentum(t, q, vector(v, len(names), "v", names))
+            system = self.system.set(**(parameters or {}))
+            p = system.momentum(t, q, vector(v, len(names), "v", names))
         p = self.p if p is None else vector(p, len(names), "p", names)
-        self._run.set_state(t, q, p)
+        self._run.set_state(t, q, p, _pairs(self._cls, parameters or {}))
         return self
 
     def tangent(self, steps: int, wrt: Sequence[str] = ()) -> dict[str, Array]:
@@ -324,6 +323,13 @@ class Run:
 
     def __reduce__(self) -> Any:
         return (_restarted, (self.system, self._run.integrator, self._run.checkpoint()))
+
+
+def _pairs(cls: type[System], parameters: Mapping[str, Any]) -> list[tuple[int, float]]:
+    """Indices and numbers of parameters."""
+    changes = [(cls._parameter(name), value) for name, value in parameters.items()]
+    pairs = [(parameter.indices, parameter.numbers(value).tolist()) for parameter, value in changes]
+    return [pair for indices, values in pairs for pair in zip(indices, values, strict=True)]
 
 
 def _restarted(system: System, integrator: tuple[str, int | None, bool], stored: str) -> Run:

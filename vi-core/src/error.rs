@@ -185,7 +185,7 @@ pub enum StepError {
         residual: f64,
         /// The length of the move along its gradient that would satisfy it, in the units of the coordinates.
         gap: f64,
-        /// The part by which the residuals of the guess shrank, from 0 to 1.
+        /// The part by which the residuals of the guess shrank, from 0 to 1; 0 for [`State::projected`](crate::State::projected).
         passed: f64,
     },
     /// A tangent vector does not satisfy the derivatives of a constraint and of its rate.
@@ -523,10 +523,11 @@ impl fmt::Display for StepError {
             Self::DroppedConstraint { .. } => f.write_str(
                 "; it follows from the others at the start only, or contradicts them: start elsewhere, or correct its lengths",
             ),
-            Self::NotAssembled { constraint, .. } => write!(
-                f,
-                "; check lengths and anchors of `{constraint}` and its neighbours, or start from another guess"
-            ),
+            Self::NotAssembled { constraint, passed, .. } => {
+                write!(f, "; check lengths and anchors of `{constraint}` and its neighbours, or start from another guess")?;
+                // `State::projected` does not walk.
+                if *passed > 0.0 { Ok(()) } else { f.write_str(" (`State::assembled` takes far ones)") }
+            }
             Self::InconsistentTangent { .. } => {
                 f.write_str("; `Tangent::project` moves tangent vectors to admissible ones")
             }

@@ -55,6 +55,15 @@ impl<D: DenseOutput<N> + Send + Sync, const N: usize> StepOutput for Output<D, N
     }
 }
 
+/// Sets parameters by their indices.
+fn assign<S: Parametric<N>, const N: usize>(system: &mut S, change: &[(usize, f64)]) {
+    for (index, value) in change {
+        if let Some(place) = S::PARAMETERS.get(*index).and_then(|name| system.parameter_mut(name)) {
+            *place = *value;
+        }
+    }
+}
+
 /// A state from slices.
 ///
 /// # Errors
@@ -79,11 +88,11 @@ pub trait Session {
     /// # Errors
     /// As [`Run::set_parameters`].
     fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError>;
-    /// Continues from another state, of coordinates and momenta.
+    /// Continues from another state, of time, coordinates and momenta, with changed parameters.
     ///
     /// # Errors
-    /// As [`Run::set_state`]; [`StepError::InvalidInput`] for another number of coordinates or momenta.
-    fn set_state(&mut self, t: f64, q: &[f64], p: &[f64]) -> Result<(), StepError>;
+    /// As [`Run::set_parameters_and_state`]; [`StepError::InvalidInput`] for another number of coordinates or momenta.
+    fn set_state(&mut self, change: &[(usize, f64)], at: (f64, &[f64], &[f64])) -> Result<(), StepError>;
     /// Takes one step of the length h in time.
     ///
     /// # Errors
@@ -189,13 +198,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
 
     fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {
         let mut run = self.run.clone();
-        run.set_parameters(|system| {
-            for (index, value) in change {
-                if let Some(place) = S::PARAMETERS.get(*index).and_then(|name| system.parameter_mut(name)) {
-                    *place = *value;
-                }
-            }
-        })?;
+        run.set_parameters(|system| assign(system, change))?;
         // What is measured belongs to the system of before.
         self.resume();
         self.run = run;
@@ -206,8 +209,8 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
         Ok(())
     }
 
-    fn set_state(&mut self, t: f64, q: &[f64], p: &[f64]) -> Result<(), StepError> {
-        self.run.set_state(state(t, q, p)?)?;
+    fn set_state(&mut self, change: &[(usize, f64)], (t, q, p): (f64, &[f64], &[f64])) -> Result<(), StepError> {
+        self.run.set_parameters_and_state(|system| assign(system, change), state(t, q, p)?)?;
         self.resume();
         #[cfg(feature = "derivatives")]
         {

@@ -132,9 +132,12 @@ impl Run {
         t: f64,
         q: PyReadonlyArray1<'_, f64>,
         p: PyReadonlyArray1<'_, f64>,
+        change: Vec<(usize, f64)>,
     ) -> PyResult<()> {
         let (q, p) = (vector(&q, self.n, "q")?, vector(&p, self.n, "p")?);
-        self.lock()?.set_state(t, &q, &p).raise(py)
+        let mut run = self.lock()?;
+        Self::check_parameters(&**run, change.iter().map(|(index, _)| *index))?;
+        run.set_state(&change, (t, &q, &p)).raise(py)
     }
 
     /// Takes one step.

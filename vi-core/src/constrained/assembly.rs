@@ -7,7 +7,7 @@
 //! Each step of τ moves x to the nearest place with these values. A step that fails is halved; after a success the next
 //! one is doubled.
 
-use super::{Constrained, Projected, Projection};
+use super::{Constrained, ConvertibleConstrained, Projected, Projection};
 use crate::error::StepError;
 use crate::linear::Rectangular;
 use crate::state::{Numbers, State};
@@ -30,7 +30,7 @@ impl<const N: usize> State<N> {
     /// [`StepError::NotAssembled`] if the residuals cannot shrink further, with the constraint that is farthest from
     /// being satisfied; [`StepError::Singular`] if the constraints are redundant at the guess, as in a linkage that is
     /// flat; [`StepError::NonFinite`].
-    pub fn assembled<S: Constrained<N>>(
+    pub fn assembled<S: Constrained<N> + ConvertibleConstrained<N>>(
         system: &S,
         t: f64,
         q: impl Numbers<N>,
@@ -40,7 +40,7 @@ impl<const N: usize> State<N> {
     }
 }
 
-impl<S: Constrained<N>, const N: usize> Projection<'_, S, N> {
+impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projection<'_, S, N> {
     /// As [`State::assembled`], with the held coordinates.
     ///
     /// # Errors
@@ -49,10 +49,13 @@ impl<S: Constrained<N>, const N: usize> Projection<'_, S, N> {
         let (q, v) = (q.vector(), v.vector());
         self.explained((t, &q, &v), || {
             let place = (t, &q, &v);
-            let x = self.nearest(place, &q, None).or_else(|failure| match failure {
-                StepError::NonFinite { .. } => Err(failure),
-                _ => self.continued(place),
-            })?;
+            let x = match self.nearest(place, &q, None) {
+                Ok(Some(x)) => x,
+                Err(StepError::NonFinite { t, quantity, expression }) => {
+                    return Err(StepError::NonFinite { t, quantity, expression });
+                }
+                _ => self.continued(place)?,
+            };
             self.with_velocities(t, [&q, &x], &v)
         })
     }
@@ -68,20 +71,20 @@ impl<S: Constrained<N>, const N: usize> Projection<'_, S, N> {
                 *value *= 1.0 - next;
             }
             match self.nearest((t, q, v), &x, Some(&target)) {
-                Ok(_) if next >= 1.0 => break,
-                Ok(found) => (x, passed, step) = (found, next, 2.0 * step),
+                Ok(Some(_)) if next >= 1.0 => break,
+                Ok(Some(found)) => (x, passed, step) = (found, next, 2.0 * step),
                 Err(StepError::Singular { t, matrix }) if passed == 0.0 && step < SHORTEST => {
                     return Err(StepError::Singular { t, matrix });
                 }
-                Err(_) if step < SHORTEST => return Err(self.open(t, &x, passed)),
-                Err(_) => step *= 0.5,
+                _ if step < SHORTEST => return Err(self.open(t, &x, passed)),
+                _ => step *= 0.5,
             }
         }
-        self.nearest((t, q, v), &x, None).map_err(|_| self.open(t, &x, passed))
+        self.nearest((t, q, v), &x, None).ok().flatten().ok_or_else(|| self.open(t, &x, passed))
     }
 
     /// The error of a linkage that stays open at x.
-    fn open(&self, t: f64, x: &SVector<f64, N>, passed: f64) -> StepError {
+    pub(super) fn open(&self, t: f64, x: &SVector<f64, N>, passed: f64) -> StepError {
         let values = self.system.constraints(t, x);
         let (gradients, _) = self.system.constraint_gradients(t, x);
         let gaps = values.as_ref().iter().zip(gradients.rows()).take(S::HOLONOMIC);

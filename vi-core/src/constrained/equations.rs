@@ -217,6 +217,11 @@ impl<S: Constrained<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S,
         worst
     }
 
+    /// The diagonal of the mass matrix at the first stage.
+    pub(crate) fn mass(&self) -> &SVector<T, N> {
+        &self.mass
+    }
+
     /// Writes the rows, in the order of the unknowns.
     pub(crate) fn write(&self, rows: &mut [T]) {
         let entries = self.momentum.iter().flat_map(|row| row.iter());

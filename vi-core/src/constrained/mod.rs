@@ -57,7 +57,7 @@ pub(crate) use variation::velocity_along;
 
 use crate::collocation::{Point, PointDerivatives};
 use crate::lagrangian::{Lagrangian, Parameters};
-use crate::linear::{Block, Bordered, Matrix, Rectangular, Unsolvable};
+use crate::linear::{Block, Bordered, Matrix, Rectangular, Row, Unsolvable};
 use crate::real::Real;
 use core::fmt::Debug;
 use nalgebra::SVector;
@@ -262,6 +262,36 @@ pub(crate) fn diagonal<const N: usize, T: Real>(matrix: &impl Matrix<N, T>) -> S
         }
     });
     diagonal
+}
+
+/// Coordinates without mass that no holonomic constraint moves: the mass matrix does not say where they are nearest, and
+/// they stay.
+pub(crate) fn idle<const N: usize>(
+    mass: &impl Matrix<N, f64>,
+    gradients: &impl Rectangular<N, f64>,
+    holonomic: usize,
+) -> [bool; N] {
+    let mut idle = [true; N];
+    mass.each_entry(|row, column, value| {
+        if value != 0.0 {
+            (idle[row], idle[column]) = (false, false);
+        }
+    });
+    for (column, _) in gradients.rows().take(holonomic).flat_map(Row::iter).filter(|(_, slope)| *slope != 0.0) {
+        idle[column] = false;
+    }
+    idle
+}
+
+/// Weights of coordinates in the length of a correction, from the diagonal of the mass matrix: its square roots, and the
+/// largest of them for coordinates without mass.
+///
+/// Lengths of corrections show whether an iteration converges also where residuals of momenta and of constraints, in
+/// roundings of their terms, cannot be compared: a rod far from the origin has large terms in its constraint only.
+pub(crate) fn weights<const N: usize>(mass: &SVector<f64, N>) -> SVector<f64, N> {
+    let largest = mass.max();
+    let largest = if largest > 0.0 { largest } else { 1.0 };
+    mass.map(|mass| if mass > 0.0 { mass } else { largest }.sqrt())
 }
 
 /// Momenta and velocities that each coordinate would have if the whole of v and p were along it, in the metric of the

@@ -8,17 +8,20 @@
 //! Held coordinates and their velocities do not change: they have no gradients here.
 
 use super::start::CONSISTENT;
-use super::{Constrained, border, is_reduced, reaction_of, reaction_terms, spread, unsolvable};
-use crate::error::{Residuals, StepError};
+use super::{Constrained, ConvertibleConstrained, border, idle, reaction_of, spread, unsolvable, weights};
+use crate::error::StepError;
 use crate::linear::{Bordered, Matrix, Rectangular};
 use crate::newton::roundings;
 use crate::node::Node;
+use crate::real::Rounded;
 use crate::state::{Numbers, State};
-use crate::vector::worse;
 use nalgebra::{SMatrix, SVector};
 
-const ITERATIONS: u32 = 40;
+const ITERATIONS: u32 = 60;
 const HALVINGS: u32 = 12;
+/// The last correction of the coordinates, over their lengths: the floor of a nearest place that is as flat as a
+/// minimum is known to half of the digits.
+const SETTLED: f64 = 1e-8;
 
 /// A state on the constraints, and how far it is from the given one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,9 +52,9 @@ impl<const N: usize> State<N> {
     /// [`Projection::holding`] holds coordinates. [`State::assembled`] starts from far guesses.
     ///
     /// # Errors
-    /// [`StepError::NotConverged`] with h = 0 if no coordinates near q satisfy the constraints, [`StepError::Singular`]
-    /// if the constraints are redundant on the way, [`StepError::NonFinite`].
-    pub fn projected<S: Constrained<N>>(
+    /// [`StepError::NotAssembled`] if no coordinates near q satisfy the constraints, [`StepError::Singular`] if the
+    /// constraints are redundant on the way, [`StepError::NonFinite`].
+    pub fn projected<S: Constrained<N> + ConvertibleConstrained<N>>(
         system: &S,
         t: f64,
         q: impl Numbers<N>,
@@ -61,7 +64,7 @@ impl<const N: usize> State<N> {
     }
 }
 
-impl<'a, S: Constrained<N>, const N: usize> Projection<'a, S, N> {
+impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projection<'a, S, N> {
     /// Moves every coordinate.
     #[must_use]
     pub fn of(system: &'a S) -> Self {
@@ -89,7 +92,7 @@ impl<'a, S: Constrained<N>, const N: usize> Projection<'a, S, N> {
     pub fn projected(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Projected<N>, StepError> {
         let (q, v) = (q.vector(), v.vector());
         self.explained((t, &q, &v), || {
-            let x = self.nearest((t, &q, &v), &q, None)?;
+            let x = self.nearest((t, &q, &v), &q, None)?.ok_or_else(|| self.open(t, &q, 0.0))?;
             self.with_velocities(t, [&q, &x], &v)
         })
     }
@@ -112,6 +115,18 @@ impl<'a, S: Constrained<N>, const N: usize> Projection<'a, S, N> {
             (false, _) => mass[(i, j)],
             (true, is_diagonal) => f64::from(u8::from(is_diagonal)),
         })
+    }
+
+    /// The mass matrix that measures moves; 1 for [`idle`] coordinates.
+    fn metric(&self, (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>)) -> SMatrix<f64, N, N> {
+        let mut mass = self.mass(t, q, v);
+        let (gradients, _) = self.gradients(t, q);
+        for (i, is_idle) in idle(&mass, &gradients, S::HOLONOMIC).into_iter().enumerate() {
+            if is_idle {
+                mass[(i, i)] = 1.0;
+            }
+        }
+        mass
     }
 
     /// A and a, without gradients along held coordinates.
@@ -159,15 +174,20 @@ impl<'a, S: Constrained<N>, const N: usize> Projection<'a, S, N> {
     }
 
     /// The coordinates with the values `target` of g, zero without, that are nearest to `from` by the mass matrix at (t,
-    /// q, v), by Newton iteration.
+    /// q, v), by Newton iteration. Corrections are halved until the next one, with the same factors, is shorter: lengths
+    /// by the mass matrix compare what residuals of forces and of constraints do not.
+    ///
+    /// # Errors
+    /// `None` inside if the iteration ends elsewhere.
     pub(super) fn nearest(
         &self,
         (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>),
         from: &SVector<f64, N>,
         target: Option<&S::Multipliers>,
-    ) -> Result<SVector<f64, N>, StepError> {
+    ) -> Result<Option<SVector<f64, N>>, StepError> {
         let (system, holonomic) = (self.system, S::HOLONOMIC);
-        let mass = self.mass(t, q, v);
+        let mass = self.metric((t, q, v));
+        let weights = weights(&mass.diagonal());
         let [_, positions] = spread(&mass, q, &SVector::zeros());
         let bordered = &mut Bordered::new(N, holonomic, &[]);
         let mut zero = system.constraints(t, q);
@@ -175,28 +195,25 @@ impl<'a, S: Constrained<N>, const N: usize> Projection<'a, S, N> {
         let target = target.unwrap_or(&zero).as_ref();
         let at = |x: SVector<f64, N>, kappa: S::Multipliers| {
             let mut values = system.constraints(t, &x);
-            let (gradients, rates) = self.gradients(t, &x);
-            let (all, _) = system.constraint_gradients(t, &x);
-            let reaction = reaction_of(&gradients, kappa.as_ref());
-            let row = mass * (x - from) - reaction;
-            let scale = mass.abs() * (x.abs() + from.abs()) + reaction_terms(&gradients, kappa.as_ref());
-            let residual =
-                row.iter().zip(&scale).fold(0.0, |worst, (row, scale)| worse(roundings(*row, *scale), worst));
-            let residual = (0..holonomic).fold(residual, |worst, r| {
-                let value = &mut values.as_mut()[r];
-                *value = if system.is_dropped(r) { 0.0 } else { *value - target[r] };
-                let row = all.row(r);
-                let scale = row.terms(&x) + row.terms(&positions) + (rates.as_ref()[r] * t).abs() + target[r].abs();
-                worse(roundings(*value, scale), worst)
-            });
-            (x, kappa, row, values, gradients, residual)
+            for (r, (value, target)) in values.as_mut().iter_mut().zip(target).enumerate() {
+                *value = if system.is_dropped(r) { 0.0 } else { *value - target };
+            }
+            let (gradients, _) = self.gradients(t, &x);
+            let row = mass * (x - from) - reaction_of(&gradients, kappa.as_ref());
+            (x, kappa, row, values, gradients)
+        };
+        let is_consistent = |x: &SVector<f64, N>, values: &S::Multipliers| {
+            let (all, _) = system.constraint_gradients(t, x);
+            let bounds = system.convert::<Rounded>().constraints(Rounded::exact(t), &x.map(Rounded::nearest));
+            (0..holonomic).all(|r| {
+                let bound = bounds.as_ref()[r].ulps() + all.row(r).terms(&positions) + target[r].abs();
+                roundings(values.as_ref()[r], bound) <= CONSISTENT
+            })
         };
         let mut found = at(*from, zero);
-        let (mut iterations, mut residuals) = (0, Residuals::new());
-        loop {
-            let (x, kappa, row, values, gradients, residual) = found;
-            residuals.push(residual);
-            if residual.is_nan() {
+        for _ in 0..ITERATIONS {
+            let (x, kappa, row, values, gradients) = found;
+            if !row.iter().chain(values.as_ref()).all(|entry| entry.is_finite()) {
                 return Err(StepError::NonFinite { t, quantity: "constraint", expression: None });
             }
             let bend = system.reaction_derivatives(t, &x, &kappa);
@@ -208,25 +225,29 @@ impl<'a, S: Constrained<N>, const N: usize> Projection<'a, S, N> {
             }
             let factored = border(bordered, system, &curved, &gradients);
             factored.map_err(|failure| unsolvable(failure, t))?;
-            if residual <= 0.5 {
-                return Ok(x);
-            }
-            let (mut correction, mut change) = (row, values);
-            bordered.solve(&mut correction, &mut change.as_mut()[..holonomic]);
+            let mut correct = |mut row: SVector<f64, N>, mut values: S::Multipliers| {
+                bordered.solve(&mut row, &mut values.as_mut()[..holonomic]);
+                let length = row.component_mul(&weights).norm();
+                (row, values, length)
+            };
+            let (correction, change, length) = correct(row, values);
             let next = (0..=HALVINGS).find_map(|halved| {
                 let part = 0.5_f64.powi(i32::try_from(halved).unwrap_or(0));
                 let mut next = kappa;
                 for (kappa, change) in next.as_mut().iter_mut().zip(change.as_ref()).take(holonomic) {
                     *kappa -= change * part;
                 }
-                Some(at(x - correction * part, next)).filter(|next| is_reduced(next.5, residual))
+                let next = at(x - correction * part, next);
+                let (.., left) = correct(next.2, next.3);
+                Some(next).filter(|_| left < length)
             });
-            match next {
-                Some(next) if iterations < ITERATIONS => found = next,
-                _ if residual <= CONSISTENT => return Ok(x),
-                _ => return Err(StepError::NotConverged { t, h: 0.0, iterations, residual, residuals, turn: 0.0 }),
-            }
-            iterations += 1;
+            let Some(next) = next else {
+                let size = (x.abs() + from.abs() + positions).component_mul(&weights).norm();
+                let is_found = length <= SETTLED * size && is_consistent(&x, &values);
+                return Ok(is_found.then_some(x));
+            };
+            found = next;
         }
+        Ok(None)
     }
 }

@@ -11,7 +11,7 @@
 use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
 use super::reduced::{self, Reduced};
-use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, reaction_of};
+use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, reaction_of, weights};
 use crate::error::{Residuals, StepError};
 use crate::linear::{Bordered, Factored, Rectangular, Row, Unsolvable};
 use crate::newton::FLOOR;
@@ -255,8 +255,8 @@ impl Workspace {
         }
     }
 
-    /// Writes u less a correction to `trial`: the longest of its halves that reduces the residual. Returns the rows
-    /// there and their residual; `None` if there is none.
+    /// Writes u less a correction to `trial`: the longest of its halves that reduces the residual, or has a shorter
+    /// correction behind it. Returns the rows there and their residual; `None` if there is none.
     fn corrected<S: Constrained<N>, const N: usize, const STAGES: usize>(
         &mut self,
         at: &Rows<S, N, STAGES>,
@@ -277,11 +277,29 @@ impl Workspace {
             }
             let next = rows(&self.trial);
             let next_residual = next.residual();
-            if is_reduced(next_residual, residual) {
+            if is_reduced(next_residual, residual) || residual > FLOOR && self.is_shortened(at, &next) {
                 return Some((next, next_residual));
             }
         }
         None
+    }
+
+    /// Whether the correction of the velocities at `next` is shorter than the last one, with the same factors.
+    #[cold]
+    fn is_shortened<S: Constrained<N>, const N: usize, const STAGES: usize>(
+        &mut self,
+        at: &Rows<S, N, STAGES>,
+        next: &Rows<S, N, STAGES>,
+    ) -> bool {
+        let weights = weights(at.mass());
+        let length = |correction: &[f64]| {
+            let stages = (0..STAGES).map(|i| stage_velocity::<N, _>(correction, i).component_mul(&weights));
+            stages.map(|part| part.norm_squared()).sum::<f64>()
+        };
+        let mut behind = vec![0.0; self.correction.len()];
+        next.write(&mut behind);
+        self.solve(&mut behind);
+        length(&behind) < length(&self.correction)
     }
 }
 

@@ -12,7 +12,7 @@ use super::equilibrium::oscillations;
 use super::{Linearization, linearized, no_eigenvalues, spectrum};
 use crate::collocation::Point;
 use crate::constrained::{
-    Constrained, ConvertibleConstrained, Projection, accelerations, border, bordered, is_reduced, reaction_of,
+    Constrained, ConvertibleConstrained, Projection, accelerations, border, bordered, is_reduced, reaction_of, weights,
 };
 use crate::derivatives::WithConstraints;
 use crate::error::StepError;
@@ -59,7 +59,8 @@ pub trait ConstrainedDynamics<const N: usize>: Constrained<N> + ConvertibleConst
         if let Some((rate, constraint)) = moving {
             return Err(StepError::InconsistentStart { constraint, residual: 0.0, rate: *rate });
         }
-        Rest::<Self, N> { system: self, t }.equilibrium(place.state.q)
+        let largest = (place.state.q - place.moved_q).amax();
+        Rest::<Self, N> { system: self, t, largest }.equilibrium(place.state.q)
     }
 }
 
@@ -130,6 +131,8 @@ impl<const N: usize> ConstrainedEquilibrium<N> {
 struct Rest<'a, S, const N: usize> {
     system: &'a S,
     t: f64,
+    /// Of the coordinates of the guess: those of an equilibrium at the origin have no size.
+    largest: f64,
 }
 
 /// −F − AᵀΛ and g at a place, with their derivatives.
@@ -142,6 +145,8 @@ struct Balance<S: Constrained<N>, const N: usize> {
     mass: SMatrix<f64, N, N>,
     damping: SMatrix<f64, N, N>,
     stiffness: SMatrix<f64, N, N>,
+    /// Of the coordinates in lengths.
+    weights: SVector<f64, N>,
     /// Rows over their rounding errors.
     roundings: SVector<f64, N>,
     residual: f64,
@@ -149,7 +154,7 @@ struct Balance<S: Constrained<N>, const N: usize> {
 
 impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, N> {
     fn at(&self, q: SVector<f64, N>, multipliers: S::Multipliers) -> Balance<S, N> {
-        let Self { system, t } = *self;
+        let Self { system, t, largest: of_guess } = *self;
         let dual = system.convert::<Dual<f64>>();
         let (time, place, still) = (Dual::variable(t), q.map(Dual::fixed), SVector::zeros());
         let Point { momentum, force, .. } = dual.point(time, &place, &still);
@@ -168,19 +173,17 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
         let reaction = reaction_of(&rounded.constraint_gradients(time, &place).0, &fixed);
         let scale = SVector::<f64, N>::from_fn(|i, _| (momentum[i].slope - force[i].value - reaction[i].value).ulps());
         // By the largest scale, at equal kinetic energies: a force that vanishes has terms that vanish.
-        let weights = SVector::<f64, N>::from_fn(|i, _| match mass[(i, i)].value.sqrt() {
-            weight if weight > 0.0 => weight,
-            _ => 1.0,
-        });
+        let weights = weights(&SVector::<f64, N>::from_fn(|i, _| mass[(i, i)].value));
         let largest = scale.component_div(&weights).amax();
         let over = unbalanced.zip_map(&weights, |row, weight| roundings(row, weight * largest));
         let mut values = system.constraints(t, &q);
+        let sizes = SVector::<f64, N>::repeat(of_guess.max(q.amax()));
         let mut residual = over.iter().fold(0.0, |worst, row| worse(*row, worst));
         for (r, value) in values.as_mut().iter_mut().enumerate() {
             if r >= S::HOLONOMIC || system.is_dropped(r) {
                 *value = 0.0;
             }
-            residual = worse(roundings(*value, gradients.row(r).terms(&SVector::<f64, N>::repeat(q.amax()))), residual);
+            residual = worse(roundings(*value, gradients.row(r).terms(&sizes)), residual);
         }
         // L_vqt − ∂(L_q + f)/∂q − ∂(AᵀΛ)/∂q
         let mut stiffness = momentum_dq.zip_map(&force_dq, |momentum, force| momentum.slope - force.value);
@@ -197,6 +200,7 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
             damping: SMatrix::from_fn(|i, j| mass[(i, j)].slope + (momentum_dq[(i, j)].value - force_dv[(i, j)].value)),
             stiffness,
             gradients,
+            weights,
             roundings: over,
             residual,
         }
@@ -204,7 +208,7 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
 
     /// Damped Newton iteration from a place on the constraints, with the multipliers of the motion from rest there.
     fn equilibrium(&self, q: SVector<f64, N>) -> Result<ConstrainedEquilibrium<N>, StepError> {
-        let Self { system, t } = *self;
+        let Self { system, t, .. } = *self;
         let (_, multipliers) = accelerations(system, (t, &q, &SVector::zeros()), &mut bordered::<S, N, f64>())?;
         let bordered = &mut Bordered::new(N, S::CONSTRAINTS.len(), &[]);
         let mut found = self.at(q, multipliers);
@@ -214,16 +218,22 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
             }
             let factored = border(bordered, system, &found.stiffness, &found.gradients);
             factored.map_err(|_| StepError::Singular { t, matrix: "stiffness matrix bordered by the constraints" })?;
-            let (mut correction, mut change) = (found.force, found.values);
-            bordered.solve(&mut correction, change.as_mut());
+            let mut correct = |mut force: SVector<f64, N>, mut values: S::Multipliers| {
+                bordered.solve(&mut force, values.as_mut());
+                (force, values)
+            };
+            let (correction, change) = correct(found.force, found.values);
+            let length = correction.component_mul(&found.weights).norm();
             let next = (0..HALVINGS).find_map(|halved| {
                 let part = 0.5_f64.powi(halved);
                 let mut next = found.multipliers;
                 for (multiplier, change) in next.as_mut().iter_mut().zip(change.as_ref()) {
                     *multiplier -= change * part;
                 }
-                Some(self.at(found.q - correction * part, next))
-                    .filter(|next| is_reduced(next.residual, found.residual))
+                let next = self.at(found.q - correction * part, next);
+                let (behind, _) = correct(next.force, next.values);
+                let is_shorter = found.residual > FLOOR && behind.component_mul(&found.weights).norm() < length;
+                Some(next).filter(|next| is_reduced(next.residual, found.residual) || is_shorter)
             });
             match next {
                 Some(next) => found = next,

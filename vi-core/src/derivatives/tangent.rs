@@ -52,11 +52,15 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
 
     /// Moves the tangent vectors to admissible ones, which satisfy the derivatives of the constraints and of their rates
     /// at the node: coordinates and momenta by the least changes in the metric of the mass matrix, for the given
-    /// changes of time and parameters. Without constraints every tangent vector is admissible.
+    /// changes of time and parameters. Without constraints every tangent vector is admissible. It clears
+    /// [`StepError::InconsistentTangent`].
     ///
     /// # Errors
     /// [`StepError::Singular`] if the constraints are redundant at the node, [`StepError::NonFinite`].
     pub fn project(&mut self) -> Result<(), StepError> {
+        if let Some(StepError::InconsistentTangent { .. }) = self.failure {
+            self.failure = None;
+        }
         self.latched(|tangent| {
             let Run { system, node, .. } = &tangent.run;
             M::project(system, node, &mut tangent.variations)?;

@@ -156,13 +156,13 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
 
     fn with_state(
         &self,
-        system: &S,
+        [before, system]: [&S; 2],
         node: &mut Node<N, T>,
         _h: T,
         memory: &Lengths<N, T>,
         state: State<N, T>,
     ) -> Result<Lengths<N, T>, StepError> {
-        let brought = state.energy(system)? - node.state().energy(system)?;
+        let brought = state.energy(system)? - node.state().energy(before)?;
         let v = state.velocity(system)?;
         *node = node.with_state(state);
         node.add_energy(brought);

@@ -248,7 +248,7 @@ where
 
     fn with_state(
         &self,
-        system: &S,
+        [before, system]: [&S; 2],
         node: &mut Node<N>,
         _h: f64,
         memory: &Self::Memory,
@@ -257,7 +257,7 @@ where
         let bordered = &mut bordered::<S, N, f64>();
         let mut changed = node.with_state(state);
         let v = start::checked(system, &changed, bordered)?;
-        changed.add_energy(state.energy(system)? - node.state().energy(system)?);
+        changed.add_energy(state.energy(system)? - node.state().energy(before)?);
         let mut course = memory.course;
         course.set_excess(measured(system, &changed)?);
         let steps = fresh::<S, N, STAGES>(system, (&changed, course.h(), &v), bordered)?;

@@ -256,13 +256,14 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError>;
 
-    /// The memory for a run that continues from another state. The node is already there.
+    /// The memory for a run that continues from another state with the second system; moves the node there. A method that
+    /// preserves an energy adds the change of H to it.
     ///
     /// # Errors
     /// The reason why no run can begin there.
     fn with_state(
         &self,
-        system: &S,
+        [_, system]: [&S; 2],
         node: &mut Node<N, T>,
         h: T,
         _memory: &Self::Memory,

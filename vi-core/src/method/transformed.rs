@@ -194,13 +194,13 @@ where
 
     fn with_state(
         &self,
-        system: &S,
+        [before, system]: [&S; 2],
         node: &mut Node<N>,
         dtau: f64,
         _memory: &Self::Memory,
         state: State<N>,
     ) -> Result<Self::Memory, StepError> {
-        let brought = state.energy(system)? - node.state().energy(system)?;
+        let brought = state.energy(system)? - node.state().energy(before)?;
         *node = node.with_state(state);
         node.add_energy(brought);
         LastRates::constant(system, node, dtau)

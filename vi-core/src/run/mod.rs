@@ -273,7 +273,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     }
 
     /// Changes parameters of the system from the last node on. Coordinates and momenta stay; the run clears an error of
-    /// the last step.
+    /// the last step. [`Run::set_parameters_and_state`] changes both.
     ///
     /// The energy of an energy-preserving run increases by `H_new − H_old` at the node. Afterwards
     /// [`Run::discrete_energy`] and [`Run::dense_output`] of the last step use the new parameters; for Gauss steps they
@@ -301,10 +301,27 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// # Errors
     /// Those of a new run from that state. The run then does not change.
     pub fn set_state(&mut self, state: State<N, T>) -> Result<(), StepError> {
+        self.set_parameters_and_state(|_| (), state)
+    }
+
+    /// Changes parameters and the state together: the way to another length or place of a constraint, whose state is on
+    /// the constraint of the new parameters; see [`State::projected`]. The run clears an error of the last step.
+    ///
+    /// The energy of an energy-preserving run increases by `H_new(state) − H_old(node)`.
+    ///
+    /// # Errors
+    /// Those of [`Run::set_parameters`] and of a new run from that state. The run then does not change.
+    pub fn set_parameters_and_state(
+        &mut self,
+        change: impl FnOnce(&mut S),
+        state: State<N, T>,
+    ) -> Result<(), StepError> {
         angles::check::<S, N, T>(&state.q, &Turns::zeros())?;
+        let system = changed(&self.system, change)?;
         let mut node = self.node;
-        self.memory = self.method.with_state(&self.system, &mut node, self.h, &self.memory, state)?;
-        (self.node, self.turns, self.failure) = (node, Turns::zeros(), None);
+        self.memory = self.method.with_state([&self.system, &system], &mut node, self.h, &self.memory, state)?;
+        self.prepared = self.method.prepare(&system, self.h);
+        (self.node, self.system, self.turns, self.failure) = (node, system, Turns::zeros(), None);
         Ok(())
     }
 

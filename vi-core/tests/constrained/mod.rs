@@ -9,6 +9,7 @@ mod derivatives;
 mod energy;
 mod energy_runs;
 mod errors;
+mod far;
 mod redundant;
 mod references;
 mod runs;
