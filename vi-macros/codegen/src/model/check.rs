@@ -93,9 +93,10 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     };
     let dependent = constraint::check(pool, &model);
     bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge(found)))?;
+    // A derivative with a jump is no derivative.
+    constraint::check_smoothness(pool, &model)?;
     dependent?;
     singular?;
-    constraint::check_smoothness(pool, &model)?;
     if let Some(condition) = smoothness::jump(pool, lagrangian, &model.parameters) {
         let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
         return Err(error(lagrangian_span, &Message::Function(FunctionMistake::Jump { condition })));

@@ -235,7 +235,7 @@ pub(super) fn rows(pool: &mut Pool<Symbol>, constraints: &[Constraint], dimensio
     constraints.iter().map(|constraint| constraint.rate(pool, dimension).row).collect()
 }
 
-/// Reports constraints on velocities that are derivatives of functions, then one that depends on others.
+/// Reports constraints on velocities that are derivatives of functions, without inputs, then one that depends on others.
 pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
     let (constraints, parameters, dimension) = (&model.constraints, &model.parameters, model.dimension());
     let mut errors = Errors::default();
@@ -243,7 +243,15 @@ pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
         errors.at(constraint.name.span(), &Message::Constraint(mistake));
     };
     let mut integrable = false;
-    for constraint in constraints.iter().filter(|constraint| !constraint.is_holonomic) {
+    // An input prescribes a velocity, and changes between steps: the constraint is no derivative.
+    let is_input = |symbol: &Symbol| match symbol {
+        Symbol::Parameter { index, .. } => parameters[*index].is_input,
+        _ => false,
+    };
+    let of_inputs: Vec<bool> =
+        constraints.iter().map(|constraint| pool.depends_on(constraint.value, &is_input)).collect();
+    let given = constraints.iter().zip(of_inputs).filter(|(constraint, of_input)| !constraint.is_holonomic && !of_input);
+    for (constraint, _) in given {
         let rate = constraint.rate(pool, dimension);
         if is_derivative(pool, &rate, parameters) {
             let function =
