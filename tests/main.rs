@@ -27,6 +27,7 @@ mod restarts;
 mod rules;
 mod scaled;
 mod single_precision;
+mod splitting;
 mod step_law;
 mod support;
 mod symmetries;

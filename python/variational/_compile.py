@@ -159,7 +159,7 @@ def _without_comments(definition: str) -> str:
     return re.sub(r"//[^\n]*|/\*.*?\*/", "", definition, flags=re.DOTALL)
 
 
-_MOST_STAGES = {"fixed": 0, "compositions": 0, "energy": 3, "gauss": 16, "gauss-lobatto": 16, "transformed": 16}
+_MOST_STAGES = {"fixed": 0, "compositions": 0, "splitting": 0, "energy": 3, "gauss": 16, "gauss-lobatto": 16, "transformed": 16}
 
 
 def _methods(methods: str | None, code: str) -> str:
@@ -180,10 +180,11 @@ def _methods(methods: str | None, code: str) -> str:
         stages = [stage.strip() for stage in rest.split(",")] if rest.strip() else []
         most = _MOST_STAGES.get(word)
         if most is None:
-            composed = " (compositions has suzuki-4, kahan-li-6 and kahan-li-8)" if "-" in word else ""
+            split = " (splitting has splitting-4 and splitting-6)" if word.startswith("splitting") else ""
+            composed = split or (" (compositions has suzuki-4, kahan-li-6 and kahan-li-8)" if "-" in word else "")
             raise CompileError(
                 f"there is no method {word!r}{composed}: "
-                "write fixed, compositions, gauss 8, transformed 8, energy, energy 2, gauss-lobatto 3"
+                "write fixed, compositions, splitting, gauss 8, transformed 8, energy, energy 2, gauss-lobatto 3"
             )
         if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):
             limits = f"stages from 1 to {most}" if most else "no stages"
@@ -198,7 +199,7 @@ def _methods(methods: str | None, code: str) -> str:
             raise CompileError('energy needs its stages with constraints: write "energy 2"')
         if word == "gauss-lobatto" and not has_constraints:
             raise CompileError('the method gauss-lobatto is for definitions with a constraint: write "gauss 8"')
-        if not stages and not has_rule:
+        if not stages and word != "splitting" and not has_rule:
             raise CompileError(f"the method {word} needs the clause `discretize midpoint;` in the definition")
         if word == "transformed" and not has_scale:
             raise CompileError("the method transformed needs the clause `time_scale = …;` in the definition")

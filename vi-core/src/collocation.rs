@@ -69,6 +69,16 @@ pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
 )]
 pub trait TimeScale<const N: usize, T: Real = f64>: Collocation<N, T> {}
 
+/// A system with [`Collocation::SEPARABLE`] equations, whose motion splits into kicks and drifts
+/// ([`Splitting`](crate::Splitting)). Generated systems with this form implement it.
+#[diagnostic::on_unimplemented(
+    message = "the motion of `{Self}` does not split into kicks and drifts",
+    label = "this system has no constant mass matrix, or forces that depend on velocities",
+    note = "`Splitting` takes `L = v·M v/2 − V(t, q)` with a constant M, and forces of time and coordinates alone",
+    note = "`Gauss` integrates every system without constraints"
+)]
+pub trait Separable<const N: usize, T: Real = f64>: Collocation<N, T> {}
+
 /// The equations of motion at a point (t, q, v).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point<const N: usize, T, M> {

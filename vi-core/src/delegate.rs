@@ -2,7 +2,7 @@
 //! whose functions are not inlined.
 
 use crate::called::Called;
-use crate::collocation::{Collocation, TimeScale};
+use crate::collocation::{Collocation, Separable, TimeScale};
 use crate::discrete::DiscreteLagrangian;
 use crate::forward;
 use crate::lagrangian::{Lagrangian, Parameters};
@@ -89,6 +89,13 @@ impl<const N: usize, T: Real, S: TimeScale<N, T>, R: Rule> TimeScale<N, T> for B
 
 // Whether a time scale exists is checked when a run begins.
 impl<const N: usize, T: Real, S: Collocation<N, T>> TimeScale<N, T> for Called<S> {}
+
+impl<const N: usize, T: Real, S: Separable<N, T>> Separable<N, T> for &S {}
+
+impl<const N: usize, T: Real, S: Separable<N, T>, R: Rule> Separable<N, T> for By<S, R> {}
+
+// Whether the equations have this form is checked when a run begins.
+impl<const N: usize, T: Real, S: Collocation<N, T>> Separable<N, T> for Called<S> {}
 
 impl<const N: usize, S: Convertible<N>> Convertible<N> for &S {
     type In<T: Real> = S::In<T>;

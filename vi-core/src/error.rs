@@ -129,6 +129,11 @@ pub enum StepError {
         /// Name of the system.
         system: &'static str,
     },
+    /// The motion of the system does not split into kicks and drifts.
+    NotSeparable {
+        /// Name of the system.
+        system: &'static str,
+    },
     /// The method preserves the energy, but L contains a `monotone` table, at whose places the step density jumps.
     NoStepDensity {
         /// Name of the table.
@@ -366,6 +371,12 @@ impl fmt::Display for Reason<'_> {
                 write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, but it must be positive and finite")
             }
             StepError::NoTimeScale { system } => write!(f, "`{system}` has no time scale"),
+            StepError::NotSeparable { system } => {
+                write!(
+                    f,
+                    "the motion of `{system}` does not split into kicks and drifts: its mass matrix is not constant, or a force depends on velocities"
+                )
+            }
             StepError::NoStepDensity { table } => {
                 write!(
                     f,
@@ -493,6 +504,7 @@ impl fmt::Display for StepError {
             Self::NoTimeScale { .. } => {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or use `Gauss`")
             }
+            Self::NotSeparable { .. } => f.write_str("; take `Gauss`"),
             Self::NoStepDensity { .. } => f.write_str("; make the table `cubic`, or take `FixedStep` or `Gauss`"),
             Self::NoRule { .. } => f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`"),
             Self::HasConstraints { .. } => f.write_str("; take `GaussLobatto`"),

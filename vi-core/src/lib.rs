@@ -101,7 +101,7 @@ pub use error::StepError;
 pub use lagrangian::Lagrangian;
 pub use method::{
     Composed, Composition, Connected, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback,
-    FixedStep, Gauss, GaussLobatto, InTransformedTime, Method,
+    FixedStep, Gauss, GaussLobatto, InTransformedTime, Method, Splitting,
 };
 pub use nalgebra;
 pub use nalgebra::SVector;
@@ -115,7 +115,7 @@ pub mod prelude {
     pub use crate::error::StepError;
     pub use crate::method::{
         Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep, Gauss,
-        GaussLobatto, Method,
+        GaussLobatto, Method, Splitting,
     };
     pub use crate::real::Number;
     pub use crate::run::{Crossing, Event, Moment, Monitored, Run, Solution, Start, Starts as _, Tolerance};

@@ -85,8 +85,20 @@ impl<const N: usize, T: Real> Node<N, T> {
     /// Advances time and coordinates by the step `(v, h)`, `q1 = q0 + h v`; momenta and energy stay.
     #[inline(always)]
     pub(crate) fn shift(&mut self, h: T, v: &SVector<T, N>) {
+        self.shift_by(h, &(v * h));
+    }
+
+    #[inline(always)]
+    fn shift_by(&mut self, h: T, displacement: &SVector<T, N>) {
         compensated::add_rounded(&mut self.t, &mut self.t_low, h);
-        compensated::add_vector(&mut self.q, &mut self.q_low, &(v * h));
+        compensated::add_vector(&mut self.q, &mut self.q_low, displacement);
+    }
+
+    /// Adds h to the time, `displacement` to q and `increment` to p; the energy stays.
+    #[inline(always)]
+    pub(crate) fn advance_by(&mut self, h: T, displacement: &SVector<T, N>, increment: &SVector<T, N>) {
+        self.shift_by(h, displacement);
+        compensated::add_vector(&mut self.p, &mut self.p_low, increment);
     }
 
     /// Advances by the step `(v, h)`, which adds `increment` to p; the energy stays.

@@ -10,7 +10,7 @@ use vi_core::derivatives::{
 };
 use vi_core::{
     Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, FixedStep, Gauss, GaussLobatto,
-    InTransformedTime, Method, Run, State, StepError,
+    InTransformedTime, Method, Run, Splitting, State, StepError,
 };
 
 /// The reason why a run with constraints has no derivative by single coordinates.
@@ -95,6 +95,7 @@ macro_rules! derived {
 
 derived!(FixedStep);
 derived!(Composition);
+derived!(Splitting);
 derived!(EnergyPreserving);
 derived!(Gauss<STAGES>, STAGES);
 derived!(InTransformedTime<Gauss<STAGES>>, STAGES);

@@ -18,7 +18,7 @@ use vi_core::run::Length as _;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{
     Called, Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep,
-    Gauss, GaussLobatto, InTransformedTime, Run, Starts, State, StepError,
+    Gauss, GaussLobatto, InTransformedTime, Run, Splitting, Starts, State, StepError,
 };
 
 /// Starts a run of a plan from a state.
@@ -100,6 +100,26 @@ where
         composed!(Method::KahanLi6, Composition::KAHAN_LI_6),
         composed!(Method::KahanLi8, Composition::KAHAN_LI_8),
     ]
+}
+
+/// Kicks and drifts of order 4 and 6; none for a system whose motion does not split.
+#[must_use]
+pub fn splitting<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>>
+where
+    Called<S>: Runnable<N>,
+    Splitting: Erasable<Called<S>, N>,
+{
+    macro_rules! split {
+        ($kind:expr, $scheme:expr) => {
+            integrator!(($kind, None, false), Called, $scheme, |system: S, plan: &Plan, state: State<N>| {
+                Ok(erased(Called(system).at_state(state).integrate($scheme, plan.length())?))
+            })
+        };
+    }
+    if const { !<S as Collocation<N>>::SEPARABLE } {
+        return Vec::new();
+    }
+    vec![split!(Method::Splitting4, Splitting::BLANES_MOAN_4), split!(Method::Splitting6, Splitting::BLANES_MOAN_6)]
 }
 
 /// Gauss steps of the given number of stages.
@@ -260,6 +280,15 @@ where
 {
     fn evaluations(run: &Run<Self, S, N>) -> u64 {
         by_corrections(run.iterations(), run.method().weights.len())
+    }
+}
+
+impl<S: Runnable<N>, const N: usize> Erasable<S, N> for Splitting
+where
+    Splitting: Supported<S, N>,
+{
+    fn evaluations(run: &Run<Self, S, N>) -> u64 {
+        run.method().forces() as u64
     }
 }
 

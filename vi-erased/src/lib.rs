@@ -48,6 +48,7 @@ pub use system::{System, Typed};
 /// | `fixed_2` | fixed steps of order 2 only, in half the compile time |
 /// | `gauss 4, 8` | Gauss steps of 4 and of 8 stages |
 /// | `transformed 4, 8` | the same in transformed time, for a system with a `time_scale` |
+/// | `splitting` | kicks and drifts of order 4 and 6, for a system whose motion splits |
 /// | `energy` | energy-preserving steps of order 2 |
 /// | `energy 2, 3` | energy-preserving Gauss steps of 2 and of 3 stages |
 /// | `gauss_lobatto 1, 3` | steps of 1 and of 3 stages that keep constraints |
@@ -72,6 +73,9 @@ macro_rules! integrators {
     };
     (fixed_2) => {
         vec![$crate::integrator::fixed()]
+    };
+    (splitting) => {
+        $crate::integrator::splitting()
     };
     (energy) => {
         vec![$crate::integrator::energy()]

@@ -4,7 +4,7 @@
 
 use vi_core::lagrangian::Lagrangian;
 use vi_core::run::Length;
-use vi_core::{Composition, Start as Begun, StepError, Tolerance};
+use vi_core::{Composition, Splitting, Start as Begun, StepError, Tolerance};
 
 /// The integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +17,10 @@ pub enum Method {
     KahanLi6,
     /// Seventeen fixed steps composed to order 8.
     KahanLi8,
+    /// Kicks and drifts of order 4, without equations to solve.
+    Splitting4,
+    /// Kicks and drifts of order 6.
+    Splitting6,
     /// Gauss collocation, of order 2S with S stages.
     Gauss,
     /// Steps that keep constraints, of order 2S with S stages.
@@ -43,8 +47,17 @@ pub const ENERGY_LOBATTO_STAGES: usize = 2;
 
 impl Method {
     /// All integrators.
-    pub const ALL: [Self; 7] =
-        [Self::Fixed, Self::Suzuki4, Self::KahanLi6, Self::KahanLi8, Self::Gauss, Self::GaussLobatto, Self::Energy];
+    pub const ALL: [Self; 9] = [
+        Self::Fixed,
+        Self::Suzuki4,
+        Self::KahanLi6,
+        Self::KahanLi8,
+        Self::Splitting4,
+        Self::Splitting6,
+        Self::Gauss,
+        Self::GaussLobatto,
+        Self::Energy,
+    ];
 
     /// The scheme of a composition.
     #[must_use]
@@ -53,7 +66,17 @@ impl Method {
             Self::Suzuki4 => Some(Composition::SUZUKI_4),
             Self::KahanLi6 => Some(Composition::KAHAN_LI_6),
             Self::KahanLi8 => Some(Composition::KAHAN_LI_8),
-            Self::Fixed | Self::Gauss | Self::GaussLobatto | Self::Energy => None,
+            _ => None,
+        }
+    }
+
+    /// The scheme of a splitting.
+    #[must_use]
+    pub fn splitting(self) -> Option<Splitting> {
+        match self {
+            Self::Splitting4 => Some(Splitting::BLANES_MOAN_4),
+            Self::Splitting6 => Some(Splitting::BLANES_MOAN_6),
+            _ => None,
         }
     }
 }
@@ -103,6 +126,8 @@ impl Named for Method {
             Self::Suzuki4 => "suzuki-4",
             Self::KahanLi6 => "kahan-li-6",
             Self::KahanLi8 => "kahan-li-8",
+            Self::Splitting4 => "splitting-4",
+            Self::Splitting6 => "splitting-6",
             Self::Gauss => "gauss",
             Self::GaussLobatto => "gauss-lobatto",
             Self::Energy => "energy",
@@ -115,6 +140,8 @@ impl Named for Method {
             Self::Suzuki4 => "Five fixed steps composed to order 4, by Suzuki",
             Self::KahanLi6 => "Nine fixed steps composed to order 6, by Kahan and Li",
             Self::KahanLi8 => "Seventeen fixed steps composed to order 8, by Kahan and Li",
+            Self::Splitting4 => "Kicks and drifts of order 4, by Blanes and Moan, for forces of the coordinates alone",
+            Self::Splitting6 => "Kicks and drifts of order 6, by Blanes and Moan, for forces of the coordinates alone",
             Self::Gauss => "Gauss collocation, of order 2S for --stages S",
             Self::GaussLobatto => "Steps that keep constraints, of order 2S for --stages S",
             Self::Energy => "The integrator that solves for its own step and preserves the discrete energy",

@@ -180,6 +180,7 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N>, const N: usize> Typed<S, 
             (_, stages, _) if !C::CONSTRAINTS.is_empty() && (!has_method || stages.is_none()) => {
                 StepError::HasConstraints { system: S::NAME }
             }
+            (method, ..) if method.splitting().is_some() => StepError::NotSeparable { system: S::NAME },
             #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
             (_, Some(stages), _) => StepError::InvalidInput {
                 input: "number of stages",

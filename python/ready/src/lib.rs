@@ -10,7 +10,7 @@ use vi_systems::{
 
 macro_rules! systems {
     ($($system:ident),* $(,)?) => {
-        vec![$(kind!($system, { fixed; gauss 4, 8; energy; energy 1, 2, 3 })),*]
+        vec![$(kind!($system, { fixed; splitting; gauss 4, 8; energy; energy 1, 2, 3 })),*]
     };
 }
 
@@ -54,6 +54,6 @@ pub fn systems() -> Vec<Box<dyn System>> {
         SliderCrank,
     ));
     // Steps in transformed time are built only for the system that declares a time scale.
-    systems.push(kind!(Kepler, { fixed; gauss 4, 8; transformed 4, 8; energy; energy 1, 2, 3 }));
+    systems.push(kind!(Kepler, { fixed; splitting; gauss 4, 8; transformed 4, 8; energy; energy 1, 2, 3 }));
     systems
 }

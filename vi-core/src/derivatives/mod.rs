@@ -20,6 +20,7 @@
 //! |---|---|
 //! | `variation` | tangent vectors, and their dual numbers |
 //! | `steps` | tangent vectors of one step, for each method |
+//! | `splitting` | those of a splitting step |
 //! | `varying` | what they need of a system, with and without constraints |
 //! | `tangent` | tangent vectors along a run, to times, events and across changes |
 //! | `adjoint` | the gradient of an objective, by one backward pass |
@@ -27,6 +28,7 @@
 
 mod adjoint;
 mod lyapunov;
+mod splitting;
 mod steps;
 mod tangent;
 mod variation;

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `fixed` | [`FixedStep`]: the rule of the system, order 2 |
 //! | `composition` | [`Composition`]: fixed steps of order 4, 6, 8 |
+//! | `splitting` | [`Splitting`]: explicit kicks and drifts of systems whose forces depend on the coordinates alone, order 2, 4, 6 |
 //! | `composed` | [`Composed`]: compositions of steps with constraints, order 4, 6, 8 |
 //! | `gauss` | [`Gauss`]: collocation at S Gauss points, order 2S |
 //! | `gauss_lobatto` | [`GaussLobatto`]: Gauss steps of systems with constraints, order 2S |
@@ -32,6 +33,7 @@ pub mod gauss_lobatto;
 pub(crate) mod length;
 pub(crate) mod preserving;
 pub mod shift;
+pub mod splitting;
 pub mod transformed;
 
 pub use bounds::{Control, Controlled, Fallback, Switches};
@@ -44,6 +46,7 @@ pub use fixed::{Connected, FixedStep};
 pub use gauss::Gauss;
 pub use gauss_lobatto::GaussLobatto;
 pub use shift::{Shiftable, StepPower};
+pub use splitting::Splitting;
 pub use transformed::InTransformedTime;
 
 use crate::error::StepError;
@@ -106,6 +109,7 @@ pub struct Report {
     label = "this method needs something that `{S}` does not have",
     note = "`FixedStep`, `Composition`, `EnergyPreserving` need the clause `discretize midpoint;`, `Gauss` and `EnergyPreservingGauss` take every system",
     note = "a system with constraints needs `GaussLobatto` or `EnergyPreservingGaussLobatto`, which take no other system",
+    note = "`Splitting` needs a constant mass matrix, and forces that depend on time and coordinates alone",
     note = "a method in transformed time needs the clause `time_scale = …;`"
 )]
 pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Sync {

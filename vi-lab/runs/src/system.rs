@@ -118,19 +118,19 @@ where
     let density = |system: &S, q: &SVector<f64, N>, v: &SVector<f64, N>| {
         system.step_density(0.0, q, v).ok().filter(|density| density.is_finite())
     };
-    let with_rule = [integrator::by_rule(), vec![integrator::energy()], with_gauss()];
+    let with_rule = [integrator::by_rule(), vec![integrator::energy()], without_rule()];
     Box::new(Studied { typed: Typed::new(integrator::all(with_rule)), density: Some(density) })
 }
 
-/// The same of a system without a rule, which has Gauss steps only.
+/// The same of a system without a rule.
 #[must_use]
 pub fn gauss_only<S: Runnable<N> + Described + Default, const N: usize>() -> Box<dyn System> {
-    Box::new(Studied { typed: Typed::<S, N>::new(with_gauss()), density: None })
+    Box::new(Studied { typed: Typed::<S, N>::new(without_rule()), density: None })
 }
 
-/// Every integrator that takes Gauss steps.
-fn with_gauss<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>> {
-    vec![
+/// Every integrator that needs no rule.
+fn without_rule<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>> {
+    let gauss = vec![
         integrator::gauss::<S, N, { STAGES[0] }>(),
         integrator::gauss::<S, N, { STAGES[1] }>(),
         integrator::transformed::<S, N, { STAGES[0] }>(),
@@ -138,7 +138,8 @@ fn with_gauss<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>> {
         integrator::energy_gauss::<S, N, { ENERGY_STAGES[0] }>(),
         integrator::energy_gauss::<S, N, { ENERGY_STAGES[1] }>(),
         integrator::energy_gauss::<S, N, { ENERGY_STAGES[2] }>(),
-    ]
+    ];
+    integrator::all([integrator::splitting(), gauss])
 }
 
 impl<S: Runnable<N> + Described, const N: usize> System for Studied<S, N> {

@@ -7,6 +7,7 @@
 
 use super::method::{Method, TOO_MANY, Task};
 use super::reference::Reference;
+use super::study::methods;
 use core::cell::Cell;
 use vi_erased::plan::{PhasePoint, Plan};
 use vi_report::numbers::order;
@@ -93,7 +94,7 @@ pub(super) fn all(
     progress: &mut Progress,
 ) -> Result<Vec<Drift>, Ended> {
     let initial = system.energy(start)?;
-    let stepping = Method::ALL.into_iter().filter(|method| *method != Method::Rival);
+    let stepping = methods(system).filter(|method| *method != Method::Rival);
     #[allow(clippy::cast_precision_loss)] // at most 32
     let settings = stepping.map(|method| (method, h * method.parts() as f64));
     let drifts = settings.chain(TOLERANCES.map(|tolerance| (Method::Rival, tolerance))).map(|(method, setting)| {

@@ -68,7 +68,7 @@ impl Findings {
 
     /// Error against the step, for the methods with a given step.
     pub(super) fn orders(&self, system: &str) -> Chart {
-        let stepping = Method::ALL.into_iter().filter(|method| *method != Method::Rival);
+        let stepping = self.methods().filter(|method| !matches!(method, Method::Rival | Method::Heyoka));
         let series = stepping.map(|method| {
             let order = fitted_order(self.points(method), self.agreement.floor());
             let label = order.map_or_else(

@@ -34,11 +34,12 @@ impl Method {
     pub(super) const ENERGY: Self = Self::Own(plan::Method::Energy);
 
     /// All methods that run here, in the order of the legends.
-    pub(super) const ALL: [Self; 8] = [
+    pub(super) const ALL: [Self; 9] = [
         Self::FIXED,
         Self::Own(plan::Method::Suzuki4),
         Self::Own(plan::Method::KahanLi6),
         Self::KAHAN_LI_8,
+        Self::Own(plan::Method::Splitting6),
         Self::Gauss(plan::STAGES[0]),
         Self::Gauss(plan::STAGES[1]),
         Self::ENERGY,
@@ -50,6 +51,7 @@ impl Method {
         match self {
             Self::Own(plan::Method::Fixed) => "fixed step",
             Self::Own(plan::Method::Energy) => "energy-preserving",
+            Self::Own(plan::Method::Splitting6) => "splitting, order 6",
             Self::Own(composed) => composed.scheme().map_or(composed.name(), |scheme| scheme.name),
             Self::Gauss(4) => "Gauss, 4 stages",
             Self::Gauss(_) => "Gauss, 8 stages",
@@ -60,13 +62,14 @@ impl Method {
 
     /// Its colour and its marker.
     pub(super) fn look(self) -> Look {
-        let [four, six, eight, _] = Look::OTHERS;
+        let [four, six, eight, split] = Look::OTHERS;
         let [few, many] = Look::GAUSS;
         match self {
             Self::Own(plan::Method::Fixed) => Look::FIXED,
             Self::Own(plan::Method::Suzuki4) => four,
             Self::Own(plan::Method::KahanLi6) => six,
             Self::Own(plan::Method::KahanLi8) => eight,
+            Self::Own(plan::Method::Splitting4 | plan::Method::Splitting6) => split,
             Self::Gauss(4) => few,
             Self::Gauss(_) | Self::Own(plan::Method::Gauss | plan::Method::GaussLobatto) => many,
             Self::Own(plan::Method::Energy) => Look::ENERGY,
@@ -75,11 +78,22 @@ impl Method {
         }
     }
 
-    /// Number of fixed steps that one of its steps replaces: the substeps of a composition; four per stage of a Gauss
+    /// Whether it integrates this system.
+    pub(super) fn suits(self, system: &dyn System) -> bool {
+        match self {
+            Self::Own(method) => method.splitting().is_none() || system.has(method),
+            Self::Gauss(_) | Self::Rival | Self::Heyoka => true,
+        }
+    }
+
+    /// Number of fixed steps that one of its steps replaces: the substeps of a composition or splitting; four per stage of a Gauss
     /// step, which is efficient only if it is long.
     pub(super) fn parts(self) -> usize {
         match self {
-            Self::Own(method) => method.scheme().map_or(1, |scheme| scheme.weights.len()),
+            Self::Own(method) => {
+                let substeps = method.scheme().map(|scheme| scheme.weights.len());
+                substeps.or(method.splitting().map(|scheme| scheme.forces())).unwrap_or(1)
+            }
             Self::Gauss(stages) => 4 * stages,
             Self::Rival | Self::Heyoka => 1,
         }

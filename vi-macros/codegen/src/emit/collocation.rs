@@ -27,6 +27,11 @@ pub(super) fn item(source: &Source) -> TokenStream {
             impl<T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<#dimension, T> for #name<T> {}
         }
     });
+    let is_separable = separable.then(|| {
+        quote! {
+            impl<T: ::vi_core::real::Real> ::vi_core::collocation::Separable<#dimension, T> for #name<T> {}
+        }
+    });
     let power = number(source, FunctionId::Power, &source.formula("dE/dt", source.system.continuous.power));
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
@@ -41,6 +46,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
             #scaled_point
         }
         #has_time_scale
+        #is_separable
     }
 }
 

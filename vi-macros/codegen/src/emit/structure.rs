@@ -403,12 +403,13 @@ fn stub_parameters(name: &Ident) -> TokenStream {
     }
 }
 
-/// The stub of runs side by side, and of a time scale, since its clause may have the error. A system with constraints
-/// has neither.
+/// The stub of runs side by side, and of a time scale and of kicks and drifts, since their terms may have the error. A
+/// system with constraints has none of them.
 fn stub_batch(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
     let none = quote!({ loop {} });
     quote! {
         impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<#n, T> for #name<T> {}
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::Separable<#n, T> for #name<T> {}
         impl<#generic> ::vi_core::stepping::Batch<#n> for #name<f64> {
             type Rows<const W: ::core::primitive::usize> = Self;
             fn rows<const W: ::core::primitive::usize>(_: &[Self; W]) -> Self #none

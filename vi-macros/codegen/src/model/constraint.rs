@@ -250,7 +250,8 @@ pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
     };
     let of_inputs: Vec<bool> =
         constraints.iter().map(|constraint| pool.depends_on(constraint.value, &is_input)).collect();
-    let given = constraints.iter().zip(of_inputs).filter(|(constraint, of_input)| !constraint.is_holonomic && !of_input);
+    let given =
+        constraints.iter().zip(of_inputs).filter(|(constraint, of_input)| !constraint.is_holonomic && !of_input);
     for (constraint, _) in given {
         let rate = constraint.rate(pool, dimension);
         if is_derivative(pool, &rate, parameters) {

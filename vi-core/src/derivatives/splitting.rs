@@ -1,0 +1,41 @@
+//! Tangent vectors of a splitting step, by dual numbers.
+
+use super::steps::{Differentiable, is_last, not_last};
+use super::variation::{TOGETHER, Variation, Varied, more_parameters};
+use super::varying::Unconstrained;
+use crate::collocation::Separable;
+use crate::error::StepError;
+use crate::method::Splitting;
+use crate::method::splitting::step;
+use crate::node::Node;
+use crate::run::Run;
+use crate::stepping::Convertible;
+
+impl<S, const N: usize> Differentiable<S, N> for Splitting
+where
+    S: Separable<N> + Convertible<N>,
+{
+    type Kind = Unconstrained;
+
+    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let Run { method, system, node, h, .. } = run;
+        if !is_last(&step(method, system, (before, *h)), node) {
+            return Err(not_last(before.t));
+        }
+        if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
+            return Err(more_parameters(before.t));
+        }
+        for variations in variations.chunks_mut(TOGETHER) {
+            let system = Variation::vary_parameters(variations, S::PARAMETERS, system.convert::<Varied>());
+            let length = Variation::number(variations, *h, |variation| variation.h);
+            let end = step(method, &system, (&Variation::node(variations, before), length));
+            for (direction, variation) in variations.iter_mut().enumerate() {
+                let slope = |high: Varied, low: Varied| (high + low).slope.0[direction];
+                variation.q = end.q.zip_map(&end.q_low, slope);
+                variation.p = end.p.zip_map(&end.p_low, slope);
+                variation.t = (end.t + end.t_low).slope.0[direction];
+            }
+        }
+        Variation::check_finite(variations, before.t)
+    }
+}

@@ -1,0 +1,401 @@
+//! Splitting: explicit steps of order 2, 4 and 6 from kicks and drifts.
+//!
+//! For `L = v·M v/2 − V(t, q)` with constant M, and forces of time and coordinates alone, the motion splits into two that
+//! are solved exactly: kicks change the momenta at fixed coordinates, drifts move the coordinates at fixed momenta. With
+//! weights b_i and a_i of sum 1 each,
+//!
+//! ```text
+//! kick     p ← p + b_i h F(t, q)        F = L_q + f
+//! drift    q ← q + a_i h M⁻¹ p          t ← t + a_i h
+//! ```
+//!
+//! A step is symmetric; without force it is symplectic, and it preserves momenta of cyclic coordinates bit for bit. It
+//! solves no equation, and evaluates no derivative of F: it pays for many coordinates with cheap forces. Nyström's
+//! conditions, of which there are fewer than those of other splittings, hold because kicks of constant M commute with
+//! their second commutators.
+//!
+//! The increments of a step are summed by themselves and added to the node with their low parts: roundings of a step are
+//! those of its increments, as with [`Gauss`](crate::Gauss).
+//!
+//! Source: Blanes and Moan, J. Comput. Appl. Math. 142 (2002) 313, tables 3 and 4; Hairer, Lubich, Wanner, Geometric
+//! Numerical Integration, section V.3.
+
+use super::{Memory, Method, Problem, Report};
+use crate::collocation::{Collocation, Separable};
+use crate::error::StepError;
+use crate::linear::Matrix;
+use crate::node::Node;
+use crate::real::{Real, Scalar};
+use crate::run::Hermite;
+use crate::state::State;
+use nalgebra::SVector;
+use vi_dispatch::{Instructions, Loop};
+
+/// A symmetric splitting into kicks and drifts. See the [module](self).
+///
+/// ```
+/// use vi_core::prelude::*;
+/// use vi_core::lagrangian;
+///
+/// lagrangian! {
+///     struct Chain {
+///         coord x[8];
+///         L = sum(i in 0..8, dot(x[i])^2 / 2 - x[i]^2 / 2) - sum(i in 0..7, (x[i + 1] - x[i])^4 / 4);
+///     }
+/// }
+///
+/// # fn main() -> Result<(), StepError> {
+/// let start = Chain::default().at(0.0, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0; 8]);
+/// let mut run = start.integrate(Splitting::BLANES_MOAN_6, 0.25)?;
+/// let state = run.until(10.0)?;
+/// # assert!((state.energy(run.system())? - 0.75).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splitting {
+    /// Its name. A checkpoint stores it.
+    pub name: &'static str,
+    /// Its order.
+    pub order: u32,
+    /// The weights b_i of the kicks, whose sum is 1.
+    pub kicks: &'static [f64],
+    /// The weights a_i of the drifts, whose sum is 1. The longer list begins: kick, drift, …, kick, or drift, kick, …,
+    /// drift.
+    pub drifts: &'static [f64],
+}
+
+impl Splitting {
+    /// Störmer and Verlet's method of order 2, with one force a step.
+    pub const VERLET: Self = Self { name: "Verlet", order: 2, kicks: &[0.5, 0.5], drifts: &[1.0] };
+    /// Blanes and Moan's method of order 4, with six forces a step.
+    pub const BLANES_MOAN_4: Self = Self {
+        name: "Blanes–Moan 4",
+        order: 4,
+        kicks: &symmetric::<3, 7>([0.082_984_406_417_405_2, 0.396_309_801_498_368, -0.039_056_304_922_348_6]),
+        drifts: &symmetric::<2, 6>([0.245_298_957_184_271, 0.604_872_665_711_08]),
+    };
+    /// Blanes and Moan's method of order 6 with eleven forces a step.
+    pub const BLANES_MOAN_6_SHORT: Self = Self {
+        name: "Blanes–Moan 6, eleven forces",
+        order: 6,
+        kicks: &symmetric::<5, 12>([
+            0.041_464_998_518_262_4,
+            0.198_128_671_918_067,
+            -0.040_006_192_104_153_3,
+            0.075_253_984_301_580_7,
+            -0.011_511_387_420_687_9,
+        ]),
+        drifts: &symmetric::<5, 11>([
+            0.123_229_775_946_271,
+            0.290_553_797_799_558,
+            -0.127_049_212_625_417,
+            -0.246_331_761_062_075,
+            0.357_208_872_795_928,
+        ]),
+    };
+    /// Blanes and Moan's method of order 6 with fourteen forces a step: the smallest errors for their time.
+    pub const BLANES_MOAN_6: Self = Self {
+        name: "Blanes–Moan 6",
+        order: 6,
+        kicks: &symmetric::<6, 14>([
+            0.091_719_152_624_461_65,
+            0.183_983_170_005_006,
+            -0.056_534_365_832_888_27,
+            0.004_914_688_774_712_854,
+            0.143_761_127_168_358,
+            0.328_567_693_746_804,
+        ]),
+        drifts: &symmetric::<7, 15>([
+            0.037_859_319_840_611_6,
+            0.102_635_633_102_435,
+            -0.025_867_888_266_558_7,
+            0.314_241_403_071_447,
+            -0.130_144_459_517_415,
+            0.106_417_700_369_543,
+            -0.008_794_243_128_510_58,
+        ]),
+    };
+    /// All splittings, by order and number of forces.
+    pub const ALL: [Self; 4] = [Self::VERLET, Self::BLANES_MOAN_4, Self::BLANES_MOAN_6_SHORT, Self::BLANES_MOAN_6];
+
+    /// Whether a step begins and ends with a kick. The force at its end then serves the next step.
+    const fn begins_with_kick(&self) -> bool {
+        self.kicks.len() > self.drifts.len()
+    }
+
+    /// The number of forces of a step after the first.
+    #[must_use]
+    pub const fn forces(&self) -> usize {
+        if self.begins_with_kick() { self.kicks.len() - 1 } else { self.kicks.len() }
+    }
+}
+
+/// The weights of sum 1 that read the same from both ends and begin with these.
+const fn symmetric<const FIRST: usize, const ALL: usize>(first: [f64; FIRST]) -> [f64; ALL] {
+    let mut all = [0.0; ALL];
+    let (mut i, mut sum) = (0, 0.0);
+    while i < FIRST {
+        (all[i], all[ALL - 1 - i]) = (first[i], first[i]);
+        sum += first[i];
+        i += 1;
+    }
+    let rest = if ALL.is_multiple_of(2) { 0.5 - sum } else { 1.0 - 2.0 * sum };
+    (all[FIRST], all[ALL - 1 - FIRST]) = (rest, rest);
+    all
+}
+
+/// Memory of a splitting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+)]
+pub struct Kicked<const N: usize, T = f64> {
+    /// The last force of the last step, at the node if steps begin with a kick. Zero before the first step, if they begin
+    /// with a drift.
+    force: SVector<T, N>,
+}
+
+impl<const N: usize, T: Scalar> Memory for Kicked<N, T> {}
+
+/// What the steps of a run share.
+#[derive(Clone, Copy, Debug)]
+pub struct Shared<I> {
+    instructions: Instructions,
+    /// M, factored.
+    inverse: I,
+}
+
+/// A step.
+#[derive(Clone, Copy, Debug)]
+pub struct Split<const N: usize, T = f64> {
+    after: Node<N, T>,
+    /// The force at its end.
+    force: SVector<T, N>,
+}
+
+impl<const N: usize, T: Real> Split<N, T> {
+    /// Whether time, coordinates and momenta are finite, and with them all forces of the step.
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        // Zero times a number is zero, or NaN for one that is not finite. One sum then tests all entries.
+        let Node { t, q, p, .. } = &self.after;
+        let zeros = (q + p + self.force) * T::zero();
+        (zeros.sum() + *t * T::zero()).is_finite()
+    }
+}
+
+/// Kicks and drifts of one step.
+struct Step<'a, S: Collocation<N, T>, const N: usize, T: Real> {
+    scheme: &'a Splitting,
+    system: &'a S,
+    inverse: &'a <S::Mass as Matrix<N, T>>::Inverse,
+    node: &'a Node<N, T>,
+    h: T,
+    /// The force at the node, if the step begins with a kick.
+    force: &'a SVector<T, N>,
+}
+
+impl<S: Collocation<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
+    type Output = Split<N, T>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Split<N, T> {
+        let Self { scheme, system, inverse, node, h, .. } = self;
+        let Splitting { kicks, drifts, .. } = scheme;
+        let rest = SVector::zeros();
+        // The next kick waits for q and p alone: both sums beside them are more accurate.
+        let (mut q, mut p) = (node.q + node.q_low, node.p + node.p_low);
+        let (mut displacement, mut increment) = (SVector::<T, N>::zeros(), SVector::<T, N>::zeros());
+        let mut force = *self.force;
+        // The first kick needs no drift.
+        let first = kicks.len() - kicks.len().min(drifts.len());
+        if let Some(weight) = kicks[..first].first() {
+            increment = force * (h * T::real(*weight));
+            p += increment;
+        }
+        let mut passed = 0.0;
+        for (i, weight) in drifts.iter().enumerate() {
+            let drift = S::Mass::apply(inverse, &p) * (h * T::real(*weight));
+            displacement += drift;
+            let is_last = i + 1 == drifts.len();
+            // The last place is that of the node, where the next step has the same force.
+            q = if is_last { node.q + (node.q_low + displacement) } else { q + drift };
+            passed = if is_last { 1.0 } else { passed + weight };
+            let Some(weight) = kicks.get(first + i) else { break };
+            force = system.point(node.t + (node.t_low + h * T::real(passed)), &q, &rest).force;
+            let kick = force * (h * T::real(*weight));
+            p += kick;
+            increment += kick;
+        }
+        let mut after = *node;
+        after.advance_by(h, &displacement, &increment);
+        Split { after, force }
+    }
+}
+
+/// Takes a step inside the dispatched function.
+struct Advancing<'a, S: Collocation<N, T>, const N: usize, T: Real> {
+    scheme: &'a Splitting,
+    system: &'a S,
+    inverse: &'a <S::Mass as Matrix<N, T>>::Inverse,
+    h: T,
+    node: &'a mut Node<N, T>,
+    force: &'a mut SVector<T, N>,
+}
+
+impl<S: Collocation<N, T>, const N: usize, T: Scalar> Loop for Advancing<'_, S, N, T> {
+    type Output = Result<(), ()>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Result<(), ()> {
+        let Self { scheme, system, inverse, h, node, force } = self;
+        let step = Step { scheme, system, inverse, node, h, force }.run::<FUSED>();
+        if !step.is_finite() {
+            return Err(());
+        }
+        *node = step.after;
+        *force = step.force;
+        Ok(())
+    }
+}
+
+/// The force at a node.
+fn force_at<S: Collocation<N, T>, const N: usize, T: Real>(system: &S, node: &Node<N, T>) -> SVector<T, N> {
+    system.point(node.t, &node.q, &SVector::zeros()).force
+}
+
+/// One step from a node over any numbers.
+pub(crate) fn step<S: Collocation<N, T>, const N: usize, T: Real>(
+    scheme: &Splitting,
+    system: &S,
+    (node, h): (&Node<N, T>, T),
+) -> Node<N, T> {
+    let inverse = &system.point(node.t, &node.q, &SVector::zeros()).mass.inverse();
+    let force = if scheme.begins_with_kick() { force_at(system, node) } else { SVector::zeros() };
+    Step { scheme, system, inverse, node, h, force: &force }.run::<false>().after
+}
+
+impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splitting {
+    type Prepared = Shared<<S::Mass as Matrix<N, T>>::Inverse>;
+    type Memory = Kicked<N, T>;
+    type Cache = ();
+    type Step = Split<N, T>;
+    type Left = ();
+    type DenseOutput = Hermite<N, T>;
+
+    fn rule(&self) -> Option<&'static str> {
+        Some(self.name)
+    }
+
+    fn order(&self) -> u32 {
+        self.order
+    }
+
+    fn check_length(&self, h: T) -> Result<(), StepError> {
+        if !S::SEPARABLE {
+            return Err(StepError::NotSeparable { system: S::NAME });
+        }
+        super::check_step(h)
+    }
+
+    fn prepare(&self, system: &S, _h: T) -> Self::Prepared {
+        let zeros = SVector::zeros();
+        let inverse = system.point(T::zero(), &zeros, &zeros).mass.inverse();
+        Shared { instructions: Instructions::detected(), inverse }
+    }
+
+    fn begin(&self, system: &S, node: &mut Node<N, T>, _h: T) -> Result<Kicked<N, T>, StepError> {
+        node.state().velocity(system)?;
+        let force = if self.begins_with_kick() { force_at(system, node) } else { SVector::zeros() };
+        let is_finite = force.iter().all(|entry| entry.is_finite());
+        let (t, quantity) = (node.t.to_f64(), "force");
+        if is_finite { Ok(Kicked { force }) } else { Err(StepError::NonFinite { t, quantity, expression: None }) }
+    }
+
+    #[inline(always)]
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Self::Prepared, N, T>,
+        memory: &Kicked<N, T>,
+        (): &mut (),
+    ) -> Result<Split<N, T>, ()> {
+        let Problem { system, prepared: Shared { instructions, inverse }, node, h } = at;
+        let step = instructions.run(Step { scheme: self, system, inverse, node, h, force: &memory.force });
+        if step.is_finite() { Ok(step) } else { Err(()) }
+    }
+
+    /// Kicks and drifts, the test of their end and the advance in one dispatched function.
+    #[inline(always)]
+    fn advance(
+        &self,
+        system: &S,
+        prepared: &Self::Prepared,
+        h: T,
+        (node, memory): (&mut Node<N, T>, &mut Kicked<N, T>),
+        (): &mut (),
+    ) -> Result<(), ()> {
+        let Shared { instructions, inverse } = prepared;
+        instructions.run(Advancing { scheme: self, system, inverse, h, node, force: &mut memory.force })
+    }
+
+    fn recover(
+        &self,
+        at: Problem<'_, S, Self::Prepared, N, T>,
+        _memory: &Kicked<N, T>,
+        (): &mut (),
+        (): (),
+    ) -> Result<Split<N, T>, StepError> {
+        Err(StepError::NonFinite { t: at.node.t.to_f64(), quantity: "force", expression: None })
+    }
+
+    #[inline(always)]
+    fn take(&self, _h: T, (node, memory): (&mut Node<N, T>, &mut Kicked<N, T>), (): &mut (), step: Split<N, T>) {
+        *node = step.after;
+        memory.force = step.force;
+    }
+
+    fn with_length(
+        &self,
+        _system: &S,
+        memory: &Kicked<N, T>,
+        _node: &Node<N, T>,
+        _h: T,
+    ) -> Result<Kicked<N, T>, StepError> {
+        Ok(*memory)
+    }
+
+    fn with_system(
+        &self,
+        [_, after]: [&S; 2],
+        node: &mut Node<N, T>,
+        h: T,
+        _memory: &Kicked<N, T>,
+    ) -> Result<Kicked<N, T>, StepError> {
+        self.begin(after, node, h)
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N, T>,
+        node: &Node<N, T>,
+        h: T,
+        _memory: &Kicked<N, T>,
+    ) -> Result<Hermite<N, T>, StepError> {
+        Hermite::between(system, before, &node.state(), h)
+    }
+
+    #[allow(clippy::cast_possible_truncation)] // a few forces
+    fn report(&self, _memory: &Kicked<N, T>) -> Report {
+        Report { residual: 0.0, iterations: self.forces() as u32 }
+    }
+
+    fn check(&self, memory: &Kicked<N, T>, _h: T, t: T) -> Result<(), StepError> {
+        let is_finite = memory.force.iter().all(|entry| entry.is_finite());
+        let t = t.to_f64();
+        if is_finite { Ok(()) } else { Err(StepError::NonFinite { t, quantity: "force", expression: None }) }
+    }
+}
