@@ -4,6 +4,7 @@
 //     52  every method: lagrangian 13, energy 13, momentum 0, force 0, acceleration 13, non_finite 13
 //     34  Gauss, EnergyPreservingGauss: point 13, point_derivatives 21, power 0
 //     29  Gauss in transformed time: scaled_point 29
+//     13  Splitting, for each force: point 13
 //    168  FixedStep, Composition, Ensemble by the rule `midpoint`: momentum_equation 46, momentum_residual 44, momentum_derivatives 58, discrete_energy 20
 //    357  EnergyPreserving by the rule `midpoint`: step_density 39, extended_system 107, extended_residual 96, extended_derivatives 115
 //     92  DiscreteLagrangian by the rule `midpoint`: ld 18, d1_ld 17, d2_ld 21, d3_ld 17, d4_ld 19, fd_minus 0, fd_plus 0, gd_minus 0, gd_plus 0
@@ -385,6 +386,8 @@ const _: () = {
     }
 
     impl<T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<2, T>
+    for Kepler<T> {}
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Separable<2, T>
     for Kepler<T> {}
     impl ::vi_core::stepping::Convertible<2> for Kepler<f64> {
         type In<T: ::vi_core::real::Real> = Kepler<T>;

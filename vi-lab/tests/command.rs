@@ -367,7 +367,7 @@ fn wrong_input_is_one_line_and_status_2() {
         (&["run", "double-well", "--steps", "1", "--q", "1e400"], "the coordinates (--q) must be finite, not inf"),
         (
             &["run", "double-well", "--steps", "1", "--method", "euler"],
-            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, gauss, gauss-lobatto, energy]",
+            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, splitting-4, splitting-6, gauss, gauss-lobatto, energy]",
         ),
         (
             &["run", "double-well", "--steps", "1", "--method", "gauss", "--stages", "5"],

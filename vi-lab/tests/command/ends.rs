@@ -20,6 +20,8 @@ fn a_run_ends_at_the_time_that_is_asked_for() {
         ("suzuki-4", 6e-6),
         ("kahan-li-6", 5e-8),
         ("kahan-li-8", 2e-11),
+        ("splitting-4", 1e-5),
+        ("splitting-6", 1e-8),
         ("gauss --stages 4", 3e-12),
         ("gauss", 5e-16),
         ("energy", 1.3e-2),

@@ -26,6 +26,9 @@ const OF_MOTION: [(&str, &[FunctionId]); 3] = [
     ("Gauss in transformed time", &[FunctionId::ScaledPoint]),
 ];
 
+/// The method of systems whose motion splits into kicks and drifts, and the function that it calls.
+const OF_SPLITTING: (&str, &[FunctionId]) = ("Splitting, for each force", &[FunctionId::Point]);
+
 /// The methods of systems with constraints, and the functions that it calls.
 const OF_CONSTRAINTS: (&str, &[FunctionId]) = (
     "GaussLobatto, EnergyPreservingGaussLobatto",
@@ -90,6 +93,9 @@ pub(crate) fn header(derivations: &Derivations) -> String {
         return commented(lines);
     }
     lines.extend(OF_MOTION.iter().filter_map(|of| counted(own, "", *of)));
+    if own.findings.force_of_position {
+        lines.extend(counted(own, "", OF_SPLITTING));
+    }
     for derived in derivations.all() {
         let Some(rule) = &derived.model.rule else { continue };
         let by = format!(" by the rule `{}`", rule.title());
