@@ -5,7 +5,7 @@ use crate::support::slope;
 use vi_core::collocation::Separable;
 use vi_core::derivatives::{Covector, Objective, Tangent, Variation, gradient};
 use vi_core::stepping::Convertible;
-use vi_core::{Called, Gauss, Run, SVector, Splitting, Starts, State, StepError, Tolerance, lagrangian};
+use vi_core::{Gauss, Presumed, Run, SVector, Splitting, Starts, State, StepError, Tolerance, lagrangian};
 use vi_systems::{DampedOscillator, DoublePendulum, FpuChain, OuterSolarSystem, Pendulum};
 
 lagrangian! {
@@ -271,7 +271,7 @@ fn runs_restart_change_and_end_as_others() {
 
 /// The refusal of a system whose motion does not split.
 fn refused<S: Convertible<N, In<f64> = S> + vi_core::collocation::Collocation<N>, const N: usize>(system: S) {
-    let begun = Called(system).at(0.0, [0.5; N], [0.1; N]).integrate(Splitting::VERLET, 0.01);
+    let begun = Presumed(system).at(0.0, [0.5; N], [0.1; N]).integrate(Splitting::VERLET, 0.01);
     let failure = begun.map(drop).expect_err("no splitting");
     assert_eq!(failure, StepError::NotSeparable { system: S::NAME });
     let text = failure.to_string();
@@ -284,8 +284,8 @@ fn other_motions_are_refused() {
     refused(DampedOscillator::default());
     // The same wrapper takes one that splits, with the same numbers to rounding.
     let pendulum = Pendulum::default();
-    let called = after(run(Called(pendulum), [[1.0], [0.3]], Splitting::BLANES_MOAN_6, 0.05), 100);
+    let presumed = after(run(Presumed(pendulum), [[1.0], [0.3]], Splitting::BLANES_MOAN_6, 0.05), 100);
     let inlined = after(run(pendulum, [[1.0], [0.3]], Splitting::BLANES_MOAN_6, 0.05), 100);
     // Measured: equal.
-    assert!((called.q - inlined.q).amax() < 1e-14 && (called.p - inlined.p).amax() < 1e-14);
+    assert!((presumed.q - inlined.q).amax() < 1e-14 && (presumed.p - inlined.p).amax() < 1e-14);
 }

@@ -1,4 +1,4 @@
-//! A wrapper that compiles the functions of a system once.
+//! Wrappers of a system: one that compiles its functions once, and one for generic code.
 //!
 //! The emitted functions are inlined at every call site, so that the hot path is one piece of code. [`Called`] compiles
 //! each function once, which makes integrators smaller. Cold paths of every integrator use it. Use it also if build
@@ -23,6 +23,26 @@ impl<S> Deref for Called<S> {
 }
 
 impl<S> DerefMut for Called<S> {
+    fn deref_mut(&mut self) -> &mut S {
+        &mut self.0
+    }
+}
+
+/// A system of generic code, presumed [`Separable`](crate::collocation::Separable):
+/// `Presumed(system).at(t, q, v).integrate(Splitting::BLANES_MOAN_6, h)` checks
+/// [`Collocation::SEPARABLE`](crate::collocation::Collocation::SEPARABLE) when a run begins. Its functions are inlined.
+#[derive(Clone, Copy, Debug)]
+pub struct Presumed<S>(pub S);
+
+impl<S> Deref for Presumed<S> {
+    type Target = S;
+
+    fn deref(&self) -> &S {
+        &self.0
+    }
+}
+
+impl<S> DerefMut for Presumed<S> {
     fn deref_mut(&mut self) -> &mut S {
         &mut self.0
     }

@@ -1,7 +1,7 @@
-//! Implementations of the system traits by delegation: for references, for systems by another rule, and for systems
-//! whose functions are not inlined.
+//! Implementations of the system traits by delegation: for references, for systems by another rule, for systems whose
+//! functions are not inlined, and for those of generic code.
 
-use crate::called::Called;
+use crate::called::{Called, Presumed};
 use crate::collocation::{Collocation, Separable, TimeScale};
 use crate::discrete::DiscreteLagrangian;
 use crate::forward;
@@ -68,6 +68,8 @@ const fn rule_name(of_rule: Option<&'static str>, of_system: Option<&'static str
 motion!(By<S, R>, [#[inline(always)]], R);
 steps!(By<S, R>, R as Own, rule_name(R::NAME, S::RULE), [#[inline(always)]], R);
 
+motion!(Presumed<S>, [#[inline(always)]]);
+
 motion!(Called<S>, [#[inline(never)]]);
 steps!(Called<S>, Own as Own, S::RULE, [#[inline(never)]]);
 
@@ -78,6 +80,12 @@ impl<T: Real, S: Parameters<T>, R: Rule> Parameters<T> for By<S, R> {
 }
 
 impl<T: Real, S: Parameters<T>> Parameters<T> for Called<S> {
+    fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
+        self.0.parameter_mut(name)
+    }
+}
+
+impl<T: Real, S: Parameters<T>> Parameters<T> for Presumed<S> {
     fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
         self.0.parameter_mut(name)
     }
@@ -95,7 +103,7 @@ impl<const N: usize, T: Real, S: Separable<N, T>> Separable<N, T> for &S {}
 impl<const N: usize, T: Real, S: Separable<N, T>, R: Rule> Separable<N, T> for By<S, R> {}
 
 // Whether the equations have this form is checked when a run begins.
-impl<const N: usize, T: Real, S: Collocation<N, T>> Separable<N, T> for Called<S> {}
+impl<const N: usize, T: Real, S: Collocation<N, T>> Separable<N, T> for Presumed<S> {}
 
 impl<const N: usize, S: Convertible<N>> Convertible<N> for &S {
     type In<T: Real> = S::In<T>;
@@ -114,6 +122,16 @@ impl<const N: usize, S: Convertible<N>> Convertible<N> for Called<S> {
 
     fn convert<T: Real>(&self) -> Self::In<T> {
         Called(self.0.convert())
+    }
+}
+
+impl<const N: usize, S: Convertible<N>> Convertible<N> for Presumed<S> {
+    type In<T: Real> = Presumed<S::In<T>>;
+    const SIDE_BY_SIDE: bool = S::SIDE_BY_SIDE;
+
+    #[inline(always)]
+    fn convert<T: Real>(&self) -> Self::In<T> {
+        Presumed(self.0.convert())
     }
 }
 

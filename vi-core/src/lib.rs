@@ -93,7 +93,7 @@ pub mod support;
 pub mod table;
 mod vector;
 
-pub use called::Called;
+pub use called::{Called, Presumed};
 pub use constrained::{Constrained, ConvertibleConstrained};
 pub use control::{ConstrainedDynamics, Dynamics};
 pub use discrete::DiscreteLagrangian;

@@ -1,7 +1,7 @@
 //! Integrators that are built for a system.
 //!
 //! In: the type of a system. Out: for each method an [`Integrator`], which starts its runs. Gauss and fixed steps are
-//! optimised for the system; the others take [`Called`] systems, which build in a third of the time and differ by
+//! optimised for the system, and so are kicks and drifts; the others take [`Called`] systems, which build in a third of the time and differ by
 //! rounding.
 
 use crate::mechanics::{Unconstrained, WithConstraints};
@@ -18,7 +18,7 @@ use vi_core::run::Length as _;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{
     Called, Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep,
-    Gauss, GaussLobatto, InTransformedTime, Run, Splitting, Starts, State, StepError,
+    Gauss, GaussLobatto, InTransformedTime, Presumed, Run, Splitting, Starts, State, StepError,
 };
 
 /// Starts a run of a plan from a state.
@@ -106,13 +106,13 @@ where
 #[must_use]
 pub fn splitting<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>>
 where
-    Called<S>: Runnable<N>,
-    Splitting: Erasable<Called<S>, N>,
+    Presumed<S>: Runnable<N>,
+    Splitting: Erasable<Presumed<S>, N>,
 {
     macro_rules! split {
         ($kind:expr, $scheme:expr) => {
-            integrator!(($kind, None, false), Called, $scheme, |system: S, plan: &Plan, state: State<N>| {
-                Ok(erased(Called(system).at_state(state).integrate($scheme, plan.length())?))
+            integrator!(($kind, None, false), Presumed, $scheme, |system: S, plan: &Plan, state: State<N>| {
+                Ok(erased(Presumed(system).at_state(state).integrate($scheme, plan.length())?))
             })
         };
     }
