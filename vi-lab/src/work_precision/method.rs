@@ -78,6 +78,11 @@ impl Method {
         }
     }
 
+    /// Whether it takes kicks and drifts.
+    pub(super) fn is_splitting(self) -> bool {
+        matches!(self, Self::Own(method) if method.splitting().is_some())
+    }
+
     /// Whether it integrates this system.
     pub(super) fn suits(self, system: &dyn System) -> bool {
         match self {

@@ -85,9 +85,9 @@ fn finest(coordinates: usize, quick: bool) -> i32 {
 }
 
 /// Number of steps per factor of 2 in a ladder. Errors of Gauss methods change by up to 60 000 in this interval: with
-/// two steps the least time for an error would be off by two fifths.
+/// two steps the least time for an error would be off by two fifths, of the fast steps of splittings by a quarter.
 fn rungs(method: Method) -> i32 {
-    if matches!(method, Method::Gauss(_)) { 4 } else { 2 }
+    if matches!(method, Method::Gauss(_)) || method.is_splitting() { 4 } else { 2 }
 }
 
 /// The settings of a method, coarse to fine. Methods with substeps take longer steps.
@@ -98,6 +98,8 @@ fn settings(method: Method, until: f64, finest: i32) -> Vec<f64> {
     #[allow(clippy::cast_precision_loss)] // at most 32
     let parts = method.parts() as f64;
     let rungs = rungs(method);
+    // Splittings are fast, also with the short steps of small errors.
+    let finest = if method.is_splitting() { finest + 3 } else { finest };
     (-COARSEST * rungs..=finest * rungs)
         .map(|rung| until / (STEPS * (f64::from(rung) / f64::from(rungs)).exp2() / parts).round().max(1.0))
         .collect()
