@@ -31,6 +31,9 @@ use crate::state::State;
 use nalgebra::SVector;
 use vi_dispatch::{Instructions, Loop};
 
+/// Largest difference of a sum of weights from 1: published weights have fifteen digits.
+const WHOLE: f64 = 1e-13;
+
 /// A symmetric splitting into kicks and drifts. See the [module](self).
 ///
 /// ```
@@ -58,7 +61,7 @@ pub struct Splitting {
     pub name: &'static str,
     /// Its order.
     pub order: u32,
-    /// The weights b_i of the kicks, whose sum is 1.
+    /// The weights b_i of the kicks, whose sum is 1; other weights are refused when a run begins.
     pub kicks: &'static [f64],
     /// The weights a_i of the drifts, whose sum is 1. The longer list begins: kick, drift, …, kick, or drift, kick, …,
     /// drift.
@@ -297,6 +300,23 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
     fn check_length(&self, h: T) -> Result<(), StepError> {
         if !S::SEPARABLE {
             return Err(StepError::NotSeparable { system: S::NAME });
+        }
+        let Self { kicks, drifts, .. } = self;
+        if kicks.len().abs_diff(drifts.len()) != 1 {
+            #[allow(clippy::cast_precision_loss)] // a few weights
+            let value = kicks.len() as f64 - drifts.len() as f64;
+            let (input, allowed) = ("the kicks of a splitting less its drifts", "1 or -1: they take turns");
+            return Err(StepError::InvalidInput { input, allowed, value });
+        }
+        for (weights, input) in
+            [(kicks, "the sum of the kicks of a splitting"), (drifts, "the sum of the drifts of a splitting")]
+        {
+            let value = weights.iter().sum::<f64>();
+            // False for NaN.
+            let is_whole = (value - 1.0).abs() < WHOLE;
+            if !is_whole {
+                return Err(StepError::InvalidInput { input, allowed: "1", value });
+            }
         }
         super::check_step(h)
     }
