@@ -265,6 +265,19 @@ fn runs_restart_change_and_end_as_others() {
     }
     let start = Driven::default().at(0.0, [1e300, 0.0], [0.0, 0.0]).integrate(Splitting::VERLET, 0.1);
     assert!(matches!(start, Err(StepError::NonFinite { .. })), "{start:?}");
+    let wrong = |kicks, drifts| {
+        let scheme = Splitting { name: "wrong", order: 2, kicks, drifts };
+        Driven::default().at(0.0, START[0], START[1]).integrate(scheme, 0.1).map(drop).expect_err("wrong weights")
+    };
+    for (kicks, drifts, word) in [
+        (&[][..], &[][..], "take turns"),
+        (&[0.5, 0.5], &[0.5, 0.5], "take turns"),
+        (&[1.0], &[0.5, 0.6], "sum of the drifts"),
+        (&[f64::NAN, 1.0], &[1.0], "sum of the kicks"),
+    ] {
+        let text = wrong(kicks, drifts).to_string();
+        assert!(text.contains(word), "{text}");
+    }
     let short = Driven::default().at(0.0, START[0], START[1]).integrate(Splitting::VERLET, 0.0);
     assert!(matches!(short, Err(StepError::InvalidInput { .. })), "{short:?}");
 }
