@@ -186,7 +186,8 @@ pub enum StepError {
         t: f64,
         /// The constraint that is farthest from being satisfied.
         constraint: &'static str,
-        /// Its value g(t, x) at the last place, in its own unit.
+        /// Its value g(t, x) at the last place, or at the guess of [`State::projected`](crate::State::projected), in its
+        /// own unit.
         residual: f64,
         /// The length of the move along its gradient that would satisfy it, in the units of the coordinates.
         gap: f64,

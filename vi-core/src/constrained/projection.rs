@@ -15,6 +15,7 @@ use crate::newton::roundings;
 use crate::node::Node;
 use crate::real::Rounded;
 use crate::state::{Numbers, State};
+use crate::vector::worse;
 use nalgebra::{SMatrix, SVector};
 
 const ITERATIONS: u32 = 60;
@@ -202,12 +203,13 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
             let row = mass * (x - from) - reaction_of(&gradients, kappa.as_ref());
             (x, kappa, row, values, gradients)
         };
-        let is_consistent = |x: &SVector<f64, N>, values: &S::Multipliers| {
+        // The largest constraint over its rounding errors, with coordinates that are known to `known` ulps.
+        let violation = |x: &SVector<f64, N>, values: &S::Multipliers, known: &SVector<f64, N>| {
             let (all, _) = system.constraint_gradients(t, x);
             let bounds = system.convert::<Rounded>().constraints(Rounded::exact(t), &x.map(Rounded::nearest));
-            (0..holonomic).all(|r| {
-                let bound = bounds.as_ref()[r].ulps() + all.row(r).terms(&positions) + target[r].abs();
-                roundings(values.as_ref()[r], bound) <= CONSISTENT
+            (0..holonomic).fold(0.0, |worst, r| {
+                let bound = bounds.as_ref()[r].ulps() + all.row(r).terms(known) + target[r].abs();
+                worse(roundings(values.as_ref()[r], bound), worst)
             })
         };
         let mut found = at(*from, zero);
@@ -243,8 +245,12 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
             });
             let Some(next) = next else {
                 let size = (x.abs() + from.abs() + positions).component_mul(&weights).norm();
-                let is_found = length <= SETTLED * size && is_consistent(&x, &values);
-                return Ok(is_found.then_some(x));
+                let is_found = length <= SETTLED * size && violation(&x, &values, &positions) <= CONSISTENT;
+                // Roundings of large coordinates hide what the last correction brings to small ones.
+                let last = x - correction;
+                let zeros = SVector::zeros();
+                let is_better = violation(&last, &at(last, kappa).3, &zeros) < violation(&x, &values, &zeros);
+                return Ok(is_found.then_some(if is_better { last } else { x }));
             };
             found = next;
         }
