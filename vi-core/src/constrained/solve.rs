@@ -39,6 +39,8 @@ pub struct Workspace {
     /// Right-hand side and solution in the order of elimination.
     eliminated: Vec<f64>,
     correction: Vec<f64>,
+    /// The correction behind a trial.
+    behind: Vec<f64>,
     trial: Vec<f64>,
     bordered: Bordered,
     /// The buffer of the unknowns of a step.
@@ -207,6 +209,7 @@ impl Workspace {
             reduced: None,
             eliminated: vec![0.0; unknowns],
             correction: vec![0.0; unknowns],
+            behind: vec![0.0; unknowns],
             trial: vec![0.0; unknowns],
             bordered: bordered::<S, N, f64>(),
             unknowns: vec![0.0; unknowns],
@@ -296,10 +299,11 @@ impl Workspace {
             let stages = (0..STAGES).map(|i| stage_velocity::<N, _>(correction, i).component_mul(&weights));
             stages.map(|part| part.norm_squared()).sum::<f64>()
         };
-        let mut behind = vec![0.0; self.correction.len()];
+        let mut behind = core::mem::take(&mut self.behind);
         next.write(&mut behind);
         self.solve(&mut behind);
-        length(&behind) < length(&self.correction)
+        self.behind = behind;
+        length(&self.behind) < length(&self.correction)
     }
 }
 
