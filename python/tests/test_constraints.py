@@ -202,3 +202,21 @@ def test_a_text_with_constraints(warm_cache):
     with pytest.raises(vi.Redundant) as caught:
         Twice().integrate([1.0, 0.0, 0.0], h=0.01)
     assert (caught.value.constraint, caught.value.of, caught.value.rank) == ("bowl", 2, 1)
+
+
+def test_a_length_changes_with_the_state():
+    run = vi.RodPendulum().integrate([0.6, -0.8], [0.8, 0.6], h=0.01)
+    run.steps(5)
+    with pytest.raises(vi.InconsistentStart):
+        run.set(l=1.2)
+    longer = vi.RodPendulum(l=1.2)
+    found = longer.project(run.q, run.v, t=run.t)
+    run.set_state(q=found.q, v=found.v, parameters={"l": 1.2})
+    assert run.system == longer
+    again = longer.integrate(run.q, run.v, t=run.t, h=0.01)
+    run.steps(10)
+    again.steps(10)
+    # Measured: equal.
+    assert np.abs(run.q - again.q).max() < 1e-15 and abs(np.hypot(*run.q) - 1.2) < 1e-15
+    with pytest.raises(TypeError, match="did you mean 'l'"):
+        run.set_state(parameters={"ll": 1.0})

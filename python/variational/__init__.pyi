@@ -109,6 +109,11 @@ class NoTimeScale(StepError):
 
     system: str
 
+class NotSeparable(StepError):
+    """The motion of the system does not split into kicks and drifts."""
+
+    system: str
+
 class NoStepDensity(StepError):
     """The method preserves the energy, but L contains a monotone table."""
 

@@ -175,7 +175,7 @@ class System:
     def project(self, q: ArrayLike, v: ArrayLike | None = None, *, t: float = 0.0) -> Projected:
         """The state on the constraints nearest to (t, q, v) in the metric of the mass matrix, and how far it is.
 
-        Raises NotConverged if no coordinates near q satisfy the constraints, Singular if the constraints depend on each
+        Raises NotAssembled if no coordinates near q satisfy the constraints, Singular if the constraints depend on each
         other on the way.
         """
         (n,), names = self._shape, self.coordinates
