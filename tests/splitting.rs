@@ -246,6 +246,9 @@ fn runs_restart_change_and_end_as_others() {
         let other = if scheme == Splitting::VERLET { Splitting::BLANES_MOAN_4 } else { Splitting::VERLET };
         let refused = Run::restart(Driven::default(), other, stored());
         assert!(matches!(refused, Err(StepError::OtherSystem { .. })), "{refused:?}");
+        let own = Splitting { kicks: &[0.25, 0.5, 0.25], drifts: &[0.5, 0.5], ..scheme };
+        let refused = Run::restart(Driven::default(), own, stored());
+        assert!(matches!(refused, Err(StepError::InvalidInput { .. })), "{refused:?}");
         // Other parameters from here on are those of a new run.
         begun.set_parameters(|system| system.k = 2.0).expect("finite");
         let fresh = Driven { k: 2.0, ..Driven::default() }.at_state(begun.state()).integrate(scheme, 0.2);
@@ -269,6 +272,9 @@ fn runs_restart_change_and_end_as_others() {
         let scheme = Splitting { name: "wrong", order: 2, kicks, drifts };
         Driven::default().at(0.0, START[0], START[1]).integrate(scheme, 0.1).map(drop).expect_err("wrong weights")
     };
+    let endless = Splitting { order: u32::MAX, ..Splitting::VERLET };
+    let endless = Driven::default().at(0.0, START[0], START[1]).integrate(endless, Tolerance(1e-6)).map(drop);
+    assert!(matches!(endless, Err(StepError::InvalidInput { .. })), "{endless:?}");
     for (kicks, drifts, word) in [
         (&[][..], &[][..], "take turns"),
         (&[0.5, 0.5], &[0.5, 0.5], "take turns"),
@@ -301,4 +307,25 @@ fn other_motions_are_refused() {
     let inlined = after(run(pendulum, [[1.0], [0.3]], Splitting::BLANES_MOAN_6, 0.05), 100);
     // Measured: equal.
     assert!((presumed.q - inlined.q).amax() < 1e-14 && (presumed.p - inlined.p).amax() < 1e-14);
+}
+
+lagrangian! {
+    /// A rotor that turns fast.
+    struct Rotor {
+        param g = 1e4;
+        angle θ;
+        L = dot(θ)^2 / 2 + g * cos(θ);
+    }
+}
+
+#[test]
+fn tangents_follow_angles_over_whole_turns() {
+    for scheme in Splitting::ALL {
+        let begun = run(Rotor::default(), [[0.3], [1300.0]], scheme, 3e-4);
+        let mut tangent = Tangent::new(begun, Variation::of_state());
+        for _ in 0..5000 {
+            tangent.step().unwrap_or_else(|error| panic!("{}: {error}", scheme.name));
+        }
+        assert!(tangent.run().turns()[0] > 100, "{}", scheme.name);
+    }
 }

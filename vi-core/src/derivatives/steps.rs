@@ -129,7 +129,7 @@ fn unsolved<A: Matrix<N, f64>, const N: usize>(matrix: &A, rhs: &SVector<f64, N>
 }
 
 /// Whether a step that ends at the time and the coordinates of `end` is the one that led to the node `reached`.
-pub(super) fn is_last<const N: usize>(end: &Node<N>, reached: &Node<N>) -> bool {
+fn is_last<const N: usize>(end: &Node<N>, reached: &Node<N>) -> bool {
     // The time of the last node may have been set to the requested one.
     let late = (end.t - reached.t) + (end.t_low - reached.t_low);
     let is_in_time = late.abs() <= 2.0 * f64::EPSILON * reached.t.abs();

@@ -23,9 +23,8 @@ use nalgebra::SVector;
 const ITERATIONS: u32 = 60;
 /// Iterations after which slow convergence ends the iteration, if Newton iteration is available.
 const PATIENCE: u32 = 5;
-/// Contraction of slow convergence. It is measured while the extrapolated guess fades, and overestimates the later one:
-/// iterations with a contraction of 0.8 there often end after ten more, in a third of the time of Newton iteration.
-const SLOW: f64 = 0.9;
+/// Contraction of slow convergence.
+const SLOW: f64 = 0.5;
 /// A larger change, in ulps of q, is far from convergence.
 const FAR: f64 = 1e3;
 /// Smallest change, in ulps of q, that measures the contraction together with a change at the floor; one or two ulps

@@ -33,6 +33,8 @@ use vi_dispatch::{Instructions, Loop};
 
 /// Largest difference of a sum of weights from 1: published weights have fifteen digits.
 const WHOLE: f64 = 1e-13;
+/// The highest order that weights may claim.
+const HIGHEST: u32 = 32;
 
 /// A symmetric splitting into kicks and drifts. See the [module](self).
 ///
@@ -122,6 +124,11 @@ impl Splitting {
     /// All splittings, by order and number of forces.
     pub const ALL: [Self; 4] = [Self::VERLET, Self::BLANES_MOAN_4, Self::BLANES_MOAN_6_SHORT, Self::BLANES_MOAN_6];
 
+    /// A number that tells weights apart.
+    fn fingerprint(&self) -> f64 {
+        self.kicks.iter().chain(&[1.0]).chain(self.drifts).fold(0.0, |sum, weight| 0.7 * sum + weight)
+    }
+
     /// Whether a step begins and ends with a kick. The force at its end then serves the next step.
     const fn begins_with_kick(&self) -> bool {
         self.kicks.len() > self.drifts.len()
@@ -159,6 +166,8 @@ pub struct Kicked<const N: usize, T = f64> {
     /// The last force of the last step, at the node if steps begin with a kick. Zero before the first step, if they begin
     /// with a drift.
     force: SVector<T, N>,
+    /// Of the weights: those of another splitting do not continue its runs.
+    fingerprint: f64,
 }
 
 impl<const N: usize, T: Scalar> Memory for Kicked<N, T> {}
@@ -294,7 +303,7 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
     }
 
     fn order(&self) -> u32 {
-        self.order
+        self.order.clamp(1, HIGHEST)
     }
 
     fn check_length(&self, h: T) -> Result<(), StepError> {
@@ -307,6 +316,10 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
             let value = kicks.len() as f64 - drifts.len() as f64;
             let (input, allowed) = ("the kicks of a splitting less its drifts", "1 or -1: they take turns");
             return Err(StepError::InvalidInput { input, allowed, value });
+        }
+        if !(1..=HIGHEST).contains(&self.order) {
+            let (input, allowed) = ("the order of a splitting", "from 1 to 32");
+            return Err(StepError::InvalidInput { input, allowed, value: f64::from(self.order) });
         }
         for (weights, input) in
             [(kicks, "the sum of the kicks of a splitting"), (drifts, "the sum of the drifts of a splitting")]
@@ -332,7 +345,12 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
         let force = if self.begins_with_kick() { force_at(system, node) } else { SVector::zeros() };
         let is_finite = force.iter().all(|entry| entry.is_finite());
         let (t, quantity) = (node.t.to_f64(), "force");
-        if is_finite { Ok(Kicked { force }) } else { Err(StepError::NonFinite { t, quantity, expression: None }) }
+        let fingerprint = self.fingerprint();
+        if is_finite {
+            Ok(Kicked { force, fingerprint })
+        } else {
+            Err(StepError::NonFinite { t, quantity, expression: None })
+        }
     }
 
     #[inline(always)]
@@ -414,6 +432,10 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
     }
 
     fn check(&self, memory: &Kicked<N, T>, _h: T, t: T) -> Result<(), StepError> {
+        if memory.fingerprint.to_bits() != self.fingerprint().to_bits() {
+            let (input, allowed) = ("the weights of a checkpoint", "those of the splitting of the restarted run");
+            return Err(StepError::InvalidInput { input, allowed, value: memory.fingerprint });
+        }
         let is_finite = memory.force.iter().all(|entry| entry.is_finite());
         let t = t.to_f64();
         if is_finite { Ok(()) } else { Err(StepError::NonFinite { t, quantity: "force", expression: None }) }
