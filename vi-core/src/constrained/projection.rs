@@ -23,6 +23,8 @@ const HALVINGS: u32 = 12;
 /// The last correction of the coordinates, over their lengths: the floor of a nearest place that is as flat as a
 /// minimum is known to half of the digits.
 const SETTLED: f64 = 1e-8;
+/// The same of a place that satisfies the constraints to half a rounding, and stays.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// A state on the constraints, and how far it is from the given one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,7 +215,8 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
             })
         };
         let mut found = at(*from, zero);
-        for _ in 0..ITERATIONS {
+        let mut iterations = 0;
+        loop {
             let (x, kappa, row, values, gradients) = found;
             if !row.iter().chain(values.as_ref()).all(|entry| entry.is_finite()) {
                 return Err(StepError::NonFinite { t, quantity: "constraint", expression: None });
@@ -233,6 +236,10 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
                 (row, values, length)
             };
             let (correction, change, length) = correct(row, values);
+            let size = (x.abs() + from.abs() + positions).component_mul(&weights).norm();
+            if length <= ROUNDED * size && violation(&x, &values, &SVector::zeros()) <= 0.5 {
+                return Ok(Some(x));
+            }
             let next = (0..=HALVINGS).find_map(|halved| {
                 let part = 0.5_f64.powi(i32::try_from(halved).unwrap_or(0));
                 let mut next = kappa;
@@ -241,10 +248,10 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
                 }
                 let next = at(x - correction * part, next);
                 let (.., left) = correct(next.2, next.3);
-                Some(next).filter(|_| left < length)
+                Some(next).filter(|_| left < (1.0 - 0.25 * part) * length)
             });
-            let Some(next) = next else {
-                let size = (x.abs() + from.abs() + positions).component_mul(&weights).norm();
+            iterations += 1;
+            let Some(next) = next.filter(|_| iterations < ITERATIONS) else {
                 let is_found = length <= SETTLED * size && violation(&x, &values, &positions) <= CONSISTENT;
                 // Roundings of large coordinates hide what the last correction brings to small ones.
                 let last = x - correction;
@@ -254,6 +261,5 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
             };
             found = next;
         }
-        Ok(None)
     }
 }
