@@ -51,9 +51,7 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projection<'
             let place = (t, &q, &v);
             let x = match self.nearest(place, &q, None) {
                 Ok(Some(x)) => x,
-                Err(StepError::NonFinite { t, quantity, expression }) => {
-                    return Err(StepError::NonFinite { t, quantity, expression });
-                }
+                Err(failure @ StepError::NonFinite { .. }) => return Err(failure),
                 _ => self.continued(place)?,
             };
             self.with_velocities(t, [&q, &x], &v)

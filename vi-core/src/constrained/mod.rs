@@ -60,7 +60,7 @@ use crate::lagrangian::{Lagrangian, Parameters};
 use crate::linear::{Block, Bordered, Matrix, Rectangular, Row, Unsolvable};
 use crate::real::Real;
 use core::fmt::Debug;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// Mechanics with constraints; see the [module](self). A system with constraints implements this instead of
 /// [`Collocation`](crate::collocation::Collocation) and [`FixedStepping`](crate::stepping::FixedStepping), so that no
@@ -264,13 +264,13 @@ pub(crate) fn diagonal<const N: usize, T: Real>(matrix: &impl Matrix<N, T>) -> S
     diagonal
 }
 
-/// Coordinates without mass that no holonomic constraint moves: the mass matrix does not say where they are nearest, and
-/// they stay.
-pub(crate) fn idle<const N: usize>(
+/// The mass matrix with 1 for coordinates without mass that no holonomic constraint moves: it does not say where they are
+/// nearest, and they stay. `None` if there are none.
+pub(crate) fn with_idle<const N: usize>(
     mass: &impl Matrix<N, f64>,
     gradients: &impl Rectangular<N, f64>,
     holonomic: usize,
-) -> [bool; N] {
+) -> Option<SMatrix<f64, N, N>> {
     let mut idle = [true; N];
     mass.each_entry(|row, column, value| {
         if value != 0.0 {
@@ -280,7 +280,11 @@ pub(crate) fn idle<const N: usize>(
     for (column, _) in gradients.rows().take(holonomic).flat_map(Row::iter).filter(|(_, slope)| *slope != 0.0) {
         idle[column] = false;
     }
-    idle
+    idle.contains(&true).then(|| {
+        let mut mass = mass.dense();
+        (0..N).filter(|i| idle[*i]).for_each(|i| mass[(i, i)] = 1.0);
+        mass
+    })
 }
 
 /// Weights of coordinates in the length of a correction, from the diagonal of the mass matrix: its square roots, and the
@@ -292,6 +296,12 @@ pub(crate) fn weights<const N: usize>(mass: &SVector<f64, N>) -> SVector<f64, N>
     let largest = mass.max();
     let largest = if largest > 0.0 { largest } else { 1.0 };
     mass.map(|mass| if mass > 0.0 { mass } else { largest }.sqrt())
+}
+
+/// Whether a part of a correction of this length brought the place of convergence nearer: `behind` is the length of the
+/// next correction with the same factors. Deuflhard's natural monotonicity test.
+pub(crate) fn is_shortened(behind: f64, length: f64, part: f64) -> bool {
+    behind < (1.0 - 0.25 * part) * length
 }
 
 /// Momenta and velocities that each coordinate would have if the whole of v and p were along it, in the metric of the

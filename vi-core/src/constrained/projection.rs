@@ -8,7 +8,9 @@
 //! Held coordinates and their velocities do not change: they have no gradients here.
 
 use super::start::CONSISTENT;
-use super::{Constrained, ConvertibleConstrained, border, idle, reaction_of, spread, unsolvable, weights};
+use super::{
+    Constrained, ConvertibleConstrained, border, is_shortened, reaction_of, spread, unsolvable, weights, with_idle,
+};
 use crate::error::StepError;
 use crate::linear::{Bordered, Matrix, Rectangular};
 use crate::newton::roundings;
@@ -24,7 +26,7 @@ const HALVINGS: u32 = 12;
 /// minimum is known to half of the digits.
 const SETTLED: f64 = 1e-8;
 /// The same of a place that satisfies the constraints to half a rounding, and stays.
-const ROUNDED: f64 = 4.0 * f64::EPSILON;
+const LAST: f64 = 4.0 * f64::EPSILON;
 
 /// A state on the constraints, and how far it is from the given one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,16 +122,11 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
         })
     }
 
-    /// The mass matrix that measures moves; 1 for [`idle`] coordinates.
+    /// The mass matrix that measures moves; see [`with_idle`].
     fn metric(&self, (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>)) -> SMatrix<f64, N, N> {
-        let mut mass = self.mass(t, q, v);
+        let mass = self.mass(t, q, v);
         let (gradients, _) = self.gradients(t, q);
-        for (i, is_idle) in idle(&mass, &gradients, S::HOLONOMIC).into_iter().enumerate() {
-            if is_idle {
-                mass[(i, i)] = 1.0;
-            }
-        }
-        mass
+        with_idle(&mass, &gradients, S::HOLONOMIC).unwrap_or(mass)
     }
 
     /// A and a, without gradients along held coordinates.
@@ -237,7 +234,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
             };
             let (correction, change, length) = correct(row, values);
             let size = (x.abs() + from.abs() + positions).component_mul(&weights).norm();
-            if length <= ROUNDED * size && violation(&x, &values, &SVector::zeros()) <= 0.5 {
+            if length <= LAST * size && violation(&x, &values, &SVector::zeros()) <= 0.5 {
                 return Ok(Some(x));
             }
             let next = (0..=HALVINGS).find_map(|halved| {
@@ -248,7 +245,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
                 }
                 let next = at(x - correction * part, next);
                 let (.., left) = correct(next.2, next.3);
-                Some(next).filter(|_| left < (1.0 - 0.25 * part) * length)
+                Some(next).filter(|_| is_shortened(left, length, part))
             });
             iterations += 1;
             let Some(next) = next.filter(|_| iterations < ITERATIONS) else {

@@ -11,7 +11,7 @@
 use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
 use super::reduced::{self, Reduced};
-use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, reaction_of, weights};
+use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, is_shortened, reaction_of, weights};
 use crate::error::{Residuals, StepError};
 use crate::linear::{Bordered, Factored, Rectangular, Row, Unsolvable};
 use crate::newton::FLOOR;
@@ -23,6 +23,8 @@ const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;
 /// The Jacobian serves a further iteration if the residual fell by this factor.
 const FALLEN: f64 = 0.1;
+/// Corrections without a halving after the last one that reduced the residual.
+const WHOLE: u32 = 3;
 /// A solution after more iterations has its determinant evaluated anew.
 const FEW: u32 = 8;
 
@@ -126,6 +128,18 @@ where
         let Some((next, next_residual)) = next else {
             if residual > FLOOR {
                 residual = bounded::<S, N, STAGES>(system, node, h, u);
+            }
+            // Roundings of one row hide what corrections bring to another.
+            for _ in 0..WHOLE {
+                if residual <= FLOOR || is_last {
+                    break;
+                }
+                workspace.correct(&at);
+                workspace.move_to_trial(u, 1.0);
+                core::mem::swap(u, &mut workspace.trial);
+                at = rows(u);
+                residual = bounded::<S, N, STAGES>(system, node, h, u);
+                has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
             }
             // False for NaN.
             if residual <= FLOOR {
@@ -267,43 +281,54 @@ impl Workspace {
         residual: f64,
         rows: impl Fn(&[f64]) -> Rows<S, N, STAGES>,
     ) -> Option<(Rows<S, N, STAGES>, f64)> {
-        let mut correction = core::mem::take(&mut self.correction);
-        at.write(&mut correction);
-        self.solve(&mut correction);
-        self.correction = correction;
+        self.correct(at);
         // Near the floor a shorter correction changes nothing.
         let halvings = if residual <= FLOOR { 0 } else { HALVINGS };
         for halved in 0..=halvings {
             let part = 0.5_f64.powi(i32::try_from(halved).unwrap_or(0));
-            for ((trial, u), entry) in self.trial.iter_mut().zip(u).zip(&self.correction) {
-                *trial = u - entry * part;
-            }
+            self.move_to_trial(u, part);
             let next = rows(&self.trial);
             let next_residual = next.residual();
-            if is_reduced(next_residual, residual) || residual > FLOOR && self.is_shortened(at, &next) {
+            if is_reduced(next_residual, residual) || residual > FLOOR && self.brings_nearer(at, &next, part) {
                 return Some((next, next_residual));
             }
         }
         None
     }
 
+    /// Computes the correction of these rows.
+    fn correct<S: Constrained<N>, const N: usize, const STAGES: usize>(&mut self, at: &Rows<S, N, STAGES>) {
+        let mut correction = core::mem::take(&mut self.correction);
+        at.write(&mut correction);
+        self.solve(&mut correction);
+        self.correction = correction;
+    }
+
+    /// Writes u less a part of the correction to `trial`.
+    fn move_to_trial(&mut self, u: &[f64], part: f64) {
+        for ((trial, u), entry) in self.trial.iter_mut().zip(u).zip(&self.correction) {
+            *trial = u - entry * part;
+        }
+    }
+
     /// Whether the correction of the velocities at `next` is shorter than the last one, with the same factors.
     #[cold]
-    fn is_shortened<S: Constrained<N>, const N: usize, const STAGES: usize>(
+    fn brings_nearer<S: Constrained<N>, const N: usize, const STAGES: usize>(
         &mut self,
         at: &Rows<S, N, STAGES>,
         next: &Rows<S, N, STAGES>,
+        part: f64,
     ) -> bool {
         let weights = weights(at.mass());
         let length = |correction: &[f64]| {
             let stages = (0..STAGES).map(|i| stage_velocity::<N, _>(correction, i).component_mul(&weights));
-            stages.map(|part| part.norm_squared()).sum::<f64>()
+            stages.map(|part| part.norm_squared()).sum::<f64>().sqrt()
         };
         let mut behind = core::mem::take(&mut self.behind);
         next.write(&mut behind);
         self.solve(&mut behind);
         self.behind = behind;
-        length(&self.behind) < length(&self.correction)
+        is_shortened(length(&self.behind), length(&self.correction), part)
     }
 }
 

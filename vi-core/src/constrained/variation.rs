@@ -15,7 +15,7 @@
 use super::equations::{Rows, stage_velocity};
 use super::motion::{Velocity, from_rest, unsolvable, velocity};
 use super::solve::Workspace;
-use super::{Constrained, ConvertibleConstrained, border, bordered, idle, reaction_of};
+use super::{Constrained, ConvertibleConstrained, border, bordered, reaction_of, with_idle};
 use crate::derivatives::{
     Differentiable, TOGETHER, Variation, Varied, WithConstraints, more_parameters, not_finite, not_last, singular,
 };
@@ -210,14 +210,12 @@ where
     let mass = system.point(t, &q, &v).mass;
     let (gradients, _) = system.constraint_gradients(t, &q);
     border(full, system, &mass, &gradients).map_err(|failure| unsolvable(failure, t))?;
-    let idle = idle(&mass, &gradients, S::HOLONOMIC);
-    let factored = if idle.contains(&true) {
-        let mut mass = mass.dense();
-        (0..N).filter(|i| idle[*i]).for_each(|i| mass[(i, i)] = 1.0);
-        *holonomic = Bordered::new(N, S::HOLONOMIC, &[]);
-        border(holonomic, system, &mass, &gradients)
-    } else {
-        border(holonomic, system, &mass, &gradients)
+    let factored = match with_idle(&mass, &gradients, S::HOLONOMIC) {
+        Some(mass) => {
+            *holonomic = Bordered::new(N, S::HOLONOMIC, &[]);
+            border(holonomic, system, &mass, &gradients)
+        }
+        None => border(holonomic, system, &mass, &gradients),
     };
     factored.map_err(|failure| unsolvable(failure, t))?;
     let mut corrections = Vec::with_capacity(variations.len());

@@ -12,7 +12,8 @@ use super::equilibrium::oscillations;
 use super::{Linearization, linearized, no_eigenvalues, spectrum};
 use crate::collocation::Point;
 use crate::constrained::{
-    Constrained, ConvertibleConstrained, Projection, accelerations, border, bordered, is_reduced, reaction_of, weights,
+    Constrained, ConvertibleConstrained, Projection, accelerations, border, bordered, is_reduced, is_shortened,
+    reaction_of, weights,
 };
 use crate::derivatives::WithConstraints;
 use crate::error::StepError;
@@ -232,8 +233,9 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
                 }
                 let next = self.at(found.q - correction * part, next);
                 let (behind, _) = correct(next.force, next.values);
-                let is_shorter = found.residual > FLOOR && behind.component_mul(&found.weights).norm() < length;
-                Some(next).filter(|next| is_reduced(next.residual, found.residual) || is_shorter)
+                let behind = behind.component_mul(&found.weights).norm();
+                let is_nearer = found.residual > FLOOR && is_shortened(behind, length, part);
+                Some(next).filter(|next| is_reduced(next.residual, found.residual) || is_nearer)
             });
             match next {
                 Some(next) => found = next,

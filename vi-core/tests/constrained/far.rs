@@ -32,6 +32,18 @@ lagrangian! {
 }
 
 lagrangian! {
+    /// Two masses on three rods between pivots at X and X + 2.2.
+    struct FourBars {
+        param X = 0.0;
+        coord x, y, u, w;
+        L = dot(x)^2 + dot(y)^2 + (dot(u)^2 + dot(w)^2) / 2 - 9.81 * (2 * y + w);
+        constraint front = (x - X)^2 + y^2 - 1;
+        constraint middle = (u - x)^2 + (w - y)^2 - 4;
+        constraint back = (u - X - 2.2)^2 + w^2 - 2.25;
+    }
+}
+
+lagrangian! {
     /// A bead on a parabola.
     struct Bowl {
         param m = 1.3, k = 0.7;
@@ -114,6 +126,23 @@ fn linkages_far_away_start_and_step() {
             let mut run = run.and_then(|run| run.with_shift_from(1.0)).unwrap_or_else(|failure| panic!("{failure}"));
             assert!((0..10).all(|_| run.step().is_ok()), "{place} {q:?} {v:?}");
         }
+    }
+}
+
+#[test]
+fn linkages_far_along_one_axis_step() {
+    let mut next = numbers();
+    for place in [1e4, 1e6] {
+        let system = FarRod { X: place, ..FarRod::default() };
+        let counts = started(&system, (0.0, [place + 0.5, 0.5], 0.1), &mut next);
+        println!("rod {place:e}: {counts:?}");
+        assert_eq!(counts, [100; 3], "{place}");
+    }
+    for (place, h) in [(0.0, 0.1), (1e3, 0.1), (1e4, 0.1), (1e6, 0.01)] {
+        let system = FourBars { X: place };
+        let counts = started(&system, (0.0, [place, 1.0, place + 2.0, 1.5], h), &mut next);
+        println!("four bars {place:e}: {counts:?}");
+        assert!(counts.into_iter().all(|count| count >= 98), "{place}: {counts:?}");
     }
 }
 
