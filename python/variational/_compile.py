@@ -159,7 +159,15 @@ def _without_comments(definition: str) -> str:
     return re.sub(r"//[^\n]*|/\*.*?\*/", "", definition, flags=re.DOTALL)
 
 
-_MOST_STAGES = {"fixed": 0, "compositions": 0, "splitting": 0, "energy": 3, "gauss": 16, "gauss-lobatto": 16, "transformed": 16}
+_MOST_STAGES = {
+    "fixed": 0,
+    "compositions": 0,
+    "splitting": 0,
+    "energy": 3,
+    "gauss": 16,
+    "gauss-lobatto": 16,
+    "transformed": 16,
+}
 
 
 def _methods(methods: str | None, code: str) -> str:
@@ -180,10 +188,13 @@ def _methods(methods: str | None, code: str) -> str:
         stages = [stage.strip() for stage in rest.split(",")] if rest.strip() else []
         most = _MOST_STAGES.get(word)
         if most is None:
-            split = " (splitting has splitting-4 and splitting-6)" if word.startswith("splitting") else ""
-            composed = split or (" (compositions has suzuki-4, kahan-li-6 and kahan-li-8)" if "-" in word else "")
+            several = ""
+            if word.startswith("splitting"):
+                several = " (splitting has splitting-4 and splitting-6)"
+            elif "-" in word:
+                several = " (compositions has suzuki-4, kahan-li-6 and kahan-li-8)"
             raise CompileError(
-                f"there is no method {word!r}{composed}: "
+                f"there is no method {word!r}{several}: "
                 "write fixed, compositions, splitting, gauss 8, transformed 8, energy, energy 2, gauss-lobatto 3"
             )
         if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):

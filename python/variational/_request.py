@@ -57,6 +57,8 @@ def checked(
         close = meant(method, cls._methods) if isinstance(method, str) else ""
         more = "" if getattr(cls, "_source", None) is None else ". The argument methods of compile builds others"
         why = ", and has constraints, which other methods do not keep" if cls.constraints else ""
+        if method in ("splitting-4", "splitting-6") and not cls.constraints:
+            why = "; a splitting needs a constant mass matrix and forces without velocities"
         raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}{why}{more}")
     if method != "energy" and (shift is not None or shift_from is not None or fallback):
         raise ValueError('shift, shift_from and fallback are options of method="energy"')

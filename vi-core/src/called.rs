@@ -4,6 +4,8 @@
 //! each function once, which makes integrators smaller. Cold paths of every integrator use it. Use it also if build
 //! time matters more than speed: it builds several times faster and steps several times slower.
 
+use crate::lagrangian::Parameters;
+use crate::real::Real;
 use core::ops::{Deref, DerefMut};
 
 /// A system whose functions are not inlined: `Called(system).at(t, q, v).integrate(Gauss::<3>, h)` builds faster, and
@@ -14,36 +16,36 @@ use core::ops::{Deref, DerefMut};
 #[derive(Clone, Copy, Debug)]
 pub struct Called<S>(pub S);
 
-impl<S> Deref for Called<S> {
-    type Target = S;
-
-    fn deref(&self) -> &S {
-        &self.0
-    }
-}
-
-impl<S> DerefMut for Called<S> {
-    fn deref_mut(&mut self) -> &mut S {
-        &mut self.0
-    }
-}
-
 /// A system of generic code, presumed [`Separable`](crate::collocation::Separable):
 /// `Presumed(system).at(t, q, v).integrate(Splitting::BLANES_MOAN_6, h)` checks
 /// [`Collocation::SEPARABLE`](crate::collocation::Collocation::SEPARABLE) when a run begins. Its functions are inlined.
 #[derive(Clone, Copy, Debug)]
 pub struct Presumed<S>(pub S);
 
-impl<S> Deref for Presumed<S> {
-    type Target = S;
+/// Gives access to the system inside, and to its parameters.
+macro_rules! transparent {
+    ($wrapper:ident) => {
+        impl<S> Deref for $wrapper<S> {
+            type Target = S;
 
-    fn deref(&self) -> &S {
-        &self.0
-    }
+            fn deref(&self) -> &S {
+                &self.0
+            }
+        }
+
+        impl<S> DerefMut for $wrapper<S> {
+            fn deref_mut(&mut self) -> &mut S {
+                &mut self.0
+            }
+        }
+
+        impl<T: Real, S: Parameters<T>> Parameters<T> for $wrapper<S> {
+            fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
+                self.0.parameter_mut(name)
+            }
+        }
+    };
 }
 
-impl<S> DerefMut for Presumed<S> {
-    fn deref_mut(&mut self) -> &mut S {
-        &mut self.0
-    }
-}
+transparent!(Called);
+transparent!(Presumed);

@@ -79,18 +79,6 @@ impl<T: Real, S: Parameters<T>, R: Rule> Parameters<T> for By<S, R> {
     }
 }
 
-impl<T: Real, S: Parameters<T>> Parameters<T> for Called<S> {
-    fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
-        self.0.parameter_mut(name)
-    }
-}
-
-impl<T: Real, S: Parameters<T>> Parameters<T> for Presumed<S> {
-    fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
-        self.0.parameter_mut(name)
-    }
-}
-
 impl<const N: usize, T: Real, S: TimeScale<N, T>> TimeScale<N, T> for &S {}
 
 impl<const N: usize, T: Real, S: TimeScale<N, T>, R: Rule> TimeScale<N, T> for By<S, R> {}

@@ -104,8 +104,7 @@ impl<const N: usize, T: Real> Node<N, T> {
     /// Advances by the step `(v, h)`, which adds `increment` to p; the energy stays.
     #[inline(always)]
     pub fn advance(&mut self, h: T, v: &SVector<T, N>, increment: &SVector<T, N>) {
-        self.shift(h, v);
-        compensated::add_vector(&mut self.p, &mut self.p_low, increment);
+        self.advance_by(h, &(v * h), increment);
     }
 
     /// Adds to the momenta.

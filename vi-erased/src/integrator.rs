@@ -1,8 +1,8 @@
 //! Integrators that are built for a system.
 //!
-//! In: the type of a system. Out: for each method an [`Integrator`], which starts its runs. Gauss and fixed steps are
-//! optimised for the system, and so are kicks and drifts; the others take [`Called`] systems, which build in a third of the time and differ by
-//! rounding.
+//! In: the type of a system. Out: for each method an [`Integrator`], which starts its runs. Fixed, Gauss and
+//! Gauss–Lobatto steps, kicks and drifts are optimised for the system; the others take [`Called`] systems, which build
+//! in a third of the time and differ by rounding.
 
 use crate::mechanics::{Unconstrained, WithConstraints};
 use crate::plan::{Built, Method, Plan, Shift, Start};
@@ -11,6 +11,7 @@ use crate::simulation::{
     at_constraints, erased, erased_with,
 };
 use crate::start;
+use core::convert::identity;
 use core::marker::PhantomData;
 use vi_core::collocation::Collocation;
 use vi_core::method::{Controlled, Shiftable};
@@ -69,15 +70,22 @@ macro_rules! integrator {
     };
 }
 
+/// An integrator whose runs begin with a plan's step length.
+macro_rules! by_length {
+    ($kind:expr, $stages:expr, $system:expr, $method:expr) => {
+        integrator!(($kind, $stages, false), $system, $method, |system: S, plan: &Plan, state: State<N>| {
+            Ok(erased($system(system).at_state(state).integrate($method, plan.length())?))
+        })
+    };
+}
+
 /// Fixed steps of order 2.
 #[must_use]
 pub fn fixed<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Integrator<S, N>
 where
     FixedStep: Erasable<S, N>,
 {
-    integrator!((Method::Fixed, None, false), |system| system, FixedStep, |system: S, plan: &Plan, state: State<N>| {
-        Ok(erased(system.at_state(state).integrate(FixedStep, plan.length())?))
-    })
+    by_length!(Method::Fixed, None, identity, FixedStep)
 }
 
 /// Fixed steps of order 2, and their compositions of order 4, 6, 8.
@@ -87,18 +95,11 @@ where
     FixedStep: Erasable<S, N>,
     Composition: Erasable<S, N>,
 {
-    macro_rules! composed {
-        ($kind:expr, $scheme:expr) => {
-            integrator!(($kind, None, false), |system| system, $scheme, |system: S, plan: &Plan, state: State<N>| {
-                Ok(erased(system.at_state(state).integrate($scheme, plan.length())?))
-            })
-        };
-    }
     vec![
         fixed(),
-        composed!(Method::Suzuki4, Composition::SUZUKI_4),
-        composed!(Method::KahanLi6, Composition::KAHAN_LI_6),
-        composed!(Method::KahanLi8, Composition::KAHAN_LI_8),
+        by_length!(Method::Suzuki4, None, identity, Composition::SUZUKI_4),
+        by_length!(Method::KahanLi6, None, identity, Composition::KAHAN_LI_6),
+        by_length!(Method::KahanLi8, None, identity, Composition::KAHAN_LI_8),
     ]
 }
 
@@ -109,17 +110,13 @@ where
     Presumed<S>: Runnable<N>,
     Splitting: Erasable<Presumed<S>, N>,
 {
-    macro_rules! split {
-        ($kind:expr, $scheme:expr) => {
-            integrator!(($kind, None, false), Presumed, $scheme, |system: S, plan: &Plan, state: State<N>| {
-                Ok(erased(Presumed(system).at_state(state).integrate($scheme, plan.length())?))
-            })
-        };
-    }
     if const { !<S as Collocation<N>>::SEPARABLE } {
         return Vec::new();
     }
-    vec![split!(Method::Splitting4, Splitting::BLANES_MOAN_4), split!(Method::Splitting6, Splitting::BLANES_MOAN_6)]
+    vec![
+        by_length!(Method::Splitting4, None, Presumed, Splitting::BLANES_MOAN_4),
+        by_length!(Method::Splitting6, None, Presumed, Splitting::BLANES_MOAN_6),
+    ]
 }
 
 /// Gauss steps of the given number of stages.
@@ -128,14 +125,7 @@ pub fn gauss<S: Runnable<N>, const N: usize, const STAGES: usize>() -> Integrato
 where
     Gauss<STAGES>: Erasable<S, N>,
 {
-    integrator!(
-        (Method::Gauss, Some(STAGES), false),
-        |system| system,
-        Gauss::<STAGES>,
-        |system: S, plan: &Plan, state: State<N>| {
-            Ok(erased(system.at_state(state).integrate(Gauss::<STAGES>, plan.length())?))
-        }
-    )
+    by_length!(Method::Gauss, Some(STAGES), identity, Gauss::<STAGES>)
 }
 
 /// Gauss steps in transformed time.
@@ -165,24 +155,19 @@ pub fn energy<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Integrato
 where
     EnergyPreserving: Erasable<S, N, Memory: Controlled<f64>>,
 {
-    integrator!(
-        (Method::Energy, None, false),
-        |system| system,
-        EnergyPreserving,
-        |system: S, plan: &Plan, state: State<N>| {
-            let h = plan.length().length(&system.at_state(state), &EnergyPreserving)?;
-            let State { t, q, .. } = state;
-            let v = || state.velocity(&system);
-            let run = match plan.start {
-                Start::State => system.at_state(state).integrate(EnergyPreserving, h)?,
-                Start::Midpoint => EnergyPreserving::from_midpoint(system, t, q, v()?, h)?,
-                Start::Points => {
-                    EnergyPreserving::from_points(system, (t, q), start::second_point(&system, t, q, v()?, h)?)?
-                }
-            };
-            Ok(erased(run.with_fallback(fallback(plan))))
-        }
-    )
+    integrator!((Method::Energy, None, false), identity, EnergyPreserving, |system: S, plan: &Plan, state: State<N>| {
+        let h = plan.length().length(&system.at_state(state), &EnergyPreserving)?;
+        let State { t, q, .. } = state;
+        let v = || state.velocity(&system);
+        let run = match plan.start {
+            Start::State => system.at_state(state).integrate(EnergyPreserving, h)?,
+            Start::Midpoint => EnergyPreserving::from_midpoint(system, t, q, v()?, h)?,
+            Start::Points => {
+                EnergyPreserving::from_points(system, (t, q), start::second_point(&system, t, q, v()?, h)?)?
+            }
+        };
+        Ok(erased(run.with_fallback(fallback(plan))))
+    })
 }
 
 /// Energy-preserving Gauss steps of the given number of stages.
@@ -228,7 +213,7 @@ where
 {
     integrator!(
         (Method::Energy, Some(STAGES), false),
-        |system| system,
+        identity,
         EnergyPreservingGaussLobatto::<STAGES>,
         |system: S, plan: &Plan, state: State<N>| {
             shifted(system.at_state(state).integrate(EnergyPreservingGaussLobatto::<STAGES>, plan.length())?, plan)
@@ -243,13 +228,7 @@ where
     S: RunnableWithConstraints<N>,
     GaussLobatto<STAGES>: Erasable<S, N>,
 {
-    integrator!((Method::GaussLobatto, Some(STAGES), false), |system| system, GaussLobatto::<STAGES>, |system: S,
-                                                                                                       plan: &Plan,
-                                                                                                       state: State<
-        N,
-    >| {
-        Ok(erased(system.at_state(state).integrate(GaussLobatto::<STAGES>, plan.length())?))
-    })
+    by_length!(Method::GaussLobatto, Some(STAGES), identity, GaussLobatto::<STAGES>)
 }
 
 /// The action if there is no energy-preserving step.

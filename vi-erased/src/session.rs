@@ -181,6 +181,15 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
         self.count();
         Ok(is_there)
     }
+
+    /// Continues as a run with other parameters or at another state.
+    fn continue_as(&mut self, run: Run<M, S, N>) {
+        // An unfinished window of measurement belongs to the system and the steps of before.
+        self.resume();
+        self.run = run;
+        // The next window begins here.
+        self.resume();
+    }
 }
 
 impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<M, S, N> {
@@ -199,9 +208,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
     fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {
         let mut run = self.run.clone();
         run.set_parameters(|system| assign(system, change))?;
-        // What is measured belongs to the system of before.
-        self.resume();
-        self.run = run;
+        self.continue_as(run);
         #[cfg(feature = "derivatives")]
         {
             self.start = None;
@@ -210,8 +217,9 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
     }
 
     fn set_state(&mut self, change: &[(usize, f64)], (t, q, p): (f64, &[f64], &[f64])) -> Result<(), StepError> {
-        self.run.set_parameters_and_state(|system| assign(system, change), state(t, q, p)?)?;
-        self.resume();
+        let mut run = self.run.clone();
+        run.set_parameters_and_state(|system| assign(system, change), state(t, q, p)?)?;
+        self.continue_as(run);
         #[cfg(feature = "derivatives")]
         {
             self.start = None;

@@ -45,13 +45,6 @@ impl Request {
         if built.contains(&wanted) {
             return Ok(plan);
         }
-        if method.splitting().is_some() {
-            return Err(wrong(format!(
-                "{} has no integrator {}: it needs a constant mass matrix, forces that depend on no velocity, and methods=\"splitting\" in compile",
-                system.name(),
-                name(wanted)
-            )));
-        }
         let names: Vec<_> = built.into_iter().filter(|of| of.0 == method).map(name).collect();
         Err(wrong(format!(
             "{} has no integrator {}; it has {}. The argument methods of compile builds others",

@@ -279,6 +279,20 @@ fn force_at<S: Collocation<N, T>, const N: usize, T: Real>(system: &S, node: &No
     system.point(node.t, &node.q, &SVector::zeros()).force
 }
 
+/// The error of a force that is not finite.
+fn no_force(t: impl Real) -> StepError {
+    StepError::NonFinite { t: t.to_f64(), quantity: "force", expression: None }
+}
+
+/// Checks that a force is finite.
+///
+/// # Errors
+/// [`StepError::NonFinite`].
+fn checked<const N: usize, T: Scalar>(force: &SVector<T, N>, t: T) -> Result<(), StepError> {
+    let is_finite = force.iter().all(|entry| entry.is_finite());
+    if is_finite { Ok(()) } else { Err(no_force(t)) }
+}
+
 /// One step from a node over any numbers.
 pub(crate) fn step<S: Collocation<N, T>, const N: usize, T: Real>(
     scheme: &Splitting,
@@ -343,14 +357,8 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
     fn begin(&self, system: &S, node: &mut Node<N, T>, _h: T) -> Result<Kicked<N, T>, StepError> {
         node.state().velocity(system)?;
         let force = if self.begins_with_kick() { force_at(system, node) } else { SVector::zeros() };
-        let is_finite = force.iter().all(|entry| entry.is_finite());
-        let (t, quantity) = (node.t.to_f64(), "force");
-        let fingerprint = self.fingerprint();
-        if is_finite {
-            Ok(Kicked { force, fingerprint })
-        } else {
-            Err(StepError::NonFinite { t, quantity, expression: None })
-        }
+        checked(&force, node.t)?;
+        Ok(Kicked { force, fingerprint: self.fingerprint() })
     }
 
     #[inline(always)]
@@ -386,7 +394,7 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
         (): &mut (),
         (): (),
     ) -> Result<Split<N, T>, StepError> {
-        Err(StepError::NonFinite { t: at.node.t.to_f64(), quantity: "force", expression: None })
+        Err(no_force(at.node.t))
     }
 
     #[inline(always)]
@@ -436,8 +444,6 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
             let (input, allowed) = ("the weights of a checkpoint", "those of the splitting of the restarted run");
             return Err(StepError::InvalidInput { input, allowed, value: memory.fingerprint });
         }
-        let is_finite = memory.force.iter().all(|entry| entry.is_finite());
-        let t = t.to_f64();
-        if is_finite { Ok(()) } else { Err(StepError::NonFinite { t, quantity: "force", expression: None }) }
+        checked(&memory.force, t)
     }
 }
