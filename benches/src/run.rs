@@ -54,6 +54,8 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Stepper for vi_co
         taken(vi_core::Run::step(self));
     }
 
+    // A call with the address of the run would keep it in memory.
+    #[inline(always)]
     fn state(&self) -> Vec<f64> {
         flat(vi_core::Run::state(self))
     }

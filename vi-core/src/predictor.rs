@@ -12,7 +12,8 @@
 //! [`Predictor::restart`] selects the degree that would have been the best.
 
 use crate::real::{Real, Scalar};
-use crate::vector::length_squared;
+use crate::vector::{Vector, length_squared};
+use core::hint::black_box;
 use nalgebra::SVector;
 
 /// Highest degree of the polynomial.
@@ -66,9 +67,13 @@ impl<const M: usize, T: Real> Predictor<M, T> {
         Self { last: [guess; HIGHEST + 1], degree: 0 }
     }
 
-    /// Passes every number through `convert`.
-    pub(crate) fn map(self, convert: impl Fn(T) -> T + Copy) -> Self {
-        Self { last: self.last.map(|u| u.map(convert)), degree: self.degree }
+    /// A copy number by number, as [`Node::apart`](crate::node::Node::apart).
+    #[inline(always)]
+    pub(crate) fn apart(&self) -> Self {
+        let copy = |u| Vector::map(u, black_box);
+        let [u0, u1, u2, u3, u4, u5, u6] = &self.last;
+        let last = [copy(u0), copy(u1), copy(u2), copy(u3), copy(u4), copy(u5), copy(u6)];
+        Self { last, degree: black_box(self.degree) }
     }
 
     /// The unknowns of the last step.

@@ -48,6 +48,12 @@ impl<const N: usize, T: Scalar> Controlled<T> for Lengths<N, T> {
 }
 
 impl<const N: usize, T: Scalar> Memory for Lengths<N, T> {
+    // Inlined: a call with its address would keep it in memory.
+    #[inline(always)]
+    fn apart(&self) -> Self {
+        *self
+    }
+
     fn stored(&self) -> Self {
         let mut stored = *self;
         // The change of v only extrapolates it; without a finite one the guess skips it.

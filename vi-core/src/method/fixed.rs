@@ -66,7 +66,7 @@ pub struct Velocities<const N: usize, T = f64> {
 impl<const N: usize, T: Scalar> Memory for Velocities<N, T> {
     #[inline(always)]
     fn apart(&self) -> Self {
-        Self { steps: self.steps.map(black_box), iterations: self.iterations }
+        Self { steps: self.steps.apart(), iterations: black_box(self.iterations) }
     }
 }
 

@@ -81,7 +81,8 @@ impl<S, P, const N: usize, T: Copy> Copy for Problem<'_, S, P, N, T> {}
 pub trait Memory: Clone + Debug + Send + Sync {
     /// A copy that shares no memory with this one.
     ///
-    /// A small memory passes each number through `black_box`, so that a loop over steps keeps its own numbers in registers. A large one is cloned.
+    /// A small memory passes each number through `black_box`, so that a loop over steps keeps its own numbers in
+    /// registers. A large one is cloned.
     #[must_use]
     fn apart(&self) -> Self {
         self.clone()

@@ -9,7 +9,7 @@
 //! correct    v = v0 − A⁻¹ r(v0)                A = ∂r/∂v at v0; if A is constant, its inverse is computed once per run
 //! evaluate   r(v) and p1 − p0, by one evaluation at v
 //! accept     if each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its terms
-//! otherwise  two more corrections, each checked; then Newton iteration to the rounding floor (`newton`)
+//! otherwise  two more corrections with the same A, each checked; then Newton iteration to the rounding floor (`newton`)
 //! ```
 //!
 //! The acceptance test is off the critical path: the next step needs v only, so that both overlap.
@@ -28,6 +28,8 @@ use crate::node::Node;
 use crate::predictor::Predictor;
 use crate::real::{Real, Scalar};
 use crate::stepping::{FixedStepping, MomentumResidual};
+use crate::vector::Vector;
+use core::hint::black_box;
 use nalgebra::SVector;
 
 /// Most corrections of a guess.
@@ -145,16 +147,18 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         Self { h, predictor, remainder: SVector::zeros(), measured, begun: false, changed: false }
     }
 
-    /// Passes every number through `convert`.
-    pub(crate) fn map(self, convert: impl Fn(T) -> T + Copy) -> Self {
-        let StepResidual { residual, scale } = self.measured;
+    /// A copy number by number, as [`Node::apart`].
+    #[inline(always)]
+    pub(crate) fn apart(&self) -> Self {
+        let copy = |u| Vector::map(u, black_box);
+        let StepResidual { residual, scale } = &self.measured;
         Self {
-            h: convert(self.h),
-            predictor: self.predictor.map(convert),
-            remainder: self.remainder.map(convert),
-            measured: StepResidual { residual: residual.map(convert), scale: scale.map(convert) },
-            begun: self.begun,
-            changed: self.changed,
+            h: black_box(self.h),
+            predictor: self.predictor.apart(),
+            remainder: copy(&self.remainder),
+            measured: StepResidual { residual: copy(residual), scale: copy(scale) },
+            begun: black_box(self.begun),
+            changed: black_box(self.changed),
         }
     }
 
@@ -221,7 +225,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         self.predictor.guess()
     }
 
-    /// The step from `node` by corrections of v; `None` after three without convergence.
+    /// The step from `node` by corrections of v with A at the guess; `None` after three without convergence.
     #[inline(always)]
     pub(crate) fn corrected<S: FixedStepping<N, T>>(
         &self,
@@ -232,28 +236,37 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     ) -> Option<MomentumStep<N, T>> {
         // A known variant, for the optimizer.
         let corrector = if S::CONSTANT_JACOBIAN { corrector } else { &Corrector::Newton };
+        let equation = if S::INLINED {
+            // It waits for the node, but not for its low parts: the residual at the corrected v has them. -0 and 0 are
+            // what the optimizer drops from a sum and from a difference.
+            let rounded = Node { q_low: SVector::repeat(-T::zero()), p_low: SVector::zeros(), ..*node };
+            system.momentum_equation(&rounded, self.h, &v)
+        } else {
+            system.momentum_equation(node, self.h, &v)
+        };
+        let mut left = equation.residual + self.remainder;
         for iterations in 1..=CORRECTIONS {
-            let solved = self.corrected_once(system, node, corrector, &mut v, iterations);
+            v -= corrector.correction(&equation.jacobian, &left);
+            let at = system.momentum_residual(node, self.h, &v);
+            let solved = self.accepted::<S>(node, &v, &at, iterations);
             if solved.is_some() {
                 return solved;
             }
+            left = at.residual + self.remainder;
         }
         None
     }
 
-    /// The step from `node` after one correction of v, if its residual is then at the floor.
+    /// The step with this v, if its residual is at the floor.
     #[inline(always)]
-    fn corrected_once<S: FixedStepping<N, T>>(
+    fn accepted<S: FixedStepping<N, T>>(
         &self,
-        system: &S,
         node: &Node<N, T>,
-        corrector: &Corrector<S::Jacobian, N, T>,
-        v: &mut SVector<T, N>,
+        v: &SVector<T, N>,
+        at: &MomentumResidual<N, T>,
         iterations: u32,
     ) -> Option<MomentumStep<N, T>> {
-        let equation = system.momentum_equation(node, self.h, v);
-        *v -= corrector.correction(&equation.jacobian, &(equation.residual + self.remainder));
-        let MomentumResidual { residual, scale, increment } = system.momentum_residual(node, self.h, v);
+        let MomentumResidual { residual, scale, increment } = *at;
         // Long functions have computed the scales of their terms. Short ones are inlined and compute them on request,
         // if momenta vanish but their terms do not.
         let first = if S::INLINED { momentum_scale(node, &increment) } else { scale };

@@ -44,7 +44,6 @@ use crate::method::{Memory, Method, Problem};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
 use crate::state::{Numbers, State};
-use core::hint::black_box;
 use nalgebra::SVector;
 
 /// A system at a state, the start of any number of runs.
@@ -134,9 +133,9 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             // Values, not references: one escaping field address keeps the whole run in memory (double well: 29 ns a
             // step instead of 23).
             let problem = (self.method.clone(), self.system, self.prepared.clone(), self.h);
-            let before = (node.map(black_box), memory.apart(), core::mem::take(&mut self.cache), self.failure);
+            let before = (node.apart(), memory.apart(), core::mem::take(&mut self.cache), self.failure);
             let (node, memory, cache, failure) = cold_step(problem, before, left);
-            self.node = node.map(black_box);
+            self.node = node.apart();
             self.memory = memory.apart();
             self.cache = cache;
             self.failure = failure;
