@@ -9,7 +9,7 @@
 //! correct    v = v0 − A⁻¹ r(v0)                A = ∂r/∂v at v0; if A is constant, its inverse is computed once per run
 //! evaluate   r(v) and p1 − p0, by one evaluation at v
 //! accept     if each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its terms
-//! otherwise  two more corrections with the same A, each checked; then Newton iteration to the rounding floor (`newton`)
+//! otherwise  one more correction with the same A and one with a new one, each checked; then Newton iteration to the rounding floor (`newton`)
 //! ```
 //!
 //! The acceptance test is off the critical path: the next step needs v only, so that both overlap.
@@ -27,13 +27,15 @@ use crate::newton::{are_at_floor, worst};
 use crate::node::Node;
 use crate::predictor::Predictor;
 use crate::real::{Real, Scalar};
-use crate::stepping::{FixedStepping, MomentumResidual};
+use crate::stepping::{FixedStepping, MomentumEquation, MomentumResidual};
 use crate::vector::Vector;
 use core::hint::black_box;
 use nalgebra::SVector;
 
 /// Most corrections of a guess.
 const CORRECTIONS: u32 = 3;
+/// Corrections with A at the guess; the others have A after these.
+const WITH_FIRST: u32 = 2;
 /// Accepted residual of a row including its carried remainder, in roundings.
 const REMAINING: f64 = 2.0;
 
@@ -225,7 +227,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         self.predictor.guess()
     }
 
-    /// The step from `node` by corrections of v with A at the guess; `None` after three without convergence.
+    /// The step from `node` by corrections of v; `None` after three without convergence.
     #[inline(always)]
     pub(crate) fn corrected<S: FixedStepping<N, T>>(
         &self,
@@ -236,15 +238,9 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     ) -> Option<MomentumStep<N, T>> {
         // A known variant, for the optimizer.
         let corrector = if S::CONSTANT_JACOBIAN { corrector } else { &Corrector::Newton };
-        let equation = if S::INLINED {
-            // It waits for the node, but not for its low parts: the residual at the corrected v has them. -0 and 0 are
-            // what the optimizer drops from a sum and from a difference.
-            let rounded = Node { q_low: SVector::repeat(-T::zero()), p_low: SVector::zeros(), ..*node };
-            system.momentum_equation(&rounded, self.h, &v)
-        } else {
-            system.momentum_equation(node, self.h, &v)
-        };
-        let mut left = equation.residual + self.remainder;
+        let mut equation = self.equation(system, node, &v);
+        let carried = if S::INLINED { self.remainder - node.p_low } else { self.remainder };
+        let mut left = equation.residual + carried;
         for iterations in 1..=CORRECTIONS {
             v -= corrector.correction(&equation.jacobian, &left);
             let at = system.momentum_residual(node, self.h, &v);
@@ -253,8 +249,30 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
                 return solved;
             }
             left = at.residual + self.remainder;
+            if iterations == WITH_FIRST {
+                equation = self.equation(system, node, &v);
+            }
         }
         None
+    }
+
+    /// The equation at a trial velocity; of short functions without the low part of p, which is subtracted from the
+    /// remainder, and without that of q.
+    #[inline(always)]
+    fn equation<S: FixedStepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        v: &SVector<T, N>,
+    ) -> MomentumEquation<N, T, S::Jacobian> {
+        if !S::INLINED {
+            return system.momentum_equation(node, self.h, v);
+        }
+        // The equation waits for the node, whose low parts are known last. The low part of q is missing in the guess
+        // alone: the residual at the corrected v has it. -0 and 0 are what the optimizer drops from a sum and from a
+        // difference.
+        let rounded = Node { q_low: SVector::repeat(-T::zero()), p_low: SVector::zeros(), ..*node };
+        system.momentum_equation(&rounded, self.h, v)
     }
 
     /// The step with this v, if its residual is at the floor.
