@@ -118,8 +118,9 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         if is_huge && residual().is_nan() { f64::NAN } else { change }
     }
 
-    /// The stages in scalar numbers. Not inlined: one copy serves all systems of N coordinates.
-    #[inline(never)]
+    /// The stages in scalar numbers. Cold, so that one copy serves all systems of N coordinates. `inline(never)` would do
+    /// that too, but a crate then takes the copy of a dependency, even one that is not optimized.
+    #[cold]
     pub(crate) fn in_scalars(
         &self,
         system: &ErasedSystem<'_, N>,
