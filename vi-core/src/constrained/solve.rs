@@ -138,7 +138,8 @@ where
                 workspace.move_to_trial(u, 1.0);
                 core::mem::swap(u, &mut workspace.trial);
                 at = rows(u);
-                residual = bounded::<S, N, STAGES>(system, node, h, u);
+                // An error names the smallest one, never NaN.
+                residual = residual.min(bounded::<S, N, STAGES>(system, node, h, u));
                 has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
             }
             // False for NaN.
