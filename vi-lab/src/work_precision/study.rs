@@ -16,7 +16,7 @@ use vi_runs::system::System;
 /// Number of default steps in the runs for errors.
 const STEPS: f64 = 4000.0;
 /// The ladder of steps extends from this number of doublings of the default step to [`finest`].
-const COARSEST: i32 = 3;
+const COARSEST: i32 = 4;
 /// Number of timed repetitions.
 const ROUNDS: u32 = 7;
 /// Tolerances of DOP853, as powers of √10; each changes the steps by a seventh.
