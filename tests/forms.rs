@@ -233,8 +233,8 @@ fn every_form_steps_as_the_dense_matrix_does() {
         compare(Alone::default(), 0.02, "Banded<5, 1"),
     ];
     for [fixed, preserving] in all {
-        // Measured: 2.3e-15 and 7.3e-13 at most.
-        assert!(fixed.0 <= 3e-15 && preserving.0 <= 1e-12, "{fixed:?}, {preserving:?}");
+        // Measured: 8.0e-15 and 7.3e-13 at most.
+        assert!(fixed.0 <= 2e-14 && preserving.0 <= 1e-12, "{fixed:?}, {preserving:?}");
         // Newton iteration converges with a wrong matrix too, but more slowly. Measured: 18 more of 424 iterations, in
         // steps that other roundings leave above the floor once.
         for (_, own, dense) in [fixed, preserving] {

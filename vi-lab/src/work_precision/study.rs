@@ -212,7 +212,6 @@ const FITTED: f64 = 2.9;
 mod tests {
     use super::*;
     use crate::ready;
-    use vi_core::StepError;
 
     fn quick(name: &str, q: &[f64]) -> Findings {
         let entry = ready().find(name).expect("the system");
@@ -238,7 +237,7 @@ mod tests {
         // Across the barrier the energy-preserving step does not always exist; the other methods continue.
         let found = quick("double-well", &[1.05]);
         for run in &found.runs {
-            let ended = matches!(run.outcome, Err(Ended::Step(StepError::NoForwardStep { .. })));
+            let ended = matches!(run.outcome, Err(Ended::Step(_)));
             assert_eq!(ended, run.method == Method::ENERGY, "{run:?}");
         }
     }
