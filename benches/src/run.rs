@@ -55,6 +55,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Stepper for vi_co
     }
 
     // A call with the address of the run would keep it in memory.
+    #[allow(clippy::inline_always)]
     #[inline(always)]
     fn state(&self) -> Vec<f64> {
         flat(vi_core::Run::state(self))
