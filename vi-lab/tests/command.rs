@@ -924,12 +924,12 @@ fn every_method_is_compared_and_early_ends_have_a_reason() {
     for method in methods {
         let of: Vec<&str> = runs.lines().filter(|line| line.starts_with(method)).collect();
         let ended = of.iter().filter(|line| line.contains("no energy-preserving step exists past")).count();
-        assert!(of.len() >= 9, "{method}: {} runs", of.len());
+        assert!(of.len() >= 11, "{method}: {} runs", of.len());
         assert_eq!(ended, if method == "energy-preserving" { of.len() } else { 0 }, "{method}");
     }
     let page = fs::read_to_string(out.join("index.html")).expect("the page");
     let diagnostic =
-        "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step exists past t = ";
+        "All 11 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step exists past t = ";
     assert!(
         page.contains(diagnostic) && page.contains("(debug build") | page.contains("(release build"),
         "the page says so"
