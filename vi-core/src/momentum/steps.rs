@@ -249,7 +249,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
                 return solved;
             }
             left = at.residual + self.remainder;
-            if iterations == WITH_FIRST {
+            if iterations == WITH_FIRST && !S::CONSTANT_JACOBIAN {
                 equation = self.equation(system, node, &v);
             }
         }
