@@ -189,6 +189,10 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
         self.run = run;
         // The next window begins here.
         self.resume();
+        #[cfg(feature = "derivatives")]
+        {
+            self.start = None;
+        }
     }
 }
 
@@ -209,10 +213,6 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
         let mut run = self.run.clone();
         run.set_parameters(|system| assign(system, change))?;
         self.continue_as(run);
-        #[cfg(feature = "derivatives")]
-        {
-            self.start = None;
-        }
         Ok(())
     }
 
@@ -220,10 +220,6 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
         let mut run = self.run.clone();
         run.set_parameters_and_state(|system| assign(system, change), state(t, q, p)?)?;
         self.continue_as(run);
-        #[cfg(feature = "derivatives")]
-        {
-            self.start = None;
-        }
         Ok(())
     }
 
