@@ -142,7 +142,9 @@ fn linkages_far_along_one_axis_step() {
         let system = FourBars { X: place };
         let counts = started(&system, (0.0, [place, 1.0, place + 2.0, 1.5], h), &mut next);
         println!("four bars {place:e}: {counts:?}");
-        assert!(counts.into_iter().all(|count| count >= 98), "{place}: {counts:?}");
+        // Measured: 98 at 1e6, otherwise all.
+        let least = if place < 1e6 { 100 } else { 98 };
+        assert!(counts.into_iter().all(|count| count >= least), "{place}: {counts:?}");
     }
 }
 
