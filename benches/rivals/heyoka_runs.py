@@ -89,18 +89,21 @@ def fpu_chain():
     return Problem([f"q{i}" for i in range(n)], acceleration, lowest + lowest[::-1], [0.0] * n, 0.1)
 
 
+MASSES = [1.00000597682, 0.000954786104043, 0.000285583733151, 0.0000437273164546, 0.0000517759138449, 1 / 1.3e8]
+GRAVITY = 2.95912208286e-4
+
+
 def outer_solar_system():
-    masses = [1.00000597682, 0.000954786104043, 0.000285583733151, 0.0000437273164546, 0.0000517759138449, 1 / 1.3e8]
     q = [0.0, -3.5023653, 9.0755314, 8.3101420, 11.4707666, -15.5387357]
     q += [0.0, -3.8169847, -3.0458353, -16.2901086, -25.7294829, -25.2225594]
     q += [0.0, -1.5507963, -1.6483708, -7.2521278, -10.8169456, -3.1902382]
     v = [0.0, 0.00565429, 0.00168318, 0.00354178, 0.00288930, 0.00276725]
     v += [0.0, -0.00412490, 0.00483525, 0.00137102, 0.00114527, -0.00170702]
     v += [0.0, -0.00190589, 0.00192462, 0.00055029, 0.00039677, -0.00136504]
-    equations = hy.model.nbody(6, masses=masses, Gconst=2.95912208286e-4)
+    equations = hy.model.nbody(6, masses=MASSES, Gconst=GRAVITY)
     # heyoka holds x, y, z, v_x, v_y, v_z of one body after the other.
     order = [6 * body + axis for axis in range(6) for body in range(6)]
-    weights = np.tile(masses, 3)
+    weights = np.tile(MASSES, 3)
     return Problem(None, None, q, v, 10.0, lambda q, v: weights * v, equations, order)
 
 
@@ -113,16 +116,26 @@ PROBLEMS = {
 }
 
 
+class Reference:
+    """Coordinates and momenta at the end of a problem, and the largest of each on the way."""
+
+    def __init__(self, problem, end):
+        integrator, _ = problem.integrator(1e-19, np.longdouble)
+        self.largest = [0.0, 0.0]
+        for part in range(1, PARTS + 1):
+            integrator.propagate_until(np.longdouble(end) * part / PARTS)
+            self.exact = problem.split(integrator.state)
+            self.largest = [max(old, np.abs(new).max()) for old, new in zip(self.largest, self.exact)]
+
+    def error(self, found):
+        """The error of coordinates and momenta."""
+        parts = zip(found, self.exact, self.largest)
+        return float(max(np.abs(part - exact).max() / largest for part, exact, largest in parts))
+
+
 def run(name):
     problem = PROBLEMS[name]()
-    reference, _ = problem.integrator(1e-19, np.longdouble)
-    largest_q = largest_p = 0.0
-    for part in range(1, PARTS + 1):
-        reference.propagate_until(np.longdouble(problem.end) * part / PARTS)
-        q, p = problem.split(reference.state)
-        largest_q = max(largest_q, np.abs(q).max())
-        largest_p = max(largest_p, np.abs(p).max())
-    exact_q, exact_p = problem.split(reference.state)
+    reference = Reference(problem, problem.end)
     runs = [(tolerance, *problem.integrator(tolerance), []) for tolerance in TOLERANCES]
     for _ in range(REPETITIONS):
         for _, integrator, start, seconds in runs:
@@ -137,8 +150,7 @@ def run(name):
     with open(f"{name}.csv", "w") as out:
         out.write('method,setting,error,evaluations,"seconds, least","seconds, median",ended\n')
         for tolerance, integrator, _, seconds in runs:
-            q, p = problem.split(integrator.state)
-            error = float(max(np.abs(q - exact_q).max() / largest_q, np.abs(p - exact_p).max() / largest_p))
+            error = reference.error(problem.split(integrator.state))
             out.write(f"heyoka,{tolerance:.0e},{error:e},,{min(seconds):.4e},{median(seconds):.4e},\n")
     print(f"{name}.csv: q = {problem.q}, t = {problem.end}")
 

@@ -1,25 +1,23 @@
 """REBOUND, the N-body code of H. Rein, on the outer solar system over a million days.
 
-Out: rows of integrator, setting, microseconds and error. The error is that of `vi-lab work-precision outer-solar-system
---h 250`: the largest difference of a coordinate or a momentum from the reference at the end, relative to the largest
-coordinate, or momentum, on the way. The reference is heyoka in extended precision. The least of seven runs counts.
+Out: rows of integrator, setting, microseconds and error. The error is that of `heyoka_runs.py`, whose reference serves
+here too. The least of seven runs counts.
 """
 
 import time
 
 import numpy as np
 import rebound
-from heyoka_runs import outer_solar_system
+from heyoka_runs import GRAVITY, MASSES, Reference, outer_solar_system
 
 END = 1e6
 REPETITIONS = 7
-PARTS = 256  # of the time, at whose ends the largest numbers are looked for
 
 
-def simulation(problem, masses):
+def simulation(problem):
     sim = rebound.Simulation()
-    sim.G = 2.95912208286e-4
-    for body, mass in enumerate(masses):
+    sim.G = GRAVITY
+    for body, mass in enumerate(MASSES):
         place = [problem.q[6 * axis + body] for axis in range(3)]
         speed = [problem.v[6 * axis + body] for axis in range(3)]
         sim.add(m=mass, x=place[0], y=place[1], z=place[2], vx=speed[0], vy=speed[1], vz=speed[2])
@@ -53,25 +51,19 @@ CASES += [(ias15, epsilon) for epsilon in (1e-5, 1e-7, 1e-9)]
 
 def main():
     problem = outer_solar_system()
-    masses = [1.00000597682, 0.000954786104043, 0.000285583733151, 0.0000437273164546, 0.0000517759138449, 1 / 1.3e8]
-    reference, _ = problem.integrator(1e-19, np.longdouble)
-    largest = np.zeros(2)
-    for part in range(1, PARTS + 1):
-        reference.propagate_until(np.longdouble(END) * part / PARTS)
-        largest = np.maximum(largest, [np.abs(numbers).max() for numbers in problem.split(reference.state)])
-    exact = problem.split(reference.state)
+    reference = Reference(problem, END)
     for case, setting in CASES:
         seconds = []
         for _ in range(REPETITIONS):
-            sim = simulation(problem, masses)
+            sim = simulation(problem)
             case(sim, setting)
             begin = time.perf_counter()
             sim.integrate(END, exact_finish_time=1)
             seconds.append(time.perf_counter() - begin)
         q = np.array([[p.x, p.y, p.z] for p in sim.particles]).T.reshape(-1)
         v = np.array([[p.vx, p.vy, p.vz] for p in sim.particles]).T.reshape(-1)
-        off = [np.abs(found - true).max() for found, true in zip((q, np.tile(masses, 3) * v), exact)]
-        print(f"{case.__name__:8} {setting:8g} {min(seconds) * 1e6:10.0f} µs  {float(max(off / largest)):.1e}")
+        error = reference.error((q, np.tile(MASSES, 3) * v))
+        print(f"{case.__name__:8} {setting:8g} {min(seconds) * 1e6:10.0f} µs  {error:.1e}")
 
 
 if __name__ == "__main__":

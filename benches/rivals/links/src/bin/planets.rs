@@ -3,16 +3,20 @@
 //! The reference is Gauss's method of 12 stages with h = 200.
 
 use std::time::Instant;
+use vi_core::run::Start;
 use vi_core::{Gauss, Method, SVector, Splitting, Starts, State, StepError};
 use vi_systems::OuterSolarSystem;
 
 const END: f64 = 1e6;
 const REPETITIONS: u32 = 7;
 
+fn start() -> Start<OuterSolarSystem, 18> {
+    OuterSolarSystem::default().at(0.0, OuterSolarSystem::POSITIONS, OuterSolarSystem::VELOCITIES)
+}
+
 /// The state at the end, and the largest coordinate and momentum on the way.
 fn end<M: Method<OuterSolarSystem, 18>>(method: M, h: f64) -> Result<(State<18>, [f64; 2]), StepError> {
-    let start = OuterSolarSystem::default().at(0.0, OuterSolarSystem::POSITIONS, OuterSolarSystem::VELOCITIES);
-    let mut run = start.integrate(method, h)?;
+    let mut run = start().integrate(method, h)?;
     let mut largest = [0.0_f64; 2];
     while run.t() < END - 0.5 * h {
         let State { q, p, .. } = run.step()?;
@@ -27,11 +31,10 @@ fn show<M: Method<OuterSolarSystem, 18>>(
     h: f64,
     (exact, largest): &(State<18>, [f64; 2]),
 ) -> Result<(), StepError> {
-    let start = OuterSolarSystem::default().at(0.0, OuterSolarSystem::POSITIONS, OuterSolarSystem::VELOCITIES);
     let mut seconds = f64::INFINITY;
     let mut state = exact.to_owned();
     for _ in 0..REPETITIONS {
-        let mut run = start.integrate(method.clone(), h)?;
+        let mut run = start().integrate(method.clone(), h)?;
         let begin = Instant::now();
         state = run.until(END)?;
         seconds = seconds.min(begin.elapsed().as_secs_f64());
