@@ -23,7 +23,7 @@ use nalgebra::SVector;
 const ITERATIONS: u32 = 60;
 /// Iterations after which slow convergence ends the iteration, if Newton iteration is available.
 const PATIENCE: u32 = 5;
-/// Contraction of slow convergence.
+/// Contraction of slow convergence. Slower iterations of steps that are too long end at wrong solutions more often.
 const SLOW: f64 = 0.5;
 /// A larger change, in ulps of q, is far from convergence.
 const FAR: f64 = 1e3;
@@ -100,6 +100,15 @@ impl Pause {
         self.left == 0
     }
 
+    /// No pause until fixed-point iteration converges: it stalls above rounding, and so does Newton iteration.
+    pub(crate) const USELESS: Self = Self { left: 0, next: 0 };
+
+    /// Half the pause after a step by fixed-point iteration.
+    #[inline(always)]
+    pub(crate) fn after_fixed_point(self) -> Self {
+        Self { left: 0, next: (self.next / 2).max(1) }
+    }
+
     /// The pause after a step by Newton iteration; twice the last one if fixed-point iteration failed.
     pub(crate) fn after_newton(self) -> Self {
         match self.left.checked_sub(1) {
@@ -152,14 +161,18 @@ impl Convergence {
     }
 }
 
+/// Stages that begin at a cache line. A vector of eight numbers that lies across two lines takes longer to load.
+#[repr(align(64))]
+struct AtLine<T>(T);
+
 /// Iterates until the stages converge or stall. `before` is the outcome of the previous step.
 #[inline(always)]
 pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     equations: &mut E,
     before: &Convergence,
 ) -> FixedPointResult<N, S> {
-    let mut x = equations.start();
-    let mut y = [[0.0; S]; N];
+    let [x, y] = &mut [AtLine(equations.start()), AtLine([[0.0; S]; N])];
+    let (AtLine(x), AtLine(y)) = (x, y);
     let mut state = Convergence { iterations: 0, change: f64::INFINITY, ..*before };
     // Residual at x, without the rounding error of the change.
     let mut error = f64::INFINITY;
@@ -169,20 +182,20 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     let mut stalls = 0;
     let mut is_last = false;
     let are_given_up = loop {
-        equations.iterate(&x, &mut y);
+        equations.iterate(x, y);
         state.iterations += 1;
         if is_last {
             break false;
         }
         let last = state.change;
         if last > COARSE {
-            equations.take_roundings(&y);
+            equations.take_roundings(y);
         }
-        let mut change = equations.change(&mut x, &y);
+        let mut change = equations.change(x, y);
         let is_small = |change, left| change <= FLOOR && (left <= NEGLIGIBLE || change == 0.0);
         if is_small(change, left) || change >= least {
             // Convergence is judged in ulps of the resulting stages; older ulps may belong to other numbers.
-            let growth = equations.take_roundings(&x);
+            let growth = equations.take_roundings(x);
             change *= growth;
             left *= growth;
             error *= growth;
@@ -211,7 +224,7 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         // The decision then depends on the residual at x.
         is_last = stalls == STALLS || state.iterations == ITERATIONS;
     };
-    FixedPointResult { convergence: state, positions: x, are_given_up }
+    FixedPointResult { convergence: state, positions: *x, are_given_up }
 }
 
 /// The last iteration of a step.

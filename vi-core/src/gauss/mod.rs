@@ -27,6 +27,7 @@
 
 pub mod density;
 pub(crate) mod energies;
+mod factors;
 pub(crate) mod fixed_point;
 mod general;
 pub(crate) mod history;

@@ -58,6 +58,28 @@ impl<const S: usize> Modal<S> {
         }
     }
 
+    /// Subtracts a product.
+    #[inline(always)]
+    pub(crate) fn subtract_product<const FUSED: bool>(&mut self, a: &Self, b: &Self) {
+        let mut negative = [0.0; S];
+        for i in 0..S {
+            negative[i] = -a.0[i];
+        }
+        self.add_product::<FUSED>(&Self(negative), b);
+    }
+
+    /// Whether the absolute value at each eigenvalue is at most `largest`; NaN is not.
+    #[inline(always)]
+    pub(crate) fn is_at_most(&self, largest: f64) -> bool {
+        let Self(of) = self;
+        let mut is = true;
+        for i in 0..Self::IMAGINARY {
+            let imaginary = if i < Self::PAIRS { of[Self::IMAGINARY + i] } else { 0.0 };
+            is &= of[i] * of[i] + imaginary * imaginary <= largest * largest;
+        }
+        is
+    }
+
     /// Real and imaginary parts, exchanged.
     #[inline(always)]
     pub(crate) fn exchanged(&self) -> Self {

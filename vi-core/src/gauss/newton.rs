@@ -7,7 +7,7 @@
 //! δQ_i = h Σ_j a_ij δV_j        M δV_i + C δQ_i − h Σ_j a_ij (K δQ_j + B δV_j) = missing_i
 //! ```
 //!
-//! At each eigenvalue λ of A (`modes`) these are N equations, with a matrix that is inverted once per linearization,
+//! At each eigenvalue λ of A (`modes`) these are N equations, with a matrix that is factored once per linearization,
 //!
 //! ```text
 //! (M + h λ (C − B) − h² λ² K) δV = missing
@@ -17,12 +17,14 @@
 //! stiff: then K and B have no positive eigenvalues, and λ has a positive real part. The first stiff step of a run
 //! allocates the buffer.
 
+use super::factors::{Factors, by_width};
 use super::modes::{Modal, Spectrum};
 use super::points::{AnyDerivatives, ErasedSystem};
-use super::stages::{LOOPED, Stages, product};
+use super::stages::{Stages, product};
 use crate::linear::Pivoted;
+use crate::real::Lane;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
-use vi_dispatch::{Instructions, Loop, by_baseline};
+use vi_dispatch::Loop;
 
 /// The linearization point of a step of length h.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,11 +63,11 @@ impl<const N: usize> Linearization<N> {
 #[derive(Clone, Debug)]
 pub struct Newton<const N: usize, const S: usize> {
     linearization: Option<Linearization<N>>,
-    instructions: Instructions,
     spectrum: Spectrum<S>,
     derivatives: AnyDerivatives<N>,
-    /// The inverse of the matrix, by rows.
-    inverse: Vec<[Modal<S>; N]>,
+    /// Diagonals of its matrices that are not zero, on each side of the main diagonal.
+    width: usize,
+    factors: Factors<N, S>,
 }
 
 impl<const N: usize, const S: usize> Newton<N, S> {
@@ -73,9 +75,7 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     pub(crate) fn new() -> Self {
         let zeros = SMatrix::zeros();
         let derivatives = AnyDerivatives { momentum_dq: zeros, mass: zeros, force_dq: zeros, force_dv: zeros };
-        let inverse = vec![[Modal::ZERO; N]; N];
-        let instructions = Instructions::detected();
-        Self { linearization: None, instructions, spectrum: Spectrum::new(), derivatives, inverse }
+        Self { linearization: None, spectrum: Spectrum::new(), derivatives, width: 0, factors: Factors::new() }
     }
 
     /// Linearizes the equations of a system, unless they already are at this point.
@@ -88,19 +88,41 @@ impl<const N: usize, const S: usize> Newton<N, S> {
         let AnyDerivatives { momentum_dq: c, mass: m, force_dq: k, force_dv: b } = &self.derivatives;
         let step = self.spectrum.eigenvalues * *h;
         let square = step * step;
-        for row in 0..N {
-            for column in 0..N {
-                let at = (row, column);
-                self.inverse[row][column] = Modal::real(m[at]) + step * (c[at] - b[at]) + square * -k[at];
-            }
-        }
-        by_width::<N, _>(self.instructions, Invert { matrix: &mut self.inverse });
+        let is_zero = |at| [c, m, k, b].iter().all(|matrix: &&SMatrix<f64, N, N>| matrix[at] == 0.0);
+        let entries = (0..N).flat_map(|row| (0..N).map(move |column| (row, column)));
+        let width = entries.filter(|at| !is_zero(*at)).map(|(row, column)| row.abs_diff(column)).max().unwrap_or(0);
+        self.width = width;
+        self.factors.factor(width, |row, column| {
+            let at = (row, column);
+            Modal::real(m[at]) + step * (c[at] - b[at]) + square * -k[at]
+        });
         self.linearization = Some(at);
     }
 
     /// The corrections of the velocities for the residuals of the momenta.
     pub(crate) fn correction(&self, missing: &Stages<N, S>) -> Stages<N, S> {
-        by_width::<N, _>(self.instructions, Correct { newton: self, missing })
+        by_width::<N, _>(self.factors.instructions(), Correct { newton: self, missing })
+    }
+
+    /// The solution of the linearized equations for the stage values b.
+    #[inline(always)]
+    fn solution<const FUSED: bool>(&self, b: &Stages<N, S>) -> Stages<N, S> {
+        let Self { spectrum, factors, .. } = self;
+        let mut modes = [Modal::ZERO; N];
+        for k in 0..N {
+            modes[k] = Modal(product::<S, FUSED>(&spectrum.to, &b[k], &[0.0; S]));
+        }
+        factors.solve::<FUSED>(&mut modes);
+        let mut solution = [[0.0; S]; N];
+        for k in 0..N {
+            solution[k] = product::<S, FUSED>(&spectrum.from, &modes[k].0, &[0.0; S]);
+        }
+        solution
+    }
+
+    /// Corrects the positions y by forces at the positions x, of a separable system.
+    pub(crate) fn correct_positions(&self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+        by_width::<N, _>(self.factors.instructions(), CorrectPositions { newton: self, x, y });
     }
 
     /// An estimate of the largest h ω: the growth of a vector by `h E⁻¹ G`, with `E = [I 0; C M]` and `G = [0 I; K B]`.
@@ -130,55 +152,6 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     }
 }
 
-/// Runs a loop over the rows of N coordinates, with SIMD dispatch if there are many.
-fn by_width<const N: usize, L: Loop>(instructions: Instructions, of: L) -> L::Output {
-    if const { N > LOOPED } { instructions.run(of) } else { by_baseline(of) }
-}
-
-/// Inverts a matrix in place, by Gauss–Jordan elimination with partial pivoting; not finite if it is singular.
-struct Invert<'a, const N: usize, const S: usize> {
-    matrix: &'a mut [[Modal<S>; N]],
-}
-
-impl<const N: usize, const S: usize> Loop for Invert<'_, N, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        let Self { matrix } = self;
-        let mut exchanged = [0; N];
-        for k in 0..N {
-            let mut pivot = k;
-            for row in k + 1..N {
-                if matrix[row][k].is_larger(&matrix[pivot][k]) {
-                    pivot = row;
-                }
-            }
-            exchanged[k] = pivot;
-            matrix.swap(k, pivot);
-            let scale = matrix[k][k].recip();
-            matrix[k][k] = Modal::ONE;
-            let mut pivotal = [Modal::ZERO; N];
-            for column in 0..N {
-                pivotal[column].add_product::<FUSED>(&matrix[k][column], &scale);
-            }
-            matrix[k] = pivotal;
-            for row in (0..N).filter(|row| *row != k) {
-                let factor = matrix[row][k] * -1.0;
-                matrix[row][k] = Modal::ZERO;
-                for column in 0..N {
-                    matrix[row][column].add_product::<FUSED>(&factor, &pivotal[column]);
-                }
-            }
-        }
-        for k in (0..N).rev() {
-            for row in &mut *matrix {
-                row.swap(k, exchanged[k]);
-            }
-        }
-    }
-}
-
 /// The corrections of the velocities.
 struct Correct<'a, const N: usize, const S: usize> {
     newton: &'a Newton<N, S>,
@@ -190,19 +163,38 @@ impl<const N: usize, const S: usize> Loop for Correct<'_, N, S> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Stages<N, S> {
-        let Newton { spectrum, inverse, .. } = self.newton;
-        let mut modes = [Modal::ZERO; N];
-        let mut exchanged = modes;
+        self.newton.solution::<FUSED>(self.missing)
+    }
+}
+
+/// The corrections of the positions; see [`Newton::correct_positions`].
+struct CorrectPositions<'a, const N: usize, const S: usize> {
+    newton: &'a Newton<N, S>,
+    x: &'a Stages<N, S>,
+    y: &'a mut Stages<N, S>,
+}
+
+impl<const N: usize, const S: usize> Loop for CorrectPositions<'_, N, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Self { newton, x, y } = self;
+        let Newton { derivatives: AnyDerivatives { mass, .. }, width, .. } = newton;
+        let mut missing = [[0.0; S]; N];
         for k in 0..N {
-            modes[k] = Modal(product::<S, FUSED>(&spectrum.to, &self.missing[k], &[0.0; S]));
-            exchanged[k] = modes[k].exchanged();
+            for l in k.saturating_sub(*width)..N.min(k + width + 1) {
+                for i in 0..S {
+                    missing[k][i] = Lane::<FUSED>::multiply_add(mass[(k, l)], y[l][i] - x[l][i], missing[k][i]);
+                }
+            }
         }
-        let mut correction = [[0.0; S]; N];
+        let correction = newton.solution::<FUSED>(&missing);
         for k in 0..N {
-            let solution = Modal::dot::<N, FUSED>(&inverse[k], &modes, &exchanged);
-            correction[k] = product::<S, FUSED>(&spectrum.from, &solution.0, &[0.0; S]);
+            for i in 0..S {
+                y[k][i] = x[k][i] + correction[k][i];
+            }
         }
-        correction
     }
 }
 

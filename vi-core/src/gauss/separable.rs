@@ -8,9 +8,13 @@
 //! q1  = q0 + h M⁻¹ (p0 + Σ_j (1 − c_j) I_j)                p1 = p0 + Σ_j I_j
 //! ```
 //!
+//! If that does not contract, Newton iteration corrects the positions. Their changes before the correction are then rounding
+//! errors of the forces, which enter the next node.
+//!
 //! This needs half of the products of the general equations, and fixed-point iteration contracts twice as fast.
 
 use super::fixed_point::{Equations, StageIncrement};
+use super::newton::Newton;
 use super::points::Points;
 use super::stages::{
     AtStages, Roundings, Stages, change, gathered, growth, product, roundings, scaled, scatter, sum, times, weights,
@@ -22,8 +26,20 @@ use crate::real::Lane;
 use core::marker::PhantomData;
 use nalgebra::SVector;
 
+/// Ulps of q that an ulp of the positions by forces counts as, if Newton iteration corrects them.
+const BY_FORCES: f64 = 1.0 / 16.0;
+
 /// The equations of a step; see the [module](self).
-pub(crate) struct Separable<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
+pub(crate) struct Separable<
+    'a,
+    T,
+    Y,
+    M: Matrix<N, f64>,
+    const N: usize,
+    const S: usize,
+    const FUSED: bool,
+    const CORRECTED: bool,
+> {
     system: &'a Y,
     node: &'a Node<N>,
     h: f64,
@@ -34,17 +50,29 @@ pub(crate) struct Separable<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S
     force: Stages<N, S>,
     /// Whether the forces are those of the previous step.
     are_last: bool,
+    /// The linearized equations, if fixed-point iteration does not contract; unused if not CORRECTED, a constant because
+    /// the compiler then keeps the stages in registers.
+    newton: Option<&'a Newton<N, S>>,
+    /// The change of the last iteration before its correction, in ulps of q that count less.
+    uncorrected: f64,
     roundings: Roundings<N>,
     numbers: PhantomData<T>,
 }
 
-impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool>
-    Separable<'a, T, Y, M, N, S, FUSED>
+impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool, const CORRECTED: bool>
+    Separable<'a, T, Y, M, N, S, FUSED, CORRECTED>
 {
     /// The equations of the step of length h from `node`, with the mass matrix and the stage forces of the last step or
     /// a guess of them.
     #[inline(always)]
-    pub(crate) fn new(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, force: Stages<N, S>, are_last: bool) -> Self {
+    pub(crate) fn new(
+        system: &'a Y,
+        mass: &M,
+        node: &'a Node<N>,
+        h: f64,
+        (force, are_last): (Stages<N, S>, bool),
+        newton: Option<&'a Newton<N, S>>,
+    ) -> Self {
         let c = const { &Tableau::<S>::VALUES.c };
         let inverse = mass.inverse();
         let velocity = M::apply(&inverse, &(node.p + node.p_low));
@@ -55,8 +83,8 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
                 drift[k][i] = Lane::<FUSED>::multiply_add(c[i], moved, node.q_low[k]);
             }
         }
-        let roundings = [0.0; N];
-        Self { system, node, h, inverse, drift, force, are_last, roundings, numbers: PhantomData }
+        let (uncorrected, roundings) = (0.0, [0.0; N]);
+        Self { system, node, h, inverse, drift, force, are_last, newton, uncorrected, roundings, numbers: PhantomData }
     }
 
     /// Sets x to the positions by the current forces, with the coefficients `second`, or `ahead` for forces of the
@@ -91,7 +119,8 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
     }
 }
 
-impl<T, Y, M, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for Separable<'_, T, Y, M, N, S, FUSED>
+impl<T, Y, M, const N: usize, const S: usize, const FUSED: bool, const CORRECTED: bool> Equations<N, S>
+    for Separable<'_, T, Y, M, N, S, FUSED, CORRECTED>
 where
     T: AtStages<S>,
     Y: Points<N, T>,
@@ -99,7 +128,7 @@ where
 {
     #[inline(always)]
     fn has_another_way(&self) -> bool {
-        true
+        self.newton.is_none()
     }
 
     #[inline(always)]
@@ -119,6 +148,10 @@ where
             scatter(&mut self.force, i, &point.force);
         }
         self.set_positions(y, const { &Tableau::<S>::VALUES.second });
+        if CORRECTED && let Some(newton) = self.newton {
+            self.uncorrected = change(&mut x.clone(), y, &self.roundings) * BY_FORCES;
+            newton.correct_positions(x, y);
+        }
     }
 
     #[inline(always)]
@@ -157,7 +190,8 @@ where
 
     #[inline(always)]
     fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64 {
-        change(x, y, &self.roundings)
+        let change = change(x, y, &self.roundings);
+        if CORRECTED && self.newton.is_some() { change.max(self.uncorrected) } else { change }
     }
 
     /// Momenta have an error of h ω relative to the stages, which is not small if an iteration contracts by (h ω)².

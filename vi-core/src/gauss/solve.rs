@@ -63,11 +63,17 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
         self.iteration.convergence.is_at_floor() && node.stays_finite(h, velocity, momentum)
     }
 
-    /// Converts the stages to a step.
+    /// Whether the stages are finite and have converged as far as their iteration leads, but not to rounding.
+    fn has_stalled(&self) -> bool {
+        let FixedPointResult { convergence, are_given_up, .. } = self.iteration;
+        self.increment.is_finite() && !convergence.is_at_floor() && !are_given_up
+    }
+
+    /// Converts the stages to a step, after which fixed-point iteration pauses.
     #[inline(always)]
-    fn step(&self, h: f64) -> Step<N, S> {
+    fn step(&self, h: f64, pause: Pause) -> Step<N, S> {
         let Self { increment, stages, iteration, .. } = self;
-        let (convergence, pause) = (iteration.convergence, Pause::NONE);
+        let convergence = iteration.convergence;
         Step { h, increment: *increment, stages: *stages, convergence, pause, linearization: None }
     }
 }
@@ -96,7 +102,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         };
         let mut after = *self.node;
         after.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
-        let mut step = solved.step(self.h);
+        let mut step = solved.step(self.h, self.pause);
         step.convergence.change = self.residual(system, solved);
         (after.is_finite() && step.convergence.is_at_floor()).then_some(step)
     }
@@ -126,7 +132,25 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         system: &ErasedSystem<'_, N>,
         newton: Option<&Newton<N, S>>,
     ) -> StageSolution<N, S> {
-        solved::<f64, _, _, N, S, false>(system, system, self, newton)
+        solved::<f64, _, _, N, S, false, false>(system, system, self, newton)
+    }
+
+    /// The stages with SIMD dispatch, if the system suits it.
+    #[inline(never)]
+    fn side_by_side<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+        newton: Option<&Newton<N, S>>,
+    ) -> StageSolution<N, S>
+    where
+        Y: Collocation<N> + Convertible<N>,
+    {
+        if Y::SIDE_BY_SIDE {
+            instructions.run(SideBySide { system, start: self, newton })
+        } else {
+            self.in_scalars(&ErasedSystem::of(system), newton)
+        }
     }
 
     /// The linearization point at the middle of the step.
@@ -139,11 +163,10 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Linearization { h: self.h, t, q, v, iterations: None }
     }
 
-    /// The step by fixed-point iteration, with SIMD dispatch.
+    /// The step by fixed-point iteration.
     ///
     /// # Errors
     /// The stages of the failed iteration.
-    #[inline(never)]
     pub(crate) fn by_fixed_point<Y>(
         &self,
         system: &Y,
@@ -152,12 +175,12 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     where
         Y: Collocation<N> + Convertible<N>,
     {
-        let solved = if Y::SIDE_BY_SIDE {
-            instructions.run(FixedPoint { system, start: self })
+        let solved = self.side_by_side(system, instructions, None);
+        if solved.is_step(self.node, self.h) {
+            Ok(solved.step(self.h, self.pause.after_fixed_point()))
         } else {
-            self.in_scalars(&ErasedSystem::of(system), None)
-        };
-        if solved.is_step(self.node, self.h) { Ok(solved.step(self.h)) } else { Err(solved) }
+            Err(solved)
+        }
     }
 
     /// The step, if fixed-point iteration failed or was skipped. `last` is the linearization of the previous step, if
@@ -177,8 +200,25 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Collocation<N> + Convertible<N>,
     {
         let rare = &ErasedSystem::of(system);
+        let mut after = self.pause;
+        if let Some(left) = left.filter(|left| left.has_stalled() && self.pause != Pause::USELESS) {
+            // Newton iteration is faster than the analysis of rounding errors, and may reach rounding.
+            let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
+            let Self { node, h, before, pause, .. } = *self;
+            let near = Start { node, h, stages: &left.stages, are_last: false, before, pause };
+            let at = last.unwrap_or_else(|| near.middle(rare));
+            let solved = near.newton_stages(system, instructions, at, newton);
+            if solved.iteration.convergence.is_at_floor()
+                && let Some(step) = near.accepted(rare, &solved, Some(newton))
+            {
+                // The iterations from here do not tell when a new linearization pays off.
+                let linearization = Some(Linearization { iterations: None, ..at });
+                return Ok(Step { pause: self.pause.after_newton(), linearization, ..step });
+            }
+            after = Pause::USELESS;
+        }
         if let Some(step) = left.and_then(|left| self.accepted(rare, left, None)) {
-            return Ok(step);
+            return Ok(Step { pause: after, ..step });
         }
         let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
         // First the last linearization, then a new one, then stages equal to the node, because extrapolated polynomials
@@ -214,15 +254,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Collocation<N> + Convertible<N>,
     {
         let rare = &ErasedSystem::of(system);
-        newton.linearize(rare, at);
-        // With special or short equations for fixed-point iteration, a specialized Newton iteration is not worth its
-        // build time: one copy serves all systems of N coordinates.
-        let side_by_side = if Y::SIDE_BY_SIDE && const { N > LOOPED && !Y::SEPARABLE } {
-            long(instructions, Iterating { system, start: self, newton })
-        } else {
-            None
-        };
-        let solved = side_by_side.unwrap_or_else(|| self.in_scalars(rare, Some(newton)));
+        let solved = self.newton_stages(system, instructions, at, newton);
         let StageSolution { increment, iteration, .. } = &solved;
         let not_converged =
             || iteration.convergence.not_converged(increment, [self.node.t, self.h], newton.stiffness());
@@ -230,6 +262,27 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let step = accepted.ok_or_else(|| lost_force(system, self.node, self.h).unwrap_or_else(not_converged))?;
         let linearization = at.after(step.convergence.iterations);
         Ok(Step { pause: self.pause.after_newton(), linearization, ..step })
+    }
+
+    /// The stages by Newton iteration.
+    fn newton_stages<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+        at: Linearization<N>,
+        newton: &mut Newton<N, S>,
+    ) -> StageSolution<N, S>
+    where
+        Y: Collocation<N> + Convertible<N>,
+    {
+        let rare = &ErasedSystem::of(system);
+        newton.linearize(rare, at);
+        let solved = self.side_by_side(system, instructions, Some(newton));
+        // The velocities of very stiff steps are more accurate than positions by forces.
+        if Y::SEPARABLE && Y::SIDE_BY_SIDE && !solved.iteration.convergence.is_at_floor() {
+            return self.in_scalars(rare, Some(newton));
+        }
+        solved
     }
 }
 
@@ -251,57 +304,38 @@ pub(crate) fn constant<Y: Collocation<N>, const N: usize, const S: usize>(
 /// after another.
 pub(crate) const WIDE: bool = !cfg!(target_arch = "x86_64");
 
-/// Fixed-point iteration of the stages, with SIMD dispatch.
-pub(crate) struct FixedPoint<'a, Y, const N: usize, const S: usize> {
-    pub(crate) system: &'a Y,
-    pub(crate) start: &'a Start<'a, N, S>,
+/// The stages, with SIMD dispatch.
+struct SideBySide<'a, Y, const N: usize, const S: usize> {
+    system: &'a Y,
+    start: &'a Start<'a, N, S>,
+    newton: Option<&'a Newton<N, S>>,
 }
 
-impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for FixedPoint<'_, Y, N, S> {
+impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for SideBySide<'_, Y, N, S> {
     type Output = StageSolution<N, S>;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> StageSolution<N, S> {
-        fixed_point_iteration::<_, N, S, FUSED>(self.system, self.start)
+        iterated::<_, N, S, FUSED, true>(self.system, self.start, self.newton)
     }
 }
 
 /// Iterates in the number type that suits the instructions best.
 #[inline(always)]
-pub(crate) fn fixed_point_iteration<Y, const N: usize, const S: usize, const FUSED: bool>(
+pub(crate) fn iterated<Y, const N: usize, const S: usize, const FUSED: bool, const CORRECTED: bool>(
     system: &Y,
     start: &Start<'_, N, S>,
+    newton: Option<&Newton<N, S>>,
 ) -> StageSolution<N, S>
 where
     Y: Collocation<N> + Convertible<N>,
 {
     if const { N > LOOPED && (FUSED || WIDE) } {
         let lanes = system.convert::<Lanes<S, FUSED>>();
-        solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, start, None)
+        solved::<Lanes<S, FUSED>, _, _, N, S, FUSED, CORRECTED>(&lanes, system, start, newton)
     } else {
         let lane = system.convert::<Lane<FUSED>>();
-        solved::<Lane<FUSED>, _, _, N, S, FUSED>(&lane, system, start, None)
-    }
-}
-
-/// Newton iteration of the stages, with SIMD dispatch; `None` if the shared iteration applies.
-struct Iterating<'a, Y, const N: usize, const S: usize> {
-    system: &'a Y,
-    start: &'a Start<'a, N, S>,
-    newton: &'a Newton<N, S>,
-}
-
-impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Iterating<'_, Y, N, S> {
-    type Output = Option<StageSolution<N, S>>;
-
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Option<StageSolution<N, S>> {
-        let Self { system, start, newton } = self;
-        if const { N > LOOPED && (FUSED || WIDE) && !Y::SEPARABLE } {
-            let lanes = system.convert::<Lanes<S, FUSED>>();
-            return Some(solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, start, Some(newton)));
-        }
-        None
+        solved::<Lane<FUSED>, _, _, N, S, FUSED, CORRECTED>(&lane, system, start, newton)
     }
 }
 
@@ -311,10 +345,11 @@ pub(crate) fn long<L: Loop>(instructions: Instructions, step: L) -> L::Output {
     instructions.run(step)
 }
 
-/// The stages, with equations evaluated over the numbers T; `plain` is the same system over scalars. Fixed-point
-/// iteration, then Newton iteration.
+/// The stages, with equations evaluated over the numbers T; `plain` is the same system over scalars. Positions follow
+/// from velocities, or from the forces of a separable system, if Newton iteration does not correct them or CORRECTED says that
+/// it may.
 #[inline(always)]
-fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool>(
+fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool, const CORRECTED: bool>(
     system: &Y,
     plain: &P,
     start: &Start<'_, N, S>,
@@ -326,13 +361,13 @@ where
     P: Points<N, f64>,
 {
     let Start { node, h, stages, are_last, .. } = *start;
-    // For a known form the compiler sees one branch. Newton iteration corrects velocities: in stiff steps they are more
-    // accurate than forces.
+    // For a known form the compiler sees one branch.
     let is_separable =
         const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable;
-    if is_separable && newton.is_none() {
+    if is_separable && (CORRECTED || newton.is_none()) {
         let mass = mass(plain, node);
-        finished(Separable::<T, Y, P::Mass, N, S, FUSED>::new(system, &mass, node, h, *stages, are_last), start)
+        let guess = (*stages, are_last);
+        finished(Separable::<T, Y, P::Mass, N, S, FUSED, CORRECTED>::new(system, &mass, node, h, guess, newton), start)
     } else {
         let mass = constant_mass(plain, node);
         let guess = start.guess::<FUSED>();

@@ -21,7 +21,7 @@ use crate::gauss::energies::energies;
 use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
 use crate::gauss::newton::{Linearization, Newton};
 use crate::gauss::points::ErasedSystem;
-use crate::gauss::solve::{StageSolution, Start, Step, constant, fixed_point_iteration, long};
+use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
 use crate::gauss::stages::LOOPED;
 use crate::gauss::{CollocationPolynomial, Slots};
 use crate::node::Node;
@@ -99,7 +99,7 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         node.advance(self.h, velocity, momentum);
         self.stages = SMatrix::from_array_storage(ArrayStorage(solved.stages));
         self.convergence = solved.iteration.convergence;
-        self.pause = Pause::NONE;
+        self.pause = self.pause.after_fixed_point();
         self.linearization = None;
     }
 
@@ -161,7 +161,7 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Self::Output {
         let Self { system, node, memory } = self;
-        let solved = fixed_point_iteration::<_, N, S, FUSED>(system, &memory.start(node));
+        let solved = iterated::<_, N, S, FUSED, false>(system, &memory.start(node), None);
         if solved.is_step(node, memory.h) {
             memory.take_solved(node, &solved);
             return Ok(());
