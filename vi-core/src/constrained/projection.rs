@@ -52,7 +52,8 @@ pub struct Projection<'a, S, const N: usize> {
 impl<const N: usize> State<N> {
     /// The state on the constraints that is nearest to time t, coordinates q and velocities v, in the metric of the mass
     /// matrix: first the coordinates, with the mass matrix at (t, q, v), then the velocities. Returns both changes, and
-    /// the energy lost with the velocities.
+    /// the energy lost with the velocities. From beyond a centre of curvature of the constraints it may be another state
+    /// whose distance is stationary.
     ///
     /// [`Projection::holding`] holds coordinates. [`State::assembled`] starts from far guesses.
     ///

@@ -280,8 +280,9 @@ fn directions<const N: usize>(gradients: &impl Rectangular<N, f64>) -> DMatrix<f
         }
         vector
     };
-    for gradient in gradients.rows().map(Row::dense::<N>).filter(|gradient| gradient.norm() > 0.0) {
-        let gradient = DVector::from_column_slice(gradient.normalize().as_slice());
+    for gradient in gradients.rows().map(Row::dense::<N>).filter(|gradient| gradient.amax() > 0.0) {
+        // By the largest entry first: squares of the entries may overflow or vanish.
+        let gradient = DVector::from_column_slice((gradient / gradient.amax()).normalize().as_slice());
         known.push(across(gradient, &known).normalize());
     }
     let rank = known.len();

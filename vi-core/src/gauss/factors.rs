@@ -238,7 +238,7 @@ mod tests {
             let (factors, worst) = solved(width, dominant);
             // Measured: 6e-16.
             println!("{width}: {worst:e}");
-        assert!(worst < 1e-15, "{width}: {worst:e}");
+            assert!(worst < 1e-15, "{width}: {worst:e}");
             // A band of 2 × 2 + 1 diagonals takes less than an inverse of 12 rows, one of 2 × 3 + 1 more.
             assert_eq!(factors.width, (width <= 2).then_some(width), "{width}");
         }

@@ -82,6 +82,28 @@ fn rods_that_stand_are_unstable() {
     assert!(rest.frequencies().expect("rates").is_empty());
 }
 
+lagrangian! {
+    /// A point on springs, on a line, in any unit of the constraint.
+    struct Line {
+        param unit = 1.0;
+        coord x, y;
+        L = (dot(x)^2 + dot(y)^2 - 3 * x^2 - 5 * y^2) / 2;
+        constraint line = unit * (2 * x - y);
+    }
+}
+
+#[test]
+fn the_unit_of_a_constraint_does_not_matter() {
+    for unit in [1.0, 1e150, 1e155, 1e-155, 1e-170] {
+        let rest = Line { unit, ..Line::default() }.equilibrium(0.0, [0.3, 0.7]);
+        let rest = rest.unwrap_or_else(|failure| panic!("{unit:e}: {failure}"));
+        let frequencies = rest.frequencies().unwrap_or_else(|failure| panic!("{unit:e}: {failure}"));
+        // With y = 2 x the mass is 5, the stiffness 23.
+        assert_eq!(frequencies.len(), 1, "{unit:e}: {rest:?}");
+        assert!((frequencies[0] - (23.0_f64 / 5.0).sqrt()).abs() < 1e-15, "{unit:e}: {frequencies:?}");
+    }
+}
+
 #[test]
 fn a_push_holds_the_rods_aside() {
     // The lower rod lies along the force on its mass.
