@@ -151,6 +151,10 @@ where
         if CORRECTED && let Some(newton) = self.newton {
             self.uncorrected = change(&mut x.clone(), y, &self.roundings) * BY_FORCES;
             newton.correct_positions(x, y);
+            // The forces are still finite, and NaN is no change.
+            if !y.iter().flatten().all(|number| number.is_finite()) {
+                self.uncorrected = f64::INFINITY;
+            }
         }
     }
 
