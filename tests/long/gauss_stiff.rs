@@ -146,6 +146,69 @@ fn each_mode_of_a_linear_chain_takes_its_rational_function() {
     }
 }
 
+lagrangian! {
+    /// y is at rest where its curvature is infinite.
+    struct Kink {
+        const N = 2;
+        coord x, y[N];
+        L = (dot(x)^2 + sum(i in 0..N, dot(y[i])^2)) / 2 - sum(i in 0..N, abs(y[i])^(3/2)) - 5000 * x^2 - x^4;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// The matrix of a step of length 2 is singular.
+    struct Saddle {
+        const N = 2;
+        coord x, y[N];
+        L = (dot(x)^2 + sum(i in 0..N, dot(y[i])^2)) / 2 + x^2 / 2 - 5000 * sum(i in 0..N, y[i]^2);
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// Oscillators whose matrices have squares beyond the range.
+    struct Units {
+        param m = 1.0;
+        coord x, y;
+        L = m * ((dot(x)^2 + dot(y)^2) / 2 - 5000 * x^2 - 10000 * y^2);
+        discretize midpoint;
+    }
+}
+
+/// Steps that are accepted satisfy their equations; the number of them.
+fn accepted<const S: usize, const N: usize>(
+    mut run: vi_core::Run<Gauss<S>, impl vi_core::collocation::Collocation<N> + vi_core::stepping::Convertible<N>, N>,
+) -> u32 {
+    for steps in 0..20 {
+        let before = run.state();
+        let Ok(after) = run.step() else { return steps };
+        let slots = run.slots().expect("a step was taken");
+        let left = (-slots.d2_ld - before.p).amax().max((slots.d4_ld - after.p).amax());
+        let size = before.p.amax().max(after.p.amax());
+        assert!(left <= 1e-10 * size, "{S} stages: {left:e} of {size:e}");
+    }
+    20
+}
+
+#[test]
+fn a_matrix_without_an_inverse_solves_nothing() {
+    for h in [0.1, 1.0, -0.3] {
+        let kink = Kink::default().at(0.0, [1.0, 0.0, 0.0], [0.0; 3]);
+        assert_eq!(accepted(kink.integrate(Gauss::<2>, h).expect("a start")), 0, "{h}");
+        assert_eq!(accepted(kink.integrate(Gauss::<3>, h).expect("a start")), 0, "{h}");
+    }
+    for h in [2.0, -2.0] {
+        let saddle = Saddle::default().at(0.0, [1.0, 0.1, 0.2], [0.3, 0.2, 0.1]);
+        assert_eq!(accepted(saddle.integrate(Gauss::<1>, h).expect("a start")), 0, "{h}");
+    }
+    for m in [1e-170, 1e160] {
+        let units = Units { m }.at(0.0, [1.0, 0.5], [0.3, 0.2]);
+        println!("{m:e}: {}", accepted(units.integrate(Gauss::<2>, 0.1).expect("a start")));
+        println!("{m:e}: {}", accepted(units.integrate(Gauss::<4>, 0.1).expect("a start")));
+    }
+}
+
 /// A chain at rest in its lowest mode.
 pub(crate) fn lowest_mode() -> ([f64; 16], [f64; 16]) {
     let place = |i: usize| f64::from(u32::try_from(i + 1).expect("a few"));

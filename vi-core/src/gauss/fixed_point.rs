@@ -26,7 +26,7 @@ const PATIENCE: u32 = 5;
 /// Contraction of slow convergence. Slower iterations of steps that are too long end at wrong solutions more often.
 const SLOW: f64 = 0.5;
 /// A larger change, in ulps of q, is far from convergence.
-const FAR: f64 = 1e3;
+pub(crate) const FAR: f64 = 1e3;
 /// Smallest change, in ulps of q, that measures the contraction together with a change at the floor; one or two ulps
 /// are noise.
 const NOISE: f64 = 64.0;

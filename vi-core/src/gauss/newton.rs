@@ -36,6 +36,9 @@ pub struct Linearization<const N: usize> {
     pub(crate) v: SVector<f64, N>,
     /// Iterations of the first step with this linearization; `None` before.
     pub(crate) iterations: Option<u32>,
+    /// Whether a separable system is so stiff that only velocities reach rounding.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) by_velocity: bool,
 }
 
 impl<const N: usize> Linearization<N> {

@@ -151,8 +151,10 @@ where
         if CORRECTED && let Some(newton) = self.newton {
             self.uncorrected = change(&mut x.clone(), y, &self.roundings) * BY_FORCES;
             newton.correct_positions(x, y);
-            // The forces are still finite, and NaN is no change.
-            if !y.iter().flatten().all(|number| number.is_finite()) {
+            // The forces are finite even if the matrix is singular, and NaN is no change. Nor are changes known before the
+            // first roundings.
+            let is_finite = y.iter().flatten().all(|number| number.is_finite());
+            if !is_finite || self.roundings == [0.0; N] {
                 self.uncorrected = f64::INFINITY;
             }
         }

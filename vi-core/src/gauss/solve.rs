@@ -13,6 +13,7 @@ use super::separable::Separable;
 use super::stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
 use crate::collocation::{Collocation, Point};
 use crate::error::StepError;
+use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::{Lane, Lanes};
 use crate::stepping::Convertible;
@@ -63,10 +64,10 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
         self.iteration.convergence.is_at_floor() && node.stays_finite(h, velocity, momentum)
     }
 
-    /// Whether the stages are finite and have converged as far as their iteration leads, but not to rounding.
+    /// Whether the stages are finite and near a solution, but not at the rounding floor.
     fn has_stalled(&self) -> bool {
-        let FixedPointResult { convergence, are_given_up, .. } = self.iteration;
-        self.increment.is_finite() && !convergence.is_at_floor() && !are_given_up
+        let Convergence { change, .. } = self.iteration.convergence;
+        self.increment.is_finite() && change > FLOOR && change < fixed_point::FAR
     }
 
     /// Converts the stages to a step, after which fixed-point iteration pauses.
@@ -160,7 +161,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let q = stage(&equations.start(), middle);
         let v = stage(&equations.velocity(), middle);
         let t = self.node.t + 0.5 * self.h;
-        Linearization { h: self.h, t, q, v, iterations: None }
+        Linearization { h: self.h, t, q, v, iterations: None, by_velocity: false }
     }
 
     /// The step by fixed-point iteration.
@@ -207,7 +208,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             let Self { node, h, before, pause, .. } = *self;
             let near = Start { node, h, stages: &left.stages, are_last: false, before, pause };
             let at = last.unwrap_or_else(|| near.middle(rare));
-            let solved = near.newton_stages(system, instructions, at, newton);
+            let (solved, at) = near.newton_stages(system, instructions, at, newton);
             if solved.iteration.convergence.is_at_floor()
                 && let Some(step) = near.accepted(rare, &solved, Some(newton))
             {
@@ -228,18 +229,21 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         {
             return Ok(step);
         }
-        let extrapolated = self.by_newton(system, instructions, self.middle(rare), newton);
+        let by_velocity = last.is_some_and(|last| last.by_velocity);
+        let at = Linearization { by_velocity, ..self.middle(rare) };
+        let extrapolated = self.by_newton(system, instructions, at, newton);
         if extrapolated.is_ok() || !self.are_last {
             return extrapolated;
         }
         let Ok(constant) = constant(system, self.node) else { return extrapolated };
         let Self { node, h, pause, .. } = *self;
         let start = Start { node, h, stages: &constant, are_last: false, before: &Convergence::NONE, pause };
-        // Fixed-point iteration first, as in the first step of a run: it may converge where a linearization in the middle
-        // of a long step misleads.
-        let iterated =
-            start.by_fixed_point(system, instructions).or_else(|left| start.accepted(rare, &left, None).ok_or(()));
-        iterated.or_else(|()| start.by_newton(system, instructions, start.middle(rare), newton).or(extrapolated))
+        // As in the first step of a run. Fixed-point iteration may converge where a linearization in the middle of a long
+        // step misleads.
+        let first = start
+            .by_fixed_point(system, instructions)
+            .or_else(|left| start.recover(system, instructions, (Some(&left), None), cache));
+        first.or(extrapolated)
     }
 
     /// The step by Newton iteration.
@@ -254,7 +258,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Collocation<N> + Convertible<N>,
     {
         let rare = &ErasedSystem::of(system);
-        let solved = self.newton_stages(system, instructions, at, newton);
+        let (solved, at) = self.newton_stages(system, instructions, at, newton);
         let StageSolution { increment, iteration, .. } = &solved;
         let not_converged =
             || iteration.convergence.not_converged(increment, [self.node.t, self.h], newton.stiffness());
@@ -264,25 +268,28 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Ok(Step { pause: self.pause.after_newton(), linearization, ..step })
     }
 
-    /// The stages by Newton iteration.
+    /// The stages by Newton iteration, and the linearization that says how they were found.
     fn newton_stages<Y>(
         &self,
         system: &Y,
         instructions: Instructions,
         at: Linearization<N>,
         newton: &mut Newton<N, S>,
-    ) -> StageSolution<N, S>
+    ) -> (StageSolution<N, S>, Linearization<N>)
     where
         Y: Collocation<N> + Convertible<N>,
     {
         let rare = &ErasedSystem::of(system);
         newton.linearize(rare, at);
-        let solved = self.side_by_side(system, instructions, Some(newton));
-        // The velocities of very stiff steps are more accurate than positions by forces.
-        if Y::SEPARABLE && Y::SIDE_BY_SIDE && !solved.iteration.convergence.is_at_floor() {
-            return self.in_scalars(rare, Some(newton));
+        if !at.by_velocity {
+            let solved = self.side_by_side(system, instructions, Some(newton));
+            let has_positions = Y::SEPARABLE && Y::SIDE_BY_SIDE;
+            if solved.iteration.convergence.is_at_floor() || !has_positions {
+                return (solved, at);
+            }
         }
-        solved
+        // The velocities of very stiff steps are more accurate than positions by forces.
+        (self.in_scalars(rare, Some(newton)), Linearization { by_velocity: true, ..at })
     }
 }
 

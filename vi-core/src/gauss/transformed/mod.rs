@@ -136,7 +136,7 @@ where
         let h = dtau * rates.g[middle];
         let q = stage(&equations.start(), middle);
         let v = stage(&rates.velocity, middle);
-        Linearization { h, t: node.t + 0.5 * h, q, v, iterations: None }
+        Linearization { h, t: node.t + 0.5 * h, q, v, iterations: None, by_velocity: true }
     }
 
     /// The stages in scalar numbers. Not inlined: speed does not matter after SIMD iteration has failed.
