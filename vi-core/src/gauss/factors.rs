@@ -9,6 +9,8 @@ use vi_dispatch::{Instructions, Loop, by_baseline};
 
 /// Largest part of a row that is added to another one.
 const LARGEST: f64 = 10.0;
+/// Largest reciprocal of a pivot: its square is in the range.
+const LARGEST_RECIPROCAL: f64 = 1e150;
 
 /// The factors of an N × N matrix.
 #[derive(Clone, Debug)]
@@ -53,8 +55,7 @@ impl<const N: usize, const S: usize> Factors<N, S> {
         by_width::<N, _>(self.instructions, Invert { matrix: &mut self.rows });
     }
 
-    /// The solution for the right-hand sides b, one row per unknown, in terms of stages: `to` of [`Spectrum`] leads to
-    /// the eigenvalues, `from` back.
+    /// Replaces the right-hand sides b by the solution.
     #[inline(always)]
     pub(crate) fn solve<const FUSED: bool>(&self, b: &mut [Modal<S>; N]) {
         match self.width {
@@ -143,7 +144,7 @@ impl<const N: usize, const S: usize> Loop for Eliminate<'_, N, S> {
                 scaled.add_product::<FUSED>(&pivotal[column], &scale);
                 pivotal[column] = scaled;
             }
-            is_safe &= scale.is_at_most(1e150);
+            is_safe &= scale.is_at_most(LARGEST_RECIPROCAL);
         }
         is_safe
     }

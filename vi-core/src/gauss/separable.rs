@@ -8,10 +8,9 @@
 //! q1  = q0 + h M⁻¹ (p0 + Σ_j (1 − c_j) I_j)                p1 = p0 + Σ_j I_j
 //! ```
 //!
-//! If that does not contract, Newton iteration corrects the positions. Their changes before the correction are then rounding
-//! errors of the forces, which enter the next node.
-//!
-//! This needs half of the products of the general equations, and fixed-point iteration contracts twice as fast.
+//! This needs half of the products of the general equations, and fixed-point iteration contracts twice as fast. If that does
+//! not contract, Newton iteration corrects the positions. What it corrects at the end are rounding errors of the forces,
+//! which enter the next node: they are bounded too.
 
 use super::fixed_point::{Equations, StageIncrement};
 use super::newton::Newton;

@@ -352,9 +352,8 @@ pub(crate) fn long<L: Loop>(instructions: Instructions, step: L) -> L::Output {
     instructions.run(step)
 }
 
-/// The stages, with equations evaluated over the numbers T; `plain` is the same system over scalars. Positions follow
-/// from velocities, or from the forces of a separable system, if Newton iteration does not correct them or CORRECTED says that
-/// it may.
+/// The stages, with equations evaluated over the numbers T; `plain` is the same system over scalars. The unknowns are
+/// velocities; those of a separable system are forces, in Newton iteration only if CORRECTED.
 #[inline(always)]
 fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool, const CORRECTED: bool>(
     system: &Y,
