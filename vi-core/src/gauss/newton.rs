@@ -13,9 +13,9 @@
 //! (M + h λ (C − B) − h² λ² K) δV = missing
 //! ```
 //!
-//! The same matrix corrects the positions of a separable system. All eigenvalues are processed side by side. The inverse exists for every oscillating or damped system, however
-//! stiff: then K and B have no positive eigenvalues, and λ has a positive real part. The first stiff step of a run
-//! allocates the buffer.
+//! The same matrix corrects the positions of a separable system. All eigenvalues are processed side by side. The inverse
+//! exists for every oscillating or damped system, however stiff: then K and B have no positive eigenvalues, and λ has a
+//! positive real part. The first stiff step of a run allocates the buffer.
 
 use super::factors::{Factors, by_width};
 use super::modes::{Modal, Spectrum};

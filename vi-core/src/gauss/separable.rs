@@ -153,7 +153,7 @@ where
             // The forces are finite even if the matrix is singular, and NaN is no change. Nor are changes known before the
             // first roundings.
             let is_finite = y.iter().flatten().all(|number| number.is_finite());
-            if !is_finite || self.roundings == [0.0; N] {
+            if !is_finite || self.roundings.iter().all(|rounding| *rounding == 0.0) {
                 self.uncorrected = f64::INFINITY;
             }
         }
