@@ -16,6 +16,12 @@ lagrangian! {
     }
 }
 
+/// How far the slots of a step are from the momenta at its nodes.
+pub(crate) fn momenta_off<const N: usize>(slots: &Slots<N>, [before, after]: [&State<N>; 2]) -> f64 {
+    let momenta = [-slots.d2_ld - slots.fd_minus - before.p, slots.d4_ld + slots.fd_plus - after.p];
+    momenta.iter().map(SVector::amax).fold(0.0, f64::max)
+}
+
 /// Compares the slots of each step with its nodes, and the sum of the time slots with the power along the step.
 fn end_at_the_nodes<const N: usize, const S: usize>(name: &str, system: impl System<N>, q: [f64; N], v: [f64; N]) {
     let start = State::at(&system, 0.3, q, v);
@@ -26,8 +32,7 @@ fn end_at_the_nodes<const N: usize, const S: usize>(name: &str, system: impl Sys
         let before = run.state();
         let after = run.step().expect("a step");
         let slots = run.slots().expect("a step was taken");
-        let momenta = [-slots.d2_ld - slots.fd_minus - before.p, slots.d4_ld + slots.fd_plus - after.p];
-        worst[0] = momenta.iter().map(SVector::amax).fold(worst[0], f64::max);
+        worst[0] = worst[0].max(momenta_off(&slots, [&before, &after]));
         let energy = run.discrete_energy().expect("a step was taken");
         worst[1] = worst[1].max((-slots.d3_ld - slots.gd_plus - energy).abs());
         // E0 of the interval equals H at its start up to the error of the method.

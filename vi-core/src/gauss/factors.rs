@@ -33,7 +33,7 @@ impl<const N: usize, const S: usize> Factors<N, S> {
 
     /// Factors the matrix with these entries, zero where |row − column| > `width`.
     pub(crate) fn factor(&mut self, width: usize, entry: impl Fn(usize, usize) -> Modal<S>) {
-        let fill = |rows: &mut Vec<[Modal<S>; N]>, width: usize| {
+        let fill = |rows: &mut [[Modal<S>; N]]| {
             for (row, entries) in rows.iter_mut().enumerate() {
                 for column in row.saturating_sub(width)..N.min(row + width + 1) {
                     entries[column] = entry(row, column);
@@ -42,7 +42,7 @@ impl<const N: usize, const S: usize> Factors<N, S> {
         };
         // Four operations on half a vector for an entry of a band, two on a whole one for an entry of an inverse.
         if 4 * width + 2 <= N {
-            fill(&mut self.rows, width);
+            fill(&mut self.rows);
             let eliminate = Eliminate { width, rows: &mut self.rows, reciprocals: &mut self.reciprocals };
             self.width = by_width::<N, _>(self.instructions, eliminate).then_some(width);
             if self.width.is_some() {
@@ -51,7 +51,7 @@ impl<const N: usize, const S: usize> Factors<N, S> {
         }
         self.width = None;
         self.rows.fill([Modal::ZERO; N]);
-        fill(&mut self.rows, width);
+        fill(&mut self.rows);
         by_width::<N, _>(self.instructions, Invert { matrix: &mut self.rows });
     }
 
@@ -86,9 +86,7 @@ impl<const N: usize, const S: usize> Factors<N, S> {
             b[k] = rest;
         }
         for k in 0..N {
-            let mut scaled = Modal::ZERO;
-            scaled.add_product::<FUSED>(&b[k], &self.reciprocals[k]);
-            b[k] = scaled;
+            b[k] = b[k].times::<FUSED>(&self.reciprocals[k]);
         }
         for k in (0..N).rev() {
             let mut rest = b[k];
@@ -131,8 +129,7 @@ impl<const N: usize, const S: usize> Loop for Eliminate<'_, N, S> {
             reciprocals[k] = scale;
             let end = N.min(k + width + 1);
             for row in &mut below[..end - k - 1] {
-                let mut factor = Modal::ZERO;
-                factor.add_product::<FUSED>(&row[k], &scale);
+                let factor = row[k].times::<FUSED>(&scale);
                 row[k] = factor;
                 is_safe &= factor.is_at_most(LARGEST);
                 for column in k + 1..end {
@@ -140,9 +137,7 @@ impl<const N: usize, const S: usize> Loop for Eliminate<'_, N, S> {
                 }
             }
             for column in k + 1..end {
-                let mut scaled = Modal::ZERO;
-                scaled.add_product::<FUSED>(&pivotal[column], &scale);
-                pivotal[column] = scaled;
+                pivotal[column] = pivotal[column].times::<FUSED>(&scale);
             }
             is_safe &= scale.is_at_most(LARGEST_RECIPROCAL);
         }
@@ -173,10 +168,7 @@ impl<const N: usize, const S: usize> Loop for Invert<'_, N, S> {
             matrix.swap(k, pivot);
             let scale = matrix[k][k].recip();
             matrix[k][k] = Modal::ONE;
-            let mut pivotal = [Modal::ZERO; N];
-            for column in 0..N {
-                pivotal[column].add_product::<FUSED>(&matrix[k][column], &scale);
-            }
+            let pivotal = matrix[k].map(|entry| entry.times::<FUSED>(&scale));
             matrix[k] = pivotal;
             for row in (0..N).filter(|row| *row != k) {
                 let factor = matrix[row][k] * -1.0;

@@ -58,6 +58,14 @@ impl<const S: usize> Modal<S> {
         }
     }
 
+    /// The product.
+    #[inline(always)]
+    pub(crate) fn times<const FUSED: bool>(&self, by: &Self) -> Self {
+        let mut product = Self::ZERO;
+        product.add_product::<FUSED>(self, by);
+        product
+    }
+
     /// Subtracts a product.
     #[inline(always)]
     pub(crate) fn subtract_product<const FUSED: bool>(&mut self, a: &Self, b: &Self) {
@@ -159,9 +167,7 @@ impl<const S: usize> AddAssign for Modal<S> {
 impl<const S: usize> Mul for Modal<S> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let mut product = Self::ZERO;
-        product.add_product::<false>(&self, &other);
-        product
+        self.times::<false>(&other)
     }
 }
 
