@@ -20,6 +20,8 @@ use crate::real::Scalar;
 use crate::state::State;
 use core::f64::consts::{PI, TAU};
 use nalgebra::SVector;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// 2π is `TAU + TAU_LOW + TAU_LOWEST`, to 2^-160.
 const TAU_LOW: f64 = 2.449_293_598_294_706_4e-16;

@@ -31,6 +31,7 @@ use crate::real::Dual;
 use crate::run::Run;
 use crate::state::{Numbers, State};
 use crate::stepping::Convertible;
+use alloc::vec::Vec;
 use nalgebra::{Complex, DMatrix, DVector, SMatrix, SVector};
 
 /// Mass matrix, bias, inverse dynamics, linearization and equilibria of a system, for every generated system.

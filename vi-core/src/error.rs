@@ -495,6 +495,9 @@ impl fmt::Display for StepError {
             Self::NotConverged { h, .. } if *h == 0.0 => {
                 f.write_str("; start from the momenta of a velocity, `system.at(t, q, v)`, or take shorter steps")
             }
+            Self::StagesUnsettled { h, .. } if cfg!(not(feature = "alloc")) => {
+                write!(f, "; take steps shorter than {:.3e}, or enable the feature `alloc` of vi-core", h.abs())
+            }
             Self::NotConverged { h, .. } | Self::StagesUnsettled { h, .. } => {
                 write!(f, "; take steps shorter than {:.3e}", h.abs())
             }
@@ -513,7 +516,8 @@ impl fmt::Display for StepError {
                 f.write_str("; L is not defined at rest and has a branch on each side: write an L with one branch")
             }
             Self::UnknownParameter { parameters, .. } if !parameters.is_empty() => {
-                write!(f, "; its parameters are `{}`", parameters.join("`, `"))
+                f.write_str("; its parameters are ")?;
+                listed(f, parameters)
             }
             Self::OtherSystem { parameter: None, .. } => f.write_str("; restart its own system with its own rule"),
             Self::OtherSystem { .. } => f.write_str("; restart with the parameters of the checkpoint"),
@@ -568,13 +572,20 @@ impl fmt::Display for StepError {
     }
 }
 
+/// Writes names in code, with commas.
+fn listed(f: &mut fmt::Formatter<'_>, names: &[&str]) -> fmt::Result {
+    for (index, name) in names.iter().enumerate() {
+        write!(f, "{}`{name}`", if index == 0 { "" } else { ", " })?;
+    }
+    Ok(())
+}
+
 impl core::error::Error for StepError {}
 
 /// The last residuals of an iteration that did not converge, in units of their rounding-error bounds.
 ///
 /// They show whether the iteration stalled, wandered or was cut short.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "Vec<f64>"))]
 pub struct Residuals {
     /// The newest residual is last. Unused entries are negative.
     kept: [f64; Self::KEPT],
@@ -606,9 +617,9 @@ impl Residuals {
 }
 
 #[cfg(feature = "serde")]
-impl From<Residuals> for Vec<f64> {
-    fn from(residuals: Residuals) -> Self {
-        residuals.iter().collect()
+impl serde::Serialize for Residuals {
+    fn serialize<W: serde::Serializer>(&self, serializer: W) -> Result<W::Ok, W::Error> {
+        serializer.collect_seq(self.iter())
     }
 }
 

@@ -50,22 +50,45 @@
 //! | `compensated`, `angles` | compensated summation; angles as a reduced angle and a count of turns |
 //! | [`called`], `delegate`, `forward` | wrappers of a system, for example with functions that are not inlined |
 //!
+//! | feature | adds |
+//! |---|---|
+//! | `std`, by default | vectors of the widest instructions of this processor; `alloc` |
+//! | `alloc` | Newton iteration of Gauss steps, compositions, systems with constraints, events, checkpoints, derivatives, control, checks |
+//! | `serde` | checkpoints that can be stored |
+//!
+//! Without them nothing allocates, and functions are those of `libm` (`docs/microcontrollers.md`).
+//!
 //! Nothing here panics or prints. Stepping does not allocate, except for buffers at the first stiff Gauss step and at the
 //! first step with constraints.
 
+#![no_std]
+// Some functions serve only modules that need `alloc`.
+#![cfg_attr(not(feature = "alloc"), allow(dead_code, unreachable_pub))]
 // A call that is not inlined spills the run's state out of registers.
 #![allow(clippy::inline_always)]
+
+#[cfg(feature = "alloc")]
+#[cfg_attr(not(test), macro_use)]
+extern crate alloc;
+#[cfg(any(feature = "std", test))]
+#[cfg_attr(test, macro_use)]
+extern crate std;
 
 mod angles;
 mod branch;
 pub mod called;
+#[cfg(feature = "alloc")]
 pub mod check;
 pub mod collocation;
 mod compensated;
+#[cfg(feature = "alloc")]
 pub mod condition;
+#[cfg(feature = "alloc")]
 pub mod constrained;
+#[cfg(feature = "alloc")]
 pub mod control;
 mod delegate;
+#[cfg(feature = "alloc")]
 pub mod derivatives;
 pub mod discrete;
 pub mod energy_preserving;
@@ -94,14 +117,18 @@ pub mod table;
 mod vector;
 
 pub use called::{Called, Presumed};
+#[cfg(feature = "alloc")]
 pub use constrained::{Constrained, ConvertibleConstrained};
+#[cfg(feature = "alloc")]
 pub use control::{ConstrainedDynamics, Dynamics};
 pub use discrete::DiscreteLagrangian;
 pub use error::StepError;
 pub use lagrangian::Lagrangian;
+#[cfg(feature = "alloc")]
+pub use method::{Composed, Composition, EnergyPreservingGaussLobatto, GaussLobatto};
 pub use method::{
-    Composed, Composition, Connected, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback,
-    FixedStep, Gauss, GaussLobatto, InTransformedTime, Method, Splitting,
+    Connected, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime, Method,
+    Splitting,
 };
 pub use nalgebra;
 pub use nalgebra::SVector;
@@ -111,14 +138,16 @@ pub use vi_macros::lagrangian;
 
 /// The names that a typical program needs.
 pub mod prelude {
+    #[cfg(feature = "alloc")]
     pub use crate::control::{ConstrainedDynamics as _, Dynamics as _};
     pub use crate::error::StepError;
-    pub use crate::method::{
-        Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep, Gauss,
-        GaussLobatto, Method, Splitting,
-    };
+    #[cfg(feature = "alloc")]
+    pub use crate::method::{Composition, EnergyPreservingGaussLobatto, GaussLobatto};
+    pub use crate::method::{EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method, Splitting};
     pub use crate::real::Number;
-    pub use crate::run::{Crossing, Event, Moment, Monitored, Run, Solution, Start, Starts as _, Tolerance};
+    #[cfg(feature = "alloc")]
+    pub use crate::run::{Crossing, Event, Moment, Solution};
+    pub use crate::run::{Monitored, Run, Start, Starts as _, Tolerance};
     pub use crate::state::State;
     pub use vi_macros::lagrangian;
 }

@@ -5,6 +5,8 @@
 
 use crate::real::Scalar;
 use nalgebra::SVector;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// A state of a system: time, coordinates, momenta.
 #[derive(Clone, Copy, Debug, PartialEq)]

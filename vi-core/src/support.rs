@@ -2,6 +2,7 @@
 
 pub use crate::angles::{Reduced, Turns, are_far, has_angles, reduced as reduced_angles, state as state_with_turns};
 pub use crate::compensated::two_sum;
+#[cfg(feature = "alloc")]
 pub use crate::constrained::{constrained_acceleration, constrained_flow};
 pub use crate::legendre::{acceleration, step_density, velocity, velocity_by_mass};
 pub use crate::method::check_step;

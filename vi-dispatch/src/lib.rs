@@ -1,8 +1,14 @@
 //! Compiles a loop for several instruction sets and selects one at run time.
 //!
 //! In: a [`Loop`]. Out: its result, computed with the widest vector instructions of this processor. All copies come
-//! from one source. A build for one processor (`-C target-cpu=native`) needs no copies. Builds with debug assertions
-//! omit the copy for vectors of eight: it computes the same numbers as the copy for four and takes as long to compile.
+//! from one source. The feature `std` detects the instructions of the processor; without it, all loops run with the
+//! baseline. A build for one processor (`-C target-cpu=native`) needs no copies. Builds with debug assertions omit the
+//! copy for vectors of eight: it computes the same numbers as the copy for four and takes as long to compile.
+
+#![no_std]
+
+#[cfg(feature = "std")]
+extern crate std;
 
 /// A numeric loop, inlined with everything that it calls.
 pub trait Loop {
@@ -28,10 +34,10 @@ enum Set {
     /// The baseline of the architecture.
     Baseline,
     /// Vectors of four numbers, with fused multiply-add.
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
     Avx2,
     /// Vectors of eight numbers, with fused multiply-add.
-    #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
+    #[cfg(all(feature = "std", target_arch = "x86_64", not(debug_assertions)))]
     Avx512,
 }
 
@@ -42,8 +48,9 @@ impl Instructions {
     /// The widest set that this processor has.
     #[must_use]
     pub fn detected() -> Self {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(feature = "std", target_arch = "x86_64"))]
         {
+            use std::is_x86_feature_detected;
             let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
             #[cfg(not(debug_assertions))]
             {
@@ -63,12 +70,12 @@ impl Instructions {
     #[inline]
     #[allow(unsafe_code)]
     pub fn run<L: Loop>(self, of: L) -> L::Output {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(feature = "std", target_arch = "x86_64"))]
         #[target_feature(enable = "avx2,fma")]
         fn avx2<L: Loop>(of: L) -> L::Output {
             of.run::<true>()
         }
-        #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
+        #[cfg(all(feature = "std", target_arch = "x86_64", not(debug_assertions)))]
         #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
         fn avx512<L: Loop>(of: L) -> L::Output {
             of.run::<true>()
@@ -76,10 +83,10 @@ impl Instructions {
         match self.0 {
             Set::Baseline => by_baseline(of),
             // SAFETY: `Instructions::detected` checked that the processor has these instructions.
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(feature = "std", target_arch = "x86_64"))]
             Set::Avx2 => unsafe { avx2(of) },
             // SAFETY: as above.
-            #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
+            #[cfg(all(feature = "std", target_arch = "x86_64", not(debug_assertions)))]
             Set::Avx512 => unsafe { avx512(of) },
         }
     }

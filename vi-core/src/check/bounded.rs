@@ -148,7 +148,7 @@ impl num_traits::One for Bounded {
 impl Number for Bounded {
     /// A constant of a formula: rounded once, unless it is an exact fraction.
     fn real(value: f64) -> Self {
-        let is_exact = value.abs() <= EXACT && (value * EXACT).fract() == 0.0;
+        let is_exact = value.abs() <= EXACT && value * EXACT % 1.0 == 0.0;
         if is_exact { Self::exact(value) } else { Self::once(value) }
     }
     fn recip(self) -> Self {
@@ -160,7 +160,7 @@ impl Number for Bounded {
     }
     fn exp(self) -> Self {
         let value = self.value.exp();
-        Self::after(value, value * self.error.exp_m1(), 2.0)
+        Self::after(value, value * num_traits::Float::exp_m1(self.error), 2.0)
     }
     fn ln(self) -> Self {
         self.chain(self.value.ln(), self.least().recip())
@@ -219,14 +219,14 @@ impl Number for Bounded {
         Self::after(self.value.hypot(other.value), self.error + other.error, 2.0)
     }
     fn pow(self, exponent: Self) -> Self {
-        let value = self.value.powf(exponent.value);
+        let value = self.value.pow(exponent.value);
         if self.value == 0.0 {
-            return Self { value, error: if self.error == 0.0 { 0.0 } else { self.error.powf(exponent.value) } };
+            return Self { value, error: if self.error == 0.0 { 0.0 } else { self.error.pow(exponent.value) } };
         }
         // The bound of ln z = y ln x. An exact exponent needs no ln x, which does not exist for a negative base.
         let by_base = if self.error == 0.0 { 0.0 } else { exponent.most() * self.error / self.least() };
         let by_exponent = if exponent.error == 0.0 { 0.0 } else { self.value.ln().abs() * exponent.error };
-        Self::after(value, value.abs() * (by_base + by_exponent).exp_m1(), 2.0)
+        Self::after(value, value.abs() * num_traits::Float::exp_m1(by_base + by_exponent), 2.0)
     }
     /// Without bound if the base may be zero.
     fn zero_where(self, base: Self, _derivatives: u8) -> Self {

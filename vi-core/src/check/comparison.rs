@@ -6,8 +6,10 @@
 use super::bounded::Bounded;
 use super::report::{CheckFailure, Report};
 use crate::error::StepError;
+use alloc::borrow::ToOwned;
+use alloc::collections::BTreeMap;
+use alloc::string::String;
 use nalgebra::SVector;
-use std::collections::BTreeMap;
 
 /// The compared pairs of one check.
 pub(super) struct Comparison {

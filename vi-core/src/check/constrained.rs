@@ -27,8 +27,9 @@ use crate::real::Real;
 use crate::real::dual::{Dual, along, lift, slopes, unit};
 use crate::run::Starts;
 use crate::state::State;
+use alloc::vec::Vec;
+use core::array;
 use nalgebra::{SMatrix, SVector};
-use std::array;
 
 /// Stages of the tested steps.
 const STAGES: usize = 2;

@@ -19,8 +19,8 @@ use crate::lagrangian::Lagrangian;
 use crate::linear::Matrix;
 use crate::real::dual::Dual;
 use crate::real::dual::{along, lift, slopes, unit};
+use core::array;
 use nalgebra::{SMatrix, SVector};
-use std::array;
 
 /// Dual numbers for first derivatives, and for second ones.
 pub(super) type First = Dual<Bounded>;

@@ -23,6 +23,9 @@ use crate::lagrangian::Lagrangian;
 use crate::method::EnergyPreserving;
 use crate::node::Node;
 use crate::state::State;
+use alloc::string::String;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Tests the carried energy of an energy-preserving run against the energy at the midpoints and the slot derivatives.
 /// For the midpoint rule.

@@ -20,8 +20,8 @@ use crate::discrete::DiscreteLagrangian;
 use crate::node::Node;
 use crate::real::dual::{Dual, along, lift, slopes, unit};
 use crate::stepping::{EnergyStepping, ExtendedResidual, FixedStepping};
+use core::array;
 use nalgebra::SVector;
-use std::array;
 
 /// Tests the step density and the derivatives of the energy row against dual numbers. Tests the energy row and its
 /// increments against the slots, and the momentum rows against those of a fixed step.

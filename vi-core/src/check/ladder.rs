@@ -13,6 +13,11 @@
 
 use super::comparison::Comparison;
 use super::report::{CheckFailure, Report};
+use alloc::boxed::Box;
+use alloc::string::String;
+use alloc::vec::Vec;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Halvings of the step in a sequence.
 const HALVINGS: u32 = 4;

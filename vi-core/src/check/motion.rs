@@ -6,6 +6,7 @@
 use crate::error::Residuals;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Rows of the extrapolation tableau.

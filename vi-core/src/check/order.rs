@@ -25,6 +25,7 @@ use crate::lagrangian::Lagrangian;
 use crate::method::{FixedStep, Method};
 use crate::run::{Run, Starts};
 use crate::state::State;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Distance of the two places, in ulps of each coordinate and velocity.

@@ -1,6 +1,7 @@
 //! Results of checks.
 
 use crate::error::StepError;
+use alloc::string::String;
 use core::fmt;
 
 /// A check that passed, with its numbers.

@@ -16,7 +16,10 @@ use crate::lagrangian::{Lagrangian, Parameters};
 use crate::linear::Matrix;
 use crate::node::Node;
 use crate::state::{Interval, State};
+use alloc::vec::Vec;
 use nalgebra::{SMatrix, SVector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Samples per place.
 const SAMPLES: u32 = 8;

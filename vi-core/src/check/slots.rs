@@ -20,6 +20,7 @@ use crate::real::Real;
 use crate::real::dual::Dual;
 use crate::real::dual::{along, unit};
 use crate::state::Interval;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Initial fractions of the step for a limit: two, since the distance may be zero at one by chance.

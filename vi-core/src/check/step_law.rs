@@ -22,7 +22,11 @@ use crate::error::StepError;
 use crate::method::EnergyPreserving;
 use crate::node::Node;
 use crate::stepping::EnergyStepping;
+use alloc::borrow::ToOwned;
+use alloc::vec::Vec;
 use nalgebra::SVector;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Slope of a quantity that decreases with h².
 const SLOPE: f64 = 2.0;

@@ -24,8 +24,8 @@ use crate::real::dual::{Dual, along, lift, unit};
 use crate::run::Starts;
 use crate::state::{Interval, State};
 use crate::stepping::FixedStepping;
+use core::array;
 use nalgebra::SVector;
-use std::array;
 
 /// Number of actual steps.
 const TAKEN: u32 = 8;

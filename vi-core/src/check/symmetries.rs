@@ -25,6 +25,7 @@ use crate::real::dual::{along, lift, slopes, unit};
 use crate::run::{Run, Starts};
 use crate::state::State;
 use crate::stepping::FixedStepping;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Tests that momenta of cyclic coordinates are constant bit for bit over fixed steps, with a zero increment in every

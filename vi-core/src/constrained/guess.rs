@@ -3,6 +3,7 @@
 
 use crate::predictor::weights;
 use crate::vector::worse;
+use alloc::vec::Vec;
 
 /// Highest degree of the extrapolation.
 const HIGHEST: usize = 5;

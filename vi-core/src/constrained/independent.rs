@@ -13,6 +13,7 @@ use crate::linear::{Block, Bordered, Rectangular};
 use crate::node::Node;
 use crate::real::Real;
 use crate::state::{Numbers, State};
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Numbers of 64 bits for the set of dropped constraints.

@@ -17,6 +17,7 @@ use crate::method::preserving::{Ended, NodeEnergy, StepsOfAnyLength, excess_of, 
 use crate::node::Node;
 use crate::real::Rounded;
 use crate::state::State;
+use alloc::vec::Vec;
 use core::cell::RefCell;
 use nalgebra::SVector;
 

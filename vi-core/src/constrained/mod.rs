@@ -52,6 +52,8 @@ pub(crate) use equations::{discrete_energy, impulses, unknowns};
 pub use independent::Independent;
 pub(crate) use motion::{accelerations, unsolvable};
 pub use motion::{constrained_acceleration, constrained_flow};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 pub use projection::{Projected, Projection};
 pub(crate) use variation::velocity_along;
 

@@ -16,6 +16,8 @@ use crate::real::{Real, Scalar};
 use crate::state::State;
 use crate::vector::worse;
 use nalgebra::SVector;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;

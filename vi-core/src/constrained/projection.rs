@@ -19,6 +19,8 @@ use crate::real::Rounded;
 use crate::state::{Numbers, State};
 use crate::vector::worse;
 use nalgebra::{SMatrix, SVector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 const ITERATIONS: u32 = 60;
 const HALVINGS: u32 = 12;

@@ -18,8 +18,9 @@ use crate::linear::{Rectangular, Row};
 use crate::newton::{FLOOR, roundings};
 use crate::node::Node;
 use crate::vector::worse;
+use alloc::collections::{BTreeMap, BTreeSet};
+use alloc::vec::Vec;
 use nalgebra::SVector;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest number of entries of S for each constraint, those of its elimination included.
 const FILLED: usize = 12;

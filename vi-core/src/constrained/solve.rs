@@ -17,7 +17,11 @@ use crate::linear::{Bordered, Factored, Rectangular, Row, Unsolvable};
 use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::Rounded;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 use nalgebra::SVector;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;

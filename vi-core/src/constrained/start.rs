@@ -7,7 +7,10 @@ use crate::linear::{Bordered, Matrix, Rectangular};
 use crate::newton::roundings;
 use crate::node::Node;
 use crate::real::{Real, Rounded};
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, SVector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Largest g and `A v + a` of a start, in roundings of their terms.
 pub(super) const CONSISTENT: f64 = 16.0;

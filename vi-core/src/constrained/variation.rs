@@ -28,6 +28,7 @@ use crate::node::Node;
 use crate::real::Dual;
 use crate::run::Run;
 use crate::state::State;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Largest part of a tangent vector across the constraints. Central differences have about nine digits.

@@ -22,7 +22,10 @@ use crate::newton::{FLOOR, roundings};
 use crate::real::{Dual, Rounded};
 use crate::state::Numbers;
 use crate::vector::worse;
+use alloc::vec::Vec;
 use nalgebra::{Complex, DMatrix, DVector, SMatrix, SVector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 const ITERATIONS: u32 = 100;
 const HALVINGS: i32 = 20;

@@ -13,8 +13,11 @@ use crate::node::Node;
 use crate::real::{Dual, Rounded};
 use crate::state::State;
 use crate::stepping::Convertible;
+use alloc::vec::Vec;
 use core::array;
 use nalgebra::{Complex, DMatrix, SMatrix, SVector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Damped steps, and halvings of each.
 const STEPS: u32 = 200;
@@ -85,7 +88,8 @@ impl<const N: usize> Equilibrium<N> {
 /// The rates ±iω of these ω², sorted.
 pub(super) fn oscillations(squares: &[f64]) -> Vec<Complex<f64>> {
     let pair = |square: &f64| {
-        let rate = Complex::new(0.0, 1.0) * Complex::new(*square, 0.0).sqrt();
+        let size = square.abs().sqrt();
+        let rate = if *square < 0.0 { Complex::new(-size, 0.0) } else { Complex::new(0.0, size) };
         [-rate, rate]
     };
     let mut rates: Vec<_> = squares.iter().flat_map(pair).collect();

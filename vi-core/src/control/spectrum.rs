@@ -1,5 +1,6 @@
 //! Eigenvalues and null vectors of matrices of a size known at run time. Entries are finite.
 
+use alloc::vec::Vec;
 use nalgebra::linalg::{Schur, SymmetricEigen, balancing};
 use nalgebra::{Complex, DMatrix, DVector};
 

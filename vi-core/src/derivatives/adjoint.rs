@@ -24,6 +24,7 @@ use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::run::Run;
 use crate::state::State;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Derivatives of a number with respect to a node.

@@ -19,6 +19,9 @@ use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::run::Run;
+use alloc::vec::Vec;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Estimates of the largest Lyapunov exponents along a run: mean growth rates of its directions.
 #[derive(Clone, Debug)]

@@ -21,6 +21,7 @@ use crate::method::Method;
 use crate::real::Dual;
 use crate::run::{Crossing, Event, Moment, Run};
 use crate::state::State;
+use alloc::vec::Vec;
 
 /// A run with tangent vectors at its node.
 #[derive(Clone, Debug)]

@@ -7,6 +7,7 @@ use crate::node::Node;
 use crate::real::{Dual, Slopes};
 use crate::state::State;
 use crate::stepping::{Convertible, Discretized};
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Number of directions per evaluation.

@@ -12,6 +12,8 @@ use crate::real::Scalar;
 use crate::stepping::EnergyStepping;
 use crate::vector::VelocityStep;
 use nalgebra::SVector;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// The trial after `last`.
 pub(crate) fn predict<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(

@@ -5,6 +5,7 @@
 
 use super::modes::Modal;
 use super::stages::LOOPED;
+use alloc::vec::Vec;
 use vi_dispatch::{Instructions, Loop, by_baseline};
 
 /// Largest part of a row that is added to another one.

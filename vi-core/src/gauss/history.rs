@@ -4,6 +4,8 @@
 use super::density::power;
 use crate::error::StepError;
 use crate::method::bounds::{Control, check_forward};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Memory of a run beside its node and its stages.
 #[derive(Clone, Copy, Debug, PartialEq)]

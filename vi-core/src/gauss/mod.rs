@@ -11,8 +11,10 @@
 //! | `fixed_point` | fixed-point iteration to convergence |
 //! | `solve` | the solver of a step, with runtime dispatch to SIMD instructions |
 //! | `points` | the equations of motion at a point, generic and type-erased |
+//! | `linearization` | the point of a linearization, and how stiff a step is there |
 //! | `newton` | simplified Newton iteration, linearized at the middle of the step |
 //! | `modes` | the eigenbasis that splits its equations into small systems |
+//! | `fixed_point_only` | in place of `newton` without the feature `alloc` |
 //! | `polynomial` | dense output |
 //! | `energies` | the discrete energies of a step |
 //! | `density` | the step density of order 2s |
@@ -27,12 +29,16 @@
 
 pub mod density;
 pub(crate) mod energies;
+#[cfg(feature = "alloc")]
 mod factors;
 pub(crate) mod fixed_point;
 mod general;
 pub(crate) mod history;
+pub mod linearization;
 pub(crate) mod lobatto;
+#[cfg(feature = "alloc")]
 mod modes;
+#[cfg_attr(not(feature = "alloc"), path = "fixed_point_only.rs")]
 pub mod newton;
 mod pair;
 pub(crate) mod points;
@@ -44,6 +50,7 @@ pub mod solve;
 pub(crate) mod stages;
 pub(crate) mod tableau;
 pub mod transformed;
+#[cfg(feature = "alloc")]
 mod variation;
 
 pub use density::step_density;

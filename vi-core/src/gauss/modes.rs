@@ -16,8 +16,11 @@
 use super::pair::Pair;
 use super::tableau::{Tableau, real};
 use crate::real::Lane;
+use alloc::vec::Vec;
 use core::ops::{Add, AddAssign, Mul};
 use nalgebra::{Complex, DMatrix};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// A number at each eigenvalue: real parts at those above the real axis, the value at the real eigenvalue of odd S,
 /// then the imaginary parts.

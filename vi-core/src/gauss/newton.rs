@@ -18,47 +18,30 @@
 //! positive real part. The first stiff step of a run allocates the buffer.
 
 use super::factors::{Factors, by_width};
+use super::linearization::Linearization;
 use super::modes::{Modal, Spectrum};
 use super::points::{AnyDerivatives, ErasedSystem};
 use super::stages::{Stages, product};
-use crate::linear::Pivoted;
 use crate::real::Lane;
-use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use alloc::boxed::Box;
+use nalgebra::SMatrix;
 use vi_dispatch::Loop;
 
-/// The linearization point of a step of length h.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Linearization<const N: usize> {
-    pub(crate) h: f64,
-    pub(crate) t: f64,
-    pub(crate) q: SVector<f64, N>,
-    pub(crate) v: SVector<f64, N>,
-    /// Iterations of the first step with this linearization; `None` before.
-    pub(crate) iterations: Option<u32>,
-    /// Whether a separable system is so stiff that only velocities reach rounding.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub(crate) by_velocity: bool,
+/// The equations of the last stiff step of a run, with memory from the first one on.
+#[derive(Clone, Debug)]
+pub struct Buffer<const N: usize, const S: usize>(Option<Box<Newton<N, S>>>);
+
+impl<const N: usize, const S: usize> Default for Buffer<N, S> {
+    fn default() -> Self {
+        Self(None)
+    }
 }
 
-impl<const N: usize> Linearization<N> {
-    /// The linearization for the next step, after one of this many iterations; `None` if a new one pays off.
-    pub(crate) fn after(self, iterations: u32) -> Option<Self> {
-        let first = self.iterations.unwrap_or(iterations);
-        (2 * iterations <= 3 * first).then_some(Self { iterations: Some(first), ..self })
-    }
-
-    /// Whether the equations are linearized at the same point, for the same length.
-    fn is_at(&self, other: &Self) -> bool {
-        self.h.to_bits() == other.h.to_bits()
-            && self.t.to_bits() == other.t.to_bits()
-            && self.q == other.q
-            && self.v == other.v
-    }
-
-    /// Whether all numbers are finite.
-    pub(crate) fn is_finite(&self) -> bool {
-        [self.h, self.t].iter().chain(&self.q).chain(&self.v).all(|number| number.is_finite())
+impl<const N: usize, const S: usize> Buffer<N, S> {
+    /// The equations; allocates them at the first call.
+    #[allow(clippy::unnecessary_wraps)] // without the feature `alloc` there are none
+    pub(crate) fn newton(&mut self) -> Option<&mut Newton<N, S>> {
+        Some(self.0.get_or_insert_with(|| Box::new(Newton::new())))
     }
 }
 
@@ -75,7 +58,7 @@ pub struct Newton<const N: usize, const S: usize> {
 
 impl<const N: usize, const S: usize> Newton<N, S> {
     /// Allocates the buffers.
-    pub(crate) fn new() -> Self {
+    fn new() -> Self {
         let zeros = SMatrix::zeros();
         let derivatives = AnyDerivatives { momentum_dq: zeros, mass: zeros, force_dq: zeros, force_dv: zeros };
         Self { linearization: None, spectrum: Spectrum::new(), derivatives, width: 0, factors: Factors::new() }
@@ -127,32 +110,6 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     pub(crate) fn correct_positions(&self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
         by_width::<N, _>(self.factors.instructions(), CorrectPositions { newton: self, x, y });
     }
-
-    /// An estimate of the largest h ω: the growth of a vector by `h E⁻¹ G`, with `E = [I 0; C M]` and `G = [0 I; K B]`.
-    pub(crate) fn stiffness(&self) -> f64 {
-        let h = self.linearization.map_or(f64::NAN, |at| at.h);
-        let AnyDerivatives { momentum_dq: c, mass: m, force_dq: k, force_dv: b } = &self.derivatives;
-        let mut left = DMatrix::identity(2 * N, 2 * N);
-        left.view_mut((N, 0), (N, N)).copy_from(c);
-        left.view_mut((N, N), (N, N)).copy_from(m);
-        let mut right = DMatrix::zeros(2 * N, 2 * N);
-        right.view_mut((0, N), (N, N)).fill_with_identity();
-        right.view_mut((N, 0), (N, N)).copy_from(k);
-        right.view_mut((N, N), (N, N)).copy_from(b);
-        let mut factors = Pivoted::new(2 * N);
-        factors.factor(&left);
-        let mut vector = DVector::from_element(2 * N, 1.0);
-        let mut length = 0.0;
-        for _ in 0..POWERS {
-            let norm = vector.norm();
-            vector /= norm;
-            vector = &right * &vector;
-            factors.solve(vector.as_mut_slice());
-            length += vector.norm().ln();
-        }
-        let stiffness = h.abs() * (length / f64::from(POWERS)).exp();
-        if stiffness.is_nan() { f64::INFINITY } else { stiffness }
-    }
 }
 
 /// The corrections of the velocities.
@@ -200,6 +157,3 @@ impl<const N: usize, const S: usize> Loop for CorrectPositions<'_, N, S> {
         }
     }
 }
-
-/// Power iterations of the stiffness estimate.
-const POWERS: u32 = 16;

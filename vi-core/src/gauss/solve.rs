@@ -6,7 +6,8 @@
 
 use super::fixed_point::{self, Convergence, Equations, FixedPointResult, Pause, StageIncrement};
 use super::general::{General, equations};
-use super::newton::{Linearization, Newton};
+use super::linearization::Linearization;
+use super::newton::{Buffer, Newton};
 use super::points::{ErasedSystem, Form, Points};
 use super::rounding;
 use super::separable::Separable;
@@ -195,16 +196,17 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         system: &Y,
         instructions: Instructions,
         (left, last): (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
-        cache: &mut Option<Box<Newton<N, S>>>,
+        cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
         Y: Collocation<N> + Convertible<N>,
     {
         let rare = &ErasedSystem::of(system);
         let mut after = self.pause;
-        if let Some(left) = left.filter(|left| left.has_stalled() && self.pause != Pause::USELESS) {
+        if let Some(left) = left.filter(|left| left.has_stalled() && self.pause != Pause::USELESS)
+            && let Some(newton) = cache.newton()
+        {
             // Newton iteration is faster than the analysis of rounding errors, and may reach rounding.
-            let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
             let Self { node, h, before, pause, .. } = *self;
             let near = Start { node, h, stages: &left.stages, are_last: false, before, pause };
             let at = last.unwrap_or_else(|| near.middle(rare));
@@ -221,17 +223,16 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         if let Some(step) = left.and_then(|left| self.accepted(rare, left, None)) {
             return Ok(Step { pause: after, ..step });
         }
-        let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
         // First the last linearization, then a new one, then stages equal to the node, because extrapolated polynomials
         // may be far off.
         if let Some(at) = last
-            && let Ok(step) = self.by_newton(system, instructions, at, newton)
+            && let Ok(step) = self.by_newton(system, instructions, at, cache)
         {
             return Ok(step);
         }
         let by_velocity = last.is_some_and(|last| last.by_velocity);
         let at = Linearization { by_velocity, ..self.middle(rare) };
-        let extrapolated = self.by_newton(system, instructions, at, newton);
+        let extrapolated = self.by_newton(system, instructions, at, cache);
         if extrapolated.is_ok() || !self.are_last {
             return extrapolated;
         }
@@ -246,23 +247,27 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         first.or(extrapolated)
     }
 
-    /// The step by Newton iteration.
+    /// The step by Newton iteration, or in scalar numbers if there is none.
     fn by_newton<Y>(
         &self,
         system: &Y,
         instructions: Instructions,
         at: Linearization<N>,
-        newton: &mut Newton<N, S>,
+        cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
         Y: Collocation<N> + Convertible<N>,
     {
         let rare = &ErasedSystem::of(system);
-        let (solved, at) = self.newton_stages(system, instructions, at, newton);
+        let mut newton = cache.newton();
+        let (solved, at) = match &mut newton {
+            Some(newton) => self.newton_stages(system, instructions, at, newton),
+            None => (self.in_scalars(rare, None), at),
+        };
         let StageSolution { increment, iteration, .. } = &solved;
         let not_converged =
-            || iteration.convergence.not_converged(increment, [self.node.t, self.h], newton.stiffness());
-        let accepted = self.accepted(rare, &solved, Some(newton));
+            || iteration.convergence.not_converged(increment, [self.node.t, self.h], at.stiffness(rare));
+        let accepted = self.accepted(rare, &solved, newton.as_deref());
         let step = accepted.ok_or_else(|| lost_force(system, self.node, self.h).unwrap_or_else(not_converged))?;
         let linearization = at.after(step.convergence.iterations);
         Ok(Step { pause: self.pause.after_newton(), linearization, ..step })

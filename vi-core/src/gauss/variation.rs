@@ -34,6 +34,7 @@ use crate::real::{Dual, Lane, Lanes, Number};
 use crate::run::Run;
 use crate::state::StepKind;
 use crate::stepping::Convertible;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 use vi_dispatch::{Instructions, Loop};
 

@@ -10,6 +10,7 @@
 
 use super::{Block, Factored, Matrix, Rectangular, Row, reciprocal_power, reciprocal_root};
 use crate::real::Real;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Pivots of the scaled matrix below this leave fewer than three digits of the solution.

@@ -4,6 +4,8 @@
 use super::{Matrix, is_kept};
 use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     type Inverse = Self;

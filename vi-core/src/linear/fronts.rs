@@ -15,6 +15,8 @@
 //! Source: J. W. H. Liu, The multifrontal method for sparse matrix solution, 1992.
 
 use crate::real::Real;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 
 /// Unknowns that are eliminated together, and the later ones that they are coupled to at their elimination.
 ///
@@ -463,6 +465,7 @@ mod tests {
     use super::{Block, Factored, Fronts, reciprocal_power, reciprocal_root};
     use crate::linear::Pivoted;
     use nalgebra::{DMatrix, DVector};
+    use std::vec::Vec;
 
     /// Leaves 0 and 3, two unknowns between them, all with copies.
     const BLOCKS: &[Block] =

@@ -21,9 +21,12 @@
 
 mod banded;
 mod blocks;
+#[cfg(feature = "alloc")]
 mod bordered;
 mod dense;
+#[cfg(feature = "alloc")]
 mod fronts;
+#[cfg(feature = "alloc")]
 mod pivoted;
 mod rectangular;
 mod symmetric;
@@ -31,9 +34,13 @@ mod tridiagonal;
 
 pub use banded::Banded;
 pub use blocks::Blocks;
+#[cfg(feature = "alloc")]
 pub(crate) use bordered::{Bordered, Unsolvable, scale};
+#[cfg(feature = "alloc")]
 pub use fronts::Block;
+#[cfg(feature = "alloc")]
 pub(crate) use fronts::{Factored, Fronts, reciprocal_power, reciprocal_root};
+#[cfg(feature = "alloc")]
 pub(crate) use pivoted::Pivoted;
 pub use rectangular::{Rectangular, Row, Sparse};
 pub use symmetric::Symmetric;

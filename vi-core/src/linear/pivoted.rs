@@ -4,6 +4,7 @@
 //! allocates.
 
 use crate::real::Real;
+use alloc::vec::Vec;
 use nalgebra::DMatrix;
 
 /// The factors of a matrix; see the [module](self).

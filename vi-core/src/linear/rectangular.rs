@@ -182,6 +182,7 @@ const fn all<const N: usize>() -> [usize; N] {
 mod tests {
     use super::{Rectangular, Row, Sparse};
     use nalgebra::SVector;
+    use std::vec::Vec;
 
     #[test]
     fn sparse_and_dense_rows_agree() {

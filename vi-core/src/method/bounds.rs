@@ -23,6 +23,8 @@ use crate::lagrangian::Lagrangian;
 use crate::real::Scalar;
 use crate::run::Run;
 use crate::state::StepKind;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Largest factor between the lengths of two consecutive steps.
 pub(crate) const RATIO: f64 = 3.0;

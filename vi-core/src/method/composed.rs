@@ -14,6 +14,8 @@ use crate::error::StepError;
 use crate::node::Node;
 use crate::run::Hermite;
 use crate::state::State;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 
 /// A symmetric composition of steps of order 2; see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -27,6 +27,7 @@ use crate::real::{Real, Scalar};
 use crate::run::{Hermite, Run};
 use crate::state::State;
 use crate::stepping::FixedStepping;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// A symmetric composition of fixed steps. See the [module](self).

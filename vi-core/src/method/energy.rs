@@ -17,6 +17,7 @@ use super::bounds::{Alternating, FORWARD, check_forward};
 use super::{Method, Problem, Report};
 use crate::angles;
 use crate::called::Called;
+#[cfg(feature = "alloc")]
 use crate::condition::Condition;
 use crate::energy_preserving::interval::Last;
 use crate::energy_preserving::lengths::{After, Lengths, Search};
@@ -344,6 +345,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S
     }
 
     /// Condition numbers of the equations of the last step. Allocates.
+    #[cfg(feature = "alloc")]
     pub fn condition(&self) -> Condition {
         let Last { v, h, previous, .. } = &self.memory.last;
         let mut start = self.node;

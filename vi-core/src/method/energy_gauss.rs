@@ -46,7 +46,7 @@ use crate::gauss::density::{power, step_density};
 use crate::gauss::energies::{Energies, bounded_energies, energies};
 use crate::gauss::fixed_point::Convergence;
 use crate::gauss::history::StepHistory;
-use crate::gauss::newton::Newton;
+use crate::gauss::newton::Buffer;
 use crate::gauss::solve::{Start, Step};
 use crate::gauss::stages::{Stages, at};
 use crate::lagrangian::Lagrangian;
@@ -112,7 +112,7 @@ impl<const N: usize, const S: usize> Trial for Tried<N, S> {
 }
 
 /// Buffers for stiff steps.
-type Cache<const N: usize, const S: usize> = Option<Box<Newton<N, S>>>;
+type Cache<const N: usize, const S: usize> = Buffer<N, S>;
 
 /// The steps of any length from the node of a run.
 struct GaussSteps<'a, S, const N: usize, const K: usize> {
@@ -208,7 +208,7 @@ where
     S: Collocation<N> + Convertible<N>,
 {
     let Lengths { stages, course } = memory;
-    let cache = &mut None;
+    let cache = &mut Buffer::default();
     let steps = GaussSteps { system, instructions: Instructions::detected(), stages, cache: RefCell::new(cache) };
     steps.tried(node, h, course.shift, None)
 }

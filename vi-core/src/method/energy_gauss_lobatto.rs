@@ -36,6 +36,8 @@ use crate::linear::Bordered;
 use crate::node::Node;
 use crate::run::{Hermite, Run};
 use crate::state::State;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 use core::cell::RefCell;
 use nalgebra::SVector;
 

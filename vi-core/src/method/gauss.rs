@@ -19,7 +19,8 @@ use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::gauss::energies::energies;
 use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
-use crate::gauss::newton::{Linearization, Newton};
+use crate::gauss::linearization::Linearization;
+use crate::gauss::newton::Buffer;
 use crate::gauss::points::ErasedSystem;
 use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
 use crate::gauss::stages::LOOPED;
@@ -176,7 +177,7 @@ where
 {
     type Prepared = Instructions;
     type Memory = LastStages<N, STAGES>;
-    type Cache = Option<Box<Newton<N, STAGES>>>;
+    type Cache = Buffer<N, STAGES>;
     type Step = Step<N, STAGES>;
     type Left = Option<StageSolution<N, STAGES>>;
     type DenseOutput = GaussOutput<N, STAGES>;

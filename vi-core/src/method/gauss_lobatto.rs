@@ -29,6 +29,8 @@ use crate::linear::Bordered;
 use crate::node::Node;
 use crate::run::{Hermite, Run};
 use crate::state::State;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Fixed steps of order 2 STAGES of a system with constraints, with 1 to 16 stages: `GaussLobatto::<2>`. See the

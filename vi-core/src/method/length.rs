@@ -13,6 +13,8 @@
 
 use crate::error::{Residuals, StepError};
 use crate::newton::FLOOR;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Most lengths of the secant iteration.
 const TRIALS: u32 = 8;

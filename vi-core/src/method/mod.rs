@@ -22,13 +22,17 @@
 //! | `length` | the search for the step length |
 
 pub mod bounds;
+#[cfg(feature = "alloc")]
 pub mod composed;
+#[cfg(feature = "alloc")]
 pub mod composition;
 pub mod energy;
 pub mod energy_gauss;
+#[cfg(feature = "alloc")]
 pub mod energy_gauss_lobatto;
 pub mod fixed;
 pub mod gauss;
+#[cfg(feature = "alloc")]
 pub mod gauss_lobatto;
 pub(crate) mod length;
 pub(crate) mod preserving;
@@ -37,13 +41,17 @@ pub mod splitting;
 pub mod transformed;
 
 pub use bounds::{Control, Controlled, Fallback, Switches};
+#[cfg(feature = "alloc")]
 pub use composed::Composed;
+#[cfg(feature = "alloc")]
 pub use composition::Composition;
 pub use energy::EnergyPreserving;
 pub use energy_gauss::EnergyPreservingGauss;
+#[cfg(feature = "alloc")]
 pub use energy_gauss_lobatto::EnergyPreservingGaussLobatto;
 pub use fixed::{Connected, FixedStep};
 pub use gauss::Gauss;
+#[cfg(feature = "alloc")]
 pub use gauss_lobatto::GaussLobatto;
 pub use shift::{Shiftable, StepPower};
 pub use splitting::Splitting;

@@ -13,6 +13,8 @@ use crate::newton::{FLOOR, roundings};
 use crate::node::Node;
 use crate::state::State;
 use core::cell::Cell;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Steps of any length from a node, of order 2K, with their discrete energies.
 pub(crate) trait StepsOfAnyLength<const N: usize, const K: usize> {

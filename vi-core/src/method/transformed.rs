@@ -19,7 +19,7 @@
 use super::{Gauss, Method, Problem, Report, check_step};
 use crate::collocation::TimeScale;
 use crate::error::{Residuals, StepError};
-use crate::gauss::newton::Newton;
+use crate::gauss::newton::Buffer;
 use crate::gauss::transformed::{
     After, LastRates, Start, TransformedPolynomial, TransformedStages, check_time_scale, time_scale,
 };
@@ -54,7 +54,7 @@ where
 {
     type Prepared = Instructions;
     type Memory = LastRates<N, STAGES>;
-    type Cache = Option<Box<Newton<N, STAGES>>>;
+    type Cache = Buffer<N, STAGES>;
     type Step = After<N, STAGES>;
     type Left = Option<TransformedStages<N, STAGES>>;
     type DenseOutput = TransformedPolynomial<N, STAGES>;
@@ -136,7 +136,7 @@ where
         let g = time_scale(system, t, &q);
         check_time_scale(t, g)?;
         let prepared = Instructions::detected();
-        let mut cache = None;
+        let mut cache = Buffer::default();
         let missed = f64::EPSILON * (MISSED * h.abs()).max(t.abs());
         // No trial exceeds twice the longest Δτ known to be too short.
         let [mut low, mut high] = [0.0, f64::INFINITY];

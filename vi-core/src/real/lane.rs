@@ -10,6 +10,8 @@
 
 use super::{Number, Real, sine};
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// One lane: a number whose sine and cosine have no slow path. `FUSED`: whether to use fused multiply-add.
 #[derive(Clone, Copy, Debug)]

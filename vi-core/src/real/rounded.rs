@@ -207,10 +207,10 @@ impl Number for Rounded {
         Self::rounding(self.value.hypot(other.value), self.error + other.error, 2.0)
     }
     fn pow(self, exponent: Self) -> Self {
-        let value = self.value.powf(exponent.value);
+        let value = self.value.pow(exponent.value);
         if self.value == 0.0 {
             // There is no slope, but a largest value.
-            let farthest = (UNIT * self.error).powf(exponent.value);
+            let farthest = (UNIT * self.error).pow(exponent.value);
             return Self::rounding(value, if self.error == 0.0 { 0.0 } else { farthest / UNIT }, 2.0);
         }
         let by_base = product((exponent.value / self.value * value).abs(), self.error);

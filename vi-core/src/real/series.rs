@@ -234,7 +234,7 @@ impl Number for Series {
     fn pow(self, exponent: Self) -> Self {
         // A fixed exponent needs no logarithm, which does not exist for a negative base.
         if exponent.is_fixed() {
-            self.function(self.value().powf(exponent.value()), |u| exponent * u / self)
+            self.function(self.value().pow(exponent.value()), |u| exponent * u / self)
         } else {
             (exponent * self.ln()).exp()
         }

@@ -12,6 +12,9 @@ use crate::lagrangian::Lagrangian;
 use crate::method::{Memory as _, Method};
 use crate::node::Node;
 use crate::real::Scalar;
+use alloc::borrow::ToOwned;
+use alloc::string::String;
+use alloc::vec::Vec;
 
 /// A run between two steps, with its system and rule.
 #[derive(Clone, Debug, PartialEq)]

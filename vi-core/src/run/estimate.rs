@@ -24,6 +24,7 @@
 //! about 60 instructions a step for one coordinate, 90 for two. A run without a monitor has no extra cost.
 
 use super::Run;
+#[cfg(feature = "alloc")]
 use super::events::{Crossing, Crossings, Events};
 use crate::angles::{self, Turns};
 use crate::error::StepError;
@@ -33,6 +34,8 @@ use crate::node::Node;
 use crate::real::Scalar;
 use crate::state::State;
 use nalgebra::SVector;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// A coordinate counts if it moves by more ulps than this.
 const VISIBLE: f64 = 64.0;
@@ -570,6 +573,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
     ///
     /// # Errors
     /// As [`Run::next_event`] and [`Monitored::step`].
+    #[cfg(feature = "alloc")]
     pub fn next_event(&mut self, events: impl Events<N>, until: f64) -> Result<Option<Crossing<N>>, StepError> {
         self.check()?;
         let Self { run, monitor, limit } = self;

@@ -23,6 +23,8 @@ use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::real::Dual;
 use crate::state::State;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 use core::fmt;
 use nalgebra::SVector;
 

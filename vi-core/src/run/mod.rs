@@ -19,20 +19,28 @@
 //! A state at a time t is the end of a last step of exactly the remaining length. It has the full order of the method.
 //! The run computes output at several times and recorded events on a copy, and keeps its own steps bit for bit.
 
+#[cfg(feature = "alloc")]
 mod checkpoint;
 mod dense_output;
 mod estimate;
+#[cfg(feature = "alloc")]
 mod events;
+#[cfg(feature = "alloc")]
 mod search;
+#[cfg(feature = "alloc")]
 mod side;
+#[cfg(feature = "alloc")]
 mod solution;
 mod times;
 mod tolerance;
 
+#[cfg(feature = "alloc")]
 pub use checkpoint::{Checkpoint, Stored};
 pub use dense_output::{DenseOutput, Hermite};
 pub use estimate::{ErrorEstimate, ErrorMonitor, LocalError, Monitored};
+#[cfg(feature = "alloc")]
 pub use events::{Crossing, Crossings, Event, Events, Met, Moment};
+#[cfg(feature = "alloc")]
 pub use solution::Solution;
 pub use times::Grid;
 pub use tolerance::{Length, Tolerance};

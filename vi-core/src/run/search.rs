@@ -16,6 +16,8 @@ use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::solve::bracket::{Point, narrowed};
 use crate::state::State;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 use core::convert::Infallible;
 use nalgebra::SVector;
 

@@ -15,6 +15,9 @@ use super::events::{Event, Moment};
 use super::search::ErasedRun;
 use super::times::LONGER;
 use crate::error::StepError;
+use alloc::vec::Vec;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Relative rounding error of the end of a step: a few roundings.
 pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;

@@ -1,7 +1,11 @@
 //! States at given times, with their energies.
 
+use super::Run;
+use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
+use crate::method::Method;
 use crate::state::State;
+use alloc::vec::Vec;
 use core::fmt;
 
 /// States of a run with their times and energies. `Display` prints a CSV table: `t`, coordinates, momenta, `H`.
@@ -14,6 +18,29 @@ pub struct Solution<const N: usize> {
     /// Energy `H = v·∂L/∂v − L` at each state, in the units of L.
     pub energies: Vec<f64>,
     names: [&'static str; N],
+}
+
+impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
+    /// Returns states at the given times with their energies. The run ends at its last node that is not beyond the last
+    /// time.
+    ///
+    /// [`Run::states_at`] returns the same states one by one, including those before an error.
+    ///
+    /// # Errors
+    /// The error of the failed step; [`StepError::InvalidInput`] for a time that is not finite, or that precedes the
+    /// one before.
+    pub fn at_times(&mut self, times: impl IntoIterator<Item = f64>) -> Result<Solution<N>, StepError> {
+        let system = self.system;
+        let mut states = Vec::new();
+        let mut energies = Vec::new();
+        let mut grid = self.states_at(times);
+        while let Some(t) = grid.times.next() {
+            let (state, node) = grid.at(t)?;
+            states.push(state);
+            energies.push(node.state().energy(&system)?);
+        }
+        Ok(Solution::of::<S>(states, energies))
+    }
 }
 
 impl<const N: usize> Solution<N> {

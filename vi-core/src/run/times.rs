@@ -3,7 +3,7 @@
 //! The last step before each time starts from the last node and ends exactly there. For several times the run computes
 //! these steps on a copy, and keeps its own steps.
 
-use super::{Run, Solution};
+use super::Run;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
@@ -42,27 +42,6 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
         }
         let node = &self.node;
         self.until(node.t + (node.t_low + duration.copysign(self.h())))
-    }
-
-    /// Returns states at the given times with their energies. The run ends at its last node that is not beyond the last
-    /// time.
-    ///
-    /// [`Run::states_at`] returns the same states one by one, including those before an error.
-    ///
-    /// # Errors
-    /// The error of the failed step; [`StepError::InvalidInput`] for a time that is not finite, or that precedes the
-    /// one before.
-    pub fn at_times(&mut self, times: impl IntoIterator<Item = f64>) -> Result<Solution<N>, StepError> {
-        let system = self.system;
-        let mut states = Vec::new();
-        let mut energies = Vec::new();
-        let mut grid = self.states_at(times);
-        while let Some(t) = grid.times.next() {
-            let (state, node) = grid.at(t)?;
-            states.push(state);
-            energies.push(node.state().energy(&system)?);
-        }
-        Ok(Solution::of::<S>(states, energies))
     }
 
     /// Iterates over states at the given times, in the order of the run, and takes steps on demand. The run ends at its
@@ -185,12 +164,12 @@ pub struct Grid<'a, M: Method<S, N>, S, I, const N: usize> {
     run: &'a mut Run<M, S, N>,
     /// The run after the next step, if that step ends beyond the next time.
     ahead: Option<Run<M, S, N>>,
-    times: I,
+    pub(super) times: I,
 }
 
 impl<M: Method<S, N>, S: Lagrangian<N> + Copy, I, const N: usize> Grid<'_, M, S, I, N> {
     /// The state at the time t, and its node.
-    fn at(&mut self, t: f64) -> Result<(State<N>, Node<N>), StepError> {
+    pub(super) fn at(&mut self, t: f64) -> Result<(State<N>, Node<N>), StepError> {
         self.run.check_ahead(t)?;
         let direction = self.run.h().signum();
         while self.run.time_to(t) != 0.0 {

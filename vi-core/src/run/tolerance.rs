@@ -10,6 +10,8 @@ use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::real::Scalar;
 use core::f64::consts::PI;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// A tolerance instead of a step length: `start.integrate(method, Tolerance(1e-9))`.
 ///

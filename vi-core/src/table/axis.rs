@@ -1,5 +1,8 @@
 //! The knots of an argument, and the piece to which a value of it belongs.
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 /// What a table is outside of its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {

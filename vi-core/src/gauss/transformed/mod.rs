@@ -13,10 +13,12 @@ mod equations;
 mod polynomial;
 mod rates;
 mod rounding;
+#[cfg(feature = "alloc")]
 mod variation;
 
 use super::fixed_point::{self, Equations, FixedPointResult, StageIncrement};
-use super::newton::{Linearization, Newton};
+use super::linearization::Linearization;
+use super::newton::{Buffer, Newton};
 use super::points::ErasedSystem;
 use super::solve::lost_force;
 use super::stages::{Stages, stage};
@@ -73,7 +75,7 @@ where
     pub(crate) fn recover(
         self,
         by_fixed_point: Option<&TransformedStages<N, S>>,
-        cache: &mut Option<Box<Newton<N, S>>>,
+        cache: &mut Buffer<N, S>,
     ) -> Result<After<N, S>, StepError> {
         if let Some(by_fixed_point) = by_fixed_point {
             // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
@@ -88,12 +90,15 @@ where
                 return Ok(after);
             }
         }
-        let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
-        newton.linearize(&ErasedSystem::of(self.system), self.middle());
-        let solved = self.in_scalars(Some(newton));
+        let (system, at) = (&ErasedSystem::of(self.system), self.middle());
+        let mut newton = cache.newton();
+        if let Some(newton) = &mut newton {
+            newton.linearize(system, at);
+        }
+        let solved = self.in_scalars(newton.as_deref());
         let mut after = self.last.after(self.node, self.dtau, &solved);
         after.rates.pause = self.last.pause.after_newton();
-        self.accepted(&solved, after).ok_or_else(|| self.failure_of(&solved, &after, newton.stiffness()))
+        self.accepted(&solved, after).ok_or_else(|| self.failure_of(&solved, &after, at.stiffness(system)))
     }
 
     /// The run after a solved step, with its acceptance criterion: the last change of its stages or, if that stalls,

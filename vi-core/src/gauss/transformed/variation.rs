@@ -33,6 +33,7 @@ use crate::node::Node;
 use crate::real::Dual;
 use crate::run::Run;
 use crate::stepping::Convertible;
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector, SVector};
 
 impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for InTransformedTime<Gauss<STAGES>>

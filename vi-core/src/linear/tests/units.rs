@@ -4,6 +4,7 @@
 use super::super::{Banded, Blocks, Matrix, Symmetric, Tridiagonal, dense, determinant_sign, solve};
 use super::forms::{banded, blocks, dominant, next, tridiagonal};
 use nalgebra::{SMatrix, SVector};
+use std::vec::Vec;
 
 /// Units of the rows and columns, powers of two so that nothing is rounded: 1, 1e-12, 1e30, 3e-8, 1e-30, 1e6.
 const EXPONENTS: [i32; 6] = [0, -40, 100, -25, -100, 20];

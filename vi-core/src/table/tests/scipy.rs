@@ -1,6 +1,7 @@
 //! Tables against scipy.
 
 use super::*;
+use std::vec::Vec;
 
 /// `CubicSpline`, `PchipInterpolator`, `make_interp_spline(k=5)` of scipy 1.17 (`pip install scipy`), periodic ones with
 /// `bc_type='periodic'` or three copies side by side, and cubic splines along y, then x. Rows are derivatives.
