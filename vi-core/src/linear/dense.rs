@@ -6,6 +6,7 @@ use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
+use vi_dispatch::{Instructions, Loop, by_baseline};
 
 impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     type Inverse = Self;
@@ -132,6 +133,9 @@ fn in_order<T: Real, const N: usize, const M: usize>(
     mut a: SMatrix<T, N, N>,
     mut b: SMatrix<T, N, M>,
 ) -> Option<SMatrix<T, N, M>> {
+    if const { N > LARGEST_UNBLOCKED } {
+        return by_blocks(&mut a, &mut b, None).then_some(b);
+    }
     let mut kept = true;
     for column in 0..N {
         for row in column + 1..N {
@@ -150,6 +154,10 @@ pub(super) fn pivoted<T: Real, const N: usize, const M: usize>(
     mut b: SMatrix<T, N, M>,
 ) -> SMatrix<T, N, M> {
     let mut weights = weights(&a);
+    if const { N > LARGEST_UNBLOCKED } {
+        by_blocks(&mut a, &mut b, Some(&mut weights));
+        return b;
+    }
     for column in 0..N {
         if let Some(row) = pivot(&mut a, &mut weights, column) {
             b.swap_rows(column, row);
@@ -194,6 +202,194 @@ fn substitute<T: Real, const N: usize, const M: usize>(
     b
 }
 
+/// Larger matrices are eliminated in blocks of columns.
+const LARGEST_UNBLOCKED: usize = 16;
+/// Pivots of a block: a column is loaded and stored once for all of them.
+const BLOCK: usize = 4;
+/// Right-hand sides that are substituted together.
+const TOGETHER: usize = 8;
+
+/// Replaces `b` by the solution, with the same roundings as elimination column by column. With `weights` it pivots;
+/// without, it returns `false` if a pivot is lost. Not inlined: one copy per instruction set.
+#[inline(never)]
+fn by_blocks<T: Real, const N: usize, const M: usize>(
+    a: &mut SMatrix<T, N, N>,
+    b: &mut SMatrix<T, N, M>,
+    weights: Option<&mut [f64; N]>,
+) -> bool {
+    let elimination = Elimination { a, b, weights };
+    // Other numbers do not gain from wide vectors.
+    if const { size_of::<T>() <= size_of::<f64>() } {
+        Instructions::detected().run(elimination)
+    } else {
+        by_baseline(elimination)
+    }
+}
+
+/// Elimination along the columns, which are contiguous in memory.
+struct Elimination<'a, T, const N: usize, const M: usize> {
+    a: &'a mut SMatrix<T, N, N>,
+    b: &'a mut SMatrix<T, N, M>,
+    weights: Option<&'a mut [f64; N]>,
+}
+
+impl<T: Real, const N: usize, const M: usize> Loop for Elimination<'_, T, N, M> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> bool {
+        let Self { a, b, mut weights } = self;
+        for start in (0..N).step_by(BLOCK) {
+            let end = (start + BLOCK).min(N);
+            let mut kept = true;
+            for column in start..end {
+                let (factors, columns) = a.data.0.split_at_mut(column);
+                let entries = &mut columns[0];
+                for pivot in start..column {
+                    kept &= is_kept(entries[column], factors[pivot][column] * entries[pivot]);
+                    subtract_row(&factors[pivot], pivot, entries);
+                }
+                // Columns beyond the block are swapped before their subtractions instead of between them.
+                if let Some(weights) = &mut weights
+                    && let Some(row) = pivot(a, weights, column)
+                {
+                    b.swap_rows(column, row);
+                }
+                let entries = &mut a.data.0[column];
+                let pivot = entries[column];
+                for entry in &mut entries[column + 1..] {
+                    *entry = *entry / pivot;
+                }
+            }
+            let diagonal = core::array::from_fn(|i| a[(i, i)]);
+            let (factors, columns) = a.data.0.split_at_mut(end);
+            let factors = &factors[start..];
+            if let Ok(factors) = <&[_; BLOCK]>::try_from(factors) {
+                // Two columns share the loads of the factors.
+                let (pairs, last) = columns.as_chunks_mut::<2>();
+                for pair in pairs {
+                    subtract_rows(factors, start, pair);
+                }
+                for column in last.iter_mut().chain(&mut b.data.0) {
+                    subtract_rows(factors, start, core::array::from_mut(column));
+                }
+                kept &= weights.is_some() || are_kept(&diagonal, factors, columns, start);
+            } else {
+                for column in &mut b.data.0 {
+                    for (pivot, factors) in (start..).zip(factors) {
+                        subtract_row(factors, pivot, column);
+                    }
+                }
+            }
+            if !kept && weights.is_none() {
+                return false;
+            }
+        }
+        if const { M <= TOGETHER } {
+            substitute_together(a, &mut b.data.0);
+        } else {
+            let (groups, rest) = b.data.0.as_chunks_mut::<TOGETHER>();
+            for group in groups {
+                substitute_together(a, group);
+            }
+            for column in rest {
+                substitute_together(a, core::array::from_mut(column));
+            }
+        }
+        true
+    }
+}
+
+/// Subtracts multiples of the row `pivot` from those below it, in one column.
+#[inline(always)]
+fn subtract_row<T: Real, const N: usize>(factors: &[T; N], pivot: usize, column: &mut [T; N]) {
+    let entry = column[pivot];
+    for row in pivot + 1..N {
+        let eliminated = factors[row] * entry;
+        column[row] -= eliminated;
+    }
+}
+
+/// [`subtract_row`] for the rows of a block from `start` on, one after the other, in C columns.
+#[inline(always)]
+fn subtract_rows<T: Real, const N: usize, const C: usize>(
+    factors: &[[T; N]; BLOCK],
+    start: usize,
+    columns: &mut [[T; N]; C],
+) {
+    let mut pivots = [[T::zero(); C]; BLOCK];
+    for k in 0..C {
+        for i in 0..BLOCK {
+            pivots[i][k] = columns[k][start + i];
+            for j in i + 1..BLOCK {
+                let eliminated = factors[i][start + j] * pivots[i][k];
+                columns[k][start + j] -= eliminated;
+            }
+        }
+    }
+    for row in start + BLOCK..N {
+        let mut entries = [T::zero(); C];
+        for k in 0..C {
+            entries[k] = columns[k][row];
+        }
+        for i in 0..BLOCK {
+            for k in 0..C {
+                let eliminated = factors[i][row] * pivots[i][k];
+                entries[k] -= eliminated;
+            }
+        }
+        for k in 0..C {
+            columns[k][row] = entries[k];
+        }
+    }
+}
+
+/// Whether the diagonal entries below a block kept their digits. `diagonal` has their values before the subtraction,
+/// `columns` those after it.
+#[inline(always)]
+fn are_kept<T: Real, const N: usize>(
+    diagonal: &[T; N],
+    factors: &[[T; N]; BLOCK],
+    columns: &[[T; N]],
+    start: usize,
+) -> bool {
+    // By rows, so that the comparison is vectorized.
+    let mut pivots = [[T::zero(); N]; BLOCK];
+    for (column, entries) in (start + BLOCK..N).zip(columns) {
+        for i in 0..BLOCK {
+            pivots[i][column] = entries[start + i];
+        }
+    }
+    let mut kept = true;
+    for row in start + BLOCK..N {
+        let mut entry = diagonal[row];
+        for i in 0..BLOCK {
+            let eliminated = factors[i][row] * pivots[i][row];
+            kept &= is_kept(entry, eliminated);
+            entry -= eliminated;
+        }
+    }
+    kept
+}
+
+/// [`substitute`] for C right-hand sides, whose sums are independent of each other.
+#[inline(always)]
+fn substitute_together<T: Real, const N: usize, const C: usize>(a: &SMatrix<T, N, N>, columns: &mut [[T; N]; C]) {
+    let mut x = [[T::zero(); C]; N];
+    for row in (0..N).rev() {
+        let mut known = [T::zero(); C];
+        for column in row + 1..N {
+            for k in 0..C {
+                known[k] += a[(row, column)] * x[column][k];
+            }
+        }
+        for k in 0..C {
+            x[row][k] = (columns[k][row] - known[k]) / a[(row, row)];
+            columns[k][row] = x[row][k];
+        }
+    }
+}
+
 /// Rounds of scaling. Each takes the square root of the ratio of a row or column to its target: ratios of 10⁴⁰ become
 /// ratios of 1.5.
 const ROUNDS: usize = 8;
@@ -205,11 +401,12 @@ pub(super) fn weights<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> [f64; N]
     let (mut rows, mut columns) = ([1.0_f64; N], [1.0_f64; N]);
     for _ in 0..ROUNDS {
         let (mut row_lengths, mut column_lengths) = ([0.0_f64; N], [0.0_f64; N]);
-        for i in 0..N {
-            for j in 0..N {
+        for j in 0..N {
+            for i in 0..N {
                 let entry = a[(i, j)].abs().to_f64() * rows[i] * columns[j];
-                row_lengths[i] = row_lengths[i].max(entry);
-                column_lengths[j] = column_lengths[j].max(entry);
+                // The comparison is faster than `f64::max`, and ignores NaN as well.
+                row_lengths[i] = if entry > row_lengths[i] { entry } else { row_lengths[i] };
+                column_lengths[j] = if entry > column_lengths[j] { entry } else { column_lengths[j] };
             }
         }
         let lengths = row_lengths.into_iter().chain(column_lengths);
@@ -223,6 +420,8 @@ pub(super) fn weights<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> [f64; N]
 }
 
 /// Swaps the row with the largest scaled entry of `column` onto the diagonal; returns its index if it was another row.
+/// Not inlined into the loop of each instruction set.
+#[inline(never)]
 pub(super) fn pivot<T: Real, const N: usize>(
     a: &mut SMatrix<T, N, N>,
     weights: &mut [f64; N],

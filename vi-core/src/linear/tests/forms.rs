@@ -1,5 +1,7 @@
 //! The forms against elimination with partial pivoting of the same matrices.
 
+mod large;
+
 use super::super::{Banded, Blocks, Matrix, Symmetric, Tridiagonal, dense::eliminate, solve};
 
 use nalgebra::{SMatrix, SVector};
