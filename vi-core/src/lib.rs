@@ -32,6 +32,7 @@
 //! | [`stepping`] | the momentum and energy equations of one step, and their derivatives |
 //! | [`collocation`] | the equations of motion at one point, for Gauss steps |
 //! | [`constrained`] | systems with constraints, for Gauss–Lobatto steps |
+//! | [`indexed`] | large systems: all their functions from first and second derivatives by loops |
 //! | [`rules`] | markers of the quadrature rules that `discretize` can name |
 //! | [`state`], [`node`] | states, intervals and steps; nodes with compensated sums |
 //! | [`method`] | the integrators, one file each |
@@ -97,6 +98,7 @@ mod explained;
 mod forward;
 pub mod function;
 pub mod gauss;
+pub mod indexed;
 pub mod lagrangian;
 mod legendre;
 pub mod linear;

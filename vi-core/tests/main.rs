@@ -10,6 +10,7 @@ mod equations;
 mod failures;
 mod fallback;
 mod gauss_alone;
+mod indexed;
 mod long_runs;
 mod many;
 mod outcomes;
