@@ -3,7 +3,7 @@
 //! In: the tokens of a `lagrangian!`. Out: its expansion, and a line that makes cargo rebuild when the variable
 //! changes. A system with mistakes is not written. A failed write is a compile error with its reason.
 
-use crate::{Derivations, pretty};
+use crate::{Compiled, pretty};
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::env;
@@ -19,12 +19,11 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
 fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
     let definition = tokens.to_string();
     // A system with mistakes expands to its errors and writes no file.
-    let (items, error) = match crate::compile(tokens) {
-        Ok(derivations) => {
-            let mut items = crate::items(&derivations);
-            items.extend(crate::emit::structure::described(&derivations.own.model, &definition));
-            let name = derivations.own.model.name.to_string();
-            let written = folder.map_or(Ok(()), |folder| write(&name, &derivations, folder));
+    let (items, error) = match Compiled::from_tokens(tokens) {
+        Ok(compiled) => {
+            let mut items = compiled.items();
+            items.extend(crate::emit::structure::described(compiled.model(), &definition));
+            let written = folder.map_or(Ok(()), |folder| write(&compiled, folder));
             (items, written.err().map(|reason| quote!(::core::compile_error! { #reason })))
         }
         Err(errors) => (errors, None),
@@ -36,8 +35,9 @@ fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
     }
 }
 
-fn write(name: &str, derivations: &Derivations, folder: &Path) -> Result<(), String> {
-    let text = crate::text(derivations).map_err(|error| error.to_string())?;
+fn write(compiled: &Compiled, folder: &Path) -> Result<(), String> {
+    let name = &compiled.model().name.to_string();
+    let text = compiled.text().map_err(|error| error.to_string())?;
     match pretty::write(folder, name, &text) {
         Ok(_) => Ok(()),
         Err(error) => Err(format!(
@@ -77,6 +77,20 @@ mod tests {
         let blocked = inner.join("free_particle.rs");
         let error = expansion(SYSTEM, Some(&blocked));
         assert!(error.contains("cannot write the expansion of `FreeParticle` into `"), "{error}");
+        fs::remove_dir_all(&folder).expect("the folder can be removed");
+    }
+
+    #[test]
+    fn a_large_system_is_written_too() {
+        let system = "#[vi_limit(0)] struct Row { coord q[5]; \
+            L = sum(i in 0..5, dot(q[i])^2) / 2 - sum(i in 1..5, (q[i] - q[i - 1])^4); discretize midpoint; }";
+        let folder = env::temp_dir().join(format!("vi-expand-large-{}", std::process::id()));
+        let expanded = expansion(system, Some(&folder));
+        assert!(!expanded.contains("compile_error"), "{expanded}");
+        assert!(expanded.contains("option_env !"), "cargo builds it again when the variable changes");
+        let written = fs::read_to_string(folder.join("row.rs")).expect("the file");
+        assert!(written.starts_with("// `Row`: L = ") && written.contains("\n// Functions in loops: "), "{written}");
+        assert!(written.contains("impl<T: ::vi_core::real::Real> ::vi_core::indexed::Indexed<5, T> for Row<T>"));
         fs::remove_dir_all(&folder).expect("the folder can be removed");
     }
 

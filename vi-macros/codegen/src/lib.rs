@@ -8,7 +8,8 @@
 //! ```
 //!
 //! One stage, one folder, one product. A stage reports all its errors before the next one starts. The stages after
-//! parsing run once for each declared rule.
+//! parsing run once for each declared rule. A large system takes another path: [`indexed`] replaces the stages from
+//! `discrete` to `program`.
 
 mod arrays;
 mod constraints;
@@ -20,6 +21,7 @@ pub mod findings;
 pub mod functions;
 mod habits;
 mod header;
+pub mod indexed;
 #[cfg(feature = "inspect")]
 pub mod inspect;
 mod limits;
@@ -32,43 +34,141 @@ pub mod symbol;
 pub mod syntax;
 
 pub use derived::{Derivations, Derived};
+pub use header::documentation;
 
 use emit::Broken;
-use model::check;
+use indexed::Indexed;
+use model::{Model, check};
 use proc_macro2::TokenStream;
-use syntax::parse;
+use symbol::Symbol;
+use syntax::{System, parse};
 use vi_expr::Pool;
+
+/// A compiled system: straight lines, or loops if it is large and its terms repeat.
+pub enum Compiled {
+    /// Every function in straight lines, under each rule.
+    Lines(Box<Derivations>),
+    /// L, f and their derivatives in loops.
+    Loops(Box<Loops>),
+}
+
+/// A large system in loops, with its expressions.
+pub struct Loops {
+    /// All expressions.
+    pub pool: Pool<Symbol>,
+    /// The recursions and sums.
+    pub indexed: Indexed,
+}
+
+impl Compiled {
+    /// Compiles a parsed system; decides between loops and straight lines.
+    ///
+    /// # Errors
+    /// All errors of the first stage that fails.
+    pub fn of(system: &System) -> syn::Result<Self> {
+        // `#[vi_limit(0)]`, for tests: the size at which loops begin.
+        let is_asked = system.attributes.iter().find_map(emit::limit) == Some(0);
+        let loops = Loops::of(system, if is_asked { 1 } else { limits::LARGE_COORDINATES })?;
+        let is_large = |loops: &Loops| is_asked || loops.indexed.operations() > limits::LARGE;
+        match loops {
+            Some(loops) if is_large(&loops) => Ok(Self::Loops(Box::new(loops))),
+            loops => match (derive(system), loops) {
+                (Ok(derivations), _) => Ok(Self::Lines(Box::new(derivations))),
+                (Err(error), Some(loops)) if messages::is_too_large(&error) => Ok(Self::Loops(Box::new(loops))),
+                (Err(error), _) => Err(error),
+            },
+        }
+    }
+
+    /// Compiles a system from its tokens.
+    ///
+    /// # Errors
+    /// The errors as items, with a stub of the struct.
+    pub fn from_tokens(tokens: TokenStream) -> Result<Self, TokenStream> {
+        with_stub(tokens, Self::of)
+    }
+
+    /// The checked system.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        match self {
+            Self::Lines(derivations) => &derivations.own.model,
+            Self::Loops(loops) => &loops.indexed.model,
+        }
+    }
+
+    /// The items of the system.
+    #[must_use]
+    pub fn items(&self) -> TokenStream {
+        match self {
+            Self::Lines(derivations) => items(derivations),
+            Self::Loops(loops) => emit::indexed_items(loops),
+        }
+    }
+
+    /// The expansion as the text of a file.
+    ///
+    /// # Errors
+    /// Tokens that are not Rust items: a bug of this compiler.
+    pub fn text(&self) -> syn::Result<String> {
+        match self {
+            Self::Lines(derivations) => text(derivations),
+            Self::Loops(loops) => Ok(header::of_loops(loops) + &pretty::text(self.items())?),
+        }
+    }
+}
+
+impl Loops {
+    /// The system in loops; `None` if it has fewer coordinates than `least`, or its terms do not repeat.
+    ///
+    /// # Errors
+    /// Recursions with too many entries.
+    fn of(system: &System, least: usize) -> syn::Result<Option<Self>> {
+        let has_arrays = system.coordinates.iter().any(|coordinate| !coordinate.lengths.is_empty());
+        let mut pool = Pool::bounded(limits::WORK);
+        // Straight lines report its mistakes.
+        let model = if has_arrays { check::large_model(&mut pool, system).ok() } else { None };
+        let is_possible = |model: &Model| model.dimension() >= least && system.rules() <= 1;
+        let Some(model) = model.filter(is_possible) else { return Ok(None) };
+        Ok(indexed::indexed(&mut pool, model)?.map(|indexed| Self { pool, indexed }))
+    }
+}
 
 /// Expands a `lagrangian!` to the items of the system, or to its errors with a stub of the struct.
 #[must_use]
 pub fn expand(tokens: TokenStream) -> TokenStream {
-    compile(tokens).map_or_else(|errors| errors, |derivations| items(&derivations))
+    Compiled::from_tokens(tokens).map_or_else(|errors| errors, |compiled| compiled.items())
 }
 
-/// Derives a system from its tokens.
-///
-/// # Errors
-/// The errors as items, with a stub of the struct.
-pub fn compile(tokens: TokenStream) -> Result<Derivations, TokenStream> {
+/// Parses a system and derives from it; errors become items, with a stub of the struct.
+fn with_stub<R>(tokens: TokenStream, derived: impl FnOnce(&System) -> syn::Result<R>) -> Result<R, TokenStream> {
     let system = parse::system(tokens.clone()).map_err(|error| {
         let outline = parse::outline(tokens);
         outline.map_or_else(|| error.to_compile_error(), |system| Broken::of(&system).with(&error))
     })?;
-    derive(&system).map_err(|error| Broken::of(&system).with(&error))
+    derived(&system).map_err(|error| Broken::of(&system).with(&error))
 }
 
-/// Runs the stages from the parsed system to its programs, one per rule.
+/// Derives a system from its tokens, in straight lines.
+///
+/// # Errors
+/// The errors as items, with a stub of the struct.
+pub fn compile(tokens: TokenStream) -> Result<Derivations, TokenStream> {
+    with_stub(tokens, derive)
+}
+
+/// Runs the stages from the parsed system to its programs in straight lines, one per rule.
 ///
 /// # Errors
 /// All errors of the first stage that fails.
-pub fn derive(system: &syntax::System) -> syn::Result<Derivations> {
+pub fn derive(system: &System) -> syn::Result<Derivations> {
     let own = derive_by(system, 0)?;
     let further = (1..system.rules()).map(|place| derive_by(system, place)).collect::<syn::Result<_>>()?;
     Ok(Derivations { own, further })
 }
 
 /// Runs the stages for the rule at this position of the list.
-fn derive_by(system: &syntax::System, place: usize) -> syn::Result<Derived> {
+fn derive_by(system: &System, place: usize) -> syn::Result<Derived> {
     let mut pool = Pool::bounded(limits::WORK);
     let model = check::model(&mut pool, system, place).map_err(messages::bounded)?;
     let system = discrete::system::system(&mut pool, &model)?;
@@ -77,7 +177,7 @@ fn derive_by(system: &syntax::System, place: usize) -> syn::Result<Derived> {
     Ok(Derived { pool, model, system, program, findings })
 }
 
-/// The expansion of a system as the text of a file.
+/// The expansion of a system in straight lines as the text of a file.
 ///
 /// # Errors
 /// Tokens that are not Rust items: a bug of this compiler.
@@ -85,7 +185,7 @@ pub fn text(derivations: &Derivations) -> syn::Result<String> {
     Ok(header::header(derivations) + &pretty::text(items(derivations))?)
 }
 
-/// The items of a system.
+/// The items of a system in straight lines.
 #[must_use]
 pub fn items(derivations: &Derivations) -> TokenStream {
     emit::items(derivations)

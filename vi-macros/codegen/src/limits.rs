@@ -21,6 +21,12 @@ const TERMS: usize = 85_000;
 /// Maximum work in all stages of a system: half a second, or 3 to 8 s in an unoptimized build.
 pub(crate) const WORK: usize = 56_000_000;
 
+/// Operations of second derivatives above which a system is large: its derivatives are written as loops.
+pub(crate) const LARGE: usize = 7_000;
+
+/// Fewest coordinates of a large system.
+pub(crate) const LARGE_COORDINATES: usize = 16;
+
 /// Whether a system is within its limits.
 pub(crate) fn bounded(pool: &Pool<Symbol>) -> Result<(), TooLarge> {
     pool.within_work()?;

@@ -39,8 +39,8 @@ const IN_RULE: &str = "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*
 const IN_CHECK: &str = "a check sets coordinates, their `dot(…)`, parameters, the time `t` and the step `h`";
 
 /// The size at which systems end.
-const LARGE: &str = "use fewer coordinates or a simpler Lagrangian; systems in which all coordinates are coupled end near 18 links by positions, 28 links by \
-    angles, 12 bodies in space";
+const LARGE: &str = "use fewer coordinates or a simpler Lagrangian; a system whose terms repeat, written as `sum(i in 0..N, …)` over \
+    arrays, is emitted as loops of any length";
 
 /// Correction of an expression without a derivative.
 const NO_DERIVATIVE: &str = "its derivative divides by zero, or takes the logarithm of zero or of a negative number, for every state; rewrite the expression";
@@ -258,6 +258,9 @@ pub enum Message {
     TooManyCoordinates { limit: usize },
     /// A system that exceeds a limit.
     TooLarge(TooLarge),
+    /// Recursions with more entries than their tangents may have; the arrays, their size, and the entries that
+    /// are allowed.
+    Tangents { arrays: Vec<String>, bytes: usize, most: usize },
     /// Text after the system.
     AfterSystem,
     /// The number of messages that are not shown.
@@ -438,6 +441,15 @@ impl Message {
             Self::LongName { limit } => format!("this name is longer than {limit} letters"),
             Self::TooManyCoordinates { limit } => format!("the system has more than {limit} coordinates"),
             Self::TooLarge(TooLarge::Terms { limit }) => format!("the expanded system has more than {limit} terms"),
+            Self::Tangents { arrays, bytes, .. } => {
+                let tenths = bytes.div_ceil(100_000);
+                format!(
+                    "the tangents of `{}` need {}.{} MB of the stack",
+                    arrays.join("`, `"),
+                    tenths / 10,
+                    tenths % 10
+                )
+            }
             Self::TooLarge(TooLarge::Work { limit }) => format!("the system takes more than {limit} steps of algebra"),
             Self::AfterSystem => "unexpected text after the system".to_owned(),
             Self::More { count } => format!("{count} more mistakes are not shown"),
@@ -448,6 +460,7 @@ impl Message {
 
     /// The correction.
     #[must_use]
+    #[allow(clippy::too_many_lines)] // one for each mistake
     pub fn help(&self) -> String {
         match self {
             Self::Duplicate { .. } => "rename one of them".to_owned(),
@@ -543,6 +556,7 @@ impl Message {
             Self::TooLong { .. } => "write repeated terms with arrays and `sum`".to_owned(),
             Self::LongName { .. } => "choose a shorter one".to_owned(),
             Self::TooLarge(_) => LARGE.to_owned(),
+            Self::Tangents { most, .. } => format!("declare at most {most} entries"),
             Self::TooManyCoordinates { .. } => "use fewer coordinates or a simpler Lagrangian".to_owned(),
             Self::AfterSystem => "one `lagrangian!` holds one `struct`".to_owned(),
             Self::More { .. } => "correct those above, and compile again".to_owned(),
@@ -605,6 +619,11 @@ impl Errors {
             None => Ok(product),
         }
     }
+}
+
+/// Whether errors say that a system is too large.
+pub(crate) fn is_too_large(errors: &syn::Error) -> bool {
+    errors.clone().into_iter().any(|error| error.to_string().contains(LARGE))
 }
 
 /// The first [`SHOWN`] messages of a system and the number of further ones: each prints its source line, which may be

@@ -35,6 +35,15 @@ pub struct Field {
     pub point: usize,
 }
 
+/// An entry of an array of `let`s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LetEntry {
+    /// The array, in the order of declaration.
+    pub array: usize,
+    /// The number of the entry, row by row.
+    pub entry: usize,
+}
+
 /// A symbol of the compiler.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Symbol {
@@ -47,6 +56,12 @@ pub enum Symbol {
     },
     /// Variable of the continuous system.
     Continuous(Variable),
+    /// An entry of an array of `let`s that a large system computes in a loop.
+    Let(LetEntry),
+    /// The rate of such an entry.
+    LetRate(LetEntry),
+    /// A number that the body of a loop reads, by its place in the list of these.
+    Access(usize),
     /// Acceleration a_i; appears in the step density only.
     Acceleration(usize),
     /// Multiplier of a constraint; appears in the derivatives of the reaction only.
@@ -99,7 +114,14 @@ impl Symbol {
             Self::Parameter { index, array } => {
                 array.map(|first| (Self::Parameter { index: first, array: Some(first) }, index - first))
             }
-            Self::T0 | Self::T1 | Self::Step | Self::E0 | Self::Field(_) => None,
+            Self::T0
+            | Self::T1
+            | Self::Step
+            | Self::E0
+            | Self::Field(_)
+            | Self::Let(_)
+            | Self::LetRate(_)
+            | Self::Access(_) => None,
         }
     }
 }

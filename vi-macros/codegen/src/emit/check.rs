@@ -8,9 +8,12 @@
 use super::formula::number;
 use super::lagrangian::monotone_table;
 use super::{Source, Steps};
+use crate::indexed::Indexed;
+use crate::model::{FunctionKind, Model, TableKind};
 use crate::pretty::snake_case;
-use crate::rules::LEAST_ORDER;
-use proc_macro2::{Literal, TokenStream};
+use crate::program::Operation;
+use crate::rules::{LEAST_ORDER, NamedRule};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 use syn::Attribute;
 
@@ -25,13 +28,66 @@ pub(super) fn tests(
     further: &[Steps],
     conditions: &[&Attribute],
 ) -> Option<TokenStream> {
-    let state = source.model.check_state.as_ref()?;
-    let (name, dimension) = (&source.model.name, source.dimension());
+    let model = source.model;
+    let applying = match steps {
+        Some(steps) => of_steps(&Properties::of(steps)),
+        None if model.constraints.is_empty() => {
+            of_motion(source.system.continuous.cyclic.contains(&true), model.forced)
+        }
+        None => of_constraints(source),
+    };
+    let by_further = further.iter().map(|steps| Further {
+        rule: format_ident!("{}", steps.rule.title()),
+        checks: of_steps(&Properties::of(steps)),
+        by_rule: Box::new(|system| steps.by_rule(system)),
+    });
+    module(model, &applying, &by_further.collect::<Vec<_>>(), conditions)
+}
+
+/// The tests of the clause `check` of a large system, in their own module.
+pub(super) fn tests_of_loops(of: &Indexed, conditions: &[&Attribute]) -> Option<TokenStream> {
+    let (forced, is_cyclic) = (of.model.forced, of.cyclic.contains(&true));
+    let applying = match &of.model.rule {
+        Some(rule) => {
+            let is_monotone = monotone_table_of(of).is_some();
+            of_steps(&Properties { rule: rule.named, has_energy_steps: !is_monotone, is_monotone, is_cyclic, forced })
+        }
+        None => of_motion(is_cyclic, forced),
+    };
+    module(&of.model, &applying, &[], conditions)
+}
+
+/// The name of a monotone table in L of a large system.
+pub(super) fn monotone_table_of(of: &Indexed) -> Option<String> {
+    let rows = of.recursions.iter().flat_map(|recursion| &recursion.parts).map(|part| &part.body);
+    let bodies: Vec<_> = rows.chain(of.lagrangian.iter().map(|sum| &sum.body)).collect();
+    let is_called = |name: &str| {
+        let is_call = |operation: &Operation| matches!(operation, Operation::Opaque(of, _) if *of.name == *name);
+        bodies.iter().any(|body| body.slopes.operations.iter().any(|(_, operation)| is_call(operation)))
+    };
+    let is_table =
+        |kind: &FunctionKind| matches!(kind, FunctionKind::Table(table) if table.kind == TableKind::Monotone);
+    let tables = of.model.functions.iter().filter(|function| is_table(&function.kind));
+    tables.map(|function| function.name.to_string()).find(|name| is_called(name))
+}
+
+/// The tests by a further rule.
+struct Further<'a> {
+    rule: Ident,
+    checks: Vec<Check>,
+    /// The system as a value that steps with the rule.
+    by_rule: Box<dyn Fn(TokenStream) -> TokenStream + 'a>,
+}
+
+/// The module with the tests; `None` without a `check` clause.
+fn module(model: &Model, applying: &[Check], further: &[Further], conditions: &[&Attribute]) -> Option<TokenStream> {
+    let state = model.check_state.as_ref()?;
+    let (name, dimension) = (&model.name, Literal::usize_unsuffixed(model.dimension()));
     let module = format_ident!("{}_checks", snake_case(&name.to_string()));
     let documentation = format!(" Checks of [`{name}`](super::{name}) at the state of its `check` clause.");
     let (t, h) = (number(state.t), number(state.h));
     let (q, v) = (state.q.iter().map(|entry| number(*entry)), state.v.iter().map(|entry| number(*entry)));
-    let parameters: Vec<_> = state.parameters.iter().map(|(index, value)| set(source, *index, *value)).collect();
+    let parameters: Vec<_> = state.parameters.iter().map(|(index, value)| set(model, *index, *value)).collect();
     let (system, own, of_further) = if parameters.is_empty() {
         (None, quote!(super::#name::default()), quote!(super::super::#name::default()))
     } else {
@@ -44,15 +100,9 @@ pub(super) fn tests(
         };
         (Some(system), quote!(system()), quote!(super::system()))
     };
-    let applying = match steps {
-        Some(steps) => of_steps(steps),
-        None if source.model.constraints.is_empty() => of_motion(source),
-        None => of_constraints(source),
-    };
     let tests = tests_of(applying, &own, &quote!(place()));
-    let by_further = further.iter().map(|steps| {
-        let rule = format_ident!("{}", steps.rule.title());
-        let tests = tests_of(of_steps(steps), &steps.by_rule(of_further.clone()), &quote!(super::place()));
+    let by_further = further.iter().map(|Further { rule, checks, by_rule }| {
+        let tests = tests_of(checks, &by_rule(of_further.clone()), &quote!(super::place()));
         quote!(mod #rule { #(#tests)* })
     });
     Some(quote! {
@@ -73,8 +123,8 @@ pub(super) fn tests(
 }
 
 /// Sets a parameter of `system`.
-fn set(source: &Source, index: usize, value: f64) -> Option<TokenStream> {
-    let (place, value) = (source.model.parameters.get(index)?.place(), number(value));
+fn set(model: &Model, index: usize, value: f64) -> Option<TokenStream> {
+    let (place, value) = (model.parameters.get(index)?.place(), number(value));
     Some(quote!(system.#place = #value;))
 }
 
@@ -82,8 +132,8 @@ fn set(source: &Source, index: usize, value: f64) -> Option<TokenStream> {
 type Check = (&'static str, TokenStream);
 
 /// One test for each check.
-fn tests_of(checks: Vec<Check>, system: &TokenStream, place: &TokenStream) -> Vec<TokenStream> {
-    let test = |(check, order): Check| {
+fn tests_of(checks: &[Check], system: &TokenStream, place: &TokenStream) -> Vec<TokenStream> {
+    let test = |(check, order): &Check| {
         let check = format_ident!("{check}");
         quote! {
             #[::core::prelude::v1::test]
@@ -95,17 +145,13 @@ fn tests_of(checks: Vec<Check>, system: &TokenStream, place: &TokenStream) -> Ve
             }
         }
     };
-    checks.into_iter().map(test).collect()
+    checks.iter().map(test).collect()
 }
 
 /// The checks that apply to the motion of a system and to its Gauss steps.
-fn of_motion(source: &Source) -> Vec<Check> {
-    let each = [
-        ("derivatives", true),
-        ("gauss_order", true),
-        ("gauss_momenta", source.system.continuous.cyclic.contains(&true)),
-        ("gauss_symplecticity", !source.model.forced),
-    ];
+fn of_motion(is_cyclic: bool, forced: bool) -> Vec<Check> {
+    let each =
+        [("derivatives", true), ("gauss_order", true), ("gauss_momenta", is_cyclic), ("gauss_symplecticity", !forced)];
     each.into_iter().filter(|(_, applies)| *applies).map(|(check, _)| (check, TokenStream::new())).collect()
 }
 
@@ -122,21 +168,46 @@ fn of_constraints(source: &Source) -> Vec<Check> {
     each.into_iter().filter(|(_, applies)| *applies).map(|(check, _)| (check, TokenStream::new())).collect()
 }
 
+/// The properties of a system and of its rule that decide which checks of its steps apply.
+#[allow(clippy::struct_excessive_bools, reason = "each is a property of its own")]
+struct Properties {
+    /// The entry of the rule in the table.
+    rule: Option<&'static NamedRule>,
+    /// Whether energy-preserving steps exist.
+    has_energy_steps: bool,
+    /// Whether L calls a monotone table, across whose places the step density jumps.
+    is_monotone: bool,
+    is_cyclic: bool,
+    forced: bool,
+}
+
+impl Properties {
+    /// Those of steps in straight lines.
+    fn of(steps: &Steps) -> Self {
+        let is_monotone = monotone_table(steps).is_some();
+        Self {
+            rule: steps.discrete.rule,
+            has_energy_steps: steps.discrete.has_energy_steps() && !is_monotone,
+            is_monotone,
+            is_cyclic: steps.system.continuous.cyclic.contains(&true),
+            forced: steps.model.forced,
+        }
+    }
+}
+
 /// The checks that apply to the motion of a system and to its steps by a rule.
-fn of_steps(steps: &Steps) -> Vec<Check> {
-    let forced = steps.model.forced;
-    let rule = steps.discrete.rule;
+fn of_steps(of: &Properties) -> Vec<Check> {
+    let Properties { rule, has_energy_steps, is_monotone, is_cyclic, forced } = *of;
     let symmetric = rule.is_some_and(|rule| rule.symmetric);
-    let is_monotone = monotone_table(steps).is_some();
     let step_density = rule.is_some_and(|rule| rule.step_density) && !is_monotone;
     let order = Literal::u32_unsuffixed(rule.map_or(LEAST_ORDER, |rule| rule.order));
     let each = [
         ("derivatives", true, TokenStream::new()),
         ("slots", true, TokenStream::new()),
         ("steps", true, TokenStream::new()),
-        ("energy_equations", steps.discrete.has_energy_steps() && !is_monotone, TokenStream::new()),
+        ("energy_equations", has_energy_steps, TokenStream::new()),
         ("order", true, quote!(, #order)),
-        ("momenta", steps.system.continuous.cyclic.contains(&true), TokenStream::new()),
+        ("momenta", is_cyclic, TokenStream::new()),
         ("symplecticity", !forced, TokenStream::new()),
         ("reversibility", symmetric, TokenStream::new()),
         ("energy", step_density, TokenStream::new()),

@@ -7,9 +7,8 @@
 //! let (s1, [s2]) = ::vi_core::function::Jets::jet_1(&drag_function, [x_dot_mid]);
 //! ```
 
-use super::Source;
 use super::formula::{Formula, number};
-use crate::model::{self, FunctionKind, Table, TableKind, Values};
+use crate::model::{self, FunctionKind, Model, Table, TableKind, Values};
 use crate::program::{Function, Operation, OperationId};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote, quote_spanned};
@@ -23,8 +22,8 @@ pub(super) fn item_name(name: &str) -> Ident {
 }
 
 /// The items of all functions of a system.
-pub(super) fn items(source: &Source) -> TokenStream {
-    source.model.functions.iter().map(item).collect()
+pub(super) fn items(model: &Model) -> TokenStream {
+    model.functions.iter().map(item).collect()
 }
 
 fn item(function: &model::Function) -> TokenStream {

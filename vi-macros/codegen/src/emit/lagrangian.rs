@@ -25,14 +25,8 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let angles = angles(model);
     let parameters = model.parameters.iter().map(Parameter::place);
     let names = model.parameters.iter().map(Parameter::text);
-    let inputs: Vec<Literal> = (0..)
-        .zip(&model.parameters)
-        .filter(|(_, parameter)| parameter.is_input)
-        .map(|(index, _)| Literal::usize_unsuffixed(index))
-        .collect();
-    let inputs =
-        (!inputs.is_empty()).then(|| quote!(const INPUTS: &'static [::core::primitive::usize] = &[#(#inputs),*];));
-    let monotone = monotone(source);
+    let inputs = inputs(model);
+    let monotone = monotone_table(source).map(|name| monotone(&name));
     let [acceleration, flow] = match source.system.constraints {
         Some(_) => constrained::motion(source),
         None => [acceleration(source), flow(source)],
@@ -68,12 +62,18 @@ pub(super) fn item(source: &Source) -> TokenStream {
     }
 }
 
-/// The constant that names a monotone table in L, if there is one.
-fn monotone(source: &Source) -> Option<TokenStream> {
-    let name = monotone_table(source)?;
-    Some(quote! {
+/// The constant that lists the inputs, if there are any.
+pub(super) fn inputs(model: &Model) -> Option<TokenStream> {
+    let inputs = (0..).zip(&model.parameters).filter(|(_, parameter)| parameter.is_input);
+    let inputs: Vec<Literal> = inputs.map(|(index, _)| Literal::usize_unsuffixed(index)).collect();
+    (!inputs.is_empty()).then(|| quote!(const INPUTS: &'static [::core::primitive::usize] = &[#(#inputs),*];))
+}
+
+/// The constant that names a monotone table in L.
+pub(super) fn monotone(name: &str) -> TokenStream {
+    quote! {
         const MONOTONE_TABLE: ::core::option::Option<&'static str> = ::core::option::Option::Some(#name);
-    })
+    }
 }
 
 /// The name of a monotone table in L.

@@ -14,6 +14,7 @@ mod entries;
 mod folds;
 mod formula;
 mod functions;
+mod indexed;
 mod lagrangian;
 mod loops;
 mod matrix;
@@ -34,6 +35,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 use vi_expr::Pool;
 
+pub use indexed::items as indexed_items;
 pub use structure::Broken;
 
 /// Input of the items of a system.
@@ -85,15 +87,15 @@ pub fn items(derivations: &Derivations) -> TokenStream {
     let own = source.steps();
     let further: Vec<Steps> = further.iter().filter_map(Source::steps).collect();
     let structure = structure::structure(&source, &further);
-    let (functions, parameters) = (functions::items(&source), structure::parameters(&source));
+    let (functions, parameters) = (functions::items(source.model), structure::parameters(source.model));
     let lagrangian = lagrangian::item(&source);
     let motion = if let Some(of) = &source.system.constraints {
         constrained::item(&source, of)
     } else {
-        let (collocation, convertible) = (collocation::item(&source), structure::convertible(&source));
+        let (collocation, convertible) = (collocation::item(&source), structure::convertible(source.model, true));
         quote!(#collocation #convertible)
     };
-    let batch = own.as_ref().map(|_| structure::batch(&source));
+    let batch = own.as_ref().map(|_| structure::batch(source.model));
     let by_own = own.as_ref().map(by_rule);
     let by_further = further.iter().map(by_rule);
     let implementations = quote!(#functions #parameters #lagrangian #motion #by_own #batch #(#by_further)*);
@@ -107,7 +109,7 @@ pub fn items(derivations: &Derivations) -> TokenStream {
 fn by_rule(steps: &Steps) -> TokenStream {
     let discrete = discrete::item(steps);
     let stepping = stepping::item(steps);
-    let discretized = structure::discretized(steps);
+    let discretized = structure::discretized(steps.model, steps.rule_argument().as_ref());
     quote!(#discrete #stepping #discretized)
 }
 

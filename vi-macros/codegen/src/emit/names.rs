@@ -125,6 +125,9 @@ impl<'a> Names<'a> {
                 self.at_point(&variable, *point)
             }
             Symbol::Field(_) => "field".to_owned(),
+            Symbol::Access(place) => format!("a{place}"),
+            // Loops replace them by what they access.
+            Symbol::Let(_) | Symbol::LetRate(_) => "entry".to_owned(),
         }
     }
 }

@@ -14,7 +14,13 @@ use syn::Attribute;
 
 /// The struct, with the properties under each rule in its documentation.
 pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
-    let model = source.model;
+    let findings = findings_documentation(source);
+    let further = further.iter().filter_map(further_findings);
+    declaration(source.model, &quote!(#findings #(#further)*))
+}
+
+/// The struct with this documentation after the user's.
+pub(super) fn declaration(model: &Model, documentation: &TokenStream) -> TokenStream {
     let (name, visibility) = (&model.name, &model.visibility);
     let attributes = model.attributes.iter().filter(|attribute| limit(attribute).is_none());
     let fields = model.fields().filter_map(|field| {
@@ -24,13 +30,10 @@ pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
         let of = array_of(&lengths(field), quote!(T));
         Some(quote!(#(#attributes)* #pause #[doc = #default] pub #name: #of))
     });
-    let findings = findings_documentation(source);
-    let further = further.iter().filter_map(further_findings);
     let (derived, (marker, _)) = (derived(), marker(model.parameters.is_empty()));
     quote! {
         #(#attributes)*
-        #findings
-        #(#further)*
+        #documentation
         #derived
         #[allow(non_snake_case)]
         #visibility struct #name<T = ::core::primitive::f64> {
@@ -66,6 +69,16 @@ fn default_words(field: &[Parameter]) -> String {
     format!(" {word}s `{}` to `{}`, {values} by default.", first.text(), last.text())
 }
 
+/// The same system over dual numbers, without derivatives.
+pub(super) fn dual(model: &Model) -> TokenStream {
+    let name = &model.name;
+    let names: Vec<_> = model.fields().filter_map(<[Parameter]>::first).map(|parameter| &parameter.name).collect();
+    let one = |place| quote!(::vi_core::real::Dual::fixed(self.#place));
+    let fields = model.fields().filter_map(|field| field_value(field, one));
+    let (_, marker_value) = marker(names.is_empty());
+    quote!(#name { #(#names: #fields,)* #marker_value })
+}
+
 /// The value of a field: `one` of its parameter, or an array of these.
 fn field_value(field: &[Parameter], one: impl Fn(TokenStream) -> TokenStream) -> Option<TokenStream> {
     let Parameter { name, indices, .. } = field.first()?;
@@ -90,8 +103,7 @@ fn derived() -> TokenStream {
 }
 
 /// `Default`, `Parameters`, and the conversion to another numeric type.
-pub(super) fn parameters(source: &Source) -> TokenStream {
-    let model = source.model;
+pub(super) fn parameters(model: &Model) -> TokenStream {
     let name = &model.name;
     let names: Vec<_> = model.fields().filter_map(<[Parameter]>::first).map(|parameter| &parameter.name).collect();
     let defaults = model.fields().map(default_value);
@@ -159,11 +171,17 @@ fn words(attributes: &[Attribute]) -> String {
 }
 
 /// The implementation of `Convertible`: the system in another numeric type.
-pub(super) fn convertible(source: &Source) -> TokenStream {
-    let (name, dimension) = (&source.model.name, source.dimension());
+pub(super) fn convertible(model: &Model, side_by_side: bool) -> TokenStream {
+    let alone = (!side_by_side).then(|| {
+        quote!(
+            const SIDE_BY_SIDE: bool = false;
+        )
+    });
+    let (name, dimension) = (&model.name, Literal::usize_unsuffixed(model.dimension()));
     quote! {
         impl ::vi_core::stepping::Convertible<#dimension> for #name<f64> {
             type In<T: ::vi_core::real::Real> = #name<T>;
+            #alone
 
             #[inline(always)]
             fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> {
@@ -174,8 +192,8 @@ pub(super) fn convertible(source: &Source) -> TokenStream {
 }
 
 /// The implementation of `Discretized` for the rule: its steps in another numeric type.
-pub(super) fn discretized(source: &Source) -> TokenStream {
-    let (name, dimension, rule) = (&source.model.name, source.dimension(), source.rule_argument());
+pub(super) fn discretized(model: &Model, rule: Option<&TokenStream>) -> TokenStream {
+    let (name, dimension) = (&model.name, Literal::usize_unsuffixed(model.dimension()));
     quote! {
         impl ::vi_core::stepping::Discretized<#dimension #rule> for #name<f64> {
             type Steps<T: ::vi_core::real::Real> = #name<T>;
@@ -189,9 +207,8 @@ pub(super) fn discretized(source: &Source) -> TokenStream {
 }
 
 /// The implementation of `Batch`: parameters of several systems in lanes.
-pub(super) fn batch(source: &Source) -> TokenStream {
-    let (name, dimension) = (&source.model.name, source.dimension());
-    let model = source.model;
+pub(super) fn batch(model: &Model) -> TokenStream {
+    let (name, dimension) = (&model.name, Literal::usize_unsuffixed(model.dimension()));
     let names: Vec<_> = model.fields().filter_map(<[Parameter]>::first).map(|parameter| &parameter.name).collect();
     let row = |place| quote!(::core::array::from_fn(|index| systems[index].#place));
     let one = |place| quote!(rows.#place[index]);
@@ -217,15 +234,20 @@ pub(super) fn batch(source: &Source) -> TokenStream {
 /// The properties found by the generator, at the end of the documentation of the struct.
 fn findings_documentation(source: &Source) -> TokenStream {
     let model = source.model;
+    let findings = source.findings.lines(&|index| format!("`{}`", model.coordinates[index].text()));
+    found(model, findings)
+}
+
+/// Documentation of the rule of a system, and these properties.
+pub(super) fn found(model: &Model, findings: Vec<String>) -> TokenStream {
     let rule = match &model.rule {
         Some(rule) => format!(" Discretized by the rule `{}`. Properties found by the generator:", rule.title()),
-        None if source.system.constraints.is_some() => {
+        None if !model.constraints.is_empty() => {
             " Integrated by `GaussLobatto` and `EnergyPreservingGaussLobatto`. Properties found by the generator:"
                 .to_owned()
         }
         None => " Integrated by Gauss methods only. Properties found by the generator:".to_owned(),
     };
-    let findings = source.findings.lines(&|index| format!("`{}`", model.coordinates[index].text()));
     let findings = findings.into_iter().map(|line| format!(" * {line}"));
     let pause = pause(&model.attributes);
     quote!(#pause #[doc = #rule] #[doc = ""] #(#[doc = #findings])*)

@@ -1,8 +1,7 @@
 //! Rust functions and tables in an explanation: what they are, and the values of a table as bars.
 
 use super::explanation::{Line, Section};
-use crate::Derived;
-use crate::model::{Function, FunctionKind, Table, Values};
+use crate::model::{Function, FunctionKind, Model, Table, Values};
 use quote::ToTokens;
 
 /// Maximum number of places of a table that are shown.
@@ -11,8 +10,8 @@ const SHOWN: usize = 24;
 const BAR: f64 = 30.0;
 
 /// The functions of a system; none for a system without them.
-pub(super) fn sections(derived: &Derived) -> Vec<Section> {
-    let lines: Vec<Line> = derived.model.functions.iter().flat_map(of_function).collect();
+pub(super) fn sections(model: &Model) -> Vec<Section> {
+    let lines: Vec<Line> = model.functions.iter().flat_map(of_function).collect();
     if lines.is_empty() { Vec::new() } else { vec![Section { title: "Functions and tables", lines }] }
 }
 

@@ -12,7 +12,7 @@ use vi_expr::{Expr, Pool, Rational};
 
 /// Tableau, stages, update and slots of a step with `stages` stages.
 pub(super) fn sections(derived: &mut Derived, stages: usize) -> Vec<Section> {
-    let tableau = tableau(derived, stages);
+    let tableau = tableau(&mut derived.pool, stages);
     let [places, equations] = equations(derived, stages);
     let update = update(derived, stages);
     let title = "Equations of the stages for positions and velocities: both expressions of the momentum agree";
@@ -25,6 +25,41 @@ pub(super) fn sections(derived: &mut Derived, stages: usize) -> Vec<Section> {
             title: "Discrete Lagrangian, its slot derivatives, forces, powers and energies",
             lines: slots(derived),
         },
+    ];
+    sections.extend(length(stages));
+    sections
+}
+
+/// Tableau and equations of a step of a large system, whose L_v and F no expression contains.
+pub(super) fn of_loops(pool: &mut Pool<Symbol>, forced: bool, stages: usize) -> Vec<Section> {
+    let separator = if stages > 9 { "," } else { "" };
+    let force = if forced { "L_q(t_i, q_i, v_i) + f(t_i, q_i, v_i)" } else { "L_q(t_i, q_i, v_i)" };
+    let (a, stage) = (format!("a_i{separator}"), "\\sum_{j} a_{ij}");
+    let places = vec![
+        equation("t_i", "t0 + c_i*h", "t_{i}", "t_{0} + c_{i} h"),
+        equation(
+            "q_i",
+            &format!("q0 + h*({})", sum(stages, &a, "v")),
+            "q_{i}",
+            &format!("q_{{0}} + h {stage} v_{{j}}"),
+        ),
+        equation("F_i", force, "F_{i}", force),
+    ];
+    let equations = vec![equation(
+        "L_v(t_i, q_i, v_i)",
+        &format!("p0 + h*({})", sum(stages, &a, "F")),
+        "L_v(t_i, q_i, v_i)",
+        &format!("p_{{0}} + h {stage} F_{{j}}"),
+    )];
+    let update = vec![
+        equation("q1", &format!("q0 + h*({})", sum(stages, "b_", "v")), "q_{1}", "q_{0} + h \\sum_{j} b_{j} v_{j}"),
+        equation("p1", &format!("p0 + h*({})", sum(stages, "b_", "F")), "p_{1}", "p_{0} + h \\sum_{j} b_{j} F_{j}"),
+    ];
+    let mut sections = vec![
+        Section { title: "Gauss points c, weights b, coefficients a", lines: tableau(pool, stages) },
+        Section { title: "Stage i: time, position and force F, computed in loops", lines: places },
+        Section { title: "Equations of the stages for the velocities v_i", lines: equations },
+        Section { title: "Update of position and momentum", lines: update },
     ];
     sections.extend(length(stages));
     sections
@@ -102,13 +137,12 @@ const fn rational(above: i64, below: i64) -> Coefficient {
 
 impl Coefficient {
     /// The number in both notations.
-    fn text(self, derived: &mut Derived) -> [String; 2] {
+    fn text(self, pool: &mut Pool<Symbol>) -> [String; 2] {
         let (whole, part, of) = match self {
             Self::Exact { whole, part, of } => (whole, part, of),
             // Rounding affects the last digits of sums.
             Self::Decimal(value) => return [format!("{value:.14}"), format!("{value:.14}")],
         };
-        let pool = &mut derived.pool;
         let root = root(pool, of);
         let irrational = pool.scale(root, &fraction(part));
         let rational = pool.number(fraction(whole));
@@ -127,13 +161,13 @@ fn root(pool: &mut Pool<Symbol>, of: i64) -> Expr {
 }
 
 /// The coefficients, each named.
-fn tableau(derived: &mut Derived, stages: usize) -> Vec<Line> {
+fn tableau(pool: &mut Pool<Symbol>, stages: usize) -> Vec<Line> {
     let Tableau { c, b, a } = Tableau::of(stages);
     let mut lines = Vec::new();
     let mut add = |name: &str, indices: &[usize], of: Coefficient| {
         let separator = if stages > 9 { "," } else { "" };
         let indices: Vec<String> = indices.iter().map(|index| (index + 1).to_string()).collect();
-        let [text, in_latex] = of.text(derived);
+        let [text, in_latex] = of.text(pool);
         let index = indices.join(separator);
         lines.push(equation(&format!("{name}_{index}"), &text, &format!("{name}_{{{index}}}"), &in_latex));
     };

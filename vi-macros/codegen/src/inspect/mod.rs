@@ -9,6 +9,8 @@
 //! | `syntax` | the clauses as they were parsed |
 //! | `model`, `discrete`, `findings` | chapters of the explanation |
 //! | `gauss` | a chapter: the equations of a Gauss step |
+//! | `loops` | chapters of a large system, and its functions |
+//! | `index` | a number in a loop by the user's names |
 //! | `explanation` | chapters as text and as LaTeX |
 //! | `latex`, `name` | an expression, a symbol in LaTeX |
 //! | `unreadable` | text that is not valid Rust |
@@ -19,7 +21,9 @@ mod explanation;
 mod findings;
 mod functions;
 mod gauss;
+mod index;
 pub mod latex;
+mod loops;
 mod model;
 mod name;
 mod program;
@@ -31,7 +35,7 @@ mod unreadable;
 pub use explanation::{Explanation, Line, Section};
 
 use crate::syntax::parse;
-use crate::{Derivations, Derived, derive, text};
+use crate::{Compiled, Derivations, Derived, Loops};
 use proc_macro2::TokenStream;
 use syn::Result;
 
@@ -56,23 +60,39 @@ pub enum Stage {
 /// The mistakes of the system that the stages up to this one find.
 pub fn stage(tokens: TokenStream, stage: Stage) -> Result<String> {
     let system = parse::system(tokens)?;
-    match stage {
-        Stage::Syntax => Ok(syntax::text(&system)),
-        Stage::Model => Ok(explanation(&derive(&system)?, &[model::sections], &[]).text()),
-        Stage::Discrete => Ok(explanation(&derive(&system)?, &[discrete::sections], &[discrete::sections]).text()),
-        Stage::Program => Ok(program::text(&derive(&system)?)),
-        Stage::Rust => text(&derive(&system)?),
+    if stage == Stage::Syntax {
+        return Ok(syntax::text(&system));
     }
+    let compiled = Compiled::of(&system)?;
+    Ok(match (stage, &compiled) {
+        (Stage::Syntax, _) => syntax::text(&system),
+        (Stage::Rust, _) => compiled.text()?,
+        (Stage::Model, Compiled::Lines(of)) => explanation(of, &[model::sections], &[]).text(),
+        (Stage::Discrete, Compiled::Lines(of)) => explanation(of, &[discrete::sections], &[discrete::sections]).text(),
+        (Stage::Program, Compiled::Lines(of)) => program::text(of),
+        (Stage::Model, Compiled::Loops(of)) => titled(of, loops::model(&system, of)).text(),
+        (Stage::Discrete, Compiled::Loops(of)) => titled(of, loops::discrete(of)).text(),
+        (Stage::Program, Compiled::Loops(of)) => loops::program(of),
+    })
 }
 
-/// The mathematics of a system: L and f, then for each rule the discrete system, findings and costs.
+/// The mathematics of a system: L and f, then for each rule the discrete system, findings and costs. Of a large system
+/// its recursions and sums in loops, and what follows from their derivatives.
 ///
 /// # Errors
 /// The mistakes of the system.
 pub fn explain(tokens: TokenStream) -> Result<Explanation> {
-    let derivations = derive(&parse::system(tokens)?)?;
-    let own: [Chapter; 3] = [model::sections, discrete::sections, findings::sections];
-    Ok(explanation(&derivations, &own, &[discrete::sections, findings::of_steps]))
+    let system = parse::system(tokens)?;
+    Ok(match Compiled::of(&system)? {
+        Compiled::Lines(of) => {
+            let own: [Chapter; 3] = [model::sections, discrete::sections, findings::sections];
+            explanation(&of, &own, &[discrete::sections, findings::of_steps])
+        }
+        Compiled::Loops(of) => {
+            let chapters = [loops::model(&system, &of), loops::sums(&of), loops::discrete(&of), loops::findings(&of)];
+            titled(&of, chapters.into_iter().flatten().collect())
+        }
+    })
 }
 
 /// The mathematics of a Gauss step with `stages` stages (1 to [`GAUSS_STAGES`]): L and f, then tableau, equations and
@@ -81,13 +101,22 @@ pub fn explain(tokens: TokenStream) -> Result<Explanation> {
 /// # Errors
 /// The mistakes of the system.
 pub fn explain_gauss(tokens: TokenStream, stages: usize) -> Result<Explanation> {
-    let Derivations { mut own, .. } = derive(&parse::system(tokens)?)?;
+    let system = parse::system(tokens)?;
+    let stages = stages.clamp(1, GAUSS_STAGES);
+    let mut own = match Compiled::of(&system)? {
+        Compiled::Lines(derivations) => derivations.own,
+        Compiled::Loops(mut of) => {
+            let mut sections = loops::model(&system, &of);
+            sections.extend(gauss::of_loops(&mut of.pool, of.indexed.model.forced, stages));
+            return Ok(titled(&of, sections));
+        }
+    };
     let mut sections = model::sections(&own);
     if own.system.constraints.is_some() {
         sections.push(gauss::constrained());
         return Ok(Explanation { title: own.model.name.to_string(), sections });
     }
-    sections.extend(gauss::sections(&mut own, stages.clamp(1, GAUSS_STAGES)));
+    sections.extend(gauss::sections(&mut own, stages));
     Ok(Explanation { title: own.model.name.to_string(), sections })
 }
 
@@ -105,4 +134,9 @@ fn explanation(Derivations { own, further }: &Derivations, of_own: &[Chapter], o
         sections.extend(head.into_iter().chain(chapters));
     }
     Explanation { title: own.model.name.to_string(), sections }
+}
+
+/// Sections of a large system under its name.
+fn titled(of: &Loops, sections: Vec<Section>) -> Explanation {
+    Explanation { title: of.indexed.model.name.to_string(), sections }
 }

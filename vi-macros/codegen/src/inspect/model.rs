@@ -60,7 +60,7 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
         lines.push(Line::equation(derived, ("∂g/∂t", "\\partial g/\\partial t"), *g_dt));
         sections.push(Section { title: "Time scale g, dt = g dτ", lines });
     }
-    sections.extend(super::functions::sections(derived));
+    sections.extend(super::functions::sections(model));
     sections
 }
 

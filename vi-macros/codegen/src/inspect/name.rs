@@ -5,7 +5,7 @@
 //! Greek letters and their English names become commands. Names of several letters are upright.
 
 use crate::Derived;
-use crate::model::{Constraint, Coordinate};
+use crate::model::{Constraint, Coordinate, Model};
 use crate::symbol::{Field, Quantity, Symbol, Variable};
 use proc_macro2::Ident;
 
@@ -17,7 +17,7 @@ pub(super) struct Name {
 
 impl Name {
     /// From a user's name.
-    fn of(written: &str) -> Self {
+    pub(super) fn of(written: &str) -> Self {
         let written = written.trim_start_matches("r#");
         let (stem, rest) = written.split_once('_').map_or((written, None), |(stem, rest)| (stem, Some(rest)));
         let letters = stem.trim_end_matches(|last: char| last.is_ascii_digit());
@@ -34,13 +34,13 @@ impl Name {
     }
 
     /// Appends an index.
-    fn with(mut self, index: impl Into<String>) -> Self {
+    pub(super) fn with(mut self, index: impl Into<String>) -> Self {
         self.indices.push(index.into());
         self
     }
 
     /// Puts an accent over the letter.
-    fn under(mut self, accent: &str) -> Self {
+    pub(super) fn under(mut self, accent: &str) -> Self {
         self.letter = format!("\\{accent}{{{}}}", self.letter);
         self
     }
@@ -143,19 +143,33 @@ pub(super) fn at_stage(derived: &Derived, symbol: &Symbol, stage: &str) -> Strin
     name.text()
 }
 
-fn named(derived: &Derived, symbol: &Symbol) -> Name {
-    let of = |index: &usize| derived.model.coordinates.get(*index).map_or_else(|| Name::of("q"), coordinate);
-    match symbol {
+/// A symbol of L and f before discretization; `None` for others.
+pub(super) fn of_model(model: &Model, symbol: &Symbol) -> Option<Name> {
+    let of = |index: &usize| model.coordinates.get(*index).map_or_else(|| Name::of("q"), coordinate);
+    Some(match symbol {
         Symbol::Parameter { index, .. } => {
-            derived.model.parameters.get(*index).map_or_else(|| Name::of("a"), |of| entry(&of.name, &of.indices))
+            model.parameters.get(*index).map_or_else(|| Name::of("a"), |of| entry(&of.name, &of.indices))
         }
         Symbol::Continuous(Variable::Time) => Name::of("t"),
         Symbol::Continuous(Variable::Coordinate(index)) => of(index),
         Symbol::Continuous(Variable::Velocity(index)) => of(index).under("dot"),
+        _ => return None,
+    })
+}
+
+fn named(derived: &Derived, symbol: &Symbol) -> Name {
+    if let Some(name) = of_model(&derived.model, symbol) {
+        return name;
+    }
+    let of = |index: &usize| derived.model.coordinates.get(*index).map_or_else(|| Name::of("q"), coordinate);
+    match symbol {
         Symbol::Acceleration(index) => of(index).under("ddot"),
         Symbol::Multiplier(index) => {
             let of = derived.model.constraints.get(*index).map(constraint);
             Name::of("lambda").with(of.unwrap_or_default())
+        }
+        Symbol::Parameter { .. } | Symbol::Continuous(_) | Symbol::Let(_) | Symbol::LetRate(_) | Symbol::Access(_) => {
+            Name::of("a")
         }
         Symbol::T0 => Name::of("t0"),
         Symbol::T1 => Name::of("t1"),

@@ -6,6 +6,7 @@
 
 use super::model;
 use crate::program::{Function, Operation, OperationId};
+use crate::symbol::Symbol;
 use crate::{Derivations, Derived};
 use std::collections::BTreeMap;
 
@@ -20,9 +21,18 @@ pub(super) fn text(Derivations { own, further }: &Derivations) -> String {
 }
 
 fn function(derived: &Derived, of: &Function) -> String {
-    let spell = |symbol| derived.system.spell(&derived.model, symbol);
     let count = of.operation_count();
-    let mut text = format!("{}: {count} operation{}\n", of.id.name(), if count == 1 { "" } else { "s" });
+    let (operations, results) = operations(of, &|symbol| derived.system.spell(&derived.model, symbol));
+    let mut text = format!("{}: {count} operation{}\n{operations}", of.id.name(), if count == 1 { "" } else { "s" });
+    for row in results {
+        text.extend(["    result ", &row.join(", "), "\n"]);
+    }
+    text
+}
+
+/// The operations in order, and the rows of results.
+pub(super) fn operations(of: &Function, spell: &dyn Fn(&Symbol) -> String) -> (String, Vec<Vec<String>>) {
+    let mut text = String::new();
     let mut worked = 0;
     let mut names: BTreeMap<OperationId, String> = BTreeMap::new();
     for id in of.needed() {
@@ -59,9 +69,7 @@ fn function(derived: &Derived, of: &Function) -> String {
             names.insert(id, formula);
         }
     }
-    for row in of.results.rows() {
-        let entries: Vec<String> = row.iter().map(|id| names.get(id).cloned().unwrap_or_default()).collect();
-        text.extend(["    result ", &entries.join(", "), "\n"]);
-    }
-    text
+    let row = |row: &[OperationId]| row.iter().map(|id| names.get(id).cloned().unwrap_or_default()).collect();
+    let results = of.results.rows().map(row).collect();
+    (text, results)
 }

@@ -27,12 +27,7 @@ pub(super) fn text(system: &System) -> String {
         format!("fn {}({}) = {body};", of.name, arguments.join(", "))
     }));
     lines.extend(system.tables.iter().map(table));
-    lines.extend(system.lets.iter().map(|of| format!("let {}", definition(of))));
-    lines.extend(system.lagrangians.iter().map(definition));
-    lines.extend(system.forces.iter().map(|of| format!("force {}", definition(of))));
-    lines.extend(system.torques.iter().map(|of| format!("torque {}", definition(of))));
-    lines.extend(system.space_torques.iter().map(|of| format!("space_torque {}", definition(of))));
-    lines.extend(system.dissipations.iter().map(definition));
+    lines.extend(equations(system));
     lines.extend(system.constraints.iter().map(|of| format!("constraint {}", definition(of))));
     lines.extend(system.time_scales.iter().map(definition));
     for discretization in &system.discretizations {
@@ -49,6 +44,17 @@ pub(super) fn text(system: &System) -> String {
         }
     }
     format!("struct {} {{\n    {}\n}}\n", system.name, lines.join("\n    "))
+}
+
+/// The definitions of the named parts, of L and of the forces.
+pub(super) fn equations(system: &System) -> Vec<String> {
+    let mut lines: Vec<String> = system.lets.iter().map(|of| format!("let {}", definition(of))).collect();
+    lines.extend(system.lagrangians.iter().map(definition));
+    lines.extend(system.forces.iter().map(|of| format!("force {}", definition(of))));
+    lines.extend(system.torques.iter().map(|of| format!("torque {}", definition(of))));
+    lines.extend(system.space_torques.iter().map(|of| format!("space_torque {}", definition(of))));
+    lines.extend(system.dissipations.iter().map(definition));
+    lines
 }
 
 fn table(of: &Table) -> String {

@@ -28,7 +28,21 @@ const CHARACTERS: usize = 100;
 /// # Errors
 /// All mistakes of the system.
 pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<Model> {
+    checked(pool, system, place, false)
+}
+
+/// The same for a system that is too large for one expression, whose arrays of `let`s stay symbols. It is checked in
+/// fewer respects: nothing says whether its mass matrix is singular.
+///
+/// # Errors
+/// All mistakes of the system.
+pub fn large_model(pool: &mut Pool<Symbol>, system: &System) -> Result<Model> {
+    checked(pool, system, 0, true)
+}
+
+fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: bool) -> Result<Model> {
     let mut context = Context::new(pool);
+    context.scope.kept = is_large.then(Vec::new);
     let System { constants, parameters, coordinates, lets, .. } = system;
     context.scope.expect(lets.iter().map(|named| &named.name), Absence::Let);
     context.scope.expect(coordinates.iter().map(|coordinate| &coordinate.name), Absence::Coordinate);
@@ -59,11 +73,12 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         let of_rule = rule.iter().flat_map(Rule::expressions);
         let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
         let acting = acting.chain(constraints.iter().map(|constraint| constraint.value));
-        let acting: Vec<Expr> = acting.chain(of_rule).collect();
+        let kept = context.scope.kept.iter().flatten().flat_map(|array| &array.definitions).copied();
+        let acting: Vec<Expr> = acting.chain(of_rule).chain(kept).collect();
         context.check_parameters_used(&parameters, &acting);
         function::check_used(&mut context, system);
     }
-    let Context { pool, errors, .. } = context;
+    let Context { pool, errors, scope, .. } = context;
     errors.finish(())?;
     let Some(lagrangian) = lagrangian else {
         return Err(error(system.name.span(), &Message::MissingLagrangian));
@@ -71,7 +86,11 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let lagrangian = rotation::with_inertia(pool, lagrangian, &coordinates, &parameters);
     let lagrangian_span = system.lagrangians[0].name.span();
     let rows = constraint::rows(pool, &constraints, coordinates.len());
-    let singular = mass::check(pool, (&coordinates, &parameters), (lagrangian, lagrangian_span), &rows);
+    let singular = if is_large {
+        Ok(())
+    } else {
+        mass::check(pool, (&coordinates, &parameters), (lagrangian, lagrangian_span), &rows)
+    };
     // Values from an exhausted pool are meaningless.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
     let mut model = Model {
@@ -88,6 +107,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         forces,
         constraints,
         time_scale,
+        lets: scope.kept.unwrap_or_default(),
         rule,
         check_state,
     };
@@ -198,7 +218,7 @@ impl Context<'_> {
         }
         let lagrangian = self.value(&first.value);
         let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
-        if self.errors.is_empty() && !self.pool.depends_on(lagrangian, &moves) {
+        if self.errors.is_empty() && self.scope.kept.is_none() && !self.pool.depends_on(lagrangian, &moves) {
             self.errors.at(first.name.span(), &Message::NoVelocity);
         }
         Some(lagrangian)

@@ -12,15 +12,38 @@ use super::context::Context;
 use super::scope::{Growing, Meaning, Scope};
 use super::value::{Value, index_text};
 use crate::arrays::bracketed;
-use crate::symbol::Symbol;
+use crate::symbol::{LetEntry, Symbol};
 use crate::syntax::{Definition, Indices};
 use proc_macro2::Span;
 use std::collections::BTreeSet;
 use syn::Result;
-use vi_expr::Pool;
+use vi_expr::{Expr, Pool};
 
 /// Work of storing one entry.
 const ENTRY: usize = 8;
+
+/// An array of `let`s whose entries stay symbols.
+pub struct LetArray {
+    /// Its name.
+    pub name: String,
+    /// Numbers in one entry: 1, or the length of a vector.
+    pub width: usize,
+    /// The definitions of the numbers, in order; they contain symbols of earlier ones.
+    pub definitions: Vec<Expr>,
+}
+
+impl Scope {
+    /// The value of the next entry of an array: symbols, if its entries stay symbols.
+    fn kept(&mut self, pool: &mut Pool<Symbol>, name: &str, value: Value) -> Value {
+        let arrays = self.kept.iter_mut().flat_map(|arrays| arrays.iter_mut().enumerate());
+        let Some((array, of)) = arrays.filter(|(_, array)| array.name == name).last() else { return value };
+        of.width = value.entries().len();
+        value.map(|definition| {
+            of.definitions.push(definition);
+            pool.symbol(Symbol::Let(LetEntry { array, entry: of.definitions.len() - 1 }))
+        })
+    }
+}
 
 /// Declares the names of these lines; reports wrong ones.
 pub(super) fn lets(context: &mut Context, lets: &[Definition]) {
@@ -37,6 +60,9 @@ pub(super) fn lets(context: &mut Context, lets: &[Definition]) {
             let declared = context.scope.declare(&named.name, Meaning::Array(Array::default()));
             if context.report(declared).is_some() {
                 arrays.insert(name.clone());
+                if let Some(kept) = &mut context.scope.kept {
+                    kept.push(LetArray { name: name.clone(), width: 1, definitions: Vec::new() });
+                }
             }
         }
         if arrays.contains(&name) && !named.indices.is_empty() && context.scope.array_mut(&name).is_some() {
@@ -72,6 +98,7 @@ fn entries(
     let Some((level, inner)) = levels.split_first() else {
         scope.grow_at(path.iter().map(|(index, _)| *index).collect());
         let value = scope.value(pool, &named.value)?;
+        let value = scope.kept(pool, &name, value);
         pool.spend(ENTRY);
         return scope.array_mut(&name).map_or(Ok(()), |array| array.define(&name, path, &value));
     };

@@ -32,6 +32,7 @@ mod vector;
 pub use check_state::CheckState;
 pub use constraint::Constraint;
 pub use function::{Function, FunctionKind};
+pub use lets::LetArray;
 pub use point::Point;
 pub(crate) use rotation::COMPONENTS;
 pub use rule::{DiscreteForces, Rule};
@@ -39,7 +40,7 @@ pub use smoothness::Smoothness;
 pub use table::{Outside, Table, TableKind, Values};
 
 use crate::arrays::bracketed;
-use crate::symbol::Symbol;
+use crate::symbol::{LetEntry, Symbol};
 use proc_macro2::{Ident, Span};
 use vi_expr::Expr;
 
@@ -74,6 +75,8 @@ pub struct Model {
     pub constraints: Vec<Constraint>,
     /// g(t, q) of the time transformation dt = g dτ, if declared.
     pub time_scale: Option<Expr>,
+    /// Arrays of `let`s whose entries are symbols in L and f; none if expressions replace them.
+    pub lets: Vec<LetArray>,
     /// The rule from L to L_d; `None` for a system with Gauss steps only.
     pub rule: Option<Rule>,
     /// The state of the checks, if there is a `check` clause.
@@ -179,6 +182,12 @@ impl Model {
         self.coordinates.len()
     }
 
+    /// An entry of an array of `let`s as the user wrote it.
+    fn let_text(&self, LetEntry { array, entry }: LetEntry) -> String {
+        let LetArray { name, width, .. } = &self.lets[array];
+        if *width == 1 { format!("{name}[{entry}]") } else { format!("{name}[{}][{}]", entry / width, entry % width) }
+    }
+
     /// A symbol as the user wrote it.
     #[must_use]
     pub fn spell(&self, symbol: &Symbol) -> String {
@@ -186,6 +195,9 @@ impl Model {
         let coordinate = |index: usize| self.coordinates[index].text();
         match symbol {
             Symbol::Parameter { index, .. } => self.parameters[*index].text(),
+            Symbol::Let(entry) => self.let_text(*entry),
+            Symbol::LetRate(entry) => format!("dot({})", self.let_text(*entry)),
+            Symbol::Access(place) => format!("a{place}"),
             Symbol::Continuous(Variable::Time) => "t".to_owned(),
             Symbol::Continuous(Variable::Coordinate(index)) => coordinate(*index),
             Symbol::Continuous(Variable::Velocity(index)) => format!("dot({})", coordinate(*index)),

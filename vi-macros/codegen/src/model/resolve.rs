@@ -436,6 +436,7 @@ impl Scope {
             Symbol::Continuous(Variable::Coordinate(index)) => {
                 pool.symbol(Symbol::Continuous(Variable::Velocity(*index)))
             }
+            Symbol::Let(entry) => pool.symbol(Symbol::LetRate(*entry)),
             _ => pool.zero(),
         };
         Ok(value.map(|entry| pool.derivative(entry, &mut of_symbol)))
@@ -443,7 +444,8 @@ impl Scope {
 
     /// Whether a name denotes numbers independent of time and state.
     fn is_constant(&self, pool: &Pool<Symbol>, name: &str) -> bool {
-        let changes = |expr: &Expr| pool.depends_on(*expr, &|symbol| matches!(symbol, Symbol::Continuous(_)));
+        let changes =
+            |expr: &Expr| pool.depends_on(*expr, &|symbol| matches!(symbol, Symbol::Continuous(_) | Symbol::Let(_)));
         match self.meaning(name) {
             Some(Meaning::Pi) => true,
             Some(Meaning::Number(value)) => !changes(value),

@@ -5,6 +5,7 @@
 
 use super::array::Array;
 use super::function::Called;
+use super::lets::LetArray;
 use super::point::Point;
 use super::vector;
 use crate::habits::{self, Habit};
@@ -40,6 +41,8 @@ pub(super) struct Scope {
     called: Rc<RefCell<BTreeSet<String>>>,
     /// The array of `let`s whose entries are being defined.
     growing: Option<Growing>,
+    /// Arrays of `let`s whose entries stay symbols; `None` if expressions replace them.
+    pub(super) kept: Option<Vec<LetArray>>,
 }
 
 /// An array of `let`s whose entries are being defined.
@@ -122,6 +125,7 @@ impl Scope {
             bound: Vec::new(),
             called: Rc::default(),
             growing: None,
+            kept: None,
         }
     }
 

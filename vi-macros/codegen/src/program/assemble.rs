@@ -40,6 +40,20 @@ pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) 
     Ok(Program { continuous: all(continuous)?, slots: all(of_slots)?, step: all(of_steps)? })
 }
 
+/// A function of its own, of numbers that are inputs.
+pub(crate) fn alone(pool: &mut Pool<Symbol>, exprs: &[Expr]) -> core::result::Result<Function, TooLarge> {
+    bounded(pool)?;
+    let collected = pool.collect_constants(exprs);
+    let mut known = Known { products: vanishing::Known::of(pool, &collected), ..Known::default() };
+    let arguments = BTreeMap::new();
+    let mut lowering = Lowering::new(pool, &mut known, &arguments);
+    let results = lowering.lower(&Results::new(vector(&collected)));
+    let operations = lowering.operations;
+    pool.spend(OPERATION * operations.len());
+    bounded(pool)?;
+    Ok(Function { id: FunctionId::Body, operations, results })
+}
+
 /// Work of an operation until it is emitted.
 const OPERATION: usize = 128;
 

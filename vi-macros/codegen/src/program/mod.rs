@@ -18,6 +18,7 @@ mod sums;
 mod vanishing;
 mod verify;
 
+pub(crate) use assemble::alone;
 pub use assemble::program;
 pub use families::{Families, Membership};
 pub use operations::{Operation, OperationId, Operations};

@@ -66,6 +66,8 @@ pub enum FunctionId {
     MomentumDerivatives,
     /// E1.
     DiscreteEnergy,
+    /// The body of a loop of a large system.
+    Body,
     /// Both rows and their derivatives.
     ExtendedSystem,
     /// Both rows, their rounding scales, p1 − p0 and E1 − E0.
@@ -79,6 +81,7 @@ impl FunctionId {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Body => "body",
             Self::Lagrangian => "lagrangian",
             Self::Energy => "energy",
             Self::Momentum => "momentum",

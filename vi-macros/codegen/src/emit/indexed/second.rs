@@ -1,0 +1,207 @@
+//! Second derivatives: the sweep of first derivatives with a tangent of every coordinate.
+
+use super::{Defined, Printed, Printer, SEEDS, Target, WEIGHTS, add_row, curvature, name, slope};
+use crate::indexed::Value;
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+impl Printer<'_> {
+    /// The entries, and their derivatives with respect to all coordinates, of which each is moved by `seeds`.
+    pub(super) fn tangents(&self, seeds: [&Ident; 2]) -> TokenStream {
+        let dimension = self.dimension();
+        let zeros = self.zeros("", &quote!(real(0.0)));
+        let rows = self.zeros("tangent_", &quote!([real(0.0); #dimension]));
+        let loops = self.over_recursions(false, &|of, defined| {
+            let (name, numbers) = (&of.name, self.numbers(of));
+            let each = defined.iter().map(|Defined { value, array, entry }| {
+                let (tangent, place) = (format_ident!("tangent_{array}"), Literal::usize_unsuffixed(value.first_slope));
+                let parts = of.states(value).map(|(place, read, index)| {
+                    let slope = slope(value, place);
+                    match self.target(read) {
+                        Target::Own(which) => {
+                            let seed = seeds[which];
+                            quote!(#tangent[#entry][#index] += #slope * #seed;)
+                        }
+                        Target::Entry(from) => {
+                            let from = format_ident!("tangent_{from}");
+                            let add = add_row(value, place, &slope, &quote!(#tangent[#entry]));
+                            quote! {
+                                let from = #from[#index];
+                                #add
+                            }
+                        }
+                    }
+                });
+                quote! {
+                    #array[#entry] = slopes[#place];
+                    #(#parts)*
+                }
+            });
+            quote! {
+                let slopes = self.#name(t, #numbers);
+                #(#each)*
+            }
+        });
+        quote!(#zeros #rows #loops)
+    }
+
+    /// The products of second derivatives of a value with the tangents of what it reads, times `factor`.
+    pub(super) fn curved(&self, of: &Printed, value: &Value, factor: &TokenStream) -> TokenStream {
+        let mut parts = TokenStream::new();
+        for (number, [row, column]) in value.pairs.iter().enumerate() {
+            let number = Literal::usize_unsuffixed(value.first_curvature + value.states.len() + number);
+            let both = [[row, column], [column, row]];
+            for [to, from] in &both[..if row == column { 1 } else { 2 }] {
+                let (to, from) = (value.states[**to], value.states[**from]);
+                let (at_to, at_from) = (of.at(to), of.at(from));
+                let (to, from) = (self.target(of.body.reads[to]), self.target(of.body.reads[from]));
+                let second = quote!(#factor curvatures[#number]);
+                parts.extend(match (to, from) {
+                    (Target::Own(to), Target::Own(from)) => {
+                        let (weight, seed) = (&WEIGHTS.map(name)[to], &SEEDS.map(name)[from]);
+                        quote!(matrix[#at_to][#at_from] += #second * #weight * #seed;)
+                    }
+                    (Target::Own(to), Target::Entry(from)) => {
+                        let (weight, from) = (&WEIGHTS.map(name)[to], format_ident!("tangent_{from}"));
+                        quote!(::vi_core::indexed::add(#second * #weight, &mut matrix[#at_to], &#from[#at_from]);)
+                    }
+                    (Target::Entry(to), Target::Own(from)) => {
+                        let (to, seed) = (format_ident!("bar_tangent_{to}"), &SEEDS.map(name)[from]);
+                        quote!(#to[#at_to][#at_from] += #second * #seed;)
+                    }
+                    (Target::Entry(to), Target::Entry(from)) => {
+                        let (to, from) = (format_ident!("bar_tangent_{to}"), format_ident!("tangent_{from}"));
+                        quote!(::vi_core::indexed::add(#second, &mut #to[#at_to], &#from[#at_from]);)
+                    }
+                });
+            }
+        }
+        parts
+    }
+
+    pub(super) fn second_derivatives(&self) -> TokenStream {
+        let dimension = self.dimension();
+        let seeds = SEEDS.map(name);
+        let tangents = self.tangents([&seeds[0], &seeds[1]]);
+        let bars = self.zeros("bar_", &quote!(real(0.0)));
+        let bar_tangents = self.zeros("bar_tangent_", &quote!([real(0.0); #dimension]));
+        let terms = Self::over_sums("lagrangian", &self.of.lagrangian, 0, &|of| {
+            let value = &of.body.values[0];
+            let bars = of.states(value).filter(|(_, read, _)| read.is_entry()).map(|(place, read, index)| {
+                let (bar, slope) = (format_ident!("bar_{}", self.array(read)), curvature(value, place));
+                quote!(#bar[#index] += #slope;)
+            });
+            let bars: TokenStream = bars.collect();
+            if value.pairs.is_empty() && bars.is_empty() {
+                return TokenStream::new();
+            }
+            let (name, numbers) = (format_ident!("{}_curvatures", of.name), self.numbers(of));
+            let curved = self.curved(of, value, &TokenStream::new());
+            quote! {
+                let curvatures = self.#name(t, #numbers);
+                #bars
+                #curved
+            }
+        });
+        let backward = self.over_recursions(true, &|of, defined| {
+            let (function, numbers) = (format_ident!("{}_curvatures", of.name), self.numbers(of));
+            let each = defined.iter().rev().map(|Defined { value, array, entry }| {
+                let (bar, bar_tangent) = (format_ident!("bar_{array}"), format_ident!("bar_tangent_{array}"));
+                let parts = of.states(value).map(|(place, read, index)| {
+                    let slope = curvature(value, place);
+                    match self.target(read) {
+                        Target::Own(which) => {
+                            let weight = &WEIGHTS.map(name)[which];
+                            quote!(::vi_core::indexed::add(#slope * #weight, &mut matrix[#index], &from);)
+                        }
+                        Target::Entry(to) => {
+                            let (bar, bar_tangent) = (format_ident!("bar_{to}"), format_ident!("bar_tangent_{to}"));
+                            let add = add_row(value, place, &slope, &quote!(#bar_tangent[#index]));
+                            quote! {
+                                #bar[#index] += bar * #slope;
+                                #add
+                            }
+                        }
+                    }
+                });
+                let curved = self.curved(of, value, &quote!(bar *));
+                quote! {
+                    let bar = #bar[#entry];
+                    let from = #bar_tangent[#entry];
+                    #(#parts)*
+                    #curved
+                }
+            });
+            quote! {
+                let curvatures = self.#function(t, #numbers);
+                #(#each)*
+            }
+        });
+        let [r_q, r_v] = &seeds;
+        let [c_q, c_v] = &WEIGHTS.map(name);
+        quote! {
+            fn second_derivatives(
+                &self,
+                t: T,
+                q: &::vi_core::SVector<T, #dimension>,
+                v: &::vi_core::SVector<T, #dimension>,
+                [#r_q, #r_v]: [T; 2],
+                [#c_q, #c_v]: [T; 2],
+            ) -> ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension> {
+                let real = T::real;
+                let mut whole = ::vi_core::nalgebra::SMatrix::<T, #dimension, #dimension>::zeros();
+                // Its columns.
+                let matrix = &mut whole.data.0;
+                #tangents
+                #bars
+                #bar_tangents
+                #terms
+                #backward
+                whole
+            }
+        }
+    }
+
+    pub(super) fn add_force_derivatives(&self) -> TokenStream {
+        let dimension = self.dimension();
+        let [c_q, c_v] = &WEIGHTS.map(name);
+        let reads_entries = self.of.force.iter().any(|sum| sum.body.reads_entries());
+        let tangents = reads_entries.then(|| self.tangents([c_q, c_v]));
+        let terms = Self::over_sums("force", &self.of.force, 1, &|of| {
+            let (name_of, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
+            let value = &of.body.values[0];
+            let parts = of.states(value).map(|(place, read, index)| {
+                let slope = slope(value, place);
+                match self.target(read) {
+                    Target::Own(which) => {
+                        let weight = &WEIGHTS.map(name)[which];
+                        quote!(matrix[(#on, #index)] += weight * #slope * #weight;)
+                    }
+                    Target::Entry(from) => {
+                        let from = format_ident!("tangent_{from}");
+                        quote!(::vi_core::indexed::add_to_row(matrix, #on, weight * #slope, &#from[#index]);)
+                    }
+                }
+            });
+            quote! {
+                let slopes = self.#name_of(t, #numbers);
+                #(#parts)*
+            }
+        });
+        quote! {
+            fn add_force_derivatives(
+                &self,
+                t: T,
+                q: &::vi_core::SVector<T, #dimension>,
+                v: &::vi_core::SVector<T, #dimension>,
+                weight: T,
+                [#c_q, #c_v]: [T; 2],
+                matrix: &mut ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>,
+            ) {
+                let real = T::real;
+                #tangents
+                #terms
+            }
+        }
+    }
+}

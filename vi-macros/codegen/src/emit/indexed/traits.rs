@@ -1,0 +1,295 @@
+//! The traits of a system, each function by one of `vi_core::indexed`.
+
+use super::super::check::monotone_table_of;
+use super::super::lagrangian::{inputs, monotone};
+use super::Printer;
+use crate::indexed::{Read, Sum};
+use crate::model::{Coordinate, Parameter};
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+impl Printer<'_> {
+    pub(super) fn lagrangian(&self) -> TokenStream {
+        let (model, dimension) = (self.model, self.dimension());
+        let (name, text) = (&model.name, model.name.to_string());
+        let coordinates = model.coordinates.iter().map(Coordinate::text);
+        let (autonomous, forced, cyclic) = (self.of.autonomous, model.forced, &self.of.cyclic);
+        let places = model.parameters.iter().map(Parameter::place);
+        let names = model.parameters.iter().map(Parameter::text);
+        let inputs = inputs(model);
+        let monotone = monotone_table_of(self.of).map(|name| monotone(&name));
+        let flow = if self.of.has_mass_of_position {
+            quote!(flow(self, t, q, p))
+        } else {
+            quote!(flow_by_iteration(self, &self.convert::<::vi_core::real::Rounded>(), t, q, p))
+        };
+        let number = |name: TokenStream, value: TokenStream| {
+            quote! {
+                fn #name(&self, t: T, q: &::vi_core::SVector<T, #dimension>, v: &::vi_core::SVector<T, #dimension>) -> T {
+                    #value
+                }
+            }
+        };
+        let vector = |name: TokenStream, value: TokenStream| {
+            quote! {
+                fn #name(
+                    &self,
+                    t: T,
+                    q: &::vi_core::SVector<T, #dimension>,
+                    v: &::vi_core::SVector<T, #dimension>,
+                ) -> ::vi_core::SVector<T, #dimension> {
+                    #value
+                }
+            }
+        };
+        let first = quote!(::vi_core::indexed::Indexed::first_derivatives(self, t, q, v));
+        let entries = |of: &[Sum]| {
+            let reads = of.iter().any(|sum| sum.body.reads_entries());
+            reads.then(|| self.entries())
+        };
+        let value = Self::over_sums("lagrangian", &self.of.lagrangian, 0, &|of| {
+            let (name, numbers) = (&of.name, self.numbers(of));
+            quote!(value += self.#name(t, #numbers)[0];)
+        });
+        let of_lagrangian = entries(&self.of.lagrangian);
+        let value = quote! {
+            let real = T::real;
+            let mut value = real(0.0);
+            #of_lagrangian
+            #value
+            value
+        };
+        let of_force = entries(&self.of.force);
+        let forces = Self::over_sums("force", &self.of.force, 1, &|of| {
+            let (name, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
+            quote!(force[#on] += self.#name(t, #numbers)[0];)
+        });
+        let force = quote! {
+            let real = T::real;
+            let mut force = ::vi_core::SVector::<T, #dimension>::zeros();
+            #of_force
+            #forces
+            force
+        };
+        let functions = [
+            number(quote!(lagrangian), value),
+            number(quote!(energy), quote!(::vi_core::indexed::energy(self, t, q, v))),
+            vector(quote!(momentum), quote!(#first.dv)),
+            vector(quote!(force), force),
+        ];
+        quote! {
+            impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
+                const NAME: &'static str = #text;
+                const COORDINATES: [&'static str; #dimension] = [#(#coordinates),*];
+                const AUTONOMOUS: bool = #autonomous;
+                const FORCED: bool = #forced;
+                const CYCLIC: [bool; #dimension] = [#(#cyclic),*];
+                const PARAMETERS: &'static [&'static str] = &[#(#names),*];
+                #inputs
+                #monotone
+
+                fn parameter(&self, index: usize) -> T {
+                    [#(self.#places),*][index]
+                }
+
+                #(#functions)*
+
+                fn acceleration(
+                    &self,
+                    t: T,
+                    q: &::vi_core::SVector<T, #dimension>,
+                    v: &::vi_core::SVector<T, #dimension>,
+                ) -> ::core::result::Result<::vi_core::SVector<T, #dimension>, ::vi_core::StepError> {
+                    ::vi_core::indexed::acceleration(self, t, q, v)
+                }
+
+                fn flow(
+                    &self,
+                    t: T,
+                    q: &::vi_core::SVector<T, #dimension>,
+                    p: &::vi_core::SVector<T, #dimension>,
+                ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
+                    ::vi_core::indexed::#flow
+                }
+            }
+        }
+    }
+
+    /// The diagonal of a constant mass matrix.
+    pub(super) fn diagonal(&self) -> TokenStream {
+        let dimension = self.dimension();
+        let terms = Self::over_sums("lagrangian", &self.of.lagrangian, 0, &|of| {
+            if !of.body.reads.contains(&Read::Velocity) {
+                return TokenStream::new();
+            }
+            let (name, numbers) = (format_ident!("{}_curvatures", of.name), self.numbers(of));
+            let value = &of.body.values[0];
+            let first = value.first_curvature + value.states.len();
+            let parts = value.pairs.iter().enumerate().map(|(number, [row, _])| {
+                let (number, index) = (Literal::usize_unsuffixed(first + number), of.at(value.states[*row]));
+                quote!(rows[#index][0] += curvatures[#number];)
+            });
+            quote! {
+                let curvatures = self.#name(t, #numbers);
+                #(#parts)*
+            }
+        });
+        quote! {
+            /// The diagonal of the mass matrix.
+            #[inline]
+            fn masses(
+                &self,
+                t: T,
+                q: &::vi_core::SVector<T, #dimension>,
+                v: &::vi_core::SVector<T, #dimension>,
+            ) -> ::vi_core::linear::Banded<#dimension, 1, T> {
+                let real = T::real;
+                let mut rows = [[real(0.0)]; #dimension];
+                #terms
+                ::vi_core::linear::Banded { rows }
+            }
+        }
+    }
+
+    pub(super) fn collocation(&self) -> TokenStream {
+        let (name, dimension) = (&self.model.name, self.dimension());
+        let separable = self.of.separable;
+        let (diagonal, form, point) = if separable {
+            let diagonal = self.diagonal();
+            (
+                quote! {
+                    impl<T: ::vi_core::real::Real> #name<T> { #diagonal }
+                    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Separable<#dimension, T> for #name<T> {}
+                },
+                quote!(::vi_core::linear::Banded<#dimension, 1, T>),
+                quote!(::vi_core::indexed::point(self, t, q, v, self.masses(t, q, v))),
+            )
+        } else {
+            (
+                TokenStream::new(),
+                quote!(::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>),
+                quote!(::vi_core::indexed::point(self, t, q, v, ::vi_core::indexed::mass(self, t, q, v))),
+            )
+        };
+        quote! {
+            #diagonal
+            impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
+                type Mass = #form;
+                type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
+                const CONSTANT_MASS: bool = #separable;
+                const SEPARABLE: bool = #separable;
+
+                fn point(
+                    &self,
+                    t: T,
+                    q: &::vi_core::SVector<T, #dimension>,
+                    v: &::vi_core::SVector<T, #dimension>,
+                ) -> ::vi_core::collocation::Point<#dimension, T, Self::Mass> {
+                    #point
+                }
+
+                fn point_derivatives(
+                    &self,
+                    t: T,
+                    q: &::vi_core::SVector<T, #dimension>,
+                    v: &::vi_core::SVector<T, #dimension>,
+                ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
+                    ::vi_core::indexed::point_derivatives(self, t, q, v)
+                }
+
+                fn power(&self, t: T, q: &::vi_core::SVector<T, #dimension>, v: &::vi_core::SVector<T, #dimension>) -> T {
+                    ::vi_core::indexed::power(self, t, q, v)
+                }
+            }
+        }
+    }
+
+    pub(super) fn slots(&self) -> TokenStream {
+        let (name, dimension) = (&self.model.name, self.dimension());
+        let slots = ["ld", "d1_ld", "d2_ld", "d3_ld", "d4_ld", "fd_minus", "fd_plus", "gd_minus", "gd_plus"];
+        let functions = slots.into_iter().map(|slot| {
+            let is_vector = ["d2_ld", "d4_ld", "fd_minus", "fd_plus"].contains(&slot);
+            let value = if is_vector { quote!(::vi_core::SVector<T, #dimension>) } else { quote!(T) };
+            let slot = format_ident!("{slot}");
+            quote! {
+                fn #slot(&self, interval: &::vi_core::Interval<#dimension, T>) -> #value {
+                    ::vi_core::indexed::#slot(self, interval)
+                }
+            }
+        });
+        quote! {
+            impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#dimension, T> for #name<T> {
+                #(#functions)*
+            }
+        }
+    }
+
+    pub(super) fn stepping(&self) -> TokenStream {
+        let (name, dimension) = (&self.model.name, self.dimension());
+        let of_step = |function: &str, value: TokenStream| {
+            let function = format_ident!("{function}");
+            quote! {
+                fn #function(
+                    &self,
+                    node: &::vi_core::node::Node<#dimension, T>,
+                    h: T,
+                    v: &::vi_core::SVector<T, #dimension>,
+                ) -> #value {
+                    ::vi_core::indexed::#function(self, node, h, v)
+                }
+            }
+        };
+        let rounding = |function: &str, value: TokenStream| {
+            let function = format_ident!("{function}");
+            quote! {
+                #[cold]
+                fn #function(
+                    &self,
+                    node: &::vi_core::node::Node<#dimension, T>,
+                    h: T,
+                    v: &::vi_core::SVector<T, #dimension>,
+                ) -> #value {
+                    ::vi_core::support::#function(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
+                }
+            }
+        };
+        let stepping = quote!(::vi_core::stepping);
+        let fixed = [
+            of_step("momentum_equation", quote!(#stepping::MomentumEquation<#dimension, T, Self::Jacobian>)),
+            of_step("momentum_residual", quote!(#stepping::MomentumResidual<#dimension, T>)),
+            of_step("momentum_derivatives", quote!(#stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix>)),
+            of_step("discrete_energy", quote!(T)),
+            rounding("momentum_rounding", quote!(::vi_core::SVector<T, #dimension>)),
+        ];
+        let energy = [
+            of_step("extended_system", quote!(#stepping::ExtendedSystem<#dimension, T, Self::Jacobian>)),
+            of_step("extended_residual", quote!(#stepping::ExtendedResidual<#dimension, T>)),
+            of_step(
+                "extended_derivatives",
+                quote!(#stepping::ExtendedDerivatives<#dimension, T, Self::Jacobian, Self::StepMatrix>),
+            ),
+            rounding("extended_rounding", quote!(#stepping::Rounding<#dimension, T>)),
+        ];
+        quote! {
+            impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#dimension, T> for #name<T> {
+                type Jacobian = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
+                type StepMatrix = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
+                const CONSTANT_JACOBIAN: bool = false;
+                #(#fixed)*
+            }
+
+            impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#dimension, T> for #name<T> {
+                fn step_density(
+                    &self,
+                    t: T,
+                    q: &::vi_core::SVector<T, #dimension>,
+                    v: &::vi_core::SVector<T, #dimension>,
+                ) -> ::core::result::Result<T, ::vi_core::StepError> {
+                    ::vi_core::indexed::step_density(self, t, q, v)
+                }
+
+                #(#energy)*
+            }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Arrays of `let`s of a large system.
+//!
+//! In: their definitions, in which entries of arrays are symbols. Out: the arrays that stay, each entry by earlier ones,
+//! and expressions without the others. An array stays if its entries use each other, or if they differ from the entries
+//! before by less than they are: `sum(j in 0..i + 1, …)` becomes a recursion.
+
+use super::body::Read;
+use crate::model::{LetArray, Model};
+use crate::symbol::{LetEntry, Symbol, Variable};
+use std::collections::BTreeSet;
+use vi_expr::{Expr, Pool};
+
+/// Shortest array that is a recursion.
+const LEAST: usize = 3;
+
+/// The arrays.
+pub(super) struct Lets {
+    arrays: Vec<Array>,
+}
+
+struct Array {
+    width: usize,
+    /// Whether it stays.
+    stays: bool,
+    definitions: Vec<Expr>,
+}
+
+impl Lets {
+    /// Decides which arrays stay.
+    pub(super) fn of(pool: &mut Pool<Symbol>, model: &Model) -> Self {
+        let mut lets = Self { arrays: Vec::new() };
+        for (place, LetArray { width, definitions, .. }) in model.lets.iter().enumerate() {
+            let own = |symbol: &Symbol| matches!(symbol, Symbol::Let(entry) if entry.array == place);
+            let opened: Vec<Expr> = definitions.iter().map(|definition| lets.opened(pool, *definition)).collect();
+            let is_recursive = opened.iter().any(|definition| pool.depends_on(*definition, &own));
+            let by_differences = if is_recursive { None } else { differences(pool, place, *width, &opened) };
+            let stays = is_recursive || by_differences.is_some();
+            lets.arrays.push(Array { width: *width, stays, definitions: by_differences.unwrap_or(opened) });
+        }
+        lets
+    }
+
+    /// An expression without entries of the arrays that do not stay.
+    pub(super) fn opened(&self, pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
+        pool.substitute(expr, &mut |pool, symbol| {
+            let (Symbol::Let(entry) | Symbol::LetRate(entry)) = symbol else { return None };
+            let array = self.arrays.get(entry.array).filter(|array| !array.stays)?;
+            let definition = *array.definitions.get(entry.entry)?;
+            Some(if matches!(symbol, Symbol::Let(_)) { definition } else { rate(pool, definition) })
+        })
+    }
+
+    /// What these expressions read, directly or not, of the arrays that stay: the width and the definitions, in the
+    /// order of evaluation.
+    pub(super) fn used(&self, pool: &mut Pool<Symbol>, exprs: &[Expr]) -> Vec<(Read, usize, Vec<Expr>)> {
+        let mut wanted: BTreeSet<Read> = reads(pool, exprs);
+        let mut found = Vec::new();
+        for (place, array) in self.arrays.iter().enumerate().rev().filter(|(_, array)| array.stays) {
+            if wanted.contains(&Read::LetRate(place)) {
+                let rates: Vec<Expr> = array.definitions.iter().map(|definition| rate(pool, *definition)).collect();
+                wanted.extend(reads(pool, &rates));
+                found.push((Read::LetRate(place), array.width, rates));
+            }
+            if wanted.contains(&Read::Let(place)) {
+                wanted.extend(reads(pool, &array.definitions));
+                found.push((Read::Let(place), array.width, array.definitions.clone()));
+            }
+        }
+        found.reverse();
+        found
+    }
+}
+
+/// The arrays of `let`s that expressions read.
+fn reads(pool: &Pool<Symbol>, exprs: &[Expr]) -> BTreeSet<Read> {
+    let symbols = pool.symbols_of(exprs);
+    let read = |symbol: Symbol| match symbol {
+        Symbol::Let(entry) => Some(Read::Let(entry.array)),
+        Symbol::LetRate(entry) => Some(Read::LetRate(entry.array)),
+        _ => None,
+    };
+    symbols.into_iter().filter_map(read).collect()
+}
+
+/// The derivative of an expression of time, coordinates and `let`s with respect to time.
+fn rate(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
+    pool.derivative(expr, &mut |pool, symbol| match symbol {
+        Symbol::Continuous(Variable::Time) => pool.one(),
+        Symbol::Continuous(Variable::Coordinate(index)) => pool.symbol(Symbol::Continuous(Variable::Velocity(*index))),
+        Symbol::Let(entry) => pool.symbol(Symbol::LetRate(*entry)),
+        _ => pool.zero(),
+    })
+}
+
+/// The definitions as the entries of the row before and a difference; `None` if the differences are no shorter.
+fn differences(pool: &mut Pool<Symbol>, array: usize, width: usize, definitions: &[Expr]) -> Option<Vec<Expr>> {
+    if definitions.len() < LEAST * width {
+        return None;
+    }
+    let mut made = definitions[..width].to_vec();
+    let (mut before, mut after) = (0, 0);
+    for entry in width..definitions.len() {
+        let difference = pool.sub(definitions[entry], definitions[entry - width]);
+        before = pool.reachable(&[definitions[entry]]).len();
+        after = pool.reachable(&[difference]).len() + 2;
+        let last = pool.symbol(Symbol::Let(LetEntry { array, entry: entry - width }));
+        made.push(pool.add(last, difference));
+    }
+    (after < before).then_some(made)
+}

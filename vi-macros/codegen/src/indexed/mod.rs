@@ -1,0 +1,457 @@
+//! Large systems as statements in loops.
+//!
+//! In: a [`Model`] whose arrays of `let`s are symbols. Out: an [`Indexed`] system: recursions of `let`s and sums of L and
+//! f, each with one body and the numbers that its instances read. Their count and the text that they become do not
+//! depend on the lengths of the arrays. AFTER THIS no expression contains a coordinate or an entry of an array, but
+//! [`Symbol::Access`](crate::symbol::Symbol): the number that an instance reads at this place.
+//!
+//! | file | content |
+//! |---|---|
+//! | `lets` | which `let`s are recursions, and their rates |
+//! | `body` | one expression for all instances, with its derivatives as operations |
+//! | `nest` | the loops over instances |
+
+mod body;
+mod lets;
+mod nest;
+
+pub use body::{Body, Read, Value};
+pub use nest::{Affine, Nest};
+
+use crate::limits::bounded;
+use crate::messages::{Message, error};
+use crate::model::Model;
+use crate::program::Function;
+use crate::symbol::{Symbol, Variable};
+use body::{Instance, Shape};
+use lets::Lets;
+use num_integer::Integer;
+use num_traits::{One, Signed, ToPrimitive};
+use std::collections::{BTreeMap, BTreeSet};
+use syn::Result;
+use vi_expr::{Expr, Node, Pool, Rational, TooLarge};
+
+/// Maximum number of bodies: a system without repetition has as many as terms.
+const BODIES: usize = 64;
+/// Maximum number of derivatives of entries of recursions: half a megabyte of the stack.
+const TANGENTS: usize = 65_536;
+/// Maximum numbers of the state that one term reads: its second derivatives are written out.
+const STATES: usize = 32;
+/// Maximum number of loops for one array of `let`s.
+const SEQUENCES: usize = 4;
+/// A product distributes over a sum of more numbers of the state than this.
+const NUMBERS: usize = 6;
+
+/// A large system.
+pub struct Indexed {
+    /// The checked system.
+    pub model: Model,
+    /// Whether L and f are independent of time.
+    pub autonomous: bool,
+    /// For each coordinate, whether it appears neither in L nor has a force.
+    pub cyclic: Vec<bool>,
+    /// Whether no velocity appears in second derivatives with respect to velocities.
+    pub has_mass_of_position: bool,
+    /// Whether `L = Σ m_i v_i²/2 − V(t, q)` with constant m_i, and no force depends on a velocity.
+    pub separable: bool,
+    /// Recursions, in the order of evaluation.
+    pub recursions: Vec<Recursion>,
+    /// The terms of L.
+    pub lagrangian: Vec<Sum>,
+    /// The terms of f; the first number of an instance is the coordinate.
+    pub force: Vec<Sum>,
+}
+
+/// Entries of arrays of `let`s, and their rates, in one loop.
+pub struct Recursion {
+    /// The bodies of a row, in order.
+    pub parts: Vec<Part>,
+    /// The loop over the rows.
+    pub nest: Nest,
+}
+
+/// A body of a row.
+pub struct Part {
+    /// The body.
+    pub body: Body,
+    /// The array of each value.
+    pub of: Vec<Read>,
+    /// The first of the columns of the nest that belong to it: the entries of the values, then what the body reads.
+    pub first: usize,
+}
+
+/// Terms with one body.
+pub struct Sum {
+    /// The body, with one value.
+    pub body: Body,
+    /// The loops over the terms.
+    pub nests: Vec<Nest>,
+}
+
+/// The statements of a large system, or `None` if its terms do not repeat.
+///
+/// # Errors
+/// Recursions with too many entries, at the name of the system.
+pub fn indexed(pool: &mut Pool<Symbol>, model: Model) -> Result<Option<Indexed>> {
+    let name = model.name.clone();
+    match statements(pool, model) {
+        // Straight lines report what is too much.
+        Err(TooLarge::Terms { .. } | TooLarge::Work { .. }) | Ok(None) => Ok(None),
+        Ok(Some(found)) => match found.tangents() {
+            Some(message) => Err(error(name.span(), &message)),
+            None => Ok(Some(found)),
+        },
+    }
+}
+
+fn statements(pool: &mut Pool<Symbol>, model: Model) -> core::result::Result<Option<Indexed>, TooLarge> {
+    let is_other = model.rule.as_ref().is_some_and(|rule| rule.named.is_none_or(|named| named.name != "midpoint"));
+    let has_angles = model.coordinates.iter().any(|coordinate| coordinate.is_angle || coordinate.is_rotation);
+    if is_other || has_angles || !model.constraints.is_empty() || model.time_scale.is_some() {
+        return Ok(None);
+    }
+    let lets = Lets::of(pool, &model);
+    let lagrangian = lets.opened(pool, model.lagrangian);
+    let forces: Vec<Expr> = model.forces.iter().map(|force| lets.opened(pool, *force)).collect();
+    let all: Vec<Expr> = [lagrangian].into_iter().chain(forces.iter().copied()).collect();
+    let Some(recursions) = recursions(pool, &lets, &all)? else { return Ok(None) };
+    let terms = summands(pool, lagrangian).into_iter().map(|term| (Vec::new(), term)).collect();
+    let Some(lagrangian) = sums(pool, terms, true)? else { return Ok(None) };
+    let mut terms = Vec::new();
+    for (coordinate, force) in forces.iter().enumerate() {
+        terms.extend(summands(pool, *force).into_iter().map(|term| (vec![coordinate], term)));
+    }
+    let Some(force) = sums(pool, terms, false)? else { return Ok(None) };
+    let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
+    let rows = recursions.iter().flat_map(|recursion| recursion.parts.iter().map(|part| &part.body));
+    let mut values = rows.chain(lagrangian.iter().chain(&force).map(|sum| &sum.body)).flat_map(|body| &body.values);
+    let autonomous = values.all(|value| !pool.depends_on(value.expr, &time));
+    let has_mass_of_position = has_mass_of_position(pool, &recursions, &lagrangian);
+    let cyclic = cyclic(model.dimension(), &recursions, &lagrangian, &force);
+    let separable = is_separable(pool, &recursions, &lagrangian, &force);
+    bounded(pool)?;
+    Ok(Some(Indexed { model, autonomous, cyclic, has_mass_of_position, separable, recursions, lagrangian, force }))
+}
+
+impl Indexed {
+    /// The message for recursions whose tangents are too large for the stack.
+    fn tangents(&self) -> Option<Message> {
+        let parts = self.recursions.iter().flat_map(|recursion| &recursion.parts);
+        let arrays: BTreeSet<Read> = parts.flat_map(|part| part.of.iter().copied()).collect();
+        let array = |read: &Read| match read {
+            Read::Let(array) | Read::LetRate(array) => Some(&self.model.lets[*array]),
+            _ => None,
+        };
+        let entries: usize = arrays.iter().filter_map(array).map(|array| array.definitions.len()).sum();
+        let numbers = entries * self.model.dimension();
+        if numbers <= TANGENTS {
+            return None;
+        }
+        let arrays: Vec<String> = arrays.iter().filter_map(array).map(|array| array.name.clone()).collect();
+        // If the coordinates are as many as the entries of each array.
+        let most = (1..=TANGENTS).take_while(|most| most * most * arrays.len() <= TANGENTS).last().unwrap_or(1);
+        let names: BTreeSet<String> = arrays.into_iter().collect();
+        Some(Message::Tangents { arrays: names.into_iter().collect(), bytes: 8 * numbers, most })
+    }
+
+    /// Operations of second derivatives, if they were written out: what makes a system large.
+    #[must_use]
+    pub fn operations(&self) -> usize {
+        let dimension = self.model.dimension();
+        let of = |body: &Body| {
+            let own = body.curvatures.as_ref().map_or(0, Function::operation_count);
+            let of_value = |value: &Value| {
+                let is_entry = |place: &usize| body.reads[value.states[*place]].is_entry();
+                let entries = (0..value.states.len()).filter(is_entry).count();
+                let pairs = value.pairs.iter().filter(|pair| pair.iter().any(is_entry)).count();
+                2 * value.pairs.len() + 2 * dimension * (entries + pairs)
+            };
+            own + body.values.iter().map(of_value).sum::<usize>()
+        };
+        let sums = self.lagrangian.iter().flat_map(|sum| sum.nests.iter().map(|nest| nest.rows() * of(&sum.body)));
+        let rows = self.recursions.iter().flat_map(|Recursion { parts, nest }| {
+            parts.iter().map(|part| nest.rows() * (of(&part.body) + 2 * dimension * part.of.len()))
+        });
+        sums.chain(rows).sum()
+    }
+}
+
+/// Whether L is quadratic in the velocities: each term is, and rates are linear in them.
+fn has_mass_of_position(pool: &mut Pool<Symbol>, recursions: &[Recursion], lagrangian: &[Sum]) -> bool {
+    let moves = |read: &Read| matches!(read, Read::Velocity | Read::LetRate(_));
+    let mut parts = recursions.iter().flat_map(|recursion| &recursion.parts);
+    parts.all(|part| part.body.is_at_most(pool, &moves, &|value| usize::from(moves(&part.of[value]))))
+        && lagrangian.iter().all(|sum| sum.body.is_at_most(pool, &moves, &|_| 2))
+}
+
+/// Whether velocities appear in terms `m v²` of L only, with constant m.
+fn is_separable(pool: &mut Pool<Symbol>, recursions: &[Recursion], lagrangian: &[Sum], force: &[Sum]) -> bool {
+    let moves = |body: &Body| body.reads.iter().any(|read| matches!(read, Read::Velocity | Read::LetRate(_)));
+    let mut parts = recursions.iter().flat_map(|recursion| &recursion.parts);
+    if parts.any(|part| moves(&part.body)) || force.iter().any(|sum| moves(&sum.body)) {
+        return false;
+    }
+    lagrangian.iter().filter(|sum| moves(&sum.body)).all(|Sum { body, .. }| {
+        let of_velocity = body.reads.iter().filter(|read| read.is_of_state()).all(|read| *read == Read::Velocity);
+        of_velocity && body.is_square(pool)
+    })
+}
+
+/// For each coordinate, whether nothing reads it and no force acts on it.
+fn cyclic(dimension: usize, recursions: &[Recursion], lagrangian: &[Sum], force: &[Sum]) -> Vec<bool> {
+    let mut cyclic = vec![true; dimension];
+    let mut see = |reads: &[Read], columns: &[usize]| {
+        let read = reads.iter().zip(columns).filter(|(read, _)| **read == Read::Coordinate);
+        read.for_each(|(_, column)| cyclic[*column] = false);
+    };
+    for Recursion { parts, nest } in recursions {
+        for Part { body, of, first } in parts {
+            nest.each(&mut |all| see(&body.reads, &all[first + of.len()..]));
+        }
+    }
+    for Sum { body, nests } in lagrangian {
+        for nest in nests {
+            nest.each(&mut |all| see(&body.reads, all));
+        }
+    }
+    for Sum { nests, .. } in force {
+        for nest in nests {
+            nest.each(&mut |all| cyclic[all[0]] = false);
+        }
+    }
+    cyclic
+}
+
+/// An array of `let`s, or of their rates, in runs of rows with the same shapes.
+struct Defined {
+    of: Read,
+    width: usize,
+    /// The first row of each run, with its rows.
+    runs: Vec<(usize, Vec<Vec<Instance>>)>,
+}
+
+impl Defined {
+    fn of(pool: &mut Pool<Symbol>, of: Read, width: usize, definitions: &[Expr]) -> Self {
+        let mut runs: Vec<(usize, Vec<Vec<Instance>>)> = Vec::new();
+        for (row, definitions) in definitions.chunks(width).enumerate() {
+            let instances: Vec<Instance> = definitions.iter().map(|expr| Instance::of(pool, *expr)).collect();
+            let shapes = |row: &[Instance]| row.iter().map(|instance| instance.shape.clone()).collect::<Vec<_>>();
+            match runs.last_mut() {
+                Some((_, rows)) if shapes(&rows[0]) == shapes(&instances) => rows.push(instances),
+                _ => runs.push((row, vec![instances])),
+            }
+        }
+        Self { of, width, runs }
+    }
+
+    /// Whether both have runs of the same rows, and this one reads only earlier rows of the other.
+    fn joins(&self, other: &Self) -> bool {
+        let rows = |of: &Self| of.runs.iter().map(|(first, rows)| (*first, rows.len())).collect::<Vec<_>>();
+        let reads_earlier = self.runs.iter().all(|(first, rows)| {
+            (*first..).zip(rows).all(|(row, instances)| {
+                let mut reads = instances.iter().flat_map(|of| of.shape.reads.iter().zip(&of.columns));
+                reads.all(|(read, column)| *read != other.of || column / other.width < row)
+            })
+        });
+        rows(self) == rows(other) && reads_earlier
+    }
+}
+
+/// The loops that define the entries that these expressions read; `None` if their rows do not repeat.
+fn recursions(
+    pool: &mut Pool<Symbol>,
+    lets: &Lets,
+    exprs: &[Expr],
+) -> core::result::Result<Option<Vec<Recursion>>, TooLarge> {
+    let mut groups: Vec<Vec<Defined>> = Vec::new();
+    for (of, width, definitions) in lets.used(pool, exprs) {
+        let defined = Defined::of(pool, of, width, &definitions);
+        let states = |instance: &Instance| instance.shape.reads.iter().filter(|read| read.is_of_state()).count();
+        let reads_many = |row: &Vec<Instance>| row.iter().any(|instance| states(instance) > STATES);
+        if defined.runs.len() > SEQUENCES || defined.runs.iter().any(|(_, rows)| reads_many(&rows[0])) {
+            return Ok(None);
+        }
+        match groups.last_mut() {
+            Some(group) if group.iter().all(|other| defined.joins(other)) => group.push(defined),
+            _ => groups.push(vec![defined]),
+        }
+    }
+    let mut made = Vec::new();
+    for group in &groups {
+        for run in 0..group[0].runs.len() {
+            let Some(recursion) = joined(pool, group, run)? else { return Ok(None) };
+            made.push(recursion);
+        }
+    }
+    Ok(Some(made))
+}
+
+/// An array of a group, and the number of a value in its rows.
+type Member = (usize, usize);
+
+/// One run of several arrays as one loop.
+fn joined(pool: &mut Pool<Symbol>, group: &[Defined], run: usize) -> core::result::Result<Option<Recursion>, TooLarge> {
+    let (first, rows) = &group[0].runs[run];
+    // What the values of a row read, in parts that read no value of their own.
+    let mut parts: Vec<(Vec<Read>, Vec<Member>)> = Vec::new();
+    for (place, Defined { of, width, runs }) in group.iter().enumerate() {
+        for (index, Instance { shape, columns }) in runs[run].1[0].iter().enumerate() {
+            let mut own = shape.reads.iter().zip(columns);
+            let is_of_row = own.any(|(read, column)| read == of && column / width == *first);
+            match parts.last_mut() {
+                Some((of, members)) if !is_of_row => {
+                    of.push(group[place].of);
+                    members.push((place, index));
+                }
+                _ => parts.push((vec![group[place].of], vec![(place, index)])),
+            }
+        }
+    }
+    let mut numbers = vec![Vec::new(); rows.len()];
+    let mut made = Vec::new();
+    let mut start = 0;
+    for (of, members) in parts {
+        // The numbers that several values read are one number if they agree in every row.
+        let instance = |row: usize, (place, index): Member| &group[place].runs[run].1[row][index];
+        let mut union: Vec<(Read, Vec<usize>)> = Vec::new();
+        let mut exprs = Vec::new();
+        for member in &members {
+            let Instance { shape, .. } = instance(0, *member);
+            let column = |place: usize| (0..rows.len()).map(|row| instance(row, *member).columns[place]).collect();
+            let places: Vec<usize> = (0..shape.reads.len())
+                .map(|place| {
+                    let number = (shape.reads[place], column(place));
+                    union.iter().position(|known| *known == number).unwrap_or_else(|| {
+                        union.push(number);
+                        union.len() - 1
+                    })
+                })
+                .collect();
+            exprs.push(pool.substitute(shape.value, &mut |pool, symbol| match symbol {
+                Symbol::Access(place) => Some(pool.symbol(Symbol::Access(places[*place]))),
+                _ => None,
+            }));
+        }
+        for (row, numbers) in numbers.iter_mut().enumerate() {
+            numbers.extend(members.iter().map(|(place, index)| (first + row) * group[*place].width + index));
+            numbers.extend(union.iter().map(|(_, column)| column[row]));
+        }
+        let reads: Vec<Read> = union.into_iter().map(|(read, _)| read).collect();
+        let width = members.len() + reads.len();
+        made.push(Part { body: Body::of(pool, reads, &exprs, true)?, of, first: start });
+        start += width;
+    }
+    Ok(Nest::single(&numbers).map(|nest| Recursion { parts: made, nest }))
+}
+
+/// Terms with one shape.
+struct Group {
+    shape: Shape,
+    /// The numbers before those that a term reads, and these; with its coefficient.
+    rows: Vec<(Vec<usize>, Rational)>,
+}
+
+/// The terms grouped by their shapes, in the order of their first terms; each with the numbers before those that it
+/// reads. `None` if they do not repeat.
+fn sums(
+    pool: &mut Pool<Symbol>,
+    terms: Vec<(Vec<usize>, Expr)>,
+    twice: bool,
+) -> core::result::Result<Option<Vec<Sum>>, TooLarge> {
+    let mut places: BTreeMap<(Shape, bool), usize> = BTreeMap::new();
+    let mut groups: Vec<Group> = Vec::new();
+    for (first, term) in terms {
+        let multiple = match pool.node(term) {
+            Node::Sum(sum) => sum.as_multiple().map(|(coefficient, term)| (coefficient.clone(), term)),
+            _ => None,
+        };
+        let (coefficient, term) = multiple.unwrap_or((Rational::one(), term));
+        let Instance { shape, columns } = Instance::of(pool, term);
+        if shape.reads.iter().filter(|read| read.is_of_state()).count() > STATES {
+            return Ok(None);
+        }
+        let place = *places.entry((shape.clone(), coefficient.is_negative())).or_insert(groups.len());
+        if place == groups.len() {
+            groups.push(Group { shape, rows: Vec::new() });
+        }
+        groups[place].rows.push((first.into_iter().chain(columns).collect(), coefficient));
+        if groups.len() > BODIES {
+            return Ok(None);
+        }
+    }
+    let mut sums = Vec::new();
+    for group in groups {
+        let Some((shape, rows)) = group.with_coefficients(pool) else { return Ok(None) };
+        let Shape { value, reads } = shape;
+        sums.push(Sum { body: Body::of(pool, reads, &[value], twice)?, nests: Nest::of(rows) });
+    }
+    Ok(Some(sums))
+}
+
+impl Group {
+    /// The shape with the coefficient of all terms. If they differ, it is one more number that a term reads: its numerator
+    /// over their common denominator. `None` for a numerator that is no index.
+    fn with_coefficients(self, pool: &mut Pool<Symbol>) -> Option<(Shape, Vec<Vec<usize>>)> {
+        let Self { mut shape, rows } = self;
+        let (_, first) = rows.first()?;
+        if rows.iter().all(|(_, coefficient)| coefficient == first) {
+            shape.value = pool.scale(shape.value, first);
+            return Some((shape, rows.into_iter().map(|(row, _)| row).collect()));
+        }
+        let denominator = rows.iter().fold(One::one(), |common, (_, coefficient)| coefficient.denom().lcm(&common));
+        let factor = Rational::new(if first.is_negative() { (-1).into() } else { One::one() }, denominator);
+        let number = pool.symbol(Symbol::Access(shape.reads.len()));
+        let value = pool.mul(number, shape.value);
+        shape.value = pool.scale(value, &factor);
+        shape.reads.push(Read::Number);
+        let with_number = |(mut row, coefficient): (Vec<usize>, Rational)| {
+            row.push((coefficient / &factor).to_usize()?);
+            Some(row)
+        };
+        Some((shape, rows.into_iter().map(with_number).collect::<Option<_>>()?))
+    }
+}
+
+/// The terms of a sum. A product distributes over a long sum.
+fn summands(pool: &mut Pool<Symbol>, expr: Expr) -> Vec<Expr> {
+    let mut open = vec![expr];
+    let mut terms = Vec::new();
+    while let Some(expr) = open.pop() {
+        match pool.node(expr).clone() {
+            _ if pool.is_zero(expr) => {}
+            Node::Sum(sum) if sum.as_multiple().is_none() => {
+                open.push(pool.number(sum.constant));
+                open.extend(sum.terms.into_iter().map(|(term, coefficient)| pool.scale(term, &coefficient)));
+            }
+            Node::Sum(sum) => match sum.as_multiple().and_then(|(_, term)| distributed(pool, term)) {
+                Some(inner) => {
+                    let coefficient = sum.terms[0].1.clone();
+                    open.extend(inner.into_iter().map(|term| pool.scale(term, &coefficient)));
+                }
+                None => terms.push(expr),
+            },
+            _ => match distributed(pool, expr) {
+                Some(inner) => open.extend(inner),
+                None => terms.push(expr),
+            },
+        }
+    }
+    terms.reverse();
+    terms
+}
+
+/// The terms of a product whose only long factor is a sum: of many terms, or of many numbers of the state.
+fn distributed(pool: &mut Pool<Symbol>, expr: Expr) -> Option<Vec<Expr>> {
+    let Node::Product(product) = pool.node(expr).clone() else { return None };
+    let is_long = |(base, exponent): &&(Expr, Rational)| {
+        let is_sum = exponent.is_one() && matches!(pool.node(*base), Node::Sum(sum) if sum.terms.len() > 1);
+        let of_state = |symbol: &Symbol| Read::of(symbol).is_some_and(|(read, _)| read.is_of_state());
+        is_sum && pool.symbols(*base).iter().filter(|symbol| of_state(symbol)).count() > NUMBERS
+    };
+    let long: Vec<Expr> = product.factors.iter().filter(is_long).map(|(base, _)| *base).collect();
+    let [long] = long[..] else { return None };
+    let others = product.factors.iter().filter(|(base, _)| *base != long);
+    let others: Vec<Expr> = others.map(|(base, exponent)| pool.power(*base, exponent)).collect();
+    let others = pool.product(&others);
+    Some(summands(pool, long).into_iter().map(|term| pool.mul(others, term)).collect())
+}

@@ -1,0 +1,403 @@
+//! A large system: its declarations, its recursions and sums in loops, and what follows from their derivatives.
+//!
+//! In: a system in loops. Out: sections of an explanation, and its functions operation by operation.
+
+use super::explanation::{Line, Section};
+use super::index::{self, Both, COUNTERS, affine};
+use super::{functions, latex, model, name, program, syntax};
+use crate::Loops;
+use crate::header::{self, NamedBody, Quantity};
+use crate::indexed::{Affine, Nest, Value};
+use crate::model::{Coordinate, Model, Parameter};
+use crate::program::Function;
+use crate::symbol::Symbol;
+use crate::syntax::System;
+use std::fmt::Write as _;
+use vi_expr::Node;
+
+/// Declarations, and L and f as written.
+pub(super) fn model(system: &System, of: &Loops) -> Vec<Section> {
+    let model = &of.indexed.model;
+    let (mut text, mut in_latex) = (Vec::new(), Vec::new());
+    for array in model.coordinates.chunk_by(|left, right| left.name == right.name) {
+        text.push(ends(array.iter().map(Coordinate::text)));
+        in_latex.push(ends(array.iter().map(|of| format!("`{}`", name::coordinate(of).text()))));
+    }
+    let mut lines = vec![Line::Words {
+        text: format!("coordinates {}", text.join(", ")),
+        latex: format!("Coordinates {}", in_latex.join(", ")),
+    }];
+    lines.extend(model.fields().map(|field| parameter(model, field)));
+    lines.push(Line::words(format!("rule {}", model::title(model))));
+    let written = syntax::equations(system).into_iter().map(Line::words).collect();
+    let mut sections = vec![
+        Section { title: "System", lines },
+        Section { title: "Named parts, Lagrangian L and force f, as written", lines: written },
+    ];
+    sections.extend(functions::sections(model));
+    sections
+}
+
+/// The first and the last of several names, or all of at most two.
+fn ends(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<String> = names.collect();
+    match &names[..] {
+        [first, _, .., last] => format!("{first} to {last}"),
+        _ => names.join(", "),
+    }
+}
+
+/// A parameter, or the entries of an array.
+fn parameter(model: &Model, field: &[Parameter]) -> Line {
+    let is_input = field.first().is_some_and(|of| of.is_input);
+    let [word, title] = if is_input { ["input", "Input"] } else { ["parameter", "Parameter"] };
+    let symbol = |of: &Parameter| {
+        let index = model.parameters.iter().position(|known| core::ptr::eq(known, of)).unwrap_or(0);
+        name::of_model(model, &of.symbol(index)).map_or_else(String::new, |name| format!("`{}`", name.text()))
+    };
+    let defaults: Vec<String> = field.iter().map(Parameter::default_text).collect();
+    let is_same = defaults.windows(2).all(|pair| pair[0] == pair[1]);
+    let values = match &defaults[..] {
+        [first, _, ..] if is_same => format!("each {first}"),
+        _ => defaults.join(", "),
+    };
+    let (names, in_latex) = (ends(field.iter().map(Parameter::text)), ends(field.iter().map(symbol)));
+    Line::Words {
+        text: format!("{word} {names} = {values}"),
+        latex: format!("{title} {in_latex}, by default {values}"),
+    }
+}
+
+/// Recursions, then L and f as sums.
+pub(super) fn sums(of: &Loops) -> Vec<Section> {
+    let (mut recursions, mut terms, mut forces) = (Vec::new(), Vec::new(), Vec::new());
+    let mut count = 0;
+    for named in &header::named(&of.indexed) {
+        match named.quantity {
+            Quantity::Entries(_) => recursions.extend(named.nests.iter().flat_map(|nest| entries(of, named, nest))),
+            Quantity::Lagrangian => {
+                count += 1;
+                terms.push(term(of, named, count));
+            }
+            Quantity::Force => forces.extend(named.nests.iter().flat_map(|nest| force(of, named, nest))),
+        }
+    }
+    let numbered = |letter: &str, index: &dyn Fn(usize) -> String| {
+        (1..=count).map(|place| format!("{letter}_{}", index(place))).collect::<Vec<_>>().join(" + ")
+    };
+    terms.insert(
+        0,
+        equation(
+            Both { text: "L".to_owned(), latex: "L".to_owned() },
+            Both {
+                text: numbered("L", &|place| place.to_string()),
+                latex: numbered("L", &|place| format!("{{{place}}}")),
+            },
+        ),
+    );
+    if !has_names(of) {
+        terms.push(Line::Words {
+            text: "q_k is coordinate k in the order of declaration, from 0".to_owned(),
+            latex: "`q_{k}` is coordinate `k` in the order of declaration, from 0".to_owned(),
+        });
+    }
+    let mut sections = Vec::new();
+    if !recursions.is_empty() {
+        sections.push(Section { title: "Recursions, in the order of evaluation", lines: recursions });
+    }
+    sections.push(Section { title: "Lagrangian L as sums", lines: terms });
+    if !forces.is_empty() {
+        sections.push(Section { title: "Force f, the sum of these terms", lines: forces });
+    }
+    sections
+}
+
+/// Whether all numbers that loops read have names of the user.
+fn has_names(of: &Loops) -> bool {
+    header::named(&of.indexed).iter().all(|named| {
+        named.nests.iter().all(|nest| {
+            let Nest::Loops { outer, inner, columns } = nest else { return true };
+            let (counters, model) = (index::counters(*outer, *inner), &of.indexed.model);
+            named.columns().all(|(column, read)| index::has_name(model, read, columns[column], &counters))
+        })
+    })
+}
+
+fn equation(left: Both, right: Both) -> Line {
+    Line::Equation { left: left.text, right: right.text, left_latex: left.latex, right_latex: right.latex }
+}
+
+/// The numbers of a row by the counters of its loop.
+struct Row {
+    /// What it computes.
+    computed: Vec<Both>,
+    /// What it reads.
+    reads: Vec<Both>,
+}
+
+impl Row {
+    /// A table shows its first row.
+    fn new(of: &Loops, named: &NamedBody, nest: &Nest) -> Self {
+        let (columns, counters) = match nest {
+            Nest::Loops { outer, inner, columns } => (columns.clone(), index::counters(*outer, *inner)),
+            Nest::Table(rows) => {
+                let number = |column: &usize| i64::try_from(*column).unwrap_or(i64::MAX);
+                let constant = |column| Affine { constant: number(column), by: [0, 0] };
+                (rows.first().into_iter().flatten().map(constant).collect(), vec![[0, 0]])
+            }
+        };
+        let number = |(column, read)| index::read(&of.indexed.model, read, columns[column], &counters);
+        let mut computed: Vec<Both> = named.columns().map(number).collect();
+        let reads = computed.split_off(named.computed().len());
+        Self { computed, reads }
+    }
+
+    /// A value of the body.
+    fn value(&self, of: &Loops, value: &Value) -> Both {
+        let (pool, model) = (&of.pool, &of.indexed.model);
+        let text = pool.render(value.expr, &|symbol| match symbol {
+            Symbol::Access(place) => self.reads[*place].text.clone(),
+            _ => model.spell(symbol),
+        });
+        let latex = latex::expression(pool, value.expr, &|symbol| match symbol {
+            Symbol::Access(place) => self.reads[*place].latex.clone(),
+            _ => name::of_model(model, symbol).map_or_else(|| model.spell(symbol), |name| name.text()),
+        });
+        Both { text, latex }
+    }
+}
+
+/// The loops of a nest: `i in 0..39, j in 0..i + 1`; none for one row and for a table.
+fn ranges(nest: &Nest) -> Vec<(&'static str, Affine)> {
+    let Nest::Loops { outer, inner, .. } = nest else { return Vec::new() };
+    let constant = |constant: i64| Affine { constant, by: [0, 0] };
+    let all = [(COUNTERS[0], constant(*outer)), (COUNTERS[1], *inner)];
+    all.into_iter().filter(|(_, end)| *end != constant(1)).collect()
+}
+
+/// The loops in the notation of the language.
+fn ranges_text(nest: &Nest) -> String {
+    let ranges = ranges(nest);
+    ranges.iter().map(|(counter, end)| format!("{counter} in 0..{}", affine(*end, "*"))).collect::<Vec<_>>().join(", ")
+}
+
+/// The last value of a counter in LaTeX.
+fn last(end: Affine) -> String {
+    affine(Affine { constant: end.constant - 1, ..end }, " ")
+}
+
+/// What follows an expression that holds in each row: `for i in 0..39`.
+fn in_each_row(nest: &Nest) -> Both {
+    if let Nest::Table(rows) = nest {
+        let (text, count) = ("and more rows of a table, in total", rows.len());
+        return Both { text: format!(", {text} {count}"), latex: format!(", \\quad \\text{{{text} {count}}}") };
+    }
+    let (text, mut latex) = (ranges_text(nest), String::new());
+    for (counter, end) in ranges(nest) {
+        // Writing to a string cannot fail.
+        let _ = write!(latex, ", \\quad {counter} = 0, \\ldots, {}", last(end));
+    }
+    Both { text: if text.is_empty() { text } else { format!(" for {text}") }, latex }
+}
+
+/// Entries of arrays of `let`s, or their rates.
+fn entries(of: &Loops, named: &NamedBody, nest: &Nest) -> Vec<Line> {
+    let (row, rows) = (Row::new(of, named, nest), in_each_row(nest));
+    let values = named.body.values.iter().map(|value| row.value(of, value));
+    let entry = |(left, value): (&Both, Both)| {
+        equation(left.clone(), Both { text: value.text + &rows.text, latex: value.latex + &rows.latex })
+    };
+    row.computed.iter().zip(values).map(entry).collect()
+}
+
+/// The terms of L with one body.
+fn term(of: &Loops, named: &NamedBody, place: usize) -> Line {
+    let (mut text, mut latex) = (Vec::new(), Vec::new());
+    for nest in named.nests {
+        let row = Row::new(of, named, nest);
+        for value in &named.body.values {
+            let is_sum = matches!(of.pool.node(value.expr), Node::Sum(sum) if sum.as_multiple().is_none());
+            let Both { text: in_text, latex: in_latex } = summed(nest, row.value(of, value), is_sum);
+            text.push(in_text);
+            latex.push(in_latex);
+        }
+    }
+    equation(
+        Both { text: format!("L_{place}"), latex: format!("L_{{{place}}}") },
+        Both { text: text.join(" + "), latex: latex.join(" + ") },
+    )
+}
+
+/// The sum of a value over all rows.
+fn summed(nest: &Nest, value: Both, is_sum: bool) -> Both {
+    if let Nest::Table(_) = nest {
+        let rows = in_each_row(nest);
+        return Both { text: value.text + &rows.text, latex: value.latex + &rows.latex };
+    }
+    let ranges = ranges(nest);
+    if ranges.is_empty() {
+        return value;
+    }
+    let signs = ranges.iter().map(|(counter, end)| format!("\\sum_{{{counter}=0}}^{{{}}} ", last(*end)));
+    let latex = if is_sum { format!("\\left({}\\right)", value.latex) } else { value.latex };
+    Both { text: format!("sum({}, {})", ranges_text(nest), value.text), latex: signs.collect::<String>() + &latex }
+}
+
+/// Terms of components of f.
+fn force(of: &Loops, named: &NamedBody, nest: &Nest) -> Vec<Line> {
+    let (row, rows) = (Row::new(of, named, nest), in_each_row(nest));
+    let line = |(on, value): (&Both, &Value)| {
+        let value = row.value(of, value);
+        Line::Words {
+            text: format!("f_{} += {}{}", on.text, value.text, rows.text),
+            latex: format!("`f_{{{}}} \\mathrel{{+}}= {}{}`", on.latex, value.latex, rows.latex),
+        }
+    };
+    row.computed.iter().zip(&named.body.values).map(line).collect()
+}
+
+/// The functions that `vi_core::indexed` computes from the derivatives of L and f, by the midpoint rule.
+pub(super) fn discrete(of: &Loops) -> Vec<Section> {
+    let model = &of.indexed.model;
+    let line = |[text, text_right]: [&str; 2], [latex, latex_right]: [&str; 2]| {
+        let both = |text: &str, latex: &str| Both { text: text.to_owned(), latex: latex.to_owned() };
+        equation(both(text, latex), both(text_right, latex_right))
+    };
+    let (forced, autonomous) = (model.forced, of.indexed.autonomous);
+    let (sum, force) = if forced { ("L_q + f", "(L_q + f)") } else { ("L_q", "L_q") };
+    let [of_time, of_time_latex] = if autonomous { ["", ""] } else { [" - L_vt", " - L_{vt}"] };
+    let motion = vec![
+        line(["p", "L_v"], ["p", "L_v"]),
+        line(["E", "v·L_v - L"], ["E", "v \\cdot L_v - L"]),
+        line(
+            ["a", &format!("L_vv^-1*({sum}{of_time} - L_vq*v)")],
+            ["a", &format!("L_{{vv}}^{{-1}} ({sum}{of_time_latex} - L_{{vq}} v)")],
+        ),
+    ];
+    let motion = Section { title: "Motion, from first and second derivatives of L and f", lines: motion };
+    if model.rule.is_none() {
+        let lines = vec![Line::words("None: the system is declared without a rule and takes Gauss steps")];
+        return vec![motion, Section { title: "Discrete Lagrangian", lines }];
+    }
+    let (matrix, matrix_latex) = if forced {
+        let latex = "L_{vv} + \\frac{h}{2} (L_{vq} - L_{qv} - f_v) - \\frac{h^{2}}{4} (L_{qq} + f_q)";
+        ("L_vv + h/2*(L_vq - L_qv - f_v) - h^2/4*(L_qq + f_q)", latex)
+    } else {
+        let latex = "L_{vv} + \\frac{h}{2} (L_{vq} - L_{qv}) - \\frac{h^{2}}{4} L_{qq}";
+        ("L_vv + h/2*(L_vq - L_qv) - h^2/4*L_qq", latex)
+    };
+    let (work, work_latex) = match (forced, autonomous) {
+        (true, true) => (" + h/2*f·v", " + \\frac{h}{2} f \\cdot v"),
+        (true, false) => (" + h/2*(f·v - L_t)", " + \\frac{h}{2} (f \\cdot v - L_t)"),
+        (false, true) => ("", ""),
+        (false, false) => (" - h/2*L_t", " - \\frac{h}{2} L_t"),
+    };
+    let [rate, rate_latex] = if autonomous { ["", ""] } else { [" - d/dt(L_t)", " - \\frac{d}{dt} L_t"] };
+    let midpoint = "\\frac{t_0 + t_1}{2}, \\frac{q_0 + q_1}{2}, \\frac{q_1 - q_0}{h}";
+    let mut steps = vec![
+        line(["t, q, v", "(t0 + t1)/2, (q0 + q1)/2, (q1 - q0)/h"], ["t, q, v", midpoint]),
+        line(["L_d", "h*L"], ["L_d", "h L"]),
+        line(["r", &format!("L_v - h/2*{force} - p0")], ["r", &format!("L_v - \\frac{{h}}{{2}} {force} - p_0")]),
+        line(["A", matrix], ["A", matrix_latex]),
+        line(["p1 - p0", &format!("h*{force}")], ["p_1 - p_0", &format!("h {force}")]),
+        line(["E1", &format!("v·L_v - L{work}")], ["E_1", &format!("v \\cdot L_v - L{work_latex}")]),
+        line(
+            ["D", &format!("a·{force} - v·d/dt(L_q){rate}")],
+            ["D", &format!("a \\cdot {force} - v \\cdot \\frac{{d}}{{dt}} L_q{rate_latex}")],
+        ),
+    ];
+    steps.push(Line::words(
+        "vi_core::indexed evaluates these equations and their derivatives; they are not written out",
+    ));
+    let title = "Step: residual r of the momentum equation, A = dr/dv, discrete energy E1, step density D";
+    vec![motion, Section { title, lines: steps }]
+}
+
+/// Findings, and operation counts of the functions of one row.
+pub(super) fn findings(of: &Loops) -> Vec<Section> {
+    let text = header::documentation(&of.indexed);
+    let latex = header::properties(&of.indexed, &|coordinate| format!("`{}`", name::coordinate(coordinate).text()));
+    let lines = text.into_iter().zip(latex).map(|(text, latex)| Line::Words { text, latex }).collect();
+    let named = header::named(&of.indexed);
+    let width = named.iter().map(|of| of.name.len()).max().unwrap_or(0);
+    let costs = named.iter().map(|of| {
+        let (name, rows, first, second) = (&of.name, of.rows(), of.first_operations(), of.second_operations());
+        Line::Words {
+            text: format!("{name:width$} {:>10} {first:6} {second:>6}", counted(rows, "row")),
+            latex: format!("{name}: {}, {first}, {second}", counted(rows, "row")),
+        }
+    });
+    vec![
+        Section { title: "Properties found by the generator", lines },
+        Section {
+            title: "Operations of each function of one row, for first and for second derivatives",
+            lines: costs.collect(),
+        },
+    ]
+}
+
+/// The functions of one row, operation by operation, with their loops.
+pub(super) fn program(of: &Loops) -> String {
+    let functions = header::named(&of.indexed);
+    functions.iter().map(|named| function(of, named)).collect::<Vec<_>>().join("\n")
+}
+
+fn function(of: &Loops, named: &NamedBody) -> String {
+    let (body, model) = (named.body, &of.indexed.model);
+    let mut text = format!("{}, {}\n", named.name, counted(named.rows(), "row"));
+    let is_single = body.values.len() == 1;
+    let values =
+        (1..=body.values.len()).map(|place| if is_single { "value".to_owned() } else { format!("value{place}") });
+    let values: Vec<String> = values.collect();
+    for nest in named.nests {
+        let row = Row::new(of, named, nest);
+        let reads = row.reads.iter().enumerate().map(|(place, read)| format!("a{place} = {}", read.text));
+        let computed = |sign: &str, prefix: &str| {
+            let each =
+                row.computed.iter().zip(&values).map(|(of, value)| format!("{prefix}{} {sign} {value}", of.text));
+            each.collect::<Vec<_>>().join(", ")
+        };
+        let computed = match named.quantity {
+            Quantity::Entries(_) => computed("=", ""),
+            Quantity::Lagrangian => "L += value".to_owned(),
+            Quantity::Force => computed("+=", "f_"),
+        };
+        let rows = in_each_row(nest).text;
+        let rows = rows.strip_prefix(' ').map_or_else(|| "one row".to_owned() + &rows, str::to_owned);
+        text.extend(["    ", &rows, ": ", &computed]);
+        text.extend(
+            reads.enumerate().map(|(place, read)| (if place == 0 { ", with " } else { ", " }).to_owned() + &read),
+        );
+        text.push('\n');
+    }
+    let (mut first, mut second) = (Vec::new(), Vec::new());
+    for (value, name) in body.values.iter().zip(&values) {
+        let slopes: Vec<String> = value.states.iter().map(|place| format!("d {name}/d a{place}")).collect();
+        first.extend([name.clone(), format!("d {name}/dt")]);
+        first.extend(slopes.clone());
+        second.extend(slopes);
+        let at = |place: &usize| value.states[*place];
+        second.extend(value.pairs.iter().map(|[row, column]| format!("d² {name}/d a{} d a{}", at(row), at(column))));
+    }
+    text.push_str(&listed(model, "first derivatives", &body.slopes, &first));
+    if let Some(curvatures) = &body.curvatures {
+        text.push_str(&listed(model, "second derivatives", curvatures, &second));
+    }
+    text
+}
+
+/// `1 row`, `2 rows`.
+fn counted(count: usize, one: &str) -> String {
+    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A function of one row; its results have these labels.
+fn listed(model: &Model, title: &str, of: &Function, labels: &[String]) -> String {
+    let count = of.operation_count();
+    let (operations, results) = program::operations(of, &|symbol| model.spell(symbol));
+    let mut text = format!("  {title}: {}\n{operations}", counted(count, "operation"));
+    for (label, result) in labels.iter().zip(results.iter().flatten()) {
+        text.extend(["    ", label, " = ", result, "\n"]);
+    }
+    text
+}
