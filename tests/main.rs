@@ -17,6 +17,7 @@ mod forms;
 mod functions;
 mod inputs;
 mod integrators;
+mod large;
 mod limits;
 mod loops;
 mod orders;

@@ -14,6 +14,7 @@ mod hunt;
 mod invariants;
 mod iterations;
 mod kept_energies;
+mod large;
 mod motions;
 mod robustness;
 mod smoothness;
