@@ -69,7 +69,8 @@ impl Compiled {
         // `#[vi_limit(0)]`, for tests: the size at which loops begin.
         let is_asked = system.attributes.iter().find_map(emit::limit) == Some(0);
         let loops = Loops::of(system, if is_asked { 1 } else { limits::LARGE_COORDINATES })?;
-        let is_large = |loops: &Loops| is_asked || loops.indexed.operations() > limits::LARGE;
+        let is_large =
+            |loops: &Loops| is_asked || loops.indexed.operations() > limits::LARGE && loops.indexed.is_dense();
         match loops {
             Some(loops) if is_large(&loops) => Ok(Self::Loops(Box::new(loops))),
             loops => match (derive(system), loops) {

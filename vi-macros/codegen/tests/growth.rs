@@ -104,7 +104,8 @@ fn loops_run_over_all_terms() {
 #[test]
 fn small_systems_and_those_that_do_not_repeat_stay_in_lines() {
     let quartic = "coord q[20]; L = sum(i in 0..20, dot(q[i])^2) / 2 - sum(i in 0..20, sum(j in 0..20, q[j]))^4;";
-    for clauses in ["coord q[20]; L = sum(i in 0..20, dot(q[i])^2) / 2;", quartic] {
+    let chain = "coord q[256]; L = sum(i in 0..256, dot(q[i])^2 - q[i]^2) / 2 - sum(i in 1..256, (q[i] - q[i - 1])^4);";
+    for clauses in ["coord q[20]; L = sum(i in 0..20, dot(q[i])^2) / 2;", quartic, chain] {
         let text = format!("struct S {{ {clauses} discretize midpoint; }}");
         let system = parse::system(text.parse().expect("tokens")).expect("a system");
         assert!(matches!(Compiled::of(&system), Ok(Compiled::Lines(_))), "{text}");

@@ -154,6 +154,29 @@ impl Indexed {
         Some(Message::Tangents { arrays: names.into_iter().collect(), bytes: 8 * numbers, most })
     }
 
+    /// Whether at least a quarter of the second derivatives are not zero. Straight lines have solvers for fewer.
+    #[must_use]
+    pub fn is_dense(&self) -> bool {
+        let dimension = self.model.dimension();
+        let mut coupled = vec![false; dimension * dimension];
+        for Sum { body, nests } in &self.lagrangian {
+            if body.reads_entries() {
+                return true;
+            }
+            for [row, column] in
+                body.values.iter().flat_map(|value| value.pairs.iter().map(|pair| pair.map(|at| value.states[at])))
+            {
+                for nest in nests {
+                    nest.each(&mut |all| {
+                        coupled[all[row] * dimension + all[column]] = true;
+                        coupled[all[column] * dimension + all[row]] = true;
+                    });
+                }
+            }
+        }
+        4 * coupled.iter().filter(|is_coupled| **is_coupled).count() >= dimension * dimension
+    }
+
     /// Operations of second derivatives, if they were written out: what makes a system large.
     #[must_use]
     pub fn operations(&self) -> usize {
