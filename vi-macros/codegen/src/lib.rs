@@ -129,7 +129,9 @@ impl Loops {
         let mut pool = Pool::bounded(limits::WORK);
         // Straight lines report its mistakes.
         let model = if has_arrays { check::large_model(&mut pool, system).ok() } else { None };
-        let is_possible = |model: &Model| model.dimension() >= least && system.rules() <= 1;
+        // A dissipation is differentiated before its `let`s are known.
+        let is_plain = |model: &Model| system.dissipations.is_empty() || model.lets.is_empty();
+        let is_possible = |model: &Model| model.dimension() >= least && system.rules() <= 1 && is_plain(model);
         let Some(model) = model.filter(is_possible) else { return Ok(None) };
         Ok(indexed::indexed(&mut pool, model)?.map(|indexed| Self { pool, indexed }))
     }

@@ -39,8 +39,8 @@ const IN_RULE: &str = "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*
 const IN_CHECK: &str = "a check sets coordinates, their `dot(…)`, parameters, the time `t` and the step `h`";
 
 /// The size at which systems end.
-const LARGE: &str = "use fewer coordinates or a simpler Lagrangian; a system whose terms repeat, written as `sum(i in 0..N, …)` over \
-    arrays, is emitted as loops of any length";
+const LARGE: &str = "use fewer coordinates or a simpler Lagrangian; terms that repeat, written as `sum(i in 0..N, …)` over arrays, become \
+    loops in systems without constraints, angles and a time scale";
 
 /// Correction of an expression without a derivative.
 const NO_DERIVATIVE: &str = "its derivative divides by zero, or takes the logarithm of zero or of a negative number, for every state; rewrite the expression";

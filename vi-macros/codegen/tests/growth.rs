@@ -119,3 +119,68 @@ fn a_system_that_lines_cannot_hold_is_in_loops() {
         assert!(large(&links(count)).operations() > 7000);
     }
 }
+
+/// Whether a system of which loops are asked for is in loops; an error is none.
+fn is_in_loops(clauses: &str) -> bool {
+    let text = format!("#[vi_limit(0)] struct S {{ const N = 6; {clauses} discretize midpoint; }}");
+    let system = parse::system(text.parse().expect("tokens")).unwrap_or_else(|error| panic!("{text}: {error}"));
+    matches!(Compiled::of(&system), Ok(Compiled::Loops(_)))
+}
+
+#[test]
+fn what_loops_cannot_hold_stays_in_lines() {
+    let kinetic = "coord q[N]; L = sum(i in 0..N, dot(q[i])^2) / 2";
+    assert!(is_in_loops(&format!("{kinetic} - sum(i in 0..N, q[i]^4);")));
+    for rest in [
+        // A number beyond 32 bits.
+        "; const c[6] = [0.1234567890123456, 0.3, 0.77, -0.123, 1, 2]; force q[i in 0..N] = -c[i] * q[i]^3;",
+        // A dissipation of `let`s.
+        "; let s[i in 1..N] = q[i] - q[i - 1]; dissipation = sum(i in 0..N, dot(q[i])^2) + sum(i in 1..N, dot(s[i])^2);",
+        // Arrays that read each other.
+        "- x[5]^2 - y[5]^2; let x[0] = q[0]; let y[0] = q[1]; let x[1] = x[0] * y[0]; let y[1] = x[1] + q[2]; let x[2] = y[1]; \
+         let x[3] = x[2]; let x[4] = x[3]; let x[5] = x[4] + q[5]; let y[2] = 1; let y[3] = 1; let y[4] = 1; let y[5] = y[4] * x[5];",
+        // A root that begins where an entry is zero.
+        "- sum(i in 1..N, o[i]^(5/2)); let o[i in 1..N] = (abs(q[i] - q[i - 1]) + q[i] - q[i - 1]) / 2;",
+        // An acceleration.
+        "+ sum(i in 0..N, dot(w[i])^2); let w[i in 0..N] = dot(q[i]);",
+        // A jump.
+        "- sum(i in 0..N, e[i] * q[i]); let e[i in 0..N] = if q[i] > 0 { 1 } else { 0 };",
+        // Without a value in any state.
+        "- sum(i in 0..N, ln(e[i] - q[i])); let e[i in 0..N] = q[i];",
+        "; let e[i in 0..N] = q[i]; force q[i in 0..N] = sqrt(e[i] - q[i] - 1);",
+        "- sum(i in 0..N, 1e-200 * q[i]^2 * 1e-200);",
+    ] {
+        assert!(!is_in_loops(&format!("{kinetic} {rest}")), "{rest}");
+    }
+    // Without a mass.
+    assert!(!is_in_loops("coord q[N], z; L = sum(i in 0..N, dot(q[i])^2) / 2 - z^2 * sum(i in 0..N, q[i]^2);"));
+    assert!(!is_in_loops("coord q[N]; L = sum(i in 0..N, q[i]^2);"));
+    assert!(!is_in_loops("coord q[N]; L = sum(i in 1..N, q[i - 1] * dot(q[i]) - q[i]^2) - q[0]^2;"));
+}
+
+#[test]
+fn a_sum_that_loses_terms_is_no_recursion() {
+    let tail =
+        "coord q[N]; param m[N] = 1.0; let tail[i in 0..N] = 3 + sin(t) + sum(j in i..N, m[j] * (2 + cos(q[j])));
+        L = sum(i in 0..N, dot(q[i])^2 / 2 - ln(tail[i]));";
+    let text = format!("#[vi_limit(0)] struct S {{ const N = 6; {tail} discretize midpoint; }}");
+    let system = parse::system(text.parse().expect("tokens")).expect("a system");
+    if let Ok(Compiled::Loops(loops)) = Compiled::of(&system) {
+        assert!(loops.indexed.recursions.is_empty());
+    }
+}
+
+#[test]
+fn too_many_entries_of_recursions_are_refused() {
+    let arm = "struct Arm { const N = 100; param l = 1.0; coord a[N], b[N];
+        let r[0] = l * [sin(a[0]) * cos(b[0]), sin(a[0]) * sin(b[0]), cos(a[0])];
+        let r[i in 1..N] = r[i - 1] + l * [sin(a[i]) * cos(b[i]), sin(a[i]) * sin(b[i]), cos(a[i])];
+        L = sum(i in 0..N, dot(r[i]) * dot(r[i]) / 2 - r[i][2]); discretize midpoint; }";
+    let system = parse::system(arm.parse().expect("tokens")).expect("a system");
+    let Err(error) = Compiled::of(&system) else { panic!("accepted") };
+    let error = error.to_string();
+    assert!(
+        error.contains("the tangents of `r` need 1.0 MB of the stack") && error.contains("declare at most 73 entries"),
+        "{error}"
+    );
+}

@@ -7,7 +7,7 @@
 use crate::program::{Function, alone};
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeMap;
-use vi_expr::{Expr, Pool, Rational, TooLarge};
+use vi_expr::{Expr, Pool, Rational};
 
 /// An array from which a body reads a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -122,11 +122,8 @@ impl Body {
         self.reads.iter().any(Read::is_entry)
     }
 
-    /// Derives the values, once or twice. Each reads the numbers of its own list.
-    ///
-    /// # Errors
-    /// Too much algebra.
-    pub(super) fn of(pool: &mut Pool<Symbol>, reads: Vec<Read>, exprs: &[Expr], twice: bool) -> Result<Self, TooLarge> {
+    /// Derives the values, once or twice. `None` if that is too much work, or a derivative has no value.
+    pub(super) fn of(pool: &mut Pool<Symbol>, reads: Vec<Read>, exprs: &[Expr], twice: bool) -> Option<Self> {
         let (mut values, mut slopes, mut curvatures) = (Vec::new(), Vec::new(), Vec::new());
         for expr in exprs.iter().copied() {
             let symbols = pool.symbols(expr);
@@ -160,9 +157,9 @@ impl Body {
             curvatures.extend(by_state);
             curvatures.extend(seconds);
         }
-        let slopes = alone(pool, &slopes)?;
-        let curvatures = if twice { Some(alone(pool, &curvatures)?) } else { None };
-        Ok(Self { reads, values, slopes, curvatures })
+        let slopes = alone(pool, exprs, &slopes)?;
+        let curvatures = if twice { Some(alone(pool, exprs, &curvatures)?) } else { None };
+        Some(Self { reads, values, slopes, curvatures })
     }
 
     /// Whether each value is a polynomial of at most its degree in the numbers that satisfy a condition.

@@ -7,8 +7,9 @@
 use super::body::Read;
 use crate::model::{LetArray, Model};
 use crate::symbol::{LetEntry, Symbol, Variable};
+use num_traits::{One, Zero};
 use std::collections::BTreeSet;
-use vi_expr::{Expr, Pool};
+use vi_expr::{Expr, Function, Node, Pool, Rational};
 
 /// Shortest array that is a recursion.
 const LEAST: usize = 3;
@@ -26,10 +27,36 @@ struct Array {
 }
 
 impl Lets {
-    /// Decides which arrays stay.
-    pub(super) fn of(pool: &mut Pool<Symbol>, model: &Model) -> Self {
+    /// Decides which arrays stay. `None` if an array reads one that is declared later, if a rate would be an acceleration,
+    /// or if the limits of a root depend on what an entry is: straight lines compute or report these.
+    pub(super) fn of(pool: &mut Pool<Symbol>, model: &Model) -> Option<Self> {
         let mut lets = Self { arrays: Vec::new() };
+        let used: Vec<Expr> = [model.lagrangian].into_iter().chain(model.forces.iter().copied()).collect();
+        let defined = model.lets.iter().flat_map(|array| array.definitions.iter().copied());
+        let all: Vec<Expr> = used.into_iter().chain(defined).collect();
+        let with_rates = reads(pool, &all);
+        let mut moves: Vec<bool> = Vec::new();
         for (place, LetArray { width, definitions, .. }) in model.lets.iter().enumerate() {
+            let is_later =
+                |symbol: &Symbol| matches!(symbol, Symbol::Let(entry) | Symbol::LetRate(entry) if entry.array > place);
+            let is_moving = |symbol: &Symbol| match symbol {
+                Symbol::Continuous(Variable::Velocity(_)) | Symbol::LetRate(_) => true,
+                Symbol::Let(entry) => moves.get(entry.array).copied().unwrap_or(false),
+                _ => false,
+            };
+            let has_jumps = |expr: Expr| {
+                matches!(
+                    pool.node(expr),
+                    Node::Call(Function::Abs | Function::Sign, _) | Node::Select(_) | Node::Opaque(..)
+                )
+            };
+            let is_wrong = definitions.iter().any(|definition| pool.depends_on(*definition, &is_later))
+                || pool.reachable(definitions).into_iter().any(has_jumps);
+            let moving = definitions.iter().any(|definition| pool.depends_on(*definition, &is_moving));
+            if is_wrong || moving && with_rates.contains(&Read::LetRate(place)) {
+                return None;
+            }
+            moves.push(moving);
             let own = |symbol: &Symbol| matches!(symbol, Symbol::Let(entry) if entry.array == place);
             let opened: Vec<Expr> = definitions.iter().map(|definition| lets.opened(pool, *definition)).collect();
             let is_recursive = opened.iter().any(|definition| pool.depends_on(*definition, &own));
@@ -37,7 +64,7 @@ impl Lets {
             let stays = is_recursive || by_differences.is_some();
             lets.arrays.push(Array { width: *width, stays, definitions: by_differences.unwrap_or(opened) });
         }
-        lets
+        Some(lets)
     }
 
     /// An expression without entries of the arrays that do not stay.
@@ -92,7 +119,8 @@ fn rate(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
     })
 }
 
-/// The definitions as the entries of the row before and a difference; `None` if the differences are no shorter.
+/// The definitions as the entries of the row before and further terms; `None` if they are no sums that grow, or no shorter
+/// that way. A sum that loses terms would be a difference of large numbers.
 fn differences(pool: &mut Pool<Symbol>, array: usize, width: usize, definitions: &[Expr]) -> Option<Vec<Expr>> {
     if definitions.len() < LEAST * width {
         return None;
@@ -101,10 +129,24 @@ fn differences(pool: &mut Pool<Symbol>, array: usize, width: usize, definitions:
     let (mut before, mut after) = (0, 0);
     for entry in width..definitions.len() {
         let difference = pool.sub(definitions[entry], definitions[entry - width]);
+        if !adds(pool, definitions[entry], difference) {
+            return None;
+        }
         before = pool.reachable(&[definitions[entry]]).len();
         after = pool.reachable(&[difference]).len() + 2;
         let last = pool.symbol(Symbol::Let(LetEntry { array, entry: entry - width }));
         made.push(pool.add(last, difference));
     }
     (after < before).then_some(made)
+}
+
+/// Whether every term of a difference is a term of the sum.
+fn adds(pool: &Pool<Symbol>, sum: Expr, difference: Expr) -> bool {
+    let terms = |expr: Expr| match pool.node(expr) {
+        Node::Sum(sum) => (sum.constant.clone(), sum.terms.clone()),
+        Node::Number(number) => (number.clone(), Vec::new()),
+        _ => (Rational::zero(), vec![(expr, Rational::one())]),
+    };
+    let ((_, all), (constant, further)) = (terms(sum), terms(difference));
+    constant.is_zero() && further.iter().all(|term| all.contains(term))
 }

@@ -20,7 +20,7 @@ pub use nest::{Affine, Nest};
 
 use crate::limits::bounded;
 use crate::messages::{Message, error};
-use crate::model::Model;
+use crate::model::{LetArray, Model};
 use crate::program::Function;
 use crate::symbol::{Symbol, Variable};
 use body::{Instance, Shape};
@@ -29,7 +29,7 @@ use num_integer::Integer;
 use num_traits::{One, Signed, ToPrimitive};
 use std::collections::{BTreeMap, BTreeSet};
 use syn::Result;
-use vi_expr::{Expr, Node, Pool, Rational, TooLarge};
+use vi_expr::{Expr, Node, Pool, Rational};
 
 /// Maximum number of bodies: a system without repetition has as many as terms.
 const BODIES: usize = 64;
@@ -94,43 +94,43 @@ pub struct Sum {
 /// Recursions with too many entries, at the name of the system.
 pub fn indexed(pool: &mut Pool<Symbol>, model: Model) -> Result<Option<Indexed>> {
     let name = model.name.clone();
-    match statements(pool, model) {
-        // Straight lines report what is too much.
-        Err(TooLarge::Terms { .. } | TooLarge::Work { .. }) | Ok(None) => Ok(None),
-        Ok(Some(found)) => match found.tangents() {
-            Some(message) => Err(error(name.span(), &message)),
-            None => Ok(Some(found)),
-        },
+    let Some(found) = statements(pool, model) else { return Ok(None) };
+    match found.tangents() {
+        Some(message) => Err(error(name.span(), &message)),
+        None => Ok(Some(found)),
     }
 }
 
-fn statements(pool: &mut Pool<Symbol>, model: Model) -> core::result::Result<Option<Indexed>, TooLarge> {
+fn statements(pool: &mut Pool<Symbol>, model: Model) -> Option<Indexed> {
     let is_other = model.rule.as_ref().is_some_and(|rule| rule.named.is_none_or(|named| named.name != "midpoint"));
     let has_angles = model.coordinates.iter().any(|coordinate| coordinate.is_angle || coordinate.is_rotation);
     if is_other || has_angles || !model.constraints.is_empty() || model.time_scale.is_some() {
-        return Ok(None);
+        return None;
     }
-    let lets = Lets::of(pool, &model);
+    let lets = Lets::of(pool, &model)?;
     let lagrangian = lets.opened(pool, model.lagrangian);
     let forces: Vec<Expr> = model.forces.iter().map(|force| lets.opened(pool, *force)).collect();
     let all: Vec<Expr> = [lagrangian].into_iter().chain(forces.iter().copied()).collect();
-    let Some(recursions) = recursions(pool, &lets, &all)? else { return Ok(None) };
+    let recursions = recursions(pool, &lets, &all)?;
     let terms = summands(pool, lagrangian).into_iter().map(|term| (Vec::new(), term)).collect();
-    let Some(lagrangian) = sums(pool, terms, true)? else { return Ok(None) };
+    let lagrangian = sums(pool, terms, true)?;
     let mut terms = Vec::new();
     for (coordinate, force) in forces.iter().enumerate() {
         terms.extend(summands(pool, *force).into_iter().map(|term| (vec![coordinate], term)));
     }
-    let Some(force) = sums(pool, terms, false)? else { return Ok(None) };
+    let force = sums(pool, terms, false)?;
     let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
     let rows = recursions.iter().flat_map(|recursion| recursion.parts.iter().map(|part| &part.body));
     let mut values = rows.chain(lagrangian.iter().chain(&force).map(|sum| &sum.body)).flat_map(|body| &body.values);
     let autonomous = values.all(|value| !pool.depends_on(value.expr, &time));
     let has_mass_of_position = has_mass_of_position(pool, &recursions, &lagrangian);
+    if !has_masses(model.dimension(), &recursions, &lagrangian) {
+        return None;
+    }
     let cyclic = cyclic(model.dimension(), &recursions, &lagrangian, &force);
     let separable = is_separable(pool, &recursions, &lagrangian, &force);
-    bounded(pool)?;
-    Ok(Some(Indexed { model, autonomous, cyclic, has_mass_of_position, separable, recursions, lagrangian, force }))
+    bounded(pool).ok()?;
+    Some(Indexed { model, autonomous, cyclic, has_mass_of_position, separable, recursions, lagrangian, force })
 }
 
 impl Indexed {
@@ -147,9 +147,11 @@ impl Indexed {
         if numbers <= TANGENTS {
             return None;
         }
-        let arrays: Vec<String> = arrays.iter().filter_map(array).map(|array| array.name.clone()).collect();
-        // If the coordinates are as many as the entries of each array.
-        let most = (1..=TANGENTS).take_while(|most| most * most * arrays.len() <= TANGENTS).last().unwrap_or(1);
+        let kept: Vec<&LetArray> = arrays.iter().filter_map(array).collect();
+        // Entries and coordinates grow with the rows.
+        let rows = kept.iter().map(|array| array.definitions.len() / array.width).max().unwrap_or(1);
+        let most = (1..=rows).take_while(|most| numbers * most * most <= TANGENTS * rows * rows).last().unwrap_or(1);
+        let arrays: Vec<String> = kept.iter().map(|array| array.name.clone()).collect();
         let names: BTreeSet<String> = arrays.into_iter().collect();
         Some(Message::Tangents { arrays: names.into_iter().collect(), bytes: 8 * numbers, most })
     }
@@ -220,6 +222,36 @@ fn is_separable(pool: &mut Pool<Symbol>, recursions: &[Recursion], lagrangian: &
     })
 }
 
+/// Whether the velocity of each coordinate has a second derivative of L, itself or through a rate: straight lines report
+/// others.
+fn has_masses(dimension: usize, recursions: &[Recursion], lagrangian: &[Sum]) -> bool {
+    let mut has_mass = vec![false; dimension];
+    let mut see = |body: &Body, value: &Value, place: usize, columns: &[usize]| {
+        if body.reads[value.states[place]] == Read::Velocity {
+            has_mass[columns[value.states[place]]] = true;
+        }
+    };
+    for Recursion { parts, nest } in recursions {
+        for Part { body, of, first } in parts {
+            for value in &body.values {
+                for place in 0..value.states.len() {
+                    nest.each(&mut |all| see(body, value, place, &all[first + of.len()..]));
+                }
+            }
+        }
+    }
+    for Sum { body, nests } in lagrangian {
+        for value in &body.values {
+            for place in value.pairs.iter().flatten() {
+                for nest in nests {
+                    nest.each(&mut |all| see(body, value, *place, all));
+                }
+            }
+        }
+    }
+    has_mass.into_iter().all(|has_mass| has_mass)
+}
+
 /// For each coordinate, whether nothing reads it and no force acts on it.
 fn cyclic(dimension: usize, recursions: &[Recursion], lagrangian: &[Sum], force: &[Sum]) -> Vec<bool> {
     let mut cyclic = vec![true; dimension];
@@ -281,18 +313,14 @@ impl Defined {
 }
 
 /// The loops that define the entries that these expressions read; `None` if their rows do not repeat.
-fn recursions(
-    pool: &mut Pool<Symbol>,
-    lets: &Lets,
-    exprs: &[Expr],
-) -> core::result::Result<Option<Vec<Recursion>>, TooLarge> {
+fn recursions(pool: &mut Pool<Symbol>, lets: &Lets, exprs: &[Expr]) -> Option<Vec<Recursion>> {
     let mut groups: Vec<Vec<Defined>> = Vec::new();
     for (of, width, definitions) in lets.used(pool, exprs) {
         let defined = Defined::of(pool, of, width, &definitions);
         let states = |instance: &Instance| instance.shape.reads.iter().filter(|read| read.is_of_state()).count();
         let reads_many = |row: &Vec<Instance>| row.iter().any(|instance| states(instance) > STATES);
         if defined.runs.len() > SEQUENCES || defined.runs.iter().any(|(_, rows)| reads_many(&rows[0])) {
-            return Ok(None);
+            return None;
         }
         match groups.last_mut() {
             Some(group) if group.iter().all(|other| defined.joins(other)) => group.push(defined),
@@ -302,18 +330,17 @@ fn recursions(
     let mut made = Vec::new();
     for group in &groups {
         for run in 0..group[0].runs.len() {
-            let Some(recursion) = joined(pool, group, run)? else { return Ok(None) };
-            made.push(recursion);
+            made.push(joined(pool, group, run)?);
         }
     }
-    Ok(Some(made))
+    Some(made)
 }
 
 /// An array of a group, and the number of a value in its rows.
 type Member = (usize, usize);
 
 /// One run of several arrays as one loop.
-fn joined(pool: &mut Pool<Symbol>, group: &[Defined], run: usize) -> core::result::Result<Option<Recursion>, TooLarge> {
+fn joined(pool: &mut Pool<Symbol>, group: &[Defined], run: usize) -> Option<Recursion> {
     let (first, rows) = &group[0].runs[run];
     // What the values of a row read, in parts that read no value of their own.
     let mut parts: Vec<(Vec<Read>, Vec<Member>)> = Vec::new();
@@ -364,7 +391,7 @@ fn joined(pool: &mut Pool<Symbol>, group: &[Defined], run: usize) -> core::resul
         made.push(Part { body: Body::of(pool, reads, &exprs, true)?, of, first: start });
         start += width;
     }
-    Ok(Nest::single(&numbers).map(|nest| Recursion { parts: made, nest }))
+    Nest::single(&numbers).map(|nest| Recursion { parts: made, nest })
 }
 
 /// Terms with one shape.
@@ -376,11 +403,7 @@ struct Group {
 
 /// The terms grouped by their shapes, in the order of their first terms; each with the numbers before those that it
 /// reads. `None` if they do not repeat.
-fn sums(
-    pool: &mut Pool<Symbol>,
-    terms: Vec<(Vec<usize>, Expr)>,
-    twice: bool,
-) -> core::result::Result<Option<Vec<Sum>>, TooLarge> {
+fn sums(pool: &mut Pool<Symbol>, terms: Vec<(Vec<usize>, Expr)>, twice: bool) -> Option<Vec<Sum>> {
     let mut places: BTreeMap<(Shape, bool), usize> = BTreeMap::new();
     let mut groups: Vec<Group> = Vec::new();
     for (first, term) in terms {
@@ -391,7 +414,7 @@ fn sums(
         let (coefficient, term) = multiple.unwrap_or((Rational::one(), term));
         let Instance { shape, columns } = Instance::of(pool, term);
         if shape.reads.iter().filter(|read| read.is_of_state()).count() > STATES {
-            return Ok(None);
+            return None;
         }
         let place = *places.entry((shape.clone(), coefficient.is_negative())).or_insert(groups.len());
         if place == groups.len() {
@@ -399,16 +422,16 @@ fn sums(
         }
         groups[place].rows.push((first.into_iter().chain(columns).collect(), coefficient));
         if groups.len() > BODIES {
-            return Ok(None);
+            return None;
         }
     }
     let mut sums = Vec::new();
     for group in groups {
-        let Some((shape, rows)) = group.with_coefficients(pool) else { return Ok(None) };
+        let (shape, rows) = group.with_coefficients(pool)?;
         let Shape { value, reads } = shape;
         sums.push(Sum { body: Body::of(pool, reads, &[value], twice)?, nests: Nest::of(rows) });
     }
-    Ok(Some(sums))
+    Some(sums)
 }
 
 impl Group {
@@ -428,7 +451,8 @@ impl Group {
         shape.value = pool.scale(value, &factor);
         shape.reads.push(Read::Number);
         let with_number = |(mut row, coefficient): (Vec<usize>, Rational)| {
-            row.push((coefficient / &factor).to_usize()?);
+            // A literal without a type has 32 bits.
+            row.push((coefficient / &factor).to_usize().filter(|number| i32::try_from(*number).is_ok())?);
             Some(row)
         };
         Some((shape, rows.into_iter().map(with_number).collect::<Option<_>>()?))

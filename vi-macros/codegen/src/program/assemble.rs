@@ -13,6 +13,7 @@ use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Point};
 use crate::symbol::{Symbol, Variable};
+use proc_macro2::{Ident, Span};
 use std::collections::BTreeMap;
 use syn::Result;
 use vi_expr::{Expr, Node, Pool, TooLarge};
@@ -40,18 +41,24 @@ pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) 
     Ok(Program { continuous: all(continuous)?, slots: all(of_slots)?, step: all(of_steps)? })
 }
 
-/// A function of its own, of numbers that are inputs.
-pub(crate) fn alone(pool: &mut Pool<Symbol>, exprs: &[Expr]) -> core::result::Result<Function, TooLarge> {
-    bounded(pool)?;
+/// A function of its own, of numbers that are inputs: derivatives of `sources`. `None` for one that takes too much work,
+/// or has a part without a value or a constant that is not finite.
+pub(crate) fn alone(pool: &mut Pool<Symbol>, sources: &[Expr], exprs: &[Expr]) -> Option<Function> {
+    bounded(pool).ok()?;
     let collected = pool.collect_constants(exprs);
-    let mut known = Known { products: vanishing::Known::of(pool, &collected), ..Known::default() };
+    if collected.iter().any(|expr| pool.is_undefined(*expr)) {
+        return None;
+    }
+    let mut known = Known { products: vanishing::Known::of(pool, sources), ..Known::default() };
     let arguments = BTreeMap::new();
     let mut lowering = Lowering::new(pool, &mut known, &arguments);
     let results = lowering.lower(&Results::new(vector(&collected)));
     let operations = lowering.operations;
     pool.spend(OPERATION * operations.len());
-    bounded(pool)?;
-    Ok(Function { id: FunctionId::Body, operations, results })
+    bounded(pool).ok()?;
+    let function = Function { id: FunctionId::Body, operations, results };
+    let name = Ident::new(function.id.name(), Span::call_site());
+    verify::has_finite_constants(&function, &name).is_ok().then_some(function)
 }
 
 /// Work of an operation until it is emitted.

@@ -329,6 +329,8 @@ impl Printer<'_> {
 const SEEDS: [&str; 2] = ["r_q", "r_v"];
 /// Names of the weights of the derivatives with respect to them.
 const WEIGHTS: [&str; 2] = ["c_q", "c_v"];
+/// Name of the weight of a second derivative with respect to two coordinates.
+const BOTH: &str = "c_qq";
 
 /// The derivative with respect to a number of the state, among the slopes.
 fn slope(value: &Value, place: usize) -> TokenStream {

@@ -1,6 +1,6 @@
 //! Second derivatives: the sweep of first derivatives with a tangent of every coordinate.
 
-use super::{Defined, Printed, Printer, SEEDS, Target, WEIGHTS, add_row, curvature, name, slope};
+use super::{BOTH, Defined, Printed, Printer, SEEDS, Target, WEIGHTS, add_row, curvature, name, slope};
 use crate::indexed::Value;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -57,6 +57,11 @@ impl Printer<'_> {
                 let (to, from) = (self.target(of.body.reads[to]), self.target(of.body.reads[from]));
                 let second = quote!(#factor curvatures[#number]);
                 parts.extend(match (to, from) {
+                    // A mass is finite where a force has an infinite slope, and its weight is zero.
+                    (Target::Own(0), Target::Own(0)) => {
+                        let weight = name(BOTH);
+                        quote!(matrix[#at_to][#at_from] += (#second * #weight).zero_where(#weight, u8::MAX);)
+                    }
                     (Target::Own(to), Target::Own(from)) => {
                         let (weight, seed) = (&WEIGHTS.map(name)[to], &SEEDS.map(name)[from]);
                         quote!(matrix[#at_to][#at_from] += #second * #weight * #seed;)
@@ -139,6 +144,7 @@ impl Printer<'_> {
         });
         let [r_q, r_v] = &seeds;
         let [c_q, c_v] = &WEIGHTS.map(name);
+        let both = name(BOTH);
         quote! {
             fn second_derivatives(
                 &self,
@@ -152,6 +158,7 @@ impl Printer<'_> {
                 let mut whole = ::vi_core::nalgebra::SMatrix::<T, #dimension, #dimension>::zeros();
                 // Its columns.
                 let matrix = &mut whole.data.0;
+                let #both = #c_q * #r_q;
                 #tangents
                 #bars
                 #bar_tangents
