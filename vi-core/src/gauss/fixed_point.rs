@@ -29,7 +29,7 @@ const SLOW: f64 = 0.5;
 pub(crate) const FAR: f64 = 1e3;
 /// Smallest change, in ulps of q, that measures the contraction together with a change at the floor; one or two ulps
 /// are noise.
-const NOISE: f64 = 64.0;
+pub(crate) const NOISE: f64 = 64.0;
 /// Iterations without a smaller change, after which the iteration has stalled.
 const STALLS: u32 = 4;
 /// Ulps of q that an ulp of the terms of v counts as, because the mass matrix solves for velocities.

@@ -4,7 +4,7 @@
 //! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
 //! no state. The stages of every [`Step`] satisfy their equations to rounding.
 
-use super::fixed_point::{self, Convergence, Equations, FixedPointResult, Pause, StageIncrement};
+use super::fixed_point::{self, Convergence, Equations, FixedPointResult, NOISE, Pause, StageIncrement};
 use super::general::{General, equations};
 use super::linearization::Linearization;
 use super::newton::{Buffer, Newton};
@@ -286,15 +286,18 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     {
         let rare = &ErasedSystem::of(system);
         newton.linearize(rare, at);
-        if !at.by_velocity {
+        let mut by_velocity = at.by_velocity;
+        if !by_velocity {
             let solved = self.side_by_side(system, instructions, Some(newton));
             let has_positions = Y::SEPARABLE && Y::SIDE_BY_SIDE;
             if solved.iteration.convergence.is_at_floor() || !has_positions {
                 return (solved, at);
             }
+            // A change of few ulps is that of one step; the next may reach rounding again.
+            by_velocity = solved.iteration.convergence.change > NOISE;
         }
         // The velocities of very stiff steps are more accurate than positions by forces.
-        (self.in_scalars(rare, Some(newton)), Linearization { by_velocity: true, ..at })
+        (self.in_scalars(rare, Some(newton)), Linearization { by_velocity, ..at })
     }
 }
 
