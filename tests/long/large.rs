@@ -181,7 +181,7 @@ fn steps_of_forty_bodies_keep_energy_and_momentum_within_four_megabytes_of_stack
             assert!(momentum.abs() < 1e-12, "{momentum:e}");
             worst = worst.max((fixed.energy().expect("an energy") / energy - 1.0).abs());
         }
-        let mut preserving = system.at(0.0, q, v).integrate(EnergyPreserving::default(), 0.01).expect("a start");
+        let mut preserving = system.at(0.0, q, v).integrate(EnergyPreserving, 0.01).expect("a start");
         preserving.step().expect("a step");
         let kept = preserving.discrete_energy().expect("an energy");
         for _ in 0..20 {
