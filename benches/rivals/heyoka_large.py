@@ -1,7 +1,7 @@
 """heyoka on 20 and 40 rods and bodies, the systems of `links/src/bin/large.rs`.
 
 In: nothing. Out: rows with the columns of that program. A run is timed REPETITIONS times. Its code was compiled before, in the
-seconds of the last column. The error is the largest difference of a coordinate from heyoka's own run in extended precision,
+seconds of the last column, or stood in heyoka's cache on the disk. The error is the largest difference of a coordinate from heyoka's own run in extended precision,
 relative to the largest change of a coordinate.
 """
 

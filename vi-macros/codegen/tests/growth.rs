@@ -1,26 +1,9 @@
 //! The text of a large system does not grow with the lengths of its arrays, and its operations are counted.
 
+use crate::families::{bodies, links};
 use vi_codegen::Compiled;
 use vi_codegen::indexed::{Indexed, Nest};
 use vi_codegen::syntax::parse;
-
-fn bodies(count: usize) -> String {
-    format!(
-        "struct Bodies {{ const N = {count}; param m[N] = 1.0, G = 1.0; coord r[N][3];
-         L = sum(i in 0..N, m[i] * dot(r[i]) * dot(r[i]) / 2) + sum(i in 0..N, j in 0..i, G * m[i] * m[j] / norm(r[i] - r[j]));
-         discretize midpoint; }}"
-    )
-}
-
-fn links(count: usize) -> String {
-    format!(
-        "struct Links {{ const N = {count}; param m[N] = 1.0, l[N] = 0.3, g = 9.81; coord q[N];
-         let x[0] = l[0] * sin(q[0]); let x[i in 1..N] = x[i - 1] + l[i] * sin(q[i]);
-         let y[i in 0..N] = -sum(j in 0..i + 1, l[j] * cos(q[j]));
-         L = sum(i in 0..N, m[i] * (dot(x[i])^2 + dot(y[i])^2) / 2 - m[i] * g * y[i]);
-         discretize midpoint; }}"
-    )
-}
 
 /// Links by their angles alone: the factors of its terms differ.
 fn pendulum(count: usize) -> String {
