@@ -313,8 +313,8 @@ fn symmetric(rows: &[Vec<OperationId>]) -> bool {
 }
 
 /// The orders that the methods keep with so many continuous derivatives of L.
-fn smoothness_in_words(Smoothness { derivatives, cause }: &Smoothness) -> String {
-    let left = match derivatives {
+fn smoothness_in_words(smoothness: &Smoothness) -> String {
+    let left = match smoothness.derivatives {
         0 => {
             "`FixedStep` has order 1 across it, and a step may have no solution; no energy-preserving step is certain to exist"
         }
@@ -326,8 +326,29 @@ fn smoothness_in_words(Smoothness { derivatives, cause }: &Smoothness) -> String
             "`FixedStep` and energy-preserving steps keep order 2; `Gauss` has one order more than derivatives across it"
         }
     };
+    format!("{}: {left}", derivatives_in_words(smoothness))
+}
+
+/// How often L is differentiable, and why.
+pub(crate) fn derivatives_in_words(Smoothness { derivatives, cause }: &Smoothness) -> String {
     let noun = if *derivatives == 1 { "derivative" } else { "derivatives" };
-    format!("`L` has {derivatives} continuous {noun} because of {cause}: {left}")
+    format!("`L` has {derivatives} continuous {noun} because of {cause}")
+}
+
+/// Whether a system without constraints conserves energy.
+pub(crate) fn energy_in_words(autonomous: bool, forced: bool) -> &'static str {
+    match (autonomous, forced) {
+        (true, false) => "Autonomous and without a force: the energy is conserved",
+        (true, true) => "Autonomous; a force acts",
+        (false, false) => "Not autonomous: `L` depends on the time `t`; no force acts",
+        (false, true) => "Not autonomous: `L` or `f` depends on the time `t`; a force acts",
+    }
+}
+
+/// The cyclic coordinates, so many with these names.
+pub(crate) fn cyclic_in_words(names: &str, count: usize) -> String {
+    let momenta = if count == 1 { "its momentum is" } else { "their momenta are" };
+    format!("Cyclic: {names}; {momenta} conserved")
 }
 
 /// Names of constraints, each array once with the number of its entries.
@@ -342,10 +363,9 @@ fn in_arrays(names: &[(String, usize)]) -> String {
 }
 
 /// The order of `GaussLobatto` steps across a point where L has only so many continuous derivatives.
-fn constrained_smoothness_in_words(Smoothness { derivatives, cause }: &Smoothness) -> String {
-    let noun = if *derivatives == 1 { "derivative" } else { "derivatives" };
-    let order = derivatives + 1;
-    format!("`L` has {derivatives} continuous {noun} because of {cause}: `GaussLobatto` has order {order} across it")
+fn constrained_smoothness_in_words(smoothness: &Smoothness) -> String {
+    let order = smoothness.derivatives + 1;
+    format!("{}: `GaussLobatto` has order {order} across it", derivatives_in_words(smoothness))
 }
 
 /// The names of coordinates, separated by commas.
@@ -413,16 +433,12 @@ impl Findings {
                 (false, true) if is_constrained => {
                     "Not autonomous: `L`, `f` or a constraint depends on the time `t`; a force acts"
                 }
-                (true, false) => "Autonomous and without a force: the energy is conserved",
-                (true, true) => "Autonomous; a force acts",
-                (false, false) => "Not autonomous: `L` depends on the time `t`; no force acts",
-                (false, true) => "Not autonomous: `L` or `f` depends on the time `t`; a force acts",
+                (autonomous, forced) => energy_in_words(autonomous, forced),
             }
             .to_owned(),
         ];
         if !self.cyclic.is_empty() {
-            let momenta = if self.cyclic.len() == 1 { "its momentum is" } else { "their momenta are" };
-            lines.push(format!("Cyclic: {}; {momenta} conserved", list(name, &self.cyclic)));
+            lines.push(cyclic_in_words(&list(name, &self.cyclic), self.cyclic.len()));
         }
         if !self.angles.is_empty() {
             lines.push(format!("Angles modulo 2π: {}; a run keeps their sines exact", list(name, &self.angles)));

@@ -34,7 +34,7 @@ pub mod symbol;
 pub mod syntax;
 
 pub use derived::{Derivations, Derived};
-pub use header::documentation;
+pub use indexed::documentation;
 
 use emit::Broken;
 use indexed::Indexed;
@@ -128,10 +128,11 @@ impl Loops {
         let has_arrays = system.coordinates.iter().any(|coordinate| !coordinate.lengths.is_empty());
         let mut pool = Pool::bounded(limits::WORK);
         // Straight lines report its mistakes.
-        let model = if has_arrays { check::large_model(&mut pool, system).ok() } else { None };
+        let is_candidate = has_arrays && system.rules() <= 1;
+        let model = if is_candidate { check::large_model(&mut pool, system).ok() } else { None };
         // A dissipation is differentiated before its `let`s are known.
         let is_plain = |model: &Model| system.dissipations.is_empty() || model.lets.is_empty();
-        let is_possible = |model: &Model| model.dimension() >= least && system.rules() <= 1 && is_plain(model);
+        let is_possible = |model: &Model| model.dimension() >= least && is_plain(model);
         let Some(model) = model.filter(is_possible) else { return Ok(None) };
         Ok(indexed::indexed(&mut pool, model)?.map(|indexed| Self { pool, indexed }))
     }

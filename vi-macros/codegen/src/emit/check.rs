@@ -9,7 +9,7 @@ use super::formula::number;
 use super::lagrangian::monotone_table;
 use super::{Source, Steps};
 use crate::indexed::Indexed;
-use crate::model::{FunctionKind, Model, TableKind};
+use crate::model::Model;
 use crate::pretty::snake_case;
 use crate::program::Operation;
 use crate::rules::{LEAST_ORDER, NamedRule};
@@ -65,9 +65,7 @@ pub(super) fn monotone_table_of(of: &Indexed) -> Option<String> {
         let is_call = |operation: &Operation| matches!(operation, Operation::Opaque(of, _) if *of.name == *name);
         bodies.iter().any(|body| body.slopes.operations.iter().any(|(_, operation)| is_call(operation)))
     };
-    let is_table =
-        |kind: &FunctionKind| matches!(kind, FunctionKind::Table(table) if table.kind == TableKind::Monotone);
-    let tables = of.model.functions.iter().filter(|function| is_table(&function.kind));
+    let tables = of.model.functions.iter().filter(|function| function.is_monotone());
     tables.map(|function| function.name.to_string()).find(|name| is_called(name))
 }
 

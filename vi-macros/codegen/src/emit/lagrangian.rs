@@ -6,7 +6,7 @@ use super::constrained;
 use super::entries::{self, ResultEntry};
 use super::functions;
 use super::matrix::matrix;
-use crate::model::{Coordinate, Function, FunctionKind, Model, Parameter, TableKind};
+use crate::model::{Coordinate, Function, Model, Parameter};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::{Literal, TokenStream};
@@ -18,15 +18,7 @@ const CHARACTERS: usize = 400;
 
 /// The implementation of `Lagrangian`.
 pub(super) fn item(source: &Source) -> TokenStream {
-    let (model, of) = (source.model, &source.system.continuous);
-    let (name, dimension) = (&model.name, source.dimension());
-    let (text, coordinates) = (name.to_string(), model.coordinates.iter().map(Coordinate::text));
-    let (autonomous, forced, cyclic) = (of.autonomous, model.forced, &of.cyclic);
-    let angles = angles(model);
-    let parameters = model.parameters.iter().map(Parameter::place);
-    let names = model.parameters.iter().map(Parameter::text);
-    let inputs = inputs(model);
-    let monotone = monotone_table(source).map(|name| monotone(&name));
+    let of = &source.system.continuous;
     let [acceleration, flow] = match source.system.constraints {
         Some(_) => constrained::motion(source),
         None => [acceleration(source), flow(source)],
@@ -41,6 +33,31 @@ pub(super) fn item(source: &Source) -> TokenStream {
         non_finite(source),
         undefined(source),
     ];
+    let properties = Properties { autonomous: of.autonomous, cyclic: &of.cyclic, monotone: monotone_table(source) };
+    implementation(source.model, properties, &functions)
+}
+
+/// What the constants of `Lagrangian` say beside the model.
+pub(super) struct Properties<'a> {
+    pub(super) autonomous: bool,
+    pub(super) cyclic: &'a [bool],
+    /// The name of a monotone table in L.
+    pub(super) monotone: Option<String>,
+}
+
+/// The implementation of `Lagrangian` with these functions.
+pub(super) fn implementation(model: &Model, properties: Properties, functions: &[TokenStream]) -> TokenStream {
+    let Properties { autonomous, cyclic, monotone } = properties;
+    let (name, dimension) = (&model.name, Literal::usize_unsuffixed(model.dimension()));
+    let (text, coordinates) = (name.to_string(), model.coordinates.iter().map(Coordinate::text));
+    let (forced, angles, inputs) = (model.forced, angles(model), inputs(model));
+    let parameters = model.parameters.iter().map(Parameter::place);
+    let names = model.parameters.iter().map(Parameter::text);
+    let monotone = monotone.map(|name| {
+        quote! {
+            const MONOTONE_TABLE: ::core::option::Option<&'static str> = ::core::option::Option::Some(#name);
+        }
+    });
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
             const NAME: &'static str = #text;
@@ -63,17 +80,10 @@ pub(super) fn item(source: &Source) -> TokenStream {
 }
 
 /// The constant that lists the inputs, if there are any.
-pub(super) fn inputs(model: &Model) -> Option<TokenStream> {
+fn inputs(model: &Model) -> Option<TokenStream> {
     let inputs = (0..).zip(&model.parameters).filter(|(_, parameter)| parameter.is_input);
     let inputs: Vec<Literal> = inputs.map(|(index, _)| Literal::usize_unsuffixed(index)).collect();
     (!inputs.is_empty()).then(|| quote!(const INPUTS: &'static [::core::primitive::usize] = &[#(#inputs),*];))
-}
-
-/// The constant that names a monotone table in L.
-pub(super) fn monotone(name: &str) -> TokenStream {
-    quote! {
-        const MONOTONE_TABLE: ::core::option::Option<&'static str> = ::core::option::Option::Some(#name);
-    }
 }
 
 /// The name of a monotone table in L.
@@ -81,8 +91,7 @@ pub(super) fn monotone_table(source: &Source) -> Option<String> {
     let is_monotone = |function: &&Function| {
         let is_called =
             |expr: Expr| matches!(source.pool.node(expr), Node::Opaque(of, _) if function.name == of.name.as_ref());
-        let is_table = matches!(&function.kind, FunctionKind::Table(table) if table.kind == TableKind::Monotone);
-        is_table && source.pool.reachable(&[source.model.lagrangian]).into_iter().any(is_called)
+        function.is_monotone() && source.pool.reachable(&[source.model.lagrangian]).into_iter().any(is_called)
     };
     source.model.functions.iter().find(is_monotone).map(|function| function.name.to_string())
 }

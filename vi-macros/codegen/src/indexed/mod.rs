@@ -10,13 +10,20 @@
 //! | `lets` | which `let`s are recursions, and their rates |
 //! | `body` | one expression for all instances, with its derivatives as operations |
 //! | `nest` | the loops over instances |
+//! | `named` | the bodies with the names of their functions |
+//! | `properties` | what the generator found, in words |
 
 mod body;
 mod lets;
+mod named;
 mod nest;
+mod properties;
 
 pub use body::{Body, Read, Value};
+pub(crate) use named::{NamedBody, Quantity, named, part_name, sum_name};
 pub use nest::{Affine, Nest};
+pub use properties::documentation;
+pub(crate) use properties::properties;
 
 use crate::limits::bounded;
 use crate::messages::{Message, error};

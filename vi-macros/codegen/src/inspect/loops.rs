@@ -6,7 +6,7 @@ use super::explanation::{Line, Section};
 use super::index::{self, Both, COUNTERS, affine};
 use super::{functions, latex, model, name, program, syntax};
 use crate::Loops;
-use crate::header::{self, NamedBody, Quantity};
+use crate::indexed::{self, NamedBody, Quantity};
 use crate::indexed::{Affine, Nest, Value};
 use crate::model::{Coordinate, Model, Parameter};
 use crate::program::Function;
@@ -72,7 +72,7 @@ fn parameter(model: &Model, field: &[Parameter]) -> Line {
 pub(super) fn sums(of: &Loops) -> Vec<Section> {
     let (mut recursions, mut terms, mut forces) = (Vec::new(), Vec::new(), Vec::new());
     let mut count = 0;
-    for named in &header::named(&of.indexed) {
+    for named in &indexed::named(&of.indexed) {
         match named.quantity {
             Quantity::Entries(_) => recursions.extend(named.nests.iter().flat_map(|nest| entries(of, named, nest))),
             Quantity::Lagrangian => {
@@ -114,7 +114,7 @@ pub(super) fn sums(of: &Loops) -> Vec<Section> {
 
 /// Whether all numbers that loops read have names of the user.
 fn has_names(of: &Loops) -> bool {
-    header::named(&of.indexed).iter().all(|named| {
+    indexed::named(&of.indexed).iter().all(|named| {
         named.nests.iter().all(|nest| {
             let Nest::Loops { outer, inner, columns } = nest else { return true };
             let (counters, model) = (index::counters(*outer, *inner), &of.indexed.model);
@@ -315,10 +315,10 @@ pub(super) fn discrete(of: &Loops) -> Vec<Section> {
 
 /// Findings, and operation counts of the functions of one row.
 pub(super) fn findings(of: &Loops) -> Vec<Section> {
-    let text = header::documentation(&of.indexed);
-    let latex = header::properties(&of.indexed, &|coordinate| format!("`{}`", name::coordinate(coordinate).text()));
+    let text = indexed::documentation(&of.indexed);
+    let latex = indexed::properties(&of.indexed, &|coordinate| format!("`{}`", name::coordinate(coordinate).text()));
     let lines = text.into_iter().zip(latex).map(|(text, latex)| Line::Words { text, latex }).collect();
-    let named = header::named(&of.indexed);
+    let named = indexed::named(&of.indexed);
     let width = named.iter().map(|of| of.name.len()).max().unwrap_or(0);
     let costs = named.iter().map(|of| {
         let (name, rows, first, second) = (&of.name, of.rows(), of.first_operations(), of.second_operations());
@@ -338,7 +338,7 @@ pub(super) fn findings(of: &Loops) -> Vec<Section> {
 
 /// The functions of one row, operation by operation, with their loops.
 pub(super) fn program(of: &Loops) -> String {
-    let functions = header::named(&of.indexed);
+    let functions = indexed::named(&of.indexed);
     functions.iter().map(|named| function(of, named)).collect::<Vec<_>>().join("\n")
 }
 

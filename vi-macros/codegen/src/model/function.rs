@@ -7,7 +7,7 @@ use super::Parameter;
 use super::context::Context;
 use super::lets;
 use super::scope::{Meaning, Scope};
-use super::table::{self, Table};
+use super::table::{self, Table, TableKind};
 use super::value::Value;
 use crate::functions::FunctionMistake;
 use crate::messages::{Message, error};
@@ -40,6 +40,11 @@ pub enum FunctionKind {
 }
 
 impl Function {
+    /// Whether it is a monotone table, whose second derivative jumps.
+    pub(crate) fn is_monotone(&self) -> bool {
+        matches!(&self.kind, FunctionKind::Table(table) if table.kind == TableKind::Monotone)
+    }
+
     /// The function itself, for expressions.
     fn opaque(&self) -> Opaque {
         let period = match &self.kind {

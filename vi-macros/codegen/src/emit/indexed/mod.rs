@@ -17,14 +17,16 @@ mod traits;
 use super::body::{VelocityFrom, body};
 use super::{check, conditions, functions, scope, structure};
 use crate::Loops;
-use crate::header::{documentation, named};
-use crate::indexed::{Affine, Body, Indexed, Nest, Part, Read, Recursion, Sum, Value};
+use crate::indexed::{
+    Affine, Body, Indexed, Nest, Part, Read, Recursion, Sum, Value, documentation, named, part_name, sum_name,
+};
 use crate::model::Model;
 use crate::program::{Function, Output};
 use crate::symbol::Symbol;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use vi_expr::Pool;
 
 /// The items of a large system.
 #[must_use]
@@ -33,10 +35,9 @@ pub fn items(loops: &Loops) -> TokenStream {
     let model = &of.model;
     let documentation = structure::found(model, documentation(of));
     let structure = structure::declaration(model, &documentation);
-    let rows = named(of).into_iter().map(|body| (body.name.clone(), body.first_row(pool, model))).collect();
-    let printer = Printer { of, model, rows };
+    let printer = Printer { of, model };
     let (functions, parameters) = (functions::items(model), structure::parameters(model));
-    let (bodies, lagrangian, primitives) = (printer.bodies(), printer.lagrangian(), printer.primitives());
+    let (bodies, lagrangian, primitives) = (printer.bodies(pool), printer.lagrangian(), printer.primitives());
     let (collocation, convertible) = (printer.collocation(), structure::convertible(model, of.separable));
     let steps = model.rule.as_ref().map(|_| {
         let (slots, stepping) = (printer.slots(), printer.stepping());
@@ -54,8 +55,6 @@ pub fn items(loops: &Loops) -> TokenStream {
 struct Printer<'a> {
     of: &'a Indexed,
     model: &'a Model,
-    /// What each body computes in the first row of its loop.
-    rows: BTreeMap<String, String>,
 }
 
 /// What a statement has: its body and its name, and the place of a column of its loop.
@@ -135,31 +134,19 @@ impl Printer<'_> {
         quote!([#(#numbers),*])
     }
 
-    /// The name of a body of a recursion.
-    fn part_name(&self, place: usize, part: usize) -> Ident {
-        let name = format_ident!("row_{}", place + 1);
-        if self.of.recursions[place].parts.len() == 1 { name } else { format_ident!("{name}_{}", part + 1) }
-    }
-
     /// The functions of all bodies.
-    fn bodies(&self) -> TokenStream {
-        let mut functions = TokenStream::new();
-        for (place, Recursion { parts, .. }) in self.of.recursions.iter().enumerate() {
-            for (index, Part { body, .. }) in parts.iter().enumerate() {
-                functions.extend(self.body(&self.part_name(place, index), body));
-            }
-        }
-        for (name, sums) in [("lagrangian", &self.of.lagrangian), ("force", &self.of.force)] {
-            for (index, Sum { body, .. }) in sums.iter().enumerate() {
-                functions.extend(self.body(&format_ident!("{name}_{}", index + 1), body));
-            }
-        }
+    fn bodies(&self, pool: &Pool<Symbol>) -> TokenStream {
+        let bodies = named(self.of);
+        let functions = bodies.iter().map(|of| {
+            let row = of.first_row(pool, self.model);
+            self.body(&format_ident!("{}", of.name), of.body, &row)
+        });
         let name = &self.model.name;
-        quote!(impl<T: ::vi_core::real::Real> #name<T> { #functions })
+        quote!(impl<T: ::vi_core::real::Real> #name<T> { #(#functions)* })
     }
 
-    fn body(&self, name: &Ident, of: &Body) -> TokenStream {
-        let row = self.rows.get(&name.to_string()).map_or("", String::as_str);
+    /// The functions of a body, which computes `row` in the first row of its loop.
+    fn body(&self, name: &Ident, of: &Body, row: &str) -> TokenStream {
         let slopes = format!(" `{row}`, with first derivatives. {} operations.", of.slopes.operation_count());
         let slopes = Self::function(name, (of, &of.slopes), &slopes, self.model);
         let curvatures = of.curvatures.as_ref().map(|curvatures| {
@@ -232,7 +219,7 @@ impl Printer<'_> {
     fn over_sums(name: &str, sums: &[Sum], first: usize, print: &dyn Fn(&Printed) -> TokenStream) -> TokenStream {
         let mut loops = TokenStream::new();
         for (index, Sum { body, nests }) in sums.iter().enumerate() {
-            let name = format_ident!("{name}_{}", index + 1);
+            let name = format_ident!("{}", sum_name(name, index));
             for nest in nests {
                 loops.extend(Self::looped(nest, false, &|place| {
                     print(&Printed { body, name: name.clone(), first, place })
@@ -255,9 +242,9 @@ impl Printer<'_> {
                 if backward {
                     order.reverse();
                 }
-                let parts = order.into_iter().map(|index| {
+                let printed = order.into_iter().map(|index| {
                     let Part { body, of, first } = &parts[index];
-                    let name = self.part_name(at, index);
+                    let name = format_ident!("{}", part_name(parts, at, index));
                     let printed = Printed { body, name, first: first + of.len(), place };
                     let defined = body.values.iter().zip(of).enumerate();
                     let defined: Vec<Defined> = defined
@@ -269,7 +256,7 @@ impl Printer<'_> {
                         .collect();
                     print(&printed, &defined)
                 });
-                parts.collect()
+                printed.collect()
             })
         });
         loops.collect()

@@ -1,23 +1,15 @@
 //! The traits of a system, each function by one of `vi_core::indexed`.
 
 use super::super::check::monotone_table_of;
-use super::super::lagrangian::{inputs, monotone};
+use super::super::lagrangian::{Properties, implementation};
 use super::Printer;
 use crate::indexed::{Read, Sum};
-use crate::model::{Coordinate, Parameter};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 impl Printer<'_> {
     pub(super) fn lagrangian(&self) -> TokenStream {
         let (model, dimension) = (self.model, self.dimension());
-        let (name, text) = (&model.name, model.name.to_string());
-        let coordinates = model.coordinates.iter().map(Coordinate::text);
-        let (autonomous, forced, cyclic) = (self.of.autonomous, model.forced, &self.of.cyclic);
-        let places = model.parameters.iter().map(Parameter::place);
-        let names = model.parameters.iter().map(Parameter::text);
-        let inputs = inputs(model);
-        let monotone = monotone_table_of(self.of).map(|name| monotone(&name));
         let flow = if self.of.has_mass_of_position {
             quote!(flow(self, t, q, p))
         } else {
@@ -71,48 +63,37 @@ impl Printer<'_> {
             #forces
             force
         };
+        let acceleration = quote! {
+            fn acceleration(
+                &self,
+                t: T,
+                q: &::vi_core::SVector<T, #dimension>,
+                v: &::vi_core::SVector<T, #dimension>,
+            ) -> ::core::result::Result<::vi_core::SVector<T, #dimension>, ::vi_core::StepError> {
+                ::vi_core::indexed::acceleration(self, t, q, v)
+            }
+        };
+        let flow = quote! {
+            fn flow(
+                &self,
+                t: T,
+                q: &::vi_core::SVector<T, #dimension>,
+                p: &::vi_core::SVector<T, #dimension>,
+            ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
+                ::vi_core::indexed::#flow
+            }
+        };
         let functions = [
             number(quote!(lagrangian), value),
             number(quote!(energy), quote!(::vi_core::indexed::energy(self, t, q, v))),
             vector(quote!(momentum), quote!(#first.dv)),
             vector(quote!(force), force),
+            acceleration,
+            flow,
         ];
-        quote! {
-            impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
-                const NAME: &'static str = #text;
-                const COORDINATES: [&'static str; #dimension] = [#(#coordinates),*];
-                const AUTONOMOUS: bool = #autonomous;
-                const FORCED: bool = #forced;
-                const CYCLIC: [bool; #dimension] = [#(#cyclic),*];
-                const PARAMETERS: &'static [&'static str] = &[#(#names),*];
-                #inputs
-                #monotone
-
-                fn parameter(&self, index: usize) -> T {
-                    [#(self.#places),*][index]
-                }
-
-                #(#functions)*
-
-                fn acceleration(
-                    &self,
-                    t: T,
-                    q: &::vi_core::SVector<T, #dimension>,
-                    v: &::vi_core::SVector<T, #dimension>,
-                ) -> ::core::result::Result<::vi_core::SVector<T, #dimension>, ::vi_core::StepError> {
-                    ::vi_core::indexed::acceleration(self, t, q, v)
-                }
-
-                fn flow(
-                    &self,
-                    t: T,
-                    q: &::vi_core::SVector<T, #dimension>,
-                    p: &::vi_core::SVector<T, #dimension>,
-                ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
-                    ::vi_core::indexed::#flow
-                }
-            }
-        }
+        let (autonomous, cyclic) = (self.of.autonomous, &self.of.cyclic);
+        let properties = Properties { autonomous, cyclic, monotone: monotone_table_of(self.of) };
+        implementation(model, properties, &functions)
     }
 
     /// The diagonal of a constant mass matrix.

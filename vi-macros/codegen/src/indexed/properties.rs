@@ -1,0 +1,55 @@
+//! The properties of a large system that the generator found, in words.
+
+use super::{Indexed, Sum, named};
+use crate::findings::{cyclic_in_words, derivatives_in_words, energy_in_words};
+use crate::model::Coordinate;
+
+/// The properties of a large system that the generator found, one per line, with formulas between backticks: for the
+/// documentation of the struct.
+#[must_use]
+pub fn documentation(of: &Indexed) -> Vec<String> {
+    properties(of, &|coordinate| format!("`{}`", coordinate.text()))
+}
+
+/// The same; `name` names a coordinate.
+pub(crate) fn properties(of: &Indexed, name: &dyn Fn(&Coordinate) -> String) -> Vec<String> {
+    let model = &of.model;
+    let mut lines = vec![energy_in_words(of.autonomous, model.forced).to_owned()];
+    let cyclic: Vec<usize> = (0..model.dimension()).filter(|index| of.cyclic[*index]).collect();
+    if !cyclic.is_empty() {
+        lines.push(cyclic_in_words(&in_ranges(&model.coordinates, &cyclic, name), cyclic.len()));
+    }
+    lines.push(if of.separable {
+        "`L = T(v) + U(t, q)` with a constant diagonal mass matrix; no force depends on the velocity".to_owned()
+    } else if of.has_mass_of_position {
+        "The mass matrix does not depend on the velocity".to_owned()
+    } else {
+        "The mass matrix depends on the velocity".to_owned()
+    });
+    lines.extend(model.smoothness.as_ref().map(derivatives_in_words));
+    let loops = |sums: &[Sum]| sums.iter().map(|sum| sum.nests.len()).sum::<usize>();
+    let loops = [
+        (of.recursions.len(), "over recursions"),
+        (loops(&of.lagrangian), "over terms of `L`"),
+        (loops(&of.force), "over terms of `f`"),
+    ];
+    let loops = loops.iter().filter(|(count, _)| *count > 0).map(|(count, over)| format!("{count} {over}"));
+    let (loops, functions) = (loops.collect::<Vec<_>>().join(", "), named(of).len());
+    let noun = if functions == 1 { "function" } else { "functions" };
+    lines.push(format!("Loops: {loops}; {functions} {noun} of one row"));
+    if model.rule.is_some() {
+        lines.push("`A` is dense; solved by elimination with pivoting".to_owned());
+    }
+    lines
+}
+
+/// The names of coordinates, neighbors in an array as `q[0]` to `q[39]`.
+fn in_ranges(coordinates: &[Coordinate], indices: &[usize], name: &dyn Fn(&Coordinate) -> String) -> String {
+    let follows =
+        |left: &usize, right: &usize| left + 1 == *right && coordinates[*left].name == coordinates[*right].name;
+    let range = |of: &[usize]| match of {
+        [first, .., last] if of.len() > 2 => format!("{} to {}", name(&coordinates[*first]), name(&coordinates[*last])),
+        _ => of.iter().map(|index| name(&coordinates[*index])).collect::<Vec<_>>().join(", "),
+    };
+    indices.chunk_by(follows).map(range).collect::<Vec<_>>().join(", ")
+}
