@@ -20,9 +20,12 @@ mod nest;
 mod properties;
 
 pub use body::{Body, Read, Value};
-pub(crate) use named::{NamedBody, Quantity, named, part_name, sum_name};
+#[cfg(feature = "inspect")]
+pub(crate) use named::{NamedBody, Quantity};
+pub(crate) use named::{named, part_name, sum_name};
 pub use nest::{Affine, Nest};
 pub use properties::documentation;
+#[cfg(feature = "inspect")]
 pub(crate) use properties::properties;
 
 use crate::limits::bounded;
