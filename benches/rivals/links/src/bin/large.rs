@@ -3,31 +3,12 @@
 //! In: nothing. Out: a table with the columns of that script but the last. The error is the largest difference of a
 //! coordinate from steps of order 16, relative to the largest change of a coordinate.
 
-use std::time::Instant;
+use links::{rods, run};
+use vi_core::SVector;
 use vi_core::collocation::Collocation;
 use vi_core::prelude::*;
 use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{Method, SVector};
 
-const REPETITIONS: u32 = 7;
-
-macro_rules! rods {
-    ($name:ident, $count:literal) => {
-        lagrangian! {
-            /// Masses 1 on rods of length 1, by the angles of the rods to the vertical.
-            struct $name {
-                param g = 9.81;
-                coord a[$count];
-                let x[0] = sin(a[0]);
-                let x[i in 1..$count] = x[i - 1] + sin(a[i]);
-                let y[0] = -cos(a[0]);
-                let y[i in 1..$count] = y[i - 1] - cos(a[i]);
-                L = sum(i in 0..$count, (dot(x[i])^2 + dot(y[i])^2) / 2 - g * y[i]);
-                discretize midpoint;
-            }
-        }
-    };
-}
 rods!(Rods20, 20);
 rods!(Rods40, 40);
 
@@ -57,31 +38,6 @@ fn grid<const N: usize>() -> SVector<f64, N> {
     })
 }
 
-/// The coordinates after `count` steps to t = 1 from rest, and the least time of a run in milliseconds.
-fn run<M, Y, const N: usize>(
-    system: Y,
-    start: SVector<f64, N>,
-    method: M,
-    count: u32,
-) -> Result<(SVector<f64, N>, f64), StepError>
-where
-    M: Method<Y, N> + Copy,
-    Y: FixedStepping<N> + Collocation<N> + Convertible<N>,
-{
-    let (mut least, mut last) = (f64::INFINITY, start);
-    for _ in 0..REPETITIONS {
-        let start = system.at(0.0, start, SVector::zeros());
-        let mut run = start.integrate(method, 1.0 / f64::from(count))?;
-        let begin = Instant::now();
-        for _ in 0..count {
-            run.step()?;
-        }
-        least = least.min(begin.elapsed().as_secs_f64());
-        last = run.state().q;
-    }
-    Ok((last, 1e3 * least))
-}
-
 fn rows<Y, const N: usize>(name: &str, system: Y, start: SVector<f64, N>) -> Result<(), StepError>
 where
     Y: FixedStepping<N> + Collocation<N> + Convertible<N>,
@@ -91,7 +47,7 @@ where
     let show = |method: &str, count: u32, found: Result<(SVector<f64, N>, f64), StepError>| {
         let of_run = found.map_or_else(
             |failure| format!(",{failure}"),
-            |(last, time)| format!("{time:.3},{:.1e}", (last - exact).amax() / moved),
+            |(last, time)| format!("{:.3},{:.1e}", 1e3 * time, (last - exact).amax() / moved),
         );
         println!("{name},{method},{},{of_run}", 1.0 / f64::from(count));
     };
