@@ -41,6 +41,11 @@ pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
 
     /// Evaluates the equations at a point.
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
+    /// The same without M.
+    #[inline(always)]
+    fn sides(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T> {
+        self.point(t, q, v).sides()
+    }
     /// Evaluates their derivatives at a point.
     fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix>;
     /// Rate of change of the energy: `f·v − L_t`.
@@ -88,6 +93,23 @@ pub struct Point<const N: usize, T, M> {
     pub force: SVector<T, N>,
     /// `M = L_vv`.
     pub mass: M,
+}
+
+/// Both sides of the equations of motion at a point (t, q, v).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sides<const N: usize, T> {
+    /// `L_v`.
+    pub momentum: SVector<T, N>,
+    /// `L_q + f`.
+    pub force: SVector<T, N>,
+}
+
+impl<const N: usize, T, M> Point<N, T, M> {
+    /// The point without its mass matrix.
+    #[inline(always)]
+    pub fn sides(self) -> Sides<N, T> {
+        Sides { momentum: self.momentum, force: self.force }
+    }
 }
 
 /// Derivatives of the equations of motion at a point (t, q, v). Row i, column j is the derivative of entry i with

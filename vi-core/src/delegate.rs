@@ -19,7 +19,7 @@ macro_rules! motion {
         }
 
         impl<const N: usize, T: Real, S: Collocation<N, T>$(, $rule: Rule)?> Collocation<N, T> for $wrapper {
-            forward! { [N T S] self => self; $attribute collocation_types point point_derivatives scaled_point }
+            forward! { [N T S] self => self; $attribute collocation_types point sides point_derivatives scaled_point }
             forward! { [N T S] self => self; [#[inline]] power }
         }
     };

@@ -90,6 +90,9 @@ macro_rules! forward {
     (@point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
         $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, point -> $crate::collocation::Point<$n, $t, Self::Mass>, $($rest)* }
     };
+    (@sides [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, sides -> $crate::collocation::Sides<$n, $t>, $($rest)* }
+    };
     (@point_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
         $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, point_derivatives -> $crate::collocation::PointDerivatives<Self::PointMatrix>, $($rest)* }
     };

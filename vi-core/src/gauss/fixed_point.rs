@@ -45,8 +45,9 @@ pub(crate) trait Equations<const N: usize, const S: usize> {
     fn has_another_way(&self) -> bool;
     /// The initial positions, from the guess of the step.
     fn start(&self) -> Stages<N, S>;
-    /// Evaluates the equations at the positions x, and writes the resulting positions to y.
-    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>);
+    /// Evaluates the equations at the positions x, and writes the resulting positions to y. `contraction` is the last one
+    /// measured, in this step or before.
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, contraction: f64);
     /// The increment of the node, from the last evaluation.
     fn increment(&self) -> StageIncrement<N>;
     /// The stage values that the next step extrapolates.
@@ -182,7 +183,7 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     let mut stalls = 0;
     let mut is_last = false;
     let are_given_up = loop {
-        equations.iterate(x, y);
+        equations.iterate(x, y, state.contraction);
         state.iterations += 1;
         if is_last {
             break false;

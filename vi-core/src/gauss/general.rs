@@ -9,11 +9,11 @@
 //!
 //! One iteration evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)` with the momenta P from F, and moves Q
 //! by the new V. If L is quadratic in v, it solves for V exactly. The change of V is the residual, because Q follows
-//! from V.
+//! from V. Many coordinates keep the masses of an earlier iteration ([`MANY`]): a fixed point is the same.
 
 use super::fixed_point::{Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
-use super::points::{ErasedSystem, Form, Points};
+use super::points::{ErasedSystem, Form, MANY, Points};
 use super::stages::{
     AtStages, Roundings, Stages, change, constant_mass, gathered, growth, maximum, product, roundings, scaled, scatter,
     sum, times, weights,
@@ -26,6 +26,9 @@ use crate::real::Lane;
 use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 
+/// Contraction up to which masses are kept. Where iterations contract less, old masses would slow them down.
+const FAST: f64 = 1.0 / 8.0;
+
 /// The equations of a step; see the [module](self).
 pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
     system: &'a Y,
@@ -33,6 +36,8 @@ pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     h: f64,
     /// M, factored, if it is constant.
     inverse: Option<M::Inverse>,
+    /// The inverse of M at each stage, of the last iteration with new masses; for many coordinates.
+    kept: Option<[Stages<N, S>; N]>,
     /// The linearized equations, if fixed-point iteration does not contract.
     newton: Option<&'a Newton<N, S>>,
     /// Velocities that determine the positions.
@@ -85,6 +90,7 @@ where
             node,
             h,
             inverse,
+            kept: None,
             newton,
             velocity,
             evaluated: velocity,
@@ -151,21 +157,10 @@ where
         }
     }
 
-    /// Evaluates the equations at a stage, and writes L_q + f and L_v.
+    /// Time, coordinates and velocities of a stage.
     #[inline(always)]
-    fn evaluate_stage(
-        &self,
-        i: usize,
-        x: &Stages<N, S>,
-        velocity: &Stages<N, S>,
-        force: &mut Stages<N, S>,
-        momentum: &mut Stages<N, S>,
-    ) -> Point<N, T, Y::Mass> {
-        let t = T::of(&times::<N, S, FUSED>(self.node, self.h), i);
-        let point = self.system.at(t, &gathered(x, i), &gathered(velocity, i));
-        scatter(force, i, &point.force);
-        scatter(momentum, i, &point.momentum);
-        point
+    fn place(&self, i: usize, x: &Stages<N, S>, velocity: &Stages<N, S>) -> (T, SVector<T, N>, SVector<T, N>) {
+        (T::of(&times::<N, S, FUSED>(self.node, self.h), i), gathered(x, i), gathered(velocity, i))
     }
 
     /// Evaluates the equations at the positions x, and returns the residuals of the momenta.
@@ -177,7 +172,10 @@ where
         let mut force = [[0.0; S]; N];
         let mut momentum = [[0.0; S]; N];
         for i in 0..T::EVALUATIONS {
-            self.evaluate_stage(i, &x, &velocity, &mut force, &mut momentum);
+            let (t, q, v) = self.place(i, &x, &velocity);
+            let sides = self.system.sides_at(t, &q, &v);
+            scatter(&mut force, i, &sides.force);
+            scatter(&mut momentum, i, &sides.momentum);
         }
         self.evaluated = velocity;
         self.force = force;
@@ -194,7 +192,10 @@ where
         let mut inverse = [[[0.0; S]; N]; N];
         let mut terms = [[0.0; S]; N];
         for i in 0..T::EVALUATIONS {
-            let point = self.evaluate_stage(i, &x, &velocity, &mut force, &mut momentum);
+            let (t, q, v) = self.place(i, &x, &velocity);
+            let point = self.system.at(t, &q, &v);
+            scatter(&mut force, i, &point.force);
+            scatter(&mut momentum, i, &point.momentum);
             let columns = point.mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
             for k in 0..N {
                 let mut sum = T::zero();
@@ -234,14 +235,35 @@ where
 
     /// An iteration with the mass matrix of each stage, whose inverse waits for the momenta of all stages.
     #[inline(always)]
-    fn iterate_varying(&mut self, x: &Stages<N, S>) {
-        let (missing, inverse) = self.evaluate_with_masses(x);
-        for k in 0..N {
-            for l in 0..N {
-                for i in 0..S {
-                    self.velocity[k][i] =
-                        Lane::<FUSED>::multiply_add(inverse[k][l][i], missing[l][i], self.velocity[k][i]);
-                }
+    fn iterate_varying(&mut self, x: &Stages<N, S>, contraction: f64) {
+        if const { N < MANY } {
+            let (missing, inverse) = self.evaluate_with_masses(x);
+            return correct_by::<N, S, FUSED>(&mut self.velocity, &inverse, &missing);
+        }
+        let missing = if self.kept.is_some() && contraction <= FAST {
+            self.evaluate(x)
+        } else {
+            let (missing, inverse) = self.evaluate_with_masses(x);
+            self.kept = Some(inverse);
+            missing
+        };
+        if let Some(inverse) = &self.kept {
+            correct_by::<N, S, FUSED>(&mut self.velocity, inverse, &missing);
+        }
+    }
+}
+
+/// Corrects velocities by the inverse of the mass matrix of each stage.
+#[inline(always)]
+fn correct_by<const N: usize, const S: usize, const FUSED: bool>(
+    velocity: &mut Stages<N, S>,
+    inverse: &[Stages<N, S>; N],
+    missing: &Stages<N, S>,
+) {
+    for k in 0..N {
+        for l in 0..N {
+            for i in 0..S {
+                velocity[k][i] = Lane::<FUSED>::multiply_add(inverse[k][l][i], missing[l][i], velocity[k][i]);
             }
         }
     }
@@ -264,14 +286,14 @@ where
     }
 
     #[inline(always)]
-    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, contraction: f64) {
         // For a known form the compiler sees one branch.
         let varies = || self.system.form() == Form::VaryingMass;
         if let Some(newton) = self.newton {
             let missing = self.evaluate(x);
             self.correct(&newton.correction(&missing));
         } else if const { Form::VaryingMass.is_known(Y::FORM) } || const { Y::FORM.is_none() } && varies() {
-            self.iterate_varying(x);
+            self.iterate_varying(x, contraction);
         } else {
             self.iterate_constant(x);
         }

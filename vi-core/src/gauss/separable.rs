@@ -139,7 +139,7 @@ where
     }
 
     #[inline(always)]
-    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, _contraction: f64) {
         let rest = SVector::zeros();
         let times = times::<N, S, FUSED>(self.node, self.h);
         for i in 0..T::EVALUATIONS {

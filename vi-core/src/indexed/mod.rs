@@ -16,7 +16,7 @@ pub use step::{
     momentum_residual, step_density,
 };
 
-use crate::collocation::{Point, PointDerivatives};
+use crate::collocation::{Point, PointDerivatives, Sides};
 use crate::error::StepError;
 use crate::lagrangian::{Flow, Lagrangian};
 use crate::legendre;
@@ -215,8 +215,20 @@ pub fn point<const N: usize, T: Real, S: Indexed<N, T>, M>(
     v: &SVector<T, N>,
     mass: M,
 ) -> Point<N, T, M> {
+    let Sides { momentum, force } = sides(system, t, q, v);
+    Point { momentum, force, mass }
+}
+
+/// The same without the mass matrix, for [`Collocation::sides`](crate::collocation::Collocation::sides).
+#[inline]
+pub fn sides<const N: usize, T: Real, S: Indexed<N, T>>(
+    system: &S,
+    t: T,
+    q: &SVector<T, N>,
+    v: &SVector<T, N>,
+) -> Sides<N, T> {
     let first = system.first_derivatives(t, q, v);
-    Point { momentum: first.dv, force: first.total_force::<S>(), mass }
+    Sides { momentum: first.dv, force: first.total_force::<S>() }
 }
 
 /// Derivatives of the equations of motion at a point, for

@@ -312,7 +312,7 @@ where
     }
 
     #[inline(always)]
-    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, _contraction: f64) {
         let correction = match self.newton {
             Some(newton) => newton.correction(&self.evaluate(x, |_, _| {})),
             None if Y::CONSTANT_MASS => self.by_constant_mass(x),

@@ -169,6 +169,15 @@ impl Printer<'_> {
                     #point
                 }
 
+                fn sides(
+                    &self,
+                    t: T,
+                    q: &::vi_core::SVector<T, #dimension>,
+                    v: &::vi_core::SVector<T, #dimension>,
+                ) -> ::vi_core::collocation::Sides<#dimension, T> {
+                    ::vi_core::indexed::sides(self, t, q, v)
+                }
+
                 fn point_derivatives(
                     &self,
                     t: T,
