@@ -19,7 +19,6 @@ use super::stages::{
     sum, times, weights,
 };
 use super::tableau::Tableau;
-use crate::collocation::Point;
 use crate::linear::Matrix;
 use crate::node::Node;
 use crate::real::Lane;

@@ -7,9 +7,15 @@
 //! A derivative along a direction, as `d/dt(L_q)`, is one evaluation of the first derivatives over dual numbers. The rule
 //! is the midpoint rule, `L_d = h L((t0 + t1)/2, (q0 + q1)/2, (q1 − q0)/h)`.
 
+#[cfg(feature = "alloc")]
+mod constraints;
 mod slots;
 mod step;
 
+#[cfg(feature = "alloc")]
+pub use constraints::{
+    IndexedConstraints, constraint_gradients, constraint_rate_derivatives, constraints, reaction_derivatives,
+};
 pub use slots::{d1_ld, d2_ld, d3_ld, d4_ld, fd_minus, fd_plus, gd_minus, gd_plus, ld};
 pub use step::{
     discrete_energy, extended_derivatives, extended_residual, extended_system, momentum_derivatives, momentum_equation,
@@ -154,8 +160,19 @@ pub fn acceleration<const N: usize, T: Real, S: Indexed<N, T>>(
     q: &SVector<T, N>,
     v: &SVector<T, N>,
 ) -> Result<SVector<T, N>, StepError> {
+    legendre::acceleration(t, &mass(system, t, q, v), &applied(system, t, q, v))
+}
+
+/// `L_q + f − L_vt − L_vq v`, for [`Constrained::applied`](crate::Constrained::applied).
+#[inline]
+pub fn applied<const N: usize, T: Real, S: Indexed<N, T>>(
+    system: &S,
+    t: T,
+    q: &SVector<T, N>,
+    v: &SVector<T, N>,
+) -> SVector<T, N> {
     let [first, rates] = along_direction(system, (t, q, v), (T::one(), v, &SVector::zeros()));
-    legendre::acceleration(t, &mass(system, t, q, v), &(first.total_force::<S>() - rates.dv))
+    first.total_force::<S>() - rates.dv
 }
 
 /// The flow at `(t, q, p)` if L is quadratic in the velocities, for [`Lagrangian::flow`].

@@ -159,10 +159,7 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
             if is_constrained { pattern::by_rows(&entries) } else { pattern::pattern(&entries) }
         }),
         smoothness: model.smoothness.clone(),
-        constraints: [true, false].map(|is_holonomic| {
-            let of_kind = model.constraints.iter().filter(|constraint| constraint.is_holonomic == is_holonomic);
-            of_kind.map(|constraint| (constraint.name.to_string(), constraint.indices.len())).collect()
-        }),
+        constraints: constraint_names(model),
         driven: program.function(FunctionId::ConstraintGradients).is_some_and(|function| {
             let is_zero = |id: &OperationId| function.operations.as_constant(*id) == Some(0.0);
             !function.results.vector(Output::Rates).iter().all(is_zero)
@@ -345,6 +342,30 @@ pub(crate) fn energy_in_words(autonomous: bool, forced: bool) -> &'static str {
     }
 }
 
+/// The same with constraints; `driven` if one on velocities does work.
+pub(crate) fn constrained_energy_in_words(autonomous: bool, forced: bool, driven: bool) -> &'static str {
+    match (autonomous, forced) {
+        (true, false) if driven => "Autonomous; no force acts, but a constraint does work",
+        (false, false) => "Not autonomous: `L` or a constraint depends on the time `t`; no force acts",
+        (false, true) => "Not autonomous: `L`, `f` or a constraint depends on the time `t`; a force acts",
+        (true, forced) => energy_in_words(true, forced),
+    }
+}
+
+/// The names of the holonomic and of the nonholonomic constraints, with the number of their indices.
+pub(crate) fn constraint_names(model: &Model) -> [Vec<(String, usize)>; 2] {
+    [true, false].map(|is_holonomic| {
+        let of_kind = model.constraints.iter().filter(|constraint| constraint.is_holonomic == is_holonomic);
+        of_kind.map(|constraint| (constraint.name.to_string(), constraint.indices.len())).collect()
+    })
+}
+
+/// The constraints of each kind, arrays once.
+pub(crate) fn constraints_in_words(names: &[Vec<(String, usize)>; 2]) -> Vec<String> {
+    let kinds = names.iter().zip(["positions", "velocities"]).filter(|(names, _)| !names.is_empty());
+    kinds.map(|(names, kind)| format!("Constraints on {kind}: {}", in_arrays(names))).collect()
+}
+
 /// The cyclic coordinates, so many with these names.
 pub(crate) fn cyclic_in_words(names: &str, count: usize) -> String {
     let momenta = if count == 1 { "its momentum is" } else { "their momenta are" };
@@ -363,7 +384,7 @@ fn in_arrays(names: &[(String, usize)]) -> String {
 }
 
 /// The order of `GaussLobatto` steps across a point where L has only so many continuous derivatives.
-fn constrained_smoothness_in_words(smoothness: &Smoothness) -> String {
+pub(crate) fn constrained_smoothness_in_words(smoothness: &Smoothness) -> String {
     let order = smoothness.derivatives + 1;
     format!("{}: `GaussLobatto` has order {order} across it", derivatives_in_words(smoothness))
 }
@@ -425,15 +446,10 @@ impl Findings {
     pub fn lines(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
         let is_constrained = self.constraints.iter().any(|names| !names.is_empty());
         let mut lines = vec![
-            match (self.autonomous, self.forced) {
-                (true, false) if self.driven => "Autonomous; no force acts, but a constraint does work",
-                (false, false) if is_constrained => {
-                    "Not autonomous: `L` or a constraint depends on the time `t`; no force acts"
-                }
-                (false, true) if is_constrained => {
-                    "Not autonomous: `L`, `f` or a constraint depends on the time `t`; a force acts"
-                }
-                (autonomous, forced) => energy_in_words(autonomous, forced),
+            if is_constrained {
+                constrained_energy_in_words(self.autonomous, self.forced, self.driven)
+            } else {
+                energy_in_words(self.autonomous, self.forced)
             }
             .to_owned(),
         ];
@@ -451,11 +467,7 @@ impl Findings {
         });
         let in_words = if is_constrained { constrained_smoothness_in_words } else { smoothness_in_words };
         lines.extend(self.smoothness.as_ref().map(in_words));
-        for (names, kind) in self.constraints.iter().zip(["positions", "velocities"]) {
-            if !names.is_empty() {
-                lines.push(format!("Constraints on {kind}: {}", in_arrays(names)));
-            }
-        }
+        lines.extend(constraints_in_words(&self.constraints));
         lines.extend(
             self.elimination.as_ref().map(|of| of.in_words(self.point_masses && self.constraints[1].is_empty())),
         );

@@ -68,7 +68,11 @@ impl Compiled {
     pub fn of(system: &System) -> syn::Result<Self> {
         // `#[vi_limit(0)]`, for tests: the size at which loops begin.
         let is_asked = system.attributes.iter().find_map(emit::limit) == Some(0);
-        let loops = Loops::of(system, if is_asked { 1 } else { limits::LARGE_COORDINATES })?;
+        let (loops, mistake) = match large_model(system) {
+            Some(Ok(found)) => (Loops::of(found, if is_asked { 1 } else { limits::LARGE_COORDINATES })?, None),
+            Some(Err(mistake)) => (None, Some(mistake)),
+            None => (None, None),
+        };
         let is_large =
             |loops: &Loops| is_asked || loops.indexed.operations() > limits::LARGE && loops.indexed.is_dense();
         match loops {
@@ -76,7 +80,12 @@ impl Compiled {
             loops => match (derive(system), loops) {
                 (Ok(derivations), _) => Ok(Self::Lines(Box::new(derivations))),
                 (Err(error), Some(loops)) if messages::is_too_large(&error) => Ok(Self::Loops(Box::new(loops))),
-                (Err(error), _) => Err(error),
+                (Err(error), _) => {
+                    // Straight lines report mistakes, but a system may be too large for their checks.
+                    let is_better =
+                        |mistake: &syn::Error| messages::is_too_large(&error) && !messages::is_too_large(mistake);
+                    Err(mistake.filter(is_better).unwrap_or(error))
+                }
             },
         }
     }
@@ -119,21 +128,31 @@ impl Compiled {
     }
 }
 
+/// The checked system with entries of arrays of `let`s as symbols, or its mistakes; `None` if it cannot be large.
+fn large_model(system: &System) -> Option<syn::Result<(Pool<Symbol>, Model)>> {
+    let has_arrays = system.coordinates.iter().any(|coordinate| !coordinate.lengths.is_empty());
+    if !has_arrays || system.rules() > 1 {
+        return None;
+    }
+    let mut pool = Pool::bounded(limits::WORK);
+    let model = check::large_model(&mut pool, system);
+    // A dissipation is differentiated before its `let`s are known.
+    let is_plain = |model: &Model| system.dissipations.is_empty() || model.lets.is_empty();
+    match model {
+        Ok(model) => is_plain(&model).then_some(Ok((pool, model))),
+        Err(mistakes) => Some(Err(mistakes)),
+    }
+}
+
 impl Loops {
     /// The system in loops; `None` if it has fewer coordinates than `least`, or its terms do not repeat.
     ///
     /// # Errors
     /// Recursions with too many entries.
-    fn of(system: &System, least: usize) -> syn::Result<Option<Self>> {
-        let has_arrays = system.coordinates.iter().any(|coordinate| !coordinate.lengths.is_empty());
-        let mut pool = Pool::bounded(limits::WORK);
-        // Straight lines report its mistakes.
-        let is_candidate = has_arrays && system.rules() <= 1;
-        let model = if is_candidate { check::large_model(&mut pool, system).ok() } else { None };
-        // A dissipation is differentiated before its `let`s are known.
-        let is_plain = |model: &Model| system.dissipations.is_empty() || model.lets.is_empty();
-        let is_possible = |model: &Model| model.dimension() >= least && is_plain(model);
-        let Some(model) = model.filter(is_possible) else { return Ok(None) };
+    fn of((mut pool, model): (Pool<Symbol>, Model), least: usize) -> syn::Result<Option<Self>> {
+        if model.dimension() < least {
+            return Ok(None);
+        }
         Ok(indexed::indexed(&mut pool, model)?.map(|indexed| Self { pool, indexed }))
     }
 }

@@ -1,6 +1,6 @@
 //! The text of a large system does not grow with the lengths of its arrays, and its operations are counted.
 
-use crate::families::{bodies, links};
+use crate::families::{bodies, closed, links};
 use vi_codegen::Compiled;
 use vi_codegen::indexed::{Indexed, Nest};
 use vi_codegen::syntax::parse;
@@ -46,7 +46,7 @@ fn functions(text: &str) -> (String, usize) {
 
 #[test]
 fn the_text_of_loops_is_the_same_for_every_length() {
-    for system in [bodies, links, pendulum] {
+    for system in [bodies, links, pendulum, closed] {
         let [few, more, most] = [32, 40, 80].map(|count| functions(&system(count)));
         assert!(few.0.len() > 2000, "{}", few.0.len());
         assert_eq!(few.0, more.0);
@@ -135,6 +135,10 @@ fn what_loops_cannot_hold_stays_in_lines() {
     ] {
         assert!(!is_in_loops(&format!("{kinetic} {rest}")), "{rest}");
     }
+    // A constraint may determine a coordinate without mass.
+    let massless = "coord q[N], z; L = sum(i in 0..N, dot(q[i])^2) / 2 - z^2 * sum(i in 0..N, q[i]^2)";
+    let text = format!("#[vi_limit(0)] struct S {{ const N = 6; {massless}; constraint c = z - q[0]; }}");
+    assert!(large(&text).constraints.len() == 2, "{text}");
     // Without a mass.
     assert!(!is_in_loops("coord q[N], z; L = sum(i in 0..N, dot(q[i])^2) / 2 - z^2 * sum(i in 0..N, q[i]^2);"));
     assert!(!is_in_loops("coord q[N]; L = sum(i in 0..N, q[i]^2);"));
@@ -166,4 +170,33 @@ fn too_many_entries_of_recursions_are_refused() {
         error.contains("the tangents of `r` need 1.0 MB of the stack") && error.contains("declare at most 73 entries"),
         "{error}"
     );
+}
+
+/// The first line of the message of a system of 40 links with these constraints.
+fn mistake(constraints: &str) -> String {
+    let text = closed(40);
+    let start = text.find("constraint level").expect("a constraint");
+    let text = format!("{}{constraints} }}", &text[..start]);
+    let system = parse::system(text.parse().expect("tokens")).expect("a system");
+    let error = Compiled::of(&system).err().unwrap_or_else(|| panic!("no message: {constraints}"));
+    error.to_string().lines().next().unwrap_or_default().to_owned()
+}
+
+#[test]
+fn mistakes_in_constraints_of_recursions_are_found() {
+    let unused = "constraint a = x[39] - d;";
+    assert_eq!(
+        mistake(&format!("{unused} constraint b = 2 * x[39] - d;")),
+        "the constraint `b` repeats `a` up to a factor"
+    );
+    assert_eq!(
+        mistake("constraint a = x[39] - x[38] - l[39] * sin(q[39]) + d;"),
+        "the constraint `a` contains no coordinate"
+    );
+    assert_eq!(
+        mistake(&format!("{unused} constraint b = dot(x[3])^2;")),
+        "a constraint must be linear in the velocities"
+    );
+    let integrable = mistake(&format!("{unused} constraint b = dot(x[2]) * x[3] + x[2] * dot(x[3]);"));
+    assert!(integrable.starts_with("the constraint `b` is the time derivative of "), "{integrable}");
 }

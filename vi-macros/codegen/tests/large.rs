@@ -21,6 +21,13 @@ const WELLS: &str = "#[vi_limit(0)] struct Wells { const N = 5; param c = 0.3; c
     L = (dot(z)^2 + sum(i in 0..N, dot(x[i])^2 + dot(y[0][i])^2 + dot(y[1][i])^2 - x[i]^4 - c * t * y[0][i]^2 * x[i])) / 2;
     discretize midpoint; }";
 
+const CLOSED: &str = "#[vi_limit(0)] struct Closed { const N = 5; param l = 0.3, g = 9.8, d = 0.2, w = 0.5; coord q[N];
+    let x[0] = l * sin(q[0]); let x[i in 1..N] = x[i - 1] + l * sin(q[i]);
+    L = sum(i in 0..N, dot(x[i])^2 + dot(q[i])^2 - g * x[i]) / 2;
+    constraint up[k in 3..5] = x[k] - k * d;
+    constraint rolls = dot(x[1]) * q[3] - w * dot(q[4]) + d;
+    check { q[0] = 1, q[1] = 1, q[2] = 1, q[3] = 1, q[4] = 1; h = 0.01; } }";
+
 fn tokens(text: &str) -> TokenStream {
     text.parse().expect("tokens of Rust")
 }
@@ -84,6 +91,18 @@ fn an_explanation_shows_loops_and_what_follows_from_them() {
         "Cyclic: `y[1][0]` to `y[1][4]`, `z`; their momenta are conserved",
     ];
     has_lines(&text(WELLS), &wells);
+    let closed = [
+        "constraint up[k in 3..5] = x[k] - k * d;",
+        "up[i + 3] += x[i + 3] for i in 0..2",
+        "rolls += -w*dot(q[4])",
+        "rolls += d",
+        "L_vv*dv/dt = L_q - L_vq*v + A^T*Λ, with d/dt(A*v + a) = 0",
+        "p1 = p_minus + A_1^T*μ",
+        "Autonomous; no force acts, but a constraint does work",
+        "Constraints on positions: up (2)",
+        "Constraints on velocities: rolls",
+    ];
+    has_lines(&text(CLOSED), &closed);
     has_lines(&stage(tokens(WELLS), Stage::Model).expect("right"), &["rule midpoint", "parameter c = 0.3"]);
     has_lines(&stage(tokens(WELLS), Stage::Discrete).expect("right"), &["L_d = h*L", "p1 - p0 = h*L_q"]);
     let gauss = explain_gauss(tokens(LINKS), 2).expect("right").text();
@@ -102,7 +121,7 @@ fn two_loops_are_shown_as_a_double_sum() {
 
 #[test]
 fn an_explanation_is_a_document() {
-    for system in [BODIES, LINKS, WELLS] {
+    for system in [BODIES, LINKS, WELLS, CLOSED] {
         for latex in
             [explain(tokens(system)).expect("right").latex(), explain_gauss(tokens(system), 3).expect("right").latex()]
         {
@@ -158,6 +177,7 @@ fn checks_are_emitted() {
         ["derivatives", "slots", "steps", "energy_equations", "order", "momenta", "symplecticity", "reversibility"];
     assert_eq!(checks(&free)[..8], all);
     assert_eq!(checks(&free)[8..], ["energy", "step_law"]);
+    assert_eq!(checks(CLOSED), ["constrained_derivatives", "constraints", "reaction", "lobatto_order"]);
     // Two loops or straight lines: the same tests.
     assert_eq!(checks(&free), checks(&free.replace("#[vi_limit(0)] ", "")));
     assert!(!expand(tokens(WELLS)).to_string().contains("cfg (test)"), "no clause, no tests");

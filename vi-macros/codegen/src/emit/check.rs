@@ -34,7 +34,7 @@ pub(super) fn tests(
         None if model.constraints.is_empty() => {
             of_motion(source.system.continuous.cyclic.contains(&true), model.forced)
         }
-        None => of_constraints(source),
+        None => of_constraints(model),
     };
     let by_further = further.iter().map(|steps| Further {
         rule: format_ident!("{}", steps.rule.title()),
@@ -52,7 +52,8 @@ pub(super) fn tests_of_loops(of: &Indexed, conditions: &[&Attribute]) -> Option<
             let is_monotone = monotone_table_of(of).is_some();
             of_steps(&Properties { rule: rule.named, has_energy_steps: !is_monotone, is_monotone, is_cyclic, forced })
         }
-        None => of_motion(is_cyclic, forced),
+        None if of.model.constraints.is_empty() => of_motion(is_cyclic, forced),
+        None => of_constraints(&of.model),
     };
     module(&of.model, &applying, &[], conditions)
 }
@@ -154,14 +155,14 @@ fn of_motion(is_cyclic: bool, forced: bool) -> Vec<Check> {
 }
 
 /// The checks that apply to a system with constraints and to its Gauss–Lobatto steps.
-fn of_constraints(source: &Source) -> Vec<Check> {
-    let are_holonomic = source.model.constraints.iter().all(|constraint| constraint.is_holonomic);
+fn of_constraints(model: &Model) -> Vec<Check> {
+    let are_holonomic = model.constraints.iter().all(|constraint| constraint.is_holonomic);
     let each = [
         ("constrained_derivatives", true),
         ("constraints", true),
         ("reaction", true),
         ("lobatto_order", true),
-        ("lobatto_symplecticity", are_holonomic && !source.model.forced),
+        ("lobatto_symplecticity", are_holonomic && !model.forced),
     ];
     each.into_iter().filter(|(_, applies)| *applies).map(|(check, _)| (check, TokenStream::new())).collect()
 }

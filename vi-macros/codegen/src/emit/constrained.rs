@@ -43,7 +43,7 @@ pub(super) fn item(source: &Source, of: &Constraints) -> TokenStream {
         rate_derivatives(source, elimination),
         reaction_derivatives(source, elimination),
     ];
-    let columns = columns(source, elimination);
+    let (columns, convertible) = (columns(source, elimination), convertible(name, &dimension));
     quote! {
         #columns
 
@@ -65,6 +65,13 @@ pub(super) fn item(source: &Source, of: &Constraints) -> TokenStream {
             #(#functions)*
         }
 
+        #convertible
+    }
+}
+
+/// The conversion to other numbers.
+pub(super) fn convertible(name: &Ident, dimension: &Literal) -> TokenStream {
+    quote! {
         impl ::vi_core::ConvertibleConstrained<#dimension> for #name<f64> {
             type In<T: ::vi_core::real::Real> = #name<T>;
 
@@ -116,8 +123,7 @@ fn blocks(blocks: &[Block]) -> TokenStream {
 }
 
 /// `acceleration` and `flow` of a system with constraints.
-pub(super) fn motion(source: &Source) -> [TokenStream; 2] {
-    let dimension = source.dimension();
+pub(super) fn motion(dimension: &Literal) -> [TokenStream; 2] {
     let acceleration = quote! {
         /// Solves `M a = L_q + f − L_vt − L_vq v + Aᵀ Λ` together with `d/dt (A v + a) = 0`.
         #[inline]

@@ -20,7 +20,7 @@ const CHARACTERS: usize = 400;
 pub(super) fn item(source: &Source) -> TokenStream {
     let of = &source.system.continuous;
     let [acceleration, flow] = match source.system.constraints {
-        Some(_) => constrained::motion(source),
+        Some(_) => constrained::motion(&source.dimension()),
         None => [acceleration(source), flow(source)],
     };
     let functions = [

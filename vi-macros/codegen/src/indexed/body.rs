@@ -24,13 +24,15 @@ pub enum Read {
     Parameter(usize),
     /// The place itself, as a number.
     Number,
+    /// A constraint: the place of a sum, which no body reads.
+    Constraint,
 }
 
 impl Read {
     /// Whether it depends on the state.
     #[must_use]
     pub fn is_of_state(self) -> bool {
-        !matches!(self, Self::Parameter(_) | Self::Number)
+        !matches!(self, Self::Parameter(_) | Self::Number | Self::Constraint)
     }
 
     /// Whether it is an entry of an array of `let`s, or its rate.

@@ -5,7 +5,7 @@
 //! before by less than they are: `sum(j in 0..i + 1, …)` becomes a recursion.
 
 use super::body::Read;
-use crate::model::{LetArray, Model};
+use crate::model::{LetArray, Model, rate};
 use crate::symbol::{LetEntry, Symbol, Variable};
 use num_traits::{One, Zero};
 use std::collections::BTreeSet;
@@ -31,9 +31,10 @@ impl Lets {
     /// or if the limits of a root depend on what an entry is: straight lines compute or report these.
     pub(super) fn of(pool: &mut Pool<Symbol>, model: &Model) -> Option<Self> {
         let mut lets = Self { arrays: Vec::new() };
-        let used: Vec<Expr> = [model.lagrangian].into_iter().chain(model.forces.iter().copied()).collect();
+        let constraints = model.constraints.iter().map(|constraint| constraint.written);
+        let used = [model.lagrangian].into_iter().chain(model.forces.iter().copied()).chain(constraints);
         let defined = model.lets.iter().flat_map(|array| array.definitions.iter().copied());
-        let all: Vec<Expr> = used.into_iter().chain(defined).collect();
+        let all: Vec<Expr> = used.chain(defined).collect();
         let with_rates = reads(pool, &all);
         let mut moves: Vec<bool> = Vec::new();
         for (place, LetArray { width, definitions, .. }) in model.lets.iter().enumerate() {
@@ -107,16 +108,6 @@ fn reads(pool: &Pool<Symbol>, exprs: &[Expr]) -> BTreeSet<Read> {
         _ => None,
     };
     symbols.into_iter().filter_map(read).collect()
-}
-
-/// The derivative of an expression of time, coordinates and `let`s with respect to time.
-fn rate(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
-    pool.derivative(expr, &mut |pool, symbol| match symbol {
-        Symbol::Continuous(Variable::Time) => pool.one(),
-        Symbol::Continuous(Variable::Coordinate(index)) => pool.symbol(Symbol::Continuous(Variable::Velocity(*index))),
-        Symbol::Let(entry) => pool.symbol(Symbol::LetRate(*entry)),
-        _ => pool.zero(),
-    })
 }
 
 /// The definitions as the entries of the row before and further terms; `None` if they are no sums that grow, or no shorter

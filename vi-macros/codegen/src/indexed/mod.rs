@@ -70,6 +70,8 @@ pub struct Indexed {
     pub lagrangian: Vec<Sum>,
     /// The terms of f; the first number of an instance is the coordinate.
     pub force: Vec<Sum>,
+    /// The terms of the constraints; the first number of an instance is the constraint.
+    pub constraints: Vec<Sum>,
 }
 
 /// Entries of arrays of `let`s, and their rates, in one loop.
@@ -114,33 +116,46 @@ pub fn indexed(pool: &mut Pool<Symbol>, model: Model) -> Result<Option<Indexed>>
 fn statements(pool: &mut Pool<Symbol>, model: Model) -> Option<Indexed> {
     let is_other = model.rule.as_ref().is_some_and(|rule| rule.named.is_none_or(|named| named.name != "midpoint"));
     let has_angles = model.coordinates.iter().any(|coordinate| coordinate.is_angle || coordinate.is_rotation);
-    if is_other || has_angles || !model.constraints.is_empty() || model.time_scale.is_some() {
+    if is_other || has_angles || model.time_scale.is_some() {
         return None;
     }
     let lets = Lets::of(pool, &model)?;
     let lagrangian = lets.opened(pool, model.lagrangian);
     let forces: Vec<Expr> = model.forces.iter().map(|force| lets.opened(pool, *force)).collect();
-    let all: Vec<Expr> = [lagrangian].into_iter().chain(forces.iter().copied()).collect();
+    let constraints: Vec<Expr> =
+        model.constraints.iter().map(|constraint| lets.opened(pool, constraint.written)).collect();
+    let all: Vec<Expr> =
+        [lagrangian].into_iter().chain(forces.iter().copied()).chain(constraints.iter().copied()).collect();
     let recursions = recursions(pool, &lets, &all)?;
     let terms = summands(pool, lagrangian).into_iter().map(|term| (Vec::new(), term)).collect();
     let lagrangian = sums(pool, terms, true)?;
-    let mut terms = Vec::new();
-    for (coordinate, force) in forces.iter().enumerate() {
-        terms.extend(summands(pool, *force).into_iter().map(|term| (vec![coordinate], term)));
-    }
-    let force = sums(pool, terms, false)?;
+    let force = sums_of_each(pool, &forces, false)?;
+    let constraints = sums_of_each(pool, &constraints, true)?;
     let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
     let rows = recursions.iter().flat_map(|recursion| recursion.parts.iter().map(|part| &part.body));
-    let mut values = rows.chain(lagrangian.iter().chain(&force).map(|sum| &sum.body)).flat_map(|body| &body.values);
+    let all = lagrangian.iter().chain(&force).chain(&constraints);
+    let mut values = rows.chain(all.map(|sum| &sum.body)).flat_map(|body| &body.values);
     let autonomous = values.all(|value| !pool.depends_on(value.expr, &time));
     let has_mass_of_position = has_mass_of_position(pool, &recursions, &lagrangian);
-    if !has_masses(model.dimension(), &recursions, &lagrangian) {
+    let reacts = |index: usize| model.constraints.iter().any(|constraint| constraint.acts_on(pool, index));
+    let reacts: Vec<bool> = (0..model.dimension()).map(reacts).collect();
+    if !has_masses(reacts.clone(), &recursions, &lagrangian) {
         return None;
     }
-    let cyclic = cyclic(model.dimension(), &recursions, &lagrangian, &force);
+    let cyclic = cyclic(&reacts, &recursions, &lagrangian, &force);
     let separable = is_separable(pool, &recursions, &lagrangian, &force);
     bounded(pool).ok()?;
-    Some(Indexed { model, autonomous, cyclic, has_mass_of_position, separable, recursions, lagrangian, force })
+    Some(Indexed {
+        model,
+        autonomous,
+        cyclic,
+        has_mass_of_position,
+        separable,
+        recursions,
+        lagrangian,
+        force,
+        constraints,
+    })
 }
 
 impl Indexed {
@@ -164,6 +179,18 @@ impl Indexed {
         let arrays: Vec<String> = kept.iter().map(|array| array.name.clone()).collect();
         let names: BTreeSet<String> = arrays.into_iter().collect();
         Some(Message::Tangents { arrays: names.into_iter().collect(), bytes: 8 * numbers, most })
+    }
+
+    /// Whether a constraint on velocities has a part without velocities: it does work.
+    fn is_driven(&self) -> bool {
+        let moves = |read: &Read| matches!(read, Read::Velocity | Read::LetRate(_));
+        self.constraints.iter().filter(|sum| !sum.body.reads.iter().any(moves)).any(|sum| {
+            let mut is_driven = false;
+            for nest in &sum.nests {
+                nest.each(&mut |all| is_driven |= !self.model.constraints[all[0]].is_holonomic);
+            }
+            is_driven
+        })
     }
 
     /// Whether at least a quarter of the second derivatives are not zero. Straight lines have solvers for fewer.
@@ -203,7 +230,8 @@ impl Indexed {
             };
             own + body.values.iter().map(of_value).sum::<usize>()
         };
-        let sums = self.lagrangian.iter().flat_map(|sum| sum.nests.iter().map(|nest| nest.rows() * of(&sum.body)));
+        let sums = self.lagrangian.iter().chain(&self.constraints);
+        let sums = sums.flat_map(|sum| sum.nests.iter().map(|nest| nest.rows() * of(&sum.body)));
         let rows = self.recursions.iter().flat_map(|Recursion { parts, nest }| {
             parts.iter().map(|part| nest.rows() * (of(&part.body) + 2 * dimension * part.of.len()))
         });
@@ -232,10 +260,10 @@ fn is_separable(pool: &mut Pool<Symbol>, recursions: &[Recursion], lagrangian: &
     })
 }
 
-/// Whether the velocity of each coordinate has a second derivative of L, itself or through a rate: straight lines report
-/// others.
-fn has_masses(dimension: usize, recursions: &[Recursion], lagrangian: &[Sum]) -> bool {
-    let mut has_mass = vec![false; dimension];
+/// Whether the velocity of each coordinate has a second derivative of L, itself or through a rate, or is in `known`:
+/// straight lines report others.
+fn has_masses(known: Vec<bool>, recursions: &[Recursion], lagrangian: &[Sum]) -> bool {
+    let mut has_mass = known;
     let mut see = |body: &Body, value: &Value, place: usize, columns: &[usize]| {
         if body.reads[value.states[place]] == Read::Velocity {
             has_mass[columns[value.states[place]]] = true;
@@ -262,9 +290,9 @@ fn has_masses(dimension: usize, recursions: &[Recursion], lagrangian: &[Sum]) ->
     has_mass.into_iter().all(|has_mass| has_mass)
 }
 
-/// For each coordinate, whether nothing reads it and no force acts on it.
-fn cyclic(dimension: usize, recursions: &[Recursion], lagrangian: &[Sum], force: &[Sum]) -> Vec<bool> {
-    let mut cyclic = vec![true; dimension];
+/// For each coordinate, whether nothing reads it, and no force and no reaction acts on it.
+fn cyclic(reacts: &[bool], recursions: &[Recursion], lagrangian: &[Sum], force: &[Sum]) -> Vec<bool> {
+    let mut cyclic: Vec<bool> = reacts.iter().map(|reacts| !reacts).collect();
     let mut see = |reads: &[Read], columns: &[usize]| {
         let read = reads.iter().zip(columns).filter(|(read, _)| **read == Read::Coordinate);
         read.for_each(|(_, column)| cyclic[*column] = false);
@@ -409,6 +437,15 @@ struct Group {
     shape: Shape,
     /// The numbers before those that a term reads, and these; with its coefficient.
     rows: Vec<(Vec<usize>, Rational)>,
+}
+
+/// The terms of several sums; the first number of an instance is the place of its sum.
+fn sums_of_each(pool: &mut Pool<Symbol>, exprs: &[Expr], twice: bool) -> Option<Vec<Sum>> {
+    let mut terms = Vec::new();
+    for (place, expr) in exprs.iter().enumerate() {
+        terms.extend(summands(pool, *expr).into_iter().map(|term| (vec![place], term)));
+    }
+    sums(pool, terms, twice)
 }
 
 /// The terms grouped by their shapes, in the order of their first terms; each with the numbers before those that it

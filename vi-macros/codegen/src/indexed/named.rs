@@ -18,6 +18,8 @@ pub(crate) enum Quantity<'a> {
     Lagrangian,
     /// Terms of components of f.
     Force,
+    /// Terms of constraints.
+    Constraint,
 }
 
 /// A body with the name of its function and its loops.
@@ -27,7 +29,7 @@ pub(crate) struct NamedBody<'a> {
     pub(crate) quantity: Quantity<'a>,
     pub(crate) body: &'a Body,
     pub(crate) nests: &'a [Nest],
-    /// The first of its columns: the entries or the component that a row computes, then what it reads.
+    /// The first of its columns: the entries, the component or the constraint that a row computes, then what it reads.
     pub(crate) first: usize,
 }
 
@@ -43,7 +45,11 @@ pub(crate) fn named(of: &Indexed) -> Vec<NamedBody<'_>> {
             first: *first,
         }));
     }
-    let sums = [("lagrangian", Quantity::Lagrangian, &of.lagrangian), ("force", Quantity::Force, &of.force)];
+    let sums = [
+        ("lagrangian", Quantity::Lagrangian, &of.lagrangian),
+        ("force", Quantity::Force, &of.force),
+        ("constraint", Quantity::Constraint, &of.constraints),
+    ];
     for (name, quantity, sums) in sums {
         named.extend(sums.iter().enumerate().map(|(index, Sum { body, nests })| NamedBody {
             name: sum_name(name, index),
@@ -62,7 +68,7 @@ pub(crate) fn part_name(parts: &[Part], recursion: usize, part: usize) -> String
     if parts.len() == 1 { name } else { format!("{name}_{}", part + 1) }
 }
 
-/// The name of the function of a sum of L or f.
+/// The name of the function of a sum of L, f or the constraints.
 pub(crate) fn sum_name(of: &str, sum: usize) -> String {
     format!("{of}_{}", sum + 1)
 }
@@ -73,12 +79,13 @@ impl NamedBody<'_> {
         self.nests.iter().map(Nest::rows).sum()
     }
 
-    /// The arrays of the numbers that a row computes, by column: entries, or the component of a force.
+    /// The arrays of the numbers that a row computes, by column: entries, the component of a force, or a constraint.
     pub(crate) fn computed(&self) -> &[Read] {
         match self.quantity {
             Quantity::Entries(of) => of,
             Quantity::Lagrangian => &[],
             Quantity::Force => &[Read::Coordinate],
+            Quantity::Constraint => &[Read::Constraint],
         }
     }
 
@@ -119,6 +126,9 @@ impl NamedBody<'_> {
         match self.quantity {
             Quantity::Lagrangian => format!("term of L: {}", values.collect::<String>()),
             Quantity::Force => format!("term of f_{}: {}", computed.concat(), values.collect::<String>()),
+            Quantity::Constraint => {
+                format!("term of the constraint {}: {}", computed.concat(), values.collect::<String>())
+            }
             Quantity::Entries(_) => {
                 let entries = computed.iter().zip(values).map(|(entry, value)| format!("{entry} = {value}"));
                 entries.collect::<Vec<_>>().join("; ")
@@ -136,5 +146,6 @@ fn spell(model: &Model, read: Read, column: usize) -> String {
         Read::LetRate(array) => model.spell(&Symbol::LetRate(LetEntry { array, entry: column })),
         Read::Parameter(first) => model.spell(&Symbol::Parameter { index: first + column, array: Some(first) }),
         Read::Number => column.to_string(),
+        Read::Constraint => model.constraints[column].text(),
     }
 }

@@ -1,7 +1,10 @@
 //! The properties of a large system that the generator found, in words.
 
 use super::{Indexed, Sum, named};
-use crate::findings::{cyclic_in_words, derivatives_in_words, energy_in_words};
+use crate::findings::{
+    constrained_energy_in_words, constrained_smoothness_in_words, constraint_names, constraints_in_words,
+    cyclic_in_words, derivatives_in_words, energy_in_words,
+};
 use crate::model::Coordinate;
 
 /// The properties of a large system that the generator found, one per line, with formulas between backticks: for the
@@ -14,7 +17,13 @@ pub fn documentation(of: &Indexed) -> Vec<String> {
 /// The same; `name` names a coordinate.
 pub(crate) fn properties(of: &Indexed, name: &dyn Fn(&Coordinate) -> String) -> Vec<String> {
     let model = &of.model;
-    let mut lines = vec![energy_in_words(of.autonomous, model.forced).to_owned()];
+    let is_constrained = !model.constraints.is_empty();
+    let energy = if is_constrained {
+        constrained_energy_in_words(of.autonomous, model.forced, of.is_driven())
+    } else {
+        energy_in_words(of.autonomous, model.forced)
+    };
+    let mut lines = vec![energy.to_owned()];
     let cyclic: Vec<usize> = (0..model.dimension()).filter(|index| of.cyclic[*index]).collect();
     if !cyclic.is_empty() {
         lines.push(cyclic_in_words(&in_ranges(&model.coordinates, &cyclic, name), cyclic.len()));
@@ -26,17 +35,23 @@ pub(crate) fn properties(of: &Indexed, name: &dyn Fn(&Coordinate) -> String) -> 
     } else {
         "The mass matrix depends on the velocity".to_owned()
     });
-    lines.extend(model.smoothness.as_ref().map(derivatives_in_words));
+    let smoothness = if is_constrained { constrained_smoothness_in_words } else { derivatives_in_words };
+    lines.extend(model.smoothness.as_ref().map(smoothness));
+    lines.extend(constraints_in_words(&constraint_names(model)));
     let loops = |sums: &[Sum]| sums.iter().map(|sum| sum.nests.len()).sum::<usize>();
     let loops = [
         (of.recursions.len(), "over recursions"),
         (loops(&of.lagrangian), "over terms of `L`"),
         (loops(&of.force), "over terms of `f`"),
+        (loops(&of.constraints), "over terms of constraints"),
     ];
     let loops = loops.iter().filter(|(count, _)| *count > 0).map(|(count, over)| format!("{count} {over}"));
     let (loops, functions) = (loops.collect::<Vec<_>>().join(", "), named(of).len());
     let noun = if functions == 1 { "function" } else { "functions" };
     lines.push(format!("Loops: {loops}; {functions} {noun} of one row"));
+    if is_constrained {
+        lines.push("The matrix of a step is dense; solved by elimination with pivoting".to_owned());
+    }
     if model.rule.is_some() {
         lines.push("`A` is dense; solved by elimination with pivoting".to_owned());
     }

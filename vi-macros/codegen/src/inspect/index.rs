@@ -60,8 +60,9 @@ pub(super) fn read(model: &Model, read: Read, column: Affine, counters: &[[i64; 
     let Some((name, indices)) = array(model, read, column, counters) else {
         let index = affine(column, "*");
         let index = if index.contains([' ', '*']) { format!("({index})") } else { index };
-        let latex = accented(Name::of("q")).with(affine(column, " ")).text();
-        return Both { text: rate(format!("q_{index}")), latex };
+        let letter = if read == Read::Constraint { "c" } else { "q" };
+        let latex = accented(Name::of(letter)).with(affine(column, " ")).text();
+        return Both { text: rate(format!("{letter}_{index}")), latex };
     };
     let text = indices.iter().fold(name.clone(), |text, index| format!("{text}[{}]", affine(*index, "*")));
     let latex = indices.iter().fold(accented(Name::of(&name)), |name, index| name.with(affine(*index, " "))).text();
@@ -70,7 +71,7 @@ pub(super) fn read(model: &Model, read: Read, column: Affine, counters: &[[i64; 
 
 /// Whether the number has a name of the user.
 pub(super) fn has_name(model: &Model, read: Read, column: Affine, counters: &[[i64; 2]]) -> bool {
-    read == Read::Number || array(model, read, column, counters).is_some()
+    matches!(read, Read::Number | Read::Constraint) || array(model, read, column, counters).is_some()
 }
 
 /// The name of the array that contains all these numbers, and their indices in it; none for a scalar.
@@ -93,6 +94,22 @@ fn array(model: &Model, read: Read, column: Affine, counters: &[[i64; 2]]) -> Op
             let name = &model.parameters.get(first)?.name;
             let count = model.parameters.iter().filter(|parameter| parameter.name == *name).count();
             (name.to_string(), 0, vec![count])
+        }
+        Read::Constraint => {
+            let constraints = &model.constraints;
+            let at = usize::try_from(column.at(*counters.first()?)).ok()?;
+            let name = &constraints.get(at)?.name;
+            let first = constraints.iter().position(|constraint| constraint.name == *name)?;
+            let of_name: Vec<_> = constraints.iter().filter(|constraint| constraint.name == *name).collect();
+            return match &of_name[..] {
+                [alone] if alone.indices.is_empty() => Some((name.to_string(), Vec::new())),
+                entries => {
+                    let [start] = entries.first()?.indices[..] else { return None };
+                    let is_range = (start..).zip(entries).all(|(index, entry)| entry.indices == [index]);
+                    let constant = column.constant - i64::try_from(first).ok()? + start;
+                    is_range.then(|| (name.to_string(), vec![Affine { constant, ..column }]))
+                }
+            };
         }
         Read::Number => return None,
     };

@@ -4,7 +4,7 @@
 
 use super::explanation::{Line, Section};
 use super::index::{self, Both, COUNTERS, affine};
-use super::{functions, latex, model, name, program, syntax};
+use super::{functions, gauss, latex, model, name, program, syntax};
 use crate::Loops;
 use crate::indexed::{self, NamedBody, Quantity};
 use crate::indexed::{Affine, Nest, Value};
@@ -28,12 +28,16 @@ pub(super) fn model(system: &System, of: &Loops) -> Vec<Section> {
         latex: format!("Coordinates {}", in_latex.join(", ")),
     }];
     lines.extend(model.fields().map(|field| parameter(model, field)));
-    lines.push(Line::words(format!("rule {}", model::title(model))));
+    if model.constraints.is_empty() {
+        lines.push(Line::words(format!("rule {}", model::title(model))));
+    }
     let written = syntax::equations(system).into_iter().map(Line::words).collect();
-    let mut sections = vec![
-        Section { title: "System", lines },
-        Section { title: "Named parts, Lagrangian L and force f, as written", lines: written },
-    ];
+    let title = if model.constraints.is_empty() {
+        "Named parts, Lagrangian L and force f, as written"
+    } else {
+        "Named parts, Lagrangian L, force f and constraints, as written"
+    };
+    let mut sections = vec![Section { title: "System", lines }, Section { title, lines: written }];
     sections.extend(functions::sections(model));
     sections
 }
@@ -70,7 +74,7 @@ fn parameter(model: &Model, field: &[Parameter]) -> Line {
 
 /// Recursions, then L and f as sums.
 pub(super) fn sums(of: &Loops) -> Vec<Section> {
-    let (mut recursions, mut terms, mut forces) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut recursions, mut terms, mut forces, mut constraints) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut count = 0;
     for named in &indexed::named(&of.indexed) {
         match named.quantity {
@@ -79,7 +83,8 @@ pub(super) fn sums(of: &Loops) -> Vec<Section> {
                 count += 1;
                 terms.push(term(of, named, count));
             }
-            Quantity::Force => forces.extend(named.nests.iter().flat_map(|nest| force(of, named, nest))),
+            Quantity::Force => forces.extend(named.nests.iter().flat_map(|nest| part(of, named, nest, "f_"))),
+            Quantity::Constraint => constraints.extend(named.nests.iter().flat_map(|nest| part(of, named, nest, ""))),
         }
     }
     let numbered = |letter: &str, index: &dyn Fn(usize) -> String| {
@@ -108,6 +113,9 @@ pub(super) fn sums(of: &Loops) -> Vec<Section> {
     sections.push(Section { title: "Lagrangian L as sums", lines: terms });
     if !forces.is_empty() {
         sections.push(Section { title: "Force f, the sum of these terms", lines: forces });
+    }
+    if !constraints.is_empty() {
+        sections.push(Section { title: "Constraints, each the sum of these terms, which is 0", lines: constraints });
     }
     sections
 }
@@ -243,14 +251,14 @@ fn summed(nest: &Nest, value: Both, is_sum: bool) -> Both {
     Both { text: format!("sum({}, {})", ranges_text(nest), value.text), latex: signs.collect::<String>() + &latex }
 }
 
-/// Terms of components of f.
-fn force(of: &Loops, named: &NamedBody, nest: &Nest) -> Vec<Line> {
+/// Terms of components of f, or of constraints.
+fn part(of: &Loops, named: &NamedBody, nest: &Nest, prefix: &str) -> Vec<Line> {
     let (row, rows) = (Row::new(of, named, nest), in_each_row(nest));
     let line = |(on, value): (&Both, &Value)| {
         let value = row.value(of, value);
         Line::Words {
-            text: format!("f_{} += {}{}", on.text, value.text, rows.text),
-            latex: format!("`f_{{{}}} \\mathrel{{+}}= {}{}`", on.latex, value.latex, rows.latex),
+            text: format!("{prefix}{} += {}{}", on.text, value.text, rows.text),
+            latex: format!("`{prefix}{{{}}} \\mathrel{{+}}= {}{}`", on.latex, value.latex, rows.latex),
         }
     };
     row.computed.iter().zip(&named.body.values).map(line).collect()
@@ -269,12 +277,27 @@ pub(super) fn discrete(of: &Loops) -> Vec<Section> {
     let motion = vec![
         line(["p", "L_v"], ["p", "L_v"]),
         line(["E", "v·L_v - L"], ["E", "v \\cdot L_v - L"]),
-        line(
-            ["a", &format!("L_vv^-1*({sum}{of_time} - L_vq*v)")],
-            ["a", &format!("L_{{vv}}^{{-1}} ({sum}{of_time_latex} - L_{{vq}} v)")],
-        ),
+        if model.constraints.is_empty() {
+            line(
+                ["a", &format!("L_vv^-1*({sum}{of_time} - L_vq*v)")],
+                ["a", &format!("L_{{vv}}^{{-1}} ({sum}{of_time_latex} - L_{{vq}} v)")],
+            )
+        } else {
+            line(
+                ["L_vv*dv/dt", &format!("{sum}{of_time} - L_vq*v + A^T*Λ, with d/dt(A*v + a) = 0")],
+                [
+                    "L_{vv} \\, \\dot{v}",
+                    &format!(
+                        "{sum}{of_time_latex} - L_{{vq}} v + A^T \\Lambda, \\quad \\frac{{d}}{{dt}} (A v + a) = 0"
+                    ),
+                ],
+            )
+        },
     ];
     let motion = Section { title: "Motion, from first and second derivatives of L and f", lines: motion };
+    if !model.constraints.is_empty() {
+        return vec![motion, gauss::constrained()];
+    }
     if model.rule.is_none() {
         let lines = vec![Line::words("None: the system is declared without a rule and takes Gauss steps")];
         return vec![motion, Section { title: "Discrete Lagrangian", lines }];
@@ -361,6 +384,7 @@ fn function(of: &Loops, named: &NamedBody) -> String {
             Quantity::Entries(_) => computed("=", ""),
             Quantity::Lagrangian => "L += value".to_owned(),
             Quantity::Force => computed("+=", "f_"),
+            Quantity::Constraint => computed("+=", ""),
         };
         let rows = in_each_row(nest).text;
         let rows = rows.strip_prefix(' ').map_or_else(|| "one row".to_owned() + &rows, str::to_owned);

@@ -107,6 +107,10 @@ pub fn explain_gauss(tokens: TokenStream, stages: usize) -> Result<Explanation> 
         Compiled::Lines(derivations) => derivations.own,
         Compiled::Loops(mut of) => {
             let mut sections = loops::model(&system, &of);
+            if !of.indexed.model.constraints.is_empty() {
+                sections.push(gauss::constrained());
+                return Ok(titled(&of, sections));
+            }
             sections.extend(gauss::of_loops(&mut of.pool, of.indexed.model.forced, stages));
             return Ok(titled(&of, sections));
         }

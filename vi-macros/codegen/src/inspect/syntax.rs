@@ -28,7 +28,6 @@ pub(super) fn text(system: &System) -> String {
     }));
     lines.extend(system.tables.iter().map(table));
     lines.extend(equations(system));
-    lines.extend(system.constraints.iter().map(|of| format!("constraint {}", definition(of))));
     lines.extend(system.time_scales.iter().map(definition));
     for discretization in &system.discretizations {
         match discretization {
@@ -46,7 +45,7 @@ pub(super) fn text(system: &System) -> String {
     format!("struct {} {{\n    {}\n}}\n", system.name, lines.join("\n    "))
 }
 
-/// The definitions of the named parts, of L and of the forces.
+/// The definitions of the named parts, of L, of the forces and of the constraints.
 pub(super) fn equations(system: &System) -> Vec<String> {
     let mut lines: Vec<String> = system.lets.iter().map(|of| format!("let {}", definition(of))).collect();
     lines.extend(system.lagrangians.iter().map(definition));
@@ -54,6 +53,7 @@ pub(super) fn equations(system: &System) -> Vec<String> {
     lines.extend(system.torques.iter().map(|of| format!("torque {}", definition(of))));
     lines.extend(system.space_torques.iter().map(|of| format!("space_torque {}", definition(of))));
     lines.extend(system.dissipations.iter().map(definition));
+    lines.extend(system.constraints.iter().map(|of| format!("constraint {}", definition(of))));
     lines
 }
 

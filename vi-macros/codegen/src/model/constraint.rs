@@ -12,6 +12,7 @@
 
 use super::context::Context;
 use super::force::{over, path};
+use super::lets::Closed;
 use super::mass::{self, MARGIN, POINTS};
 use super::rotation;
 use super::scope::{Meaning, Scope};
@@ -39,8 +40,10 @@ pub struct Constraint {
     pub name: Ident,
     /// Its indices in an array; none outside.
     pub indices: Vec<i64>,
-    /// g(t, q), or A v + a.
+    /// g(t, q), or A v + a, by coordinates.
     pub value: Expr,
+    /// The same with entries of arrays of `let`s, if these stay symbols.
+    pub written: Expr,
     /// Whether it constrains positions.
     pub is_holonomic: bool,
 }
@@ -126,6 +129,8 @@ pub(super) fn constraints(context: &mut Context, lines: &[Definition], coordinat
     // Whether the name is that of an array.
     let mut declared: BTreeMap<String, bool> = BTreeMap::new();
     let (mut found, mut names) = (rotation::constraints(context.pool, coordinates), BTreeSet::new());
+    let lets = context.scope.kept.as_deref().filter(|_| !lines.is_empty()).unwrap_or_default();
+    let closed = Closed::of(context.pool, lets);
     for line in lines {
         let (name, is_array) = (line.name.to_string(), !line.indices.is_empty());
         let mistake = |mistake| error(line.name.span(), &Message::Constraint(mistake));
@@ -140,7 +145,7 @@ pub(super) fn constraints(context: &mut Context, lines: &[Definition], coordinat
             }
             declared.insert(name, is_array);
         }
-        let made = entries(context, line);
+        let made = entries(context, &closed, line);
         for constraint in context.report(made).unwrap_or_default() {
             let text = constraint.text();
             let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Coordinate(_)));
@@ -182,25 +187,28 @@ pub(super) fn check_clauses(context: &mut Context, system: &System) {
 }
 
 /// The constraints of a line: one for each number of each entry.
-fn entries(context: &mut Context, line: &Definition) -> Result<Vec<Constraint>> {
+fn entries(context: &mut Context, closed: &Closed, line: &Definition) -> Result<Vec<Constraint>> {
     let Context { scope, pool, .. } = context;
     let mut made = Vec::new();
     over(scope, pool, &line.indices, &mut Vec::new(), &mut |scope, pool, at| {
-        let value = scope.value(pool, &line.value)?;
+        let written = scope.value(pool, &line.value)?;
+        let value = written.clone().map(|entry| closed.expression(pool, entry));
         let of_entry: Vec<i64> = path(scope, pool, &line.indices, at)?.into_iter().map(|(index, _)| index).collect();
         if matches!(value, Value::Wrong(_)) {
             return Ok(());
         }
         if !value.entries().iter().all(|entry| is_linear(pool, *entry)) {
-            let wrong = nonlinear(scope, pool, &line.value).unwrap_or(&line.value);
+            let wrong = nonlinear(scope, pool, closed, &line.value).unwrap_or(&line.value);
             return Err(error(wrong.span, &Message::Constraint(ConstraintMistake::Nonlinear)));
         }
-        for (place, entry) in indices(value.shape()).into_iter().zip(value.entries()) {
+        let places = indices(value.shape()).into_iter();
+        for ((place, entry), written) in places.zip(value.entries()).zip(written.entries()) {
             let place = place.into_iter().filter_map(|index| i64::try_from(index).ok());
             made.push(Constraint {
                 name: line.name.clone(),
                 indices: of_entry.iter().copied().chain(place).collect(),
                 value: *entry,
+                written: *written,
                 is_holonomic: !pool.depends_on(*entry, &is_velocity),
             });
         }
@@ -210,7 +218,12 @@ fn entries(context: &mut Context, line: &Definition) -> Result<Vec<Constraint>> 
 }
 
 /// The first term that is not linear in the velocities.
-fn nonlinear<'e>(scope: &mut Scope, pool: &mut Pool<Symbol>, written: &'e Expression) -> Option<&'e Expression> {
+fn nonlinear<'e>(
+    scope: &mut Scope,
+    pool: &mut Pool<Symbol>,
+    closed: &Closed,
+    written: &'e Expression,
+) -> Option<&'e Expression> {
     let is_sum = |rest: &[(Operator, Expression)]| {
         rest.iter().all(|(operator, _)| matches!(operator, Operator::Plus | Operator::Minus))
     };
@@ -222,10 +235,10 @@ fn nonlinear<'e>(scope: &mut Scope, pool: &mut Pool<Symbol>, written: &'e Expres
         Kind::List(entries) => entries.iter().collect(),
         _ => Vec::new(),
     };
-    if let Some(part) = parts.into_iter().find_map(|part| nonlinear(scope, pool, part)) {
+    if let Some(part) = parts.into_iter().find_map(|part| nonlinear(scope, pool, closed, part)) {
         return Some(part);
     }
-    let value = scope.value(pool, written).ok()?;
+    let value = scope.value(pool, written).ok()?.map(|entry| closed.expression(pool, entry));
     let wrong = value.entries().iter().any(|entry| !is_linear(pool, *entry));
     wrong.then_some(written)
 }

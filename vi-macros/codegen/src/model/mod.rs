@@ -33,6 +33,7 @@ pub use check_state::CheckState;
 pub use constraint::Constraint;
 pub use function::{Function, FunctionKind};
 pub use lets::LetArray;
+pub(crate) use lets::rate;
 pub use point::Point;
 pub(crate) use rotation::COMPONENTS;
 pub use rule::{DiscreteForces, Rule};

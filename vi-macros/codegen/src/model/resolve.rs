@@ -5,6 +5,7 @@
 //! vectors.
 
 use super::condition::CHOICES;
+use super::lets::rate;
 use super::point::Point;
 use super::scope::{Meaning, Scope};
 use super::value::{Value, brackets, not_a_number, spelled};
@@ -431,15 +432,7 @@ impl Scope {
             };
             return Err(error(argument.span, &Message::Acceleration { name }));
         }
-        let mut of_symbol = |pool: &mut Pool<Symbol>, symbol: &Symbol| match symbol {
-            Symbol::Continuous(Variable::Time) => pool.one(),
-            Symbol::Continuous(Variable::Coordinate(index)) => {
-                pool.symbol(Symbol::Continuous(Variable::Velocity(*index)))
-            }
-            Symbol::Let(entry) => pool.symbol(Symbol::LetRate(*entry)),
-            _ => pool.zero(),
-        };
-        Ok(value.map(|entry| pool.derivative(entry, &mut of_symbol)))
+        Ok(value.map(|entry| rate(pool, entry)))
     }
 
     /// Whether a name denotes numbers independent of time and state.

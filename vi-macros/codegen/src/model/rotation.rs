@@ -138,10 +138,12 @@ pub(super) fn constraints(pool: &mut Pool<Symbol>, coordinates: &[Coordinate]) -
         let components = symbols(pool, first, Variable::Coordinate);
         let (square, one) = (inner(pool, components, components), pool.one());
         let indices = of.indices.split_last().map(|(_, array)| array).unwrap_or_default();
+        let value = pool.sub(square, one);
         Constraint {
             name: of.name.clone(),
             indices: indices.iter().filter_map(|index| i64::try_from(*index).ok()).collect(),
-            value: pool.sub(square, one),
+            value,
+            written: value,
             is_holonomic: true,
         }
     };

@@ -10,6 +10,7 @@
 //! L_q and L_v follow by one reverse sweep: recursions forward, terms of L, recursions backward. Second derivatives carry
 //! a tangent of every coordinate along: rows of N numbers, contiguous, for each entry of a recursion.
 
+mod constrained;
 mod first;
 mod second;
 mod traits;
@@ -38,14 +39,18 @@ pub fn items(loops: &Loops) -> TokenStream {
     let printer = Printer { of, model };
     let (functions, parameters) = (functions::items(model), structure::parameters(model));
     let (bodies, lagrangian, primitives) = (printer.bodies(pool), printer.lagrangian(), printer.primitives());
-    let (collocation, convertible) = (printer.collocation(), structure::convertible(model, of.separable));
+    let motion = if model.constraints.is_empty() {
+        let (collocation, convertible) = (printer.collocation(), structure::convertible(model, of.separable));
+        quote!(#collocation #convertible)
+    } else {
+        printer.constrained()
+    };
     let steps = model.rule.as_ref().map(|_| {
         let (slots, stepping) = (printer.slots(), printer.stepping());
         let (discretized, batch) = (structure::discretized(model, None), structure::batch(model));
         quote!(#slots #stepping #discretized #batch)
     });
-    let implementations =
-        quote!(#functions #parameters #bodies #lagrangian #primitives #collocation #convertible #steps);
+    let implementations = quote!(#functions #parameters #bodies #lagrangian #primitives #motion #steps);
     let conditions: Vec<_> = conditions(&model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests_of_loops(of, &conditions);
@@ -108,7 +113,7 @@ impl Printer<'_> {
             Read::LetRate(array) => format_ident!("rate_{}", self.model.lets[array].name),
             Read::Coordinate => format_ident!("q"),
             Read::Velocity => format_ident!("v"),
-            Read::Number => format_ident!("number"),
+            Read::Number | Read::Constraint => format_ident!("number"),
             Read::Parameter(first) => self.model.parameters[first].name.clone(),
         }
     }
@@ -227,6 +232,16 @@ impl Printer<'_> {
             }
         }
         loops
+    }
+
+    /// Adds the values of these sums to the entries of a vector.
+    fn summed(&self, name: &str, sums: &[Sum], to: &Ident) -> TokenStream {
+        let entries = sums.iter().any(|sum| sum.body.reads_entries()).then(|| self.entries());
+        let sums = Self::over_sums(name, sums, 1, &|of| {
+            let (name, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
+            quote!(#to[#on] += self.#name(t, #numbers)[0];)
+        });
+        quote!(#entries #sums)
     }
 
     /// Loops over all recursions.

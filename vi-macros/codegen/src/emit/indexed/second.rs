@@ -1,7 +1,7 @@
 //! Second derivatives: the sweep of first derivatives with a tangent of every coordinate.
 
 use super::{BOTH, Defined, Printed, Printer, SEEDS, Target, WEIGHTS, add_row, curvature, name, slope};
-use crate::indexed::Value;
+use crate::indexed::{Sum, Value};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -85,23 +85,48 @@ impl Printer<'_> {
     }
 
     pub(super) fn second_derivatives(&self) -> TokenStream {
+        let (dimension, [r_q, r_v], [c_q, c_v]) = (self.dimension(), &SEEDS.map(name), &WEIGHTS.map(name));
+        let statements = self.curvatures("lagrangian", &self.of.lagrangian, None);
+        quote! {
+            fn second_derivatives(
+                &self,
+                t: T,
+                q: &::vi_core::SVector<T, #dimension>,
+                v: &::vi_core::SVector<T, #dimension>,
+                [#r_q, #r_v]: [T; 2],
+                [#c_q, #c_v]: [T; 2],
+            ) -> ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension> {
+                #statements
+            }
+        }
+    }
+
+    /// The second derivatives of these sums. With `weights`, each is multiplied by one of these: the first number of a
+    /// row is its place.
+    pub(super) fn curvatures(&self, of: &str, sums: &[Sum], weights: Option<&Ident>) -> TokenStream {
         let dimension = self.dimension();
         let seeds = SEEDS.map(name);
         let tangents = self.tangents([&seeds[0], &seeds[1]]);
         let bars = self.zeros("bar_", &quote!(real(0.0)));
         let bar_tangents = self.zeros("bar_tangent_", &quote!([real(0.0); #dimension]));
-        let terms = Self::over_sums("lagrangian", &self.of.lagrangian, 0, &|of| {
+        let first = usize::from(weights.is_some());
+        let terms = Self::over_sums(of, sums, first, &|of| {
             let value = &of.body.values[0];
+            let factor = weights.map(|weights| {
+                let on = (of.place)(0);
+                quote!(#weights[#on] *)
+            });
+            let factor = factor.unwrap_or_default();
             let bars = of.states(value).filter(|(_, read, _)| read.is_entry()).map(|(place, read, index)| {
                 let (bar, slope) = (format_ident!("bar_{}", self.array(read)), curvature(value, place));
-                quote!(#bar[#index] += #slope;)
+                quote!(#bar[#index] += #factor #slope;)
             });
             let bars: TokenStream = bars.collect();
             if value.pairs.is_empty() && bars.is_empty() {
                 return TokenStream::new();
             }
             let (name, numbers) = (format_ident!("{}_curvatures", of.name), self.numbers(of));
-            let curved = self.curved(of, value, &TokenStream::new());
+            let curved = self.curved(of, value, &factor);
             quote! {
                 let curvatures = self.#name(t, #numbers);
                 #bars
@@ -142,57 +167,28 @@ impl Printer<'_> {
                 #(#each)*
             }
         });
-        let [r_q, r_v] = &seeds;
-        let [c_q, c_v] = &WEIGHTS.map(name);
-        let both = name(BOTH);
+        let ([r_q, _], [c_q, _], both) = (&seeds, &WEIGHTS.map(name), name(BOTH));
         quote! {
-            fn second_derivatives(
-                &self,
-                t: T,
-                q: &::vi_core::SVector<T, #dimension>,
-                v: &::vi_core::SVector<T, #dimension>,
-                [#r_q, #r_v]: [T; 2],
-                [#c_q, #c_v]: [T; 2],
-            ) -> ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension> {
-                let real = T::real;
-                let mut whole = ::vi_core::nalgebra::SMatrix::<T, #dimension, #dimension>::zeros();
-                // Its columns.
-                let matrix = &mut whole.data.0;
-                let #both = #c_q * #r_q;
-                #tangents
-                #bars
-                #bar_tangents
-                #terms
-                #backward
-                whole
-            }
+            let real = T::real;
+            let mut whole = ::vi_core::nalgebra::SMatrix::<T, #dimension, #dimension>::zeros();
+            // Its columns.
+            let matrix = &mut whole.data.0;
+            let #both = #c_q * #r_q;
+            #tangents
+            #bars
+            #bar_tangents
+            #terms
+            #backward
+            whole
         }
     }
 
     pub(super) fn add_force_derivatives(&self) -> TokenStream {
-        let dimension = self.dimension();
-        let [c_q, c_v] = &WEIGHTS.map(name);
-        let reads_entries = self.of.force.iter().any(|sum| sum.body.reads_entries());
-        let tangents = reads_entries.then(|| self.tangents([c_q, c_v]));
-        let terms = Self::over_sums("force", &self.of.force, 1, &|of| {
-            let (name_of, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
-            let value = &of.body.values[0];
-            let parts = of.states(value).map(|(place, read, index)| {
-                let slope = slope(value, place);
-                match self.target(read) {
-                    Target::Own(which) => {
-                        let weight = &WEIGHTS.map(name)[which];
-                        quote!(matrix[(#on, #index)] += weight * #slope * #weight;)
-                    }
-                    Target::Entry(from) => {
-                        let from = format_ident!("tangent_{from}");
-                        quote!(::vi_core::indexed::add_to_row(matrix, #on, weight * #slope, &#from[#index]);)
-                    }
-                }
-            });
-            quote! {
-                let slopes = self.#name_of(t, #numbers);
-                #(#parts)*
+        let (dimension, [c_q, c_v]) = (self.dimension(), &WEIGHTS.map(name));
+        let statements = self.rows("force", &self.of.force, &|on, index, slope| match index {
+            Column::Own(index, weight) => quote!(matrix[(#on, #index)] += weight * #slope * #weight;),
+            Column::All(tangent) => {
+                quote!(::vi_core::indexed::add_to_row(matrix, #on, weight * #slope, &#tangent);)
             }
         });
         quote! {
@@ -206,9 +202,47 @@ impl Printer<'_> {
                 matrix: &mut ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>,
             ) {
                 let real = T::real;
-                #tangents
-                #terms
+                #statements
             }
         }
     }
+
+    /// Adds the derivatives of these sums to the rows of a matrix; `add` prints a part of a row.
+    pub(super) fn rows(
+        &self,
+        of: &str,
+        sums: &[Sum],
+        add: &dyn Fn(&TokenStream, Column, &TokenStream) -> TokenStream,
+    ) -> TokenStream {
+        let weights = WEIGHTS.map(name);
+        let reads_entries = sums.iter().any(|sum| sum.body.reads_entries());
+        let tangents = reads_entries.then(|| self.tangents([&weights[0], &weights[1]]));
+        let terms = Self::over_sums(of, sums, 1, &|of| {
+            let (name_of, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
+            let value = &of.body.values[0];
+            let parts = of.states(value).map(|(place, read, index)| {
+                let column = match self.target(read) {
+                    Target::Own(which) => Column::Own(index, &weights[which]),
+                    Target::Entry(from) => {
+                        let from = format_ident!("tangent_{from}");
+                        Column::All(quote!(#from[#index]))
+                    }
+                };
+                add(&on, column, &slope(value, place))
+            });
+            quote! {
+                let slopes = self.#name_of(t, #numbers);
+                #(#parts)*
+            }
+        });
+        quote!(#tangents #terms)
+    }
+}
+
+/// The columns of a row that a slope changes.
+pub(super) enum Column<'a> {
+    /// That of a coordinate or a velocity, with its weight.
+    Own(TokenStream, &'a Ident),
+    /// All, by this row of derivatives of an entry.
+    All(TokenStream),
 }

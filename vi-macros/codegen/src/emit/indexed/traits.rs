@@ -1,9 +1,10 @@
 //! The traits of a system, each function by one of `vi_core::indexed`.
 
 use super::super::check::monotone_table_of;
+use super::super::constrained;
 use super::super::lagrangian::{Properties, implementation};
 use super::Printer;
-use crate::indexed::{Read, Sum};
+use crate::indexed::Read;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -15,35 +16,16 @@ impl Printer<'_> {
         } else {
             quote!(flow_by_iteration(self, &self.convert::<::vi_core::real::Rounded>(), t, q, p))
         };
-        let number = |name: TokenStream, value: TokenStream| {
-            quote! {
-                fn #name(&self, t: T, q: &::vi_core::SVector<T, #dimension>, v: &::vi_core::SVector<T, #dimension>) -> T {
-                    #value
-                }
-            }
-        };
-        let vector = |name: TokenStream, value: TokenStream| {
-            quote! {
-                fn #name(
-                    &self,
-                    t: T,
-                    q: &::vi_core::SVector<T, #dimension>,
-                    v: &::vi_core::SVector<T, #dimension>,
-                ) -> ::vi_core::SVector<T, #dimension> {
-                    #value
-                }
-            }
-        };
+        let number = |name: &str, value: &TokenStream| self.of_state(name, &quote!(T), value);
+        let vector =
+            |name: &str, value: &TokenStream| self.of_state(name, &quote!(::vi_core::SVector<T, #dimension>), value);
         let first = quote!(::vi_core::indexed::Indexed::first_derivatives(self, t, q, v));
-        let entries = |of: &[Sum]| {
-            let reads = of.iter().any(|sum| sum.body.reads_entries());
-            reads.then(|| self.entries())
-        };
         let value = Self::over_sums("lagrangian", &self.of.lagrangian, 0, &|of| {
             let (name, numbers) = (&of.name, self.numbers(of));
             quote!(value += self.#name(t, #numbers)[0];)
         });
-        let of_lagrangian = entries(&self.of.lagrangian);
+        let reads_entries = self.of.lagrangian.iter().any(|sum| sum.body.reads_entries());
+        let of_lagrangian = reads_entries.then(|| self.entries());
         let value = quote! {
             let real = T::real;
             let mut value = real(0.0);
@@ -51,28 +33,18 @@ impl Printer<'_> {
             #value
             value
         };
-        let of_force = entries(&self.of.force);
-        let forces = Self::over_sums("force", &self.of.force, 1, &|of| {
-            let (name, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
-            quote!(force[#on] += self.#name(t, #numbers)[0];)
-        });
+        let forces = self.summed("force", &self.of.force, &format_ident!("force"));
         let force = quote! {
             let real = T::real;
             let mut force = ::vi_core::SVector::<T, #dimension>::zeros();
-            #of_force
             #forces
             force
         };
-        let acceleration = quote! {
-            fn acceleration(
-                &self,
-                t: T,
-                q: &::vi_core::SVector<T, #dimension>,
-                v: &::vi_core::SVector<T, #dimension>,
-            ) -> ::core::result::Result<::vi_core::SVector<T, #dimension>, ::vi_core::StepError> {
-                ::vi_core::indexed::acceleration(self, t, q, v)
-            }
-        };
+        let acceleration = self.of_state(
+            "acceleration",
+            &quote!(::core::result::Result<::vi_core::SVector<T, #dimension>, ::vi_core::StepError>),
+            &quote!(::vi_core::indexed::acceleration(self, t, q, v)),
+        );
         let flow = quote! {
             fn flow(
                 &self,
@@ -83,11 +55,13 @@ impl Printer<'_> {
                 ::vi_core::indexed::#flow
             }
         };
+        let [acceleration, flow] =
+            if model.constraints.is_empty() { [acceleration, flow] } else { constrained::motion(&dimension) };
         let functions = [
-            number(quote!(lagrangian), value),
-            number(quote!(energy), quote!(::vi_core::indexed::energy(self, t, q, v))),
-            vector(quote!(momentum), quote!(#first.dv)),
-            vector(quote!(force), force),
+            number("lagrangian", &value),
+            number("energy", &quote!(::vi_core::indexed::energy(self, t, q, v))),
+            vector("momentum", &quote!(#first.dv)),
+            vector("force", &force),
             acceleration,
             flow,
         ];
@@ -132,64 +106,83 @@ impl Printer<'_> {
         }
     }
 
-    pub(super) fn collocation(&self) -> TokenStream {
+    /// The items of a diagonal mass matrix, its type, and the mass matrix at a point.
+    fn mass(&self) -> [TokenStream; 3] {
         let (name, dimension) = (&self.model.name, self.dimension());
-        let separable = self.of.separable;
-        let (diagonal, form, point) = if separable {
-            let diagonal = self.diagonal();
-            (
-                quote! {
-                    impl<T: ::vi_core::real::Real> #name<T> { #diagonal }
-                    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Separable<#dimension, T> for #name<T> {}
-                },
-                quote!(::vi_core::linear::Banded<#dimension, 1, T>),
-                quote!(::vi_core::indexed::point(self, t, q, v, self.masses(t, q, v))),
-            )
-        } else {
-            (
+        if !self.of.separable {
+            return [
                 TokenStream::new(),
                 quote!(::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>),
-                quote!(::vi_core::indexed::point(self, t, q, v, ::vi_core::indexed::mass(self, t, q, v))),
-            )
-        };
+                quote!(::vi_core::indexed::mass(self, t, q, v)),
+            ];
+        }
+        let diagonal = self.diagonal();
+        [
+            quote!(impl<T: ::vi_core::real::Real> #name<T> { #diagonal }),
+            quote!(::vi_core::linear::Banded<#dimension, 1, T>),
+            quote!(self.masses(t, q, v)),
+        ]
+    }
+
+    /// A function of (t, q, v), with this value.
+    pub(super) fn of_state(&self, function: &str, result: &TokenStream, value: &TokenStream) -> TokenStream {
+        let (function, dimension) = (format_ident!("{function}"), self.dimension());
         quote! {
-            #diagonal
+            fn #function(
+                &self,
+                t: T,
+                q: &::vi_core::SVector<T, #dimension>,
+                v: &::vi_core::SVector<T, #dimension>,
+            ) -> #result {
+                #value
+            }
+        }
+    }
+
+    /// The mass matrix, and what the traits of systems with and without constraints have in common.
+    pub(super) fn points(&self) -> [TokenStream; 2] {
+        let (dimension, is_constant) = (self.dimension(), self.of.separable);
+        let [items, form, mass] = self.mass();
+        let point = self.of_state(
+            "point",
+            &quote!(::vi_core::collocation::Point<#dimension, T, Self::Mass>),
+            &quote!(::vi_core::indexed::point(self, t, q, v, #mass)),
+        );
+        let derivatives = self.of_state(
+            "point_derivatives",
+            &quote!(::vi_core::collocation::PointDerivatives<Self::PointMatrix>),
+            &quote!(::vi_core::indexed::point_derivatives(self, t, q, v)),
+        );
+        let power = self.of_state("power", &quote!(T), &quote!(::vi_core::indexed::power(self, t, q, v)));
+        let common = quote! {
+            type Mass = #form;
+            type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
+            const CONSTANT_MASS: bool = #is_constant;
+            #point
+            #derivatives
+            #power
+        };
+        [items, common]
+    }
+
+    pub(super) fn collocation(&self) -> TokenStream {
+        let (name, dimension, separable) = (&self.model.name, self.dimension(), self.of.separable);
+        let [items, common] = self.points();
+        let sides = self.of_state(
+            "sides",
+            &quote!(::vi_core::collocation::Sides<#dimension, T>),
+            &quote!(::vi_core::indexed::sides(self, t, q, v)),
+        );
+        let splits = separable.then(
+            || quote!(impl<T: ::vi_core::real::Real> ::vi_core::collocation::Separable<#dimension, T> for #name<T> {}),
+        );
+        quote! {
+            #items
+            #splits
             impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
-                type Mass = #form;
-                type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
-                const CONSTANT_MASS: bool = #separable;
+                #common
                 const SEPARABLE: bool = #separable;
-
-                fn point(
-                    &self,
-                    t: T,
-                    q: &::vi_core::SVector<T, #dimension>,
-                    v: &::vi_core::SVector<T, #dimension>,
-                ) -> ::vi_core::collocation::Point<#dimension, T, Self::Mass> {
-                    #point
-                }
-
-                fn sides(
-                    &self,
-                    t: T,
-                    q: &::vi_core::SVector<T, #dimension>,
-                    v: &::vi_core::SVector<T, #dimension>,
-                ) -> ::vi_core::collocation::Sides<#dimension, T> {
-                    ::vi_core::indexed::sides(self, t, q, v)
-                }
-
-                fn point_derivatives(
-                    &self,
-                    t: T,
-                    q: &::vi_core::SVector<T, #dimension>,
-                    v: &::vi_core::SVector<T, #dimension>,
-                ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
-                    ::vi_core::indexed::point_derivatives(self, t, q, v)
-                }
-
-                fn power(&self, t: T, q: &::vi_core::SVector<T, #dimension>, v: &::vi_core::SVector<T, #dimension>) -> T {
-                    ::vi_core::indexed::power(self, t, q, v)
-                }
+                #sides
             }
         }
     }
@@ -251,6 +244,11 @@ impl Printer<'_> {
             of_step("discrete_energy", quote!(T)),
             rounding("momentum_rounding", quote!(::vi_core::SVector<T, #dimension>)),
         ];
+        let density = self.of_state(
+            "step_density",
+            &quote!(::core::result::Result<T, ::vi_core::StepError>),
+            &quote!(::vi_core::indexed::step_density(self, t, q, v)),
+        );
         let energy = [
             of_step("extended_system", quote!(#stepping::ExtendedSystem<#dimension, T, Self::Jacobian>)),
             of_step("extended_residual", quote!(#stepping::ExtendedResidual<#dimension, T>)),
@@ -269,14 +267,7 @@ impl Printer<'_> {
             }
 
             impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#dimension, T> for #name<T> {
-                fn step_density(
-                    &self,
-                    t: T,
-                    q: &::vi_core::SVector<T, #dimension>,
-                    v: &::vi_core::SVector<T, #dimension>,
-                ) -> ::core::result::Result<T, ::vi_core::StepError> {
-                    ::vi_core::indexed::step_density(self, t, q, v)
-                }
+                #density
 
                 #(#energy)*
             }
