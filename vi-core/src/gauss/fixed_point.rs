@@ -45,9 +45,10 @@ pub(crate) trait Equations<const N: usize, const S: usize> {
     fn has_another_way(&self) -> bool;
     /// The initial positions, from the guess of the step.
     fn start(&self) -> Stages<N, S>;
-    /// Evaluates the equations at the positions x, and writes the resulting positions to y. `contraction` is the last one
-    /// measured, in this step or before.
-    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, contraction: f64);
+    /// Evaluates the equations at the positions x, and writes the resulting positions to y. `before` has the change of
+    /// the iteration before, infinite in the first one, and the contraction that was measured last, in this step or an
+    /// earlier one.
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, before: &Convergence);
     /// The increment of the node, from the last evaluation.
     fn increment(&self) -> StageIncrement<N>;
     /// The stage values that the next step extrapolates.
@@ -183,7 +184,7 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     let mut stalls = 0;
     let mut is_last = false;
     let are_given_up = loop {
-        equations.iterate(x, y, state.contraction);
+        equations.iterate(x, y, &state);
         state.iterations += 1;
         if is_last {
             break false;

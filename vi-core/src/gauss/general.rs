@@ -11,7 +11,7 @@
 //! by the new V. If L is quadratic in v, it solves for V exactly. The change of V is the residual, because Q follows
 //! from V. Many coordinates keep the masses of an earlier iteration ([`MANY`]): a fixed point is the same.
 
-use super::fixed_point::{Equations, StageIncrement, VELOCITY};
+use super::fixed_point::{Convergence, Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
 use super::points::{ErasedSystem, Form, MANY, Points};
 use super::stages::{
@@ -27,6 +27,8 @@ use nalgebra::{SMatrix, SVector};
 
 /// Contraction up to which masses are kept. Where iterations contract less, old masses would slow them down.
 const FAST: f64 = 1.0 / 8.0;
+/// Change below which masses are kept: a part of 256 of the velocities. After a larger one they belong to other positions.
+const NEAR: f64 = VELOCITY / (256.0 * f64::EPSILON);
 
 /// The equations of a step; see the [module](self).
 pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
@@ -234,12 +236,12 @@ where
 
     /// An iteration with the mass matrix of each stage, whose inverse waits for the momenta of all stages.
     #[inline(always)]
-    fn iterate_varying(&mut self, x: &Stages<N, S>, contraction: f64) {
+    fn iterate_varying(&mut self, x: &Stages<N, S>, before: &Convergence) {
         if const { N < MANY } {
             let (missing, inverse) = self.evaluate_with_masses(x);
             return correct_by::<N, S, FUSED>(&mut self.velocity, &inverse, &missing);
         }
-        let missing = if self.kept.is_some() && contraction <= FAST {
+        let missing = if before.change < NEAR && before.contraction <= FAST {
             self.evaluate(x)
         } else {
             let (missing, inverse) = self.evaluate_with_masses(x);
@@ -285,14 +287,14 @@ where
     }
 
     #[inline(always)]
-    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, contraction: f64) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, before: &Convergence) {
         // For a known form the compiler sees one branch.
         let varies = || self.system.form() == Form::VaryingMass;
         if let Some(newton) = self.newton {
             let missing = self.evaluate(x);
             self.correct(&newton.correction(&missing));
         } else if const { Form::VaryingMass.is_known(Y::FORM) } || const { Y::FORM.is_none() } && varies() {
-            self.iterate_varying(x, contraction);
+            self.iterate_varying(x, before);
         } else {
             self.iterate_constant(x);
         }

@@ -12,7 +12,7 @@
 //! not contract, Newton iteration corrects the positions. What it corrects at the end are rounding errors of the forces,
 //! which enter the next node: they are bounded too.
 
-use super::fixed_point::{Equations, StageIncrement};
+use super::fixed_point::{Convergence, Equations, StageIncrement};
 use super::newton::Newton;
 use super::points::Points;
 use super::stages::{
@@ -139,7 +139,7 @@ where
     }
 
     #[inline(always)]
-    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, _contraction: f64) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, _before: &Convergence) {
         let rest = SVector::zeros();
         let times = times::<N, S, FUSED>(self.node, self.h);
         for i in 0..T::EVALUATIONS {

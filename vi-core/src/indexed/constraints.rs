@@ -86,8 +86,17 @@ where
         || system.constraint_derivatives(t, q, &rest, by_q),
         || system.constraint_derivatives(t, q, &rest, by_v),
     );
-    let values = system.dual().constraint_values(passing(t), &constant(q), &constant(&rest));
-    let rates = core::array::from_fn(|r| if r < S::HOLONOMIC { values[r].slope } else { values[r].value });
+    let rates = of_kinds::<K, S, N, T, _>(
+        || {
+            // Not by a derivative, which may be a product of zero and infinity.
+            if S::AUTONOMOUS {
+                return [T::zero(); K];
+            }
+            let found = system.dual().constraint_values(passing(t), &constant(q), &constant(&rest));
+            found.map(|value| value.slope)
+        },
+        || system.constraint_values(t, q, &rest),
+    );
     (gradients, rates)
 }
 
@@ -111,6 +120,9 @@ where
         },
         || system.constraint_derivatives(t, q, v, by_q),
     );
+    if S::AUTONOMOUS {
+        return (rates_dq, [T::zero(); K]);
+    }
     let rates_dt = of_kinds::<K, S, N, T, _>(
         || {
             let time = Dual { value: passing(t), slope: Dual { value: T::one(), slope: T::zero() } };

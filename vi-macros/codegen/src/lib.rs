@@ -81,10 +81,10 @@ impl Compiled {
                 (Ok(derivations), _) => Ok(Self::Lines(Box::new(derivations))),
                 (Err(error), Some(loops)) if messages::is_too_large(&error) => Ok(Self::Loops(Box::new(loops))),
                 (Err(error), _) => {
-                    // Straight lines report mistakes, but a system may be too large for their checks.
-                    let is_better =
-                        |mistake: &syn::Error| messages::is_too_large(&error) && !messages::is_too_large(mistake);
-                    Err(mistake.filter(is_better).unwrap_or(error))
+                    // Straight lines report mistakes, but may end before those of constraints.
+                    let has_ended = system.is_constrained && messages::is_too_large(&error);
+                    let mistake = mistake.filter(|mistake| has_ended && !messages::is_too_large(mistake));
+                    Err(mistake.unwrap_or(error))
                 }
             },
         }
@@ -131,17 +131,13 @@ impl Compiled {
 /// The checked system with entries of arrays of `let`s as symbols, or its mistakes; `None` if it cannot be large.
 fn large_model(system: &System) -> Option<syn::Result<(Pool<Symbol>, Model)>> {
     let has_arrays = system.coordinates.iter().any(|coordinate| !coordinate.lengths.is_empty());
-    if !has_arrays || system.rules() > 1 {
+    // A dissipation is differentiated before its `let`s are known.
+    let has_symbols = system.lets.iter().any(|of| !of.indices.is_empty());
+    if !has_arrays || system.rules() > 1 || has_symbols && !system.dissipations.is_empty() {
         return None;
     }
     let mut pool = Pool::bounded(limits::WORK);
-    let model = check::large_model(&mut pool, system);
-    // A dissipation is differentiated before its `let`s are known.
-    let is_plain = |model: &Model| system.dissipations.is_empty() || model.lets.is_empty();
-    match model {
-        Ok(model) => is_plain(&model).then_some(Ok((pool, model))),
-        Err(mistakes) => Some(Err(mistakes)),
-    }
+    Some(check::large_model(&mut pool, system).map(|model| (pool, model)))
 }
 
 impl Loops {

@@ -25,7 +25,7 @@ const CLOSED: &str = "#[vi_limit(0)] struct Closed { const N = 5; param l = 0.3,
     let x[0] = l * sin(q[0]); let x[i in 1..N] = x[i - 1] + l * sin(q[i]);
     L = sum(i in 0..N, dot(x[i])^2 + dot(q[i])^2 - g * x[i]) / 2;
     constraint up[k in 3..5] = x[k] - k * d;
-    constraint rolls = dot(x[1]) * q[3] - w * dot(q[4]) + d;
+    constraint rolls = (dot(x[1]) + d) * q[3] - w * dot(q[4]);
     check { q[0] = 1, q[1] = 1, q[2] = 1, q[3] = 1, q[4] = 1; h = 0.01; } }";
 
 fn tokens(text: &str) -> TokenStream {
@@ -95,7 +95,6 @@ fn an_explanation_shows_loops_and_what_follows_from_them() {
         "constraint up[k in 3..5] = x[k] - k * d;",
         "up[i + 3] += x[i + 3] for i in 0..2",
         "rolls += -w*dot(q[4])",
-        "rolls += d",
         "L_vv*dv/dt = L_q - L_vq*v + A^T*Λ, with d/dt(A*v + a) = 0",
         "p1 = p_minus + A_1^T*μ",
         "Autonomous; no force acts, but a constraint does work",

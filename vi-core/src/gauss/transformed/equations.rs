@@ -12,7 +12,7 @@
 //! One iteration evaluates everything at (T, Q, V, E), corrects V by `M⁻¹ (P − L_v)` with the momenta P from P', and
 //! moves T, Q and E by the new g, V and E'.
 
-use super::super::fixed_point::{Equations, StageIncrement, VELOCITY};
+use super::super::fixed_point::{Convergence, Equations, StageIncrement, VELOCITY};
 use super::super::newton::Newton;
 use super::super::stages::{
     Roundings, Stages, change, constant_mass, growth, product, roundings, scaled, set, stage, weights,
@@ -312,7 +312,7 @@ where
     }
 
     #[inline(always)]
-    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, _contraction: f64) {
+    fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, _before: &Convergence) {
         let correction = match self.newton {
             Some(newton) => newton.correction(&self.evaluate(x, |_, _| {})),
             None if Y::CONSTANT_MASS => self.by_constant_mass(x),

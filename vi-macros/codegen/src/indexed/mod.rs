@@ -72,6 +72,8 @@ pub struct Indexed {
     pub force: Vec<Sum>,
     /// The terms of the constraints; the first number of an instance is the constraint.
     pub constraints: Vec<Sum>,
+    /// Whether a constraint on velocities has a part without velocities: it does work.
+    pub driven: bool,
 }
 
 /// Entries of arrays of `let`s, and their rates, in one loop.
@@ -142,6 +144,9 @@ fn statements(pool: &mut Pool<Symbol>, model: Model) -> Option<Indexed> {
     if !has_masses(reacts.clone(), &recursions, &lagrangian) {
         return None;
     }
+    let of_velocities = model.constraints.iter().filter(|constraint| !constraint.is_holonomic);
+    let rests: Vec<Expr> = of_velocities.map(|constraint| constraint.rest(pool)).collect();
+    let driven = rests.iter().any(|rest| !pool.is_zero(*rest));
     let cyclic = cyclic(&reacts, &recursions, &lagrangian, &force);
     let separable = is_separable(pool, &recursions, &lagrangian, &force);
     bounded(pool).ok()?;
@@ -155,6 +160,7 @@ fn statements(pool: &mut Pool<Symbol>, model: Model) -> Option<Indexed> {
         lagrangian,
         force,
         constraints,
+        driven,
     })
 }
 
@@ -179,18 +185,6 @@ impl Indexed {
         let arrays: Vec<String> = kept.iter().map(|array| array.name.clone()).collect();
         let names: BTreeSet<String> = arrays.into_iter().collect();
         Some(Message::Tangents { arrays: names.into_iter().collect(), bytes: 8 * numbers, most })
-    }
-
-    /// Whether a constraint on velocities has a part without velocities: it does work.
-    fn is_driven(&self) -> bool {
-        let moves = |read: &Read| matches!(read, Read::Velocity | Read::LetRate(_));
-        self.constraints.iter().filter(|sum| !sum.body.reads.iter().any(moves)).any(|sum| {
-            let mut is_driven = false;
-            for nest in &sum.nests {
-                nest.each(&mut |all| is_driven |= !self.model.constraints[all[0]].is_holonomic);
-            }
-            is_driven
-        })
     }
 
     /// Whether at least a quarter of the second derivatives are not zero. Straight lines have solvers for fewer.

@@ -19,7 +19,7 @@ pub(crate) fn properties(of: &Indexed, name: &dyn Fn(&Coordinate) -> String) -> 
     let model = &of.model;
     let is_constrained = !model.constraints.is_empty();
     let energy = if is_constrained {
-        constrained_energy_in_words(of.autonomous, model.forced, of.is_driven())
+        constrained_energy_in_words(of.autonomous, model.forced, of.driven)
     } else {
         energy_in_words(of.autonomous, model.forced)
     };

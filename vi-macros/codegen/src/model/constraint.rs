@@ -87,12 +87,16 @@ impl Constraint {
                     if self.is_holonomic { slope(pool, self.value, by) } else { coefficient(pool, self.value, by) };
             }
         }
-        let rest = if self.is_holonomic {
+        Rate { row, rest: self.rest(pool) }
+    }
+
+    /// a.
+    pub(crate) fn rest(&self, pool: &mut Pool<Symbol>) -> Expr {
+        if self.is_holonomic {
             slope(pool, self.value, Variable::Time)
         } else {
             pool.substitute(self.value, &mut |pool, symbol| is_velocity(symbol).then(|| pool.zero()))
-        };
-        Rate { row, rest }
+        }
     }
 }
 

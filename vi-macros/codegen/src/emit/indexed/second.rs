@@ -127,10 +127,18 @@ impl Printer<'_> {
             }
             let (name, numbers) = (format_ident!("{}_curvatures", of.name), self.numbers(of));
             let curved = self.curved(of, value, &factor);
-            quote! {
+            let added = quote! {
                 let curvatures = self.#name(t, #numbers);
                 #bars
                 #curved
+            };
+            // A weight of zero times an infinite derivative would be no number.
+            match weights {
+                Some(weights) => {
+                    let on = (of.place)(0);
+                    quote!(if !#weights[#on].is_zero() { #added })
+                }
+                None => added,
             }
         });
         let backward = self.over_recursions(true, &|of, defined| {
