@@ -53,6 +53,7 @@ const SEQUENCES: usize = 4;
 const NUMBERS: usize = 6;
 
 /// A large system.
+#[allow(clippy::struct_excessive_bools, reason = "each is a finding of its own")]
 pub struct Indexed {
     /// The checked system.
     pub model: Model,
