@@ -215,8 +215,9 @@ fn forty_closed_links_take_steps_of_order_four() {
     let system = Closed::default();
     let mut angle = 2.2;
     let guess = SVector::<f64, 40>::from_fn(|_, _| {
+        let before = angle;
         angle -= 1.3 / 40.0;
-        angle
+        before
     });
     let start = State::assembled(&system, 0.0, guess, SVector::zeros()).expect("a start").state;
     let ends = [0.01, 0.005, 0.0025].map(|h| {

@@ -1,6 +1,6 @@
 //! The text of a large system does not grow with the lengths of its arrays, and its operations are counted.
 
-use crate::families::{bodies, closed, links};
+use crate::families::{bodies, links};
 use vi_codegen::Compiled;
 use vi_codegen::indexed::{Indexed, Nest};
 use vi_codegen::syntax::parse;
@@ -13,6 +13,23 @@ fn pendulum(count: usize) -> String {
          let pairs = sum(i in 1..N, (N - i) * sum(j in 0..i, dot(θ[i]) * dot(θ[j]) * cos(θ[i] - θ[j])));
          L = m * l^2 * (alone + pairs) + m * g * l * sum(i in 0..N, (N - i) * cos(θ[i]));
          discretize midpoint; }}"
+    )
+}
+
+/// Links whose last one is held at a point.
+fn closed(count: usize) -> String {
+    format!(
+        "pub struct System {{
+            const N = {count};
+            param m[N] = 1.0, l[N] = 0.3, g = 9.81, d = 0.7;
+            coord q[N];
+            let x[0] = l[0] * sin(q[0]);
+            let x[i in 1..N] = x[i - 1] + l[i] * sin(q[i]);
+            let y[i in 0..N] = -sum(j in 0..i + 1, l[j] * cos(q[j]));
+            L = sum(i in 0..N, m[i] * (dot(x[i])^2 + dot(y[i])^2) / 2 - m[i] * g * y[i]);
+            constraint level = x[N - 1] - d * N * l[0];
+            constraint height = y[N - 1];
+        }}"
     )
 }
 

@@ -50,23 +50,6 @@ pub(crate) fn links(count: usize) -> String {
     )
 }
 
-/// Links whose last one is held at a point.
-pub(crate) fn closed(count: usize) -> String {
-    format!(
-        "pub struct System {{
-            const N = {count};
-            param m[N] = 1.0, l[N] = 0.3, g = 9.81, d = 0.7;
-            coord q[N];
-            let x[0] = l[0] * sin(q[0]);
-            let x[i in 1..N] = x[i - 1] + l[i] * sin(q[i]);
-            let y[i in 0..N] = -sum(j in 0..i + 1, l[j] * cos(q[j]));
-            L = sum(i in 0..N, m[i] * (dot(x[i])^2 + dot(y[i])^2) / 2 - m[i] * g * y[i]);
-            constraint level = x[N - 1] - d * N * l[0];
-            constraint height = y[N - 1];
-        }}"
-    )
-}
-
 /// Bodies in space that attract each other.
 pub(crate) fn bodies(count: usize) -> String {
     format!(
