@@ -14,6 +14,7 @@
 
 use crate::real::{Number, Real, assignments};
 use crate::vector::worse;
+use alloc::vec::Vec;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use nalgebra::SVector;
 
@@ -81,6 +82,24 @@ pub(super) fn exact<const N: usize>(vector: &SVector<f64, N>) -> SVector<Bounded
 /// These bounds with a vector that the same formula gave elsewhere.
 pub(super) fn vector_of<const N: usize>(value: &SVector<f64, N>, again: &SVector<Bounded, N>) -> SVector<Bounded, N> {
     again.zip_map(value, Bounded::of)
+}
+
+/// Up to this number of unknowns running error analysis bounds the errors of an elimination.
+const FEW: usize = 11;
+/// Roundings of the largest entry of a solution, for each unknown.
+const STABLE: f64 = 8.0;
+
+/// Entries of the solution of so many linear equations, with these bounds of the elimination, for the residual of the
+/// equations.
+///
+/// Bounds by running error analysis double with each unknown. The residual of many unknowns has the size of that of an
+/// exact solution whose entries have a few roundings of the largest one for each unknown (Higham, section 9.3).
+#[allow(clippy::cast_precision_loss, reason = "a few hundred unknowns")]
+pub(super) fn solution(value: &[f64], again: &[Bounded], unknowns: usize) -> Vec<Bounded> {
+    let largest = value.iter().fold(0.0, |largest, entry| worse(largest, entry.abs()));
+    let stable = if unknowns <= FEW { f64::INFINITY } else { STABLE * unknowns as f64 * EPSILON * largest };
+    let entries = value.iter().zip(again);
+    entries.map(|(value, again)| Bounded { value: *value, error: again.error.min(stable) }).collect()
 }
 
 /// A vector after one rounding per entry, or two.

@@ -109,7 +109,9 @@ impl Comparison {
     pub(super) fn finish(self, needed: &[&'static str]) -> Result<Report, CheckFailure> {
         let count = |what: &str| self.seen.get(what).copied().unwrap_or_default();
         if let Some(zero) = needed.iter().find(|what| count(what) == 0) {
-            return Err(self.vacuous(format!("{zero} is zero in every comparison; choose another place")));
+            return Err(self.vacuous(format!(
+                "{zero} is zero, or below its rounding-error bound, in every comparison; choose another place"
+            )));
         }
         let compared = self.seen.values().sum();
         if compared == 0 {

@@ -10,7 +10,7 @@
 //! as a function of (q0, v) for constant λ and μ. It preserves the symplectic form if A is the gradient of a function.
 //! The place is moved to the nearest one on the constraints.
 
-use super::bounded::{Bounded, exact, vector_of};
+use super::bounded::{Bounded, exact, solution, vector_of};
 use super::comparison::Comparison;
 use super::derivatives::{First, Second, columns, gradient_and_rates, matrix};
 use super::order;
@@ -214,9 +214,9 @@ pub fn reaction<const N: usize, S: ConstrainedChecked<N>>(
         let (a, multipliers) = found.map_err(|error| check.step(error))?;
         let again = accelerations(&bounded, (time, &place, &velocity), &mut bordered::<S::In<Bounded>, N, Bounded>());
         let (bounds, again) = again.map_err(|error| check.step(error))?;
-        let a = vector_of(&a, &bounds);
-        let multipliers: Vec<Bounded> =
-            again.as_ref().iter().zip(multipliers.as_ref()).map(|(again, found)| again.of(*found)).collect();
+        let unknowns = N + S::CONSTRAINTS.len();
+        let a = SVector::from_vec(solution(a.as_slice(), bounds.as_slice(), unknowns));
+        let multipliers = solution(multipliers.as_ref(), again.as_ref(), unknowns);
         let (moving, changing) = (along(&place, &velocity), along(&velocity, &a));
         let rate = slopes(&dual.momentum(Dual::variable(time), &moving, &changing));
         let (gradient, _, _) = gradient_and_rates(&second, t, [&place, &velocity, &a]);

@@ -9,7 +9,7 @@
 //! Tolerance: the sum of the rounding-error bounds of both sides (`bounded`). h is that of the samples, a fraction of
 //! the system's own time scale; the h of the place is not used.
 
-use super::bounded::{Bounded, exact, vector_of};
+use super::bounded::{Bounded, exact, solution, vector_of};
 use super::comparison::Comparison;
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
@@ -73,9 +73,7 @@ fn continuous<const N: usize, S: MotionChecked<N>>(
     let energy = velocity.dot(&momentum) - bounded.lagrangian(time, &place, &velocity);
     check.number("energy", bounded.energy(time, &place, &velocity).of(system.energy(*t, q, v)), energy)?;
 
-    let a = system.acceleration(*t, q, v).map_err(|error| check.step(error))?;
-    let bound = bounded.acceleration(time, &place, &velocity).map_err(|error| check.step(error))?;
-    let a = vector_of(&a, &bound);
+    let a = acceleration(sample, check)?;
     let rate = slopes(&dual.momentum(Dual::variable(time), &along(&place, &velocity), &along(&velocity, &a)));
     let (gradient, _, _) = gradient_and_rates(&second, *t, [&place, &velocity, &a]);
     let applied = gradient + bounded.force(time, &place, &velocity);
@@ -91,6 +89,17 @@ fn continuous<const N: usize, S: MotionChecked<N>>(
     check.number("power", bounded.power(time, &place, &velocity).of(system.power(*t, q, v)), power)
 }
 
+/// The acceleration, with bounds for the residual of its equations.
+fn acceleration<const N: usize, S: MotionChecked<N>>(
+    Sample { system, t, q, v, .. }: &Sample<S, N>,
+    check: &Comparison,
+) -> Result<SVector<Bounded, N>, CheckFailure> {
+    let a = system.acceleration(*t, q, v).map_err(|error| check.step(error))?;
+    let bounds = system.convert::<Bounded>().acceleration(Bounded::exact(*t), &exact(q), &exact(v));
+    let bounds = bounds.map_err(|error| check.step(error))?;
+    Ok(SVector::from_vec(solution(a.as_slice(), bounds.as_slice(), N)))
+}
+
 /// The step density D, from L and the acceleration.
 pub(super) fn density<const N: usize, S: MotionChecked<N>>(
     sample: &Sample<S, N>,
@@ -99,9 +108,7 @@ pub(super) fn density<const N: usize, S: MotionChecked<N>>(
     let Sample { system, t, q, v, .. } = sample;
     let (bounded, second) = (system.convert::<Bounded>(), system.convert::<Second>());
     let (time, place, velocity) = (Bounded::exact(*t), exact(q), exact(v));
-    let a = system.acceleration(*t, q, v).map_err(|error| check.step(error))?;
-    let bound = bounded.acceleration(time, &place, &velocity).map_err(|error| check.step(error))?;
-    let a = vector_of(&a, &bound);
+    let a = acceleration(sample, check)?;
     let (gradient, gradient_rate, time_rate) = gradient_and_rates(&second, *t, [&place, &velocity, &a]);
     let applied = gradient + bounded.force(time, &place, &velocity);
     Ok(a.dot(&applied) - velocity.dot(&gradient_rate) - time_rate)

@@ -49,7 +49,9 @@ pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N
     let course = SampledMotion::from(system, place, &check)?;
     let density = density(system, &(place.t, place.q, place.v)).map_err(|error| check.step(error))?;
     if !density.is_seen() {
-        return Err(check.vacuous("the step density is zero at this place; choose another place"));
+        return Err(check.vacuous(
+            "the step density is zero, or below its rounding-error bound, at this place; choose another place",
+        ));
     }
     let prepare = |h: f64| {
         if h > place.h && !is_even(system, place, h).map_err(|error| check.step(error))? {
