@@ -1,5 +1,7 @@
 //! Large systems in loops against the same systems in straight lines, with few entries: `#[vi_limit(0)]` asks for loops.
 
+use std::thread;
+use vi_core::check::{self, Place};
 use vi_core::collocation::Collocation;
 use vi_core::linear::{Matrix, Rectangular};
 use vi_core::nalgebra::SMatrix;
@@ -393,4 +395,35 @@ fn constraints_are_finite_where_one_has_an_infinite_second_derivative() {
     assert!(ours == theirs && ours[(0, 0)] > 0.5, "{ours} {theirs}");
     let mut run = RoughInLoops::default().at(0.0, q, v).integrate(GaussLobatto::<2>, 0.01).expect("a start");
     assert!(run.until(0.2).expect("steps").q[0] > 0.7);
+}
+
+// A chain between two hooks. Bounds of the elimination of its 32 unknowns are larger than what it finds.
+lagrangian! {
+    struct Hung {
+        const N = 30;
+        param m = 1.2, l = 0.5, g = 9.81, d = 13.5;
+        coord q[N];
+        let x[0] = l * cos(q[0]);
+        let x[i in 1..N] = x[i - 1] + l * cos(q[i]);
+        let y[i in 0..N] = sum(j in 0..i + 1, l * sin(q[j]));
+        L = m * sum(i in 0..N, (dot(x[i])^2 + dot(y[i])^2) / 2 - g * y[i]);
+        constraint across = x[N - 1] - d;
+        constraint level = y[N - 1];
+    }
+}
+
+#[test]
+fn a_check_of_many_unknowns_proves_something() {
+    let run = || {
+        let mut angle = -0.78;
+        let q = SVector::from_fn(|_, _| {
+            let before = angle;
+            angle += 0.052;
+            before
+        });
+        let place = Place { t: 0.0, q, v: SVector::zeros(), h: 0.01 };
+        check::reaction(&Hung::default(), &place).expect("a reaction").compared
+    };
+    let run = thread::Builder::new().stack_size(32 << 20).spawn(run).expect("a thread");
+    assert!(run.join().expect("no overflow") > 100);
 }
