@@ -85,7 +85,7 @@ pub(super) fn vector_of<const N: usize>(value: &SVector<f64, N>, again: &SVector
 }
 
 /// Up to this number of unknowns running error analysis bounds the errors of an elimination.
-const FEW: usize = 11;
+const FEW: usize = 24;
 /// Roundings of the largest entry of a solution, for each unknown.
 const STABLE: f64 = 8.0;
 
