@@ -89,8 +89,7 @@ const FEW: usize = 24;
 /// Roundings of the largest entry of a solution, for each unknown.
 const STABLE: f64 = 8.0;
 
-/// Entries of the solution of so many linear equations, with these bounds of the elimination, for the residual of the
-/// equations.
+/// The solution of linear equations, with error bounds for their residual. `again` has the bounds of the elimination.
 ///
 /// Bounds by running error analysis double with each unknown. The residual of many unknowns has the size of that of an
 /// exact solution whose entries have a few roundings of the largest one for each unknown (Higham, section 9.3).

@@ -15,13 +15,12 @@ use super::fixed_point::{Convergence, Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
 use super::points::{ErasedSystem, Form, MANY, Points};
 use super::stages::{
-    AtStages, Roundings, Stages, change, constant_mass, gathered, growth, maximum, product, roundings, scaled, scatter,
-    sum, times, weights,
+    AtStages, Roundings, Stages, add_products, change, constant_mass, gathered, growth, maximum, product, roundings,
+    scaled, scatter, sum, times, weights,
 };
 use super::tableau::Tableau;
 use crate::linear::Matrix;
 use crate::node::Node;
-use crate::real::Lane;
 use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 
@@ -239,7 +238,7 @@ where
     fn iterate_varying(&mut self, x: &Stages<N, S>, before: &Convergence) {
         if const { N < MANY } {
             let (missing, inverse) = self.evaluate_with_masses(x);
-            return correct_by::<N, S, FUSED>(&mut self.velocity, &inverse, &missing);
+            return add_products::<N, S, FUSED>(&mut self.velocity, &inverse, &missing);
         }
         let missing = if before.change < NEAR && before.contraction <= FAST {
             self.evaluate(x)
@@ -249,23 +248,7 @@ where
             missing
         };
         if let Some(inverse) = &self.kept {
-            correct_by::<N, S, FUSED>(&mut self.velocity, inverse, &missing);
-        }
-    }
-}
-
-/// Corrects velocities by the inverse of the mass matrix of each stage.
-#[inline(always)]
-fn correct_by<const N: usize, const S: usize, const FUSED: bool>(
-    velocity: &mut Stages<N, S>,
-    inverse: &[Stages<N, S>; N],
-    missing: &Stages<N, S>,
-) {
-    for k in 0..N {
-        for l in 0..N {
-            for i in 0..S {
-                velocity[k][i] = Lane::<FUSED>::multiply_add(inverse[k][l][i], missing[l][i], velocity[k][i]);
-            }
+            add_products::<N, S, FUSED>(&mut self.velocity, inverse, &missing);
         }
     }
 }

@@ -150,6 +150,22 @@ pub(crate) fn product<const S: usize, const FUSED: bool>(
     even
 }
 
+/// Adds `matrix_i x_i` at the stages i.
+#[inline(always)]
+pub(crate) fn add_products<const N: usize, const S: usize, const FUSED: bool>(
+    to: &mut Stages<N, S>,
+    matrix: &[Stages<N, S>; N],
+    x: &Stages<N, S>,
+) {
+    for k in 0..N {
+        for l in 0..N {
+            for i in 0..S {
+                to[k][i] = Lane::<FUSED>::multiply_add(matrix[k][l][i], x[l][i], to[k][i]);
+            }
+        }
+    }
+}
+
 /// Extrapolates the polynomials through the stages of a step to the stages of the next one.
 #[inline(always)]
 pub(crate) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(of: &Stages<N, S>) -> Stages<N, S> {

@@ -17,7 +17,9 @@ use super::fixed_point::Equations;
 use super::general::equations;
 use super::points::ErasedSystem;
 use super::solve::WIDE;
-use super::stages::{AtStages, LOOPED, Stages, gathered, maximum, product, scaled, set, stage, sum, times, weights};
+use super::stages::{
+    AtStages, LOOPED, Stages, add_products, gathered, maximum, product, scaled, set, stage, sum, times, weights,
+};
 use super::tableau::Tableau;
 use crate::collocation::{Collocation, PointDerivatives};
 use crate::derivatives::{
@@ -473,22 +475,6 @@ fn constant<const N: usize, const S: usize>(vector: &SVector<f64, N>) -> Stages<
         stages[k] = [vector[k]; S];
     }
     stages
-}
-
-/// Adds `matrix_i x_i` at the stages i.
-#[inline(always)]
-fn add_products<const N: usize, const S: usize, const FUSED: bool>(
-    to: &mut Stages<N, S>,
-    matrix: &[Stages<N, S>; N],
-    x: &Stages<N, S>,
-) {
-    for k in 0..N {
-        for l in 0..N {
-            for i in 0..S {
-                to[k][i] = Lane::<FUSED>::multiply_add(matrix[k][l][i], x[l][i], to[k][i]);
-            }
-        }
-    }
 }
 
 /// `h Σ_j a_ij x_j` at the stages i.

@@ -15,7 +15,7 @@
 use super::super::fixed_point::{Convergence, Equations, StageIncrement, VELOCITY};
 use super::super::newton::Newton;
 use super::super::stages::{
-    Roundings, Stages, change, constant_mass, growth, product, roundings, scaled, set, stage, weights,
+    Roundings, Stages, add_products, change, constant_mass, growth, product, roundings, scaled, set, stage, weights,
 };
 use super::super::tableau::Tableau;
 use crate::collocation::Collocation;
@@ -236,14 +236,7 @@ where
             }
         });
         let mut correction = [[0.0; S]; N];
-        for k in 0..N {
-            for l in 0..N {
-                for i in 0..S {
-                    let sum = &mut correction[k][i];
-                    *sum = Lane::<FUSED>::multiply_add(inverse[k][l][i], missing[l][i], *sum);
-                }
-            }
-        }
+        add_products::<N, S, FUSED>(&mut correction, &inverse, &missing);
         correction
     }
 

@@ -76,6 +76,17 @@ impl Printer<'_> {
             values
         };
         let values = self.of_state("constraint_values", &quote!([T; #count]), &values);
+        let rows = quote! {
+            let real = T::real;
+            let mut rows = [[real(0.0); #dimension]; #count];
+            #rows
+            rows.map(::vi_core::SVector::from)
+        };
+        let (columns, vectors) = (quote!([#c_q, #c_v]: [T; 2]), quote!([::vi_core::SVector<T, #dimension>; #count]));
+        let rows = self.of_state_and(&columns, "constraint_derivatives", &vectors, &rows);
+        let further = quote!(weights: &[T; #count], [#r_q, #r_v]: [T; 2], #columns);
+        let matrix = quote!(::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>);
+        let second = self.of_state_and(&further, "constraint_second_derivatives", &matrix, &second);
         quote! {
             impl<T: ::vi_core::real::Real> ::vi_core::indexed::IndexedConstraints<#dimension, #count, T> for #system<T> {
                 type Dual = #system<::vi_core::real::Dual<T>>;
@@ -86,30 +97,8 @@ impl Printer<'_> {
 
                 #values
 
-                fn constraint_derivatives(
-                    &self,
-                    t: T,
-                    q: &::vi_core::SVector<T, #dimension>,
-                    v: &::vi_core::SVector<T, #dimension>,
-                    [#c_q, #c_v]: [T; 2],
-                ) -> [::vi_core::SVector<T, #dimension>; #count] {
-                    let real = T::real;
-                    let mut rows = [[real(0.0); #dimension]; #count];
-                    #rows
-                    rows.map(::vi_core::SVector::from)
-                }
-
-                fn constraint_second_derivatives(
-                    &self,
-                    t: T,
-                    q: &::vi_core::SVector<T, #dimension>,
-                    v: &::vi_core::SVector<T, #dimension>,
-                    weights: &[T; #count],
-                    [#r_q, #r_v]: [T; 2],
-                    [#c_q, #c_v]: [T; 2],
-                ) -> ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension> {
-                    #second
-                }
+                #rows
+                #second
             }
         }
     }

@@ -44,27 +44,9 @@ impl Printer<'_> {
         };
         let first = self.sweep(Sums::Derivatives);
         let measured = self.sweep(Sums::Measured);
-        quote! {
-            fn first_derivatives(
-                &self,
-                t: T,
-                q: &::vi_core::SVector<T, #dimension>,
-                v: &::vi_core::SVector<T, #dimension>,
-            ) -> #one {
-                #first
-                #found
-            }
-
-            fn measured_derivatives(
-                &self,
-                t: T,
-                q: &::vi_core::SVector<T, #dimension>,
-                v: &::vi_core::SVector<T, #dimension>,
-            ) -> [#one; 2] {
-                #measured
-                [#found, #sizes]
-            }
-        }
+        let first = self.of_state("first_derivatives", &one, &quote!(#first #found));
+        let measured = self.of_state("measured_derivatives", &quote!([#one; 2]), &quote!(#measured [#found, #sizes]));
+        quote!(#first #measured)
     }
 
     /// The statements of the sweep.

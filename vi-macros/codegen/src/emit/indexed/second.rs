@@ -87,18 +87,9 @@ impl Printer<'_> {
     pub(super) fn second_derivatives(&self) -> TokenStream {
         let (dimension, [r_q, r_v], [c_q, c_v]) = (self.dimension(), &SEEDS.map(name), &WEIGHTS.map(name));
         let statements = self.curvatures("lagrangian", &self.of.lagrangian, None);
-        quote! {
-            fn second_derivatives(
-                &self,
-                t: T,
-                q: &::vi_core::SVector<T, #dimension>,
-                v: &::vi_core::SVector<T, #dimension>,
-                [#r_q, #r_v]: [T; 2],
-                [#c_q, #c_v]: [T; 2],
-            ) -> ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension> {
-                #statements
-            }
-        }
+        let further = quote!([#r_q, #r_v]: [T; 2], [#c_q, #c_v]: [T; 2]);
+        let matrix = quote!(::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>);
+        self.of_state_and(&further, "second_derivatives", &matrix, &statements)
     }
 
     /// The second derivatives of these sums. With `weights`, each is multiplied by one of these: the first number of a
@@ -112,11 +103,11 @@ impl Printer<'_> {
         let first = usize::from(weights.is_some());
         let terms = Self::over_sums(of, sums, first, &|of| {
             let value = &of.body.values[0];
-            let factor = weights.map(|weights| {
+            let weight = weights.map(|weights| {
                 let on = (of.place)(0);
-                quote!(#weights[#on] *)
+                quote!(#weights[#on])
             });
-            let factor = factor.unwrap_or_default();
+            let factor = weight.as_ref().map(|weight| quote!(#weight *)).unwrap_or_default();
             let bars = of.states(value).filter(|(_, read, _)| read.is_entry()).map(|(place, read, index)| {
                 let (bar, slope) = (format_ident!("bar_{}", self.array(read)), curvature(value, place));
                 quote!(#bar[#index] += #factor #slope;)
@@ -133,11 +124,8 @@ impl Printer<'_> {
                 #curved
             };
             // A weight of zero times an infinite derivative would be no number.
-            match weights {
-                Some(weights) => {
-                    let on = (of.place)(0);
-                    quote!(if !#weights[#on].is_zero() { #added })
-                }
+            match weight {
+                Some(weight) => quote!(if !#weight.is_zero() { #added }),
                 None => added,
             }
         });

@@ -126,6 +126,17 @@ impl Printer<'_> {
 
     /// A function of (t, q, v), with this value.
     pub(super) fn of_state(&self, function: &str, result: &TokenStream, value: &TokenStream) -> TokenStream {
+        self.of_state_and(&TokenStream::new(), function, result, value)
+    }
+
+    /// The same with further arguments.
+    pub(super) fn of_state_and(
+        &self,
+        further: &TokenStream,
+        function: &str,
+        result: &TokenStream,
+        value: &TokenStream,
+    ) -> TokenStream {
         let (function, dimension) = (format_ident!("{function}"), self.dimension());
         quote! {
             fn #function(
@@ -133,6 +144,7 @@ impl Printer<'_> {
                 t: T,
                 q: &::vi_core::SVector<T, #dimension>,
                 v: &::vi_core::SVector<T, #dimension>,
+                #further
             ) -> #result {
                 #value
             }
