@@ -90,8 +90,14 @@ impl<const N: usize, T: Real> Node<N, T> {
     /// Middle of the step `(v, h)` from this node: `(t + h/2, q + (h/2) v)`.
     #[inline]
     pub fn midpoint(&self, h: T, v: &SVector<T, N>) -> (T, SVector<T, N>) {
-        let half = h * T::real(0.5);
-        (self.t + (self.t_low + half), self.moved(half, v))
+        self.within(0.5, h, v)
+    }
+
+    /// The point of the step `(v, h)` at the part c of its length: `(t + c h, q + c h v)`.
+    #[inline]
+    pub(crate) fn within(&self, c: f64, h: T, v: &SVector<T, N>) -> (T, SVector<T, N>) {
+        let part = h * T::real(c);
+        (self.t + (self.t_low + part), self.moved(part, v))
     }
 
     /// `q + h v`.

@@ -18,10 +18,10 @@ pub trait Rule: Copy + Debug + PartialEq + Send + Sync + 'static {
 /// The declared rule of a system; the first if there are several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Own;
-/// The midpoint rule, declared as a further rule.
+/// The midpoint rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Midpoint;
-/// The trapezoidal rule, declared as a further rule.
+/// The trapezoidal rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trapezoidal;
 
@@ -33,6 +33,23 @@ impl Rule for Midpoint {
 }
 impl Rule for Trapezoidal {
     const NAME: Option<&'static str> = Some("trapezoidal");
+}
+
+/// A rule that evaluates L at points of a step, all with its mean velocity:
+///
+/// ```text
+/// L_d = h Σ w L(t0 + c h, q0 + c h v, v)        v = (q1 − q0)/h
+/// ```
+pub trait Quadrature: Rule {
+    /// `[c, w]` of each point. The weights have the sum 1.
+    const POINTS: &'static [[f64; 2]];
+}
+
+impl Quadrature for Midpoint {
+    const POINTS: &'static [[f64; 2]] = &[[0.5, 1.0]];
+}
+impl Quadrature for Trapezoidal {
+    const POINTS: &'static [[f64; 2]] = &[[0.0, 0.5], [1.0, 0.5]];
 }
 
 /// A system whose own rule is R, one of the further rules that it is declared with. It goes wherever the system goes:

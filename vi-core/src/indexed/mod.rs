@@ -4,8 +4,8 @@
 //! first derivatives, and weighted sums of its second derivatives. The functions of this module derive everything else
 //! from them. Each returns what the trait method of the same name returns, so that the generated method is one call.
 //!
-//! A derivative along a direction, as `d/dt(L_q)`, is one evaluation of the first derivatives over dual numbers. The rule
-//! is the midpoint rule, `L_d = h L((t0 + t1)/2, (q0 + q1)/2, (q1 − q0)/h)`.
+//! A derivative along a direction, as `d/dt(L_q)`, is one evaluation of the first derivatives over dual numbers. Fixed
+//! steps are those of a [`Quadrature`](crate::rules::Quadrature), energy-preserving ones those of the midpoint rule.
 
 #[cfg(feature = "alloc")]
 mod constraints;
@@ -18,8 +18,8 @@ pub use constraints::{
 };
 pub use slots::{d1_ld, d2_ld, d3_ld, d4_ld, fd_minus, fd_plus, gd_minus, gd_plus, ld};
 pub use step::{
-    discrete_energy, extended_derivatives, extended_residual, extended_system, momentum_derivatives, momentum_equation,
-    momentum_residual, step_density,
+    discrete_energy, extended_derivatives, extended_residual, extended_system, jacobian, momentum_derivatives,
+    momentum_equation, momentum_residual, step_density,
 };
 
 use crate::collocation::{Point, PointDerivatives, Sides};
@@ -28,6 +28,8 @@ use crate::lagrangian::{Flow, Lagrangian};
 use crate::legendre;
 use crate::real::dual::{along, slopes};
 use crate::real::{Dual, Real, Rounded};
+use crate::rules::Quadrature;
+use core::ops::Add;
 use nalgebra::{SMatrix, SVector};
 
 /// First derivatives of L, and the force, at a point (t, q, v).
@@ -84,6 +86,22 @@ pub trait Indexed<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
 }
 
 impl<const N: usize, T: Real> FirstDerivatives<N, T> {
+    /// All of them times a weight. Those of a single point stay as they are.
+    #[inline]
+    fn weighted(self, weight: f64) -> Self {
+        if weight == 1.0 {
+            return self;
+        }
+        let weight = T::real(weight);
+        Self {
+            value: self.value * weight,
+            dt: self.dt * weight,
+            dq: self.dq * weight,
+            dv: self.dv * weight,
+            force: self.force * weight,
+        }
+    }
+
     /// `L_q + f`. It skips an absent force, which would add a rounding to the bounds of running error analysis.
     #[inline]
     fn total_force<S: Lagrangian<N, T>>(&self) -> SVector<T, N> {
@@ -102,6 +120,16 @@ impl<const N: usize, T: Real> FirstDerivatives<N, T> {
     fn energy(&self, v: &SVector<T, N>) -> T {
         v.dot(&self.dv) - self.value
     }
+}
+
+/// The sum over the points of a rule; `of` takes c and w of a point.
+#[inline]
+fn sum<R: Quadrature, V: Add<Output = V>>(mut of: impl FnMut([f64; 2]) -> V) -> V {
+    let mut sum = of(R::POINTS[0]);
+    for point in &R::POINTS[1..] {
+        sum = sum + of(*point);
+    }
+    sum
 }
 
 /// The first derivatives at `(t, q, v)`, and their derivatives along the direction `(t', q', v')`.

@@ -1,85 +1,167 @@
-//! The discrete Lagrangian of the midpoint rule, its slot derivatives, discrete forces and powers.
+//! The discrete Lagrangian of a rule, its slot derivatives, discrete forces and powers.
 
-use super::{FirstDerivatives, Indexed};
+use super::{FirstDerivatives, Indexed, sum};
 use crate::real::Real;
+use crate::rules::Quadrature;
 use crate::state::Interval;
 use nalgebra::SVector;
 
-/// The length of an interval, and its midpoint (t, q, v).
+/// The length of an interval.
 #[inline]
-fn midpoint<const N: usize, T: Real>(interval: &Interval<N, T>) -> (T, (T, SVector<T, N>, SVector<T, N>)) {
-    let Interval { t0, q0, t1, q1 } = interval;
-    let (h, half) = (*t1 - *t0, T::real(0.5));
-    (h, ((*t0 + *t1) * half, (q0 + q1) * half, (q1 - q0).map(|entry| entry / h)))
+fn length<const N: usize, T: Real>(interval: &Interval<N, T>) -> T {
+    interval.t1 - interval.t0
 }
 
-/// Half the length of an interval, its velocity, and the first derivatives at its midpoint.
+/// The velocity of an interval.
+#[inline]
+fn velocity<const N: usize, T: Real>(interval: &Interval<N, T>) -> SVector<T, N> {
+    let h = length(interval);
+    (interval.q1 - interval.q0).map(|entry| entry / h)
+}
+
+/// The point at the part c of an interval.
+#[inline]
+fn within<const N: usize, T: Real>(interval: &Interval<N, T>, c: f64) -> (T, SVector<T, N>) {
+    let Interval { t0, q0, t1, q1 } = interval;
+    let (before, after) = (T::real(1.0 - c), T::real(c));
+    (*t0 * before + *t1 * after, q0 * before + q1 * after)
+}
+
+/// The first derivatives at the part c of an interval, times the weight of this point.
 #[inline]
 fn evaluated<const N: usize, T: Real, S: Indexed<N, T>>(
     system: &S,
     interval: &Interval<N, T>,
-) -> (T, SVector<T, N>, FirstDerivatives<N, T>) {
-    let (h, (t, q, v)) = midpoint(interval);
-    (h * T::real(0.5), v, system.first_derivatives(t, &q, &v))
+    [c, weight]: [f64; 2],
+) -> FirstDerivatives<N, T> {
+    let (t, q) = within(interval, c);
+    system.first_derivatives(t, &q, &velocity(interval)).weighted(weight)
 }
 
-/// `L_d = h L`, for [`DiscreteLagrangian::ld`](crate::DiscreteLagrangian::ld).
+/// `L_d = h Σ w L`, for [`DiscreteLagrangian::ld`](crate::DiscreteLagrangian::ld).
 #[inline]
-pub fn ld<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, interval: &Interval<N, T>) -> T {
-    let (h, (t, q, v)) = midpoint(interval);
-    h * system.lagrangian(t, &q, &v)
+pub fn ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    _rule: R,
+    interval: &Interval<N, T>,
+) -> T {
+    let v = velocity(interval);
+    let value = |[c, weight]: [f64; 2]| {
+        let (t, q) = within(interval, c);
+        system.lagrangian(t, &q, &v) * T::real(weight)
+    };
+    length(interval) * sum::<R, _>(value)
 }
 
-/// `∂L_d/∂t0 = v·L_v − L + (h/2) L_t`, for [`DiscreteLagrangian::d1_ld`](crate::DiscreteLagrangian::d1_ld).
+/// `∂L_d/∂t0 = Σ w (v·L_v − L + (1 − c) h L_t)`, for [`DiscreteLagrangian::d1_ld`](crate::DiscreteLagrangian::d1_ld).
 #[inline]
-pub fn d1_ld<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, interval: &Interval<N, T>) -> T {
-    let (half, v, first) = evaluated(system, interval);
-    first.energy(&v) + half * first.dt
+pub fn d1_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    _rule: R,
+    interval: &Interval<N, T>,
+) -> T {
+    let (h, v) = (length(interval), velocity(interval));
+    sum::<R, _>(|point| {
+        let first = evaluated(system, interval, point);
+        first.energy(&v) + h * T::real(1.0 - point[0]) * first.dt
+    })
 }
 
-/// `∂L_d/∂q0 = (h/2) L_q − L_v`, for [`DiscreteLagrangian::d2_ld`](crate::DiscreteLagrangian::d2_ld).
+/// `∂L_d/∂q0 = Σ w ((1 − c) h L_q − L_v)`, for [`DiscreteLagrangian::d2_ld`](crate::DiscreteLagrangian::d2_ld).
 #[inline]
-pub fn d2_ld<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, interval: &Interval<N, T>) -> SVector<T, N> {
-    let (half, _, first) = evaluated(system, interval);
-    first.dq * half - first.dv
+pub fn d2_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    _rule: R,
+    interval: &Interval<N, T>,
+) -> SVector<T, N> {
+    let h = length(interval);
+    sum::<R, _>(|point| {
+        let first = evaluated(system, interval, point);
+        first.dq * (h * T::real(1.0 - point[0])) - first.dv
+    })
 }
 
-/// `∂L_d/∂t1 = L − v·L_v + (h/2) L_t`, for [`DiscreteLagrangian::d3_ld`](crate::DiscreteLagrangian::d3_ld).
+/// `∂L_d/∂t1 = Σ w (L − v·L_v + c h L_t)`, for [`DiscreteLagrangian::d3_ld`](crate::DiscreteLagrangian::d3_ld).
 #[inline]
-pub fn d3_ld<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, interval: &Interval<N, T>) -> T {
-    let (half, v, first) = evaluated(system, interval);
-    half * first.dt - first.energy(&v)
+pub fn d3_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    _rule: R,
+    interval: &Interval<N, T>,
+) -> T {
+    let (h, v) = (length(interval), velocity(interval));
+    sum::<R, _>(|point| {
+        let first = evaluated(system, interval, point);
+        h * T::real(point[0]) * first.dt - first.energy(&v)
+    })
 }
 
-/// `∂L_d/∂q1 = (h/2) L_q + L_v`, for [`DiscreteLagrangian::d4_ld`](crate::DiscreteLagrangian::d4_ld).
+/// `∂L_d/∂q1 = Σ w (c h L_q + L_v)`, for [`DiscreteLagrangian::d4_ld`](crate::DiscreteLagrangian::d4_ld).
 #[inline]
-pub fn d4_ld<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, interval: &Interval<N, T>) -> SVector<T, N> {
-    let (half, _, first) = evaluated(system, interval);
-    first.dv + first.dq * half
+pub fn d4_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    _rule: R,
+    interval: &Interval<N, T>,
+) -> SVector<T, N> {
+    let h = length(interval);
+    sum::<R, _>(|point| {
+        let first = evaluated(system, interval, point);
+        first.dv + first.dq * (h * T::real(point[0]))
+    })
 }
 
-/// Discrete force on `δq0`, `(h/2) f`, for [`DiscreteLagrangian::fd_minus`](crate::DiscreteLagrangian::fd_minus).
+/// `h Σ w share(c) f`.
 #[inline]
-pub fn fd_minus<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, interval: &Interval<N, T>) -> SVector<T, N> {
-    let (h, (t, q, v)) = midpoint(interval);
-    if S::FORCED { system.force(t, &q, &v) * (h * T::real(0.5)) } else { SVector::zeros() }
+fn force<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    interval: &Interval<N, T>,
+    share: impl Fn(f64) -> f64,
+) -> SVector<T, N> {
+    if !S::FORCED {
+        return SVector::zeros();
+    }
+    let (h, v) = (length(interval), velocity(interval));
+    sum::<R, _>(|[c, weight]| {
+        let (t, q) = within(interval, c);
+        system.force(t, &q, &v) * (h * T::real(weight * share(c)))
+    })
 }
 
-/// Discrete force on `δq1`, `(h/2) f`, for [`DiscreteLagrangian::fd_plus`](crate::DiscreteLagrangian::fd_plus).
+/// Discrete force on `δq0`, `h Σ w (1 − c) f`, for [`DiscreteLagrangian::fd_minus`](crate::DiscreteLagrangian::fd_minus).
 #[inline]
-pub fn fd_plus<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, interval: &Interval<N, T>) -> SVector<T, N> {
-    fd_minus(system, interval)
+pub fn fd_minus<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    _rule: R,
+    interval: &Interval<N, T>,
+) -> SVector<T, N> {
+    force::<N, T, S, R>(system, interval, |c| 1.0 - c)
 }
 
-/// Discrete power on `δt0`, `−(h/2) f·v`, for [`DiscreteLagrangian::gd_minus`](crate::DiscreteLagrangian::gd_minus).
+/// Discrete force on `δq1`, `h Σ w c f`, for [`DiscreteLagrangian::fd_plus`](crate::DiscreteLagrangian::fd_plus).
 #[inline]
-pub fn gd_minus<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, interval: &Interval<N, T>) -> T {
-    let (_, (_, _, v)) = midpoint(interval);
-    if S::FORCED { -fd_minus(system, interval).dot(&v) } else { T::zero() }
+pub fn fd_plus<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    _rule: R,
+    interval: &Interval<N, T>,
+) -> SVector<T, N> {
+    force::<N, T, S, R>(system, interval, |c| c)
 }
 
-/// Discrete power on `δt1`, `−(h/2) f·v`, for [`DiscreteLagrangian::gd_plus`](crate::DiscreteLagrangian::gd_plus).
+/// Discrete power on `δt0`, `−v·f_d⁻`, for [`DiscreteLagrangian::gd_minus`](crate::DiscreteLagrangian::gd_minus).
 #[inline]
-pub fn gd_plus<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, interval: &Interval<N, T>) -> T {
-    gd_minus(system, interval)
+pub fn gd_minus<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    rule: R,
+    interval: &Interval<N, T>,
+) -> T {
+    if S::FORCED { -fd_minus(system, rule, interval).dot(&velocity(interval)) } else { T::zero() }
+}
+
+/// Discrete power on `δt1`, `−v·f_d⁺`, for [`DiscreteLagrangian::gd_plus`](crate::DiscreteLagrangian::gd_plus).
+#[inline]
+pub fn gd_plus<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    rule: R,
+    interval: &Interval<N, T>,
+) -> T {
+    if S::FORCED { -fd_plus(system, rule, interval).dot(&velocity(interval)) } else { T::zero() }
 }

@@ -1,43 +1,83 @@
-//! The momentum and energy equations of one step by the midpoint rule, and their derivatives.
+//! The momentum equation of one step by a rule, the energy equation of one by the midpoint rule, and their derivatives.
 //!
-//! Everything is evaluated at the midpoint `(t, q, v)` of the step. With `D = d/dt` along `(1, v, 0)`,
+//! With sums over the points of the rule, at the part c of the step with the weight w, `b = 1 − c`, and `D = d/dt` along
+//! `(1, v, 0)`,
 //!
 //! ```text
-//! r      = L_v − (h/2)(L_q + f) − p0                    c = e − v·r = v·p0 − E0 − L + (h/2)(L_t + v·L_q)
-//! ∂r/∂v  = L_vv + (h/2)(L_vq − L_qv − f_v) − (h²/4)(L_qq + f_q)
-//! ∂r/∂h  = D L_v/2 − (L_q + f)/2 − (h/4) D(L_q + f)     ∂c/∂q0 = −L_q + (h/2) D L_q
+//! r     = Σ w (L_v − b h (L_q + f)) − p0                p1 − p0 = h Σ w (L_q + f)
+//! ∂r/∂v = Σ w (L_vv + c h L_vq − b h (L_qv + f_v) − b c h² (L_qq + f_q))
+//! E1    = Σ w (v·L_v − L + c h (f·v − L_t))
+//! ```
+//!
+//! At the midpoint of the step,
+//!
+//! ```text
+//! c      = e − v·r = v·p0 − E0 − L + (h/2)(L_t + v·L_q)           ∂c/∂q0 = −L_q + (h/2) D L_q
+//! ∂r/∂h  = D L_v/2 − (L_q + f)/2 − (h/4) D(L_q + f)
 //! (∂e/∂v − v·A)/h = (D L_v − (L_q + f) + (h/2) D L_q)/2     (∂e/∂h − v·∂r/∂h)/h = (D L_t + v·D L_q)/4
 //! ```
 
-use super::{FirstDerivatives, Indexed, along_direction};
+use super::{FirstDerivatives, Indexed, along_direction, sum};
 use crate::error::StepError;
 use crate::legendre;
 use crate::node::Node;
 use crate::real::Real;
+use crate::rules::{Midpoint, Quadrature};
 use crate::stepping::{
     ExtendedDerivatives, ExtendedResidual, ExtendedSystem, Increment, MomentumDerivatives, MomentumEquation,
     MomentumResidual,
 };
+use core::ops::Add;
 use nalgebra::{SMatrix, SVector};
 
-/// The residual r of the momentum row. Small terms are summed first.
-#[inline]
-fn residual<const N: usize, T: Real, S: Indexed<N, T>>(
-    node: &Node<N, T>,
-    h: T,
-    first: &FirstDerivatives<N, T>,
-) -> SVector<T, N> {
-    first.dv - node.p - (node.p_low + first.total_force::<S>() * (h * T::real(0.5)))
+/// Sums over the points of a rule.
+struct Sums<const N: usize, T> {
+    /// `Σ w L_v`.
+    momentum: SVector<T, N>,
+    /// `Σ w (1 − c) (L_q + f)`.
+    before: SVector<T, N>,
+    /// `Σ w (L_q + f)`.
+    force: SVector<T, N>,
 }
 
-/// Sums of the absolute values of the terms of r.
+impl<const N: usize, T: Real> Add for Sums<N, T> {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self {
+            momentum: self.momentum + other.momentum,
+            before: self.before + other.before,
+            force: self.force + other.force,
+        }
+    }
+}
+
+impl<const N: usize, T: Real> Sums<N, T> {
+    /// The share of a point, from its weighted derivatives.
+    #[inline]
+    fn of<S: Indexed<N, T>>(c: f64, first: &FirstDerivatives<N, T>) -> Self {
+        let force = first.total_force::<S>();
+        Self { momentum: first.dv, before: force * T::real(1.0 - c), force }
+    }
+
+    /// The residual r of the momentum row. Small terms are summed first.
+    #[inline]
+    fn residual(&self, node: &Node<N, T>, h: T) -> SVector<T, N> {
+        self.momentum - node.p - (node.p_low + self.before * h)
+    }
+
+    /// The sums of the absolute values of the terms of r, from such sums.
+    #[inline]
+    fn scale(&self, node: &Node<N, T>, h: T) -> SVector<T, N> {
+        node.p.map(T::abs) + self.momentum + self.before * h.abs()
+    }
+}
+
+/// Those of the midpoint of a step.
 #[inline]
-fn scale<const N: usize, T: Real, S: Indexed<N, T>>(
-    node: &Node<N, T>,
-    h: T,
-    magnitudes: &FirstDerivatives<N, T>,
-) -> SVector<T, N> {
-    node.p.map(T::abs) + magnitudes.dv + magnitudes.total_force::<S>() * (h.abs() * T::real(0.5))
+fn of_midpoint<const N: usize, T: Real, S: Indexed<N, T>>(first: &FirstDerivatives<N, T>) -> Sums<N, T> {
+    Sums::of::<S>(0.5, first)
 }
 
 /// The combined residual c of the energy row. Small terms are summed first.
@@ -59,19 +99,41 @@ fn rate<const N: usize, T: Real, S: Indexed<N, T>>(v: &SVector<T, N>, first: &Fi
     if S::AUTONOMOUS { along_q } else { first.dt + along_q }
 }
 
-/// `A = ∂r/∂v`.
+/// The derivatives of `r_v L_v + r_q (L_q + f)` at a point: with respect to v times c_v, plus those with respect to q
+/// times c_q.
 #[inline]
-fn jacobian<const N: usize, T: Real, S: Indexed<N, T>>(
+fn moved<const N: usize, T: Real, S: Indexed<N, T>>(
     system: &S,
     (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
-    h: T,
+    rows: [T; 2],
+    columns: [T; 2],
 ) -> SMatrix<T, N, N> {
-    let (half, one) = (h * T::real(0.5), T::one());
-    let mut matrix = system.second_derivatives(t, q, v, [-half, one], [half, one]);
-    if S::FORCED {
-        system.add_force_derivatives(t, q, v, -half, [half, one], &mut matrix);
+    let mut matrix = system.second_derivatives(t, q, v, rows, columns);
+    if S::FORCED && !rows[0].is_zero() {
+        system.add_force_derivatives(t, q, v, rows[0], columns, &mut matrix);
     }
     matrix
+}
+
+/// `A = ∂r/∂v`, for systems without a simpler form of it.
+#[inline]
+pub fn jacobian<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
+    system: &S,
+    _rule: R,
+    node: &Node<N, T>,
+    h: T,
+    v: &SVector<T, N>,
+) -> SMatrix<T, N, N> {
+    sum::<R, _>(|[c, weight]| {
+        let (t, q) = node.within(c, h, v);
+        moved(system, (t, &q, v), of_residual([c, weight], h), [h * T::real(c), T::one()])
+    })
+}
+
+/// The factors of L_q + f and of L_v in the residual.
+#[inline]
+fn of_residual<T: Real>([c, weight]: [f64; 2], h: T) -> [T; 2] {
+    [-(h * T::real(weight * (1.0 - c))), T::real(weight)]
 }
 
 /// Derivatives of the equations with respect to h, and of the energy row.
@@ -100,109 +162,105 @@ impl<const N: usize, T: Real> AlongStep<N, T> {
     }
 }
 
-/// The momentum equation at a trial velocity, for
+/// The momentum equation at a trial velocity with this Jacobian, for
 /// [`FixedStepping::momentum_equation`](crate::stepping::FixedStepping::momentum_equation).
 #[inline]
-pub fn momentum_equation<const N: usize, T: Real, S: Indexed<N, T>>(
+pub fn momentum_equation<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature, J>(
     system: &S,
+    _rule: R,
     node: &Node<N, T>,
     h: T,
     v: &SVector<T, N>,
-) -> MomentumEquation<N, T, SMatrix<T, N, N>> {
-    let (t, q) = node.midpoint(h, v);
-    let first = system.first_derivatives(t, &q, v);
-    MomentumEquation { residual: residual::<N, T, S>(node, h, &first), jacobian: jacobian(system, (t, &q, v), h) }
+    jacobian: J,
+) -> MomentumEquation<N, T, J> {
+    let sums = sum::<R, _>(|[c, weight]| {
+        let (t, q) = node.within(c, h, v);
+        if c == 1.0 {
+            // The end contributes its momentum only.
+            let momentum = system.momentum(t, &q, v) * T::real(weight);
+            return Sums { momentum, before: SVector::zeros(), force: SVector::zeros() };
+        }
+        Sums::of::<S>(c, &system.first_derivatives(t, &q, v).weighted(weight))
+    });
+    MomentumEquation { residual: sums.residual(node, h), jacobian }
 }
 
 /// The residual of the momentum equation with its scale, and `p1 − p0`, for
 /// [`FixedStepping::momentum_residual`](crate::stepping::FixedStepping::momentum_residual).
 #[inline]
-pub fn momentum_residual<const N: usize, T: Real, S: Indexed<N, T>>(
+pub fn momentum_residual<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     system: &S,
+    _rule: R,
     node: &Node<N, T>,
     h: T,
     v: &SVector<T, N>,
 ) -> MomentumResidual<N, T> {
-    let (t, q) = node.midpoint(h, v);
-    let [first, magnitudes] = system.measured_derivatives(t, &q, v);
-    MomentumResidual {
-        residual: residual::<N, T, S>(node, h, &first),
-        scale: scale::<N, T, S>(node, h, &magnitudes),
-        increment: first.total_force::<S>() * h,
+    let Both([sums, magnitudes]) = sum::<R, _>(|[c, weight]| {
+        let (t, q) = node.within(c, h, v);
+        Both(system.measured_derivatives(t, &q, v).map(|first| Sums::of::<S>(c, &first.weighted(weight))))
+    });
+    MomentumResidual { residual: sums.residual(node, h), scale: magnitudes.scale(node, h), increment: sums.force * h }
+}
+
+/// Sums, and the same sums of absolute values.
+struct Both<V>([V; 2]);
+
+impl<V: Add<Output = V>> Add for Both<V> {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let ([sum, size], [other, other_size]) = (self.0, other.0);
+        Self([sum + other, size + other_size])
     }
 }
 
-/// `h ∂f/∂q0` and `h ∂f/∂v`, f at the midpoint; `None` without a force.
-#[inline]
-fn force_derivatives<const N: usize, T: Real, S: Indexed<N, T>>(
-    system: &S,
-    (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
-    h: T,
-) -> Option<[SMatrix<T, N, N>; 2]> {
-    if !S::FORCED {
-        return None;
-    }
-    let (mut of_q, mut of_v) = (SMatrix::zeros(), SMatrix::zeros());
-    system.add_force_derivatives(t, q, v, h, [T::one(), T::zero()], &mut of_q);
-    system.add_force_derivatives(t, q, v, h, [h * T::real(0.5), T::one()], &mut of_v);
-    Some([of_q, of_v])
-}
-
-/// Derivatives of r and of `p1 − p0`; `force` is that of [`force_derivatives`].
-#[inline]
-fn derivatives<const N: usize, T: Real, S: Indexed<N, T>>(
-    system: &S,
-    (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
-    h: T,
-    force: Option<&[SMatrix<T, N, N>; 2]>,
-) -> MomentumDerivatives<SMatrix<T, N, N>, SMatrix<T, N, N>> {
-    let (half, zero, one) = (h * T::real(0.5), T::zero(), T::one());
-    let (of_residual, of_increment) = ([-half, one], [h, zero]);
-    let (by_q, by_v) = ([one, zero], [half, one]);
-    let mut found = MomentumDerivatives {
-        residual_dq: system.second_derivatives(t, q, v, of_residual, by_q),
-        residual_dv: system.second_derivatives(t, q, v, of_residual, by_v),
-        increment_dq: system.second_derivatives(t, q, v, of_increment, by_q),
-        increment_dv: system.second_derivatives(t, q, v, of_increment, by_v),
-    };
-    if let Some([force_dq, force_dv]) = force {
-        found.residual_dq.zip_apply(force_dq, |entry, of_force| *entry -= of_force * T::real(0.5));
-        found.residual_dv.zip_apply(force_dv, |entry, of_force| *entry -= of_force * T::real(0.5));
-        found.increment_dq += force_dq;
-        found.increment_dv += force_dv;
-    }
-    found
-}
-
-/// Derivatives of the residual and of `p1 − p0` with respect to q0 and v, for
+/// Derivatives of the residual and of `p1 − p0` with respect to q0 and v, with this Jacobian, for
 /// [`FixedStepping::momentum_derivatives`](crate::stepping::FixedStepping::momentum_derivatives).
 #[inline]
-pub fn momentum_derivatives<const N: usize, T: Real, S: Indexed<N, T>>(
+pub fn momentum_derivatives<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature, J>(
     system: &S,
+    _rule: R,
     node: &Node<N, T>,
     h: T,
     v: &SVector<T, N>,
-) -> MomentumDerivatives<SMatrix<T, N, N>, SMatrix<T, N, N>> {
-    let (t, q) = node.midpoint(h, v);
-    let force = force_derivatives(system, (t, &q, v), h);
-    derivatives(system, (t, &q, v), h, force.as_ref())
+    jacobian: J,
+) -> MomentumDerivatives<J, SMatrix<T, N, N>> {
+    let of_increment = |[_, weight]: [f64; 2], h: T| [h * T::real(weight), T::zero()];
+    let by_q = |_: f64| [T::one(), T::zero()];
+    let by_v = |c: f64| [h * T::real(c), T::one()];
+    let sum = |rows: fn([f64; 2], T) -> [T; 2], columns: &dyn Fn(f64) -> [T; 2]| {
+        sum::<R, _>(|[c, weight]| {
+            let (t, q) = node.within(c, h, v);
+            moved(system, (t, &q, v), rows([c, weight], h), columns(c))
+        })
+    };
+    MomentumDerivatives {
+        residual_dq: sum(of_residual, &by_q),
+        residual_dv: jacobian,
+        increment_dq: sum(of_increment, &by_q),
+        increment_dv: sum(of_increment, &by_v),
+    }
 }
 
-/// Discrete energy `E1 = v·L_v − L + (h/2)(f·v − L_t)` at the end of a step, for
+/// Discrete energy at the end of a step, for
 /// [`FixedStepping::discrete_energy`](crate::stepping::FixedStepping::discrete_energy).
 #[inline]
-pub fn discrete_energy<const N: usize, T: Real, S: Indexed<N, T>>(
+pub fn discrete_energy<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     system: &S,
+    _rule: R,
     node: &Node<N, T>,
     h: T,
     v: &SVector<T, N>,
 ) -> T {
-    let (t, q) = node.midpoint(h, v);
-    let first = system.first_derivatives(t, &q, v);
-    if S::AUTONOMOUS && !S::FORCED {
-        return first.energy(v);
-    }
-    first.energy(v) + h * T::real(0.5) * first.power::<S>(v)
+    sum::<R, _>(|[c, weight]| {
+        let (t, q) = node.within(c, h, v);
+        let first = system.first_derivatives(t, &q, v).weighted(weight);
+        if S::AUTONOMOUS && !S::FORCED {
+            return first.energy(v);
+        }
+        first.energy(v) + h * T::real(c) * first.power::<S>(v)
+    })
 }
 
 /// Step density `D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)`, for
@@ -237,8 +295,8 @@ pub fn extended_system<const N: usize, T: Real, S: Indexed<N, T>>(
     let AlongStep { residual_dh, energy_dv, energy_dh } = AlongStep::new::<S>(h, v, &first, &rates);
     ExtendedSystem {
         momentum: MomentumEquation {
-            residual: residual::<N, T, S>(node, h, &first),
-            jacobian: jacobian(system, (t, &q, v), h),
+            residual: of_midpoint::<N, T, S>(&first).residual(node, h),
+            jacobian: jacobian(system, Midpoint, node, h, v),
         },
         residual_dh,
         energy_residual: energy_residual::<N, T, S>(node, h, v, &first),
@@ -261,8 +319,8 @@ pub fn extended_residual<const N: usize, T: Real, S: Indexed<N, T>>(
     let speeds = v.map(T::abs);
     let of_rate = h.abs() * T::real(0.5) * rate::<N, T, S>(&speeds, &magnitudes);
     ExtendedResidual {
-        residual: residual::<N, T, S>(node, h, &first),
-        scale: scale::<N, T, S>(node, h, &magnitudes),
+        residual: of_midpoint::<N, T, S>(&first).residual(node, h),
+        scale: of_midpoint::<N, T, S>(&magnitudes).scale(node, h),
         energy_residual: energy_residual::<N, T, S>(node, h, v, &first),
         energy_scale: node.energy.abs() + speeds.dot(&node.p.map(T::abs)) + magnitudes.value + of_rate,
         increment: Increment { momentum: first.total_force::<S>() * h, energy: h * first.power::<S>(v) },
@@ -281,12 +339,16 @@ pub fn extended_derivatives<const N: usize, T: Real, S: Indexed<N, T>>(
     let (t, q) = node.midpoint(h, v);
     let (half, zeros) = (h * T::real(0.5), SVector::zeros());
     let [first, rates] = along_direction(system, (t, &q, v), (T::one(), v, &zeros));
-    let force = force_derivatives(system, (t, &q, v), h);
     // E1 − E0 = h (f·v − L_t).
     let (mut energy_increment_dq, mut energy_increment_dv) = (zeros, zeros);
-    if let Some([force_dq, force_dv]) = &force {
-        energy_increment_dq = force_dq.tr_mul(v);
-        energy_increment_dv = force_dv.tr_mul(v) + first.force * h;
+    if S::FORCED {
+        let of_force = |columns: [T; 2]| {
+            let mut matrix = SMatrix::<T, N, N>::zeros();
+            system.add_force_derivatives(t, &q, v, h, columns, &mut matrix);
+            matrix.tr_mul(v)
+        };
+        energy_increment_dq = of_force([T::one(), T::zero()]);
+        energy_increment_dv = of_force([half, T::one()]) + first.force * h;
     }
     if !S::AUTONOMOUS {
         let [_, of_t] = along_direction(system, (t, &q, v), (T::one(), &zeros, &zeros));
@@ -295,7 +357,7 @@ pub fn extended_derivatives<const N: usize, T: Real, S: Indexed<N, T>>(
     }
     let AlongStep { residual_dh, energy_dv, energy_dh } = AlongStep::new::<S>(h, v, &first, &rates);
     ExtendedDerivatives {
-        momentum: derivatives(system, (t, &q, v), h, force.as_ref()),
+        momentum: momentum_derivatives(system, Midpoint, node, h, v, jacobian(system, Midpoint, node, h, v)),
         residual_dh,
         increment_dh: first.total_force::<S>() + rates.total_force::<S>() * half,
         energy_dq: rates.dq * half - first.dq,

@@ -105,6 +105,9 @@ pub struct StepFindings {
     pub affine: bool,
 }
 
+/// Of a step's equation whose Jacobian depends on parameters only.
+pub(crate) const EXPLICIT: &str = "explicit: its Jacobian `A` depends on parameters only and is inverted once per run";
+
 /// What the Jacobian A depends on, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
@@ -366,6 +369,11 @@ pub(crate) fn constraints_in_words(names: &[Vec<(String, usize)>; 2]) -> Vec<Str
     kinds.map(|(names, kind)| format!("Constraints on {kind}: {}", in_arrays(names))).collect()
 }
 
+/// What angles are, with their names.
+pub(crate) fn angles_in_words(names: &str) -> String {
+    format!("Angles modulo 2π: {names}; a run keeps their sines exact")
+}
+
 /// The cyclic coordinates, so many with these names.
 pub(crate) fn cyclic_in_words(names: &str, count: usize) -> String {
     let momenta = if count == 1 { "its momentum is" } else { "their momenta are" };
@@ -457,7 +465,7 @@ impl Findings {
             lines.push(cyclic_in_words(&list(name, &self.cyclic), self.cyclic.len()));
         }
         if !self.angles.is_empty() {
-            lines.push(format!("Angles modulo 2π: {}; a run keeps their sines exact", list(name, &self.angles)));
+            lines.push(angles_in_words(&list(name, &self.angles)));
         }
         lines.push(match (self.separable, self.constant_mass) {
             (true, true) => "`L = T(v) + U(t, q)` with a constant mass matrix".to_owned(),
@@ -485,8 +493,7 @@ impl Findings {
                 _ if !steps.smooth =>
                     "not smooth: it has a kink or a jump, across which Newton's iteration may have to be damped",
                 _ if self.closed_form() => "linear: one constant matrix, computed once per run, gives the whole step",
-                Dependence::Parameters =>
-                    "explicit: its Jacobian `A` depends on parameters only and is inverted once per run",
+                Dependence::Parameters => EXPLICIT,
                 Dependence::Step =>
                     "linear: its Jacobian `A` depends on parameters and `h` only and is inverted once per run",
                 Dependence::Node => "linear: its Jacobian `A` does not depend on `v`, and one solution gives the step",

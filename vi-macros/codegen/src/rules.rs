@@ -15,6 +15,9 @@ pub struct NamedRule {
     pub text: &'static str,
     /// The order of its fixed steps in h.
     pub order: u32,
+    /// It evaluates L at the ends of the step. Steps are then explicit if `L = v·Mv/2 − V(t, q)` with constant M and f is
+    /// free of v.
+    pub at_ends: bool,
     /// Self-adjoint: a step back undoes a step.
     pub symmetric: bool,
     /// The step density of the continuous system is that of its steps and determines the length of energy-preserving
@@ -37,6 +40,7 @@ pub const RULES: [NamedRule; 2] = [
         marker: "Midpoint",
         text: "Ld = h * L((t0 + t1)/2, (q0 + q1)/2, (q1 - q0)/h);",
         order: 2,
+        at_ends: false,
         symmetric: true,
         step_density: true,
     },
@@ -45,6 +49,7 @@ pub const RULES: [NamedRule; 2] = [
         marker: "Trapezoidal",
         text: "Ld = h/2 * (L(t0, q0, (q1 - q0)/h) + L(t1, q1, (q1 - q0)/h));",
         order: 2,
+        at_ends: true,
         symmetric: true,
         step_density: false,
     },

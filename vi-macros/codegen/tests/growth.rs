@@ -33,6 +33,23 @@ fn closed(count: usize) -> String {
     )
 }
 
+/// Links by angles relative to the link before, modulo 2π, with two rules.
+fn joints(count: usize) -> String {
+    format!(
+        "pub struct System {{
+            const N = {count};
+            param m[N] = 1.0, l[N] = 0.3, g = 9.81;
+            angle q[N];
+            let a[0] = q[0];
+            let a[i in 1..N] = a[i - 1] + q[i];
+            let x[i in 0..N] = sum(j in 0..i + 1, l[j] * sin(a[j]));
+            let y[i in 0..N] = -sum(j in 0..i + 1, l[j] * cos(a[j]));
+            L = sum(i in 0..N, m[i] * (dot(x[i])^2 + dot(y[i])^2) / 2 - m[i] * g * y[i]);
+            discretize trapezoidal, midpoint;
+        }}"
+    )
+}
+
 fn large(text: &str) -> Indexed {
     let system = parse::system(text.parse().expect("tokens")).expect("a system");
     match Compiled::of(&system).unwrap_or_else(|error| panic!("{text}: {error}")) {
@@ -63,7 +80,7 @@ fn functions(text: &str) -> (String, usize) {
 
 #[test]
 fn the_text_of_loops_is_the_same_for_every_length() {
-    for system in [bodies, links, pendulum, closed] {
+    for system in [bodies, links, pendulum, closed, joints] {
         let [few, more, most] = [32, 40, 80].map(|count| functions(&system(count)));
         assert!(few.0.len() > 2000, "{}", few.0.len());
         assert_eq!(few.0, more.0);
@@ -125,6 +142,42 @@ fn is_in_loops(clauses: &str) -> bool {
     let text = format!("#[vi_limit(0)] struct S {{ const N = 6; {clauses} discretize midpoint; }}");
     let system = parse::system(text.parse().expect("tokens")).unwrap_or_else(|error| panic!("{text}: {error}"));
     matches!(Compiled::of(&system), Ok(Compiled::Loops(_)))
+}
+
+#[test]
+fn each_rule_and_angles_are_in_loops() {
+    let rules = |text: &str| large(text).rules.iter().map(|rule| rule.name).collect::<Vec<_>>();
+    assert_eq!(rules(&joints(20)), ["trapezoidal", "midpoint"]);
+    assert_eq!(rules(&links(20).replace("discretize midpoint", "discretize gauss, trapezoidal")), ["trapezoidal"]);
+    // An angle is reduced although no entry of `a` has a period.
+    assert!(large(&joints(20)).model.coordinates.iter().all(|of| of.is_angle));
+    let message = |text: &str| {
+        let system = parse::system(text.parse().expect("tokens")).expect("a system");
+        Compiled::of(&system).err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    // A turn of the first link changes the signs of all x: that of another one is noticed.
+    let found = message(&joints(20).replace("sin(a[j])", "sin(a[j] / 2)"));
+    assert!(found.starts_with("`L` is not periodic in the angle `q[1]`"), "{found}");
+    // Explicit steps need masses that are constant.
+    let code = |text: &str| vi_codegen::expand(text.parse().expect("tokens")).to_string();
+    let constant = "const CONSTANT_JACOBIAN : bool = true";
+    assert!(code(&bodies(20).replace("midpoint", "trapezoidal")).contains(constant));
+    assert!(!code(&bodies(20)).contains(constant) && !code(&joints(20)).contains(constant));
+}
+
+#[test]
+fn rotations_are_in_loops_where_lines_end() {
+    let needles = |count: usize| {
+        format!(
+            "pub struct System {{ const N = {count}; param J[3] = [1, 2, 3]; rotation R[N];
+             let ω[i in 0..N] = rate(R[i]); let n[i in 0..N] = turn(R[i], [0, 0, 1]);
+             L = sum(i in 0..N, J[0] * ω[i][0]^2 + J[1] * ω[i][1]^2 + J[2] * ω[i][2]^2) / 2
+                 + sum(i in 0..N, sum(j in 0..i, n[i] * n[j])); }}"
+        )
+    };
+    let system = parse::system(needles(4).parse().expect("tokens")).expect("a system");
+    assert!(matches!(Compiled::of(&system), Ok(Compiled::Lines(_))));
+    assert_eq!(large(&needles(40)).constraints.len(), 2);
 }
 
 #[test]

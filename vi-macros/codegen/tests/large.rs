@@ -91,6 +91,19 @@ fn an_explanation_shows_loops_and_what_follows_from_them() {
         "Cyclic: `y[1][0]` to `y[1][4]`, `z`; their momenta are conserved",
     ];
     has_lines(&text(WELLS), &wells);
+    let both = BODIES.replace("discretize midpoint", "discretize midpoint, trapezoidal");
+    let trapezoidal = [
+        "rule midpoint",
+        "rule trapezoidal",
+        "L_d = h*L",
+        "L_d = h/2*(L(0) + L(1))",
+        "r = (L_v(0) + L_v(1))/2 - h/2*(L_q + f)(0) - p0",
+        "A = (L_vv(0) + L_vv(1))/2 + h/2*(L_vq(1) - L_qv(0) - f_v(0))",
+        "p1 - p0 = h/2*((L_q + f)(0) + (L_q + f)(1))",
+        "E1 = v·(L_v(0) + L_v(1))/2 - (L(0) + L(1))/2 + h/2*f(1)·v",
+        "By the rule trapezoidal: `A` is dense; solved by elimination with pivoting",
+    ];
+    has_lines(&text(&both), &trapezoidal);
     let closed = [
         "constraint up[k in 3..5] = x[k] - k * d;",
         "up[i + 3] += x[i + 3] for i in 0..2",
@@ -120,7 +133,8 @@ fn two_loops_are_shown_as_a_double_sum() {
 
 #[test]
 fn an_explanation_is_a_document() {
-    for system in [BODIES, LINKS, WELLS, CLOSED] {
+    let trapezoidal = WELLS.replace("discretize midpoint", "discretize trapezoidal");
+    for system in [BODIES, LINKS, WELLS, CLOSED, &trapezoidal] {
         for latex in
             [explain(tokens(system)).expect("right").latex(), explain_gauss(tokens(system), 3).expect("right").latex()]
         {

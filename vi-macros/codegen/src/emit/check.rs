@@ -7,7 +7,7 @@
 
 use super::formula::number;
 use super::lagrangian::monotone_table;
-use super::{Source, Steps};
+use super::{Source, Steps, by_marker};
 use crate::indexed::Indexed;
 use crate::model::Model;
 use crate::pretty::snake_case;
@@ -47,15 +47,22 @@ pub(super) fn tests(
 /// The tests of the clause `check` of a large system, in their own module.
 pub(super) fn tests_of_loops(of: &Indexed, conditions: &[&Attribute]) -> Option<TokenStream> {
     let (forced, is_cyclic) = (of.model.forced, of.cyclic.contains(&true));
-    let applying = match &of.model.rule {
-        Some(rule) => {
-            let is_monotone = monotone_table_of(of).is_some();
-            of_steps(&Properties { rule: rule.named, has_energy_steps: !is_monotone, is_monotone, is_cyclic, forced })
-        }
-        None if of.model.constraints.is_empty() => of_motion(is_cyclic, forced),
-        None => of_constraints(&of.model),
+    let is_monotone = monotone_table_of(of).is_some();
+    let by = |rule: &'static NamedRule| {
+        let has_energy_steps = rule.step_density && !is_monotone;
+        of_steps(&Properties { rule: Some(rule), has_energy_steps, is_monotone, is_cyclic, forced })
     };
-    module(&of.model, &applying, &[], conditions)
+    let Some((own, further)) = of.rules.split_first() else {
+        let is_constrained = !of.model.constraints.is_empty();
+        let applying = if is_constrained { of_constraints(&of.model) } else { of_motion(is_cyclic, forced) };
+        return module(&of.model, &applying, &[], conditions);
+    };
+    let further = further.iter().map(|rule| Further {
+        rule: format_ident!("{}", rule.name),
+        checks: by(rule),
+        by_rule: Box::new(|system| by_marker(&format_ident!("{}", rule.marker), &system)),
+    });
+    module(&of.model, &by(own), &further.collect::<Vec<_>>(), conditions)
 }
 
 /// The name of a monotone table in L of a large system.

@@ -66,6 +66,11 @@ impl<'a> Deref for Steps<'a> {
     }
 }
 
+/// A value that steps with a rule that is not the system's own: `By::new(system, Trapezoidal)`.
+fn by_marker(marker: &Ident, system: &TokenStream) -> TokenStream {
+    quote!(::vi_core::rules::By::new(#system, ::vi_core::rules::#marker))
+}
+
 /// Maximum number of operations in one function; a longer one is emitted in pieces.
 const LIMIT: usize = 800;
 
@@ -138,7 +143,7 @@ impl<'a> Source<'a> {
     /// A value that steps with the rule: `By::new(system, Trapezoidal)`, or the system.
     fn by_rule(&self, system: TokenStream) -> TokenStream {
         match &self.marker {
-            Some(marker) => quote!(::vi_core::rules::By::new(#system, ::vi_core::rules::#marker)),
+            Some(marker) => by_marker(marker, &system),
             None => system,
         }
     }

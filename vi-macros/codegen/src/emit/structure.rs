@@ -4,7 +4,7 @@ use super::formula::number;
 use super::{Source, Steps, conditions, constrained, limit};
 use crate::limits::{COORDINATES, PARAMETERS};
 use crate::model::{COMPONENTS, Model, Parameter};
-use crate::rules::{GAUSS, RULES};
+use crate::rules::{GAUSS, NamedRule, RULES};
 use crate::syntax::{self, Discretization, Expression, Kind, System};
 use num_traits::ToPrimitive;
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -255,11 +255,16 @@ pub(super) fn found(model: &Model, findings: Vec<String>) -> TokenStream {
 
 /// The properties of the steps with a further rule.
 fn further_findings(source: &Steps) -> Option<TokenStream> {
-    let marker = source.marker.as_ref()?;
-    let rule = format!(" By the rule `{}`, as `By::new(system, {marker})`:", source.rule.title());
-    let findings = source.source.findings.of_steps(&|index| format!("`{}`", source.model.coordinates[index].text()));
+    let rule = source.rule.named.filter(|_| source.marker.is_some())?;
+    let name = |index: usize| format!("`{}`", source.model.coordinates[index].text());
+    Some(further(rule, source.source.findings.of_steps(&name)))
+}
+
+/// Documentation of the steps with a further rule.
+pub(super) fn further(rule: &NamedRule, findings: Vec<String>) -> TokenStream {
+    let rule = format!(" By the rule `{}`, as `By::new(system, {})`:", rule.name, rule.marker);
     let findings = findings.into_iter().map(|line| format!(" * {line}"));
-    Some(quote!(#[doc = ""] #[doc = #rule] #[doc = ""] #(#[doc = #findings])*))
+    quote!(#[doc = ""] #[doc = #rule] #[doc = ""] #(#[doc = #findings])*)
 }
 
 /// An empty line of documentation that separates the user's paragraph from ours.

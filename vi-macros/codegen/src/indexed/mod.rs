@@ -25,6 +25,7 @@ pub(crate) use named::{NamedBody, Quantity};
 pub(crate) use named::{named, part_name, sum_name};
 pub use nest::{Affine, Nest};
 pub use properties::documentation;
+pub(crate) use properties::of_steps;
 #[cfg(feature = "inspect")]
 pub(crate) use properties::properties;
 
@@ -32,6 +33,7 @@ use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{LetArray, Model};
 use crate::program::Function;
+use crate::rules::NamedRule;
 use crate::symbol::{Symbol, Variable};
 use body::{Instance, Shape};
 use lets::Lets;
@@ -57,6 +59,8 @@ const NUMBERS: usize = 6;
 pub struct Indexed {
     /// The checked system.
     pub model: Model,
+    /// The declared rules; the first is the system's own.
+    pub rules: Vec<&'static NamedRule>,
     /// Whether L and f are independent of time.
     pub autonomous: bool,
     /// For each coordinate, whether it appears neither in L nor has a force.
@@ -107,19 +111,18 @@ pub struct Sum {
 ///
 /// # Errors
 /// Recursions with too many entries, at the name of the system.
-pub fn indexed(pool: &mut Pool<Symbol>, model: Model) -> Result<Option<Indexed>> {
+pub fn indexed(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRule>) -> Result<Option<Indexed>> {
     let name = model.name.clone();
-    let Some(found) = statements(pool, model) else { return Ok(None) };
+    let Some(found) = statements(pool, model, rules) else { return Ok(None) };
     match found.tangents() {
         Some(message) => Err(error(name.span(), &message)),
         None => Ok(Some(found)),
     }
 }
 
-fn statements(pool: &mut Pool<Symbol>, model: Model) -> Option<Indexed> {
-    let is_other = model.rule.as_ref().is_some_and(|rule| rule.named.is_none_or(|named| named.name != "midpoint"));
-    let has_angles = model.coordinates.iter().any(|coordinate| coordinate.is_angle || coordinate.is_rotation);
-    if is_other || has_angles || model.time_scale.is_some() {
+fn statements(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRule>) -> Option<Indexed> {
+    let is_written_out = model.rule.as_ref().is_some_and(|rule| rule.named.is_none());
+    if is_written_out || model.time_scale.is_some() {
         return None;
     }
     let lets = Lets::of(pool, &model)?;
@@ -153,6 +156,7 @@ fn statements(pool: &mut Pool<Symbol>, model: Model) -> Option<Indexed> {
     bounded(pool).ok()?;
     Some(Indexed {
         model,
+        rules,
         autonomous,
         cyclic,
         has_mass_of_position,
@@ -186,6 +190,16 @@ impl Indexed {
         let arrays: Vec<String> = kept.iter().map(|array| array.name.clone()).collect();
         let names: BTreeSet<String> = arrays.into_iter().collect();
         Some(Message::Tangents { arrays: names.into_iter().collect(), bytes: 8 * numbers, most })
+    }
+
+    /// The indices of the angles.
+    pub(crate) fn angles(&self) -> Vec<usize> {
+        (0..self.model.dimension()).filter(|index| self.model.coordinates[*index].is_angle).collect()
+    }
+
+    /// Whether steps by a rule are explicit, with a diagonal matrix.
+    pub(crate) fn is_explicit(&self, rule: &NamedRule) -> bool {
+        self.separable && rule.at_ends
     }
 
     /// Whether at least a quarter of the second derivatives are not zero. Straight lines have solvers for fewer.

@@ -2,10 +2,11 @@
 
 use super::{Indexed, Sum, named};
 use crate::findings::{
-    constrained_energy_in_words, constrained_smoothness_in_words, constraint_names, constraints_in_words,
-    cyclic_in_words, derivatives_in_words, energy_in_words,
+    EXPLICIT, angles_in_words, constrained_energy_in_words, constrained_smoothness_in_words, constraint_names,
+    constraints_in_words, cyclic_in_words, derivatives_in_words, energy_in_words,
 };
 use crate::model::Coordinate;
+use crate::rules::NamedRule;
 
 /// The properties of a large system that the generator found, one per line, with formulas between backticks: for the
 /// documentation of the struct.
@@ -52,10 +53,22 @@ pub(crate) fn properties(of: &Indexed, name: &dyn Fn(&Coordinate) -> String) -> 
     if is_constrained {
         lines.push("The matrix of a step is dense; solved by elimination with pivoting".to_owned());
     }
-    if model.rule.is_some() {
-        lines.push("`A` is dense; solved by elimination with pivoting".to_owned());
+    if !of.angles().is_empty() {
+        lines.push(angles_in_words(&in_ranges(&model.coordinates, &of.angles(), name)));
     }
+    lines.extend(of.rules.first().into_iter().flat_map(|rule| of_steps(of, rule)));
     lines
+}
+
+/// The properties of the steps by a rule.
+pub(crate) fn of_steps(of: &Indexed, rule: &NamedRule) -> Vec<String> {
+    if of.is_explicit(rule) {
+        return vec![
+            format!("The step's equation in `v` is {EXPLICIT}"),
+            "`A` is diagonal; solved by division".to_owned(),
+        ];
+    }
+    vec!["`A` is dense; solved by elimination with pivoting".to_owned()]
 }
 
 /// The names of coordinates, neighbors in an array as `q[0]` to `q[39]`.

@@ -10,6 +10,7 @@ use crate::indexed::{self, NamedBody, Quantity};
 use crate::indexed::{Affine, Nest, Value};
 use crate::model::{Coordinate, Model, Parameter};
 use crate::program::Function;
+use crate::rules::NamedRule;
 use crate::symbol::Symbol;
 use crate::syntax::System;
 use std::fmt::Write as _;
@@ -264,16 +265,17 @@ fn part(of: &Loops, named: &NamedBody, nest: &Nest, prefix: &str) -> Vec<Line> {
     row.computed.iter().zip(&named.body.values).map(line).collect()
 }
 
-/// The functions that `vi_core::indexed` computes from the derivatives of L and f, by the midpoint rule.
+/// An equation of text, and of LaTeX.
+fn line([text, text_right]: [&str; 2], [latex, latex_right]: [&str; 2]) -> Line {
+    let both = |text: &str, latex: &str| Both { text: text.to_owned(), latex: latex.to_owned() };
+    equation(both(text, latex), both(text_right, latex_right))
+}
+
+/// The functions that `vi_core::indexed` computes from the derivatives of L and f.
 pub(super) fn discrete(of: &Loops) -> Vec<Section> {
     let model = &of.indexed.model;
-    let line = |[text, text_right]: [&str; 2], [latex, latex_right]: [&str; 2]| {
-        let both = |text: &str, latex: &str| Both { text: text.to_owned(), latex: latex.to_owned() };
-        equation(both(text, latex), both(text_right, latex_right))
-    };
-    let (forced, autonomous) = (model.forced, of.indexed.autonomous);
-    let (sum, force) = if forced { ("L_q + f", "(L_q + f)") } else { ("L_q", "L_q") };
-    let [of_time, of_time_latex] = if autonomous { ["", ""] } else { [" - L_vt", " - L_{vt}"] };
+    let sum = if model.forced { "L_q + f" } else { "L_q" };
+    let [of_time, of_time_latex] = if of.indexed.autonomous { ["", ""] } else { [" - L_vt", " - L_{vt}"] };
     let motion = vec![
         line(["p", "L_v"], ["p", "L_v"]),
         line(["E", "v·L_v - L"], ["E", "v \\cdot L_v - L"]),
@@ -298,10 +300,34 @@ pub(super) fn discrete(of: &Loops) -> Vec<Section> {
     if !model.constraints.is_empty() {
         return vec![motion, gauss::constrained()];
     }
-    if model.rule.is_none() {
+    let Some((own, further)) = of.indexed.rules.split_first() else {
         let lines = vec![Line::words("None: the system is declared without a rule and takes Gauss steps")];
         return vec![motion, Section { title: "Discrete Lagrangian", lines }];
+    };
+    let mut sections = vec![motion, step(of, own)];
+    for rule in further {
+        sections.extend([model::further_rule(rule.name), step(of, rule)]);
     }
+    sections
+}
+
+/// The equations of a step by a rule.
+fn step(of: &Loops, rule: &NamedRule) -> Section {
+    let mut lines = if rule.at_ends { step_by_ends(of) } else { step_by_midpoint(of) };
+    lines.push(Line::words(
+        "vi_core::indexed evaluates these equations and their derivatives; they are not written out",
+    ));
+    let title = if rule.step_density {
+        "Step: residual r of the momentum equation, A = dr/dv, discrete energy E1, step density D"
+    } else {
+        "Step: residual r of the momentum equation, A = dr/dv, discrete energy E1"
+    };
+    Section { title, lines }
+}
+
+fn step_by_midpoint(of: &Loops) -> Vec<Line> {
+    let (forced, autonomous) = (of.indexed.model.forced, of.indexed.autonomous);
+    let force = if forced { "(L_q + f)" } else { "L_q" };
     let (matrix, matrix_latex) = if forced {
         let latex = "L_{vv} + \\frac{h}{2} (L_{vq} - L_{qv} - f_v) - \\frac{h^{2}}{4} (L_{qq} + f_q)";
         ("L_vv + h/2*(L_vq - L_qv - f_v) - h^2/4*(L_qq + f_q)", latex)
@@ -317,7 +343,7 @@ pub(super) fn discrete(of: &Loops) -> Vec<Section> {
     };
     let [rate, rate_latex] = if autonomous { ["", ""] } else { [" - d/dt(L_t)", " - \\frac{d}{dt} L_t"] };
     let midpoint = "\\frac{t_0 + t_1}{2}, \\frac{q_0 + q_1}{2}, \\frac{q_1 - q_0}{h}";
-    let mut steps = vec![
+    vec![
         line(["t, q, v", "(t0 + t1)/2, (q0 + q1)/2, (q1 - q0)/h"], ["t, q, v", midpoint]),
         line(["L_d", "h*L"], ["L_d", "h L"]),
         line(["r", &format!("L_v - h/2*{force} - p0")], ["r", &format!("L_v - \\frac{{h}}{{2}} {force} - p_0")]),
@@ -328,19 +354,60 @@ pub(super) fn discrete(of: &Loops) -> Vec<Section> {
             ["D", &format!("a·{force} - v·d/dt(L_q){rate}")],
             ["D", &format!("a \\cdot {force} - v \\cdot \\frac{{d}}{{dt}} L_q{rate_latex}")],
         ),
-    ];
-    steps.push(Line::words(
-        "vi_core::indexed evaluates these equations and their derivatives; they are not written out",
-    ));
-    let title = "Step: residual r of the momentum equation, A = dr/dv, discrete energy E1, step density D";
-    vec![motion, Section { title, lines: steps }]
+    ]
+}
+
+fn step_by_ends(of: &Loops) -> Vec<Line> {
+    let (forced, autonomous) = (of.indexed.model.forced, of.indexed.autonomous);
+    let force = |end: u8| if forced { format!("(L_q + f)({end})") } else { format!("L_q({end})") };
+    let [before, after] = [force(0), force(1)];
+    let [slope, slope_latex] = if forced { [" - f_v(0)", " - f_v(0)"] } else { ["", ""] };
+    let (work, work_latex) = match (forced, autonomous) {
+        (true, true) => (" + h/2*f(1)·v", " + \\frac{h}{2} f(1) \\cdot v"),
+        (true, false) => (" + h/2*(f·v - L_t)(1)", " + \\frac{h}{2} (f \\cdot v - L_t)(1)"),
+        (false, true) => ("", ""),
+        (false, false) => (" - h/2*L_t(1)", " - \\frac{h}{2} L_t(1)"),
+    };
+    vec![
+        Line::words("X(0) is X at (t0, q0, v), and X(1) is X at (t1, q1, v)"),
+        line(["v", "(q1 - q0)/h"], ["v", "\\frac{q_1 - q_0}{h}"]),
+        line(["L_d", "h/2*(L(0) + L(1))"], ["L_d", "\\frac{h}{2} (L(0) + L(1))"]),
+        line(
+            ["r", &format!("(L_v(0) + L_v(1))/2 - h/2*{before} - p0")],
+            ["r", &format!("\\frac{{1}}{{2}} (L_v(0) + L_v(1)) - \\frac{{h}}{{2}} {before} - p_0")],
+        ),
+        line(
+            ["A", &format!("(L_vv(0) + L_vv(1))/2 + h/2*(L_vq(1) - L_qv(0){slope})")],
+            [
+                "A",
+                &format!(
+                    "\\frac{{1}}{{2}} (L_{{vv}}(0) + L_{{vv}}(1)) + \\frac{{h}}{{2}} (L_{{vq}}(1) - L_{{qv}}(0){slope_latex})"
+                ),
+            ],
+        ),
+        line(
+            ["p1 - p0", &format!("h/2*({before} + {after})")],
+            ["p_1 - p_0", &format!("\\frac{{h}}{{2}} ({before} + {after})")],
+        ),
+        line(
+            ["E1", &format!("v·(L_v(0) + L_v(1))/2 - (L(0) + L(1))/2{work}")],
+            [
+                "E_1",
+                &format!("\\frac{{1}}{{2}} v \\cdot (L_v(0) + L_v(1)) - \\frac{{1}}{{2}} (L(0) + L(1)){work_latex}"),
+            ],
+        ),
+    ]
 }
 
 /// Findings, and operation counts of the functions of one row.
 pub(super) fn findings(of: &Loops) -> Vec<Section> {
     let text = indexed::documentation(&of.indexed);
     let latex = indexed::properties(&of.indexed, &|coordinate| format!("`{}`", name::coordinate(coordinate).text()));
-    let lines = text.into_iter().zip(latex).map(|(text, latex)| Line::Words { text, latex }).collect();
+    let mut lines: Vec<Line> = text.into_iter().zip(latex).map(|(text, latex)| Line::Words { text, latex }).collect();
+    for rule in of.indexed.rules.iter().skip(1) {
+        let further = indexed::of_steps(&of.indexed, rule);
+        lines.extend(further.into_iter().map(|line| Line::words(format!("By the rule {}: {line}", rule.name))));
+    }
     let named = indexed::named(&of.indexed);
     let width = named.iter().map(|of| of.name.len()).max().unwrap_or(0);
     let costs = named.iter().map(|of| {

@@ -134,7 +134,7 @@ fn explanation(Derivations { own, further }: &Derivations, of_own: &[Chapter], o
     let mut sections: Vec<Section> = of_own.iter().flat_map(|chapter| chapter(own)).collect();
     for derived in further {
         let chapters = of_further.iter().flat_map(|chapter| chapter(derived));
-        let head = of_further.first().map(|_| model::further_rule(derived));
+        let head = of_further.first().map(|_| model::further_rule(model::title(&derived.model)));
         sections.extend(head.into_iter().chain(chapters));
     }
     Explanation { title: own.model.name.to_string(), sections }

@@ -10,8 +10,8 @@ use crate::findings::{Block, Elimination};
 use crate::model::{Coordinate, Model, Rule};
 
 /// The heading of the sections for a further rule.
-pub(super) fn further_rule(derived: &Derived) -> Section {
-    let rule = Line::words(format!("rule {}", title(&derived.model)));
+pub(super) fn further_rule(name: &str) -> Section {
+    let rule = Line::words(format!("rule {name}"));
     Section { title: "The same system with another rule", lines: vec![rule] }
 }
 

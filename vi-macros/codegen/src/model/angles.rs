@@ -7,6 +7,7 @@
 
 use super::context::Context;
 use super::force::{self, Entries};
+use super::lets::Closed;
 use super::point::Point;
 use super::rule::Rule;
 use super::{Constraint, Coordinate, Parameter, probe};
@@ -57,7 +58,11 @@ pub(super) fn check(
         let exprs = array.iter().map(|constraint| constraint.value).collect();
         Some(Clause { exprs, span: name.span(), what: format!("the constraint `{name}`") })
     }));
-    for Clause { exprs, span, what } in clauses {
+    let closed = Closed::of(context.pool, context.scope.kept.as_deref().unwrap_or_default());
+    for Clause { mut exprs, span, what } in clauses {
+        for expr in &mut exprs {
+            *expr = closed.expression(context.pool, *expr);
+        }
         let probe = |expr: &Expr| Probe { pool: context.pool, expr: *expr, are_angles: &are_angles, parameters };
         if let Some(angle) = exprs.iter().find_map(|expr| probe(expr).failing_angle()) {
             let Coordinate { name, .. } = &coordinates[angle];

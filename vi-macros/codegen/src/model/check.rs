@@ -83,7 +83,8 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     let Some(lagrangian) = lagrangian else {
         return Err(error(system.name.span(), &Message::MissingLagrangian));
     };
-    let lagrangian = rotation::with_inertia(pool, lagrangian, &coordinates, &parameters);
+    let kept = scope.kept.as_deref().unwrap_or_default();
+    let lagrangian = rotation::with_inertia(pool, lagrangian, kept, (&coordinates, &parameters));
     let lagrangian_span = system.lagrangians[0].name.span();
     let rows = constraint::rows(pool, &constraints, coordinates.len());
     let singular = if is_large {

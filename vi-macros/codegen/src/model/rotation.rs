@@ -18,6 +18,7 @@ use super::array::part;
 use super::constraint::{Constraint, slope, vanish};
 use super::context::Context;
 use super::force::{over, path};
+use super::lets::{Closed, LetArray};
 use super::scope::{Meaning, Scope};
 use super::value::Value;
 use super::{Coordinate, Parameter};
@@ -219,19 +220,23 @@ fn of_line(
     Ok(made)
 }
 
-/// L with inertia along each rotation whose M has none there.
+/// L with inertia along each rotation whose M has none there. `lets` are the arrays that stay symbols in L.
 pub(super) fn with_inertia(
     pool: &mut Pool<Symbol>,
     lagrangian: Expr,
-    coordinates: &[Coordinate],
-    parameters: &[Parameter],
+    lets: &[LetArray],
+    (coordinates, parameters): (&[Coordinate], &[Parameter]),
 ) -> Expr {
+    if rotations(coordinates).next().is_none() {
+        return lagrangian;
+    }
+    let closed = Closed::of(pool, lets).expression(pool, lagrangian);
     let mut whole = lagrangian;
     for (first, _) in rotations(coordinates) {
         let (place, moved) = (symbols(pool, first, Variable::Coordinate), symbols(pool, first, Variable::Velocity));
         let (mut along, mut trace) = (Vec::new(), Vec::new());
         for row in 0..COMPONENTS {
-            let momentum = slope(pool, lagrangian, Variable::Velocity(first + row));
+            let momentum = slope(pool, closed, Variable::Velocity(first + row));
             for column in 0..COMPONENTS {
                 let mass = slope(pool, momentum, Variable::Velocity(first + column));
                 along.push(pool.product(&[place[row], mass, place[column]]));

@@ -8,7 +8,7 @@ mod function;
 pub mod parse;
 mod unexpected;
 
-use crate::rules::GAUSS;
+use crate::rules::{self, GAUSS, NamedRule};
 pub use expression::{Comparison, Expression, Kind, Operator, Range};
 pub use function::{Body, Function, Table, TableArgument, TableData};
 use proc_macro2::{Ident, Span};
@@ -94,6 +94,17 @@ impl System {
             Some(Discretization::Named(names)) => names.iter().filter(|name| *name != GAUSS).count(),
             Some(Discretization::Written(_)) => 1,
             None => 0,
+        }
+    }
+
+    /// The declared built-in rules, in order.
+    #[must_use]
+    pub fn named_rules(&self) -> Vec<&'static NamedRule> {
+        match self.discretizations.first() {
+            Some(Discretization::Named(names)) => {
+                names.iter().filter_map(|name| rules::named(&name.to_string())).collect()
+            }
+            _ => Vec::new(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! First derivatives by one reverse sweep: recursions forward, terms of L, recursions backward.
 
-use super::{Defined, Printer, slope};
+use super::{Defined, Printer, reads_entries, slope};
 use crate::indexed::Read;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -60,10 +60,15 @@ impl Printer<'_> {
             let mut dv_size = #zeros;
             let mut force_size = #zeros;
         });
-        let bars = self.zeros("bar_", &quote!(real(0.0)));
-        let bar_sizes = sums.measured(self.zeros("size_", &quote!(real(0.0))));
-        let entries = self.entries();
-        let (terms, backward, forces) = (self.terms(sums), self.backward(sums), self.forces(sums));
+        let of_lagrangian = reads_entries(&self.of.lagrangian);
+        let bars = of_lagrangian.then(|| {
+            let (bars, sizes) = (self.zeros("bar_", &quote!(real(0.0))), self.zeros("size_", &quote!(real(0.0))));
+            let sizes = sums.measured(sizes);
+            quote!(#bars #sizes)
+        });
+        let backward = of_lagrangian.then(|| self.backward(sums));
+        let entries = (of_lagrangian || reads_entries(&self.of.force)).then(|| self.entries());
+        let (terms, forces) = (self.terms(sums), self.forces(sums));
         quote! {
             let real = T::real;
             let mut value = real(0.0);
@@ -74,7 +79,6 @@ impl Printer<'_> {
             #sizes
             #entries
             #bars
-            #bar_sizes
             #terms
             #backward
             #forces

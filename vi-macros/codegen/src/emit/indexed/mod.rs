@@ -19,7 +19,7 @@ use super::body::{VelocityFrom, body};
 use super::{check, conditions, functions, scope, structure};
 use crate::Loops;
 use crate::indexed::{
-    Affine, Body, Indexed, Nest, Part, Read, Recursion, Sum, Value, documentation, named, part_name, sum_name,
+    Affine, Body, Indexed, Nest, Part, Read, Recursion, Sum, Value, documentation, named, of_steps, part_name, sum_name,
 };
 use crate::model::Model;
 use crate::program::{Function, Output};
@@ -34,8 +34,9 @@ use vi_expr::Pool;
 pub fn items(loops: &Loops) -> TokenStream {
     let Loops { pool, indexed: of } = loops;
     let model = &of.model;
-    let documentation = structure::found(model, documentation(of));
-    let structure = structure::declaration(model, &documentation);
+    let found = structure::found(model, documentation(of));
+    let further = of.rules.iter().skip(1).map(|rule| structure::further(rule, of_steps(of, rule)));
+    let structure = structure::declaration(model, &quote!(#found #(#further)*));
     let printer = Printer { of, model };
     let (functions, parameters) = (functions::items(model), structure::parameters(model));
     let (bodies, lagrangian, primitives) = (printer.bodies(pool), printer.lagrangian(), printer.primitives());
@@ -45,12 +46,9 @@ pub fn items(loops: &Loops) -> TokenStream {
     } else {
         printer.constrained()
     };
-    let steps = model.rule.as_ref().map(|_| {
-        let (slots, stepping) = (printer.slots(), printer.stepping());
-        let (discretized, batch) = (structure::discretized(model, None), structure::batch(model));
-        quote!(#slots #stepping #discretized #batch)
-    });
-    let implementations = quote!(#functions #parameters #bodies #lagrangian #primitives #motion #steps);
+    let steps = of.rules.iter().enumerate().map(|(place, rule)| printer.steps(rule, place == 0));
+    let batch = (!of.rules.is_empty()).then(|| structure::batch(model));
+    let implementations = quote!(#functions #parameters #bodies #lagrangian #primitives #motion #(#steps)* #batch);
     let conditions: Vec<_> = conditions(&model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests_of_loops(of, &conditions);
@@ -236,7 +234,7 @@ impl Printer<'_> {
 
     /// Adds the values of these sums to the entries of a vector.
     fn summed(&self, name: &str, sums: &[Sum], to: &Ident) -> TokenStream {
-        let entries = sums.iter().any(|sum| sum.body.reads_entries()).then(|| self.entries());
+        let entries = reads_entries(sums).then(|| self.entries());
         let sums = Self::over_sums(name, sums, 1, &|of| {
             let (name, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
             quote!(#to[#on] += self.#name(t, #numbers)[0];)
@@ -333,6 +331,11 @@ const SEEDS: [&str; 2] = ["r_q", "r_v"];
 const WEIGHTS: [&str; 2] = ["c_q", "c_v"];
 /// Name of the weight of a second derivative with respect to two coordinates.
 const BOTH: &str = "c_qq";
+
+/// Whether one of these sums reads entries of recursions.
+fn reads_entries(sums: &[Sum]) -> bool {
+    sums.iter().any(|sum| sum.body.reads_entries())
+}
 
 /// The derivative with respect to a number of the state, among the slopes.
 fn slope(value: &Value, place: usize) -> TokenStream {

@@ -1,6 +1,6 @@
 //! Second derivatives: the sweep of first derivatives with a tangent of every coordinate.
 
-use super::{BOTH, Defined, Printed, Printer, SEEDS, Target, WEIGHTS, add_row, curvature, name, slope};
+use super::{BOTH, Defined, Printed, Printer, SEEDS, Target, WEIGHTS, add_row, curvature, name, reads_entries, slope};
 use crate::indexed::{Sum, Value};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -97,9 +97,13 @@ impl Printer<'_> {
     pub(super) fn curvatures(&self, of: &str, sums: &[Sum], weights: Option<&Ident>) -> TokenStream {
         let dimension = self.dimension();
         let seeds = SEEDS.map(name);
-        let tangents = self.tangents([&seeds[0], &seeds[1]]);
-        let bars = self.zeros("bar_", &quote!(real(0.0)));
-        let bar_tangents = self.zeros("bar_tangent_", &quote!([real(0.0); #dimension]));
+        let reads_entries = reads_entries(sums);
+        let forward = reads_entries.then(|| {
+            let tangents = self.tangents([&seeds[0], &seeds[1]]);
+            let bars = self.zeros("bar_", &quote!(real(0.0)));
+            let bar_tangents = self.zeros("bar_tangent_", &quote!([real(0.0); #dimension]));
+            quote!(#tangents #bars #bar_tangents)
+        });
         let first = usize::from(weights.is_some());
         let terms = Self::over_sums(of, sums, first, &|of| {
             let value = &of.body.values[0];
@@ -129,7 +133,24 @@ impl Printer<'_> {
                 None => added,
             }
         });
-        let backward = self.over_recursions(true, &|of, defined| {
+        let backward = reads_entries.then(|| self.curvatures_of_recursions());
+        let ([r_q, _], [c_q, _], both) = (&seeds, &WEIGHTS.map(name), name(BOTH));
+        quote! {
+            let real = T::real;
+            let mut whole = ::vi_core::nalgebra::SMatrix::<T, #dimension, #dimension>::zeros();
+            // Its columns.
+            let matrix = &mut whole.data.0;
+            let #both = #c_q * #r_q;
+            #forward
+            #terms
+            #backward
+            whole
+        }
+    }
+
+    /// The second derivatives of recursions, times what their entries contribute.
+    fn curvatures_of_recursions(&self) -> TokenStream {
+        self.over_recursions(true, &|of, defined| {
             let (function, numbers) = (format_ident!("{}_curvatures", of.name), self.numbers(of));
             let each = defined.iter().rev().map(|Defined { value, array, entry }| {
                 let (bar, bar_tangent) = (format_ident!("bar_{array}"), format_ident!("bar_tangent_{array}"));
@@ -162,21 +183,7 @@ impl Printer<'_> {
                 let curvatures = self.#function(t, #numbers);
                 #(#each)*
             }
-        });
-        let ([r_q, _], [c_q, _], both) = (&seeds, &WEIGHTS.map(name), name(BOTH));
-        quote! {
-            let real = T::real;
-            let mut whole = ::vi_core::nalgebra::SMatrix::<T, #dimension, #dimension>::zeros();
-            // Its columns.
-            let matrix = &mut whole.data.0;
-            let #both = #c_q * #r_q;
-            #tangents
-            #bars
-            #bar_tangents
-            #terms
-            #backward
-            whole
-        }
+        })
     }
 
     pub(super) fn add_force_derivatives(&self) -> TokenStream {
@@ -211,7 +218,7 @@ impl Printer<'_> {
         add: &dyn Fn(&TokenStream, Column, &TokenStream) -> TokenStream,
     ) -> TokenStream {
         let weights = WEIGHTS.map(name);
-        let reads_entries = sums.iter().any(|sum| sum.body.reads_entries());
+        let reads_entries = reads_entries(sums);
         let tangents = reads_entries.then(|| self.tangents([&weights[0], &weights[1]]));
         let terms = Self::over_sums(of, sums, 1, &|of| {
             let (name_of, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));

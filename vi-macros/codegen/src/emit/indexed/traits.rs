@@ -3,8 +3,10 @@
 use super::super::check::monotone_table_of;
 use super::super::constrained;
 use super::super::lagrangian::{Properties, implementation};
-use super::Printer;
+use super::super::{by_marker, structure};
+use super::{Printer, reads_entries};
 use crate::indexed::Read;
+use crate::rules::NamedRule;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -24,8 +26,7 @@ impl Printer<'_> {
             let (name, numbers) = (&of.name, self.numbers(of));
             quote!(value += self.#name(t, #numbers)[0];)
         });
-        let reads_entries = self.of.lagrangian.iter().any(|sum| sum.body.reads_entries());
-        let of_lagrangian = reads_entries.then(|| self.entries());
+        let of_lagrangian = reads_entries(&self.of.lagrangian).then(|| self.entries());
         let value = quote! {
             let real = T::real;
             let mut value = real(0.0);
@@ -57,10 +58,16 @@ impl Printer<'_> {
         };
         let [acceleration, flow] =
             if model.constraints.is_empty() { [acceleration, flow] } else { constrained::motion(&dimension) };
+        // A constant mass matrix needs no gradient.
+        let momentum = if self.of.separable {
+            quote!(::vi_core::linear::Matrix::multiply(&self.masses(t, q, v), v))
+        } else {
+            quote!(#first.dv)
+        };
         let functions = [
             number("lagrangian", &value),
             number("energy", &quote!(::vi_core::indexed::energy(self, t, q, v))),
-            vector("momentum", &quote!(#first.dv)),
+            vector("momentum", &momentum),
             vector("force", &force),
             acceleration,
             flow,
@@ -199,7 +206,21 @@ impl Printer<'_> {
         }
     }
 
-    pub(super) fn slots(&self) -> TokenStream {
+    /// The steps by a rule; by one that is not the system's own, as the argument of the traits.
+    pub(super) fn steps(&self, rule: &'static NamedRule, is_own: bool) -> TokenStream {
+        let marker = format_ident!("{}", rule.marker);
+        let rule = Rule {
+            marker: quote!(::vi_core::rules::#marker),
+            argument: (!is_own).then(|| quote!(, ::vi_core::rules::#marker)),
+            named: rule,
+        };
+        let (slots, fixed) = (self.slots(&rule), self.fixed_stepping(&rule));
+        let energy = rule.named.step_density.then(|| self.energy_stepping(&rule));
+        let discretized = structure::discretized(self.model, rule.argument.as_ref());
+        quote!(#slots #fixed #energy #discretized)
+    }
+
+    fn slots(&self, Rule { marker, argument, .. }: &Rule) -> TokenStream {
         let (name, dimension) = (&self.model.name, self.dimension());
         let slots = ["ld", "d1_ld", "d2_ld", "d3_ld", "d4_ld", "fd_minus", "fd_plus", "gd_minus", "gd_plus"];
         let functions = slots.into_iter().map(|slot| {
@@ -208,81 +229,122 @@ impl Printer<'_> {
             let slot = format_ident!("{slot}");
             quote! {
                 fn #slot(&self, interval: &::vi_core::Interval<#dimension, T>) -> #value {
-                    ::vi_core::indexed::#slot(self, interval)
+                    ::vi_core::indexed::#slot(self, #marker, interval)
                 }
             }
         });
         quote! {
-            impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#dimension, T> for #name<T> {
+            impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#dimension, T #argument> for #name<T> {
                 #(#functions)*
             }
         }
     }
 
-    pub(super) fn stepping(&self) -> TokenStream {
-        let (name, dimension) = (&self.model.name, self.dimension());
-        let of_step = |function: &str, value: TokenStream| {
-            let function = format_ident!("{function}");
-            quote! {
-                fn #function(
-                    &self,
-                    node: &::vi_core::node::Node<#dimension, T>,
-                    h: T,
-                    v: &::vi_core::SVector<T, #dimension>,
-                ) -> #value {
-                    ::vi_core::indexed::#function(self, node, h, v)
-                }
+    /// A function of a step from a node with (h, v).
+    fn of_step(&self, function: &str, value: &TokenStream, result: &TokenStream) -> TokenStream {
+        let (function, dimension) = (format_ident!("{function}"), self.dimension());
+        quote! {
+            fn #function(
+                &self,
+                node: &::vi_core::node::Node<#dimension, T>,
+                h: T,
+                v: &::vi_core::SVector<T, #dimension>,
+            ) -> #value {
+                #result
             }
+        }
+    }
+
+    /// The bounds of rounding errors, by the same function over other numbers.
+    fn rounding(&self, function: &str, rule: &Rule, value: &TokenStream) -> TokenStream {
+        let of = format_ident!("{function}");
+        let rounded = quote!(self.convert::<::vi_core::real::Rounded>());
+        let rounded = if rule.argument.is_some() {
+            by_marker(&format_ident!("{}", rule.named.marker), &rounded)
+        } else {
+            rounded
         };
-        let rounding = |function: &str, value: TokenStream| {
-            let function = format_ident!("{function}");
-            quote! {
-                #[cold]
-                fn #function(
-                    &self,
-                    node: &::vi_core::node::Node<#dimension, T>,
-                    h: T,
-                    v: &::vi_core::SVector<T, #dimension>,
-                ) -> #value {
-                    ::vi_core::support::#function(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
-                }
-            }
+        let function = self.of_step(function, value, &quote!(::vi_core::support::#of(&#rounded, node, h, v)));
+        quote!(#[cold] #function)
+    }
+
+    fn fixed_stepping(&self, rule: &Rule) -> TokenStream {
+        let (name, dimension) = (&self.model.name, self.dimension());
+        let Rule { marker, argument, named } = rule;
+        let is_explicit = self.of.is_explicit(named);
+        let (form, jacobian) = if is_explicit {
+            (quote!(::vi_core::linear::Banded<#dimension, 1, T>), quote!(self.masses(node.t, &node.q, v)))
+        } else {
+            (
+                quote!(::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>),
+                quote!(::vi_core::indexed::jacobian(self, #marker, node, h, v)),
+            )
         };
         let stepping = quote!(::vi_core::stepping);
-        let fixed = [
-            of_step("momentum_equation", quote!(#stepping::MomentumEquation<#dimension, T, Self::Jacobian>)),
+        let of_step = |function: &str, value: TokenStream| {
+            let of = format_ident!("{function}");
+            self.of_step(function, &value, &quote!(::vi_core::indexed::#of(self, #marker, node, h, v)))
+        };
+        let with_jacobian = |function: &str, value: TokenStream| {
+            let of = format_ident!("{function}");
+            self.of_step(function, &value, &quote!(::vi_core::indexed::#of(self, #marker, node, h, v, #jacobian)))
+        };
+        let functions = [
+            with_jacobian("momentum_equation", quote!(#stepping::MomentumEquation<#dimension, T, Self::Jacobian>)),
             of_step("momentum_residual", quote!(#stepping::MomentumResidual<#dimension, T>)),
-            of_step("momentum_derivatives", quote!(#stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix>)),
+            with_jacobian(
+                "momentum_derivatives",
+                quote!(#stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix>),
+            ),
             of_step("discrete_energy", quote!(T)),
-            rounding("momentum_rounding", quote!(::vi_core::SVector<T, #dimension>)),
+            self.rounding("momentum_rounding", rule, &quote!(::vi_core::SVector<T, #dimension>)),
         ];
+        quote! {
+            impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#dimension, T #argument> for #name<T> {
+                type Jacobian = #form;
+                type StepMatrix = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
+                const CONSTANT_JACOBIAN: bool = #is_explicit;
+                #(#functions)*
+            }
+        }
+    }
+
+    fn energy_stepping(&self, rule: &Rule) -> TokenStream {
+        let (name, dimension, argument) = (&self.model.name, self.dimension(), &rule.argument);
+        let stepping = quote!(::vi_core::stepping);
+        let of_step = |function: &str, value: TokenStream| {
+            let of = format_ident!("{function}");
+            self.of_step(function, &value, &quote!(::vi_core::indexed::#of(self, node, h, v)))
+        };
         let density = self.of_state(
             "step_density",
             &quote!(::core::result::Result<T, ::vi_core::StepError>),
             &quote!(::vi_core::indexed::step_density(self, t, q, v)),
         );
-        let energy = [
+        let functions = [
             of_step("extended_system", quote!(#stepping::ExtendedSystem<#dimension, T, Self::Jacobian>)),
             of_step("extended_residual", quote!(#stepping::ExtendedResidual<#dimension, T>)),
             of_step(
                 "extended_derivatives",
                 quote!(#stepping::ExtendedDerivatives<#dimension, T, Self::Jacobian, Self::StepMatrix>),
             ),
-            rounding("extended_rounding", quote!(#stepping::Rounding<#dimension, T>)),
+            self.rounding("extended_rounding", rule, &quote!(#stepping::Rounding<#dimension, T>)),
         ];
         quote! {
-            impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#dimension, T> for #name<T> {
-                type Jacobian = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
-                type StepMatrix = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
-                const CONSTANT_JACOBIAN: bool = false;
-                #(#fixed)*
-            }
-
-            impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#dimension, T> for #name<T> {
+            impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#dimension, T #argument> for #name<T> {
                 #density
 
-                #(#energy)*
+                #(#functions)*
             }
         }
     }
+}
+
+/// A rule in code.
+struct Rule {
+    named: &'static NamedRule,
+    /// Its marker.
+    marker: TokenStream,
+    /// The last argument of a trait; none for the system's own rule.
+    argument: Option<TokenStream>,
 }
