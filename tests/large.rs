@@ -30,6 +30,22 @@ twice! { BodiesInLines BodiesInLoops {
     discretize midpoint, trapezoidal;
 } }
 
+// Links in air, with friction in their joints, that grow heavier.
+twice! { DragInLines DragInLoops {
+    const N = 5;
+    param m[N] = [0.3, 1.2, 0.9, 0.5, 0.7], l[N] = [0.3, 0.5, 0.4, 0.2, 0.6], g = 9.81, b = 0.1, c = 0.3, k = 0.05;
+    coord q[N];
+    let x[0] = l[0] * sin(q[0]);
+    let x[i in 1..N] = x[i - 1] + l[i] * sin(q[i]);
+    let y[i in 0..N] = -sum(j in 0..i + 1, l[j] * cos(q[j]));
+    let bend[i in 1..N] = q[i] - q[i - 1];
+    L = sum(i in 0..N, m[i] * (1 + t / 10) * (dot(x[i])^2 + dot(y[i])^2) / 2 - m[i] * g * y[i]);
+    force q[i in 0..N] = sin(q[i]) * cos(t);
+    dissipation = c * sum(i in 0..N, (2 + sin(x[i])) * (dot(x[i])^2 + dot(y[i])^2)^2) + b * sum(i in 1..N, dot(bend[i])^2) / 2
+        + k * sum(i in 0..N, dot(q[i])^4);
+    discretize midpoint, trapezoidal;
+} }
+
 twice! { LinksInLines LinksInLoops {
     const N = 8;
     param m[N] = [0.3, 1.2, 0.9, 0.5, 0.7, 0.4, 1.1, 0.8], l[N] = [0.3, 0.5, 0.4, 0.2, 0.6, 0.3, 0.2, 0.4], g = 9.81, b = 0.1;
@@ -280,6 +296,15 @@ where
         println!("{}: states off by {found:.1e}", A::NAME);
         assert!(moved > 0.01 && found < off);
     }
+}
+
+#[test]
+fn a_dissipation_in_loops_is_one_in_lines() {
+    // Measured: 81.4 (a number whose terms cancel) and 20.1, 2.3 and 141.8 (such a number), .
+    let (loops, lines) = (DragInLoops::default(), DragInLines::default());
+    compare(loops, lines, 1.0, [100.0, 40.0]);
+    compare_fixed(&By::new(loops, Trapezoidal), &By::new(lines, Trapezoidal), 1.0, [6.0, 200.0]);
+    compare_steps(loops, lines, numbers::<5>(3), 2e-15);
 }
 
 #[test]

@@ -138,9 +138,7 @@ impl Compiled {
 /// The checked system with entries of arrays of `let`s as symbols, or its mistakes; `None` if it cannot be large.
 fn large_model(system: &System) -> Option<syn::Result<(Pool<Symbol>, Model)>> {
     let has_arrays = system.coordinates.iter().any(|coordinate| !coordinate.lengths.is_empty());
-    // A dissipation is differentiated before its `let`s are known.
-    let has_symbols = system.lets.iter().any(|of| !of.indices.is_empty());
-    if !has_arrays || has_symbols && !system.dissipations.is_empty() {
+    if !has_arrays {
         return None;
     }
     let mut pool = Pool::bounded(limits::WORK);

@@ -166,6 +166,22 @@ fn each_rule_and_angles_are_in_loops() {
 }
 
 #[test]
+fn mistakes_in_dissipations_of_recursions_are_found() {
+    let of = |dissipation: &str| {
+        let text = links(20).replace("discretize", &format!("dissipation = {dissipation}; discretize"));
+        let system = parse::system(text.parse().expect("tokens")).expect("a system");
+        Compiled::of(&system).err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    assert_eq!(of("sum(i in 0..N, dot(x[i])^2 + dot(y[i])^4)"), "");
+    let feeding = of("sum(i in 0..N, dot(x[i])^2) - 2 * sum(i in 0..N, dot(x[i])^2)");
+    assert!(feeding.starts_with("`dissipation` adds energy"), "{feeding}");
+    let constant = of("sum(i in 0..N, dot(x[i])^2) + dot(q[3])");
+    assert!(constant.starts_with("a term of `dissipation` is linear"), "{constant}");
+    let none = of("sum(i in 0..N, x[i]^2)");
+    assert!(none.starts_with("`dissipation` does not depend on any velocity"), "{none}");
+}
+
+#[test]
 fn rotations_are_in_loops_where_lines_end() {
     let needles = |count: usize| {
         format!(
@@ -184,11 +200,11 @@ fn rotations_are_in_loops_where_lines_end() {
 fn what_loops_cannot_hold_stays_in_lines() {
     let kinetic = "coord q[N]; L = sum(i in 0..N, dot(q[i])^2) / 2";
     assert!(is_in_loops(&format!("{kinetic} - sum(i in 0..N, q[i]^4);")));
+    let friction = "; let s[i in 1..N] = q[i] - q[i - 1]; dissipation = sum(i in 0..N, dot(q[i])^2) + sum(i in 1..N, dot(s[i])^2);";
+    assert!(is_in_loops(&format!("{kinetic} {friction}")));
     for rest in [
         // A number beyond 32 bits.
         "; const c[6] = [0.1234567890123456, 0.3, 0.77, -0.123, 1, 2]; force q[i in 0..N] = -c[i] * q[i]^3;",
-        // A dissipation of `let`s.
-        "; let s[i in 1..N] = q[i] - q[i - 1]; dissipation = sum(i in 0..N, dot(q[i])^2) + sum(i in 1..N, dot(s[i])^2);",
         // Arrays that read each other.
         "- x[5]^2 - y[5]^2; let x[0] = q[0]; let y[0] = q[1]; let x[1] = x[0] * y[0]; let y[1] = x[1] + q[2]; let x[2] = y[1]; \
          let x[3] = x[2]; let x[4] = x[3]; let x[5] = x[4] + q[5]; let y[2] = 1; let y[3] = 1; let y[4] = 1; let y[5] = y[4] * x[5];",

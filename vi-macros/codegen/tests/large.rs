@@ -83,6 +83,9 @@ fn an_explanation_shows_loops_and_what_follows_from_them() {
         "The mass matrix does not depend on the velocity",
     ];
     has_lines(&text(LINKS), &links);
+    let lossy = LINKS.replace("check {", "dissipation = sum(i in 0..N, l * dot(x[i])^2); check {");
+    let lossy = text(&lossy);
+    has_lines(&lossy, &["f = -R_v", "R = R_1", "R_1 = sum(i in 0..5, l*dot(x[i])^2)"]);
     let wells = [
         "L_1 = sum(i in 0..16, dot(q_i)^2/2)",
         "L_3 = sum(i in 0..5, -c*t*x[i]*y[0][i]^2/2)",

@@ -32,7 +32,8 @@ impl Lets {
     pub(super) fn of(pool: &mut Pool<Symbol>, model: &Model) -> Option<Self> {
         let mut lets = Self { arrays: Vec::new() };
         let constraints = model.constraints.iter().map(|constraint| constraint.written);
-        let used = [model.lagrangian].into_iter().chain(model.forces.iter().copied()).chain(constraints);
+        let forces = model.forces.iter().copied().chain(model.dissipation);
+        let used = [model.lagrangian].into_iter().chain(forces).chain(constraints);
         let defined = model.lets.iter().flat_map(|array| array.definitions.iter().copied());
         let all: Vec<Expr> = used.chain(defined).collect();
         let with_rates = reads(pool, &all);

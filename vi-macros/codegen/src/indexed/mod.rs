@@ -75,6 +75,8 @@ pub struct Indexed {
     pub lagrangian: Vec<Sum>,
     /// The terms of f; the first number of an instance is the coordinate.
     pub force: Vec<Sum>,
+    /// The terms of Rayleigh's function R.
+    pub dissipation: Vec<Sum>,
     /// The terms of the constraints; the first number of an instance is the constraint.
     pub constraints: Vec<Sum>,
     /// Whether a constraint on velocities has a part without velocities: it does work.
@@ -128,18 +130,22 @@ fn statements(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRu
     let lets = Lets::of(pool, &model)?;
     let lagrangian = lets.opened(pool, model.lagrangian);
     let forces: Vec<Expr> = model.forces.iter().map(|force| lets.opened(pool, *force)).collect();
+    let dissipation = model.dissipation.map(|rayleigh| lets.opened(pool, rayleigh));
     let constraints: Vec<Expr> =
         model.constraints.iter().map(|constraint| lets.opened(pool, constraint.written)).collect();
-    let all: Vec<Expr> =
-        [lagrangian].into_iter().chain(forces.iter().copied()).chain(constraints.iter().copied()).collect();
+    let all = [lagrangian].into_iter().chain(forces.iter().copied()).chain(dissipation);
+    let all: Vec<Expr> = all.chain(constraints.iter().copied()).collect();
     let recursions = recursions(pool, &lets, &all)?;
-    let terms = summands(pool, lagrangian).into_iter().map(|term| (Vec::new(), term)).collect();
-    let lagrangian = sums(pool, terms, true)?;
+    let lagrangian = sums_of(pool, lagrangian)?;
+    let dissipation = match dissipation {
+        Some(rayleigh) => sums_of(pool, rayleigh)?,
+        None => Vec::new(),
+    };
     let force = sums_of_each(pool, &forces, false)?;
     let constraints = sums_of_each(pool, &constraints, true)?;
     let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
     let rows = recursions.iter().flat_map(|recursion| recursion.parts.iter().map(|part| &part.body));
-    let all = lagrangian.iter().chain(&force).chain(&constraints);
+    let all = lagrangian.iter().chain(&force).chain(&dissipation).chain(&constraints);
     let mut values = rows.chain(all.map(|sum| &sum.body)).flat_map(|body| &body.values);
     let autonomous = values.all(|value| !pool.depends_on(value.expr, &time));
     let has_mass_of_position = has_mass_of_position(pool, &recursions, &lagrangian);
@@ -151,8 +157,8 @@ fn statements(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRu
     let of_velocities = model.constraints.iter().filter(|constraint| !constraint.is_holonomic);
     let rests: Vec<Expr> = of_velocities.map(|constraint| constraint.rest(pool)).collect();
     let driven = rests.iter().any(|rest| !pool.is_zero(*rest));
-    let cyclic = cyclic(&reacts, &recursions, &lagrangian, &force);
-    let separable = is_separable(pool, &recursions, &lagrangian, &force);
+    let cyclic = cyclic(&reacts, &recursions, &lagrangian, (&force, &dissipation));
+    let separable = dissipation.is_empty() && is_separable(pool, &recursions, &lagrangian, &force);
     bounded(pool).ok()?;
     Some(Indexed {
         model,
@@ -164,6 +170,7 @@ fn statements(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRu
         recursions,
         lagrangian,
         force,
+        dissipation,
         constraints,
         driven,
     })
@@ -300,20 +307,34 @@ fn has_masses(known: Vec<bool>, recursions: &[Recursion], lagrangian: &[Sum]) ->
 }
 
 /// For each coordinate, whether nothing reads it, and no force and no reaction acts on it.
-fn cyclic(reacts: &[bool], recursions: &[Recursion], lagrangian: &[Sum], force: &[Sum]) -> Vec<bool> {
+fn cyclic(
+    reacts: &[bool],
+    recursions: &[Recursion],
+    lagrangian: &[Sum],
+    (force, dissipation): (&[Sum], &[Sum]),
+) -> Vec<bool> {
     let mut cyclic: Vec<bool> = reacts.iter().map(|reacts| !reacts).collect();
-    let mut see = |reads: &[Read], columns: &[usize]| {
-        let read = reads.iter().zip(columns).filter(|(read, _)| **read == Read::Coordinate);
+    let mut see = |of: Read, reads: &[Read], columns: &[usize]| {
+        let read = reads.iter().zip(columns).filter(|(read, _)| **read == of);
         read.for_each(|(_, column)| cyclic[*column] = false);
     };
+    let loses_entries = dissipation.iter().any(|sum| sum.body.reads_entries());
     for Recursion { parts, nest } in recursions {
         for Part { body, of, first } in parts {
-            nest.each(&mut |all| see(&body.reads, &all[first + of.len()..]));
+            nest.each(&mut |all| {
+                let columns = &all[first + of.len()..];
+                see(Read::Coordinate, &body.reads, columns);
+                if loses_entries {
+                    see(Read::Velocity, &body.reads, columns);
+                }
+            });
         }
     }
-    for Sum { body, nests } in lagrangian {
-        for nest in nests {
-            nest.each(&mut |all| see(&body.reads, all));
+    for (of, sums) in [(Read::Coordinate, lagrangian), (Read::Velocity, dissipation)] {
+        for Sum { body, nests } in sums {
+            for nest in nests {
+                nest.each(&mut |all| see(of, &body.reads, all));
+            }
         }
     }
     for Sum { nests, .. } in force {
@@ -446,6 +467,12 @@ struct Group {
     shape: Shape,
     /// The numbers before those that a term reads, and these; with its coefficient.
     rows: Vec<(Vec<usize>, Rational)>,
+}
+
+/// The terms of a sum.
+fn sums_of(pool: &mut Pool<Symbol>, expr: Expr) -> Option<Vec<Sum>> {
+    let terms = summands(pool, expr).into_iter().map(|term| (Vec::new(), term)).collect();
+    sums(pool, terms, true)
 }
 
 /// The terms of several sums; the first number of an instance is the place of its sum.

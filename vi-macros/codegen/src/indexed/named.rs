@@ -18,6 +18,8 @@ pub(crate) enum Quantity<'a> {
     Lagrangian,
     /// Terms of components of f.
     Force,
+    /// Terms of Rayleigh's function.
+    Dissipation,
     /// Terms of constraints.
     Constraint,
 }
@@ -48,6 +50,7 @@ pub(crate) fn named(of: &Indexed) -> Vec<NamedBody<'_>> {
     let sums = [
         ("lagrangian", Quantity::Lagrangian, &of.lagrangian),
         ("force", Quantity::Force, &of.force),
+        ("dissipation", Quantity::Dissipation, &of.dissipation),
         ("constraint", Quantity::Constraint, &of.constraints),
     ];
     for (name, quantity, sums) in sums {
@@ -83,7 +86,7 @@ impl NamedBody<'_> {
     pub(crate) fn computed(&self) -> &[Read] {
         match self.quantity {
             Quantity::Entries(of) => of,
-            Quantity::Lagrangian => &[],
+            Quantity::Lagrangian | Quantity::Dissipation => &[],
             Quantity::Force => &[Read::Coordinate],
             Quantity::Constraint => &[Read::Constraint],
         }
@@ -125,6 +128,7 @@ impl NamedBody<'_> {
         let values = self.body.values.iter().map(value);
         match self.quantity {
             Quantity::Lagrangian => format!("term of L: {}", values.collect::<String>()),
+            Quantity::Dissipation => format!("term of the dissipation R: {}", values.collect::<String>()),
             Quantity::Force => format!("term of f_{}: {}", computed.concat(), values.collect::<String>()),
             Quantity::Constraint => {
                 format!("term of the constraint {}: {}", computed.concat(), values.collect::<String>())

@@ -44,6 +44,7 @@ pub(crate) fn properties(of: &Indexed, name: &dyn Fn(&Coordinate) -> String) -> 
         (of.recursions.len(), "over recursions"),
         (loops(&of.lagrangian), "over terms of `L`"),
         (loops(&of.force), "over terms of `f`"),
+        (loops(&of.dissipation), "over terms of the dissipation"),
         (loops(&of.constraints), "over terms of constraints"),
     ];
     let loops = loops.iter().filter(|(count, _)| *count > 0).map(|(count, over)| format!("{count} {over}"));

@@ -76,31 +76,22 @@ fn parameter(model: &Model, field: &[Parameter]) -> Line {
 /// Recursions, then L and f as sums.
 pub(super) fn sums(of: &Loops) -> Vec<Section> {
     let (mut recursions, mut terms, mut forces, mut constraints) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut count = 0;
+    let mut losses = Vec::new();
     for named in &indexed::named(&of.indexed) {
         match named.quantity {
             Quantity::Entries(_) => recursions.extend(named.nests.iter().flat_map(|nest| entries(of, named, nest))),
-            Quantity::Lagrangian => {
-                count += 1;
-                terms.push(term(of, named, count));
-            }
+            Quantity::Lagrangian => terms.push(term(of, named, "L", terms.len() + 1)),
+            Quantity::Dissipation => losses.push(term(of, named, "R", losses.len() + 1)),
             Quantity::Force => forces.extend(named.nests.iter().flat_map(|nest| part(of, named, nest, "f_"))),
             Quantity::Constraint => constraints.extend(named.nests.iter().flat_map(|nest| part(of, named, nest, ""))),
         }
     }
-    let numbered = |letter: &str, index: &dyn Fn(usize) -> String| {
-        (1..=count).map(|place| format!("{letter}_{}", index(place))).collect::<Vec<_>>().join(" + ")
-    };
-    terms.insert(
-        0,
-        equation(
-            Both { text: "L".to_owned(), latex: "L".to_owned() },
-            Both {
-                text: numbered("L", &|place| place.to_string()),
-                latex: numbered("L", &|place| format!("{{{place}}}")),
-            },
-        ),
-    );
+    terms.insert(0, numbered("L", terms.len()));
+    if !losses.is_empty() {
+        losses.insert(0, numbered("R", losses.len()));
+        forces.push(line(["f", "-R_v"], ["f", "-R_v"]));
+        forces.extend(losses);
+    }
     if !has_names(of) {
         terms.push(Line::Words {
             text: "q_k is coordinate k in the order of declaration, from 0".to_owned(),
@@ -119,6 +110,15 @@ pub(super) fn sums(of: &Loops) -> Vec<Section> {
         sections.push(Section { title: "Constraints, each the sum of these terms, which is 0", lines: constraints });
     }
     sections
+}
+
+/// `L = L_1 + L_2`, of so many terms.
+fn numbered(letter: &str, count: usize) -> Line {
+    let sum = |place: &dyn Fn(usize) -> String| {
+        (1..=count).map(|index| format!("{letter}_{}", place(index))).collect::<Vec<_>>().join(" + ")
+    };
+    let (text, latex) = (sum(&|index| index.to_string()), sum(&|index| format!("{{{index}}}")));
+    line([letter, &text], [letter, &latex])
 }
 
 /// Whether all numbers that loops read have names of the user.
@@ -220,7 +220,7 @@ fn entries(of: &Loops, named: &NamedBody, nest: &Nest) -> Vec<Line> {
 }
 
 /// The terms of L with one body.
-fn term(of: &Loops, named: &NamedBody, place: usize) -> Line {
+fn term(of: &Loops, named: &NamedBody, letter: &str, place: usize) -> Line {
     let (mut text, mut latex) = (Vec::new(), Vec::new());
     for nest in named.nests {
         let row = Row::new(of, named, nest);
@@ -232,7 +232,7 @@ fn term(of: &Loops, named: &NamedBody, place: usize) -> Line {
         }
     }
     equation(
-        Both { text: format!("L_{place}"), latex: format!("L_{{{place}}}") },
+        Both { text: format!("{letter}_{place}"), latex: format!("{letter}_{{{place}}}") },
         Both { text: text.join(" + "), latex: latex.join(" + ") },
     )
 }
@@ -450,6 +450,7 @@ fn function(of: &Loops, named: &NamedBody) -> String {
         let computed = match named.quantity {
             Quantity::Entries(_) => computed("=", ""),
             Quantity::Lagrangian => "L += value".to_owned(),
+            Quantity::Dissipation => "R += value".to_owned(),
             Quantity::Force => computed("+=", "f_"),
             Quantity::Constraint => computed("+=", ""),
         };

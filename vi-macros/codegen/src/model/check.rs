@@ -60,10 +60,11 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
         constraint::check_clauses(&mut context, system);
     }
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
-    let mut forces = force::forces(&mut context, &system.forces, &system.dissipations, &parameters, coordinates.len());
+    let mut forces = force::forces(&mut context, &system.forces, coordinates.len());
+    let dissipation = force::dissipate(&mut context, &system.dissipations, &mut forces, &parameters);
     rotation::torques(&mut context, &system.torques, false, &coordinates, &mut forces);
     rotation::torques(&mut context, &system.space_torques, true, &coordinates, &mut forces);
-    let forced = forces.iter().any(|force| !context.pool.is_zero(*force));
+    let forced = forces.iter().chain(&dissipation).any(|force| !context.pool.is_zero(*force));
     let time_scale = time_scale::time_scale(&mut context, &system.time_scales);
     let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
     let check_state = check_state::check_state(&mut context, &system.checks, &parameters, &coordinates);
@@ -71,7 +72,7 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     angles::check(&mut context, system, (&coordinates, &parameters), clauses, &constraints);
     if context.errors.is_empty() {
         let of_rule = rule.iter().flat_map(Rule::expressions);
-        let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
+        let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(dissipation).chain(time_scale);
         let acting = acting.chain(constraints.iter().map(|constraint| constraint.value));
         let kept = context.scope.kept.iter().flatten().flat_map(|array| &array.definitions).copied();
         let acting: Vec<Expr> = acting.chain(of_rule).chain(kept).collect();
@@ -106,6 +107,7 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
         smoothness: None,
         forced,
         forces,
+        dissipation,
         constraints,
         time_scale,
         lets: scope.kept.unwrap_or_default(),

@@ -3,6 +3,7 @@
 //! In: one definition after the other. Out: their expressions and numbers. A wrong expression is reported and evaluates
 //! to 1, so that later lines are checked too.
 
+use super::lets::Closed;
 use super::scope::{Meaning, Scope};
 use super::value::Value;
 use crate::limits::bounded;
@@ -26,6 +27,12 @@ impl<'a> Context<'a> {
     /// A context without declarations.
     pub(super) fn new(pool: &'a mut Pool<Symbol>) -> Self {
         Self { pool, scope: Scope::of_system(), errors: Errors::default(), too_large: false }
+    }
+
+    /// An expression by coordinates: the entries of arrays of `let`s that stay symbols are replaced.
+    pub(super) fn closed(&mut self, expr: Expr) -> Expr {
+        let lets = self.scope.kept.as_deref().unwrap_or_default();
+        Closed::of(self.pool, lets).expression(self.pool, expr)
     }
 
     /// Declares a name; reports a name that cannot be declared.

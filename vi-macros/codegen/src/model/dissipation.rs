@@ -31,6 +31,7 @@ pub(super) fn check(
     let Some(message) = wrong.filter(|_| !context.is_too_large()) else { return };
     let span = summands(written).into_iter().find(|(is_negative, summand)| {
         let Ok(value) = context.scope.expression(context.pool, summand) else { return false };
+        let value = context.closed(value);
         let value = if *is_negative { context.pool.neg(value) } else { value };
         let losses: Vec<Expr> = (0..losses.len()).map(|index| slope(context.pool, value, index)).collect();
         self::wrong(context.pool, value, &losses, parameters).as_ref() == Some(&message)

@@ -21,14 +21,8 @@ use proc_macro2::Span;
 use syn::Result;
 use vi_expr::{Expr, Pool};
 
-/// The force on each coordinate; zero where none is declared.
-pub(super) fn forces(
-    context: &mut Context,
-    lines: &[Definition],
-    dissipations: &[Definition],
-    parameters: &[Parameter],
-    dimension: usize,
-) -> Vec<Expr> {
+/// The force on each coordinate by the `force` lines; zero where none is declared.
+pub(super) fn forces(context: &mut Context, lines: &[Definition], dimension: usize) -> Vec<Expr> {
     let mut forces: Vec<Option<Expr>> = vec![None; dimension];
     for line in lines {
         let coordinates = Entries::of_coordinate(context, &line.name.to_string());
@@ -48,9 +42,7 @@ pub(super) fn forces(
         }
     }
     let zero = context.pool.zero();
-    let mut forces: Vec<Expr> = forces.into_iter().map(|force| force.unwrap_or(zero)).collect();
-    dissipate(context, dissipations, &mut forces, parameters);
-    forces
+    forces.into_iter().map(|force| force.unwrap_or(zero)).collect()
 }
 
 /// The numbers that a line assigns values to: one, or those of an array of these lengths.
@@ -167,21 +159,31 @@ pub(super) fn path(
     levels.iter().map(index).collect()
 }
 
-/// Adds −∂R/∂v.
-fn dissipate(context: &mut Context, written: &[Definition], forces: &mut [Expr], parameters: &[Parameter]) {
-    let Some((first, others)) = written.split_first() else { return };
+/// Adds −∂R/∂v to the forces. R itself, and nothing added, if arrays of `let`s stay symbols: their derivatives are
+/// evaluated.
+pub(super) fn dissipate(
+    context: &mut Context,
+    written: &[Definition],
+    forces: &mut [Expr],
+    parameters: &[Parameter],
+) -> Option<Expr> {
+    let (first, others) = written.split_first()?;
     for other in others {
         context.errors.at(other.name.span(), &Message::SecondDissipation);
     }
-    let rayleigh = context.value(&first.value);
+    let as_written = context.value(&first.value);
+    let rayleigh = context.closed(as_written);
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     if context.errors.is_empty() && !context.pool.depends_on(rayleigh, &moves) {
         context.errors.at(first.name.span(), &Message::NoDissipation);
     }
+    let stays = context.scope.kept.is_some();
     let mut losses = Vec::with_capacity(forces.len());
     for (index, force) in forces.iter_mut().enumerate() {
         let loss = dissipation::slope(context.pool, rayleigh, index);
-        *force = context.pool.sub(*force, loss);
+        if !stays {
+            *force = context.pool.sub(*force, loss);
+        }
         losses.push(loss);
     }
     if losses.iter().any(|loss| context.pool.is_undefined(*loss)) && !context.is_too_large() {
@@ -190,4 +192,5 @@ fn dissipate(context: &mut Context, written: &[Definition], forces: &mut [Expr],
     if context.errors.is_empty() {
         dissipation::check(context, &first.value, (rayleigh, &losses), parameters);
     }
+    stays.then_some(as_written)
 }

@@ -68,6 +68,8 @@ pub struct Model {
     pub lagrangian_span: Span,
     /// f(t, q, v), one component per coordinate; zero without a declaration.
     pub forces: Vec<Expr>,
+    /// Rayleigh's function R, if −∂R/∂v is not part of `forces`: where arrays of `let`s are symbols.
+    pub dissipation: Option<Expr>,
     /// The smoothness of L and f, if tables or conditions limit it.
     pub smoothness: Option<Smoothness>,
     /// Whether a force is declared that is not identically zero.

@@ -38,7 +38,9 @@ pub(super) fn smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Option<Smoot
     let mut found: Vec<Smoothness> = Vec::new();
     let of_lagrangian = [(model.lagrangian, 0)];
     let of_forces = model.forces.iter().map(|force| (*force, 1));
-    for (expr, more) in of_lagrangian.into_iter().chain(of_forces) {
+    // Its derivatives are forces.
+    let of_dissipation = model.dissipation.map(|rayleigh| (rayleigh, 0));
+    for (expr, more) in of_lagrangian.into_iter().chain(of_forces).chain(of_dissipation) {
         let reachable = pool.reachable(&[expr]);
         for node in &reachable {
             let Node::Opaque(function, _) = pool.node(*node) else { continue };

@@ -1,23 +1,57 @@
 //! First derivatives by one reverse sweep: recursions forward, terms of L, recursions backward.
 
 use super::{Defined, Printer, reads_entries, slope};
-use crate::indexed::Read;
+use crate::indexed::{Indexed, Read, Sum};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// What the sweep sums.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Sums {
-    /// Derivatives.
-    Derivatives,
-    /// Derivatives, and the absolute values of their terms.
-    Measured,
+/// A reverse sweep.
+#[derive(Clone, Copy)]
+pub(super) struct Sweep {
+    of: Swept,
+    /// Whether absolute values of the terms are summed too.
+    is_measured: bool,
 }
 
-impl Sums {
+/// What a sweep differentiates.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Swept {
+    /// L, with respect to time, coordinates and velocities.
+    Lagrangian,
+    /// Rayleigh's function, with respect to velocities: the negative force.
+    Dissipation,
+}
+
+impl Sweep {
+    const LAGRANGIAN: Self = Self { of: Swept::Lagrangian, is_measured: false };
+    pub(super) const DISSIPATION: Self = Self { of: Swept::Dissipation, is_measured: false };
+
+    fn measured(self) -> Self {
+        Self { is_measured: true, ..self }
+    }
+
     /// The tokens of what belongs to absolute values.
-    fn measured(self, tokens: TokenStream) -> TokenStream {
-        if self == Self::Measured { tokens } else { TokenStream::new() }
+    fn of_sizes(self, tokens: TokenStream) -> TokenStream {
+        if self.is_measured { tokens } else { TokenStream::new() }
+    }
+
+    fn name(self) -> &'static str {
+        match self.of {
+            Swept::Lagrangian => "lagrangian",
+            Swept::Dissipation => "dissipation",
+        }
+    }
+
+    fn sums(self, of: &Indexed) -> &[Sum] {
+        match self.of {
+            Swept::Lagrangian => &of.lagrangian,
+            Swept::Dissipation => &of.dissipation,
+        }
+    }
+
+    /// Whether derivatives with respect to the entries of this array matter.
+    fn needs(self, array: &Read) -> bool {
+        self.of == Swept::Lagrangian || matches!(array, Read::LetRate(_))
     }
 }
 
@@ -42,33 +76,27 @@ impl Printer<'_> {
                 force: force_size,
             }
         };
-        let first = self.sweep(Sums::Derivatives);
-        let measured = self.sweep(Sums::Measured);
+        let first = self.sweep(Sweep::LAGRANGIAN);
+        let measured = self.sweep(Sweep::LAGRANGIAN.measured());
         let first = self.of_state("first_derivatives", &one, &quote!(#first #found));
         let measured = self.of_state("measured_derivatives", &quote!([#one; 2]), &quote!(#measured [#found, #sizes]));
         quote!(#first #measured)
     }
 
-    /// The statements of the sweep.
-    fn sweep(&self, sums: Sums) -> TokenStream {
+    /// The statements of the sweep of L, and the force.
+    fn sweep(&self, sweep: Sweep) -> TokenStream {
         let dimension = self.dimension();
         let zeros = quote!(::vi_core::SVector::<T, #dimension>::zeros());
-        let sizes = sums.measured(quote! {
+        let sizes = sweep.of_sizes(quote! {
             let mut value_size = real(0.0);
             let mut dt_size = real(0.0);
             let mut dq_size = #zeros;
             let mut dv_size = #zeros;
             let mut force_size = #zeros;
         });
-        let of_lagrangian = reads_entries(&self.of.lagrangian);
-        let bars = of_lagrangian.then(|| {
-            let (bars, sizes) = (self.zeros("bar_", &quote!(real(0.0))), self.zeros("size_", &quote!(real(0.0))));
-            let sizes = sums.measured(sizes);
-            quote!(#bars #sizes)
-        });
-        let backward = of_lagrangian.then(|| self.backward(sums));
-        let entries = (of_lagrangian || reads_entries(&self.of.force)).then(|| self.entries());
-        let (terms, forces) = (self.terms(sums), self.forces(sums));
+        let is_entered = reads_entries(&self.of.lagrangian) || self.force_reads_entries();
+        let entries = is_entered.then(|| self.entries());
+        let (of_lagrangian, forces) = (self.terms(sweep), self.forces(sweep));
         quote! {
             let real = T::real;
             let mut value = real(0.0);
@@ -78,62 +106,76 @@ impl Printer<'_> {
             let mut force = #zeros;
             #sizes
             #entries
-            #bars
-            #terms
-            #backward
+            #of_lagrangian
             #forces
         }
     }
 
     /// Adds a term to a sum, and its size to the sum of sizes.
-    fn add(&self, sums: Sums, place: &Place, term: &TokenStream, size: &TokenStream) -> TokenStream {
+    fn add(&self, sweep: Sweep, place: &Place, term: &TokenStream, size: &TokenStream) -> TokenStream {
+        let is_lagrangian = sweep.of == Swept::Lagrangian;
         let (sum, sizes) = match place {
-            Place::Time => (quote!(dt), quote!(dt_size)),
-            Place::State(Read::Coordinate, index) => (quote!(dq[#index]), quote!(dq_size[#index])),
+            Place::State(Read::Velocity, index) if !is_lagrangian => {
+                let sizes = sweep.of_sizes(quote!(force_size[#index] += #size;));
+                return quote!(force[#index] -= #term; #sizes);
+            }
+            Place::Time if is_lagrangian => (quote!(dt), quote!(dt_size)),
+            Place::State(Read::Coordinate, index) if is_lagrangian => (quote!(dq[#index]), quote!(dq_size[#index])),
             Place::State(Read::Velocity, index) => (quote!(dv[#index]), quote!(dv_size[#index])),
-            Place::State(read, index) => {
+            Place::State(read, index) if read.is_entry() && sweep.needs(read) => {
                 let array = self.array(*read);
                 let (bar, size) = (format_ident!("bar_{array}"), format_ident!("size_{array}"));
                 (quote!(#bar[#index]), quote!(#size[#index]))
             }
+            _ => return TokenStream::new(),
         };
-        let sizes = sums.measured(quote!(#sizes += #size;));
+        let sizes = sweep.of_sizes(quote!(#sizes += #size;));
         quote!(#sum += #term; #sizes)
     }
 
-    /// The slopes of the terms of L.
-    fn terms(&self, sums: Sums) -> TokenStream {
-        Self::over_sums("lagrangian", &self.of.lagrangian, 0, &|of| {
+    /// The slopes of the terms of a sum, those through recursions too.
+    fn terms(&self, sweep: Sweep) -> TokenStream {
+        let sums = sweep.sums(self.of);
+        let terms = Self::over_sums(sweep.name(), sums, 0, &|of| {
             let (name, numbers, value) = (&of.name, self.numbers(of), &of.body.values[0]);
-            let add = |place, slope: TokenStream| self.add(sums, &place, &slope, &quote!(#slope.abs()));
+            let add = |place, slope: TokenStream| self.add(sweep, &place, &slope, &quote!(#slope.abs()));
             let by_time = value.varies.then(|| add(Place::Time, quote!(slopes[1])));
             let states = of.states(value);
             let by_state = states.map(|(place, read, at)| add(Place::State(read, at), slope(value, place)));
-            let size = sums.measured(quote!(value_size += slopes[0].abs();));
+            let whole = (sweep.of == Swept::Lagrangian).then(|| {
+                let size = sweep.of_sizes(quote!(value_size += slopes[0].abs();));
+                quote!(value += slopes[0]; #size)
+            });
             quote! {
                 let slopes = self.#name(t, #numbers);
-                value += slopes[0];
-                #size
+                #whole
                 #by_time
                 #(#by_state)*
             }
-        })
+        });
+        if !reads_entries(sums) {
+            return terms;
+        }
+        let zeros = |prefix: &str| self.zeros_for(prefix, &quote!(real(0.0)), &|array| sweep.needs(array));
+        let (bars, sizes, backward) = (zeros("bar_"), sweep.of_sizes(zeros("size_")), self.backward(sweep));
+        quote!(#bars #sizes #terms #backward)
     }
 
     /// The slopes of recursions, times what their entries contribute.
-    fn backward(&self, sums: Sums) -> TokenStream {
+    fn backward(&self, sweep: Sweep) -> TokenStream {
         self.over_recursions(true, &|of, defined| {
             let (name, numbers) = (&of.name, self.numbers(of));
-            let each = defined.iter().rev().map(|Defined { value, array, entry }| {
+            let needed = defined.iter().rev().filter(|defined| sweep.of == Swept::Lagrangian || defined.is_rate);
+            let each = needed.map(|Defined { value, array, entry, .. }| {
                 let (bar, size) = (format_ident!("bar_{array}"), format_ident!("size_{array}"));
                 let add = |place, slope: TokenStream| {
-                    self.add(sums, &place, &quote!(bar * #slope), &quote!(size * #slope.abs()))
+                    self.add(sweep, &place, &quote!(bar * #slope), &quote!(size * #slope.abs()))
                 };
                 let time = Literal::usize_unsuffixed(value.first_slope + 1);
                 let by_time = value.varies.then(|| add(Place::Time, quote!(slopes[#time])));
                 let states = of.states(value);
                 let by_state = states.map(|(place, read, at)| add(Place::State(read, at), slope(value, place)));
-                let size = sums.measured(quote!(let size = #size[#entry];));
+                let size = sweep.of_sizes(quote!(let size = #size[#entry];));
                 quote! {
                     let bar = #bar[#entry];
                     #size
@@ -141,22 +183,37 @@ impl Printer<'_> {
                     #(#by_state)*
                 }
             });
+            let each: TokenStream = each.collect();
+            if each.is_empty() {
+                return TokenStream::new();
+            }
             quote! {
                 let slopes = self.#name(t, #numbers);
-                #(#each)*
+                #each
             }
         })
     }
 
-    fn forces(&self, sums: Sums) -> TokenStream {
-        Self::over_sums("force", &self.of.force, 1, &|of| {
+    /// Whether the force is computed from entries of recursions.
+    pub(super) fn force_reads_entries(&self) -> bool {
+        reads_entries(&self.of.force) || reads_entries(&self.of.dissipation)
+    }
+
+    /// The terms of the force.
+    pub(super) fn forces(&self, sweep: Sweep) -> TokenStream {
+        let forces = Self::over_sums("force", &self.of.force, 1, &|of| {
             let (name, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
-            let size = sums.measured(quote!(force_size[#on] += term.abs();));
+            let size = sweep.of_sizes(quote!(force_size[#on] += term.abs();));
             quote! {
                 let term = self.#name(t, #numbers)[0];
                 force[#on] += term;
                 #size
             }
-        })
+        });
+        let lost = (!self.of.dissipation.is_empty()).then(|| {
+            let terms = self.terms(Sweep { of: Swept::Dissipation, ..sweep });
+            quote!({ #terms })
+        });
+        quote!(#forces #lost)
     }
 }

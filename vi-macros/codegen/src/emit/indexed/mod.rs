@@ -87,6 +87,8 @@ type Columns<'a> = &'a dyn Fn(usize) -> TokenStream;
 /// A value that a recursion defines.
 struct Defined<'a> {
     value: &'a Value,
+    /// Whether it is the rate of an entry.
+    is_rate: bool,
     array: Ident,
     entry: TokenStream,
 }
@@ -263,6 +265,7 @@ impl Printer<'_> {
                     let defined: Vec<Defined> = defined
                         .map(|(number, (value, of))| Defined {
                             value,
+                            is_rate: matches!(of, Read::LetRate(_)),
                             array: self.array(*of),
                             entry: place(first + number),
                         })
@@ -277,9 +280,14 @@ impl Printer<'_> {
 
     /// Zeros for each array of `let`s, under a name with this prefix.
     fn zeros(&self, prefix: &str, zero: &TokenStream) -> TokenStream {
+        self.zeros_for(prefix, zero, &|_| true)
+    }
+
+    /// The same for the arrays that are wanted.
+    fn zeros_for(&self, prefix: &str, zero: &TokenStream, is_wanted: &dyn Fn(&Read) -> bool) -> TokenStream {
         let parts = self.of.recursions.iter().flat_map(|recursion| &recursion.parts);
         let arrays: BTreeSet<Read> = parts.flat_map(|part| part.of.iter().copied()).collect();
-        let zeros = arrays.into_iter().map(|read| {
+        let zeros = arrays.into_iter().filter(is_wanted).map(|read| {
             let (Read::Let(array) | Read::LetRate(array)) = read else { return TokenStream::new() };
             let length = Literal::usize_unsuffixed(self.model.lets[array].definitions.len());
             let name = format_ident!("{prefix}{}", self.array(read));
@@ -293,7 +301,7 @@ impl Printer<'_> {
         let zeros = self.zeros("", &quote!(real(0.0)));
         let loops = self.over_recursions(false, &|of, defined| {
             let (name, numbers) = (&of.name, self.numbers(of));
-            let entries = defined.iter().map(|Defined { value, array, entry }| {
+            let entries = defined.iter().map(|Defined { value, array, entry, .. }| {
                 let place = Literal::usize_unsuffixed(value.first_slope);
                 quote!(#array[#entry] = slopes[#place];)
             });
@@ -309,7 +317,10 @@ impl Printer<'_> {
         let (name, dimension, dual) = (&self.model.name, self.dimension(), structure::dual(self.model));
         let first = self.first_derivatives();
         let (second, force) = (self.second_derivatives(), self.add_force_derivatives());
+        let lost = self.dissipation_curvatures();
         quote! {
+            #lost
+
             impl<T: ::vi_core::real::Real> ::vi_core::indexed::Indexed<#dimension, T> for #name<T> {
                 type Dual = #name<::vi_core::real::Dual<T>>;
 

@@ -13,7 +13,7 @@ impl Printer<'_> {
         let rows = self.zeros("tangent_", &quote!([real(0.0); #dimension]));
         let loops = self.over_recursions(false, &|of, defined| {
             let (name, numbers) = (&of.name, self.numbers(of));
-            let each = defined.iter().map(|Defined { value, array, entry }| {
+            let each = defined.iter().map(|Defined { value, array, entry, .. }| {
                 let (tangent, place) = (format_ident!("tangent_{array}"), Literal::usize_unsuffixed(value.first_slope));
                 let parts = of.states(value).map(|(place, read, index)| {
                     let slope = slope(value, place);
@@ -85,11 +85,16 @@ impl Printer<'_> {
     }
 
     pub(super) fn second_derivatives(&self) -> TokenStream {
-        let (dimension, [r_q, r_v], [c_q, c_v]) = (self.dimension(), &SEEDS.map(name), &WEIGHTS.map(name));
         let statements = self.curvatures("lagrangian", &self.of.lagrangian, None);
+        self.matrix_of_state("second_derivatives", &statements)
+    }
+
+    /// A function of a state and of the weights of rows and columns.
+    fn matrix_of_state(&self, function: &str, statements: &TokenStream) -> TokenStream {
+        let (dimension, [r_q, r_v], [c_q, c_v]) = (self.dimension(), &SEEDS.map(name), &WEIGHTS.map(name));
         let further = quote!([#r_q, #r_v]: [T; 2], [#c_q, #c_v]: [T; 2]);
         let matrix = quote!(::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>);
-        self.of_state_and(&further, "second_derivatives", &matrix, &statements)
+        self.of_state_and(&further, function, &matrix, statements)
     }
 
     /// The second derivatives of these sums. With `weights`, each is multiplied by one of these: the first number of a
@@ -152,7 +157,7 @@ impl Printer<'_> {
     fn curvatures_of_recursions(&self) -> TokenStream {
         self.over_recursions(true, &|of, defined| {
             let (function, numbers) = (format_ident!("{}_curvatures", of.name), self.numbers(of));
-            let each = defined.iter().rev().map(|Defined { value, array, entry }| {
+            let each = defined.iter().rev().map(|Defined { value, array, entry, .. }| {
                 let (bar, bar_tangent) = (format_ident!("bar_{array}"), format_ident!("bar_tangent_{array}"));
                 let parts = of.states(value).map(|(place, read, index)| {
                     let slope = curvature(value, place);
@@ -194,6 +199,13 @@ impl Printer<'_> {
                 quote!(::vi_core::indexed::add_to_row(matrix, #on, weight * #slope, &#tangent);)
             }
         });
+        // The force −R_v.
+        let lost = (!self.of.dissipation.is_empty()).then(|| {
+            quote! {
+                let lost = self.dissipation_curvatures(t, q, v, [real(0.0), real(1.0)], [#c_q, #c_v]);
+                *matrix -= lost * weight;
+            }
+        });
         quote! {
             fn add_force_derivatives(
                 &self,
@@ -206,8 +218,20 @@ impl Printer<'_> {
             ) {
                 let real = T::real;
                 #statements
+                #lost
             }
         }
+    }
+
+    /// The second derivatives of Rayleigh's function.
+    pub(super) fn dissipation_curvatures(&self) -> TokenStream {
+        if self.of.dissipation.is_empty() {
+            return TokenStream::new();
+        }
+        let statements = self.curvatures("dissipation", &self.of.dissipation, None);
+        let name = &self.model.name;
+        let function = self.matrix_of_state("dissipation_curvatures", &statements);
+        quote!(impl<T: ::vi_core::real::Real> #name<T> { #function })
     }
 
     /// Adds the derivatives of these sums to the rows of a matrix; `add` prints a part of a row.

@@ -4,6 +4,7 @@ use super::super::check::monotone_table_of;
 use super::super::constrained;
 use super::super::lagrangian::{Properties, implementation};
 use super::super::{by_marker, structure};
+use super::first::Sweep;
 use super::{Printer, reads_entries};
 use crate::indexed::Read;
 use crate::rules::NamedRule;
@@ -34,10 +35,12 @@ impl Printer<'_> {
             #value
             value
         };
-        let forces = self.summed("force", &self.of.force, &format_ident!("force"));
+        let of_force = self.force_reads_entries().then(|| self.entries());
+        let forces = self.forces(Sweep::DISSIPATION);
         let force = quote! {
             let real = T::real;
             let mut force = ::vi_core::SVector::<T, #dimension>::zeros();
+            #of_force
             #forces
             force
         };
