@@ -75,7 +75,7 @@ steps!(Called<S>, Own as Own, S::RULE, [#[inline(never)]]);
 
 impl<T: Real, S: Parameters<T>, R: Rule> Parameters<T> for By<S, R> {
     fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
-        self.system_mut().parameter_mut(name)
+        (**self).parameter_mut(name)
     }
 }
 

@@ -7,7 +7,7 @@
 //! Own>::discrete_energy(&system, …)`.
 
 use core::fmt::Debug;
-use core::ops::Deref;
+use core::ops::{Deref, DerefMut};
 
 /// A marker of a rule.
 pub trait Rule: Copy + Debug + PartialEq + Send + Sync + 'static {
@@ -90,11 +90,6 @@ impl<S, R: Rule> By<S, R> {
         &self.system
     }
 
-    /// The system, mutably, to change its parameters.
-    pub(crate) fn system_mut(&mut self) -> &mut S {
-        &mut self.system
-    }
-
     /// The rule.
     pub fn rule(&self) -> R {
         self.rule
@@ -106,5 +101,11 @@ impl<S, R> Deref for By<S, R> {
 
     fn deref(&self) -> &S {
         &self.system
+    }
+}
+
+impl<S, R> DerefMut for By<S, R> {
+    fn deref_mut(&mut self) -> &mut S {
+        &mut self.system
     }
 }

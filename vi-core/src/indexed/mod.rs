@@ -306,6 +306,13 @@ pub fn power<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, t: T, q: &SV
     system.first_derivatives(t, q, v).power::<S>(v)
 }
 
+/// A derivative times its weight; zero if that is, also if the derivative is infinite.
+#[doc(hidden)]
+#[inline(always)]
+pub fn weighted<T: Real>(derivative: T, weight: T) -> T {
+    (derivative * weight).zero_where(weight, u8::MAX)
+}
+
 /// Adds a row to another one.
 #[doc(hidden)]
 #[inline(always)]
@@ -315,19 +322,43 @@ pub fn add_row<const N: usize, T: Real>(to: &mut [T; N], row: &[T; N]) {
     }
 }
 
-/// Adds `factor` times a row to another one.
+/// Adds `factor` times a row to another one. A product of zero and infinity is zero: an infinite derivative may have a
+/// weight of zero.
 #[doc(hidden)]
 #[inline(always)]
 pub fn add<const N: usize, T: Real>(factor: T, to: &mut [T; N], row: &[T; N]) {
+    if factor.is_zero() {
+        return;
+    }
+    if !factor.is_finite() {
+        return add_infinite(factor, to, row);
+    }
     for (to, number) in to.iter_mut().zip(row) {
         *to += factor * *number;
     }
 }
 
-/// Adds `factor` times a row to a row of a matrix.
+#[cold]
+#[inline(never)]
+fn add_infinite<const N: usize, T: Real>(factor: T, to: &mut [T; N], row: &[T; N]) {
+    for (to, number) in to.iter_mut().zip(row) {
+        *to += (factor * *number).zero_where(*number, u8::MAX);
+    }
+}
+
+/// The same for a row of a matrix.
 #[doc(hidden)]
 #[inline(always)]
 pub fn add_to_row<const N: usize, T: Real>(matrix: &mut SMatrix<T, N, N>, row: usize, factor: T, numbers: &[T; N]) {
+    if factor.is_zero() {
+        return;
+    }
+    if !factor.is_finite() {
+        let mut sums = [T::zero(); N];
+        add_infinite(factor, &mut sums, numbers);
+        matrix.row_mut(row).iter_mut().zip(sums).for_each(|(to, number)| *to += number);
+        return;
+    }
     for (to, number) in matrix.row_mut(row).iter_mut().zip(numbers) {
         *to += factor * *number;
     }

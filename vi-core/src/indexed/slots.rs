@@ -38,6 +38,12 @@ fn evaluated<const N: usize, T: Real, S: Indexed<N, T>>(
     system.first_derivatives(t, &q, &velocity(interval)).weighted(weight)
 }
 
+/// `part · h · x`. An end that does not count may have no value.
+#[inline]
+fn times<const N: usize, T: Real>(part: f64, h: T, x: &SVector<T, N>) -> SVector<T, N> {
+    if part == 0.0 { SVector::zeros() } else { x * (h * T::real(part)) }
+}
+
 /// `L_d = h Σ w L`, for [`DiscreteLagrangian::ld`](crate::DiscreteLagrangian::ld).
 #[inline]
 pub fn ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
@@ -77,7 +83,7 @@ pub fn d2_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     let h = length(interval);
     sum::<R, _>(|point| {
         let first = evaluated(system, interval, point);
-        first.dq * (h * T::real(1.0 - point[0])) - first.dv
+        times(1.0 - point[0], h, &first.dq) - first.dv
     })
 }
 
@@ -105,7 +111,7 @@ pub fn d4_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     let h = length(interval);
     sum::<R, _>(|point| {
         let first = evaluated(system, interval, point);
-        first.dv + first.dq * (h * T::real(point[0]))
+        first.dv + times(point[0], h, &first.dq)
     })
 }
 
@@ -122,7 +128,7 @@ fn force<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     let (h, v) = (length(interval), velocity(interval));
     sum::<R, _>(|[c, weight]| {
         let (t, q) = within(interval, c);
-        system.force(t, &q, &v) * (h * T::real(weight * share(c)))
+        times(weight * share(c), h, &system.force(t, &q, &v))
     })
 }
 

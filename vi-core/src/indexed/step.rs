@@ -58,7 +58,9 @@ impl<const N: usize, T: Real> Sums<N, T> {
     #[inline]
     fn of<S: Indexed<N, T>>(c: f64, first: &FirstDerivatives<N, T>) -> Self {
         let force = first.total_force::<S>();
-        Self { momentum: first.dv, before: force * T::real(1.0 - c), force }
+        // The end may have no value where only its momentum counts.
+        let before = if c == 1.0 { SVector::zeros() } else { force * T::real(1.0 - c) };
+        Self { momentum: first.dv, before, force }
     }
 
     /// The residual r of the momentum row. Small terms are summed first.

@@ -8,6 +8,7 @@ use vi_core::lagrangian::{Flow, Lagrangian, Parameters};
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::real::{Dual, Real, Rounded};
+use vi_core::rules::Midpoint;
 use vi_core::stepping::{
     Convertible, Discretized, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping,
     MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
@@ -201,10 +202,10 @@ impl<T: Real, const OPEN: bool> FixedStepping<6, T> for Handwritten<T, OPEN> {
     const CONSTANT_JACOBIAN: bool = false;
 
     fn momentum_equation(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> MomentumEquation<6, T, Self::Jacobian> {
-        indexed::momentum_equation(self, node, h, v)
+        indexed::momentum_equation(self, Midpoint, node, h, v, indexed::jacobian(self, Midpoint, node, h, v))
     }
     fn momentum_residual(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> MomentumResidual<6, T> {
-        indexed::momentum_residual(self, node, h, v)
+        indexed::momentum_residual(self, Midpoint, node, h, v)
     }
     fn momentum_derivatives(
         &self,
@@ -212,13 +213,13 @@ impl<T: Real, const OPEN: bool> FixedStepping<6, T> for Handwritten<T, OPEN> {
         h: T,
         v: &Vector<T>,
     ) -> MomentumDerivatives<Self::Jacobian, Self::StepMatrix> {
-        indexed::momentum_derivatives(self, node, h, v)
+        indexed::momentum_derivatives(self, Midpoint, node, h, v, indexed::jacobian(self, Midpoint, node, h, v))
     }
     fn momentum_rounding(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> Vector<T> {
         support::momentum_rounding(&self.steps::<Rounded>(), node, h, v)
     }
     fn discrete_energy(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> T {
-        indexed::discrete_energy(self, node, h, v)
+        indexed::discrete_energy(self, Midpoint, node, h, v)
     }
 }
 
@@ -247,31 +248,31 @@ impl<T: Real, const OPEN: bool> EnergyStepping<6, T> for Handwritten<T, OPEN> {
 
 impl<T: Real, const OPEN: bool> DiscreteLagrangian<6, T> for Handwritten<T, OPEN> {
     fn ld(&self, interval: &Interval<6, T>) -> T {
-        indexed::ld(self, interval)
+        indexed::ld(self, Midpoint, interval)
     }
     fn d1_ld(&self, interval: &Interval<6, T>) -> T {
-        indexed::d1_ld(self, interval)
+        indexed::d1_ld(self, Midpoint, interval)
     }
     fn d2_ld(&self, interval: &Interval<6, T>) -> Vector<T> {
-        indexed::d2_ld(self, interval)
+        indexed::d2_ld(self, Midpoint, interval)
     }
     fn d3_ld(&self, interval: &Interval<6, T>) -> T {
-        indexed::d3_ld(self, interval)
+        indexed::d3_ld(self, Midpoint, interval)
     }
     fn d4_ld(&self, interval: &Interval<6, T>) -> Vector<T> {
-        indexed::d4_ld(self, interval)
+        indexed::d4_ld(self, Midpoint, interval)
     }
     fn fd_minus(&self, interval: &Interval<6, T>) -> Vector<T> {
-        indexed::fd_minus(self, interval)
+        indexed::fd_minus(self, Midpoint, interval)
     }
     fn fd_plus(&self, interval: &Interval<6, T>) -> Vector<T> {
-        indexed::fd_plus(self, interval)
+        indexed::fd_plus(self, Midpoint, interval)
     }
     fn gd_minus(&self, interval: &Interval<6, T>) -> T {
-        indexed::gd_minus(self, interval)
+        indexed::gd_minus(self, Midpoint, interval)
     }
     fn gd_plus(&self, interval: &Interval<6, T>) -> T {
-        indexed::gd_plus(self, interval)
+        indexed::gd_plus(self, Midpoint, interval)
     }
 }
 

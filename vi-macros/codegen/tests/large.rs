@@ -89,7 +89,7 @@ fn an_explanation_shows_loops_and_what_follows_from_them() {
     let wells = [
         "L_1 = sum(i in 0..16, dot(q_i)^2/2)",
         "L_3 = sum(i in 0..5, -c*t*x[i]*y[0][i]^2/2)",
-        "q_k is coordinate k in the order of declaration, from 0",
+        "q_k is coordinate k in the order of declaration, from 0; x_k of an array x its number k",
         "E1 = v·L_v - L - h/2*L_t",
         "Cyclic: `y[1][0]` to `y[1][4]`, `z`; their momenta are conserved",
     ];

@@ -26,6 +26,8 @@ pub enum Read {
     Number,
     /// A constraint: the place of a sum, which no body reads.
     Constraint,
+    /// A part of the time scale.
+    Part,
 }
 
 impl Read {

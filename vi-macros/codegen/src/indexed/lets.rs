@@ -32,7 +32,7 @@ impl Lets {
     pub(super) fn of(pool: &mut Pool<Symbol>, model: &Model) -> Option<Self> {
         let mut lets = Self { arrays: Vec::new() };
         let constraints = model.constraints.iter().map(|constraint| constraint.written);
-        let forces = model.forces.iter().copied().chain(model.dissipation);
+        let forces = model.forces.iter().copied().chain(model.dissipation).chain(model.time_scale);
         let used = [model.lagrangian].into_iter().chain(forces).chain(constraints);
         let defined = model.lets.iter().flat_map(|array| array.definitions.iter().copied());
         let all: Vec<Expr> = used.chain(defined).collect();

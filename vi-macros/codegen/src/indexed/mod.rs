@@ -11,6 +11,7 @@
 //! | `body` | one expression for all instances, with its derivatives as operations |
 //! | `nest` | the loops over instances |
 //! | `named` | the bodies with the names of their functions |
+//! | `scale` | the time scale as a function of sums |
 //! | `properties` | what the generator found, in words |
 
 mod body;
@@ -18,16 +19,18 @@ mod lets;
 mod named;
 mod nest;
 mod properties;
+mod scale;
 
 pub use body::{Body, Read, Value};
 #[cfg(feature = "inspect")]
 pub(crate) use named::{NamedBody, Quantity};
-pub(crate) use named::{named, part_name, sum_name};
+pub(crate) use named::{PART, SCALE, named, part_name, sum_name};
 pub use nest::{Affine, Nest};
 pub use properties::documentation;
 pub(crate) use properties::of_steps;
 #[cfg(feature = "inspect")]
 pub(crate) use properties::properties;
+pub use scale::Scale;
 
 use crate::limits::bounded;
 use crate::messages::{Message, error};
@@ -77,6 +80,8 @@ pub struct Indexed {
     pub force: Vec<Sum>,
     /// The terms of Rayleigh's function R.
     pub dissipation: Vec<Sum>,
+    /// The time scale.
+    pub scale: Option<Scale>,
     /// The terms of the constraints; the first number of an instance is the constraint.
     pub constraints: Vec<Sum>,
     /// Whether a constraint on velocities has a part without velocities: it does work.
@@ -123,23 +128,27 @@ pub fn indexed(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedR
 }
 
 fn statements(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRule>) -> Option<Indexed> {
-    let is_written_out = model.rule.as_ref().is_some_and(|rule| rule.named.is_none());
-    if is_written_out || model.time_scale.is_some() {
+    if model.rule.as_ref().is_some_and(|rule| rule.named.is_none()) {
         return None;
     }
     let lets = Lets::of(pool, &model)?;
     let lagrangian = lets.opened(pool, model.lagrangian);
     let forces: Vec<Expr> = model.forces.iter().map(|force| lets.opened(pool, *force)).collect();
     let dissipation = model.dissipation.map(|rayleigh| lets.opened(pool, rayleigh));
+    let scale = model.time_scale.map(|g| lets.opened(pool, g));
     let constraints: Vec<Expr> =
         model.constraints.iter().map(|constraint| lets.opened(pool, constraint.written)).collect();
-    let all = [lagrangian].into_iter().chain(forces.iter().copied()).chain(dissipation);
+    let all = [lagrangian].into_iter().chain(forces.iter().copied()).chain(dissipation).chain(scale);
     let all: Vec<Expr> = all.chain(constraints.iter().copied()).collect();
     let recursions = recursions(pool, &lets, &all)?;
     let lagrangian = sums_of(pool, lagrangian)?;
     let dissipation = match dissipation {
         Some(rayleigh) => sums_of(pool, rayleigh)?,
         None => Vec::new(),
+    };
+    let scale = match scale {
+        Some(g) => Some(Scale::of(pool, g)?),
+        None => None,
     };
     let force = sums_of_each(pool, &forces, false)?;
     let constraints = sums_of_each(pool, &constraints, true)?;
@@ -171,6 +180,7 @@ fn statements(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRu
         lagrangian,
         force,
         dissipation,
+        scale,
         constraints,
         driven,
     })

@@ -9,6 +9,10 @@ use vi_expr::Pool;
 /// Characters of the expression of a loop that are shown.
 const CHARACTERS: usize = 160;
 
+/// Functions of the parts of the time scale, and of the whole one.
+pub(crate) const PART: &str = "time_scale_part";
+pub(crate) const SCALE: &str = "time_scale";
+
 /// What the values of a body are.
 #[derive(Clone, Copy)]
 pub(crate) enum Quantity<'a> {
@@ -22,6 +26,10 @@ pub(crate) enum Quantity<'a> {
     Dissipation,
     /// Terms of constraints.
     Constraint,
+    /// Terms of the parts of the time scale.
+    Part,
+    /// The time scale.
+    Scale,
 }
 
 /// A body with the name of its function and its loops.
@@ -47,11 +55,16 @@ pub(crate) fn named(of: &Indexed) -> Vec<NamedBody<'_>> {
             first: *first,
         }));
     }
+    let scale = of.scale.iter();
+    let (parts, whole): (Vec<&[Sum]>, Vec<&[Sum]>) =
+        scale.map(|scale| (&scale.parts[..], core::slice::from_ref(&scale.whole))).unzip();
     let sums = [
-        ("lagrangian", Quantity::Lagrangian, &of.lagrangian),
-        ("force", Quantity::Force, &of.force),
-        ("dissipation", Quantity::Dissipation, &of.dissipation),
-        ("constraint", Quantity::Constraint, &of.constraints),
+        ("lagrangian", Quantity::Lagrangian, &of.lagrangian[..]),
+        ("force", Quantity::Force, &of.force[..]),
+        ("dissipation", Quantity::Dissipation, &of.dissipation[..]),
+        ("constraint", Quantity::Constraint, &of.constraints[..]),
+        (PART, Quantity::Part, parts.first().copied().unwrap_or_default()),
+        (SCALE, Quantity::Scale, whole.first().copied().unwrap_or_default()),
     ];
     for (name, quantity, sums) in sums {
         named.extend(sums.iter().enumerate().map(|(index, Sum { body, nests })| NamedBody {
@@ -86,9 +99,10 @@ impl NamedBody<'_> {
     pub(crate) fn computed(&self) -> &[Read] {
         match self.quantity {
             Quantity::Entries(of) => of,
-            Quantity::Lagrangian | Quantity::Dissipation => &[],
+            Quantity::Lagrangian | Quantity::Dissipation | Quantity::Scale => &[],
             Quantity::Force => &[Read::Coordinate],
             Quantity::Constraint => &[Read::Constraint],
+            Quantity::Part => &[Read::Part],
         }
     }
 
@@ -133,6 +147,8 @@ impl NamedBody<'_> {
             Quantity::Constraint => {
                 format!("term of the constraint {}: {}", computed.concat(), values.collect::<String>())
             }
+            Quantity::Part => format!("term of {}: {}", computed.concat(), values.collect::<String>()),
+            Quantity::Scale => format!("g = {}", values.collect::<String>()),
             Quantity::Entries(_) => {
                 let entries = computed.iter().zip(values).map(|(entry, value)| format!("{entry} = {value}"));
                 entries.collect::<Vec<_>>().join("; ")
@@ -151,5 +167,6 @@ fn spell(model: &Model, read: Read, column: usize) -> String {
         Read::Parameter(first) => model.spell(&Symbol::Parameter { index: first + column, array: Some(first) }),
         Read::Number => column.to_string(),
         Read::Constraint => model.constraints[column].text(),
+        Read::Part => format!("g_{}", column + 1),
     }
 }

@@ -58,9 +58,16 @@ pub(super) fn read(model: &Model, read: Read, column: Affine, counters: &[[i64; 
     let accented = |name: Name| if is_rate { name.under("dot") } else { name };
     let rate = |text: String| if is_rate { format!("dot({text})") } else { text };
     let Some((name, indices)) = array(model, read, column, counters) else {
+        // Parts count from 1, as the terms of L.
+        let column = Affine { constant: column.constant + i64::from(read == Read::Part), ..column };
         let index = affine(column, "*");
         let index = if index.contains([' ', '*']) { format!("({index})") } else { index };
-        let letter = if read == Read::Constraint { "c" } else { "q" };
+        let letter = match read {
+            Read::Constraint => "c",
+            Read::Part => "g",
+            Read::Let(array) | Read::LetRate(array) => &model.lets[array].name,
+            _ => "q",
+        };
         let latex = accented(Name::of(letter)).with(affine(column, " ")).text();
         return Both { text: rate(format!("{letter}_{index}")), latex };
     };
@@ -71,7 +78,7 @@ pub(super) fn read(model: &Model, read: Read, column: Affine, counters: &[[i64; 
 
 /// Whether the number has a name of the user.
 pub(super) fn has_name(model: &Model, read: Read, column: Affine, counters: &[[i64; 2]]) -> bool {
-    matches!(read, Read::Number | Read::Constraint) || array(model, read, column, counters).is_some()
+    matches!(read, Read::Number | Read::Constraint | Read::Part) || array(model, read, column, counters).is_some()
 }
 
 /// The name of the array that contains all these numbers, and their indices in it; none for a scalar.
@@ -111,7 +118,7 @@ fn array(model: &Model, read: Read, column: Affine, counters: &[[i64; 2]]) -> Op
                 }
             };
         }
-        Read::Number => return None,
+        Read::Number | Read::Part => return None,
     };
     let mut rest = Affine { constant: column.constant - i64::try_from(first).ok()?, ..column };
     let count = i64::try_from(lengths.iter().product::<usize>()).ok()?;

@@ -76,7 +76,7 @@ fn parameter(model: &Model, field: &[Parameter]) -> Line {
 /// Recursions, then L and f as sums.
 pub(super) fn sums(of: &Loops) -> Vec<Section> {
     let (mut recursions, mut terms, mut forces, mut constraints) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut losses = Vec::new();
+    let (mut losses, mut scale) = (Vec::new(), Vec::new());
     for named in &indexed::named(&of.indexed) {
         match named.quantity {
             Quantity::Entries(_) => recursions.extend(named.nests.iter().flat_map(|nest| entries(of, named, nest))),
@@ -84,6 +84,8 @@ pub(super) fn sums(of: &Loops) -> Vec<Section> {
             Quantity::Dissipation => losses.push(term(of, named, "R", losses.len() + 1)),
             Quantity::Force => forces.extend(named.nests.iter().flat_map(|nest| part(of, named, nest, "f_"))),
             Quantity::Constraint => constraints.extend(named.nests.iter().flat_map(|nest| part(of, named, nest, ""))),
+            Quantity::Part => scale.extend(named.nests.iter().flat_map(|nest| part(of, named, nest, ""))),
+            Quantity::Scale => scale.extend(whole(of, named)),
         }
     }
     terms.insert(0, numbered("L", terms.len()));
@@ -94,8 +96,10 @@ pub(super) fn sums(of: &Loops) -> Vec<Section> {
     }
     if !has_names(of) {
         terms.push(Line::Words {
-            text: "q_k is coordinate k in the order of declaration, from 0".to_owned(),
-            latex: "`q_{k}` is coordinate `k` in the order of declaration, from 0".to_owned(),
+            text: "q_k is coordinate k in the order of declaration, from 0; x_k of an array x its number k".to_owned(),
+            latex:
+                "`q_{k}` is coordinate `k` in the order of declaration, from 0; `x_{k}` of an array `x` its number `k`"
+                    .to_owned(),
         });
     }
     let mut sections = Vec::new();
@@ -109,7 +113,17 @@ pub(super) fn sums(of: &Loops) -> Vec<Section> {
     if !constraints.is_empty() {
         sections.push(Section { title: "Constraints, each the sum of these terms, which is 0", lines: constraints });
     }
+    if !scale.is_empty() {
+        sections.push(Section { title: "Time scale g, with its parts as the sums of these terms", lines: scale });
+    }
     sections
+}
+
+/// The time scale by its parts.
+fn whole(of: &Loops, named: &NamedBody) -> Vec<Line> {
+    let letter = || Both { text: "g".to_owned(), latex: "g".to_owned() };
+    let rows = named.nests.iter().map(|nest| Row::new(of, named, nest));
+    rows.flat_map(|row| named.body.values.iter().map(move |value| equation(letter(), row.value(of, value)))).collect()
 }
 
 /// `L = L_1 + L_2`, of so many terms.
@@ -451,8 +465,9 @@ fn function(of: &Loops, named: &NamedBody) -> String {
             Quantity::Entries(_) => computed("=", ""),
             Quantity::Lagrangian => "L += value".to_owned(),
             Quantity::Dissipation => "R += value".to_owned(),
+            Quantity::Scale => "g = value".to_owned(),
             Quantity::Force => computed("+=", "f_"),
-            Quantity::Constraint => computed("+=", ""),
+            Quantity::Constraint | Quantity::Part => computed("+=", ""),
         };
         let rows = in_each_row(nest).text;
         let rows = rows.strip_prefix(' ').map_or_else(|| "one row".to_owned() + &rows, str::to_owned);

@@ -64,7 +64,7 @@ impl Printer<'_> {
         let [c_q, c_v] = &WEIGHTS.map(name);
         let values = self.summed("constraint", sums, &format_ident!("values"));
         let rows = self.rows("constraint", sums, &|on, column, slope| match column {
-            Column::Own(index, weight) => quote!(rows[#on][#index] += #slope * #weight;),
+            Column::Own(index, weight) => quote!(rows[#on][#index] += ::vi_core::indexed::weighted(#slope, #weight);),
             Column::All(tangent) => quote!(::vi_core::indexed::add(#slope, &mut rows[#on], &#tangent);),
         });
         let second = self.curvatures("constraint", sums, Some(&format_ident!("weights")));

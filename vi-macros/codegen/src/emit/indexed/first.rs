@@ -1,7 +1,7 @@
 //! First derivatives by one reverse sweep: recursions forward, terms of L, recursions backward.
 
 use super::{Defined, Printer, reads_entries, slope};
-use crate::indexed::{Indexed, Read, Sum};
+use crate::indexed::{Read, Sum};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -20,11 +20,15 @@ enum Swept {
     Lagrangian,
     /// Rayleigh's function, with respect to velocities: the negative force.
     Dissipation,
+    /// The time scale, with respect to time and coordinates.
+    Scale,
 }
 
 impl Sweep {
     const LAGRANGIAN: Self = Self { of: Swept::Lagrangian, is_measured: false };
     pub(super) const DISSIPATION: Self = Self { of: Swept::Dissipation, is_measured: false };
+
+    pub(super) const SCALE: Self = Self { of: Swept::Scale, is_measured: false };
 
     fn measured(self) -> Self {
         Self { is_measured: true, ..self }
@@ -35,28 +39,18 @@ impl Sweep {
         if self.is_measured { tokens } else { TokenStream::new() }
     }
 
-    fn name(self) -> &'static str {
-        match self.of {
-            Swept::Lagrangian => "lagrangian",
-            Swept::Dissipation => "dissipation",
-        }
-    }
-
-    fn sums(self, of: &Indexed) -> &[Sum] {
-        match self.of {
-            Swept::Lagrangian => &of.lagrangian,
-            Swept::Dissipation => &of.dissipation,
-        }
-    }
-
     /// Whether derivatives with respect to the entries of this array matter.
     fn needs(self, array: &Read) -> bool {
-        self.of == Swept::Lagrangian || matches!(array, Read::LetRate(_))
+        match self.of {
+            Swept::Lagrangian => true,
+            Swept::Dissipation => matches!(array, Read::LetRate(_)),
+            Swept::Scale => matches!(array, Read::Let(_)),
+        }
     }
 }
 
 /// Where a term goes.
-enum Place {
+pub(super) enum Place {
     Time,
     State(Read, TokenStream),
 }
@@ -96,7 +90,7 @@ impl Printer<'_> {
         });
         let is_entered = reads_entries(&self.of.lagrangian) || self.force_reads_entries();
         let entries = is_entered.then(|| self.entries());
-        let (of_lagrangian, forces) = (self.terms(sweep), self.forces(sweep));
+        let (of_lagrangian, forces) = (self.terms(sweep, "lagrangian", &self.of.lagrangian), self.forces(sweep));
         quote! {
             let real = T::real;
             let mut value = real(0.0);
@@ -112,17 +106,18 @@ impl Printer<'_> {
     }
 
     /// Adds a term to a sum, and its size to the sum of sizes.
-    fn add(&self, sweep: Sweep, place: &Place, term: &TokenStream, size: &TokenStream) -> TokenStream {
-        let is_lagrangian = sweep.of == Swept::Lagrangian;
-        let (sum, sizes) = match place {
-            Place::State(Read::Velocity, index) if !is_lagrangian => {
+    pub(super) fn add(&self, sweep: Sweep, place: &Place, term: &TokenStream, size: &TokenStream) -> TokenStream {
+        let (sum, sizes) = match (sweep.of, place) {
+            (Swept::Lagrangian, Place::Time) => (quote!(dt), quote!(dt_size)),
+            (Swept::Lagrangian, Place::State(Read::Coordinate, index)) => (quote!(dq[#index]), quote!(dq_size[#index])),
+            (Swept::Lagrangian, Place::State(Read::Velocity, index)) => (quote!(dv[#index]), quote!(dv_size[#index])),
+            (Swept::Dissipation, Place::State(Read::Velocity, index)) => {
                 let sizes = sweep.of_sizes(quote!(force_size[#index] += #size;));
                 return quote!(force[#index] -= #term; #sizes);
             }
-            Place::Time if is_lagrangian => (quote!(dt), quote!(dt_size)),
-            Place::State(Read::Coordinate, index) if is_lagrangian => (quote!(dq[#index]), quote!(dq_size[#index])),
-            Place::State(Read::Velocity, index) => (quote!(dv[#index]), quote!(dv_size[#index])),
-            Place::State(read, index) if read.is_entry() && sweep.needs(read) => {
+            (Swept::Scale, Place::Time) => (quote!(g_dt), quote!()),
+            (Swept::Scale, Place::State(Read::Coordinate, index)) => (quote!(g_dq[#index]), quote!()),
+            (_, Place::State(read, index)) if read.is_entry() && sweep.needs(read) => {
                 let array = self.array(*read);
                 let (bar, size) = (format_ident!("bar_{array}"), format_ident!("size_{array}"));
                 (quote!(#bar[#index]), quote!(#size[#index]))
@@ -133,10 +128,16 @@ impl Printer<'_> {
         quote!(#sum += #term; #sizes)
     }
 
+    /// Zeros for what the entries of arrays contribute, and for its sizes.
+    pub(super) fn bars(&self, sweep: Sweep) -> TokenStream {
+        let zeros = |prefix: &str| self.zeros_for(prefix, &quote!(real(0.0)), &|array| sweep.needs(array));
+        let (bars, sizes) = (zeros("bar_"), sweep.of_sizes(zeros("size_")));
+        quote!(#bars #sizes)
+    }
+
     /// The slopes of the terms of a sum, those through recursions too.
-    fn terms(&self, sweep: Sweep) -> TokenStream {
-        let sums = sweep.sums(self.of);
-        let terms = Self::over_sums(sweep.name(), sums, 0, &|of| {
+    fn terms(&self, sweep: Sweep, name: &str, sums: &[Sum]) -> TokenStream {
+        let terms = Self::over_sums(name, sums, 0, &|of| {
             let (name, numbers, value) = (&of.name, self.numbers(of), &of.body.values[0]);
             let add = |place, slope: TokenStream| self.add(sweep, &place, &slope, &quote!(#slope.abs()));
             let by_time = value.varies.then(|| add(Place::Time, quote!(slopes[1])));
@@ -156,16 +157,15 @@ impl Printer<'_> {
         if !reads_entries(sums) {
             return terms;
         }
-        let zeros = |prefix: &str| self.zeros_for(prefix, &quote!(real(0.0)), &|array| sweep.needs(array));
-        let (bars, sizes, backward) = (zeros("bar_"), sweep.of_sizes(zeros("size_")), self.backward(sweep));
-        quote!(#bars #sizes #terms #backward)
+        let (bars, backward) = (self.bars(sweep), self.backward(sweep));
+        quote!(#bars #terms #backward)
     }
 
     /// The slopes of recursions, times what their entries contribute.
-    fn backward(&self, sweep: Sweep) -> TokenStream {
+    pub(super) fn backward(&self, sweep: Sweep) -> TokenStream {
         self.over_recursions(true, &|of, defined| {
             let (name, numbers) = (&of.name, self.numbers(of));
-            let needed = defined.iter().rev().filter(|defined| sweep.of == Swept::Lagrangian || defined.is_rate);
+            let needed = defined.iter().rev().filter(|defined| sweep.needs(&defined.of));
             let each = needed.map(|Defined { value, array, entry, .. }| {
                 let (bar, size) = (format_ident!("bar_{array}"), format_ident!("size_{array}"));
                 let add = |place, slope: TokenStream| {
@@ -211,7 +211,8 @@ impl Printer<'_> {
             }
         });
         let lost = (!self.of.dissipation.is_empty()).then(|| {
-            let terms = self.terms(Sweep { of: Swept::Dissipation, ..sweep });
+            let sweep = Sweep { of: Swept::Dissipation, ..sweep };
+            let terms = self.terms(sweep, "dissipation", &self.of.dissipation);
             quote!({ #terms })
         });
         quote!(#forces #lost)

@@ -12,6 +12,7 @@
 
 mod constrained;
 mod first;
+mod scale;
 mod second;
 mod traits;
 
@@ -87,8 +88,7 @@ type Columns<'a> = &'a dyn Fn(usize) -> TokenStream;
 /// A value that a recursion defines.
 struct Defined<'a> {
     value: &'a Value,
-    /// Whether it is the rate of an entry.
-    is_rate: bool,
+    of: Read,
     array: Ident,
     entry: TokenStream,
 }
@@ -114,6 +114,7 @@ impl Printer<'_> {
             Read::Coordinate => format_ident!("q"),
             Read::Velocity => format_ident!("v"),
             Read::Number | Read::Constraint => format_ident!("number"),
+            Read::Part => format_ident!("parts"),
             Read::Parameter(first) => self.model.parameters[first].name.clone(),
         }
     }
@@ -265,7 +266,7 @@ impl Printer<'_> {
                     let defined: Vec<Defined> = defined
                         .map(|(number, (value, of))| Defined {
                             value,
-                            is_rate: matches!(of, Read::LetRate(_)),
+                            of: *of,
                             array: self.array(*of),
                             entry: place(first + number),
                         })

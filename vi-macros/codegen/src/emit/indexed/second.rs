@@ -20,7 +20,7 @@ impl Printer<'_> {
                     match self.target(read) {
                         Target::Own(which) => {
                             let seed = seeds[which];
-                            quote!(#tangent[#entry][#index] += #slope * #seed;)
+                            quote!(#tangent[#entry][#index] += ::vi_core::indexed::weighted(#slope, #seed);)
                         }
                         Target::Entry(from) => {
                             let from = format_ident!("tangent_{from}");
@@ -60,19 +60,23 @@ impl Printer<'_> {
                     // A mass is finite where a force has an infinite slope, and its weight is zero.
                     (Target::Own(0), Target::Own(0)) => {
                         let weight = name(BOTH);
-                        quote!(matrix[#at_to][#at_from] += (#second * #weight).zero_where(#weight, u8::MAX);)
+                        quote!(matrix[#at_to][#at_from] += ::vi_core::indexed::weighted(#second, #weight);)
                     }
                     (Target::Own(to), Target::Own(from)) => {
                         let (weight, seed) = (&WEIGHTS.map(name)[to], &SEEDS.map(name)[from]);
-                        quote!(matrix[#at_to][#at_from] += #second * #weight * #seed;)
+                        quote!(matrix[#at_to][#at_from] += ::vi_core::indexed::weighted(#second, #weight * #seed);)
                     }
                     (Target::Own(to), Target::Entry(from)) => {
                         let (weight, from) = (&WEIGHTS.map(name)[to], format_ident!("tangent_{from}"));
-                        quote!(::vi_core::indexed::add(#second * #weight, &mut matrix[#at_to], &#from[#at_from]);)
+                        quote!(::vi_core::indexed::add(
+                            ::vi_core::indexed::weighted(#second, #weight),
+                            &mut matrix[#at_to],
+                            &#from[#at_from],
+                        );)
                     }
                     (Target::Entry(to), Target::Own(from)) => {
                         let (to, seed) = (format_ident!("bar_tangent_{to}"), &SEEDS.map(name)[from]);
-                        quote!(#to[#at_to][#at_from] += #second * #seed;)
+                        quote!(#to[#at_to][#at_from] += ::vi_core::indexed::weighted(#second, #seed);)
                     }
                     (Target::Entry(to), Target::Entry(from)) => {
                         let (to, from) = (format_ident!("bar_tangent_{to}"), format_ident!("tangent_{from}"));
@@ -164,7 +168,11 @@ impl Printer<'_> {
                     match self.target(read) {
                         Target::Own(which) => {
                             let weight = &WEIGHTS.map(name)[which];
-                            quote!(::vi_core::indexed::add(#slope * #weight, &mut matrix[#index], &from);)
+                            quote!(::vi_core::indexed::add(
+                                ::vi_core::indexed::weighted(#slope, #weight),
+                                &mut matrix[#index],
+                                &from,
+                            );)
                         }
                         Target::Entry(to) => {
                             let (bar, bar_tangent) = (format_ident!("bar_{to}"), format_ident!("bar_tangent_{to}"));
@@ -194,7 +202,9 @@ impl Printer<'_> {
     pub(super) fn add_force_derivatives(&self) -> TokenStream {
         let (dimension, [c_q, c_v]) = (self.dimension(), &WEIGHTS.map(name));
         let statements = self.rows("force", &self.of.force, &|on, index, slope| match index {
-            Column::Own(index, weight) => quote!(matrix[(#on, #index)] += weight * #slope * #weight;),
+            Column::Own(index, weight) => {
+                quote!(matrix[(#on, #index)] += ::vi_core::indexed::weighted(weight * #slope, #weight);)
+            }
             Column::All(tangent) => {
                 quote!(::vi_core::indexed::add_to_row(matrix, #on, weight * #slope, &#tangent);)
             }

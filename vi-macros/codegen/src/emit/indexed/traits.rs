@@ -63,7 +63,7 @@ impl Printer<'_> {
             if model.constraints.is_empty() { [acceleration, flow] } else { constrained::motion(&dimension) };
         // A constant mass matrix needs no gradient.
         let momentum = if self.of.separable {
-            quote!(::vi_core::linear::Matrix::multiply(&self.masses(t, q, v), v))
+            quote!(::vi_core::linear::Matrix::multiply(&self.mass_diagonal(t, q, v), v))
         } else {
             quote!(#first.dv)
         };
@@ -102,7 +102,7 @@ impl Printer<'_> {
         quote! {
             /// The diagonal of the mass matrix.
             #[inline]
-            fn masses(
+            fn mass_diagonal(
                 &self,
                 t: T,
                 q: &::vi_core::SVector<T, #dimension>,
@@ -130,7 +130,7 @@ impl Printer<'_> {
         [
             quote!(impl<T: ::vi_core::real::Real> #name<T> { #diagonal }),
             quote!(::vi_core::linear::Banded<#dimension, 1, T>),
-            quote!(self.masses(t, q, v)),
+            quote!(self.mass_diagonal(t, q, v)),
         ]
     }
 
@@ -195,16 +195,19 @@ impl Printer<'_> {
             &quote!(::vi_core::collocation::Sides<#dimension, T>),
             &quote!(::vi_core::indexed::sides(self, t, q, v)),
         );
+        let [scaled, has_time_scale] = self.time_scale();
         let splits = separable.then(
             || quote!(impl<T: ::vi_core::real::Real> ::vi_core::collocation::Separable<#dimension, T> for #name<T> {}),
         );
         quote! {
             #items
             #splits
+            #has_time_scale
             impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
                 #common
                 const SEPARABLE: bool = #separable;
                 #sides
+                #scaled
             }
         }
     }
@@ -276,7 +279,7 @@ impl Printer<'_> {
         let Rule { marker, argument, named } = rule;
         let is_explicit = self.of.is_explicit(named);
         let (form, jacobian) = if is_explicit {
-            (quote!(::vi_core::linear::Banded<#dimension, 1, T>), quote!(self.masses(node.t, &node.q, v)))
+            (quote!(::vi_core::linear::Banded<#dimension, 1, T>), quote!(self.mass_diagonal(node.t, &node.q, v)))
         } else {
             (
                 quote!(::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>),
