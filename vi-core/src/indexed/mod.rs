@@ -89,7 +89,7 @@ impl<const N: usize, T: Real> FirstDerivatives<N, T> {
     /// All of them times a weight. Those of a single point stay as they are.
     #[inline]
     fn weighted(self, weight: f64) -> Self {
-        if weight == 1.0 {
+        if weight - 1.0 == 0.0 {
             return self;
         }
         let weight = T::real(weight);

@@ -59,7 +59,8 @@ impl<const N: usize, T: Real> Sums<N, T> {
     fn of<S: Indexed<N, T>>(c: f64, first: &FirstDerivatives<N, T>) -> Self {
         let force = first.total_force::<S>();
         // The end may have no value where only its momentum counts.
-        let before = if c == 1.0 { SVector::zeros() } else { force * T::real(1.0 - c) };
+        let part = 1.0 - c;
+        let before = if part == 0.0 { SVector::zeros() } else { force * T::real(part) };
         Self { momentum: first.dv, before, force }
     }
 
@@ -177,7 +178,7 @@ pub fn momentum_equation<const N: usize, T: Real, S: Indexed<N, T>, R: Quadratur
 ) -> MomentumEquation<N, T, J> {
     let sums = sum::<R, _>(|[c, weight]| {
         let (t, q) = node.within(c, h, v);
-        if c == 1.0 {
+        if 1.0 - c == 0.0 {
             // The end contributes its momentum only.
             let momentum = system.momentum(t, &q, v) * T::real(weight);
             return Sums { momentum, before: SVector::zeros(), force: SVector::zeros() };

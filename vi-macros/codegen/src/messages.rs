@@ -40,7 +40,7 @@ const IN_CHECK: &str = "a check sets coordinates, their `dot(…)`, parameters, 
 
 /// The size at which systems end.
 const LARGE: &str = "use fewer coordinates or a simpler Lagrangian; terms that repeat, written as `sum(i in 0..N, …)` over arrays, become \
-    loops in systems without a time scale";
+    loops, unless a rule is written out";
 
 /// Correction of an expression without a derivative.
 const NO_DERIVATIVE: &str = "its derivative divides by zero, or takes the logarithm of zero or of a negative number, for every state; rewrite the expression";

@@ -166,6 +166,21 @@ fn each_rule_and_angles_are_in_loops() {
 }
 
 #[test]
+fn a_time_scale_is_a_function_of_sums() {
+    let of = |scale: &str| {
+        let pairs = "let V = sum(i in 0..N, sum(j in 0..i, m[i] * m[j] / norm(r[i] - r[j])));";
+        let text = bodies(20).replace("discretize midpoint", &format!("{pairs} time_scale = {scale}"));
+        large(&text).scale.map(|scale| (scale.count, scale.parts.len()))
+    };
+    assert_eq!(of("V^(-3/2)"), Some((1, 1)));
+    assert_eq!(of("2 + cos(r[0][1])"), Some((0, 0)));
+    // One part of two bodies: pairs, and squares.
+    assert_eq!(of("1 / (V + sum(i in 0..N, r[i] * r[i]))"), Some((1, 2)));
+    // Pairs, squares and a constant.
+    assert_eq!(of("sqrt(V^3 + ln(2 + sum(i in 0..N, r[i] * r[i]))) + 1 / V"), Some((2, 3)));
+}
+
+#[test]
 fn mistakes_in_dissipations_of_recursions_are_found() {
     let of = |dissipation: &str| {
         let text = links(20).replace("discretize", &format!("dissipation = {dissipation}; discretize"));

@@ -86,6 +86,10 @@ fn an_explanation_shows_loops_and_what_follows_from_them() {
     let lossy = LINKS.replace("check {", "dissipation = sum(i in 0..N, l * dot(x[i])^2); check {");
     let lossy = text(&lossy);
     has_lines(&lossy, &["f = -R_v", "R = R_1", "R_1 = sum(i in 0..5, l*dot(x[i])^2)"]);
+    let scaled =
+        BODIES.replace("force x", "time_scale = 1 / sqrt(1 + sum(i in 0..N, m[i] * x[i]^2 * y[i]^2)); force x");
+    let scaled = text(&scaled);
+    has_lines(&scaled, &["g = 1/sqrt(g_1)", "g_1 += m[i]*x[i]^2*y[i]^2 for i in 0..5", "g_1 += 1"]);
     let wells = [
         "L_1 = sum(i in 0..16, dot(q_i)^2/2)",
         "L_3 = sum(i in 0..5, -c*t*x[i]*y[0][i]^2/2)",
