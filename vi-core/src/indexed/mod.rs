@@ -322,43 +322,19 @@ pub fn add_row<const N: usize, T: Real>(to: &mut [T; N], row: &[T; N]) {
     }
 }
 
-/// Adds `factor` times a row to another one. A product of zero and infinity is zero: an infinite derivative may have a
-/// weight of zero.
+/// Adds `factor` times a row to another one.
 #[doc(hidden)]
 #[inline(always)]
 pub fn add<const N: usize, T: Real>(factor: T, to: &mut [T; N], row: &[T; N]) {
-    if factor.is_zero() {
-        return;
-    }
-    if !factor.is_finite() {
-        return add_infinite(factor, to, row);
-    }
     for (to, number) in to.iter_mut().zip(row) {
         *to += factor * *number;
     }
 }
 
-#[cold]
-#[inline(never)]
-fn add_infinite<const N: usize, T: Real>(factor: T, to: &mut [T; N], row: &[T; N]) {
-    for (to, number) in to.iter_mut().zip(row) {
-        *to += (factor * *number).zero_where(*number, u8::MAX);
-    }
-}
-
-/// The same for a row of a matrix.
+/// Adds `factor` times a row to a row of a matrix.
 #[doc(hidden)]
 #[inline(always)]
 pub fn add_to_row<const N: usize, T: Real>(matrix: &mut SMatrix<T, N, N>, row: usize, factor: T, numbers: &[T; N]) {
-    if factor.is_zero() {
-        return;
-    }
-    if !factor.is_finite() {
-        let mut sums = [T::zero(); N];
-        add_infinite(factor, &mut sums, numbers);
-        matrix.row_mut(row).iter_mut().zip(sums).for_each(|(to, number)| *to += number);
-        return;
-    }
     for (to, number) in matrix.row_mut(row).iter_mut().zip(numbers) {
         *to += factor * *number;
     }

@@ -177,6 +177,7 @@ fn a_time_scale_is_a_function_of_sums() {
     // One part of two bodies: pairs, and squares.
     assert_eq!(of("1 / (V + sum(i in 0..N, r[i] * r[i]))"), Some((1, 2)));
     // Pairs, squares and a constant.
+    assert_eq!(of("1 + V^(-3/2)"), Some((1, 1)));
     assert_eq!(of("sqrt(V^3 + ln(2 + sum(i in 0..N, r[i] * r[i]))) + 1 / V"), Some((2, 3)));
 }
 
@@ -240,6 +241,14 @@ fn what_loops_cannot_hold_stays_in_lines() {
     let massless = "coord q[N], z; L = sum(i in 0..N, dot(q[i])^2) / 2 - z^2 * sum(i in 0..N, q[i]^2)";
     let text = format!("#[vi_limit(0)] struct S {{ const N = 6; {massless}; constraint c = z - q[0]; }}");
     assert!(large(&text).constraints.len() == 2, "{text}");
+    // A velocity in a time scale, a mass by the dissipation alone, and a time scale that is negative.
+    let sums = "let s[0] = dot(q[0]); let s[i in 1..N] = s[i - 1] + dot(q[i]);";
+    assert!(!is_in_loops(&format!("{kinetic}; {sums} time_scale = 1 + s[5]^2;")));
+    let lost =
+        "let s[0] = q[0] + z[0]; let s[i in 1..N] = s[i - 1] + q[i] + z[i]; dissipation = sum(i in 0..N, dot(s[i])^2);";
+    assert!(!is_in_loops(&format!("coord z[N]; {kinetic} - sum(i in 0..N, z[i]^2); {lost}")));
+    let negative = "let s[0] = 0; let s[i in 1..N] = s[i - 1] - 1;";
+    assert!(!is_in_loops(&format!("{kinetic}; {negative} time_scale = s[5];")));
     // Without a mass.
     assert!(!is_in_loops("coord q[N], z; L = sum(i in 0..N, dot(q[i])^2) / 2 - z^2 * sum(i in 0..N, q[i]^2);"));
     assert!(!is_in_loops("coord q[N]; L = sum(i in 0..N, q[i]^2);"));

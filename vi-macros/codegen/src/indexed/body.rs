@@ -166,18 +166,19 @@ impl Body {
         Some(Self { reads, values, slopes, curvatures })
     }
 
-    /// Whether each value is a polynomial of at most its degree in the numbers that satisfy a condition.
+    /// Whether each value with a degree is a polynomial of at most this degree in the numbers that satisfy a condition.
     pub(super) fn is_at_most(
         &self,
         pool: &mut Pool<Symbol>,
         moves: &dyn Fn(&Read) -> bool,
-        degree: &dyn Fn(usize) -> usize,
+        degree: &dyn Fn(usize) -> Option<usize>,
     ) -> bool {
         let places: Vec<usize> = (0..self.reads.len()).filter(|place| moves(&self.reads[*place])).collect();
         let is_one = |symbol: &Symbol| matches!(symbol, Symbol::Access(place) if places.contains(place));
         self.values.iter().enumerate().all(|(index, value)| {
+            let Some(degree) = degree(index) else { return true };
             let mut derivatives = vec![value.expr];
-            for _ in 0..degree(index) {
+            for _ in 0..degree {
                 let slopes = |expr: &Expr| places.iter().map(|place| slope(pool, *expr, *place)).collect::<Vec<_>>();
                 derivatives = derivatives.iter().flat_map(slopes).collect();
             }

@@ -153,9 +153,12 @@ fn statements(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRu
     let force = sums_of_each(pool, &forces, false)?;
     let constraints = sums_of_each(pool, &constraints, true)?;
     let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
-    let rows = recursions.iter().flat_map(|recursion| recursion.parts.iter().map(|part| &part.body));
-    let all = lagrangian.iter().chain(&force).chain(&dissipation).chain(&constraints);
-    let mut values = rows.chain(all.map(|sum| &sum.body)).flat_map(|body| &body.values);
+    let acting = [&lagrangian[..], &force, &dissipation, &constraints];
+    let moves = |sum: &&Sum| sum.body.reads.iter().any(|read| matches!(read, Read::Velocity | Read::LetRate(_)));
+    let of_dissipation = dissipation.iter().filter(moves);
+    let of_sums = lagrangian.iter().chain(&force).chain(&constraints).chain(of_dissipation);
+    let mut values =
+        of_sums.flat_map(|sum| &sum.body.values).chain(values_of(&recursions, &needed(&recursions, &acting)));
     let autonomous = values.all(|value| !pool.depends_on(value.expr, &time));
     let has_mass_of_position = has_mass_of_position(pool, &recursions, &lagrangian);
     let reacts = |index: usize| model.constraints.iter().any(|constraint| constraint.acts_on(pool, index));
@@ -265,18 +268,52 @@ impl Indexed {
     }
 }
 
+/// The arrays of entries, and of rates, on which sums depend.
+pub(crate) fn needed(recursions: &[Recursion], sums: &[&[Sum]]) -> BTreeSet<Read> {
+    let entries = |body: &Body, value: &Value| {
+        let reads = value.states.iter().map(|place| body.reads[*place]);
+        reads.filter(Read::is_entry).collect::<Vec<_>>()
+    };
+    let bodies = sums.iter().flat_map(|sums| sums.iter().map(|sum| &sum.body));
+    let mut found: BTreeSet<Read> =
+        bodies.flat_map(|body| body.values.iter().flat_map(|value| entries(body, value))).collect();
+    loop {
+        let parts = recursions.iter().flat_map(|recursion| &recursion.parts);
+        let of_found = parts.flat_map(|part| {
+            let values = part.body.values.iter().zip(&part.of).filter(|(_, of)| found.contains(of));
+            values.flat_map(|(value, _)| entries(&part.body, value)).collect::<Vec<_>>()
+        });
+        let more: Vec<Read> = of_found.filter(|read| !found.contains(read)).collect();
+        if more.is_empty() {
+            return found;
+        }
+        found.extend(more);
+    }
+}
+
+/// The definitions of entries of these arrays.
+fn values_of<'a>(recursions: &'a [Recursion], of: &BTreeSet<Read>) -> Vec<&'a Value> {
+    let parts = recursions.iter().flat_map(|recursion| &recursion.parts);
+    let values = parts.flat_map(|part| part.body.values.iter().zip(&part.of));
+    values.filter(|(_, array)| of.contains(array)).map(|(value, _)| value).collect()
+}
+
 /// Whether L is quadratic in the velocities: each term is, and rates are linear in them.
 fn has_mass_of_position(pool: &mut Pool<Symbol>, recursions: &[Recursion], lagrangian: &[Sum]) -> bool {
     let moves = |read: &Read| matches!(read, Read::Velocity | Read::LetRate(_));
+    let of_lagrangian = needed(recursions, &[lagrangian]);
     let mut parts = recursions.iter().flat_map(|recursion| &recursion.parts);
-    parts.all(|part| part.body.is_at_most(pool, &moves, &|value| usize::from(moves(&part.of[value]))))
-        && lagrangian.iter().all(|sum| sum.body.is_at_most(pool, &moves, &|_| 2))
+    let degree = |of: &Read| of_lagrangian.contains(of).then(|| usize::from(moves(of)));
+    parts.all(|part| part.body.is_at_most(pool, &moves, &|value| degree(&part.of[value])))
+        && lagrangian.iter().all(|sum| sum.body.is_at_most(pool, &moves, &|_| Some(2)))
 }
 
 /// Whether velocities appear in terms `m v²` of L only, with constant m.
 fn is_separable(pool: &mut Pool<Symbol>, recursions: &[Recursion], lagrangian: &[Sum], force: &[Sum]) -> bool {
     let moves = |body: &Body| body.reads.iter().any(|read| matches!(read, Read::Velocity | Read::LetRate(_)));
-    let mut parts = recursions.iter().flat_map(|recursion| &recursion.parts);
+    let acting = needed(recursions, &[lagrangian, force]);
+    let parts = recursions.iter().flat_map(|recursion| &recursion.parts);
+    let mut parts = parts.filter(|part| part.of.iter().any(|of| acting.contains(of)));
     if parts.any(|part| moves(&part.body)) || force.iter().any(|sum| moves(&sum.body)) {
         return false;
     }
@@ -295,9 +332,11 @@ fn has_masses(known: Vec<bool>, recursions: &[Recursion], lagrangian: &[Sum]) ->
             has_mass[columns[value.states[place]]] = true;
         }
     };
+    let of_lagrangian = needed(recursions, &[lagrangian]);
     for Recursion { parts, nest } in recursions {
         for Part { body, of, first } in parts {
-            for value in &body.values {
+            let values = body.values.iter().zip(of).filter(|(_, of)| of_lagrangian.contains(of));
+            for (value, _) in values {
                 for place in 0..value.states.len() {
                     nest.each(&mut |all| see(body, value, place, &all[first + of.len()..]));
                 }
@@ -324,26 +363,22 @@ fn cyclic(
     (force, dissipation): (&[Sum], &[Sum]),
 ) -> Vec<bool> {
     let mut cyclic: Vec<bool> = reacts.iter().map(|reacts| !reacts).collect();
-    let mut see = |of: Read, reads: &[Read], columns: &[usize]| {
-        let read = reads.iter().zip(columns).filter(|(read, _)| **read == of);
-        read.for_each(|(_, column)| cyclic[*column] = false);
+    let mut see = |wanted: Read, body: &Body, value: &Value, columns: &[usize]| {
+        let read = value.states.iter().filter(|place| body.reads[**place] == wanted);
+        read.for_each(|place| cyclic[columns[*place]] = false);
     };
-    let loses_entries = dissipation.iter().any(|sum| sum.body.reads_entries());
-    for Recursion { parts, nest } in recursions {
-        for Part { body, of, first } in parts {
-            nest.each(&mut |all| {
-                let columns = &all[first + of.len()..];
-                see(Read::Coordinate, &body.reads, columns);
-                if loses_entries {
-                    see(Read::Velocity, &body.reads, columns);
+    for (wanted, sums) in [(Read::Coordinate, lagrangian), (Read::Velocity, dissipation)] {
+        let arrays = needed(recursions, &[sums]);
+        for Recursion { parts, nest } in recursions {
+            for Part { body, of, first } in parts {
+                for (value, _) in body.values.iter().zip(of).filter(|(_, of)| arrays.contains(of)) {
+                    nest.each(&mut |all| see(wanted, body, value, &all[first + of.len()..]));
                 }
-            });
+            }
         }
-    }
-    for (of, sums) in [(Read::Coordinate, lagrangian), (Read::Velocity, dissipation)] {
         for Sum { body, nests } in sums {
             for nest in nests {
-                nest.each(&mut |all| see(of, &body.reads, all));
+                nest.each(&mut |all| see(wanted, body, &body.values[0], all));
             }
         }
     }

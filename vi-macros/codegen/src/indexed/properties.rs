@@ -46,6 +46,7 @@ pub(crate) fn properties(of: &Indexed, name: &dyn Fn(&Coordinate) -> String) -> 
         (loops(&of.force), "over terms of `f`"),
         (loops(&of.dissipation), "over terms of the dissipation"),
         (loops(&of.constraints), "over terms of constraints"),
+        (of.scale.as_ref().map_or(0, |scale| loops(&scale.parts)), "over terms of the time scale"),
     ];
     let loops = loops.iter().filter(|(count, _)| *count > 0).map(|(count, over)| format!("{count} {over}"));
     let (loops, functions) = (loops.collect::<Vec<_>>().join(", "), named(of).len());

@@ -52,7 +52,7 @@ fn folded(pool: &mut Pool<Symbol>, expr: Expr, found: &mut Vec<Expr>) -> Expr {
     }
     match pool.node(expr).clone() {
         Node::Sum(sum) => {
-            if summands(pool, expr).into_iter().all(|term| states(pool, term) <= STATES) {
+            if summands(pool, expr).into_iter().all(|term| is_short(pool, term)) {
                 let place = found.iter().position(|known| *known == expr).unwrap_or(found.len());
                 if place == found.len() {
                     found.push(expr);
@@ -80,6 +80,12 @@ fn folded(pool: &mut Pool<Symbol>, expr: Expr, found: &mut Vec<Expr>) -> Expr {
         }
         _ => expr,
     }
+}
+
+/// Whether a term is a row of a loop: it contains no long sum.
+fn is_short(pool: &Pool<Symbol>, term: Expr) -> bool {
+    let is_long = |part: Expr| matches!(pool.node(part), Node::Sum(_)) && states(pool, part) > NUMBERS;
+    states(pool, term) <= STATES && !pool.reachable(&[term]).into_iter().any(is_long)
 }
 
 /// How many numbers of the state an expression reads.

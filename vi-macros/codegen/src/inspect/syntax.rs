@@ -52,7 +52,7 @@ pub(super) fn equations(system: &System) -> Vec<String> {
     lines.extend(system.forces.iter().map(|of| format!("force {}", definition(of))));
     lines.extend(system.torques.iter().map(|of| format!("torque {}", definition(of))));
     lines.extend(system.space_torques.iter().map(|of| format!("space_torque {}", definition(of))));
-    lines.extend(system.dissipations.iter().map(definition));
+    lines.extend(system.dissipations.iter().chain(&system.time_scales).map(definition));
     lines.extend(system.constraints.iter().map(|of| format!("constraint {}", definition(of))));
     lines
 }

@@ -4,6 +4,7 @@
 
 use super::context::Context;
 use crate::messages::Message;
+use crate::symbol::{Symbol, Variable};
 use crate::syntax::Definition;
 use core::cmp::Ordering;
 use vi_expr::Expr;
@@ -17,8 +18,19 @@ pub(super) fn time_scale(context: &mut Context, written: &[Definition]) -> Optio
     let mut scope = context.scope.of_time_scale(context.pool);
     let value = scope.expression(context.pool, &first.value);
     let value = context.report(value)?;
-    let is_number = context.pool.is_constant(value) && !context.is_too_large();
-    if is_number && matches!(context.pool.constant_sign(value), Ok(Ordering::Less | Ordering::Equal)) {
+    let closed = context.closed(value);
+    let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
+    if context.pool.depends_on(closed, &moves) && !context.is_too_large() {
+        // The name is that of an array of `let`s, whose entries are symbols.
+        let mut arrays = context.pool.symbols(value).into_iter();
+        let name = arrays.find_map(|symbol| match symbol {
+            Symbol::Let(entry) => context.scope.kept.as_ref()?.get(entry.array).map(|array| array.name.clone()),
+            _ => None,
+        });
+        context.errors.at(first.value.span, &Message::VelocityInTimeScale { name: name.unwrap_or_default() });
+    }
+    let is_number = context.pool.is_constant(closed) && !context.is_too_large();
+    if is_number && matches!(context.pool.constant_sign(closed), Ok(Ordering::Less | Ordering::Equal)) {
         context.errors.at(first.value.span, &Message::TimeScaleNotPositive);
     }
     Some(value)

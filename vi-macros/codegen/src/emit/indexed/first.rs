@@ -1,6 +1,6 @@
 //! First derivatives by one reverse sweep: recursions forward, terms of L, recursions backward.
 
-use super::{Defined, Printer, reads_entries, slope};
+use super::{Arrays, Defined, Printer, reads_entries, slope};
 use crate::indexed::{Read, Sum};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -39,7 +39,13 @@ impl Sweep {
         if self.is_measured { tokens } else { TokenStream::new() }
     }
 
-    /// Whether derivatives with respect to the entries of this array matter.
+    /// The arrays whose derivatives matter, of those on which sums depend.
+    pub(super) fn of_arrays(self, mut arrays: Arrays) -> Arrays {
+        arrays.retain(|array| self.needs(array));
+        arrays
+    }
+
+    /// Whether a derivative with respect to an entry of this array matters.
     fn needs(self, array: &Read) -> bool {
         match self.of {
             Swept::Lagrangian => true,
@@ -129,8 +135,8 @@ impl Printer<'_> {
     }
 
     /// Zeros for what the entries of arrays contribute, and for its sizes.
-    pub(super) fn bars(&self, sweep: Sweep) -> TokenStream {
-        let zeros = |prefix: &str| self.zeros_for(prefix, &quote!(real(0.0)), &|array| sweep.needs(array));
+    pub(super) fn bars(&self, sweep: Sweep, arrays: &Arrays) -> TokenStream {
+        let zeros = |prefix: &str| self.zeros_of(prefix, &quote!(real(0.0)), arrays);
         let (bars, sizes) = (zeros("bar_"), sweep.of_sizes(zeros("size_")));
         quote!(#bars #sizes)
     }
@@ -157,15 +163,16 @@ impl Printer<'_> {
         if !reads_entries(sums) {
             return terms;
         }
-        let (bars, backward) = (self.bars(sweep), self.backward(sweep));
+        let arrays = sweep.of_arrays(self.arrays(&[sums]));
+        let (bars, backward) = (self.bars(sweep, &arrays), self.backward(sweep, &arrays));
         quote!(#bars #terms #backward)
     }
 
     /// The slopes of recursions, times what their entries contribute.
-    pub(super) fn backward(&self, sweep: Sweep) -> TokenStream {
+    pub(super) fn backward(&self, sweep: Sweep, arrays: &Arrays) -> TokenStream {
         self.over_recursions(true, &|of, defined| {
             let (name, numbers) = (&of.name, self.numbers(of));
-            let needed = defined.iter().rev().filter(|defined| sweep.needs(&defined.of));
+            let needed = defined.iter().rev().filter(|defined| arrays.contains(&defined.of));
             let each = needed.map(|Defined { value, array, entry, .. }| {
                 let (bar, size) = (format_ident!("bar_{array}"), format_ident!("size_{array}"));
                 let add = |place, slope: TokenStream| {

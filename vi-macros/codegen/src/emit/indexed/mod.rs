@@ -20,7 +20,8 @@ use super::body::{VelocityFrom, body};
 use super::{check, conditions, functions, scope, structure};
 use crate::Loops;
 use crate::indexed::{
-    Affine, Body, Indexed, Nest, Part, Read, Recursion, Sum, Value, documentation, named, of_steps, part_name, sum_name,
+    Affine, Body, Indexed, Nest, Part, Read, Recursion, Sum, Value, documentation, named, needed, of_steps, part_name,
+    sum_name,
 };
 use crate::model::Model;
 use crate::program::{Function, Output};
@@ -281,20 +282,38 @@ impl Printer<'_> {
 
     /// Zeros for each array of `let`s, under a name with this prefix.
     fn zeros(&self, prefix: &str, zero: &TokenStream) -> TokenStream {
-        self.zeros_for(prefix, zero, &|_| true)
+        let parts = self.of.recursions.iter().flat_map(|recursion| &recursion.parts);
+        self.zeros_of(prefix, zero, &parts.flat_map(|part| part.of.iter().copied()).collect())
     }
 
-    /// The same for the arrays that are wanted.
-    fn zeros_for(&self, prefix: &str, zero: &TokenStream, is_wanted: &dyn Fn(&Read) -> bool) -> TokenStream {
-        let parts = self.of.recursions.iter().flat_map(|recursion| &recursion.parts);
-        let arrays: BTreeSet<Read> = parts.flat_map(|part| part.of.iter().copied()).collect();
-        let zeros = arrays.into_iter().filter(is_wanted).map(|read| {
-            let (Read::Let(array) | Read::LetRate(array)) = read else { return TokenStream::new() };
+    /// The same for these arrays.
+    fn zeros_of(&self, prefix: &str, zero: &TokenStream, arrays: &Arrays) -> TokenStream {
+        let zeros = arrays.iter().map(|read| {
+            let (Read::Let(array) | Read::LetRate(array)) = *read else { return TokenStream::new() };
             let length = Literal::usize_unsuffixed(self.model.lets[array].definitions.len());
-            let name = format_ident!("{prefix}{}", self.array(read));
+            let name = format_ident!("{prefix}{}", self.array(*read));
             quote!(let mut #name = [#zero; #length];)
         });
         zeros.collect()
+    }
+
+    /// The arrays on which these sums depend.
+    fn arrays(&self, sums: &[&[Sum]]) -> Arrays {
+        needed(&self.of.recursions, sums)
+    }
+
+    /// Whether the entries of an array depend on positions and time alone.
+    fn is_of_position(&self, array: Read) -> bool {
+        let parts = self.of.recursions.iter().flat_map(|recursion| &recursion.parts);
+        let values =
+            parts.flat_map(|part| part.body.values.iter().zip(&part.of).map(move |(value, of)| (part, value, of)));
+        let mut own = values.filter(|(_, _, of)| **of == array);
+        matches!(array, Read::Let(_))
+            && own.all(|(part, value, _)| {
+                value.states.iter().map(|place| part.body.reads[*place]).all(|read| {
+                    read == Read::Coordinate || read == array || read.is_entry() && self.is_of_position(read)
+                })
+            })
     }
 
     /// The entries of the arrays of `let`s.
@@ -343,6 +362,9 @@ const SEEDS: [&str; 2] = ["r_q", "r_v"];
 const WEIGHTS: [&str; 2] = ["c_q", "c_v"];
 /// Name of the weight of a second derivative with respect to two coordinates.
 const BOTH: &str = "c_qq";
+
+/// The arrays of entries on which sums depend.
+type Arrays = BTreeSet<Read>;
 
 /// Whether one of these sums reads entries of recursions.
 fn reads_entries(sums: &[Sum]) -> bool {

@@ -26,13 +26,15 @@ impl Printer<'_> {
         let Scale { parts, count, whole } = scale;
         let (dimension, count) = (self.dimension(), Literal::usize_unsuffixed(*count));
         let whole = core::slice::from_ref(whole);
+        let parts = &parts[..];
         let has_entries = reads_entries(parts) || reads_entries(whole);
         let entries = has_entries.then(|| self.entries());
         let values = Self::over_sums(PART, parts, 1, &|of| {
             let (name, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
             quote!(parts[#on] += self.#name(t, #numbers)[0];)
         });
-        let bars = has_entries.then(|| self.bars(Sweep::SCALE));
+        let arrays = Sweep::SCALE.of_arrays(self.arrays(&[parts, whole]));
+        let bars = has_entries.then(|| self.bars(Sweep::SCALE, &arrays));
         let whole = Self::over_sums(SCALE, whole, 0, &|of| {
             let (name, numbers, slopes) = (&of.name, self.numbers(of), self.slopes(of, None));
             quote! {
@@ -49,7 +51,7 @@ impl Printer<'_> {
                 #slopes
             }
         });
-        let backward = has_entries.then(|| self.backward(Sweep::SCALE));
+        let backward = has_entries.then(|| self.backward(Sweep::SCALE, &arrays));
         quote! {
             let real = T::real;
             #entries

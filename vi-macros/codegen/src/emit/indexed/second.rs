@@ -1,21 +1,24 @@
 //! Second derivatives: the sweep of first derivatives with a tangent of every coordinate.
 
-use super::{BOTH, Defined, Printed, Printer, SEEDS, Target, WEIGHTS, add_row, curvature, name, reads_entries, slope};
+use super::{
+    Arrays, BOTH, Defined, Printed, Printer, SEEDS, Target, WEIGHTS, add_row, curvature, name, reads_entries, slope,
+};
 use crate::indexed::{Sum, Value};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 impl Printer<'_> {
     /// The entries, and their derivatives with respect to all coordinates, of which each is moved by `seeds`.
-    pub(super) fn tangents(&self, seeds: [&Ident; 2]) -> TokenStream {
+    pub(super) fn tangents(&self, seeds: [&Ident; 2], arrays: &Arrays) -> TokenStream {
         let dimension = self.dimension();
         let zeros = self.zeros("", &quote!(real(0.0)));
-        let rows = self.zeros("tangent_", &quote!([real(0.0); #dimension]));
+        let rows = self.zeros_of("tangent_", &quote!([real(0.0); #dimension]), arrays);
         let loops = self.over_recursions(false, &|of, defined| {
             let (name, numbers) = (&of.name, self.numbers(of));
-            let each = defined.iter().map(|Defined { value, array, entry, .. }| {
+            let each = defined.iter().map(|Defined { value, of: own, array, entry }| {
                 let (tangent, place) = (format_ident!("tangent_{array}"), Literal::usize_unsuffixed(value.first_slope));
-                let parts = of.states(value).map(|(place, read, index)| {
+                let states = of.states(value).filter(|_| arrays.contains(own));
+                let parts = states.map(|(place, read, index)| {
                     let slope = slope(value, place);
                     match self.target(read) {
                         Target::Own(which) => {
@@ -48,13 +51,18 @@ impl Printer<'_> {
     /// The products of second derivatives of a value with the tangents of what it reads, times `factor`.
     pub(super) fn curved(&self, of: &Printed, value: &Value, factor: &TokenStream) -> TokenStream {
         let mut parts = TokenStream::new();
+        let (weight_of_position, seed_of_position) = (name(WEIGHTS[0]), name(SEEDS[0]));
         for (number, [row, column]) in value.pairs.iter().enumerate() {
             let number = Literal::usize_unsuffixed(value.first_curvature + value.states.len() + number);
             let both = [[row, column], [column, row]];
             for [to, from] in &both[..if row == column { 1 } else { 2 }] {
                 let (to, from) = (value.states[**to], value.states[**from]);
                 let (at_to, at_from) = (of.at(to), of.at(from));
-                let (to, from) = (self.target(of.body.reads[to]), self.target(of.body.reads[from]));
+                let (read_to, read_from) = (of.body.reads[to], of.body.reads[from]);
+                // All contributions of positions have these weights.
+                let weight_of_to = self.is_of_position(read_to).then_some(&weight_of_position);
+                let seed_of_from = self.is_of_position(read_from).then_some(&seed_of_position);
+                let (to, from) = (self.target(read_to), self.target(read_from));
                 let second = quote!(#factor curvatures[#number]);
                 parts.extend(match (to, from) {
                     // A mass is finite where a force has an infinite slope, and its weight is zero.
@@ -68,19 +76,18 @@ impl Printer<'_> {
                     }
                     (Target::Own(to), Target::Entry(from)) => {
                         let (weight, from) = (&WEIGHTS.map(name)[to], format_ident!("tangent_{from}"));
-                        quote!(::vi_core::indexed::add(
-                            ::vi_core::indexed::weighted(#second, #weight),
-                            &mut matrix[#at_to],
-                            &#from[#at_from],
-                        );)
+                        let add =
+                            quote!(::vi_core::indexed::add(#second * #weight, &mut matrix[#at_to], &#from[#at_from]););
+                        where_not_zero(&[Some(weight), seed_of_from], &add)
                     }
                     (Target::Entry(to), Target::Own(from)) => {
                         let (to, seed) = (format_ident!("bar_tangent_{to}"), &SEEDS.map(name)[from]);
-                        quote!(#to[#at_to][#at_from] += ::vi_core::indexed::weighted(#second, #seed);)
+                        where_not_zero(&[weight_of_to, Some(seed)], &quote!(#to[#at_to][#at_from] += #second * #seed;))
                     }
                     (Target::Entry(to), Target::Entry(from)) => {
                         let (to, from) = (format_ident!("bar_tangent_{to}"), format_ident!("tangent_{from}"));
-                        quote!(::vi_core::indexed::add(#second, &mut #to[#at_to], &#from[#at_from]);)
+                        let add = quote!(::vi_core::indexed::add(#second, &mut #to[#at_to], &#from[#at_from]););
+                        where_not_zero(&[weight_of_to, seed_of_from], &add)
                     }
                 });
             }
@@ -106,11 +113,11 @@ impl Printer<'_> {
     pub(super) fn curvatures(&self, of: &str, sums: &[Sum], weights: Option<&Ident>) -> TokenStream {
         let dimension = self.dimension();
         let seeds = SEEDS.map(name);
-        let reads_entries = reads_entries(sums);
+        let (reads_entries, arrays) = (reads_entries(sums), self.arrays(&[sums]));
         let forward = reads_entries.then(|| {
-            let tangents = self.tangents([&seeds[0], &seeds[1]]);
-            let bars = self.zeros("bar_", &quote!(real(0.0)));
-            let bar_tangents = self.zeros("bar_tangent_", &quote!([real(0.0); #dimension]));
+            let tangents = self.tangents([&seeds[0], &seeds[1]], &arrays);
+            let bars = self.zeros_of("bar_", &quote!(real(0.0)), &arrays);
+            let bar_tangents = self.zeros_of("bar_tangent_", &quote!([real(0.0); #dimension]), &arrays);
             quote!(#tangents #bars #bar_tangents)
         });
         let first = usize::from(weights.is_some());
@@ -142,7 +149,7 @@ impl Printer<'_> {
                 None => added,
             }
         });
-        let backward = reads_entries.then(|| self.curvatures_of_recursions());
+        let backward = reads_entries.then(|| self.curvatures_of_recursions(&arrays));
         let ([r_q, _], [c_q, _], both) = (&seeds, &WEIGHTS.map(name), name(BOTH));
         quote! {
             let real = T::real;
@@ -158,21 +165,19 @@ impl Printer<'_> {
     }
 
     /// The second derivatives of recursions, times what their entries contribute.
-    fn curvatures_of_recursions(&self) -> TokenStream {
+    fn curvatures_of_recursions(&self, arrays: &Arrays) -> TokenStream {
         self.over_recursions(true, &|of, defined| {
             let (function, numbers) = (format_ident!("{}_curvatures", of.name), self.numbers(of));
-            let each = defined.iter().rev().map(|Defined { value, array, entry, .. }| {
+            let needed = defined.iter().rev().filter(|defined| arrays.contains(&defined.of));
+            let each = needed.map(|Defined { value, array, entry, .. }| {
                 let (bar, bar_tangent) = (format_ident!("bar_{array}"), format_ident!("bar_tangent_{array}"));
                 let parts = of.states(value).map(|(place, read, index)| {
                     let slope = curvature(value, place);
                     match self.target(read) {
                         Target::Own(which) => {
                             let weight = &WEIGHTS.map(name)[which];
-                            quote!(::vi_core::indexed::add(
-                                ::vi_core::indexed::weighted(#slope, #weight),
-                                &mut matrix[#index],
-                                &from,
-                            );)
+                            let add = quote!(::vi_core::indexed::add(#slope * #weight, &mut matrix[#index], &from););
+                            where_not_zero(&[Some(weight)], &add)
                         }
                         Target::Entry(to) => {
                             let (bar, bar_tangent) = (format_ident!("bar_{to}"), format_ident!("bar_tangent_{to}"));
@@ -192,9 +197,13 @@ impl Printer<'_> {
                     #curved
                 }
             });
+            let each: TokenStream = each.collect();
+            if each.is_empty() {
+                return TokenStream::new();
+            }
             quote! {
                 let curvatures = self.#function(t, #numbers);
-                #(#each)*
+                #each
             }
         })
     }
@@ -252,8 +261,7 @@ impl Printer<'_> {
         add: &dyn Fn(&TokenStream, Column, &TokenStream) -> TokenStream,
     ) -> TokenStream {
         let weights = WEIGHTS.map(name);
-        let reads_entries = reads_entries(sums);
-        let tangents = reads_entries.then(|| self.tangents([&weights[0], &weights[1]]));
+        let tangents = reads_entries(sums).then(|| self.tangents([&weights[0], &weights[1]], &self.arrays(&[sums])));
         let terms = Self::over_sums(of, sums, 1, &|of| {
             let (name_of, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
             let value = &of.body.values[0];
@@ -265,7 +273,9 @@ impl Printer<'_> {
                         Column::All(quote!(#from[#index]))
                     }
                 };
-                add(&on, column, &slope(value, place))
+                let added = add(&on, column, &slope(value, place));
+                let weight = self.is_of_position(read).then_some(&weights[0]);
+                where_not_zero(&[weight], &added)
             });
             quote! {
                 let slopes = self.#name_of(t, #numbers);
@@ -274,6 +284,15 @@ impl Printer<'_> {
         });
         quote!(#tangents #terms)
     }
+}
+
+/// Statements for weights that are not zero: a zero times an infinite derivative would be no number.
+fn where_not_zero(weights: &[Option<&Ident>], statements: &TokenStream) -> TokenStream {
+    let weights: Vec<_> = weights.iter().flatten().collect();
+    if weights.is_empty() {
+        return statements.clone();
+    }
+    quote!(if #(!#weights.is_zero())&&* { #statements })
 }
 
 /// The columns of a row that a slope changes.
