@@ -5,7 +5,7 @@
 //! from them. Each returns what the trait method of the same name returns, so that the generated method is one call.
 //!
 //! A derivative along a direction, as `d/dt(L_q)`, is one evaluation of the first derivatives over dual numbers. Fixed
-//! steps are those of a [`Quadrature`](crate::rules::Quadrature), energy-preserving ones those of the midpoint rule.
+//! steps are those of a [`Quadrature`], energy-preserving ones those of the midpoint rule.
 
 #[cfg(feature = "alloc")]
 mod constraints;
