@@ -22,7 +22,7 @@ pub use step::{
     momentum_equation, momentum_residual, step_density,
 };
 
-use crate::collocation::{Point, PointDerivatives, Sides};
+use crate::collocation::{Point, PointDerivatives, ScaledPoint, Sides};
 use crate::error::StepError;
 use crate::lagrangian::{Flow, Lagrangian};
 use crate::legendre;
@@ -130,6 +130,12 @@ fn sum<R: Quadrature, V: Add<Output = V>>(mut of: impl FnMut([f64; 2]) -> V) -> 
         sum = sum + of(*point);
     }
     sum
+}
+
+/// A part of a vector. Where an end does not count, the vector may have no value.
+#[inline]
+fn share<const N: usize, T: Real>(part: f64, of: &SVector<T, N>) -> SVector<T, N> {
+    if part == 0.0 { SVector::zeros() } else { of * T::real(part) }
 }
 
 /// The first derivatives at `(t, q, v)`, and their derivatives along the direction `(t', q', v')`.
@@ -264,7 +270,27 @@ pub fn point<const N: usize, T: Real, S: Indexed<N, T>, M>(
     Point { momentum, force, mass }
 }
 
-/// The same without the mass matrix, for [`Collocation::sides`](crate::collocation::Collocation::sides).
+/// The same with the energy, its rate of change and a time scale, for
+/// [`Collocation::scaled_point`](crate::collocation::Collocation::scaled_point). `scale` is g, ∂g/∂q and ∂g/∂t.
+#[inline]
+pub fn scaled_point<const N: usize, T: Real, S: Indexed<N, T>, M>(
+    system: &S,
+    (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
+    mass: M,
+    (g, g_dq, g_dt): (T, SVector<T, N>, T),
+) -> ScaledPoint<N, T, M> {
+    let first = system.first_derivatives(t, q, v);
+    ScaledPoint {
+        point: Point { momentum: first.dv, force: first.total_force::<S>(), mass },
+        energy: first.energy(v),
+        power: first.power::<S>(v),
+        g,
+        g_dq,
+        g_dt,
+    }
+}
+
+/// The equations without the mass matrix, for [`Collocation::sides`](crate::collocation::Collocation::sides).
 #[inline]
 pub fn sides<const N: usize, T: Real, S: Indexed<N, T>>(
     system: &S,

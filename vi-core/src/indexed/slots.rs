@@ -1,9 +1,10 @@
 //! The discrete Lagrangian of a rule, its slot derivatives, discrete forces and powers.
 
-use super::{FirstDerivatives, Indexed, sum};
+use super::{FirstDerivatives, Indexed, share, sum};
 use crate::real::Real;
 use crate::rules::Quadrature;
 use crate::state::Interval;
+use core::ops::Add;
 use nalgebra::SVector;
 
 /// The length of an interval.
@@ -27,21 +28,19 @@ fn within<const N: usize, T: Real>(interval: &Interval<N, T>, c: f64) -> (T, SVe
     (*t0 * before + *t1 * after, q0 * before + q1 * after)
 }
 
-/// The first derivatives at the part c of an interval, times the weight of this point.
+/// The sum over the points of a rule; `of` takes c, h, the velocity and the weighted first derivatives.
 #[inline]
-fn evaluated<const N: usize, T: Real, S: Indexed<N, T>>(
+fn summed<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature, V: Add<Output = V>>(
     system: &S,
+    _rule: R,
     interval: &Interval<N, T>,
-    [c, weight]: [f64; 2],
-) -> FirstDerivatives<N, T> {
-    let (t, q) = within(interval, c);
-    system.first_derivatives(t, &q, &velocity(interval)).weighted(weight)
-}
-
-/// `part · h · x`. An end that does not count may have no value.
-#[inline]
-fn times<const N: usize, T: Real>(part: f64, h: T, x: &SVector<T, N>) -> SVector<T, N> {
-    if part == 0.0 { SVector::zeros() } else { x * (h * T::real(part)) }
+    of: impl Fn(f64, T, &SVector<T, N>, &FirstDerivatives<N, T>) -> V,
+) -> V {
+    let (h, v) = (length(interval), velocity(interval));
+    sum::<R, _>(|[c, weight]| {
+        let (t, q) = within(interval, c);
+        of(c, h, &v, &system.first_derivatives(t, &q, &v).weighted(weight))
+    })
 }
 
 /// `L_d = h Σ w L`, for [`DiscreteLagrangian::ld`](crate::DiscreteLagrangian::ld).
@@ -63,64 +62,48 @@ pub fn ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
 #[inline]
 pub fn d1_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     system: &S,
-    _rule: R,
+    rule: R,
     interval: &Interval<N, T>,
 ) -> T {
-    let (h, v) = (length(interval), velocity(interval));
-    sum::<R, _>(|point| {
-        let first = evaluated(system, interval, point);
-        first.energy(&v) + h * T::real(1.0 - point[0]) * first.dt
-    })
+    summed(system, rule, interval, |c, h, v, first| first.energy(v) + h * T::real(1.0 - c) * first.dt)
 }
 
 /// `∂L_d/∂q0 = Σ w ((1 − c) h L_q − L_v)`, for [`DiscreteLagrangian::d2_ld`](crate::DiscreteLagrangian::d2_ld).
 #[inline]
 pub fn d2_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     system: &S,
-    _rule: R,
+    rule: R,
     interval: &Interval<N, T>,
 ) -> SVector<T, N> {
-    let h = length(interval);
-    sum::<R, _>(|point| {
-        let first = evaluated(system, interval, point);
-        times(1.0 - point[0], h, &first.dq) - first.dv
-    })
+    summed(system, rule, interval, |c, h, _, first| share(1.0 - c, &first.dq) * h - first.dv)
 }
 
 /// `∂L_d/∂t1 = Σ w (L − v·L_v + c h L_t)`, for [`DiscreteLagrangian::d3_ld`](crate::DiscreteLagrangian::d3_ld).
 #[inline]
 pub fn d3_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     system: &S,
-    _rule: R,
+    rule: R,
     interval: &Interval<N, T>,
 ) -> T {
-    let (h, v) = (length(interval), velocity(interval));
-    sum::<R, _>(|point| {
-        let first = evaluated(system, interval, point);
-        h * T::real(point[0]) * first.dt - first.energy(&v)
-    })
+    summed(system, rule, interval, |c, h, v, first| h * T::real(c) * first.dt - first.energy(v))
 }
 
 /// `∂L_d/∂q1 = Σ w (c h L_q + L_v)`, for [`DiscreteLagrangian::d4_ld`](crate::DiscreteLagrangian::d4_ld).
 #[inline]
 pub fn d4_ld<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     system: &S,
-    _rule: R,
+    rule: R,
     interval: &Interval<N, T>,
 ) -> SVector<T, N> {
-    let h = length(interval);
-    sum::<R, _>(|point| {
-        let first = evaluated(system, interval, point);
-        first.dv + times(point[0], h, &first.dq)
-    })
+    summed(system, rule, interval, |c, h, _, first| first.dv + share(c, &first.dq) * h)
 }
 
-/// `h Σ w share(c) f`.
+/// `h Σ w part(c) f`.
 #[inline]
 fn force<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     system: &S,
     interval: &Interval<N, T>,
-    share: impl Fn(f64) -> f64,
+    part: impl Fn(f64) -> f64,
 ) -> SVector<T, N> {
     if !S::FORCED {
         return SVector::zeros();
@@ -128,7 +111,7 @@ fn force<const N: usize, T: Real, S: Indexed<N, T>, R: Quadrature>(
     let (h, v) = (length(interval), velocity(interval));
     sum::<R, _>(|[c, weight]| {
         let (t, q) = within(interval, c);
-        times(weight * share(c), h, &system.force(t, &q, &v))
+        share(weight * part(c), &system.force(t, &q, &v)) * h
     })
 }
 

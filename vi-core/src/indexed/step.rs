@@ -17,7 +17,7 @@
 //! (∂e/∂v − v·A)/h = (D L_v − (L_q + f) + (h/2) D L_q)/2     (∂e/∂h − v·∂r/∂h)/h = (D L_t + v·D L_q)/4
 //! ```
 
-use super::{FirstDerivatives, Indexed, along_direction, sum};
+use super::{FirstDerivatives, Indexed, along_direction, share, sum};
 use crate::error::StepError;
 use crate::legendre;
 use crate::node::Node;
@@ -58,10 +58,7 @@ impl<const N: usize, T: Real> Sums<N, T> {
     #[inline]
     fn of<S: Indexed<N, T>>(c: f64, first: &FirstDerivatives<N, T>) -> Self {
         let force = first.total_force::<S>();
-        // The end may have no value where only its momentum counts.
-        let part = 1.0 - c;
-        let before = if part == 0.0 { SVector::zeros() } else { force * T::real(part) };
-        Self { momentum: first.dv, before, force }
+        Self { momentum: first.dv, before: share(1.0 - c, &force), force }
     }
 
     /// The residual r of the momentum row. Small terms are summed first.

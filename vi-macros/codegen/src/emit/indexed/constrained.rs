@@ -2,7 +2,7 @@
 
 use super::super::constrained;
 use super::second::Column;
-use super::{Printer, WEIGHTS, name};
+use super::{Printer, WEIGHTS, name, reads_entries};
 use crate::model::Constraint;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -62,6 +62,7 @@ impl Printer<'_> {
     fn constraint_primitives(&self, count: &Literal) -> TokenStream {
         let (system, dimension, sums) = (&self.model.name, self.dimension(), &self.of.constraints);
         let [c_q, c_v] = &WEIGHTS.map(name);
+        let entries = reads_entries(sums).then(|| self.entries());
         let values = self.summed("constraint", sums, &format_ident!("values"));
         let rows = self.rows("constraint", sums, &|on, column, slope| match column {
             Column::Own(index, weight) => quote!(rows[#on][#index] += ::vi_core::indexed::weighted(#slope, #weight);),
@@ -72,6 +73,7 @@ impl Printer<'_> {
         let values = quote! {
             let real = T::real;
             let mut values = [real(0.0); #count];
+            #entries
             #values
             values
         };

@@ -238,12 +238,10 @@ impl Printer<'_> {
 
     /// Adds the values of these sums to the entries of a vector.
     fn summed(&self, name: &str, sums: &[Sum], to: &Ident) -> TokenStream {
-        let entries = reads_entries(sums).then(|| self.entries());
-        let sums = Self::over_sums(name, sums, 1, &|of| {
+        Self::over_sums(name, sums, 1, &|of| {
             let (name, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
             quote!(#to[#on] += self.#name(t, #numbers)[0];)
-        });
-        quote!(#entries #sums)
+        })
     }
 
     /// Loops over all recursions.

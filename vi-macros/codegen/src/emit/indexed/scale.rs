@@ -4,7 +4,7 @@ use super::first::{Place, Sweep};
 use super::{Printed, Printer, reads_entries, slope};
 use crate::indexed::{PART, Read, SCALE, Scale};
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 impl Printer<'_> {
     /// What `Collocation` has in a system with a time scale, and the trait that says so.
@@ -29,10 +29,8 @@ impl Printer<'_> {
         let parts = &parts[..];
         let has_entries = reads_entries(parts) || reads_entries(whole);
         let entries = has_entries.then(|| self.entries());
-        let values = Self::over_sums(PART, parts, 1, &|of| {
-            let (name, numbers, on) = (&of.name, self.numbers(of), (of.place)(0));
-            quote!(parts[#on] += self.#name(t, #numbers)[0];)
-        });
+        let values = self.summed(PART, parts, &format_ident!("parts"));
+        let [_, _, mass] = self.mass();
         let arrays = Sweep::SCALE.of_arrays(self.arrays(&[parts, whole]));
         let bars = has_entries.then(|| self.bars(Sweep::SCALE, &arrays));
         let whole = Self::over_sums(SCALE, whole, 0, &|of| {
@@ -65,14 +63,7 @@ impl Printer<'_> {
             #whole
             #terms
             #backward
-            ::vi_core::collocation::ScaledPoint {
-                point: self.point(t, q, v),
-                energy: ::vi_core::Lagrangian::energy(self, t, q, v),
-                power: self.power(t, q, v),
-                g,
-                g_dq,
-                g_dt,
-            }
+            ::vi_core::indexed::scaled_point(self, (t, q, v), #mass, (g, g_dq, g_dt))
         }
     }
 

@@ -117,7 +117,7 @@ impl Printer<'_> {
     }
 
     /// The items of a diagonal mass matrix, its type, and the mass matrix at a point.
-    fn mass(&self) -> [TokenStream; 3] {
+    pub(super) fn mass(&self) -> [TokenStream; 3] {
         let (name, dimension) = (&self.model.name, self.dimension());
         if !self.of.separable {
             return [
