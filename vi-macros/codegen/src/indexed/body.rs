@@ -43,6 +43,12 @@ impl Read {
         matches!(self, Self::Let(_) | Self::LetRate(_))
     }
 
+    /// Whether it is a velocity or the rate of an entry.
+    #[must_use]
+    pub fn is_rate(&self) -> bool {
+        matches!(self, Self::Velocity | Self::LetRate(_))
+    }
+
     /// The array of a symbol, and the place in it.
     pub(super) fn of(symbol: &Symbol) -> Option<(Self, usize)> {
         match symbol {
@@ -124,6 +130,11 @@ impl Body {
     #[must_use]
     pub fn reads_entries(&self) -> bool {
         self.reads.iter().any(Read::is_entry)
+    }
+
+    /// Whether it reads velocities or rates of entries.
+    pub(super) fn moves(&self) -> bool {
+        self.reads.iter().any(Read::is_rate)
     }
 
     /// Derives the values, once or twice. `None` if that is too much work, or a derivative has no value.

@@ -9,12 +9,14 @@
 //! |---|---|
 //! | `lets` | which `let`s are recursions, and their rates |
 //! | `body` | one expression for all instances, with its derivatives as operations |
+//! | `dependence` | what L and f depend on: the recursions, the time, each coordinate and velocity |
 //! | `nest` | the loops over instances |
 //! | `named` | the bodies with the names of their functions |
 //! | `scale` | the time scale as a function of sums |
 //! | `properties` | what the generator found, in words |
 
 mod body;
+mod dependence;
 mod lets;
 mod named;
 mod nest;
@@ -22,6 +24,7 @@ mod properties;
 mod scale;
 
 pub use body::{Body, Read, Value};
+pub(crate) use dependence::needed;
 #[cfg(feature = "inspect")]
 pub(crate) use named::{NamedBody, Quantity};
 pub(crate) use named::{PART, SCALE, named, part_name, sum_name};
@@ -37,8 +40,9 @@ use crate::messages::{Message, error};
 use crate::model::{LetArray, Model};
 use crate::program::Function;
 use crate::rules::NamedRule;
-use crate::symbol::{Symbol, Variable};
+use crate::symbol::Symbol;
 use body::{Instance, Shape};
+use dependence::{cyclic, has_mass_of_position, has_masses, is_autonomous, is_separable};
 use lets::Lets;
 use num_integer::Integer;
 use num_traits::{One, Signed, ToPrimitive};
@@ -152,14 +156,7 @@ fn statements(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRu
     };
     let force = sums_of_each(pool, &forces, false)?;
     let constraints = sums_of_each(pool, &constraints, true)?;
-    let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
-    let acting = [&lagrangian[..], &force, &dissipation, &constraints];
-    let moves = |sum: &&Sum| sum.body.reads.iter().any(|read| matches!(read, Read::Velocity | Read::LetRate(_)));
-    let of_dissipation = dissipation.iter().filter(moves);
-    let of_sums = lagrangian.iter().chain(&force).chain(&constraints).chain(of_dissipation);
-    let mut values =
-        of_sums.flat_map(|sum| &sum.body.values).chain(values_of(&recursions, &needed(&recursions, &acting)));
-    let autonomous = values.all(|value| !pool.depends_on(value.expr, &time));
+    let autonomous = is_autonomous(pool, &recursions, [&lagrangian, &force, &dissipation, &constraints]);
     let has_mass_of_position = has_mass_of_position(pool, &recursions, &lagrangian);
     let reacts = |index: usize| model.constraints.iter().any(|constraint| constraint.acts_on(pool, index));
     let reacts: Vec<bool> = (0..model.dimension()).map(reacts).collect();
@@ -266,128 +263,6 @@ impl Indexed {
         });
         sums.chain(rows).sum()
     }
-}
-
-/// The arrays of entries, and of rates, on which sums depend.
-pub(crate) fn needed(recursions: &[Recursion], sums: &[&[Sum]]) -> BTreeSet<Read> {
-    let entries = |body: &Body, value: &Value| {
-        let reads = value.states.iter().map(|place| body.reads[*place]);
-        reads.filter(Read::is_entry).collect::<Vec<_>>()
-    };
-    let bodies = sums.iter().flat_map(|sums| sums.iter().map(|sum| &sum.body));
-    let mut found: BTreeSet<Read> =
-        bodies.flat_map(|body| body.values.iter().flat_map(|value| entries(body, value))).collect();
-    loop {
-        let parts = recursions.iter().flat_map(|recursion| &recursion.parts);
-        let of_found = parts.flat_map(|part| {
-            let values = part.body.values.iter().zip(&part.of).filter(|(_, of)| found.contains(of));
-            values.flat_map(|(value, _)| entries(&part.body, value)).collect::<Vec<_>>()
-        });
-        let more: Vec<Read> = of_found.filter(|read| !found.contains(read)).collect();
-        if more.is_empty() {
-            return found;
-        }
-        found.extend(more);
-    }
-}
-
-/// The definitions of entries of these arrays.
-fn values_of<'a>(recursions: &'a [Recursion], of: &BTreeSet<Read>) -> Vec<&'a Value> {
-    let parts = recursions.iter().flat_map(|recursion| &recursion.parts);
-    let values = parts.flat_map(|part| part.body.values.iter().zip(&part.of));
-    values.filter(|(_, array)| of.contains(array)).map(|(value, _)| value).collect()
-}
-
-/// Whether L is quadratic in the velocities: each term is, and rates are linear in them.
-fn has_mass_of_position(pool: &mut Pool<Symbol>, recursions: &[Recursion], lagrangian: &[Sum]) -> bool {
-    let moves = |read: &Read| matches!(read, Read::Velocity | Read::LetRate(_));
-    let of_lagrangian = needed(recursions, &[lagrangian]);
-    let mut parts = recursions.iter().flat_map(|recursion| &recursion.parts);
-    let degree = |of: &Read| of_lagrangian.contains(of).then(|| usize::from(moves(of)));
-    parts.all(|part| part.body.is_at_most(pool, &moves, &|value| degree(&part.of[value])))
-        && lagrangian.iter().all(|sum| sum.body.is_at_most(pool, &moves, &|_| Some(2)))
-}
-
-/// Whether velocities appear in terms `m v²` of L only, with constant m.
-fn is_separable(pool: &mut Pool<Symbol>, recursions: &[Recursion], lagrangian: &[Sum], force: &[Sum]) -> bool {
-    let moves = |body: &Body| body.reads.iter().any(|read| matches!(read, Read::Velocity | Read::LetRate(_)));
-    let acting = needed(recursions, &[lagrangian, force]);
-    let parts = recursions.iter().flat_map(|recursion| &recursion.parts);
-    let mut parts = parts.filter(|part| part.of.iter().any(|of| acting.contains(of)));
-    if parts.any(|part| moves(&part.body)) || force.iter().any(|sum| moves(&sum.body)) {
-        return false;
-    }
-    lagrangian.iter().filter(|sum| moves(&sum.body)).all(|Sum { body, .. }| {
-        let of_velocity = body.reads.iter().filter(|read| read.is_of_state()).all(|read| *read == Read::Velocity);
-        of_velocity && body.is_square(pool)
-    })
-}
-
-/// Whether the velocity of each coordinate has a second derivative of L, itself or through a rate, or is in `known`:
-/// straight lines report others.
-fn has_masses(known: Vec<bool>, recursions: &[Recursion], lagrangian: &[Sum]) -> bool {
-    let mut has_mass = known;
-    let mut see = |body: &Body, value: &Value, place: usize, columns: &[usize]| {
-        if body.reads[value.states[place]] == Read::Velocity {
-            has_mass[columns[value.states[place]]] = true;
-        }
-    };
-    let of_lagrangian = needed(recursions, &[lagrangian]);
-    for Recursion { parts, nest } in recursions {
-        for Part { body, of, first } in parts {
-            let values = body.values.iter().zip(of).filter(|(_, of)| of_lagrangian.contains(of));
-            for (value, _) in values {
-                for place in 0..value.states.len() {
-                    nest.each(&mut |all| see(body, value, place, &all[first + of.len()..]));
-                }
-            }
-        }
-    }
-    for Sum { body, nests } in lagrangian {
-        for value in &body.values {
-            for place in value.pairs.iter().flatten() {
-                for nest in nests {
-                    nest.each(&mut |all| see(body, value, *place, all));
-                }
-            }
-        }
-    }
-    has_mass.into_iter().all(|has_mass| has_mass)
-}
-
-/// For each coordinate, whether nothing reads it, and no force and no reaction acts on it.
-fn cyclic(
-    reacts: &[bool],
-    recursions: &[Recursion],
-    lagrangian: &[Sum],
-    (force, dissipation): (&[Sum], &[Sum]),
-) -> Vec<bool> {
-    let mut cyclic: Vec<bool> = reacts.iter().map(|reacts| !reacts).collect();
-    let mut see = |wanted: Read, body: &Body, value: &Value, columns: &[usize]| {
-        let read = value.states.iter().filter(|place| body.reads[**place] == wanted);
-        read.for_each(|place| cyclic[columns[*place]] = false);
-    };
-    for (wanted, sums) in [(Read::Coordinate, lagrangian), (Read::Velocity, dissipation)] {
-        let arrays = needed(recursions, &[sums]);
-        for Recursion { parts, nest } in recursions {
-            for Part { body, of, first } in parts {
-                for (value, _) in body.values.iter().zip(of).filter(|(_, of)| arrays.contains(of)) {
-                    nest.each(&mut |all| see(wanted, body, value, &all[first + of.len()..]));
-                }
-            }
-        }
-        for Sum { body, nests } in sums {
-            for nest in nests {
-                nest.each(&mut |all| see(wanted, body, &body.values[0], all));
-            }
-        }
-    }
-    for Sum { nests, .. } in force {
-        for nest in nests {
-            nest.each(&mut |all| cyclic[all[0]] = false);
-        }
-    }
-    cyclic
 }
 
 /// An array of `let`s, or of their rates, in runs of rows with the same shapes.

@@ -1,6 +1,6 @@
 //! The bodies of a large system with the names of their functions, and what a row computes in the user's names.
 
-use super::{Body, Indexed, Nest, Part, Read, Recursion, Sum, Value};
+use super::{Body, Indexed, Nest, Part, Read, Recursion, Scale, Sum, Value};
 use crate::model::Model;
 use crate::program::Function;
 use crate::symbol::{LetEntry, Symbol, Variable};
@@ -55,16 +55,17 @@ pub(crate) fn named(of: &Indexed) -> Vec<NamedBody<'_>> {
             first: *first,
         }));
     }
-    let scale = of.scale.iter();
-    let (parts, whole): (Vec<&[Sum]>, Vec<&[Sum]>) =
-        scale.map(|scale| (&scale.parts[..], core::slice::from_ref(&scale.whole))).unzip();
+    let [parts, whole]: [&[Sum]; 2] = match &of.scale {
+        Some(Scale { parts, whole, .. }) => [parts, core::slice::from_ref(whole)],
+        None => [&[], &[]],
+    };
     let sums = [
         ("lagrangian", Quantity::Lagrangian, &of.lagrangian[..]),
         ("force", Quantity::Force, &of.force[..]),
         ("dissipation", Quantity::Dissipation, &of.dissipation[..]),
         ("constraint", Quantity::Constraint, &of.constraints[..]),
-        (PART, Quantity::Part, parts.first().copied().unwrap_or_default()),
-        (SCALE, Quantity::Scale, whole.first().copied().unwrap_or_default()),
+        (PART, Quantity::Part, parts),
+        (SCALE, Quantity::Scale, whole),
     ];
     for (name, quantity, sums) in sums {
         named.extend(sums.iter().enumerate().map(|(index, Sum { body, nests })| NamedBody {

@@ -54,7 +54,7 @@ pub(super) fn read(model: &Model, read: Read, column: Affine, counters: &[[i64; 
         let whole = |text: String| if is_sum { format!("({text})") } else { text };
         return Both { text: whole(affine(column, "*")), latex: whole(affine(column, " ")) };
     }
-    let is_rate = matches!(read, Read::Velocity | Read::LetRate(_));
+    let is_rate = read.is_rate();
     let accented = |name: Name| if is_rate { name.under("dot") } else { name };
     let rate = |text: String| if is_rate { format!("dot({text})") } else { text };
     let Some((name, indices)) = array(model, read, column, counters) else {

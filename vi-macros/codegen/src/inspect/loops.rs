@@ -126,7 +126,7 @@ fn whole(of: &Loops, named: &NamedBody) -> Vec<Line> {
     rows.flat_map(|row| named.body.values.iter().map(move |value| equation(letter(), row.value(of, value)))).collect()
 }
 
-/// `L = L_1 + L_2`, of so many terms.
+/// `L = L_1 + … + L_n` with n = `count`, for the letter L.
 fn numbered(letter: &str, count: usize) -> Line {
     let sum = |place: &dyn Fn(usize) -> String| {
         (1..=count).map(|index| format!("{letter}_{}", place(index))).collect::<Vec<_>>().join(" + ")
