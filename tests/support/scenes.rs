@@ -80,6 +80,7 @@ pub(crate) fn charged_particle() -> Scene<systems::ChargedParticle, 3> {
 }
 
 /// One test for every system: `check` gets its scene.
+#[allow(unused_macros, reason = "each program uses a part")]
 macro_rules! each_system {
     ($check:path) => {
         $crate::support::scenes::each_system! { $check:
@@ -94,4 +95,5 @@ macro_rules! each_system {
         }
     )*};
 }
+#[allow(unused_imports, reason = "each program uses a part")]
 pub(crate) use each_system;

@@ -1,20 +1,17 @@
-//! The run-time tests with handwritten systems as one program, so that shared code compiles once.
+//! The run-time tests with handwritten systems as one program, so that shared code compiles once. Those that take many
+//! steps are in `tests/long/core`.
 
-mod branches;
-mod checkpoints;
 mod checks;
-mod checks_of_many;
 mod constrained;
 mod derivatives;
 mod equations;
 mod failures;
-mod fallback;
 mod gauss_alone;
 mod indexed;
-mod long_runs;
-mod many;
 mod outcomes;
 mod references;
+#[allow(dead_code, reason = "each program uses a part")]
 mod spoiled;
+#[allow(dead_code, reason = "each program uses a part")]
 mod systems;
 mod tables;

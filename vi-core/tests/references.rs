@@ -10,7 +10,7 @@ const FIXED: f64 = 5e-14;
 const ENERGY_PRESERVING: f64 = 5e-10;
 
 pub(crate) fn reference(name: &str) -> Value {
-    let path = format!("{}/../tests/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../../tests/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
 }

@@ -1,4 +1,4 @@
-//! Searches for accepted steps of lanes that do not satisfy their equations, as `tests/long/hunt` does for other
+//! Searches for accepted steps of lanes that do not satisfy their equations, as `tests/hunt` does for other
 //! integrators.
 //!
 //! This module recomputes the residual of each step in `f64` from the previous node and the accepted velocity. Each row

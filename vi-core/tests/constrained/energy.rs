@@ -239,8 +239,9 @@ fn orders_are_two_four_and_six() {
     check_order::<_, 4, 2, 3>(Auto(Mixed), mixed(), [14, 20, 28], 2e5);
 }
 
-#[test]
-fn the_energy_of_a_long_run_stays_in_every_bit() {
+/// The energy of five stretches of these steps stays in every bit; one step in `every` is compared with a fixed step,
+/// and the range of H − E' of a stretch is that of the first one up to `spread`.
+fn energy_stays_in_every_bit(steps: u32, every: u32, spread: f64) {
     let start = PENDULUM.at_state(pendulum()).integrate(EnergyPreservingGaussLobatto::<1>, 0.02);
     let mut run = start.and_then(|run| run.with_shift_from(2.5)).unwrap_or_else(|error| panic!("{error}"));
     let kept = run.shifted_energy();
@@ -248,7 +249,7 @@ fn the_energy_of_a_long_run_stays_in_every_bit() {
     // H − E' at its ends, g and its rate over ε times their terms, the energy measured anew: in each fifth of the run.
     let mut fifths = [([f64::INFINITY, f64::NEG_INFINITY], [0.0_f64; 3]); 5];
     for (range, worst) in &mut fifths {
-        for step in 0..20_000 {
+        for step in 0..steps {
             let before = *run.node();
             let State { q, p, .. } = run.step().unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(run.shifted_energy().to_bits(), kept.to_bits());
@@ -259,7 +260,7 @@ fn the_energy_of_a_long_run_stays_in_every_bit() {
             let terms = 2.0 * (q[0] * p[0]).abs() + 2.0 * (q[1] * p[1]).abs();
             worst[0] = worst[0].max(g.abs() / (f64::EPSILON * (q.norm_squared() + 1.0)));
             worst[1] = worst[1].max((2.0 * q.dot(&p)).abs() / (f64::EPSILON * terms));
-            if step % 100 == 0 {
+            if step % every == 0 {
                 // The fixed step of this length, by another method, has this energy.
                 let fixed = PENDULUM.at_state(before.state()).integrate(GaussLobatto::<1>, run.h());
                 let mut fixed = fixed.unwrap_or_else(|error| panic!("{error}"));
@@ -272,10 +273,23 @@ fn the_energy_of_a_long_run_stays_in_every_bit() {
     println!("{fifths:?}");
     let ([low, high], _) = fifths[0];
     for ([least, most], [g, rate, energy]) in fifths {
-        // Measured: the ends differ by at most 3.5e-11, as the nodes fall; 1.0, 1.7 and 1.7.
-        assert!((least - low).abs() < 1e-10 && (most - high).abs() < 1e-10, "{fifths:?}");
+        // Measured: 1.0, 1.7 and 2.1.
+        assert!((least - low).abs() < spread && (most - high).abs() < spread, "{fifths:?}");
         assert!(g <= 2.0 && rate <= 4.0 && energy <= 4.0, "{fifths:?}");
     }
+}
+
+#[test]
+fn the_energy_of_a_run_stays_in_every_bit() {
+    // The nodes of 300 steps fall on a range of 3.3e-3. Measured: 4.1e-7.
+    energy_stays_in_every_bit(300, 10, 1e-6);
+}
+
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn the_energy_of_a_long_run_stays_in_every_bit() {
+    // Measured: 3.5e-11.
+    energy_stays_in_every_bit(20_000, 100, 1e-10);
 }
 
 /// The energy of a run in every bit, and its residuals.
@@ -296,16 +310,27 @@ fn check_energy<M: Model<N, K>, const N: usize, const K: usize, const STAGES: us
     println!("{} s = {STAGES}: h = {:.4}", M::NAME, run.h());
 }
 
+/// Runs of every order and kind, of 10 to 50 times this number of steps.
+fn energies_stay_in_every_bit(scale: u32) {
+    check_energy::<_, 2, 1, 2>(PENDULUM, pendulum(), [0.05, 2e4], 50 * scale);
+    check_energy::<_, 2, 1, 3>(PENDULUM, pendulum(), [0.1, 2e6], 25 * scale);
+    check_energy::<_, 4, 2, 2>(Auto(DoublePendulum), double_pendulum(), [0.02, 1e6], 10 * scale);
+    // Nonholonomic, and both kinds in one system.
+    check_energy::<_, 3, 1, 1>(Auto(Sleigh { turns: false }), sleigh(false), [0.05, 20.0], 10 * scale);
+    check_energy::<_, 5, 2, 1>(Auto(RollingDisk), rolling_disk(), [0.01, 80.0], 10 * scale);
+    check_energy::<_, 4, 2, 1>(Auto(Mixed), mixed(), [0.02, 100.0], 10 * scale);
+    check_energy::<_, 4, 2, 2>(Auto(Mixed), mixed(), [0.05, 1e4], 10 * scale);
+}
+
 #[test]
 fn energies_of_every_order_and_kind_stay_in_every_bit() {
-    check_energy::<_, 2, 1, 2>(PENDULUM, pendulum(), [0.05, 2e4], 10_000);
-    check_energy::<_, 2, 1, 3>(PENDULUM, pendulum(), [0.1, 2e6], 5_000);
-    check_energy::<_, 4, 2, 2>(Auto(DoublePendulum), double_pendulum(), [0.02, 1e6], 2_000);
-    // Nonholonomic, and both kinds in one system.
-    check_energy::<_, 3, 1, 1>(Auto(Sleigh { turns: false }), sleigh(false), [0.05, 20.0], 2_000);
-    check_energy::<_, 5, 2, 1>(Auto(RollingDisk), rolling_disk(), [0.01, 80.0], 2_000);
-    check_energy::<_, 4, 2, 1>(Auto(Mixed), mixed(), [0.02, 100.0], 2_000);
-    check_energy::<_, 4, 2, 2>(Auto(Mixed), mixed(), [0.05, 1e4], 2_000);
+    energies_stay_in_every_bit(10);
+}
+
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn energies_of_every_order_and_kind_stay_in_every_bit_for_long() {
+    energies_stay_in_every_bit(200);
 }
 
 /// The largest relative change of `h (D_s + D_*)^(1/(2s + 1))` over steps of the pendulum.

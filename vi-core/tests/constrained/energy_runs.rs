@@ -126,10 +126,10 @@ fn starts_and_shifts_that_cannot_be_are_refused() {
     assert!((given.t - 0.02).abs() < 1e-15, "{}", given.t);
 }
 
-#[test]
-fn every_start_gives_steps_or_a_typed_error() {
-    let mut counts = [0_u32; 2];
-    for k in 0..120_usize {
+/// Starts of many speeds and lengths, one in `every`.
+fn starts_give_steps_or_typed_errors(every: usize) {
+    let mut counts = [0_usize; 2];
+    for k in (0..120_usize).step_by(every) {
         let number = f64::from(u8::try_from(k).expect("a small number"));
         let speed = number % 11.0 - 3.0;
         let ((s, c), h) = ((0.37 * number).sin_cos(), 0.003 * 1.06_f64.powf(number));
@@ -151,7 +151,18 @@ fn every_start_gives_steps_or_a_typed_error() {
         }
     }
     println!("{counts:?}");
-    assert!(counts[0] > 20 && counts[1] > 20, "{counts:?}");
+    assert!(counts.iter().all(|count| count * every > 20), "{counts:?}");
+}
+
+#[test]
+fn every_start_gives_steps_or_a_typed_error() {
+    starts_give_steps_or_typed_errors(7);
+}
+
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn each_of_all_starts_gives_steps_or_a_typed_error() {
+    starts_give_steps_or_typed_errors(1);
 }
 
 /// The state after twenty steps.

@@ -85,18 +85,19 @@ fn numbers() -> impl FnMut() -> f64 {
     }
 }
 
-/// How many of a hundred guesses near a place lead to a state on the constraints, and from there to ten steps of orders
+/// How many of these guesses near a place lead to a state on the constraints, and from there to ten steps of orders
 /// 4 and 6.
 fn started<S, const N: usize>(
     system: &S,
     (t, place, h): (f64, [f64; N], f64),
+    guesses: usize,
     next: &mut impl FnMut() -> f64,
 ) -> [usize; 3]
 where
     S: Constrained<N> + ConvertibleConstrained<N>,
 {
     let mut counts = [0; 3];
-    for _ in 0..100 {
+    for _ in 0..guesses {
         let (q, v) = (place.map(|entry| entry + 0.2 * next()), place.map(|_| 2.0 * next()));
         let Ok(found) = State::projected(system, t, q, v) else { continue };
         let start = || system.at_state(found.state);
@@ -109,17 +110,16 @@ where
     counts
 }
 
-#[test]
-fn linkages_far_away_start_and_step() {
+fn linkages_far_away(guesses: usize) {
     let mut next = numbers();
     for place in [0.0, 1e3, -1e6] {
         for (t, h) in [(0.0, 0.1), (1e3, 0.03), (1e7, 0.1)] {
             let system = FarRod { X: place, Y: -0.3 * place, ζ: 0.1, ..FarRod::default() };
-            let counts = started(&system, (t, [place + 0.5, 0.5 - 0.3 * place], h), &mut next);
-            assert_eq!(counts, [100; 3], "{place} {t} {h}");
+            let counts = started(&system, (t, [place + 0.5, 0.5 - 0.3 * place], h), guesses, &mut next);
+            assert_eq!(counts, [guesses; 3], "{place} {t} {h}");
         }
         let system = FarRod { X: place, Y: -0.3 * place, ζ: 0.1, ..FarRod::default() };
-        for _ in 0..20 {
+        for _ in 0..guesses.div_ceil(5) {
             let (q, v) = ([place + 0.5 + 0.2 * next(), 0.5 - 0.3 * place], [2.0 * next(), next()]);
             let found = State::projected(&system, 1e3, q, v).unwrap_or_else(|failure| panic!("{failure}"));
             let run = system.at_state(found.state).integrate(EnergyPreservingGaussLobatto::<2>, 0.1);
@@ -130,22 +130,43 @@ fn linkages_far_away_start_and_step() {
 }
 
 #[test]
-fn linkages_far_along_one_axis_step() {
+fn linkages_far_away_start_and_step() {
+    linkages_far_away(10);
+}
+
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn a_hundred_linkages_far_away_start_and_step() {
+    linkages_far_away(100);
+}
+
+fn linkages_far_along_one_axis(guesses: usize, lost: usize) {
     let mut next = numbers();
     for place in [1e4, 1e6] {
         let system = FarRod { X: place, ..FarRod::default() };
-        let counts = started(&system, (0.0, [place + 0.5, 0.5], 0.1), &mut next);
+        let counts = started(&system, (0.0, [place + 0.5, 0.5], 0.1), guesses, &mut next);
         println!("rod {place:e}: {counts:?}");
-        assert_eq!(counts, [100; 3], "{place}");
+        assert_eq!(counts, [guesses; 3], "{place}");
     }
     for (place, h) in [(0.0, 0.1), (1e3, 0.1), (1e4, 0.1), (1e6, 0.01)] {
         let system = FourBars { X: place };
-        let counts = started(&system, (0.0, [place, 1.0, place + 2.0, 1.5], h), &mut next);
+        let counts = started(&system, (0.0, [place, 1.0, place + 2.0, 1.5], h), guesses, &mut next);
         println!("four bars {place:e}: {counts:?}");
-        // Measured: 98 at 1e6, otherwise all.
-        let least = if place < 1e6 { 100 } else { 98 };
+        let least = if place < 1e6 { guesses } else { guesses - lost };
         assert!(counts.into_iter().all(|count| count >= least), "{place}: {counts:?}");
     }
+}
+
+#[test]
+fn linkages_far_along_one_axis_step() {
+    linkages_far_along_one_axis(10, 1);
+}
+
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn a_hundred_linkages_far_along_one_axis_step() {
+    // Measured: 98 at 1e6, otherwise all.
+    linkages_far_along_one_axis(100, 2);
 }
 
 #[test]
@@ -154,10 +175,11 @@ fn unequal_masses_start_and_step() {
     for ratio in [1e-9, 1e-4, 1.0, 1e4, 1e9] {
         for place in [0.0, 1e3] {
             let system = Unequal { X: place, m: ratio, ..Unequal::default() };
-            let [all, fourth, sixth] = started(&system, (0.0, [place + 0.8, 0.6, place + 1.4, -0.2], 0.003), &mut next);
+            let [all, fourth, sixth] =
+                started(&system, (0.0, [place + 0.8, 0.6, place + 1.4, -0.2], 0.003), 40, &mut next);
             println!("{ratio:e} {place}: {all} {fourth} {sixth}");
             // Some guesses have no nearest place: the second rod is flat there.
-            assert!(all >= 95 && fourth == all && sixth == all, "{ratio:e} {place}: {all} {fourth} {sixth}");
+            assert!(all >= 38 && fourth == all && sixth == all, "{ratio:e} {place}: {all} {fourth} {sixth}");
         }
     }
 }

@@ -124,13 +124,13 @@ fn negative_steps_return() {
     check_return::<_, 4, 2, 2>(Auto(Mixed), mixed());
 }
 
-#[test]
-fn constraints_hold_at_every_node_of_a_long_run() {
+/// The constraint and its rate at every node of five stretches of these steps.
+fn constraints_hold_at_every_node(steps: u32) {
     let mut run = run::<_, 2, 1, 1>(PENDULUM, pendulum(), 0.05);
     // The largest values over ε times their terms, in each fifth of the run.
     let mut worst = [[0.0_f64; 2]; 5];
     for fifth in &mut worst {
-        for _ in 0..20_000 {
+        for _ in 0..steps {
             let State { q, p, .. } = run.step().unwrap_or_else(|error| panic!("{error}"));
             let [g] = PENDULUM.constraints(0.0, &q);
             // Unit mass: v = p, from which no bordered matrix removes anything.
@@ -148,12 +148,23 @@ fn constraints_hold_at_every_node_of_a_long_run() {
 }
 
 #[test]
-fn a_long_run_with_moving_constraint_and_velocities_stays_on_it() {
+fn constraints_hold_at_every_node_of_a_run() {
+    constraints_hold_at_every_node(400);
+}
+
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn constraints_hold_at_every_node_of_a_long_run() {
+    constraints_hold_at_every_node(20_000);
+}
+
+/// The same for a constraint that moves and one on velocities, over four stretches of these steps.
+fn moving_constraint_and_velocities_hold(steps: u32) {
     let system = Auto(Driven);
     let mut run = run::<_, 2, 1, 2>(system, driven(), 0.02);
     let mut worst = [[0.0_f64; 2]; 4];
     for quarter in &mut worst {
-        for _ in 0..5_000 {
+        for _ in 0..steps {
             let State { t, q, p } = run.step().unwrap_or_else(|error| panic!("{error}"));
             let [g] = system.constraints(t, &q);
             let ([row], [rest]) = system.constraint_gradients(t, &q);
@@ -167,6 +178,17 @@ fn a_long_run_with_moving_constraint_and_velocities_stays_on_it() {
         // Measured: at most 1.09 and 1.0.
         assert!(g <= 2.0 && rate <= 2.0, "{worst:?}");
     }
+}
+
+#[test]
+fn a_run_with_moving_constraint_and_velocities_stays_on_it() {
+    moving_constraint_and_velocities_hold(250);
+}
+
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn a_long_run_with_moving_constraint_and_velocities_stays_on_it() {
+    moving_constraint_and_velocities_hold(5000);
 }
 
 /// Changes of q and p.
@@ -221,17 +243,30 @@ fn steps_without_force_are_symplectic() {
     check_two_form::<3>();
 }
 
-#[test]
-fn the_heavy_top_keeps_its_momentum_about_its_axis() {
+/// The largest change of the momentum of the heavy top about its axis.
+fn change_of_momentum_about_the_axis(steps: u32) -> f64 {
     let momentum = |State { q, p, .. }: State<4>| 0.5 * (-q[3] * p[0] + q[2] * p[1] - q[1] * p[2] + q[0] * p[3]);
     let mut run = run::<_, 4, 1, 1>(Auto(HeavyTop { j: 1.0 }), heavy_top(1.0), 0.025);
     assert!((momentum(run.state()) - 3.6).abs() < 1e-15);
     let mut worst = 0.0_f64;
-    for _ in 0..40_000 {
+    for _ in 0..steps {
         let state = run.step().unwrap_or_else(|error| panic!("{error}"));
         worst = worst.max((momentum(state) - 3.6).abs());
     }
     println!("momentum {worst:e}");
+    worst
+}
+
+#[test]
+fn the_heavy_top_keeps_its_momentum_about_its_axis() {
+    let worst = change_of_momentum_about_the_axis(1000);
+    assert!(worst < 3e-14, "{worst:e}");
+}
+
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn the_heavy_top_keeps_its_momentum_for_long() {
+    let worst = change_of_momentum_about_the_axis(40_000);
     // Measured: 2.1e-14.
     assert!(worst < 3e-14, "{worst:e}");
 }

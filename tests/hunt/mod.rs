@@ -25,7 +25,7 @@ use vi_core::stepping::{EnergyStepping, FixedStepping};
 use vi_core::{Composition, EnergyPreserving, FixedStep, SVector, Starts, State, lagrangian};
 
 /// Steps of each system by each integrator.
-const STEPS: usize = 40_000;
+const STEPS: usize = if cfg!(feature = "long") { 40_000 } else { 8000 };
 /// Minimum number of motions of each system with each integrator.
 const MOTIONS: usize = 16;
 /// Maximum number of motions: some states have no step.

@@ -1,10 +1,10 @@
-//! The iterations of a step, and that it is the forward solution, in long runs of every system.
+//! The iterations of a step, and that it is the forward solution, in runs of every system.
 
 use crate::support::scenes::{Scene, each_system};
 use vi_core::stepping::EnergyStepping;
 use vi_core::{EnergyPreserving, FixedStep, Starts, State};
 
-const STEPS: u32 = 100_000;
+const STEPS: u32 = if cfg!(feature = "long") { 100_000 } else { 10_000 };
 
 /// Maximum mean Newton iterations per step.
 const LIMIT: f64 = 2.8;

@@ -136,8 +136,8 @@ fn a_checkpoint_that_no_run_has_left_is_refused() {
     assert_eq!(checkpoint, run.checkpoint());
 }
 
-#[test]
-fn time_does_not_drift() {
+/// Time and energy after these steps; a plain sum is off by more than `plain_is_off`.
+fn time_does_not_drift_in(steps: u32, plain_is_off: f64) {
     // After k steps t + t_low is k h to the rounding of t_low only: for 10⁹ steps of 0.01, t is the nearest number to
     // 10⁷, while a plain sum is off by about 1e-2.
     let h = 0.01;
@@ -145,7 +145,7 @@ fn time_does_not_drift() {
         .at_state(State { t: 0.0, q: [0.74].into(), p: [0.0].into() })
         .integrate(FixedStep, h)
         .unwrap_or_else(|error| panic!("{error}"));
-    let (mut plain, steps) = (0.0, 10_000_000_u32);
+    let mut plain = 0.0;
     for _ in 0..steps {
         run.step().unwrap_or_else(|error| panic!("{error}"));
         plain += h;
@@ -155,11 +155,23 @@ fn time_does_not_drift() {
     let exact_low = f64::from(steps).mul_add(h, -exact);
     let drift = (run.node().t - exact) + (run.node().t_low - exact_low);
     println!("drift {drift:e}, of a plain sum {:e}", plain - exact);
-    // Measured: 0, and -1.4e-5 for the plain sum.
-    assert!(drift.abs() <= 1e-18 && (plain - exact).abs() > 1e-5, "{drift:e}");
-    // The energy after 10⁷ steps oscillates as in the first ones.
+    // Measured: 0.
+    assert!(drift.abs() <= 1e-18 && (plain - exact).abs() > plain_is_off, "{drift:e}, {:e}", plain - exact);
+    // The energy at the end oscillates as in the first ones.
     let energy = run.discrete_energy().unwrap_or(f64::NAN);
     assert!(
         (energy - vi_core::Lagrangian::energy(&UnitMass(DoubleWell), 0.0, &[0.74].into(), &[0.0].into())).abs() < 1e-6
     );
+}
+
+#[test]
+fn time_does_not_drift() {
+    time_does_not_drift_in(1_000_000, 1e-7);
+}
+
+/// Measured: -1.4e-5 for the plain sum.
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn time_does_not_drift_in_ten_million_steps() {
+    time_does_not_drift_in(10_000_000, 1e-5);
 }

@@ -49,14 +49,17 @@ fn a_step_of_kepler_exists_up_to_its_bound() {
 /// Number of roots v of the momentum equation, from sign changes of its residual.
 fn roots<S: FixedStepping<1>>(system: &S, node: &Node<1>, h: f64) -> usize {
     let residual = |v: f64| system.momentum_equation(node, h, &SVector::from([v])).residual[0];
-    let values: Vec<f64> = (0..=40_000).map(|index| residual(-10.0 + 5e-4 * f64::from(index))).collect();
+    let values: Vec<f64> = (0..=10_000).map(|index| residual(-10.0 + 2e-3 * f64::from(index))).collect();
     values.windows(2).filter(|pair| pair[0].is_sign_negative() != pair[1].is_sign_negative()).count()
 }
+
+/// Drawn states of each system and step.
+const DRAWN: u32 = 100;
 
 /// The largest number of roots over drawn states near the top of the potential, at `top`.
 fn most_roots<S: FixedStepping<1>>(system: &S, top: f64, h: f64) -> usize {
     let mut draw = Sequence::new(5);
-    let each = (0..300).map(|_| {
+    let each = (0..DRAWN).map(|_| {
         // From here the step with velocity v crosses the top, where V_q = 0: it solves the equation to 1e-3.
         let v = draw.within(-1.0, 1.0);
         let q = top - h * v / 2.0 + draw.within(-1e-3, 1e-3);

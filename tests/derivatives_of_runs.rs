@@ -484,8 +484,9 @@ fn separated<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run: &Run
     growth / (run.t() - begin)
 }
 
-#[test]
-fn exponents_of_chaotic_motion() {
+/// Exponents of three chaotic motions over these tenths of 40 000, 40 000 and 20 000 steps, against the separation of
+/// neighbours.
+fn exponents_agree_with_separations(tenths: u32, tolerance: f64) {
     fn both<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
         run: &Run<M, S, N>,
         steps: u32,
@@ -496,19 +497,20 @@ fn exponents_of_chaotic_motion() {
     }
     let duffing = DoubleWellDuffing { amplitude: 0.5, ..DoubleWellDuffing::default() };
     let run = duffing.at(0.0, [0.8], [0.0]).integrate(Gauss::<6>, 0.1).expect("valid");
-    let (driven, of_driven) = both(&run, 40_000);
+    let (driven, of_driven) = both(&run, 4000 * tenths);
     let stars = HenonHeiles::default();
     let energy = 1.0 / 6.0;
     let p_x = (2.0_f64 * energy - 0.01 - 2.0e-3 / 3.0).sqrt();
     let chaotic = State { t: 0.0, q: SVector::from([0.0, -0.1]), p: SVector::from([p_x, 0.0]) };
     assert!((chaotic.energy(&stars).expect("regular") - energy).abs() < 1e-15);
-    let (galaxy, of_galaxy) = both(&stars.at_state(chaotic).integrate(Gauss::<6>, 0.4).expect("valid"), 40_000);
+    let (galaxy, of_galaxy) = both(&stars.at_state(chaotic).integrate(Gauss::<6>, 0.4).expect("valid"), 4000 * tenths);
     let pendula = DoublePendulum::default();
     let start = State::at(&pendula, 0.0, [2.0, 2.0], [0.0, 0.0]);
-    let (swinging, of_swinging) = both(&pendula.at_state(start).integrate(Gauss::<6>, 0.02).expect("valid"), 20_000);
-    // 0.0964, 0.1121 and 1.397; off by 7e-4, 4e-4 and 4e-3.
+    let (swinging, of_swinging) =
+        both(&pendula.at_state(start).integrate(Gauss::<6>, 0.02).expect("valid"), 2000 * tenths);
     for (found, other) in [(driven[0], of_driven), (galaxy[0], of_galaxy), (swinging[0], of_swinging)] {
-        assert!(found > 0.05 && (found / other - 1.0).abs() < 1e-2, "{found} {other}");
+        println!("{found} {other}");
+        assert!(found > 0.05 && (found / other - 1.0).abs() < tolerance, "{found} {other}");
     }
     // Damping contracts volumes at the rate c; otherwise they are preserved. Exponents come in pairs.
     assert!((driven.iter().sum::<f64>() + duffing.c).abs() < 1e-9, "{driven:?}");
@@ -516,6 +518,18 @@ fn exponents_of_chaotic_motion() {
         assert!((pairs[0] + pairs[3]).abs() + (pairs[1] + pairs[2]).abs() < 1e-2, "{pairs:?}");
         assert!(pairs.iter().sum::<f64>().abs() < 1e-10, "{pairs:?}");
     }
+}
+
+#[test]
+fn exponents_of_chaotic_motion() {
+    exponents_agree_with_separations(1, 5e-2);
+}
+
+/// 0.0964, 0.1121 and 1.397; off by 7e-4, 4e-4 and 4e-3.
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn exponents_of_chaotic_motion_for_long() {
+    exponents_agree_with_separations(10, 1e-2);
 }
 
 /// The coordinate after some steps, with the parameter a as an input of each step.
