@@ -1,8 +1,9 @@
 //! Embeds the sources of the crates that a compiled system needs.
 //!
 //! In: the crates of this repository. Out: `sources.rs` with their files, without tests, under a workspace manifest
-//! that has only them.
+//! that has only them; and their digest, which names the folder of a cache. A comment does not change it.
 
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -36,7 +37,7 @@ fn main() {
     for (path, content) in &files {
         writeln!(text, "({path:?}, {content:?}),").expect("a string");
     }
-    let digest = files.iter().fold(OFFSET, |sum, (path, content)| hash(hash(sum, path), content));
+    let digest = files.iter().fold(OFFSET, |sum, (path, content)| hash(hash(sum, path), &compiled(path, content)));
     writeln!(text, "];\npub(super) const DIGEST: &str = \"{digest:016x}\";").expect("a string");
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets it"));
     fs::write(out.join("sources.rs"), text).expect("the output folder is writable");
@@ -50,15 +51,61 @@ fn hash(sum: u64, text: &str) -> u64 {
     text.bytes().chain([0]).fold(sum, |sum, byte| (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
+/// What the compiler reads of a file: its tokens without comments, documentation and items of tests, in what the macro
+/// emits too.
+fn compiled(path: &str, content: &str) -> String {
+    if path.ends_with(".rs") {
+        let tokens = content.parse().unwrap_or_else(|error| panic!("{path}: {error}"));
+        compiled_tokens(tokens).to_string()
+    } else {
+        content.to_owned()
+    }
+}
+
+fn compiled_tokens(tokens: TokenStream) -> TokenStream {
+    let is = |token: &TokenTree, wanted: char| matches!(token, TokenTree::Punct(punct) if punct.as_char() == wanted);
+    // The item of an attribute ends with its block or with a semicolon.
+    let is_end = |token: &TokenTree| match token {
+        TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,
+        other => is(other, ';'),
+    };
+    let mut kept = Vec::new();
+    let mut rest = tokens.into_iter().peekable();
+    while let Some(token) = rest.next() {
+        if is(&token, '#') {
+            let inner = rest.next_if(|next| is(next, '!'));
+            let attribute = match rest.peek() {
+                Some(TokenTree::Group(group)) => group.to_string().split_whitespace().collect(),
+                _ => String::new(),
+            };
+            if attribute.starts_with("[doc=\"") {
+                rest.next();
+            } else if attribute == "[cfg(test)]" {
+                rest.by_ref().find(is_end);
+            } else {
+                kept.extend([Some(token), inner].into_iter().flatten());
+            }
+        } else if let TokenTree::Group(group) = &token {
+            kept.push(TokenTree::Group(Group::new(group.delimiter(), compiled_tokens(group.stream()))));
+        } else {
+            kept.push(token);
+        }
+    }
+    kept.into_iter().collect()
+}
+
 fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The Rust files below a folder.
+/// The Rust files below a folder, without modules of tests.
 fn walk(folder: &Path, name: &str, files: &mut Vec<(String, String)>) {
     for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
         let path = entry.expect("an entry").path();
         let name = format!("{name}/{}", path.file_name().expect("an entry has a name").to_string_lossy());
+        if path.file_stem().is_some_and(|stem| stem == "tests") {
+            continue;
+        }
         if path.is_dir() {
             walk(&path, &name, files);
         } else if path.extension().is_some_and(|kind| kind == "rs") {

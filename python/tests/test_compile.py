@@ -75,7 +75,7 @@ def test_arrays_of_parameters(warm_cache):
 
 
 def test_the_cache_needs_no_cargo(warm_cache, tmp_path):
-    Spring = vi.compile(SPRING.format(2.0))
+    Spring = vi.compile(SPRING.format(2.0), methods="fixed")
     (tmp_path / "class.pickle").write_bytes(pickle.dumps(Spring))
     code = "import pickle, variational; print(pickle.load(open('class.pickle', 'rb'))().k)"
     environment = {**os.environ, "PATH": "", "HOME": str(tmp_path)}
@@ -126,7 +126,7 @@ def test_a_cache_that_cannot_be_written(monkeypatch, tmp_path):
 
 def test_two_processes_at_once(warm_cache, tmp_path):
     """Both compile the same system and one of their own; one build at a time, and each library is whole."""
-    code = "import sys, variational as vi\nfor k in sys.argv[1:]:\n    print(vi.compile({!r}.format(k))().k)"
+    code = "import sys, variational as vi\nfor k in sys.argv[1:]:\n    print(vi.compile({!r}.format(k), methods='fixed')().k)"
     command = [sys.executable, "-c", code.format(SPRING)]
     both = [
         subprocess.Popen([*command, *of], stdout=subprocess.PIPE, text=True, cwd=tmp_path)
@@ -138,13 +138,13 @@ def test_two_processes_at_once(warm_cache, tmp_path):
 
 @pytest.mark.skipif(os.name == "nt", reason="kills a process group")
 def test_an_interrupted_build_is_taken_up(warm_cache, tmp_path):
-    command = [sys.executable, "-c", f"import variational as vi; vi.compile({SPRING.format(8.5)!r})"]
+    command = [sys.executable, "-c", f"import variational as vi; vi.compile({SPRING.format(8.5)!r}, methods='fixed')"]
     process = subprocess.Popen(command, start_new_session=True, cwd=tmp_path)
     time.sleep(1.5)
     if process.poll() is None:
         os.killpg(process.pid, 9)
     process.wait()
-    assert vi.compile(SPRING.format(8.5))().k == 8.5
+    assert vi.compile(SPRING.format(8.5), methods="fixed")().k == 8.5
 
 
 def test_vectors_a_table_of_a_file_and_an_input(warm_cache, tmp_path, monkeypatch):
@@ -162,19 +162,20 @@ def test_vectors_a_table_of_a_file_and_an_input(warm_cache, tmp_path, monkeypatc
     }
     """
     with pytest.raises(vi.CompileError, match=r"the table `drag` cannot be read from its file"):
-        vi.compile(definition)
+        vi.compile(definition, methods="fixed")
     (tmp_path / "drag.csv").write_text("v,drag\n0,0.5\n1,0.5\n2,0.5\n9,0.5\n")
-    Glider = vi.compile(definition)
+    Glider = vi.compile(definition, methods="fixed")
     assert Glider.coordinates == ("r[0]", "r[1]")
 
     def speed(cls):
-        return cls().integrate([0.0, 0.0], [1.0, 0.0], h=0.01).until(2.0)["dot(r[0])"][-1]
+        return cls().integrate([0.0, 0.0], [1.0, 0.0], h=0.01, method="fixed").until(2.0)["dot(r[0])"][-1]
 
     # m v' = thrust - v/2, by hand; fixed steps of order 2.
     assert abs(speed(Glider) - (3.0 - 2.0 * np.exp(-0.25 * 2.0))) < 1e-5
     (tmp_path / "drag.csv").write_text("v,drag\n0,0\n1,0\n2,0\n9,0\n")
-    assert vi.compile(definition) is not Glider
-    assert abs(speed(vi.compile(definition)) - 2.5) < 1e-12
+    Changed = vi.compile(definition, methods="fixed")
+    assert Changed is not Glider
+    assert abs(speed(Changed) - 2.5) < 1e-12
 
 
 def test_a_rust_function_needs_a_crate():

@@ -57,6 +57,7 @@ def test_a_cell_declares_a_system(warm_cache, tmp_path):
     assert "definition:" in str(mistake)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.name)
 def test_notebooks_of_the_documentation(path, tmp_path):
     pytest.importorskip("scipy")
