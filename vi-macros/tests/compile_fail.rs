@@ -57,18 +57,19 @@ fn library() -> PathBuf {
     }
     let output = run(&mut cargo);
     let messages = text(output.stdout);
-    let is_library = |path: &&str| path.contains("libvi_core-") && path.ends_with(".rlib");
-    let path = messages.split('"').find(is_library);
-    PathBuf::from(path.unwrap_or_else(|| panic!("Cargo reports no library of vi-core:\n{}", text(output.stderr))))
+    let is_library = |path: &&Path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with("libvi_core-") && path.extension().is_some_and(|end| end == "rlib")
+    };
+    let path = messages.split('"').map(Path::new).find(is_library);
+    path.unwrap_or_else(|| panic!("Cargo reports no library of vi-core:\n{}", text(output.stderr))).to_owned()
 }
 
 /// A line without the number of a line of vi-core, which moves, and without the folder of the workspace.
 fn placeless(line: &str) -> String {
     let line = line.replace(workspace().to_str().expect("a path as text"), "$WORKSPACE");
-    match line.split_once("--> vi-core/") {
-        Some((before, place)) => {
-            format!("{before}--> $WORKSPACE/vi-core/{}", place.split(':').next().unwrap_or_default())
-        }
+    match line.split_once(" vi-core/") {
+        Some((arrow, place)) => format!("{arrow} $WORKSPACE/vi-core/{}", place.split(':').next().unwrap_or_default()),
         None => line,
     }
 }
