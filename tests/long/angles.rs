@@ -89,9 +89,10 @@ fn lose_nothing(turns: u32, ratio: f64) {
     }
 }
 
+/// Measured: momentum 5.7e-14 and 4.7e-12, energy 6.4e-12 and 4.9e-10; a coordinate 3.1e4 and 1.0e4 times worse.
 #[test]
 fn a_hundred_thousand_turns_lose_nothing() {
-    lose_nothing(100_000, 1e3);
+    lose_nothing(100_000, 5e3);
 }
 
 /// Measured: momentum 2.8e-14 and 1.4e-11, energy of 5000 3.6e-12 and 1.4e-9; a coordinate 9.8e5 and 7.8e5 times worse.
@@ -118,9 +119,10 @@ fn ends_where_its_velocity_leads(steps: u32, turns: i64, rest: f64, tolerance: f
     assert_eq!(run.state().q[0].to_bits(), (0.625 * f64::from(steps)).to_bits());
 }
 
+/// Measured: 6.7e-13. An ulp of θ is 2.9e-11.
 #[test]
 fn a_free_rotor_ends_where_its_velocity_leads() {
-    ends_where_its_velocity_leads(9 << 15, 29_335, 2.759_013_886_830_699, 2e-10);
+    ends_where_its_velocity_leads(9 << 15, 29_335, 2.759_013_886_830_699, 1e-12);
 }
 
 /// A sum loses less than half an ulp of its increment a step, 5.6e-17. Measured: 1.5e-10, 2.3e-18 a step. An ulp of θ is
