@@ -159,6 +159,7 @@ fn linkages_far_along_one_axis(guesses: usize, lost: usize) {
 
 #[test]
 fn linkages_far_along_one_axis_step() {
+    // Measured: 9 at 1e6, otherwise all.
     linkages_far_along_one_axis(10, 1);
 }
 

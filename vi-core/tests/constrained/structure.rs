@@ -260,7 +260,8 @@ fn change_of_momentum_about_the_axis(steps: u32) -> f64 {
 #[test]
 fn the_heavy_top_keeps_its_momentum_about_its_axis() {
     let worst = change_of_momentum_about_the_axis(1000);
-    assert!(worst < 3e-14, "{worst:e}");
+    // Measured: 2.2e-15.
+    assert!(worst < 4e-15, "{worst:e}");
 }
 
 #[test]
