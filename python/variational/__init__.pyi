@@ -88,6 +88,13 @@ class NotConverged(StepError):
     residuals: list[float]
     turn: float
 
+class TooLong(StepError):
+    """The step has no solution that continues those of short steps."""
+
+    t: float
+    h: float
+    longest: float
+
 class StagesUnsettled(StepError):
     """The stages of a Gauss step did not converge."""
 

@@ -49,6 +49,7 @@ FIELDS: dict[str, dict[str, str]] = {
         "t": "float", "h": "float", "iterations": "int", "residual": "float", "residuals": "list[float]",
         "turn": "float",
     },
+    "TooLong": {"t": "float", "h": "float", "longest": "float"},
     "StagesUnsettled": {
         "t": "float", "h": "float", "iterations": "int", "change": "float", "contraction": "float",
         "stiffness": "float",
@@ -93,6 +94,7 @@ ABOUT: dict[str, str] = {
     "StepRatio": "The length of the only forward step differs too much from that of the last step.",
     "StepBounds": "The step that solves the equations is shorter or longer than allowed.",
     "NotConverged": "The Newton iteration ended above the rounding floor.",
+    "TooLong": "The step has no solution that continues those of short steps.",
     "StagesUnsettled": "The stages of a Gauss step did not converge.",
     "TimeScale": "The time scale g of dt = g dτ is not positive, not finite, or too small.",
     "NoTimeScale": "The method steps in transformed time, but the system has no time scale.",
@@ -132,6 +134,7 @@ ADVICE: dict[str, str] = {
     ),
     "ShiftTooLarge": "start with h={shorter:.1g} or shorter",
     "NotConverged": "take a step shorter than h={h:.3g}",
+    "TooLong": "try h={longest:.3g}",
     "StagesUnsettled": "take a step shorter than h={h:.3g}",
     "TimeScale": "take a shorter dtau, or write a time_scale that stays well above zero",
     "NoTimeScale": "write the clause `time_scale = …;` in its definition, or use h= in place of dtau=",

@@ -93,6 +93,7 @@ pub(crate) fn assert_typed(error: StepError) {
         StepError::NotConverged { t, h, residual, residuals, .. } => {
             [t, h, residual].into_iter().chain(residuals.iter()).collect()
         }
+        StepError::TooLong { t, h, longest } => vec![t, h, longest],
         StepError::NoForwardGaussStep { t, h, excess, density, shift, largest, .. } => {
             vec![t, h, excess, density, shift, largest]
         }

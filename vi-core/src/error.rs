@@ -101,6 +101,16 @@ pub enum StepError {
         /// without constraints. Beyond 57 degrees a step may not exist. A short number keeps errors small.
         turn: f32,
     },
+    /// The step has no solution that continues those of short steps, or only one that is not connected with them. Its
+    /// equations may have another solution, which is no approximation of the motion.
+    TooLong {
+        /// Time at which the step begins.
+        t: f64,
+        /// Length of the step.
+        h: f64,
+        /// A length with such a solution, to try: positive, also if h is negative.
+        longest: f64,
+    },
     /// The stages of a Gauss step converged neither by fixed-point iteration nor by Newton iteration.
     StagesUnsettled {
         /// Time at which the step begins.
@@ -358,6 +368,12 @@ impl fmt::Display for Reason<'_> {
                 }
                 Ok(())
             }
+            StepError::TooLong { t, h, .. } => {
+                write!(
+                    f,
+                    "the step from t = {t:.9} is too long: with h = {h:.3e} no solution continues those of short steps"
+                )
+            }
             StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness } => write!(
                 f,
                 "the Gauss stages did not converge from t = {t:.9} with h = {h:.3e}: update {change:.3e} ulp after {iterations} iterations (contraction {contraction:.2}, estimated h ω ≈ {stiffness:.3e})"
@@ -501,6 +517,7 @@ impl fmt::Display for StepError {
             Self::NotConverged { h, .. } | Self::StagesUnsettled { h, .. } => {
                 write!(f, "; take steps shorter than {:.3e}", h.abs())
             }
+            Self::TooLong { longest, .. } => write!(f, "; try h = {longest:.3e}"),
             Self::TimeScale { g, .. } if *g > 0.0 && g.is_finite() => f.write_str(
                 "; take shorter steps, end the run before, or write a `time_scale` that stays well above zero",
             ),

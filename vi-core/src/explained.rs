@@ -55,6 +55,7 @@ impl StepError {
         match self {
             Self::NonFinite { expression: None, .. }
             | Self::NotConverged { .. }
+            | Self::TooLong { .. }
             | Self::StagesUnsettled { .. }
             | Self::NoForwardStep { .. }
             | Self::NoForwardGaussStep { .. }

@@ -187,6 +187,7 @@ fn assert_typed(error: StepError) {
         StepError::DegenerateStep { t, h, density } => vec![t, h, density],
         StepError::StepRatio { t, previous, found } => vec![t, previous, found],
         StepError::NotConverged { t, h, residual, .. } => vec![t, h, residual],
+        StepError::TooLong { t, h, longest } => vec![t, h, longest],
         StepError::Singular { t, .. } | StepError::NonFinite { t, .. } => vec![t],
         other => panic!("{other:?}"),
     };

@@ -127,7 +127,9 @@ fn an_error_ends_with_advice() {
         shift: 0.0,
         largest: 4.0,
     };
+    let long = StepError::TooLong { t: 1.0, h: 2.0, longest: 0.75 };
     let all = [
+        (long, "; try h = 7.500e-1"),
         (no_step, continuation),
         (
             degenerate,

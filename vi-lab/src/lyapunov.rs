@@ -88,7 +88,7 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), 
     while taken < *steps {
         let part = next.min(*steps) - taken;
         exponents.advance(part).map_err(|error| Failure::Step {
-            advice: advice(&error, &plan).map(str::to_owned),
+            advice: advice(&error, &plan),
             error: Box::new(error),
             before: format!("t = {}, q = {:?}, after {taken} steps or more", short(exponents.t()), exponents.q()),
         })?;

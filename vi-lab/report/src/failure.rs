@@ -2,7 +2,7 @@
 
 use crate::interrupt::Signal;
 use crate::machine::program;
-use crate::numbers::short;
+use crate::numbers::{about, short};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use core::fmt;
 use std::io;
@@ -91,7 +91,7 @@ impl Failure {
                 Self::Input(format!("{}; --project moves the initial state onto the constraints", error.reason()))
             }
             _ => Self::Step {
-                advice: advice(&error, plan).map(str::to_owned),
+                advice: advice(&error, plan),
                 error: Box::new(error),
                 before: format!("t = {}, q = {q:?}, v = {v:?}, the initial state", short(*t)),
             },
@@ -149,30 +149,30 @@ fn suggestion(error: &clap::Error) -> Option<String> {
 
 /// The options of the command line for a failed step.
 #[must_use]
-pub fn advice(error: &StepError, plan: &Plan) -> Option<&'static str> {
-    match (error, plan.method) {
+pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
+    let step = if plan.dtau.is_some() { "--dtau" } else { "--h" };
+    let advice = match (error, plan.method) {
         (
             StepError::NoForwardStep { .. }
             | StepError::NoForwardGaussStep { .. }
             | StepError::StepRatio { .. }
             | StepError::DegenerateStep { .. },
             _,
-        ) => {
-            Some("use fixed steps with --method fixed, which exist here; another --h, --q or --v may avoid this state")
-        }
+        ) => "use fixed steps with --method fixed, which exist here; another --h, --q or --v may avoid this state",
         (StepError::NotConverged { .. }, Method::Energy) => {
-            Some("use shorter steps with --h, or fixed steps with --method fixed")
+            "use shorter steps with --h, or fixed steps with --method fixed"
         }
-        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) if plan.dtau.is_some() => {
-            Some("use shorter steps with --dtau")
+        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => {
+            return Some(format!("use shorter steps with {step}"));
         }
-        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => Some("use shorter steps with --h"),
-        (StepError::TimeScale { .. }, _) => Some(
-            "use shorter steps with --dtau, or steps in time with --h, or write a `time_scale` that is positive there",
-        ),
-        (StepError::Redundant { .. }, _) => Some("start elsewhere with --q, or remove this constraint from the system"),
-        _ => None,
-    }
+        (StepError::TooLong { longest, .. }, _) => return Some(format!("try {step} {}", about(*longest))),
+        (StepError::TimeScale { .. }, _) => {
+            "use shorter steps with --dtau, or steps in time with --h, or write a `time_scale` that is positive there"
+        }
+        (StepError::Redundant { .. }, _) => "start elsewhere with --q, or remove this constraint from the system",
+        _ => return None,
+    };
+    Some(advice.to_owned())
 }
 
 impl fmt::Display for Failure {

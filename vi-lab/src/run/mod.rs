@@ -331,7 +331,7 @@ impl<'a> RunLoop<'a> {
         }
         self.request.length.advance(simulation).map_err(|error| {
             let node = simulation.row();
-            let general = || advice(&error, &self.request.plan).map(str::to_owned);
+            let general = || advice(&error, &self.request.plan);
             let advice = ways_out::of(self.request, &error, &node).or_else(general);
             Failure::Step { error: Box::new(error), before: describe(&node, self.steps), advice }
         })?;

@@ -7,7 +7,7 @@ use vi_core::StepError;
 pub(super) struct Ending(u8);
 
 impl Ending {
-    pub(super) const WORDS: [&str; 16] = [
+    pub(super) const WORDS: [&str; 17] = [
         "reached its end",
         "no forward step",
         "degenerate step",
@@ -24,6 +24,7 @@ impl Ending {
         "another failure",
         "inconsistent start",
         "redundant constraints",
+        "step too long",
     ];
     pub(super) const REACHED: Self = Self(0);
     pub(super) const WRONG_INPUT: Self = Self(10);
@@ -47,6 +48,7 @@ impl Ending {
             StepError::InvalidInput { .. } => 10,
             StepError::InconsistentStart { .. } => 14,
             StepError::Redundant { .. } => 15,
+            StepError::TooLong { .. } => 16,
             _ => 13,
         })
     }
@@ -69,6 +71,8 @@ mod tests {
         let endings = [Ending::REACHED, Ending::WRONG_INPUT, Ending::TOO_SHORT, Ending::NO_SECTION];
         let words = ["reached its end", "wrong input", "steps became too short", "section not found"];
         assert_eq!(endings.map(word), words);
-        assert_eq!([word(Ending::of(singular)), word(Ending::of(other))], ["singular matrix", "another failure"]);
+        let long = StepError::TooLong { t: 0.0, h: 2.0, longest: 1.0 };
+        let of_errors = [singular, other, long].map(|error| word(Ending::of(error)));
+        assert_eq!(of_errors, ["singular matrix", "another failure", "step too long"]);
     }
 }

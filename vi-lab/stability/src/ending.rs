@@ -67,7 +67,9 @@ impl Ending {
                 StepError::NoForwardStep { .. } | StepError::NoForwardGaussStep { .. } => NO_FORWARD_STEP,
                 StepError::DegenerateStep { .. } => DEGENERATE_STEP,
                 StepError::StepRatio { .. } => STEP_RATIO,
-                StepError::NotConverged { .. } | StepError::StagesUnsettled { .. } => NOT_CONVERGED,
+                StepError::NotConverged { .. } | StepError::StagesUnsettled { .. } | StepError::TooLong { .. } => {
+                    NOT_CONVERGED
+                }
                 StepError::Singular { .. } => SINGULAR,
                 StepError::NonFinite { .. } | StepError::Undefined { .. } => NON_FINITE,
                 _ => OTHER,
