@@ -29,6 +29,7 @@ mod iterations;
 mod large;
 mod limits;
 mod loops;
+mod lost_motions;
 mod motions;
 mod orders;
 mod predicted;

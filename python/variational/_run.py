@@ -27,7 +27,7 @@ class LocalError(NamedTuple):
 
 
 class ErrorEstimate(NamedTuple):
-    """The largest error of a step, relative to the excursion of its coordinate."""
+    """The largest error of a step, relative to the scale of its motion."""
 
     estimate: float
     t: float
@@ -296,7 +296,7 @@ class Run:
 
     @property
     def error_estimate(self) -> ErrorEstimate | None:
-        """The largest error of a step since `monitor()`, relative to the excursion of its coordinate.
+        """The largest error of a step since `monitor()`, relative to the scale of its motion.
 
         None if no step was measured: those of `step`, `steps` and `until` are, those of `at`, of events and of
         derivatives are not.

@@ -281,7 +281,7 @@ class System:
         h : float
             Length of a step; negative steps go back in time. For method="energy" the length of the first step.
         tolerance : float
-            In place of h: the largest error of a step, relative to the excursion of its coordinate.
+            In place of h: the largest error of a step, relative to the scale of its motion.
         dtau : float
             In place of h: length of a step in transformed time, for a system with a `time_scale`.
         method : str

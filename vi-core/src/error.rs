@@ -297,11 +297,11 @@ pub enum StepError {
         /// Its value in the system to restart; NaN if the systems differ.
         given: f64,
     },
-    /// The error of a step, relative to the excursion of a coordinate, exceeds the tolerance.
+    /// The relative error of a step exceeds the tolerance, or nothing moves whose error could be compared with it.
     Tolerance {
         /// Time at which the step begins.
         t: f64,
-        /// Relative error of the step; infinite if its half steps have no solution.
+        /// Relative error of the step; infinite if its half steps have no solution, zero if nothing moves.
         estimate: f64,
         /// Largest error allowed.
         tolerance: f64,
@@ -465,6 +465,12 @@ impl fmt::Display for Reason<'_> {
             StepError::OtherSystem { system, parameter: Some(parameter), stored, given } => {
                 write!(f, "the checkpoint of `{system}` was taken with `{parameter}` = {stored:e}, not {given:e}")
             }
+            StepError::Tolerance { t, estimate: 0.0, tolerance } => {
+                write!(
+                    f,
+                    "nothing moves from t = {t:.9} on, so that no step has an error to compare with {tolerance:.1e}"
+                )
+            }
             StepError::Tolerance { t, estimate, tolerance } => write!(
                 f,
                 "the step from t = {t:.9} has a relative error of {estimate:.1e}, more than the {tolerance:.1e} allowed"
@@ -542,6 +548,9 @@ impl fmt::Display for StepError {
                 f,
                 "; set the velocity toward the zero to zero and change the system so that it stays at rest, or search without event {event}"
             ),
+            Self::Tolerance { estimate: 0.0, .. } => {
+                f.write_str("; give a step length h, or start away from the equilibrium")
+            }
             Self::Tolerance { .. } => {
                 f.write_str("; take shorter steps, a method of higher order, or allow a larger error")
             }

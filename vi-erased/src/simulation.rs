@@ -120,7 +120,7 @@ pub trait Steps {
     fn advance_to(&mut self, end: f64) -> Result<(), StepError>;
     /// Measures errors of the steps from here on. It costs a few per cent of their time and changes no bit of them.
     fn monitor(&mut self) {}
-    /// The largest error of a step since [`Steps::monitor`], relative to the excursion of its coordinate; `None` if no step
+    /// The largest error of a step since [`Steps::monitor`], relative to the scale of its motion; `None` if no step
     /// was measured.
     fn largest_error(&self) -> Option<ErrorEstimate> {
         None

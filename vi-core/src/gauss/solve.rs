@@ -4,6 +4,7 @@
 //! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
 //! no state. The stages of every [`Step`] satisfy their equations to rounding.
 
+use super::connected::{FAST, is_proven};
 use super::fixed_point::{self, Convergence, Equations, FixedPointResult, NOISE, Pause, StageIncrement};
 use super::general::{General, equations};
 use super::linearization::Linearization;
@@ -47,6 +48,8 @@ pub struct Step<const N: usize, const S: usize> {
     pub(crate) pause: Pause,
     /// The linearization for the next step, if Newton iteration solved this one.
     pub(crate) linearization: Option<Linearization<N>>,
+    /// Whether the iteration or the stages prove that the step continues short ones.
+    pub(crate) is_proven: bool,
 }
 
 /// The stages after an iteration.
@@ -62,7 +65,8 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
     #[inline(always)]
     pub(crate) fn is_step(&self, node: &Node<N>, h: f64) -> bool {
         let StageIncrement { velocity, momentum } = &self.increment;
-        self.iteration.convergence.is_at_floor() && node.stays_finite(h, velocity, momentum)
+        let convergence = &self.iteration.convergence;
+        convergence.is_at_floor() && convergence.contraction <= FAST && node.stays_finite(h, velocity, momentum)
     }
 
     /// Whether the stages are finite and near a solution, but not at the rounding floor.
@@ -76,7 +80,7 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
     fn step(&self, h: f64, pause: Pause) -> Step<N, S> {
         let Self { increment, stages, iteration, .. } = self;
         let convergence = iteration.convergence;
-        Step { h, increment: *increment, stages: *stages, convergence, pause, linearization: None }
+        Step { h, increment: *increment, stages: *stages, convergence, pause, linearization: None, is_proven: true }
     }
 }
 
@@ -105,6 +109,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let mut after = *self.node;
         after.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
         let mut step = solved.step(self.h, self.pause);
+        step.is_proven = is_proven(system, self.node, &step, newton.is_some());
         step.convergence.change = self.residual(system, solved);
         (after.is_finite() && step.convergence.is_at_floor()).then_some(step)
     }
@@ -185,13 +190,51 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         }
     }
 
-    /// The step, if fixed-point iteration failed or was skipped. `last` is the linearization of the previous step, if
-    /// that had the same length.
+    /// The step, if fixed-point iteration failed, contracted slowly or was skipped. `last` is the linearization of the
+    /// previous step, if that had the same length.
+    ///
+    /// # Errors
+    /// [`StepError::StagesUnsettled`], [`StepError::TooLong`], or the reason why the stages have no value.
+    #[cold]
+    pub(crate) fn recover<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+        left: (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
+        cache: &mut Buffer<N, S>,
+    ) -> Result<Step<N, S>, StepError>
+    where
+        Y: Collocation<N> + Convertible<N>,
+    {
+        let step = self.recovered(system, instructions, left, cache)?;
+        if step.is_proven { Ok(step) } else { self.continued(system, instructions, step, cache) }
+    }
+
+    /// The step from a guess of its stages, whether or not it is proven to continue short ones.
+    ///
+    /// # Errors
+    /// As [`Start::recover`].
+    pub(super) fn unproven<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+        cache: &mut Buffer<N, S>,
+    ) -> Result<Step<N, S>, StepError>
+    where
+        Y: Collocation<N> + Convertible<N>,
+    {
+        let solved = self.side_by_side(system, instructions, None);
+        if solved.is_step(self.node, self.h) {
+            return Ok(solved.step(self.h, self.pause));
+        }
+        self.recovered(system, instructions, (Some(&solved), None), cache)
+    }
+
+    /// The step of [`Start::recover`], before its proof.
     ///
     /// # Errors
     /// [`StepError::StagesUnsettled`], or the reason why the stages have no value.
-    #[cold]
-    pub(crate) fn recover<Y>(
+    fn recovered<Y>(
         &self,
         system: &Y,
         instructions: Instructions,
@@ -243,7 +286,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         // step misleads.
         let first = start
             .by_fixed_point(system, instructions)
-            .or_else(|left| start.recover(system, instructions, (Some(&left), None), cache));
+            .or_else(|left| start.recovered(system, instructions, (Some(&left), None), cache));
         first.or(extrapolated)
     }
 

@@ -77,6 +77,8 @@ where
     type Left = StepError;
     type DenseOutput = Hermite<N>;
 
+    const HAS_REACTIONS: bool = true;
+
     fn order(&self) -> u32 {
         self.scheme.order
     }

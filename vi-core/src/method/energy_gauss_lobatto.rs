@@ -125,6 +125,7 @@ where
     type DenseOutput = Hermite<N>;
 
     const FINDS_LENGTH: bool = true;
+    const HAS_REACTIONS: bool = true;
 
     #[allow(clippy::cast_possible_truncation)] // 3 stages at most
     fn order(&self) -> u32 {

@@ -171,6 +171,8 @@ where
     type Left = StepError;
     type DenseOutput = Hermite<N>;
 
+    const HAS_REACTIONS: bool = true;
+
     #[allow(clippy::cast_possible_truncation)] // 16 stages at most
     fn order(&self) -> u32 {
         2 * STAGES as u32

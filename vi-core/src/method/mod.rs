@@ -138,6 +138,9 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
     /// Whether [`Method::solve`] finds the step length itself.
     const FINDS_LENGTH: bool = false;
 
+    /// Whether the method takes systems with constraints, whose reactions may do work.
+    const HAS_REACTIONS: bool = false;
+
     /// Name of the rule, unless it is the first rule of the system. A checkpoint stores it.
     fn rule(&self) -> Option<&'static str> {
         None

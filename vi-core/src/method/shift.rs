@@ -121,7 +121,7 @@ where
         while steps.node.t < end {
             match steps.step() {
                 Ok(_) => {}
-                Err(StepError::StagesUnsettled { .. }) => return Ok(None),
+                Err(StepError::StagesUnsettled { .. } | StepError::TooLong { .. }) => return Ok(None),
                 // A constraint turns too far.
                 Err(StepError::NotConverged { turn, .. }) if turn > 0.0 => return Ok(None),
                 Err(failure) => return Err(failure),

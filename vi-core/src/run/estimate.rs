@@ -8,24 +8,39 @@
 //! error = |one step − two half steps| · 2^p/(2^p − 1)
 //! ```
 //!
-//! The error of a coordinate is relative to its own excursion: the largest `|q_i − q_i(start)|` and `|h v_i|` so far.
-//! It has no unit, and neither a large coordinate nor the choice of an origin hides the error of a small one. A
-//! coordinate counts if it moves by more than [`VISIBLE`] ulps of its own value, and if its `|p_i v_i|` exceeds `(4096
-//! ε)²` of the largest one. Smaller excursions are rounding errors that the other coordinates cause.
+//! The error of a coordinate is relative to a scale of its motion, the shorter one of
 //!
-//! The first stretch ends when every counted coordinate with a turning point has covered four times its excursion, or
-//! after [`STRETCH`] steps. Until then excursions grow, so the largest error is relative to the excursions at the time
-//! of the query. Later measurements are final.
+//! ```text
+//! excursion = largest |q_i − q_i(start)| and |h v_i| so far
+//! reach     = range of the force F_i / largest |∂F_i/∂q_i|, at least a quarter of the largest change of h v_i
+//! ```
 //!
-//! A monitor first measures every step. Then it divides the run into windows of an eighth of the steps so far, at most
-//! [`WINDOW`] steps. In each window it measures the step with the largest indicator `h |Δ(Δp_i/h)|/|p_i − p_i(start)|`,
-//! the change of the mean force. This finds peaks that are shorter than a window. One measurement costs about two
-//! steps (eight in transformed time). A run of 5000 steps measures 3 % of them, a long run 1.1 %. The indicator costs
-//! about 60 instructions a step for one coordinate, 90 for two. A run without a monitor has no extra cost.
+//! An error of the reach changes the force by as much as it changes along the run. Neither the origin nor the frame
+//! changes it, and a rotor has that of one turn. A step cannot resolve less than the change of h v. The relative error has
+//! no unit, so a large coordinate does not hide the error of a small one. A coordinate counts if it moves by more than
+//! [`VISIBLE`] ulps of its own value, and if its `|p_i v_i|` exceeds `(4096 ε)²` of the largest one. Smaller excursions are
+//! rounding errors that the other coordinates cause.
+//!
+//! Two further measurements only add to this. A step that changes a conserved H by more than [`GROSS`] of the energy has
+//! at least that error. A half step whose dense output does not begin with the velocity of its node misses the motion.
+//!
+//! The first stretch ends when every counted coordinate with a turning point has covered four times its excursion, or,
+//! if none turns back, its force that of its range, or after [`STRETCH`] steps. Until then the scales grow, so the largest
+//! error is relative to the scales at the time of the query. Later measurements are final.
+//!
+//! A monitor measures the first step, and those after a jump. Then it divides the run into windows of an eighth of the
+//! steps so far, at most [`WINDOW`] steps. The indicator of a step is the change of the mean force of a coordinate,
+//! relative to the largest change before the window: `h² |Δ(Δp_i/h)|`. A step whose indicator exceeds [`SUSPICIOUS`] is
+//! measured at once, and of each window the step with the largest one. So no peak of a force passes unmeasured, and
+//! the number of measurements grows by the logarithm of the largest change. Measured on plunging Kepler orbits, walls and
+//! rotors: that indicator alone finds every step that loses the motion, so the stages of a method need no indicator of
+//! their own. One measurement costs about two steps (eight in transformed time). A run of 5000 steps measures 3 % of
+//! them, a long run 1.1 %. The indicator costs about 60 instructions a step for one coordinate, 90 for two. A run
+//! without a monitor has no extra cost.
 
-use super::Run;
 #[cfg(feature = "alloc")]
 use super::events::{Crossing, Crossings, Events};
+use super::{DenseOutput as _, Run};
 use crate::angles::{self, Turns};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -41,8 +56,19 @@ use num_traits::Float as _;
 const VISIBLE: f64 = 64.0;
 /// A coordinate counts if the root of its `|p_i v_i|`, relative to the others, exceeds this many `ε`.
 const FAINT: f64 = 4096.0;
+/// A motion counts as rest if not even relative errors of this size would be visible.
+const COARSEST: f64 = 1e-6;
 /// The longest window between two measurements, in steps: about 1 % of their time.
 const WINDOW: u64 = 200;
+/// Relative energy error from which on it counts as an error of the step. Smaller ones may be rounding of a large
+/// constant in H.
+const GROSS: f64 = 1e-3;
+/// A step is measured at once if its indicator exceeds the largest one before its window by this factor.
+const SUSPICIOUS: f64 = 1.25;
+/// Part of the largest change of `h v` that the scale of an error has at least.
+const DEFLECTION: f64 = 0.25;
+/// Part of the displacement of a step by which the force is probed.
+const PROBE: f64 = 1e-4;
 /// Most steps of the first stretch.
 const STRETCH: u64 = 4096;
 /// Steps after which errors are judged by the excursions so far, even if no coordinate has turned back.
@@ -70,13 +96,20 @@ struct Measurement<const N: usize> {
     /// `|h v|` and `|p v|` at the end of the step.
     displacement: SVector<f64, N>,
     action: SVector<f64, N>,
+    /// `h v` there.
+    hv: SVector<f64, N>,
+    /// `|∂(L_q + f)_i/∂q_i|` at the end of the step.
+    stiffness: SVector<f64, N>,
+    /// `|H1 − H0|` of a system that conserves H, relative to the energy, if it exceeds [`GROSS`]; else zero.
+    energy: f64,
 }
 
 impl<const N: usize> Measurement<N> {
     fn unknown() -> Self {
         let infinite = SVector::repeat(f64::INFINITY);
         let of = LocalError { q: infinite, hv: infinite };
-        Self { error: infinite, of, displacement: SVector::zeros(), action: SVector::zeros() }
+        let zeros = SVector::zeros();
+        Self { error: infinite, of, displacement: zeros, action: zeros, hv: zeros, stiffness: zeros, energy: 0.0 }
     }
 }
 
@@ -109,6 +142,7 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let h = duration(before, after);
     let half = h * T::real(0.5);
     let (middle, memory) = method.step_of(system, (before, memory), [half, *of_run])?;
+    let unresolved = unresolved(run, &before.state(), (&middle, &memory, half))?;
     let (end, _) = method.step_of(system, (&middle, &memory), [duration(&middle, after), *of_run])?;
     let v = after.state().velocity(system)?;
     let better = end.state().velocity(system)?;
@@ -118,11 +152,71 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     // The low parts carry the digits beyond the precision of a number.
     let q = (after.q - end.q) + (after.q_low - end.q_low);
     let q = q.map(|entry| known(factor * entry.to_f64()));
-    let hv = (v - better).map(|entry| known(factor * length * entry.to_f64()));
-    let displacement = v.map(|entry| (length * entry.to_f64()).abs());
+    let error_of_hv = (v - better).map(|entry| known(factor * length * entry.to_f64()));
+    let hv = v.map(|entry| length * entry.to_f64());
+    let displacement = hv.map(f64::abs);
     let action = v.zip_map(&after.p, |v, p| (v.to_f64() * p.to_f64()).abs());
-    let error = q.zip_map(&hv, f64::max);
-    Ok(Measurement { error, of: LocalError { q, hv }, displacement, action })
+    let stiffness = stiffness(system, after, &displacement);
+    let energy = energy_error::<M, S, N, T>(system, [&before.state(), &after.state()], action.sum())?;
+    let error = q.zip_map(&error_of_hv, f64::max).zip_map(&unresolved, f64::max);
+    Ok(Measurement { error, of: LocalError { q, hv: error_of_hv }, displacement, action, hv, stiffness, energy })
+}
+
+/// For each coordinate, `h |u'(t0) − v0|` of the half step with the dense output u, if that exceeds half of the
+/// displacement; zero otherwise.
+///
+/// The stages of a step that is too stiff by orders of magnitude miss the motion, and so do those of its halves: with
+/// an even number of stages both return the state from which they started, and their difference is no error.
+fn unresolved<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
+    run: &Run<M, S, N, T>,
+    before: &State<N, T>,
+    (middle, memory, half): (&Node<N, T>, &M::Memory, T),
+) -> Result<SVector<f64, N>, StepError> {
+    let Run { method, system, .. } = run;
+    let output = method.dense_output(system, before, middle, half, memory)?;
+    let (v, after) = (before.velocity(system)?, middle.state().velocity(system)?);
+    let missed = output.velocity(before.t) - v;
+    Ok(SVector::from_fn(|i, _| {
+        let [missed, before, after] = [missed[i], v[i], after[i]].map(|speed| (half * speed).to_f64().abs());
+        if missed > 0.5 * before.max(after) { 2.0 * missed } else { 0.0 }
+    }))
+}
+
+/// `|H1 − H0|` of a step, relative to the larger of |H| and `Σ |p v|`, if that exceeds [`GROSS`]. Zero if H changes along
+/// the motion.
+///
+/// A step into a wall that its points of evaluation do not see ends at the right place of a motion without the wall, and
+/// so may its halves.
+fn energy_error<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
+    system: &S,
+    [before, after]: [&State<N, T>; 2],
+    action: f64,
+) -> Result<f64, StepError> {
+    if !S::AUTONOMOUS || S::FORCED || M::HAS_REACTIONS {
+        return Ok(0.0);
+    }
+    let [before, after] = [before.energy(system)?.to_f64(), after.energy(system)?.to_f64()];
+    let error = known(after - before) / before.abs().max(after.abs()).max(action);
+    Ok(if error > GROSS { error } else { 0.0 })
+}
+
+/// `|∂(L_q + f)_i/∂q_i|` of each coordinate at a node, by central differences over small parts of a displacement.
+fn stiffness<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
+    system: &S,
+    node: &Node<N, T>,
+    displacement: &SVector<f64, N>,
+) -> SVector<f64, N> {
+    SVector::from_fn(|i, _| {
+        let length = (PROBE * displacement[i]).max(T::EPSILON.powf(2.0 / 3.0) * node.q[i].to_f64().abs());
+        let force = |length: f64| {
+            let mut q = node.q;
+            q[i] += T::real(length);
+            Some((system.flow(node.t, &q, &node.p).ok()?.force[i].to_f64(), q[i].to_f64()))
+        };
+        let (Some((above, right)), Some((below, left))) = (force(length), force(-length)) else { return 0.0 };
+        let stiffness = ((above - below) / (right - left)).abs();
+        if stiffness.is_finite() { stiffness } else { 0.0 }
+    })
 }
 
 /// The size of an error; infinite for NaN.
@@ -165,8 +259,8 @@ struct Candidate<M, const N: usize, T> {
 /// The largest relative error of a step, and the time at which that step began.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
-    /// Error of q and h·v in one step, relative to the excursion of the coordinate: the largest entry. Infinite if the
-    /// half steps of a step have no solution.
+    /// Error of q and h·v in one step, relative to the scale of the motion of the coordinate: the largest entry. Infinite
+    /// if the half steps of a step have no solution.
     pub estimate: f64,
     /// Time at which the step began.
     pub t: f64,
@@ -182,8 +276,9 @@ impl ErrorEstimate {
 
 /// Monitors the steps of a run, and keeps the largest relative error. See [`Run::monitored`] and `docs/choosing.md`.
 ///
-/// Errors are relative to the largest `|q_i − q_i(start)|` and `|h v_i|` of the coordinate so far. The monitor
-/// measures, by half steps, those steps in which the momentum increments change most: the first sixteen, then ever
+/// Errors are relative to the scale of the motion of a coordinate: the distance over which its force changes by its
+/// range, or the largest `|q_i − q_i(start)|` and `|h v_i|` so far, if that is shorter. The monitor measures, by half
+/// steps, every step whose momentum increments change more than before, and of the others the first sixteen, then ever
 /// fewer, down to one of 200.
 #[derive(Clone, Debug)]
 pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
@@ -191,13 +286,19 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     last: Node<N, T>,
     /// The turns that the angles of `start` and `last` are without.
     turns: Turns<N>,
-    /// Increment of the momenta in the last step, divided by its length.
+    /// Mean force of the last step: the increment of the momenta, divided by its length.
     force: SVector<T, N>,
-    /// Inverse of the largest `|p_i − p_i(start)|`, of counted coordinates.
-    weights: SVector<T, N>,
+    /// Mean force of the first step, and the largest difference to it.
+    first_force: SVector<T, N>,
+    range: SVector<T, N>,
+    /// Whether the next step has no predecessor: the first one, and one after a jump.
+    is_first: bool,
     excursion: SVector<T, N>,
-    /// Largest `|p_i − p_i(start)|`.
-    momentum: SVector<T, N>,
+    /// The largest indicator of each coordinate, and its inverse when the window began.
+    peak: SVector<T, N>,
+    weights: SVector<T, N>,
+    /// The largest `|∂F_i/∂q_i|` of the measured steps.
+    stiffness: SVector<f64, N>,
     candidate: Option<Candidate<M::Memory, N, T>>,
     pub(super) steps: u64,
     /// Step number at which the window ends.
@@ -206,15 +307,21 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     /// Largest `|p_i v_i|` and `|h v_i|` of the measured steps.
     action: SVector<f64, N>,
     displacement: SVector<f64, N>,
+    /// `h v` of the first measured step, and the largest difference to it.
+    first_hv: Option<SVector<f64, N>>,
+    deflection: SVector<f64, N>,
     largest: ErrorEstimate,
+    /// The largest energy error of a step.
+    of_energy: ErrorEstimate,
     measurements: u64,
 }
 
 /// The first stretch of a run.
 #[derive(Clone, Debug)]
 struct Stretch<const N: usize, T> {
-    /// Path length of each coordinate.
+    /// Path length of each coordinate, and of its mean force.
     way: SVector<T, N>,
+    force_way: SVector<T, N>,
     /// The largest error of each coordinate, in its unit, and the time of that step.
     errors: SVector<f64, N>,
     times: SVector<f64, N>,
@@ -223,22 +330,30 @@ struct Stretch<const N: usize, T> {
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> ErrorMonitor<M, S, N, T> {
     /// A monitor that starts at the current node of a run.
     pub fn new(run: &Run<M, S, N, T>) -> Self {
+        let nothing = ErrorEstimate { estimate: 0.0, t: run.node.t.to_f64(), coordinate: 0 };
         let (node, zeros, none) = (run.node, SVector::zeros(), SVector::zeros());
         Self {
             start: node.state(),
             last: node,
             turns: run.turns,
             force: zeros,
-            weights: zeros,
+            first_force: zeros,
+            range: zeros,
+            is_first: true,
             excursion: zeros,
-            momentum: zeros,
+            peak: zeros,
+            weights: zeros,
+            stiffness: none,
             candidate: None,
             steps: 0,
             due: 1,
-            stretch: Some(Stretch { way: zeros, errors: none, times: none }),
+            stretch: Some(Stretch { way: zeros, force_way: zeros, errors: none, times: none }),
             action: none,
             displacement: none,
-            largest: ErrorEstimate { estimate: 0.0, t: node.t.to_f64(), coordinate: 0 },
+            first_hv: None,
+            deflection: none,
+            largest: nothing,
+            of_energy: nothing,
             measurements: 0,
         }
     }
@@ -252,24 +367,31 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             return;
         }
         let rate = T::one() / h;
-        let mut indicator = T::zero();
         self.turn(run);
+        if self.is_first {
+            self.take_first((node.p - self.last.p) * rate);
+        }
+        // The change of the mean force, as a displacement. The steps of a damped motion grow: their errors increase
+        // while its momenta decay.
+        let unit = if M::FINDS_LENGTH { h * h * h * h } else { h * h };
+        let mut indicator = T::zero();
         for i in 0..N {
             let excursion = (node.q[i] - self.start.q[i]).abs();
             self.excursion[i] = larger(self.excursion[i], excursion);
-            self.momentum[i] = larger(self.momentum[i], (node.p[i] - self.start.p[i]).abs());
             let force = (node.p[i] - self.last.p[i]) * rate;
-            let change = (force - self.force[i]) * self.weights[i];
-            let size = force * self.weights[i];
+            self.range[i] = larger(self.range[i], (force - self.first_force[i]).abs());
+            let change = (force - self.force[i]).abs();
+            let size = force.abs();
             self.force[i] = force;
             // An impulse changes the force in its own step and in the next one equally: a quarter more decides for its
             // own step.
-            let (change, size) = (change * change, size * size);
-            indicator += change + T::real(0.25) * if size < change { size } else { change };
+            let peak = (change + T::real(0.25) * if size < change { size } else { change }) * unit;
+            self.peak[i] = larger(self.peak[i], peak);
+            indicator = larger(indicator, peak * self.weights[i]);
+            if let Some(stretch) = &mut self.stretch {
+                stretch.force_way[i] += change;
+            }
         }
-        // A shortened step has small increments. The steps of a damped motion grow: their errors increase while its momenta
-        // decay.
-        indicator *= if M::FINDS_LENGTH { h * h * h * h * h * h } else { h * h };
         if let Some(stretch) = &mut self.stretch {
             stretch.way += (node.q - self.last.q).map(T::abs);
         }
@@ -278,9 +400,19 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             self.nominate(run, indicator);
         }
         self.last = *node;
-        if self.steps >= self.due {
+        if self.steps >= self.due || indicator > T::real(SUSPICIOUS) {
             self.close(run);
         }
+    }
+
+    /// Takes the mean force of a step without a predecessor, and measures that step.
+    #[cold]
+    #[inline(never)]
+    fn take_first(&mut self, force: SVector<T, N>) {
+        if self.steps == 0 {
+            self.first_force = force;
+        }
+        (self.force, self.is_first, self.due) = (force, false, self.steps);
     }
 
     /// Takes the turns of a run for the start of its step, and for the start of the run.
@@ -300,7 +432,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.start.q += run.node.q - self.last.q;
         self.start.p += run.node.p - self.last.p;
         (self.last, self.turns) = (run.node, run.turns);
-        self.force = SVector::zeros();
+        self.is_first = true;
     }
 
     /// The largest relative error of a step so far, and its time. Also measures the candidate of the open window, so
@@ -319,7 +451,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.measurements
     }
 
-    /// The error of the next step of the run, relative to the excursions so far.
+    /// The error of the next step of the run, relative to the scales so far.
     ///
     /// # Errors
     /// Those of the step.
@@ -332,7 +464,15 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         let before = angles::reduced_node::<S, N, T>(&run.node);
         let found = measured(run, &run.memory, [&before, &ahead.node]);
         monitor.add(&found);
-        Ok(monitor.relative(&found.error, &SVector::zeros()).estimate)
+        Ok(monitor.relative(&found.error, &SVector::zeros()).estimate.max(found.energy))
+    }
+
+    /// Whether some coordinate moves so far that errors of the size of a tolerance exceed rounding.
+    pub(super) fn has_motion(&self, tolerance: f64) -> bool {
+        (0..N).any(|i| {
+            let size = larger(self.start.q[i].abs(), self.last.q[i].abs()).to_f64();
+            self.counts(i) && self.excursion(i) * tolerance.max(COARSEST) > VISIBLE * T::EPSILON * size
+        })
     }
 
     /// Whether the first stretch is over.
@@ -340,11 +480,15 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.stretch.is_none()
     }
 
-    /// Whether excursions are large enough to judge errors: a coordinate has turned back, or the run has taken [`JUDGED`] steps.
+    /// Whether excursions are large enough to judge errors: a coordinate or its force has turned back, or the run has taken [`JUDGED`] steps.
     fn judges(&self) -> bool {
         let Some(stretch) = &self.stretch else { return true };
-        let has_turned = |i: usize| stretch.way[i].to_f64() > TURNED * self.excursion[i].to_f64();
-        self.steps >= JUDGED || (0..N).any(|i| self.counts(i) && has_turned(i))
+        let has_turned = |way: T, largest: T| way.to_f64() > TURNED * largest.to_f64();
+        self.steps >= JUDGED
+            || (0..N).filter(|i| self.counts(*i)).any(|i| {
+                has_turned(stretch.way[i], self.excursion[i])
+                    || self.has_force(i) && has_turned(stretch.force_way[i], self.range[i])
+            })
     }
 
     /// # Errors
@@ -378,6 +522,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.measurements += 1;
         self.add(&found);
         let t = before.t.to_f64();
+        let coordinate = found.action.imax();
+        self.of_energy = self.of_energy.or_larger(ErrorEstimate { estimate: found.energy, t, coordinate });
         if let Some(stretch) = &mut self.stretch {
             for i in 0..N {
                 if found.error[i] > stretch.errors[i] {
@@ -391,31 +537,31 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         } else {
             self.largest = self.largest.or_larger(self.relative(&found.error, &SVector::repeat(t)));
         }
-        for i in 0..N {
-            let size = self.momentum[i];
-            let weight = T::one() / size;
-            self.weights[i] = if self.counts(i) && weight.is_finite() { weight } else { T::zero() };
-        }
+        self.weights = self.peak.map(|peak| T::one() / peak);
     }
 
     fn add(&mut self, found: &Measurement<N>) {
         self.action = self.action.zip_map(&found.action, f64::max);
         self.displacement = self.displacement.zip_map(&found.displacement, f64::max);
+        let first = *self.first_hv.get_or_insert(found.hv);
+        self.deflection = self.deflection.zip_map(&(found.hv - first), |largest, hv| largest.max(hv.abs()));
+        self.stiffness = self.stiffness.zip_map(&found.stiffness, f64::max);
     }
 
-    /// Whether every counted coordinate has turned back and covered its excursion several times, or has never turned.
+    /// Whether every counted coordinate has turned back and covered its excursion several times, or has never turned. If
+    /// none has turned, the same of the mean forces: a rotor never turns back, but its force does.
     fn has_turned(&self) -> bool {
         let Some(stretch) = &self.stretch else { return true };
-        let mut has_turned = false;
-        for i in (0..N).filter(|i| self.counts(*i)) {
-            let covered = stretch.way[i].to_f64() / self.excursion[i].to_f64();
-            if covered >= COVERED {
-                has_turned = true;
-            } else if covered > TURNED {
-                return false;
-            }
+        let path = |i: usize| stretch.way[i].to_f64() / self.excursion[i].to_f64();
+        let of_force = |i: usize| stretch.force_way[i].to_f64() / self.range[i].to_f64();
+        let counted = || (0..N).filter(|i| self.counts(*i));
+        if counted().any(|i| path(i) > TURNED) {
+            counted().any(|i| path(i) >= COVERED) && counted().all(|i| path(i) >= COVERED || path(i) <= TURNED)
+        } else {
+            let forced = || counted().filter(|i| self.has_force(*i));
+            forced().any(|i| of_force(i) >= COVERED)
+                && forced().all(|i| of_force(i) >= COVERED || of_force(i) <= TURNED)
         }
-        has_turned
     }
 
     /// Whether a coordinate moves visibly.
@@ -425,16 +571,31 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.excursion(i) > VISIBLE * T::EPSILON * size && self.action[i] >= faint * faint * self.action.max()
     }
 
+    /// The scale of the errors of a coordinate: its excursion, or the distance over which its force changes by the
+    /// range of the force, if that is shorter.
+    fn scale(&self, i: usize) -> f64 {
+        let excursion = self.excursion(i);
+        let reach = (self.range[i].to_f64() / self.stiffness[i]).max(DEFLECTION * self.deflection[i]);
+        if self.has_force(i) && reach < excursion { reach } else { excursion }
+    }
+
+    /// Whether the mean force of a coordinate changes visibly.
+    fn has_force(&self, i: usize) -> bool {
+        let change = self.range[i].to_f64() * self.displacement[i];
+        change > VISIBLE * T::EPSILON * self.action[i]
+    }
+
     fn excursion(&self, i: usize) -> f64 {
         self.excursion[i].to_f64().max(self.displacement[i])
     }
 
     /// The largest relative error so far.
     fn found(&self) -> ErrorEstimate {
-        match &self.stretch {
+        let found = match &self.stretch {
             Some(stretch) => self.relative(&stretch.errors, &stretch.times),
             None => self.largest,
-        }
+        };
+        found.or_larger(self.of_energy)
     }
 
     /// The largest error over all coordinates, relative to their excursions.
@@ -445,7 +606,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             let estimate = match error {
                 0.0 => 0.0,
                 _ if error.is_infinite() => f64::INFINITY,
-                _ if self.counts(i) => error / self.excursion(i),
+                _ if self.counts(i) => error / self.scale(i),
                 _ => 0.0,
             };
             largest = largest.or_larger(ErrorEstimate { estimate, t: times[i], coordinate: i });
@@ -505,7 +666,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.monitor.largest(&self.run)
     }
 
-    /// The error of the next step, relative to the excursions so far.
+    /// The error of the next step, relative to the scales so far.
     ///
     /// # Errors
     /// Those of the step.

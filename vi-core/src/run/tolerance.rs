@@ -34,7 +34,7 @@ pub trait Length<T: Scalar> {
     /// The step length of a run from a start by a method.
     ///
     /// # Errors
-    /// [`StepError::Tolerance`] if no length meets the tolerance; [`StepError::InvalidInput`] for a tolerance below a
+    /// [`StepError::Tolerance`] if no length meets the tolerance, or if nothing moves, with an estimate of zero; [`StepError::InvalidInput`] for a tolerance below a
     /// rounding (2.2e-16 in `f64`) or not below 1; the error of the shortest steps tried.
     fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
         self,
@@ -89,9 +89,12 @@ impl<T: Scalar> Length<T> for Tolerance {
         // Whether steps of the length `high` do not exist, so that no length has an error near the tolerance.
         let mut is_edge = false;
         for _ in 0..TRIALS {
-            let outcome = over_stretch(start, method, T::real(h));
+            let outcome = over_stretch(start, method, T::real(h), tolerance);
             let estimate = match outcome {
-                Ok(estimate) => estimate,
+                Ok(Some(estimate)) => estimate,
+                Ok(None) => {
+                    return Err(StepError::Tolerance { t: start.state.t.to_f64(), estimate: 0.0, tolerance });
+                }
                 Err(error) => {
                     // Of the longest steps: the lengths of the others are of the search alone.
                     failure.get_or_insert(error);
@@ -147,7 +150,7 @@ fn bisected(low: f64, high: f64) -> f64 {
     }
 }
 
-/// The largest relative error over the first stretch with steps of the length h.
+/// The largest relative error over the first stretch with steps of the length h; `None` if nothing moves.
 ///
 /// # Errors
 /// The reason why a step fails.
@@ -155,7 +158,8 @@ fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
     start: &Start<S, N, T>,
     method: &M,
     h: T,
-) -> Result<f64, StepError> {
+    tolerance: f64,
+) -> Result<Option<f64>, StepError> {
     let mut run = start.integrate(method.clone(), h)?;
     let mut monitor = ErrorMonitor::new(&run);
     while !monitor.is_over() {
@@ -166,7 +170,8 @@ fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
             Err(failure) => return Err(failure),
         }
     }
-    Ok(monitor.largest(&run).estimate)
+    let found = monitor.largest(&run);
+    Ok(monitor.has_motion(tolerance).then_some(found.estimate))
 }
 
 /// Whether a method has no step past some place, of any length.

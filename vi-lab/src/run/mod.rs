@@ -135,7 +135,7 @@ pub(crate) struct Arguments {
     /// 3]
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
     pub(crate) h: Option<f64>,
-    /// Finds the step: the largest error of a step over the first oscillations, relative to the excursion of each coordinate
+    /// Finds the step: the largest error of a step over the first oscillations, relative to the motion of each coordinate
     #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with_all = ["h", "dtau"])]
     pub(crate) tolerance: Option<f64>,
     /// Number of steps, such as 1e6 [default: 1000]
@@ -229,7 +229,7 @@ pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         // Standard error may be closed; the rows are complete.
         let _ = writeln!(io::stderr(), "{note}");
     }
-    if let Some(found) = simulation.largest_error().filter(|_| outcome.is_ok()) {
+    if let Some(found) = simulation.largest_error() {
         let _ = writeln!(io::stderr(), "{}", accuracy(&found, &request.system.coordinates()));
     }
     // After any end, and if one output failed, each sink writes what it can.
@@ -250,7 +250,7 @@ fn accuracy(found: &ErrorEstimate, coordinates: &[&str]) -> String {
         return format!("warning: the step {at} is too long for its error to be measured; take shorter ones with --h");
     }
     let name = coordinates.get(coordinate).copied().unwrap_or_default();
-    let found = format!("the largest error of a step is {} of the excursion of {name}, {at}", about(estimate));
+    let found = format!("the largest error of a step is {} of the motion of {name}, {at}", about(estimate));
     if estimate < POOR {
         format!("note: {found}")
     } else {

@@ -34,7 +34,7 @@ pub(super) struct Outcome {
     last: Option<Row>,
     /// The ranges of each coordinate, of H and of E; `None` without values.
     ranges: Vec<Option<Range>>,
-    /// The largest error of a step, relative to the excursion of its coordinate; NaN if it was not measured.
+    /// The largest error of a step, relative to the scale of its motion; NaN if it was not measured.
     pub(super) step_error: f64,
 }
 
