@@ -3,7 +3,7 @@
 
 #![forbid(unsafe_code)]
 
-use proc_macro2::TokenStream;
+use proc_macro2::{LexError, TokenStream};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use vi_codegen::inspect::{self, Line, report};
@@ -25,8 +25,10 @@ type Explained = (String, String, Vec<(&'static str, Vec<(String, String)>)>);
 #[pyo3(crate = "vi_python::pyo3", signature = (definition, stages=None))]
 fn explain(definition: &str, stages: Option<usize>) -> PyResult<Explained> {
     const FILE: &str = "definition";
-    let tokens: TokenStream = syn::parse_str(definition)
-        .map_err(|error| PyValueError::new_err(report::unreadable(FILE, definition, &error)))?;
+    // Not by `syn::parse_str`, which recurses before the compiler bounds the nesting.
+    let tokens: TokenStream = definition
+        .parse()
+        .map_err(|error: LexError| PyValueError::new_err(report::unreadable(FILE, definition, &error.into())))?;
     let explained = match stages {
         None => inspect::explain(tokens),
         Some(stages) => inspect::explain_gauss(tokens, stages),

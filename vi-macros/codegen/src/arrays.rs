@@ -55,6 +55,8 @@ pub enum ArrayMistake {
     Slice,
     /// `[1 2]`, `[1, 2; 3, 4]`.
     Separator { is_row: bool },
+    /// More indices than an array may have.
+    Brackets { limit: usize },
     /// `M^T`.
     Transposed { name: Option<String> },
 }
@@ -154,6 +156,7 @@ impl ArrayMistake {
             Self::InnerProduct => "`dot` is the time derivative, of one argument".to_owned(),
             Self::IndexComma => "an index is one number".to_owned(),
             Self::Slice => "an index is one number, not a range".to_owned(),
+            Self::Brackets { limit } => format!("an array has at most {limit} indices"),
             Self::Transposed { .. } => "`^T` does not denote the transpose".to_owned(),
         }
     }
@@ -225,6 +228,7 @@ impl ArrayMistake {
             Self::InnerProduct => "the inner product is `a * b`, the velocity of `x` is `dot(x)`".to_owned(),
             Self::IndexComma => "write each index in brackets of its own: `q[i][j]`".to_owned(),
             Self::Slice => "write the entries in a list, `[q[0], q[1]]`, or `let part[i in 0..2] = q[i];`".to_owned(),
+            Self::Brackets { .. } => "use fewer indices".to_owned(),
             Self::Transposed { name } => format!("write `transpose({})`", name.as_deref().unwrap_or("M")),
         }
     }

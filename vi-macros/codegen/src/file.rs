@@ -17,12 +17,12 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
 }
 
 fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
-    let definition = tokens.to_string();
     // A system with mistakes expands to its errors and writes no file.
-    let (items, error) = match Compiled::from_tokens(tokens) {
+    let (items, error) = match Compiled::from_tokens(tokens.clone()) {
         Ok(compiled) => {
             let mut items = compiled.items();
-            items.extend(crate::emit::structure::described(compiled.model(), &definition));
+            // Only tokens that are not nested too deep become text: that recurses.
+            items.extend(crate::emit::structure::described(compiled.model(), &tokens.to_string()));
             let written = folder.map_or(Ok(()), |folder| write(&compiled, folder));
             (items, written.err().map(|reason| quote!(::core::compile_error! { #reason })))
         }

@@ -18,6 +18,8 @@ pub enum FunctionMistake {
     TooManyArguments { name: String, limit: usize },
     /// A function of the language that calls itself.
     Recursive { name: String },
+    /// Functions that call each other through too many levels.
+    TooDeep { limit: usize },
     /// An unused function or table.
     Unused { name: String },
     /// A table whose values are none of the allowed forms.
@@ -56,6 +58,11 @@ impl FunctionMistake {
             Self::Text => "a text is no number".to_owned(),
             Self::TooManyArguments { name, limit } => format!("`{name}` has more than {limit} arguments"),
             Self::Recursive { name } => format!("`{name}` calls itself"),
+            Self::TooDeep { limit } => {
+                format!(
+                    "in functions that call each other, more than {limit} operations and calls are inside each other"
+                )
+            }
             Self::Unused { name } => format!("`{name}` is never used"),
             Self::Data => "these are not the values of a table".to_owned(),
             Self::Table { name, what, .. } => format!("the table `{name}` {what}"),
@@ -83,6 +90,11 @@ impl FunctionMistake {
                 "declare several functions of fewer arguments, or write the expression with `fn` and `let`".to_owned()
             }
             Self::Recursive { .. } => "write the expression without recursion; `sum` repeats a term".to_owned(),
+            Self::TooDeep { .. } => {
+                "write the values one after the other with `let`, as in `let x[0] = …; let x[i in 1..8] = … x[i - 1] …;`, or a sum with \
+                 `sum`"
+                    .to_owned()
+            }
             Self::Unused { .. } => "use it in `L` or in a force, or remove it".to_owned(),
             Self::Data => {
                 "write the path of a file, `\"drag.csv\"`, points `[(0, 0.1), (1, 0.3)]`, or values at equal distances, `[0.1, 0.3]` or \

@@ -15,6 +15,7 @@ mod inspect;
 mod large;
 mod mass;
 mod messages;
+mod nesting;
 mod operations;
 mod reference;
 mod requests;

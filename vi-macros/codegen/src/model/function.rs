@@ -18,6 +18,9 @@ use std::rc::Rc;
 use syn::Result;
 use vi_expr::{Expr, MAX_ARGUMENTS, Opaque, Pool};
 
+/// Work of a call besides its arguments and its body: names get their meanings and lose them.
+const CALL: usize = 200;
+
 /// Frequency of the stand-in of a function without a known period.
 const FREQUENCY: f64 = 0.7;
 
@@ -189,14 +192,19 @@ impl Scope {
         (arguments, values): (&[Ident], Vec<Value>),
         body: &Expression,
     ) -> Result<Value> {
-        let hidden = self.enter(&name.to_string()).ok_or_else(|| {
+        pool.spend(CALL);
+        let hidden = self.enter(name).ok_or_else(|| {
             error(name.span(), &Message::Function(FunctionMistake::Recursive { name: name.to_string() }))
         })?;
         let arguments = arguments.iter().zip(values);
         let bound = self.bind(arguments.map(|(name, value)| (name.to_string(), lets::meaning(&value))).collect());
-        let value = self.value(pool, body);
+        let value = self.deepen(1, name.span()).and_then(|()| {
+            let value = self.value(pool, body);
+            self.rise(1);
+            value
+        });
         self.unbind(bound);
-        self.leave(&name.to_string(), hidden);
+        self.leave(hidden);
         value
     }
 }

@@ -50,60 +50,50 @@ impl Scope {
     /// Unknown names, wrong arguments, no value (such as a division by zero), too much work: at the token.
     pub(super) fn value(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Value> {
         pool.spend(READING);
-        let value = match &written.kind {
-            Kind::Number(value) => Value::Number(pool.number(value.clone())),
-            Kind::Name(name) => self.name(pool, name)?,
-            Kind::Entry(name, indices) => self.entry(pool, name, indices)?,
-            Kind::List(entries) => self.list(pool, written.span, entries)?,
-            Kind::Call(function, arguments) => self.call(pool, function, arguments)?,
-            Kind::Sum(ranges, summand) => {
-                let mut terms = Vec::new();
-                self.terms(pool, ranges, summand, &mut terms)?;
-                Value::sum(pool, terms.into_iter().map(|term| (term, summand.span)).collect())?
-            }
-            Kind::Negative(operand) => self.value(pool, operand)?.map(|operand| pool.neg(operand)),
-            Kind::Power(base, exponent) => {
-                if let Kind::Name(name) = &exponent.kind
-                    && name == "T"
-                    && self.meaning("T").is_none()
-                {
-                    let mistake = ArrayMistake::Transposed { name: spelled(base) };
-                    return Err(error(exponent.span, &Message::Array(mistake)));
-                }
-                let operands = self.each_of(pool, [&**base, exponent], Self::value)?;
-                if let Value::Tensor(tensor) = &operands[0] {
-                    let mistake = match (&tensor.shape[..], &exponent.kind) {
-                        ([_, _], Kind::Negative(_)) => ArrayMistake::Inverse,
-                        (shape, _) => ArrayMistake::Power { given: shape.to_vec(), name: spelled(base) },
-                    };
-                    return Err(error(base.span, &Message::Array(mistake)));
-                }
-                let numbers = operands.into_iter().zip([base, exponent]);
-                let numbers = numbers.map(|(operand, written)| match operand {
-                    Value::Number(value) | Value::Wrong(value) => Ok(value),
-                    Value::Tensor(tensor) => Err(not_a_number(written, &tensor.shape)),
-                });
-                let numbers = numbers.collect::<Result<Vec<Expr>>>()?;
-                Value::Number(power(pool, numbers[0], numbers[1]))
-            }
-            Kind::Chain(first, rest) => self.chain(pool, first, rest)?,
-            Kind::If(comparison, arms) => self.condition(pool, comparison, arms)?,
-        };
-        let mut wrong = None;
-        let value = value.map(|entry| {
-            cancelled(pool, entry).unwrap_or_else(|message| {
-                wrong = Some(message);
-                entry
-            })
-        });
-        bounded(pool).map_err(|found| error(written.span, &Message::TooLarge(found)))?;
-        if value.entries().iter().any(|entry| pool.is_undefined(*entry)) {
-            return Err(error(written.span, &Message::NoValue));
+        let levels = if let Kind::Sum(ranges, _) = &written.kind { ranges.len() } else { 1 };
+        self.deepen(levels, written.span)?;
+        let value = self.kind(pool, written);
+        self.rise(levels);
+        decided(pool, written, value?)
+    }
+
+    /// The value by the kind of the expression. Each kind has a function of its own: a stack frame that holds what all
+    /// of them need would be repeated at each level of nesting.
+    fn kind(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Value> {
+        match &written.kind {
+            Kind::Number(value) => Ok(Value::Number(pool.number(value.clone()))),
+            Kind::Name(name) => self.name(pool, name),
+            Kind::Entry(name, indices) => self.entry(pool, name, indices),
+            Kind::List(entries) => self.list(pool, written.span, entries),
+            Kind::Call(function, arguments) => self.call(pool, function, arguments),
+            Kind::Sum(ranges, summand) => self.sum_over(pool, ranges, summand),
+            Kind::Negative(operand) => self.negative(pool, operand),
+            Kind::Power(base, exponent) => self.power_of(pool, base, exponent),
+            Kind::Chain(first, rest) => self.chain(pool, first, rest),
+            Kind::If(comparison, arms) => self.condition(pool, comparison, arms),
         }
-        match wrong {
-            Some(message) => Err(error(written.span, &message)),
-            None => Ok(value),
+    }
+
+    fn sum_over(&mut self, pool: &mut Pool<Symbol>, ranges: &[Range], summand: &Expression) -> Result<Value> {
+        let mut terms = Vec::new();
+        self.terms(pool, ranges, summand, &mut terms)?;
+        Value::sum(pool, terms.into_iter().map(|term| (term, summand.span)).collect())
+    }
+
+    fn negative(&mut self, pool: &mut Pool<Symbol>, operand: &Expression) -> Result<Value> {
+        Ok(self.value(pool, operand)?.map(|operand| pool.neg(operand)))
+    }
+
+    fn power_of(&mut self, pool: &mut Pool<Symbol>, base: &Expression, exponent: &Expression) -> Result<Value> {
+        if let Kind::Name(name) = &exponent.kind
+            && name == "T"
+            && self.meaning("T").is_none()
+        {
+            let mistake = ArrayMistake::Transposed { name: spelled(base) };
+            return Err(error(exponent.span, &Message::Array(mistake)));
         }
+        let operands = self.each_of(pool, [base, exponent], Self::value)?;
+        raised(pool, &operands, [base, exponent])
     }
 
     /// Applies an operation to each part of an expression, in order.
@@ -284,67 +274,46 @@ impl Scope {
     fn call(&mut self, pool: &mut Pool<Symbol>, function: &Ident, arguments: &[Expression]) -> Result<Value> {
         let name = function.to_string();
         match self.meaning(&name).cloned() {
-            Some(Meaning::Dot) => return self.rate(pool, function.span(), arguments),
+            Some(Meaning::Dot) => self.rate(pool, function.span(), arguments),
             Some(Meaning::Lagrangian) => {
                 let point = self.arguments_of_point(pool, function, arguments)?;
-                return Ok(Value::Number(pool.symbol(at_point(Quantity::Lagrangian, point))));
+                Ok(Value::Number(pool.symbol(at_point(Quantity::Lagrangian, point))))
             }
             Some(Meaning::Force(dimension)) => {
                 let point = self.arguments_of_point(pool, function, arguments)?;
                 let components = (0..dimension).map(|index| pool.symbol(at_point(Quantity::Force(index), point)));
-                return Ok(Value::vector_of(components.collect()));
+                Ok(Value::vector_of(components.collect()))
             }
-            Some(Meaning::Moving) => return Err(error(function.span(), &Message::VelocityInTimeScale { name })),
-            Some(Meaning::Wrong) => return Ok(Value::Number(pool.one())),
+            Some(Meaning::Moving) => Err(error(function.span(), &Message::VelocityInTimeScale { name })),
+            Some(Meaning::Wrong) => Ok(Value::Number(pool.one())),
             Some(Meaning::Function(called)) => {
                 self.record_call(&name);
                 let values = self.each_of(pool, arguments, Self::value)?;
                 let spans = arguments.iter().map(|argument| argument.span).collect();
-                return self.call_declared(pool, function, called, (values, spans));
+                self.call_declared(pool, function, called, (values, spans))
             }
-            None if CHOICES.contains(&name.as_str()) => return self.choice(pool, function, arguments),
-            _ => {}
+            None if CHOICES.contains(&name.as_str()) => self.choice(pool, function, arguments),
+            _ => self.call_elementary(pool, function, arguments),
         }
+    }
+
+    /// An elementary function of these arguments, or one of vectors or rotations.
+    fn call_elementary(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        function: &Ident,
+        arguments: &[Expression],
+    ) -> Result<Value> {
+        let name = function.to_string();
         let known = Function::from_name(&name);
         let Some(takes) = known.map(Function::arity).or_else(|| (name == "sqrt").then_some(1)) else {
-            if name == "reaction" && !self.is_declared(&name) {
-                return Err(error(function.span(), &Message::Constraint(ConstraintMistake::Reaction)));
-            }
-            if name == "ddot" {
-                return Err(error(function.span(), &Message::Acceleration { name: "ddot(…)".to_owned() }));
-            }
-            if matches!(self.meaning(&name), Some(Meaning::Array(_) | Meaning::Coordinates { .. })) {
-                return Err(error(function.span(), &Message::Habit(Habit::EntryInParentheses { name })));
-            }
-            if self.is_coordinate(&name) {
-                return Err(error(function.span(), &Message::Habit(Habit::CoordinateWithArguments { name })));
-            }
-            if self.is_declared(&name) {
-                let product = Habit::MissingOperator { left: name, right: "(…)".to_owned(), is_number: false };
-                return Err(error(function.span(), &Message::Habit(product)));
-            }
-            if let Some(value) = self.of_vectors(pool, function, arguments)? {
-                return Ok(value);
-            }
-            if let Some(value) = self.of_rotation(pool, function, arguments)? {
-                return Ok(value);
-            }
-            let near = nearest(&name, self.functions());
-            return Err(error(function.span(), &Message::UnknownFunction { name, near }));
+            return self.call_other(pool, function, arguments);
         };
         if arguments.len() != takes {
             return Err(error(function.span(), &Message::Arity { name, takes, given: arguments.len() }));
         }
         let values = self.each_of(pool, arguments, Self::value)?;
-        let numbers = values.into_iter().zip(arguments).map(|(value, written)| match value {
-            Value::Number(value) | Value::Wrong(value) => Ok(value),
-            Value::Tensor(tensor) => {
-                let (function, given) = (name.clone(), tensor.shape);
-                let mistake = ArrayMistake::Function { function, given, name: spelled(written) };
-                Err(error(written.span, &Message::Array(mistake)))
-            }
-        });
-        let values = numbers.collect::<Result<Vec<Expr>>>()?;
+        let values = numbers(&name, values, arguments)?;
         Ok(Value::Number(match known {
             Some(Function::Pow) => power(pool, values[0], values[1]),
             Some(function) => pool.call(function, &values),
@@ -353,6 +322,41 @@ impl Scope {
                 power(pool, values[0], half)
             }
         }))
+    }
+
+    /// A function of vectors or rotations, or the message for a name that is no function.
+    fn call_other(&mut self, pool: &mut Pool<Symbol>, function: &Ident, arguments: &[Expression]) -> Result<Value> {
+        if let Some(message) = self.no_function(&function.to_string()) {
+            return Err(error(function.span(), &message));
+        }
+        if let Some(value) = self.of_vectors(pool, function, arguments)? {
+            return Ok(value);
+        }
+        if let Some(value) = self.of_rotation(pool, function, arguments)? {
+            return Ok(value);
+        }
+        let name = function.to_string();
+        let near = nearest(&name, self.functions());
+        Err(error(function.span(), &Message::UnknownFunction { name, near }))
+    }
+
+    /// The message for a call of a name that has another meaning.
+    fn no_function(&self, name: &str) -> Option<Message> {
+        let text = name.to_owned();
+        if name == "reaction" && !self.is_declared(name) {
+            return Some(Message::Constraint(ConstraintMistake::Reaction));
+        }
+        if name == "ddot" {
+            return Some(Message::Acceleration { name: "ddot(…)".to_owned() });
+        }
+        if matches!(self.meaning(name), Some(Meaning::Array(_) | Meaning::Coordinates { .. })) {
+            return Some(Message::Habit(Habit::EntryInParentheses { name: text }));
+        }
+        if self.is_coordinate(name) {
+            return Some(Message::Habit(Habit::CoordinateWithArguments { name: text }));
+        }
+        let product = Habit::MissingOperator { left: text, right: "(…)".to_owned(), is_number: false };
+        self.is_declared(name).then_some(Message::Habit(product))
     }
 
     /// The point given by the arguments of L or f: time, coordinates, velocities.
@@ -448,6 +452,45 @@ impl Scope {
     }
 }
 
+/// `base^exponent` of these operands.
+fn raised(pool: &mut Pool<Symbol>, operands: &[Value], written: [&Expression; 2]) -> Result<Value> {
+    if let Some(Value::Tensor(tensor)) = operands.first() {
+        let mistake = match (&tensor.shape[..], &written[1].kind) {
+            ([_, _], Kind::Negative(_)) => ArrayMistake::Inverse,
+            (shape, _) => ArrayMistake::Power { given: shape.to_vec(), name: spelled(written[0]) },
+        };
+        return Err(error(written[0].span, &Message::Array(mistake)));
+    }
+    let numbers = operands.iter().zip(written).map(|(operand, written)| match operand {
+        Value::Number(value) | Value::Wrong(value) => Ok(*value),
+        Value::Tensor(tensor) => Err(not_a_number(written, &tensor.shape)),
+    });
+    let numbers = numbers.collect::<Result<Vec<Expr>>>()?;
+    Ok(Value::Number(power(pool, numbers[0], numbers[1])))
+}
+
+/// The value of an expression, with constants whose terms cancel as 0.
+///
+/// # Errors
+/// It is too large, or has no value.
+fn decided(pool: &Pool<Symbol>, written: &Expression, value: Value) -> Result<Value> {
+    let mut wrong = None;
+    let value = value.map(|entry| {
+        cancelled(pool, entry).unwrap_or_else(|message| {
+            wrong = Some(message);
+            entry
+        })
+    });
+    bounded(pool).map_err(|found| error(written.span, &Message::TooLarge(found)))?;
+    if value.entries().iter().any(|entry| pool.is_undefined(*entry)) {
+        return Err(error(written.span, &Message::NoValue));
+    }
+    match wrong {
+        Some(message) => Err(error(written.span, &message)),
+        None => Ok(value),
+    }
+}
+
 /// A constant whose sign is known: 0 if its terms cancel, as in sqrt(2) sqrt(3) − sqrt(6). Other expressions unchanged.
 fn cancelled(pool: &Pool<Symbol>, value: Expr) -> core::result::Result<Expr, Message> {
     if !pool.is_constant(value) || pool.as_number(value).is_some() {
@@ -487,6 +530,19 @@ pub(super) fn power(pool: &mut Pool<Symbol>, base: Expr, exponent: Expr) -> Expr
 /// Where brackets take the place of parentheses in a chain.
 fn brackets_of(first: &Expression, rest: &[(Operator, Expression)]) -> Option<Span> {
     [first].into_iter().chain(rest.iter().map(|(_, operand)| operand)).find_map(brackets)
+}
+
+/// The arguments of an elementary function.
+fn numbers(function: &str, values: Vec<Value>, written: &[Expression]) -> Result<Vec<Expr>> {
+    let numbers = values.into_iter().zip(written).map(|(value, written)| match value {
+        Value::Number(value) | Value::Wrong(value) => Ok(value),
+        Value::Tensor(tensor) => {
+            let (function, given) = (function.to_owned(), tensor.shape);
+            let mistake = ArrayMistake::Function { function, given, name: spelled(written) };
+            Err(error(written.span, &Message::Array(mistake)))
+        }
+    });
+    numbers.collect()
 }
 
 /// L or a component of f at a point of the rule.

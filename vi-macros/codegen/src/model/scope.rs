@@ -8,10 +8,11 @@ use super::function::Called;
 use super::lets::LetArray;
 use super::point::Point;
 use super::vector;
+use crate::functions::FunctionMistake;
 use crate::habits::{self, Habit};
 use crate::messages::{Absence, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -24,6 +25,11 @@ const RESERVED: [&str; 8] = ["t", "pi", "L", "f", "self", "dot", "sum", "sqrt"];
 /// Cost of comparing two names, besides comparing each pair of their letters.
 const COMPARISON: usize = 16;
 
+/// Maximum number of operations, calls and ranges around an expression, in the functions that call each other up to it.
+/// One function has at most four of them in each of the 100 levels that the parser allows. They need 1.4 MB of stack in
+/// an unoptimized build, and threads have 2 MB.
+const NESTING: usize = 400;
+
 /// The names that an expression may use.
 pub(super) struct Scope {
     names: BTreeMap<String, Meaning>,
@@ -33,12 +39,14 @@ pub(super) struct Scope {
     points: Vec<Point>,
     /// Indices of the ranges around an expression.
     indices: Vec<String>,
-    /// Functions of the language whose bodies are being evaluated.
-    open: Vec<String>,
+    /// Functions of the language whose bodies are being evaluated, with the places of the calls.
+    open: Vec<(String, Span)>,
     /// Arguments of the function whose body is being evaluated, with the meanings that they hide.
     bound: Vec<(String, Option<Meaning>)>,
     /// Declared functions that some expression has called; shared with the scopes of a rule and of a time scale.
     called: Rc<RefCell<BTreeSet<String>>>,
+    /// The expressions around the one that is being evaluated, those of calling functions included.
+    depth: usize,
     /// The array of `let`s whose entries are being defined.
     growing: Option<Growing>,
     /// Arrays of `let`s whose entries stay symbols; `None` if expressions replace them.
@@ -126,6 +134,7 @@ impl Scope {
             called: Rc::default(),
             growing: None,
             kept: None,
+            depth: 0,
         }
     }
 
@@ -254,22 +263,41 @@ impl Scope {
 
     /// Begins the body of a function: hides and returns the indices of ranges around the call. `None` if the body is
     /// already being evaluated.
-    pub(super) fn enter(&mut self, function: &str) -> Option<Vec<(String, Option<Meaning>)>> {
-        if self.open.iter().any(|open| open == function) {
+    pub(super) fn enter(&mut self, function: &Ident) -> Option<Vec<(String, Option<Meaning>)>> {
+        let name = function.to_string();
+        if self.open.iter().any(|(open, _)| *open == name) {
             return None;
         }
-        self.open.push(function.to_owned());
+        self.open.push((name, function.span()));
         let indices = core::mem::take(&mut self.indices);
         Some(indices.into_iter().map(|index| (index.clone(), self.names.remove(&index))).collect())
     }
 
     /// Ends the body of a function: shows the indices again.
-    pub(super) fn leave(&mut self, function: &str, indices: Vec<(String, Option<Meaning>)>) {
-        self.open.retain(|open| open != function);
+    pub(super) fn leave(&mut self, indices: Vec<(String, Option<Meaning>)>) {
+        self.open.pop();
         for (index, meaning) in indices {
             self.replace(&index, meaning);
             self.indices.push(index);
         }
+    }
+
+    /// Begins an expression that is `levels` deeper than those around it.
+    ///
+    /// # Errors
+    /// Functions in the bodies of functions are too deep, at the last call: evaluation recurses.
+    pub(super) fn deepen(&mut self, levels: usize, span: Span) -> Result<()> {
+        if self.depth + levels > NESTING {
+            let call = self.open.last().map_or(span, |(_, call)| *call);
+            return Err(error(call, &Message::Function(FunctionMistake::TooDeep { limit: NESTING })));
+        }
+        self.depth += levels;
+        Ok(())
+    }
+
+    /// Ends an expression that is `levels` deeper than those around it.
+    pub(super) fn rise(&mut self, levels: usize) {
+        self.depth -= levels;
     }
 
     /// Records that an expression has called a declared function.

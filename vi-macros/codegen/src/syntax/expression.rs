@@ -17,6 +17,7 @@
 //!
 //! A list may end with a comma. A power `a^1/2` is rejected: it means `(a^1)/2`, which is never intended.
 
+use super::parse::has_bracket;
 use super::{INSIDE_BRACKETS, INSIDE_LIST, unexpected};
 use crate::functions::FunctionMistake;
 use crate::habits::Habit;
@@ -216,70 +217,102 @@ impl Expression {
         }
     }
 
+    /// Each form has a function of its own: a stack frame that holds what all of them need would be repeated at each
+    /// level of nesting.
     fn atom(input: ParseStream, depth: usize) -> Result<Self> {
+        if input.cursor().literal().is_some() {
+            Self::literal(input)
+        } else if input.peek(syn::token::Paren) {
+            Self::parenthesis(input, depth)
+        } else if input.peek(Token![if]) {
+            Self::condition(input, depth)
+        } else if input.peek(syn::token::Bracket) {
+            Self::vector(input, depth)
+        } else {
+            Self::named(input, depth)
+        }
+    }
+
+    fn literal(input: ParseStream) -> Result<Self> {
+        let literal = input.parse::<Literal>()?;
+        Ok(Self { span: literal.span(), kind: Kind::Number(number(&literal)?) })
+    }
+
+    fn parenthesis(input: ParseStream, depth: usize) -> Result<Self> {
+        let inner;
+        syn::parenthesized!(inner in input);
+        Self::alone(&inner, depth, "an operator or `)`")
+    }
+
+    fn vector(input: ParseStream, depth: usize) -> Result<Self> {
         let span = input.span();
-        if let Some((literal, _)) = input.cursor().literal() {
-            let value = number(&literal)?;
-            input.parse::<TokenTree>()?;
-            return Ok(Self { span, kind: Kind::Number(value) });
-        }
-        if input.peek(syn::token::Paren) {
-            let inner;
-            syn::parenthesized!(inner in input);
-            return Self::alone(&inner, depth, "an operator or `)`");
-        }
-        if input.peek(Token![if]) {
-            return Self::condition(input, depth);
-        }
-        if input.peek(syn::token::Bracket) {
-            let inner;
-            syn::bracketed!(inner in input);
-            let entries = Self::list(&inner, depth + 1, INSIDE_LIST)?;
-            return Ok(Self { span, kind: Kind::List(entries) });
-        }
+        let inner;
+        syn::bracketed!(inner in input);
+        Ok(Self { span, kind: Kind::List(Self::list(&inner, depth + 1, INSIDE_LIST)?) })
+    }
+
+    /// A name, alone or before its indices or arguments.
+    fn named(input: ParseStream, depth: usize) -> Result<Self> {
+        let span = input.span();
         let Ok(name) = input.parse::<Ident>() else {
             return Err(unexpected::operand(input));
         };
-        if input.peek(syn::token::Bracket) {
-            let mut indices = Vec::new();
-            while input.peek(syn::token::Bracket) {
-                let inner;
-                syn::bracketed!(inner in input);
-                indices.push(Self::alone(&inner, depth, INSIDE_BRACKETS)?);
-            }
-            return Ok(Self { span, kind: Kind::Entry(name, indices) });
+        let kind = if input.peek(syn::token::Bracket) {
+            let indices = Self::indices(input, depth)?;
+            Kind::Entry(name, indices)
+        } else if input.peek(syn::token::Paren) {
+            Self::call(input, name, depth)?
+        } else {
+            Kind::Name(name)
+        };
+        Ok(Self { span, kind })
+    }
+
+    fn indices(input: ParseStream, depth: usize) -> Result<Vec<Self>> {
+        let mut indices = Vec::new();
+        while has_bracket(input, indices.len())? {
+            let inner;
+            syn::bracketed!(inner in input);
+            indices.push(Self::alone(&inner, depth, INSIDE_BRACKETS)?);
         }
-        if !input.peek(syn::token::Paren) {
-            return Ok(Self { span, kind: Kind::Name(name) });
-        }
+        Ok(indices)
+    }
+
+    fn call(input: ParseStream, name: Ident, depth: usize) -> Result<Kind> {
         let inner;
         syn::parenthesized!(inner in input);
         if name == "sum" {
-            let mut ranges = Vec::new();
-            while ranges.is_empty() || inner.peek(syn::Ident) && inner.peek2(Token![in]) {
-                ranges.push(Self::range(&inner, depth + 1)?);
-                if !inner.peek(Token![,]) {
-                    return Err(error(inner.span(), &Message::Expected { what: "`,` and what is summed" }));
-                }
-                inner.parse::<Token![,]>()?;
-            }
-            let start = inner.cursor();
-            let summand = Self::sum(&inner, depth + 1)?;
-            if inner.peek(Token![,]) {
-                inner.parse::<Token![,]>()?;
-            }
-            if !inner.is_empty() {
-                return Err(unexpected::operator(&inner, start, "an operator or `)`"));
-            }
-            return Ok(Self { span, kind: Kind::Sum(ranges, Box::new(summand)) });
+            return Self::sum_over(&inner, depth);
         }
         if inner.peek(syn::Ident) && inner.peek2(Token![in]) {
-            return Err(error(span, &Message::Habit(Habit::RangeOf { function: name.to_string() })));
+            return Err(error(name.span(), &Message::Habit(Habit::RangeOf { function: name.to_string() })));
         }
         let arguments = Self::list(&inner, depth + 1, "an operator, `,` or `)`");
         // `Piecewise((x, x > 0), …)`: the name is the mistake, not what stands in the parentheses.
         let arguments = arguments.map_err(|failure| unexpected::call(&name).unwrap_or(failure))?;
-        Ok(Self { span, kind: Kind::Call(name, arguments) })
+        Ok(Kind::Call(name, arguments))
+    }
+
+    /// `i in 0..8, x`, between the parentheses of a `sum`. Several ranges are as deep as sums inside each other.
+    fn sum_over(inner: ParseStream, mut depth: usize) -> Result<Kind> {
+        let mut ranges = Vec::new();
+        while ranges.is_empty() || inner.peek(syn::Ident) && inner.peek2(Token![in]) {
+            depth += 1;
+            ranges.push(Self::range(inner, depth)?);
+            if !inner.peek(Token![,]) {
+                return Err(error(inner.span(), &Message::Expected { what: "`,` and what is summed" }));
+            }
+            inner.parse::<Token![,]>()?;
+        }
+        let start = inner.cursor();
+        let summand = Self::sum(inner, depth)?;
+        if inner.peek(Token![,]) {
+            inner.parse::<Token![,]>()?;
+        }
+        if !inner.is_empty() {
+            return Err(unexpected::operator(inner, start, "an operator or `)`"));
+        }
+        Ok(Kind::Sum(ranges, Box::new(summand)))
     }
 
     /// `if a > b { x } else { y }`, with `else if` as the other arm.

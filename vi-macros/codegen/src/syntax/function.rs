@@ -9,11 +9,11 @@
 //! ```
 
 use super::expression::Expression;
-use super::parse::name;
+use super::parse::{check_rust, name};
 use super::{INSIDE_LIST, unexpected};
 use crate::functions::FunctionMistake;
 use crate::messages::{Message, error};
-use proc_macro2::{Ident, Span};
+use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use syn::parse::ParseStream;
 use syn::{LitStr, Path, Result, Token};
 
@@ -87,7 +87,12 @@ pub(super) fn function(input: ParseStream) -> Result<Function> {
     }
     equals(input, &name)?;
     let is_path = input.peek(Token![::]) || input.peek(syn::Ident) && input.peek2(Token![::]) || is_crate(input);
-    let body = if is_path { Body::Path(input.parse()?) } else { Body::Expression(Expression::parse(input)?) };
+    let body = if is_path {
+        check_rust(until_semicolon(input))?;
+        Body::Path(input.parse()?)
+    } else {
+        Body::Expression(Expression::parse(input)?)
+    };
     Ok(Function { name, arguments, body })
 }
 
@@ -121,6 +126,17 @@ pub(super) fn table(input: ParseStream) -> Result<Table> {
         words.push(self::name(input)?);
     }
     Ok(Table { name, arguments, data, words })
+}
+
+/// The tokens up to the end of the clause.
+fn until_semicolon(input: ParseStream) -> TokenStream {
+    let mut here = input.cursor();
+    let rest = core::iter::from_fn(|| {
+        let (token, behind) = here.token_tree()?;
+        here = behind;
+        Some(token)
+    });
+    rest.take_while(|token| !matches!(token, TokenTree::Punct(mark) if mark.as_char() == ';')).collect()
 }
 
 /// Whether the path starts with `crate`, `self` or `super`.

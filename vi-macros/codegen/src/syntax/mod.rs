@@ -37,6 +37,8 @@ const CLAUSES: [&str; 18] = [
     "check",
 ];
 
+/// Maximum number of indices of an array.
+const BRACKETS: usize = 100;
 /// The tokens expected after an index or a length.
 const INSIDE_BRACKETS: &str = "an operator or `]`";
 /// What the end of an entry of a list expects.

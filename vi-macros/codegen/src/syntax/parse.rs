@@ -7,9 +7,10 @@ use super::expression::DEPTH;
 use super::function;
 use super::unexpected;
 use super::{
-    CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression, INSIDE_BRACKETS, Indices,
-    Kind, Parameter, Rule, System, clause_of,
+    BRACKETS, CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression,
+    INSIDE_BRACKETS, Indices, Kind, Parameter, Rule, System, clause_of,
 };
+use crate::arrays::ArrayMistake;
 use crate::constraints::ConstraintMistake;
 use crate::habits::Habit;
 use crate::messages::{Errors, Message, bounded, error, nearest};
@@ -99,6 +100,37 @@ fn check_size(tokens: &TokenStream) -> Result<bool> {
     Ok(invisible)
 }
 
+/// The attributes here.
+fn attributes(input: ParseStream) -> Result<Vec<Attribute>> {
+    let mut here = input.cursor();
+    while let Some((_, behind)) = here.punct().filter(|(mark, _)| mark.as_char() == '#') {
+        let Some((attribute, behind)) = behind.token_tree() else { break };
+        check_rust(attribute.into())?;
+        here = behind;
+    }
+    input.call(Attribute::parse_outer)
+}
+
+/// Rejects tokens of Rust that may be nested deeper than any that is written, since parsing them recurses: besides
+/// delimiters, these signs open a level of an expression or of a type.
+pub(super) fn check_rust(tokens: TokenStream) -> Result<()> {
+    let (mut open, mut signs) = (vec![tokens.into_iter()], 0);
+    while let Some(innermost) = open.last_mut() {
+        match innermost.next() {
+            None => drop(open.pop()),
+            Some(TokenTree::Group(group)) => open.push(group.stream().into_iter()),
+            Some(TokenTree::Punct(sign)) if "<!-&*".contains(sign.as_char()) => {
+                signs += 1;
+                if signs > DEPTH {
+                    return Err(error(sign.span(), &Message::TooDeep { limit: DEPTH }));
+                }
+            }
+            Some(_) => {}
+        }
+    }
+    Ok(())
+}
+
 /// A macro wraps its `$a:expr` in invisible delimiters as one operand: inside clauses they become parentheses.
 fn with_parentheses(tokens: TokenStream, inside: bool) -> TokenStream {
     let token = |token: TokenTree| {
@@ -126,7 +158,7 @@ pub fn rule(text: &str) -> Result<Rule> {
 
 /// `pub struct Name { … }`
 fn header(input: ParseStream) -> Result<(System, Errors)> {
-    let attributes = input.call(Attribute::parse_outer)?;
+    let attributes = attributes(input)?;
     let visibility: Visibility = input.parse()?;
     if !input.peek(Token![struct]) {
         return Err(error(input.span(), &Message::Expected { what: "`struct Name { … }`" }));
@@ -221,7 +253,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     if input.peek(Token![#]) && !input.peek2(syn::token::Bracket) {
         return Err(error(input.span(), &Message::Habit(Habit::Comment)));
     }
-    let attributes = input.call(Attribute::parse_outer)?;
+    let attributes = attributes(input)?;
     let start = input.cursor();
     let Ok(word) = input.call(Ident::parse_any) else {
         return Err(error(input.span(), &Message::Expected { what: "a clause" }));
@@ -419,10 +451,19 @@ fn constraint(input: ParseStream, attributes: &[Attribute]) -> Result<Definition
     Ok(definition)
 }
 
+/// Whether a further index or length follows `before` others.
+pub(super) fn has_bracket(input: ParseStream, before: usize) -> Result<bool> {
+    let is_here = input.peek(syn::token::Bracket);
+    if is_here && before == BRACKETS {
+        return Err(error(input.span(), &Message::Array(ArrayMistake::Brackets { limit: BRACKETS })));
+    }
+    Ok(is_here)
+}
+
 /// Pairs of brackets: `[i in 0..8]` or `[0]` each
 fn indices(input: ParseStream) -> Result<Vec<Indices>> {
     let mut indices = Vec::new();
-    while input.peek(syn::token::Bracket) {
+    while has_bracket(input, indices.len())? {
         let inner;
         syn::bracketed!(inner in input);
         if !(inner.peek(syn::Ident) && inner.peek2(Token![in])) {
@@ -481,7 +522,7 @@ fn coordinate(input: ParseStream, word: &Ident) -> Result<Coordinate> {
 /// The lengths of an array, `[8]` or `[8][3]`; none of a number
 fn lengths(input: ParseStream) -> Result<Vec<Expression>> {
     let mut lengths = Vec::new();
-    while input.peek(syn::token::Bracket) {
+    while has_bracket(input, lengths.len())? {
         let inner;
         syn::bracketed!(inner in input);
         if inner.peek(syn::Ident) && inner.peek2(Token![in]) {
