@@ -18,21 +18,23 @@ mod embedded {
 /// ("", words).
 type Explained = (String, String, Vec<(&'static str, Vec<(String, String)>)>);
 
-/// The mathematics of a definition, with the equations of a Gauss step if its stages are given.
+/// The mathematics of a definition, with the equations of a Gauss step if its stages are given. A definition that is to
+/// be compiled alone may contain the language only: no Rust functions, and no attributes with code.
 ///
 /// Raises ValueError for a mistake, with its line.
 #[pyfunction]
-#[pyo3(crate = "vi_python::pyo3", signature = (definition, stages=None))]
-fn explain(definition: &str, stages: Option<usize>) -> PyResult<Explained> {
+#[pyo3(crate = "vi_python::pyo3", signature = (definition, stages=None, alone=false))]
+fn explain(definition: &str, stages: Option<usize>, alone: bool) -> PyResult<Explained> {
     const FILE: &str = "definition";
     // Not by `syn::parse_str`, which recurses before the compiler bounds the nesting.
     let tokens: TokenStream = definition
         .parse()
         .map_err(|error: LexError| PyValueError::new_err(report::unreadable(FILE, definition, &error.into())))?;
-    let explained = match stages {
+    let allowed = if alone { vi_codegen::syntax::alone::check(&tokens) } else { Ok(()) };
+    let explained = allowed.and_then(|()| match stages {
         None => inspect::explain(tokens),
         Some(stages) => inspect::explain_gauss(tokens, stages),
-    };
+    });
     let explained = explained.map_err(|error| PyValueError::new_err(report::report(FILE, definition, &error)))?;
     let text = explained.text();
     let line = |line| match line {

@@ -179,8 +179,20 @@ def test_vectors_a_table_of_a_file_and_an_input(warm_cache, tmp_path, monkeypatc
 
 
 def test_a_rust_function_needs_a_crate():
-    with pytest.raises(vi.CompileError, match=r"`cl` is a Rust function.*vi-lab new NAME --python"):
+    with pytest.raises(vi.CompileError, match=r"(?s)`cl` is a Rust function.*vi-lab new NAME --python"):
         vi.compile("struct S { coord x; fn cl(a) = crate::aero::cl; L = dot(x)^2/2 - cl(x); }")
+    with pytest.raises(vi.CompileError, match="`g` is a Rust function"):
+        vi.compile("struct S { coord x; fn g(a) = std ::convert::identity; L = dot(x)^2/2 - g(x); }")
+    with pytest.raises(vi.CompileError, match="a text alone has no attributes with code"):
+        vi.compile('#[doc = include_str!("/etc/hostname")] struct S { coord x; L = dot(x)^2/2 - x; }')
+
+
+def test_functions_that_call_each_other_end_with_a_message():
+    chain = " ".join(f"fn f{i + 1}(a) = f{i}(a) + 1;" for i in range(3200))
+    with pytest.raises(vi.CompileError, match="inside each other"):
+        vi.compile(f"struct S {{ coord x; fn f0(a) = a^2; {chain} L = dot(x)^2/2 - f3200(x); }}")
+    with pytest.raises(vi.CompileError, match="nested deeper"):
+        vi.compile(f"struct S {{ coord x; L = dot(x)^2/2 - {'(' * 50_000}x{')' * 50_000}; }}")
 
 
 BODIES = """

@@ -238,7 +238,6 @@ _CONSTRAINT = re.compile(r"(?:^|[;{}])\s*(?:constraint|rotation)\s+[^\W\d]")
 
 
 _TABLE = re.compile(r'(\btable\b[^;"]*=\s*")([^"]+)(")')
-_RUST = re.compile(r"\bfn\s+(\w+)\s*\([^)]*\)\s*=\s*(?:::)?\w+::")
 
 
 def _located(definition: str) -> tuple[str, str]:
@@ -257,13 +256,8 @@ def _located(definition: str) -> tuple[str, str]:
 
 def _checked(definition: str) -> str:
     """The name of the system. Mistakes are found here in milliseconds, by the compiler that is part of `_core`."""
-    if found := _RUST.search(_without_comments(definition)):
-        raise CompileError(
-            f"`{found[1]}` is a Rust function, which a text alone does not have: write it in the language, make it a "
-            "table, or put the system into a crate, `vi-lab new NAME --python`"
-        )
     try:
-        name, _, _ = _core.explain(definition)
+        name, _, _ = _core.explain(definition, alone=True)
     except ValueError as mistake:
         raise CompileError(str(mistake)) from None
     return name

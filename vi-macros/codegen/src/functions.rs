@@ -20,6 +20,8 @@ pub enum FunctionMistake {
     Recursive { name: String },
     /// Functions that call each other through too many levels.
     TooDeep { limit: usize },
+    /// A Rust function in a text without a crate.
+    OfCrate { name: String },
     /// An unused function or table.
     Unused { name: String },
     /// A table whose values are none of the allowed forms.
@@ -63,6 +65,7 @@ impl FunctionMistake {
                     "in functions that call each other, more than {limit} operations and calls are inside each other"
                 )
             }
+            Self::OfCrate { name } => format!("`{name}` is a Rust function, which a text alone does not have"),
             Self::Unused { name } => format!("`{name}` is never used"),
             Self::Data => "these are not the values of a table".to_owned(),
             Self::Table { name, what, .. } => format!("the table `{name}` {what}"),
@@ -94,6 +97,9 @@ impl FunctionMistake {
                 "write the values one after the other with `let`, as in `let x[0] = …; let x[i in 1..8] = … x[i - 1] …;`, or a sum with \
                  `sum`"
                     .to_owned()
+            }
+            Self::OfCrate { .. } => {
+                "write it in the language, make it a table, or put the system into a crate, `vi-lab new NAME --python`".to_owned()
             }
             Self::Unused { .. } => "use it in `L` or in a force, or remove it".to_owned(),
             Self::Data => {

@@ -124,6 +124,8 @@ pub enum Message {
     SecondDerive { name: String },
     /// An attribute without effect at this position.
     AttributeOfClause,
+    /// An attribute that a text without a crate may not have.
+    AttributeOfText,
     /// An undeclared name.
     Unknown { name: String, near: Option<String> },
     /// A declared name that this expression cannot use.
@@ -361,6 +363,7 @@ impl Message {
             Self::Reserved { name } | Self::ReservedType { name } => format!("the name `{name}` is reserved"),
             Self::SecondDerive { name } => format!("every system implements `{name}`"),
             Self::AttributeOfClause => "this attribute has no meaning here".to_owned(),
+            Self::AttributeOfText => "a text alone has no attributes with code".to_owned(),
             Self::Unknown { name, .. } => format!("unknown name `{name}`"),
             Self::Absent { name, absence } => absence.what(name),
             Self::UnknownFunction { name, .. } => format!("unknown function `{name}`"),
@@ -468,6 +471,7 @@ impl Message {
             Self::ReservedType { .. } => "generated code uses this type; choose another name".to_owned(),
             Self::SecondDerive { name } => format!("remove `{name}`; other traits may be derived"),
             Self::AttributeOfClause => ATTRIBUTES.to_owned(),
+            Self::AttributeOfText => "write documentation as `/// text`, and other attributes in a crate of yours, `vi-lab new NAME --python`".to_owned(),
             Self::Unknown { name, near } => name_for(name, near.as_ref()),
             Self::Absent { name, absence } => absence.help(name),
             Self::UnknownFunction { name, near } => {

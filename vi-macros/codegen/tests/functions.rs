@@ -293,19 +293,101 @@ fn files_of_tables() {
     let wanted = vi_codegen::model::Values::Grid { places: [vec![0.0, 1.0], vec![0.0, 1.0, 2.0]], rows };
     assert_eq!(table_of_grid.values, wanted);
     for (name, content, message) in [
-        ("e.csv", "0,1\n1,2\n2,abc\n", "the table `g` has `abc` in line 3 of its file, which is no number"),
-        ("h.csv", "0.O,1\n1,2\n2,3\n", "the table `g` has `0.O` in line 1 of its file, which is no number"),
-        ("k.csv", "1,\n2,3\n", "the table `g` has an empty cell in line 1 of its file, which is no number"),
+        ("e.csv", "0,1\n1,2\n2,abc\n", "the table `g` has no finite number in column 2 of line 3 of its file"),
+        ("h.csv", "0.O,1\n1,2\n2,3\n", "the table `g` has no finite number in column 1 of line 1 of its file"),
+        ("k.csv", "1,\n2,3\n", "the table `g` has no finite number in column 2 of line 1 of its file"),
         ("f.csv", "0,1\n1\n", "the table `g` has 1 columns in line 2 of its file, and 2 before"),
         ("g.csv", "v,drag\n", "the table `g` has no numbers in its file"),
         ("h.csv", "0,1,2\n1,2,3\n", "the table `g` has 3 columns in its file"),
-        ("i.csv", "0,1\n1,inf\n", "the table `g` has `inf` in line 2 of its file"),
+        ("i.csv", "0,1\n1,inf\n", "the table `g` has no finite number in column 2 of line 2 of its file"),
         ("j.csv", "\u{0}PNG", "the table `g` has no numbers in its file"),
         ("k.csv", "0,1\n0,2\n", "the table `g` has the place 0 after 0"),
     ] {
         let (_, text) = mistake(&table("a", name, content));
         assert!(text.starts_with(message), "{name}: {text}");
     }
+    // What is in a file that is no table stays in it.
+    let secret = mistake(&table("a", "secret.csv", "root:x:0\ntoken=hidden\n")).1;
+    assert!(!secret.contains("hidden") && !secret.contains("root"), "{secret}");
+    let grid = mistake(&table("a, b", "corner.csv", "x/y,0,one\n0,1,2\n")).1;
+    assert!(grid.starts_with("the table `g` has no finite number in column 3 of line 1"), "{grid}");
+}
+
+#[test]
+fn a_text_alone_has_the_language_only() {
+    let said = |text: &str| {
+        let tokens: TokenStream = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
+        let found = syntax::alone::check(&tokens).err().into_iter().flatten();
+        let found: Vec<_> = found.map(|error| (error.span().source_text(), error.to_string())).collect();
+        assert!(found.len() <= 1, "{text}\n{found:?}");
+        found
+            .into_iter()
+            .next()
+            .map_or((String::new(), String::new()), |(token, text)| (token.unwrap_or_default(), text))
+    };
+    let system = |clause: &str| format!("struct S {{ {clause} coord x; L = dot(x)^2 / 2 - g(x); }}");
+    for path in [
+        "std::convert::identity",
+        "std ::convert::identity",
+        "std\n::\nconvert::identity",
+        "r#std::convert::identity",
+        "::std::convert::identity",
+        ":: std::convert::identity",
+        "crate::g",
+        "self ::g",
+        "super::g",
+        "std/* */::convert /* */ :: identity",
+        "std::convert::identity::<f64>",
+    ] {
+        let (token, text) = said(&system(&format!("fn g(a) = {path};")));
+        assert!(
+            text.starts_with("`g` is a Rust function, which a text alone does not have\nhelp: write it in"),
+            "{text}"
+        );
+        assert!(path.contains(&token) && !token.is_empty(), "{path}: {token}");
+    }
+    for attribute in [
+        r#"#[doc = include_str!("/etc/passwd")]"#,
+        r#"# [ doc = include_str ! ("/etc/passwd") ]"#,
+        r#"#[doc = concat!("a", env!("HOME"))]"#,
+        r#"#[cfg_attr(all(), doc = include_str!("/etc/passwd"))]"#,
+        "#[cfg(unix)]",
+        "#[derive(a::B)]",
+        "#[no_mangle]",
+        r#"#[doc(alias = "a")]"#,
+        r#"#[r#doc = include_str!("a")]"#,
+    ] {
+        for text in [
+            format!("{attribute} {}", system("fn g(a) = a;")),
+            format!("/// Text.\n {attribute} {}", system("fn g(a) = a;")),
+            system(&format!("fn g(a) = a * k; {attribute} param k = 1;")),
+        ] {
+            let tokens: TokenStream = text.parse().expect("tokens");
+            if syntax::parse::system(tokens).is_ok() {
+                let (token, said) = said(&text);
+                assert!(
+                    said.starts_with("a text alone has no attributes with code\nhelp: write doc"),
+                    "{text}\n{said}"
+                );
+                assert_eq!(token, "[", "{text}");
+            }
+        }
+    }
+    for allowed in [
+        format!("/// Text with `std::env!`.\n #[derive(PartialOrd)] pub {}", system("/** text */ fn g(a) = a;")),
+        system("#[doc = \"text\"] param k = 1; fn g(a) = if a > k { a } else { k };"),
+        system("fn g(a) = std + 1;"),
+    ] {
+        assert_eq!(said(&allowed).1, "", "{allowed}");
+    }
+}
+
+#[test]
+fn a_missing_file_is_sought_where_its_path_starts() {
+    let said = |path: &str| mistake(&format!("coord x; table g(a) = \"{path}\"; L = dot(x)^2 / 2 - g(x);")).1;
+    assert!(said("none.csv").ends_with("write a path that starts at the folder of `Cargo.toml`"));
+    let absolute = std::env::temp_dir().join("none.csv");
+    assert!(said(&absolute.display().to_string()).ends_with("write a path of a file that exists"));
 }
 
 #[test]

@@ -224,7 +224,7 @@ impl Reader<'_, '_> {
         match &self.written.data {
             TableData::File(path) => {
                 let file = folder.join(path.value());
-                let rows = self.file(&file, path.span())?;
+                let rows = self.file(folder, &file, path.span())?;
                 Some((self.values_of_rows(rows, path.span())?, Vec::new(), Some(file)))
             }
             TableData::Points(points) => {
@@ -335,7 +335,7 @@ impl Reader<'_, '_> {
 
     /// The numbers of a file, row by row. Its first row may be a header, in which no cell begins as a number; the corner
     /// of a grid may be text.
-    fn file(&mut self, file: &Path, span: Span) -> Option<Vec<Vec<f64>>> {
+    fn file(&mut self, folder: &Path, file: &Path, span: Span) -> Option<Vec<Vec<f64>>> {
         // A device has no end.
         let is_readable = |about: std::fs::Metadata| about.is_file() && about.len() <= LARGEST_FILE;
         if std::fs::metadata(file).is_ok_and(|about| !is_readable(about)) {
@@ -346,8 +346,12 @@ impl Reader<'_, '_> {
         let text = match std::fs::read_to_string(file) {
             Ok(text) => text,
             Err(reason) => {
-                let help =
-                    format!("`{}`: {reason}; write a path relative to the folder of `Cargo.toml`", file.display());
+                let start = match &self.written.data {
+                    TableData::File(path) if Path::new(&path.value()).is_absolute() => "of a file that exists",
+                    _ if folder.as_os_str().is_empty() => "that starts at the current folder",
+                    _ => "that starts at the folder of `Cargo.toml`",
+                };
+                let help = format!("`{}`: {reason}; write a path {start}", file.display());
                 self.report(span, "cannot be read from its file".to_owned(), help);
                 return None;
             }
@@ -363,17 +367,19 @@ impl Reader<'_, '_> {
             let cells: Vec<&str> = cells(line);
             let is_header = core::mem::replace(&mut is_first, false);
             let places = if is_grid && is_header { &cells[1..] } else { &cells[..] };
-            let row: Result<Vec<f64>, &str> = places.iter().map(|cell| finite(cell).ok_or(*cell)).collect();
+            // The message says where a cell is, and not what it holds: the path may be wrong, and the file a secret.
+            let first = cells.len() - places.len() + 1;
+            let row: Result<Vec<f64>, usize> =
+                places.iter().zip(first..).map(|(cell, column)| finite(cell).ok_or(column)).collect();
             match row {
                 Ok(row) => rows.push(if is_grid && is_header { [vec![0.0], row].concat() } else { row }),
                 Err(_) if is_header && !is_grid && !cells.iter().any(|cell| begins_number(cell)) => {}
-                Err(cell) => {
-                    let cell: String = cell.chars().take(20).collect();
+                Err(column) => {
                     let help = "write numbers with a decimal point, separated by commas, semicolons, tabs or spaces; the first line may hold \
                                 names, and `#` starts a comment"
                         .to_owned();
-                    let cell = if cell.is_empty() { "an empty cell".to_owned() } else { format!("`{cell}`") };
-                    self.report(span, format!("has {cell} in line {number} of its file, which is no number"), help);
+                    let what = format!("has no finite number in column {column} of line {number} of its file");
+                    self.report(span, what, help);
                     return None;
                 }
             }

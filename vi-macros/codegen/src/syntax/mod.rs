@@ -3,6 +3,7 @@
 //! In: tokens. Out: a [`System`]. Every clause reports its grammar mistakes.
 //! AFTER THIS only spans are left of the tokens.
 
+pub mod alone;
 mod expression;
 mod function;
 pub mod parse;
