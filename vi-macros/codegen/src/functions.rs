@@ -119,8 +119,8 @@ impl FunctionMistake {
                 "write `if a > b { x } else { y }`; write an `if` inside another for two conditions".to_owned()
             }
             Self::Jump { .. } => {
-                "an infinite force would act there: make both expressions equal where the condition changes, as in `if x > 0 { k * x^2 / 2 } \
-                 else { 0 }`; an event with `set_state` models an impact"
+                "an infinite force would act there: make both sides equal there, as in `if x > 0 { k * x^2 / 2 } else { 0 }` or `sign(x) * x^2`; a \
+                 `force` may jump, as dry friction does; an event with `set_state` models an impact"
                     .to_owned()
             }
         }

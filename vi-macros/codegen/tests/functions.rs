@@ -201,6 +201,18 @@ fn a_lagrangian_that_jumps_is_refused() {
         "if x > 1e5 { 1 } else { 0 }",
         "if y > 3 { if x > 0 { 1 } else { 0 } } else { 0 }",
         "1e9 * y^2 + if x > 1 { 1e-3 } else { 0 }",
+        // Steps that are no conditions.
+        "sign(x)",
+        "x * sign(x - c)",
+        "cos(y) * sign(x * y)",
+        "(1 + sign(x)) * dot(y)^2",
+        "abs(x) / x",
+        "x / abs(x)",
+        "y^2 * abs(x - c) / (x - c)",
+        "(1 + sign(x)) / 2 * sqrt(x + 1)",
+        // Between borders that are close.
+        "if (x - 0.3)^2 < 1e-6 { 1 } else { 0 }",
+        "if abs(x - 0.31) < 1e-5 { y } else { 0 }",
     ] {
         let message = "`L` jumps where `";
         case(&format!("param c = 0.3; coord x, y; «L» = dot(x)^2 + c * dot(y)^2 - {jumps};"), message);
@@ -211,6 +223,21 @@ fn a_lagrangian_that_jumps_is_refused() {
         "if x > 0 { x^1.5 } else { 0 }",
         "(if x > 0 { 1 } else { -1 }) * x",
         "clamp(x, -c, c)",
+        "sign(x) * x^2",
+        "sign(x) * x",
+        "sign(x - c) * sin(x - c)",
+        "sign(x * y) * x * y",
+        "abs(x)^3",
+        "abs(x) / (1 + x^2)",
+        "abs(x)^3 / x",
+        "c / abs(x)",
+        "y / abs(x)^3",
+        "abs(x) / y",
+        "(1 + sign(x)) / 2 * sqrt(x)",
+        "if (x - 0.3)^2 < 1e-6 { (x - 0.3)^2 } else { 1e-6 }",
+        "if c > 0.5 { x^2 } else { x^4 }",
+        "if x^2 + 1 > 0 { x } else { 0 }",
+        "((abs(x) - x) / 2)^(3/2)",
     ] {
         assert!(
             !lagrangian(&format!("param c = 0.3; coord x, y; L = dot(x)^2 + c * dot(y)^2 - {continuous};")).is_empty()

@@ -30,8 +30,8 @@ fn a_regular_matrix_of_any_sizes_is_regular() {
         "coord q[8]; L = sum(i in 0..8, sum(j in 0..8, dot(q[i]) * dot(q[j]) / (i + j + 1)));",
         "coord q[64]; L = sum(i in 0..64, dot(q[i]))^2 + 1e-9 * sum(i in 0..64, dot(q[i])^2);",
         // Singular on one half-line only.
-        "coord x; L = (1 - sign(x)) * dot(x)^2;",
-        "coord x; L = (1 + sign(x)) * dot(x)^2;",
+        "coord x; L = (abs(x) - x) * dot(x)^2;",
+        "coord x; L = (abs(x) + x) * dot(x)^2;",
         // Indefinite, and not quadratic.
         "coord x, y; L = 1e-20 * dot(x) * dot(y);",
         "coord x, y; L = sqrt(1 - dot(x)^2 - dot(y)^2);",

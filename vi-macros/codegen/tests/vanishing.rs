@@ -77,3 +77,11 @@ fn no_limit_is_taken_where_the_system_has_no_value() {
         assert!(limits(FunctionId::Force, &body).contains(&0), "{potential}");
     }
 }
+
+#[test]
+fn a_root_without_a_value_is_zero_where_its_sign_is() {
+    let body = "coord x; L = dot(x)^2 / 2 - (1 + sign(x)) / 2 * sqrt(x);";
+    for function in [FunctionId::Lagrangian, FunctionId::MomentumEquation] {
+        assert!(!limits(function, body).is_empty(), "{function:?}");
+    }
+}

@@ -3,7 +3,9 @@
 //! In: the clauses of a system with angles. Out: nothing, or a message at the first clause that is not periodic, with
 //! the angle. Each expression is evaluated at points of a fixed sequence, and at the same points with each angle moved
 //! by whole turns. A difference beyond rounding at one point means that it is not periodic, for some values of the
-//! parameters. An expression without a value at any point is left to other checks.
+//! parameters. An expression without a difference has to be periodic by its structure too: points miss a narrow peak.
+//! There angles appear in functions with a period only, with factors of which a turn makes whole periods, or half ones
+//! that leave the expression as it is.
 
 use super::context::Context;
 use super::force::{self, Entries};
@@ -14,10 +16,11 @@ use super::{Constraint, Coordinate, Parameter, probe};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, System};
+use num_traits::{One, Zero};
 use proc_macro2::Span;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use vi_expr::{Expr, Pool, Rounded};
+use vi_expr::{Expr, Function, Node, Pool, Rational, Rounded, Table};
 
 /// Points at which expressions are compared.
 const POINTS: u32 = 16;
@@ -64,7 +67,10 @@ pub(super) fn check(
             *expr = closed.expression(context.pool, *expr);
         }
         let probe = |expr: &Expr| Probe { pool: context.pool, expr: *expr, are_angles: &are_angles, parameters };
-        if let Some(angle) = exprs.iter().find_map(|expr| probe(expr).failing_angle()) {
+        let failing = exprs.iter().find_map(|expr| probe(expr).failing_angle());
+        let failing =
+            failing.or_else(|| exprs.iter().find_map(|expr| outside_periods(context.pool, *expr, &are_angles)));
+        if let Some(angle) = failing {
             let Coordinate { name, .. } = &coordinates[angle];
             let message = Message::NotPeriodic { what, angle: coordinates[angle].text(), name: name.to_string() };
             context.errors.at(span, &message);
@@ -99,6 +105,92 @@ fn angle_of_rule(pool: &Pool<Symbol>, rule: &Rule, are_angles: &[bool]) -> Optio
         })
     };
     (0..are_angles.len()).filter(|angle| are_angles[*angle]).find(fails)
+}
+
+/// An angle of which an expression is not periodic by its structure.
+fn outside_periods(pool: &mut Pool<Symbol>, expr: Expr, are_angles: &[bool]) -> Option<usize> {
+    let is_moved = |symbol: &Symbol, angle: usize| *symbol == Symbol::Continuous(Variable::Coordinate(angle));
+    let angles: Vec<usize> = (0..are_angles.len()).filter(|angle| are_angles[*angle]).collect();
+    let any = |symbol: &Symbol| angles.iter().any(|angle| is_moved(symbol, *angle));
+    // Nearly all systems end here, after one pass for all angles.
+    if !Outside::of(pool, expr, &any, 1).is(expr) {
+        return None;
+    }
+    let is_failing = |pool: &mut Pool<Symbol>, angle: usize| {
+        let moved = |symbol: &Symbol| is_moved(symbol, angle);
+        if !Outside::of(pool, expr, &moved, 1).is(expr) {
+            return false;
+        }
+        // A turn changes the sign of sin(θ/2) and of cos(θ/2), and may leave a product or an even function of them.
+        let outside = Outside::of(pool, expr, &moved, 2);
+        let is_half = |pool: &Pool<Symbol>, node: &Expr| {
+            let Node::Call(Function::Sin | Function::Cos, arguments) = pool.node(*node) else { return false };
+            let factors = outside.factors(pool, arguments[0], &moved);
+            factors.is_some_and(|factors| factors.iter().any(|factor| !factor.is_integer()))
+        };
+        let halves: Vec<Expr> = pool.reachable(&[expr]).into_iter().filter(|node| is_half(pool, node)).collect();
+        let mut turned = expr;
+        for half in halves {
+            let negative = pool.neg(half);
+            turned = pool.replace(turned, half, negative);
+        }
+        outside.is(expr) || turned != expr
+    };
+    angles.into_iter().find(|angle| is_failing(pool, *angle))
+}
+
+/// Which parts of an expression contain moved symbols outside of functions with a period.
+struct Outside(Table<Expr, bool>);
+
+impl Outside {
+    /// The parts of an expression; `parts` of a period are enough: 1, or 2 for a half.
+    fn of(pool: &Pool<Symbol>, expr: Expr, moved: &dyn Fn(&Symbol) -> bool, parts: i32) -> Self {
+        let mut outside = Self(Table::default());
+        for node in pool.reachable(&[expr]) {
+            let mut is_here = matches!(pool.node(node), Node::Symbol(symbol) if moved(symbol));
+            pool.node(node).each_child(|child| is_here |= outside.is(child));
+            let is_here = is_here && !outside.is_periodic(pool, node, moved, parts);
+            outside.0.insert(node, is_here);
+        }
+        outside
+    }
+
+    fn is(&self, expr: Expr) -> bool {
+        self.0.get(expr).copied().unwrap_or(true)
+    }
+
+    /// Whether a function makes whole periods, or these parts of them, when a moved symbol makes a turn.
+    fn is_periodic(&self, pool: &Pool<Symbol>, node: Expr, moved: &dyn Fn(&Symbol) -> bool, parts: i32) -> bool {
+        let in_a_turn = match pool.node(node) {
+            Node::Call(Function::Sin | Function::Cos, _) => parts,
+            Node::Call(Function::Tan, _) => 2,
+            // The stand-in of a table is a sine, for which a few points have decided.
+            Node::Opaque(..) => 0,
+            _ => return false,
+        };
+        let in_a_turn = Rational::from_integer(in_a_turn.into());
+        let mut is_periodic = true;
+        pool.node(node).each_child(|argument| {
+            let factors = self.factors(pool, argument, moved);
+            let is_whole = |factor: &Rational| in_a_turn.is_zero() || (factor * &in_a_turn).is_integer();
+            is_periodic &= factors.is_some_and(|factors| factors.iter().all(is_whole));
+        });
+        is_periodic
+    }
+
+    /// The factors of the moved symbols in an argument that is linear in them; `None` for another.
+    fn factors(&self, pool: &Pool<Symbol>, expr: Expr, moved: &dyn Fn(&Symbol) -> bool) -> Option<Vec<Rational>> {
+        let of_term = |(term, factor): &(Expr, Rational)| match pool.as_symbol(*term) {
+            Some(symbol) if moved(symbol) => Some(vec![factor.clone()]),
+            _ => (!self.is(*term)).then(Vec::new),
+        };
+        let terms = match pool.node(expr) {
+            Node::Sum(sum) => sum.terms.clone(),
+            _ => vec![(expr, Rational::one())],
+        };
+        let factors: Option<Vec<_>> = terms.iter().map(of_term).collect();
+        factors.map(|factors| factors.concat())
+    }
 }
 
 /// A clause that has to be periodic.

@@ -120,7 +120,7 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     constraint::check_smoothness(pool, &model)?;
     dependent?;
     singular?;
-    if let Some(condition) = smoothness::jump(pool, lagrangian, &model.parameters) {
+    if let Some(condition) = smoothness::jump_of_lagrangian(pool, &model) {
         let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
         return Err(error(lagrangian_span, &Message::Function(FunctionMistake::Jump { condition })));
     }

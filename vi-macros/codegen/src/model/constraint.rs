@@ -16,7 +16,7 @@ use super::lets::Closed;
 use super::mass::{self, MARGIN, POINTS};
 use super::rotation;
 use super::scope::{Meaning, Scope};
-use super::smoothness::jump;
+use super::smoothness::{jump, with_conditions};
 use super::value::Value;
 use super::{Coordinate, FunctionKind, Model, Parameter, TableKind, indices};
 use crate::arrays::bracketed;
@@ -435,24 +435,6 @@ fn of_term(pool: &mut Pool<Symbol>, term: Expr, by: Variable) -> Option<Expr> {
     Some(pool.mul(fixed, part))
 }
 
-/// An expression with conditions in place of `abs` and `sign`.
-fn with_conditions(pool: &mut Pool<Symbol>, mut expr: Expr) -> Expr {
-    let of_sign = |pool: &Pool<Symbol>, node: Expr| match pool.node(node) {
-        Node::Call(function @ (Function::Abs | Function::Sign), arguments) => Some((*function, *arguments.first()?)),
-        _ => None,
-    };
-    while let Some((node, (function, argument))) =
-        pool.reachable(&[expr]).into_iter().find_map(|node| Some((node, of_sign(pool, node)?)))
-    {
-        let one = pool.integer(1);
-        let then = if function == Function::Abs { argument } else { one };
-        let otherwise = pool.neg(then);
-        let condition = pool.select(argument, then, otherwise);
-        expr = pool.replace(expr, node, condition);
-    }
-    expr
-}
-
 /// Reports a constraint with a jump or a kink: velocities would jump there.
 pub(super) fn check_smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
     for constraint in &model.constraints {
@@ -469,7 +451,7 @@ pub(super) fn check_smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Result
         }
         let Rate { row, rest } = constraint.rate(pool, model.dimension());
         for expr in [constraint.value, rest].into_iter().chain(row) {
-            let expr = with_conditions(pool, expr);
+            let expr = with_conditions(pool, expr, &|_, _| true);
             if let Some(condition) = jump(pool, expr, &model.parameters) {
                 let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
                 return Err(mistake(ConstraintMistake::Jump { name, condition }));

@@ -7,11 +7,20 @@
 
 use super::{FunctionKind, Model, Outside, Parameter, TableKind, probe};
 use crate::symbol::Symbol;
+use num_traits::Signed;
 use std::collections::BTreeMap;
-use vi_expr::{Expr, Node, Pool};
+use vi_expr::{Expr, Function, Node, Pool};
 
 /// Pairs of points between which a border is sought.
 const PAIRS: u32 = 40;
+/// Pairs of points from which the zero of a condition is sought by iteration.
+const NARROW: u32 = 8;
+/// Iterations for a zero.
+const ITERATIONS: u32 = 60;
+/// Part of the way between two points beside a border.
+const BESIDE: f64 = 1e-9;
+/// Growth of a difference from there to the border that shows a pole.
+const POLE: f64 = 1e3;
 /// Borders at which both expressions are compared.
 const BORDERS: usize = 10;
 /// Bisections of the way between two points: the bits of a number.
@@ -104,6 +113,48 @@ fn directional(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
     })
 }
 
+/// An expression with conditions in place of those of its `abs` and `sign` that satisfy `is_replaced`.
+pub(super) fn with_conditions(
+    pool: &mut Pool<Symbol>,
+    mut expr: Expr,
+    is_replaced: &dyn Fn(&Pool<Symbol>, Expr) -> bool,
+) -> Expr {
+    let of_sign = |pool: &Pool<Symbol>, node: Expr| match pool.node(node) {
+        Node::Call(function @ (Function::Abs | Function::Sign), arguments) if is_replaced(pool, node) => {
+            Some((*function, *arguments.first()?))
+        }
+        _ => None,
+    };
+    while let Some((node, (function, argument))) =
+        pool.reachable(&[expr]).into_iter().find_map(|node| Some((node, of_sign(pool, node)?)))
+    {
+        let one = pool.integer(1);
+        let then = if function == Function::Abs { argument } else { one };
+        let otherwise = pool.neg(then);
+        let condition = pool.select(argument, then, otherwise);
+        expr = pool.replace(expr, node, condition);
+    }
+    expr
+}
+
+/// A condition at whose border L jumps: of an `if`, of a `sign`, or of an `abs` that is divided by what it vanishes
+/// with. Other absolute values are continuous.
+pub(super) fn jump_of_lagrangian(pool: &mut Pool<Symbol>, model: &Model) -> Option<Expr> {
+    let mut divided: Vec<Expr> = Vec::new();
+    for node in pool.reachable(&[model.lagrangian]) {
+        let Node::Product(product) = pool.node(node) else { continue };
+        if product.factors.iter().any(|(_, exponent)| exponent.is_negative()) {
+            let is_absolute = |base: &Expr| matches!(pool.node(*base), Node::Call(Function::Abs, _));
+            divided.extend(product.factors.iter().map(|(base, _)| *base).filter(is_absolute));
+        }
+    }
+    let is_replaced = |pool: &Pool<Symbol>, node: Expr| {
+        matches!(pool.node(node), Node::Call(Function::Sign, _)) || divided.contains(&node)
+    };
+    let lagrangian = with_conditions(pool, model.lagrangian, &is_replaced);
+    jump(pool, lagrangian, &model.parameters)
+}
+
 /// A condition of an expression at whose border the expression jumps.
 ///
 /// The border is sought between points of a fixed sequence. There the expression is evaluated with either arm of the
@@ -124,8 +175,13 @@ pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]
         // What both have in common cancels, however large it is.
         let difference = pool.sub(then, otherwise);
         let mut borders = 0;
-        for pair in 0..PAIRS {
-            let Some(values) = border(pool, condition, pair, &[difference, then, otherwise], parameters) else {
+        let exprs = [difference, then, otherwise];
+        for (pair, is_narrow) in (0..PAIRS).map(|pair| (pair, false)).chain((0..NARROW).map(|pair| (pair, true))) {
+            // The points miss a condition that holds between close borders only: there an iteration finds its zero.
+            if is_narrow && borders > 0 {
+                break;
+            }
+            let Some(values) = border(pool, condition, (pair, is_narrow), &exprs, parameters) else {
                 continue;
             };
             let [difference, around, size] = values;
@@ -142,13 +198,35 @@ pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]
     None
 }
 
+/// Two ways between which a function changes its sign, found by Newton's iteration with difference quotients; the zeros
+/// may be so close that it has one sign at most points. The first way is 0.
+fn narrow_change(function: &mut dyn FnMut(f64) -> f64) -> Option<[f64; 2]> {
+    let is_positive = function(0.0) > 0.0;
+    let mut way = 0.0_f64;
+    for _ in 0..ITERATIONS {
+        let step = 1e-6 * way.abs().max(1.0);
+        let slope = (function(way + step) - function(way - step)) / (2.0 * step);
+        let next = way - function(way) / slope;
+        if !next.is_finite() {
+            break;
+        }
+        way = next;
+        if (function(way) > 0.0) != is_positive {
+            return Some([0.0, way]);
+        }
+    }
+    let nearby = (1..15).flat_map(|power| [1.0, -1.0].map(|side| side * 10.0_f64.powi(-power)));
+    let mut nearby = nearby.map(|distance| way + distance);
+    nearby.find(|way| (function(*way) > 0.0) != is_positive).map(|way| [0.0, way])
+}
+
 /// The absolute difference of two expressions at a point where a condition changes its sign, the largest one around it,
 /// and the size of both; `None` if the condition does not change its sign between the two points of this pair, or if a
 /// value is not finite.
 fn border(
     pool: &Pool<Symbol>,
     condition: Expr,
-    pair: u32,
+    (pair, is_narrow): (u32, bool),
     exprs: &[Expr; 3],
     parameters: &[Parameter],
 ) -> Option<[f64; 3]> {
@@ -167,7 +245,7 @@ fn border(
         })
     };
     let mut sign = |way: f64| at(way, &[condition]).first().map_or(f64::NAN, |value| *value);
-    let (mut low, mut high) = (0.0, 1.0);
+    let [mut low, mut high] = if is_narrow { narrow_change(&mut sign)? } else { [0.0, 1.0] };
     let first = sign(low) > 0.0;
     if (sign(high) > 0.0) == first {
         return None;
@@ -178,6 +256,13 @@ fn border(
     }
     let values = at(high, exprs);
     let [difference, then, otherwise] = values[..] else { return None };
+    // A pole has no two sides that could agree.
+    let beside = at(high + BESIDE, &exprs[..1]).first().map_or(0.0, |value| value.abs());
+    if difference.abs() > POLE * beside {
+        return None;
+    }
+    // A root vanishes slowly: it is less at the border, but not small.
+    let difference = if difference.abs() < beside / 2.0 { 0.0 } else { difference };
     let mut around = difference.abs();
     for way in [0.0, 1.0] {
         let size = at(way, &exprs[..1]).first().map_or(0.0, |value| value.abs());

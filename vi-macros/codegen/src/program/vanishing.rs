@@ -3,7 +3,8 @@
 //! In: the factors of a product. Out: [`Limits`], if the product tends to zero although floating point gives `0·∞`:
 //!
 //! - A stepwise constant factor, made of `sign(…)`, numbers and parameters, is zero and does not jump at the state. So
-//!   the product is zero around the state for any other factors.
+//!   the product is zero around the state for any other factors, also for those without a value, as a root of a negative
+//!   number.
 //! - A negative power `B^(-e)` multiplies factors that vanish with B. B is a sum of terms `c |u|^a`, so `|u| ≤ C
 //!   B^(1/a)`. Factors of total order m in B have the limit 0 if `m > e`. The numbers c are positive. Parameters among
 //!   them are tested at run time, and so is an exponent that depends on parameters.
@@ -40,12 +41,14 @@ struct Nature {
     change: StateDependence,
     /// It may be infinite at a finite state.
     singular: bool,
+    /// It may have no value at a finite state.
+    partial: bool,
     /// It contains a jump.
     jumps: bool,
 }
 
 /// Properties assumed by default.
-const LEAST_KNOWN: Nature = Nature { change: StateDependence::Varying, singular: true, jumps: true };
+const LEAST_KNOWN: Nature = Nature { change: StateDependence::Varying, singular: true, partial: true, jumps: true };
 
 /// A product of powers.
 type Factors = Vec<(Expr, Rational)>;
@@ -106,12 +109,13 @@ impl Known {
         Analysis { pool, known: self }.limits(&factors).is_some()
     }
 
-    /// Whether a factor of a product may be infinite at a state where a limit is sought.
+    /// Whether a factor of a product may be infinite, or without a value, at a state where a limit is sought.
     fn may_be_infinite(&mut self, pool: &Pool<Symbol>, factors: &[(Expr, Rational)]) -> bool {
         factors.len() > 1
             && factors.iter().any(|(base, exponent)| {
-                let Nature { change, singular, .. } = self.nature(pool, *base);
-                singular || exponent.is_negative() && change == StateDependence::Varying
+                let Nature { change, singular, partial, .. } = self.nature(pool, *base);
+                let is_partial = exponent.is_negative() || !exponent.is_integer();
+                singular || partial || is_partial && change == StateDependence::Varying
             })
     }
 
@@ -134,12 +138,13 @@ impl Known {
     }
 
     fn nature_by_operands(&self, pool: &Pool<Symbol>, expr: Expr) -> Nature {
-        let mut nature = Nature { change: StateDependence::Constant, singular: false, jumps: false };
+        let mut nature = Nature { change: StateDependence::Constant, singular: false, partial: false, jumps: false };
         let node = pool.node(expr);
         node.each_child(|child| {
             let of = self.natures.get(child).unwrap_or(&LEAST_KNOWN);
             nature.change = nature.change.max(of.change);
             nature.singular |= of.singular;
+            nature.partial |= of.partial;
             nature.jumps |= of.jumps;
         });
         let is_varying = |base: &Expr| self.natures.get(*base).is_some_and(|of| of.change == StateDependence::Varying);
@@ -149,14 +154,16 @@ impl Known {
             Node::Symbol(_) => nature.change = StateDependence::Varying,
             Node::Call(Function::Sign, _) => {
                 let change = nature.change.min(StateDependence::Stepwise);
-                nature = Nature { change, singular: false, jumps: change == StateDependence::Stepwise };
+                nature = Nature { change, singular: false, partial: false, jumps: change == StateDependence::Stepwise };
             }
             Node::Call(function, _) => {
                 nature.singular |= matches!(function, Function::Ln | Function::Pow);
+                nature.partial |= matches!(function, Function::Asin | Function::Acos);
                 nature.jumps |= *function == Function::Atan2;
             }
             Node::Product(product) => {
                 nature.singular |= product.factors.iter().any(|(base, e)| e.is_negative() && is_varying(base));
+                nature.partial |= product.factors.iter().any(|(base, e)| !e.is_integer() && is_varying(base));
             }
         }
         nature
