@@ -182,6 +182,9 @@ impl ArrayMistake {
             },
             Self::Added { .. } => "the terms of a sum have one shape; write a vector as `[a, b, c]`, one entry as `v[0]`".to_owned(),
             Self::Chosen { .. } => "both values of an `if` have one shape".to_owned(),
+            Self::Multiplied { left, right } if left[..] == [4] && right[..] == [3] => {
+                "write `turn(R, v)` for the vector `v` of a body in space, if this is a `rotation R`".to_owned()
+            }
             Self::Multiplied { .. } => {
                 "`v * w` takes two vectors of equal length; `M * v` as many columns of `M` as `v` has entries, `v * M` as many rows"
                     .to_owned()

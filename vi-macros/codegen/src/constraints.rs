@@ -10,6 +10,8 @@ pub enum ConstraintMistake {
     NoName,
     /// `constraint rod = a = b;`
     Equation,
+    /// `constraint rod: a = b;`
+    Colon { name: String },
     /// `constraint floor = y > 0;`
     Inequality,
     /// A constraint declared twice.
@@ -32,6 +34,8 @@ pub enum ConstraintMistake {
     LinearTable { name: String, table: String },
     /// A force on a constraint.
     Force { name: String },
+    /// A force of three components on a rotation.
+    ForceOnRotation { name: String },
     /// The name of a constraint in an expression.
     Value { name: String },
     /// `reaction(…)` in an expression.
@@ -53,6 +57,7 @@ impl ConstraintMistake {
         match self {
             Self::NoName => "this constraint has no name".to_owned(),
             Self::Equation => "a constraint is one expression, which is 0".to_owned(),
+            Self::Colon { .. } => "a colon does not define a constraint".to_owned(),
             Self::Inequality => "inequalities are not supported as constraints".to_owned(),
             Self::Twice { name } => format!("the constraint `{name}` is declared twice"),
             Self::Constant { name } => format!("the constraint `{name}` contains no coordinate"),
@@ -75,6 +80,9 @@ impl ConstraintMistake {
                 format!("the constraint `{name}` has a kink at each place of the linear table `{table}`")
             }
             Self::Force { name } => format!("`{name}` has a force but is a constraint"),
+            Self::ForceOnRotation { name } => {
+                format!("`{name}` is a rotation of four components, and this force has three")
+            }
             Self::Value { name } => format!("`{name}` is a constraint, not a number"),
             Self::Reaction => "an expression cannot contain a reaction".to_owned(),
             Self::Torque { name } => format!("`{name}` has a torque but is not a rotation"),
@@ -90,8 +98,13 @@ impl ConstraintMistake {
         match self {
             Self::NoName => NAMED.to_owned(),
             Self::Equation => "write the difference of both sides, as in `constraint rod = x^2 + y^2 - l^2;`".to_owned(),
+            Self::Colon { name } => {
+                format!("write `constraint {name} = x^2 + y^2 - l^2;`: the difference of both sides, which is 0")
+            }
             Self::Inequality => {
-                "write an expression that is 0; an event with `set_state` models an impact on a stop".to_owned()
+                "a constraint is an expression that is 0; write a stiff spring for a stop, `L = … - k * max(-y, 0)^2 / 2;`, or model an impact by \
+                 an event with `set_state`"
+                    .to_owned()
             }
             Self::Twice { .. } => "rename one of them, or give it another index".to_owned(),
             Self::Constant { .. } => {
@@ -120,7 +133,14 @@ impl ConstraintMistake {
             Self::Force { name } => format!(
                 "a force acts on a coordinate: `force x = …;`; the reaction of `{name}` follows from the motion"
             ),
-            Self::Value { .. } => "name its expression with `let`, and use that name in both places".to_owned(),
+            Self::ForceOnRotation { name } => format!(
+                "write `torque {name} = [a, b, c];` for a torque in the axes of the body, `space_torque {name} = [a, b, c];` in the axes of space"
+            ),
+            Self::Value { .. } => {
+                "name its expression with `let`, and use that name in both places; its reaction is known after a step only, so friction that \
+                 depends on it is not supported"
+                    .to_owned()
+            }
             Self::Reaction => {
                 "friction that depends on a reaction is not supported; a run computes reactions at its states and for events"
                     .to_owned()

@@ -259,6 +259,15 @@ const TYPES: [&str; 14] =
 /// Products over a range.
 const PRODUCTS: [&str; 3] = ["product", "prod", "Π"];
 
+/// Clauses of other languages that declare a constraint.
+const OF_CONSTRAINTS: [&str; 8] =
+    ["constraints", "constrain", "subject", "holonomic", "nonholonomic", "equation", "equations", "eq"];
+
+/// Whether other languages declare a constraint by a clause of this name.
+pub(crate) fn is_constraint(clause: &str) -> bool {
+    OF_CONSTRAINTS.contains(&clause)
+}
+
 /// Clauses.
 const CLAUSES: [(&[&str], &str); 16] = [
     (&["parameter", "parameters", "params"], "write `param a = 1.0;`"),
@@ -276,7 +285,7 @@ const CLAUSES: [(&[&str], &str); 16] = [
          Hamiltonians are not supported",
     ),
     (&["rayleigh", "Rayleigh", "damping", "friction"], "write `dissipation = …;`, Rayleigh's function"),
-    (&["constraints", "constrain", "subject", "holonomic", "nonholonomic"], constraints::NAMED),
+    (&OF_CONSTRAINTS, constraints::NAMED),
     (
         &["for", "while", "loop"],
         "write `force q[i in 0..8] = …;` or `let e[i in 0..8] = …;` for each entry, and `sum(i in 0..8, …)`",
@@ -293,7 +302,7 @@ const CLAUSES: [(&[&str], &str); 16] = [
 ];
 
 /// Functions.
-const FUNCTIONS: [(&[&str], &str); 43] = [
+const FUNCTIONS: [(&[&str], &str); 44] = [
     (&["log"], "write `ln(a)` for the natural logarithm, `ln(a) / ln(b)` for the one to the base b"),
     (&["log10"], "write `ln(a) / ln(10)`"),
     (&["log2"], "write `ln(a) / ln(2)`"),
@@ -336,6 +345,11 @@ const FUNCTIONS: [(&[&str], &str); 43] = [
     (
         &["length", "len"],
         "write `norm(v)` for the length of a vector; its number of entries is the constant that declares it",
+    ),
+    (
+        &["pitch", "roll", "yaw", "heading", "euler", "euler_angles", "quaternion", "matrix_of", "axis_angle"],
+        "of a `rotation R`, `rate(R)` is the angular velocity, `turn(R, [1, 0, 0])` an axis of the body in space, and `R[0]` … `R[3]` the \
+         quaternion; or declare angles, `angle ψ, θ, φ;`",
     ),
     (&["sgn", "signum"], "write `sign(a)`"),
     (&["heaviside", "Heaviside", "step", "theta"], "write `if a > 0 { 1 } else { 0 }`"),

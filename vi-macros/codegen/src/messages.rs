@@ -238,6 +238,10 @@ pub enum Message {
     UnknownClause { found: String, near: Option<String>, is_defined: bool, is_coordinate: bool },
     /// A token that the grammar does not allow.
     Expected { what: &'static str },
+    /// Anything but a `struct` at the beginning.
+    NoStruct,
+    /// `lagrangian! { … }` in itself.
+    Wrapped,
     /// Notation that this language writes differently.
     Habit(Habit),
     /// An expression that changes if an angle makes a turn.
@@ -429,6 +433,8 @@ impl Message {
             Self::Shape { needs } => format!("a {needs} is needed here"),
             Self::UnknownClause { found, .. } => format!("unknown clause `{found}`"),
             Self::Expected { what } => format!("expected {what}"),
+            Self::NoStruct => "expected `struct Name { … }`".to_owned(),
+            Self::Wrapped => "a system begins inside of `lagrangian! { … }`".to_owned(),
             Self::Habit(habit) => habit.what(),
             Self::NotDecimal => "not a decimal number".to_owned(),
             Self::NumberRange => "this number is outside the range of `f64`".to_owned(),
@@ -547,6 +553,10 @@ impl Message {
             Self::UnknownClause { is_coordinate: true, .. } => habits::RUN.to_owned(),
             Self::UnknownClause { found, near, is_defined, .. } => clause_for(found, near.as_ref(), *is_defined),
             Self::Expected { .. } => "write a clause as `name = expression;` and a sum as `a + 2 * b`".to_owned(),
+            Self::NoStruct => {
+                "write the text of a system, as `struct Pendulum { coord x; L = dot(x)^2 / 2 - x^2; }`, not the name of a file".to_owned()
+            }
+            Self::Wrapped => "write the `struct Name { … }` alone, without `lagrangian!` and its braces".to_owned(),
             Self::Habit(habit) => habit.help(),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),

@@ -33,7 +33,10 @@ fn names_and_signs() {
         value(written, equation);
     }
     for written in ["y «>» 0", "y «<»= x"] {
-        value(written, "inequalities are not supported as constraints\nhelp: write an expression that is 0; an event");
+        value(
+            written,
+            "inequalities are not supported as constraints\nhelp: a constraint is an expression that is 0; write a",
+        );
     }
     clause("constraint «c»;", "`c` has no value");
     clause("constraint «c» += x;", named);
@@ -68,6 +71,21 @@ fn constraints_without_motion() {
     );
     case(&format!("constraint «a» = [x - l, y * x, x + y]; {plane}"), "3 constraint(s) on 2 coordinate(s)");
     case("constraint «a» = x - 1; coord x; L = dot(x)^2;", "1 constraint(s) on 1 coordinate(s) leave no motion");
+    // What follows from others leaves the motion that they leave.
+    let space = "coord x, y, z; L = dot(x)^2 + dot(y)^2 + dot(z)^2;";
+    let rolling = "constraint a = dot(x) - y * dot(z), b = dot(y) - x * dot(z)";
+    case(
+        &format!("{rolling}, «c» = dot(x) + dot(y) - (x + y) * dot(z); {space}"),
+        "the constraint `c` follows from those before it\nhelp: remove it",
+    );
+    case(
+        &format!("{rolling}, «c» = 2 * dot(x) - 2 * y * dot(z); {space}"),
+        "the constraint `c` repeats `a` up to a factor\nhelp: remove it",
+    );
+    case(
+        &format!("{rolling}, «c» = dot(x) - z * dot(y); {space}"),
+        "3 constraint(s) on 3 coordinate(s) leave no motion",
+    );
 }
 
 #[test]

@@ -1311,3 +1311,41 @@ fn right_systems_pass() {
         assert_eq!(errors(&format!("struct System {{ {body} }}")), [], "{body}");
     }
 }
+
+/// What users of other tools type, and the words of the answer.
+#[test]
+fn notations_of_other_tools_are_answered() {
+    let plane = |clause: &str| format!("coord x, y; L = (dot(x)^2 + dot(y)^2) / 2 - y; {clause}");
+    let turned = |clause: &str| format!("rotation R; let w = rate(R); {clause}");
+    for (body, token, words) in [
+        (plane("constraint loop = x^2 + y^2 - 1;"), "loop", "the name `loop` is reserved"),
+        ("coord x; L = dot(x)^2 / 2 - where(x > 0, x^2, 0);".to_owned(), "where", "help: write `if a > b { x }"),
+        (plane("constraint rod: x^2 + y^2 == 1;"), ":", "help: write `constraint rod = x^2 + y^2 - l^2;`"),
+        (plane("constraint floor = y; force x = -abs(floor);"), "floor", "its reaction is known after a step only"),
+        (turned("let z = R * [0, 0, 1]; L = w * w / 2 - z[2];"), "[", "help: write `turn(R, v)`"),
+        (turned("L = w * w / 2; force R = [0, 0, 1];"), "R", "help: write `torque R = [a, b, c];`"),
+        (turned("L = w * w / 2 - pitch(R);"), "pitch", "`rate(R)` is the angular velocity"),
+        (plane("equation x^2 + y^2 = 1;"), "equation", "help: write `constraint rod = x^2 + y^2 - l^2;`"),
+        ("coord x; let V = if x > 0 then x^2 else 0; L = dot(x)^2 / 2 - V;".to_owned(), "then", "values in braces"),
+        ("coord x; L = dot(x)^2 / 2 - if x > 0 and x < 1 { x } else { 0 };".to_owned(), "and", "one comparison by"),
+        ("coord r[3]; L = dot(r) * dot(r) / 2 + 1 / np.linalg.norm(r);".to_owned(), "norm", "function, `norm(…)`"),
+        (plane("constraint floor = y >= 0;"), ">", "inequalities are not supported as constraints"),
+        (plane("constraint y >= 0;"), ">", "a stiff spring for a stop"),
+        (plane("constraint 0 <= y;"), "<", "a stiff spring for a stop"),
+        (plane("subject to y >= 0;"), ">", "an event with `set_state`"),
+        (plane("subject to y = 0;"), "subject", "help: write `constraint rod"),
+    ] {
+        let found = errors(&format!("struct System {{ {body} }}"));
+        let said = found.iter().find(|(_, said)| said.contains(words));
+        let (found, _) = said.unwrap_or_else(|| panic!("{body}\n{found:#?}"));
+        assert_eq!(found, token, "{body}");
+    }
+    for (text, token, words) in [
+        ("pendulum.txt", "pendulum", "not the name of a file"),
+        ("lagrangian! { struct A { coord x; L = dot(x)^2; } }", "lagrangian", "without `lagrangian!` and its braces"),
+    ] {
+        let (found, said) = errors(text).remove(0);
+        assert!(said.contains(words), "{said}");
+        assert_eq!(found, token);
+    }
+}

@@ -60,7 +60,7 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
         constraint::check_clauses(&mut context, system);
     }
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
-    let mut forces = force::forces(&mut context, &system.forces, coordinates.len());
+    let mut forces = force::forces(&mut context, &system.forces, &coordinates);
     let dissipation = force::dissipate(&mut context, &system.dissipations, &mut forces, &parameters);
     rotation::torques(&mut context, &system.torques, false, &coordinates, &mut forces);
     rotation::torques(&mut context, &system.space_torques, true, &coordinates, &mut forces);
@@ -119,6 +119,7 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     // A derivative with a jump is no derivative.
     constraint::check_smoothness(pool, &model)?;
     dependent?;
+    constraint::check_count(&model)?;
     singular?;
     if let Some(condition) = smoothness::jump_of_lagrangian(pool, &model) {
         let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));

@@ -168,11 +168,6 @@ pub(super) fn constraints(context: &mut Context, lines: &[Definition], coordinat
             break;
         }
     }
-    let (count, size) = (found.len(), coordinates.len());
-    if let Some(first) = found.get(size).or(found.last()).filter(|_| count >= size && context.errors.is_empty()) {
-        let message = Message::Constraint(ConstraintMistake::TooMany { count, size });
-        context.errors.at(first.name.span(), &message);
-    }
     found.sort_by_key(|constraint| !constraint.is_holonomic);
     found
 }
@@ -252,6 +247,15 @@ pub(super) fn rows(pool: &mut Pool<Symbol>, constraints: &[Constraint], dimensio
     constraints.iter().map(|constraint| constraint.rate(pool, dimension).row).collect()
 }
 
+/// Reports as many constraints as coordinates, or more; those that depend on others are reported before.
+pub(super) fn check_count(model: &Model) -> Result<()> {
+    let (count, size) = (model.constraints.len(), model.dimension());
+    match model.constraints.get(size).or(model.constraints.last()).filter(|_| count >= size) {
+        Some(first) => Err(error(first.name.span(), &Message::Constraint(ConstraintMistake::TooMany { count, size }))),
+        None => Ok(()),
+    }
+}
+
 /// Reports constraints on velocities that are derivatives of functions, without inputs, then one that depends on others.
 pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
     let (constraints, parameters, dimension) = (&model.constraints, &model.parameters, model.dimension());
@@ -279,7 +283,9 @@ pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
         }
     }
     let rows = rows(pool, constraints, dimension);
-    if !integrable && let Some(dependent) = dependent(pool, &rows, dimension, parameters) {
+    // Behind as many independent ones as coordinates, each depends on them: `check_count` reports these.
+    let dependent = dependent(pool, &rows, dimension, parameters).filter(|row| *row < dimension);
+    if !integrable && let Some(dependent) = dependent {
         let constraint = &constraints[dependent];
         let name = constraint.text();
         let alone = |rows: &[&Vec<Expr>]| {

@@ -6,12 +6,12 @@
 //! f_i = (line of x_i) − ∂R/∂v_i        R(t,q,v) is Rayleigh's function
 //! ```
 
-use super::Parameter;
 use super::array::{part, spelled};
 use super::context::Context;
 use super::dissipation;
 use super::scope::{Meaning, Scope};
 use super::value::not_a_number;
+use super::{Coordinate, Parameter};
 use crate::arrays::ArrayMistake;
 use crate::constraints::ConstraintMistake;
 use crate::messages::{Message, error};
@@ -22,9 +22,15 @@ use syn::Result;
 use vi_expr::{Expr, Pool};
 
 /// The force on each coordinate by the `force` lines; zero where none is declared.
-pub(super) fn forces(context: &mut Context, lines: &[Definition], dimension: usize) -> Vec<Expr> {
-    let mut forces: Vec<Option<Expr>> = vec![None; dimension];
+pub(super) fn forces(context: &mut Context, lines: &[Definition], coordinates: &[Coordinate]) -> Vec<Expr> {
+    let mut forces: Vec<Option<Expr>> = vec![None; coordinates.len()];
     for line in lines {
+        let is_rotation = coordinates.iter().any(|known| known.is_rotation && known.name == line.name);
+        if is_rotation && has_three_components(context, line) {
+            let mistake = ConstraintMistake::ForceOnRotation { name: line.name.to_string() };
+            context.errors.at(line.name.span(), &Message::Constraint(mistake));
+            continue;
+        }
         let coordinates = Entries::of_coordinate(context, &line.name.to_string());
         let on_other = |context: &Context, name: String| {
             if context.scope.meaning(&name) == Some(&Meaning::Constraint) {
@@ -43,6 +49,12 @@ pub(super) fn forces(context: &mut Context, lines: &[Definition], dimension: usi
     }
     let zero = context.pool.zero();
     forces.into_iter().map(|force| force.unwrap_or(zero)).collect()
+}
+
+/// Whether the value of a line is a vector of three numbers; `false` for one with mistakes.
+fn has_three_components(context: &mut Context, line: &Definition) -> bool {
+    let Context { scope, pool, .. } = context;
+    line.indices.is_empty() && scope.value(pool, &line.value).is_ok_and(|value| value.shape() == [3])
 }
 
 /// The numbers that a line assigns values to: one, or those of an array of these lengths.

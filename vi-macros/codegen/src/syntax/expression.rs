@@ -356,11 +356,17 @@ impl Expression {
         } else if input.peek(Token![<]) && !input.peek(Token![<<]) {
             input.parse::<Token![<]>().map(|_| (true, false))?
         } else {
+            if input.cursor().ident().is_some_and(|(word, _)| word == "then") {
+                return Err(error(input.span(), &Message::Function(FunctionMistake::Else)));
+            }
             let is_end = input.is_empty() || input.peek(syn::token::Brace);
             let span = if is_end { condition } else { input.span() };
             return Err(error(span, &Message::Function(FunctionMistake::Comparison)));
         };
         let right = Self::sum(input, depth)?;
+        if input.cursor().ident().is_some_and(|(word, _)| word == "then") {
+            return Err(error(input.span(), &Message::Function(FunctionMistake::Else)));
+        }
         if !(input.is_empty() || input.peek(syn::token::Brace)) {
             return Err(error(input.span(), &Message::Function(FunctionMistake::Comparison)));
         }

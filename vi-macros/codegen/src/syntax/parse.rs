@@ -12,7 +12,7 @@ use super::{
 };
 use crate::arrays::ArrayMistake;
 use crate::constraints::ConstraintMistake;
-use crate::habits::Habit;
+use crate::habits::{self, Habit};
 use crate::messages::{Errors, Message, bounded, error, nearest};
 use num_traits::Zero;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
@@ -158,10 +158,13 @@ pub fn rule(text: &str) -> Result<Rule> {
 
 /// `pub struct Name { … }`
 fn header(input: ParseStream) -> Result<(System, Errors)> {
+    if input.cursor().ident().is_some_and(|(word, _)| word == "lagrangian") && input.peek2(Token![!]) {
+        return Err(error(input.span(), &Message::Wrapped));
+    }
     let attributes = attributes(input)?;
     let visibility: Visibility = input.parse()?;
     if !input.peek(Token![struct]) {
-        return Err(error(input.span(), &Message::Expected { what: "`struct Name { … }`" }));
+        return Err(error(input.span(), &Message::NoStruct));
     }
     input.parse::<Token![struct]>()?;
     let name = name(input)?;
@@ -320,6 +323,9 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
                 // Or its `fn` would start another clause.
                 input.parse::<Option<Token![fn]>>()?;
             }
+            if let (true, Some(sign)) = (habits::is_constraint(found), inequality(input)) {
+                return Err(error(sign, &Message::Constraint(ConstraintMistake::Inequality)));
+            }
             let near = nearest(found, CLAUSES);
             let is_coordinate = system.coordinates.iter().any(|coordinate| coordinate.name == word);
             let is_defined = input.peek(Token![=]) || input.peek(syn::token::Bracket);
@@ -432,14 +438,24 @@ fn indexed(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
 fn constraint(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
     let mistake = |span: Span, mistake| error(span, &Message::Constraint(mistake));
     let first = input.span();
-    if !input.peek(syn::Ident) {
-        return Err(mistake(first, ConstraintMistake::NoName));
+    // Without a name, the sign is the greater mistake.
+    let no_name = |sign: Option<Span>| match sign {
+        Some(sign) => mistake(sign, ConstraintMistake::Inequality),
+        None => mistake(first, ConstraintMistake::NoName),
+    };
+    let sign = inequality(input);
+    // A keyword of Rust too: its message says that it is reserved.
+    if !input.peek(Ident::peek_any) {
+        return Err(no_name(sign));
     }
     let (name, indices) = (name(input)?, indices(input)?);
+    if input.peek(Token![:]) && !input.peek2(Token![=]) {
+        return Err(mistake(input.span(), ConstraintMistake::Colon { name: name.to_string() }));
+    }
     let has_value = input.peek(Token![=]) && !input.peek(Token![==]);
     let is_unfinished = input.is_empty() || input.peek(Token![;]) || input.peek(Token![,]) || input.peek(Token![:]);
     if !has_value && !is_unfinished {
-        return Err(mistake(first, ConstraintMistake::NoName));
+        return Err(no_name(sign));
     }
     let definition = Definition { indices, ..value_of(name, input, attributes.to_vec())? };
     if input.peek(Token![=]) || input.peek(Token![!=]) {
@@ -449,6 +465,19 @@ fn constraint(input: ParseStream, attributes: &[Attribute]) -> Result<Definition
         return Err(mistake(input.span(), ConstraintMistake::Inequality));
     }
     Ok(definition)
+}
+
+/// The sign of an inequality between this place and the end of the clause.
+fn inequality(input: ParseStream) -> Option<Span> {
+    let mut here = input.cursor();
+    while let Some((token, behind)) = here.token_tree() {
+        match token {
+            TokenTree::Punct(mark) if mark.as_char() == ';' => return None,
+            TokenTree::Punct(mark) if "<>≤≥".contains(mark.as_char()) => return Some(mark.span()),
+            _ => here = behind,
+        }
+    }
+    None
 }
 
 /// Whether a further index or length follows `before` others.

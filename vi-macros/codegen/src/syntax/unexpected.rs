@@ -26,6 +26,13 @@ pub(super) fn operand(input: ParseStream) -> Error {
         Some((word, _)) if ["crate", "self", "super"].iter().any(|root| word == root) && input.peek2(Token![::]) => {
             Some(Habit::Path)
         }
+        Some((word, behind)) if behind.group(Delimiter::Parenthesis).is_some() => {
+            // A keyword of Rust, as `where(…)`.
+            if let Some(error) = call(&word) {
+                return error;
+            }
+            None
+        }
         Some(_) => None,
         None if input.peek(Token![|]) => Some(Habit::Bars),
         None if input.peek(syn::token::Brace) => Some(Habit::OtherBrackets),
@@ -229,7 +236,17 @@ fn operand_text(name: Option<&Ident>, token: &TokenTree) -> String {
 
 /// The habit after a decimal point, with its place: a method call, or an exponent without digits before it.
 fn behind_point(behind: Cursor, previous: Option<&Previous>) -> (Option<Span>, Option<Habit>) {
-    let Some((word, behind)) = behind.ident() else { return (None, None) };
+    let Some((mut word, mut behind)) = behind.ident() else { return (None, None) };
+    // `np.linalg.norm(…)`: the function is the last name.
+    let mut last = (word.clone(), behind);
+    while let Some((_, name)) = last.1.punct().filter(|(mark, _)| mark.as_char() == '.')
+        && let Some(further) = name.ident()
+    {
+        last = further;
+    }
+    if last.1.group(Delimiter::Parenthesis).is_some() {
+        (word, behind) = last;
+    }
     let text = word.to_string();
     let is_exponent = text.starts_with(['e', 'E']) && text.chars().skip(1).all(|digit| digit.is_ascii_digit());
     if let Some(Previous { token: TokenTree::Literal(digits), .. }) = previous
