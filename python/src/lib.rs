@@ -48,6 +48,17 @@ fn explain(definition: &str, stages: Option<usize>, alone: bool) -> PyResult<Exp
     Ok((explained.title, text, sections.collect()))
 }
 
+/// Whether the motion of a definition splits into kicks and drifts, and whether its rule has a step density.
+///
+/// Raises ValueError for a mistake, without its line.
+#[pyfunction]
+#[pyo3(crate = "vi_python::pyo3")]
+fn properties(definition: &str) -> PyResult<(bool, bool)> {
+    let tokens: TokenStream = definition.parse().map_err(|error: LexError| PyValueError::new_err(error.to_string()))?;
+    let found = inspect::properties(tokens).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok((found.is_separable, found.has_step_density))
+}
+
 /// Path and text of each source file that a compiled system needs.
 #[pyfunction]
 #[pyo3(crate = "vi_python::pyo3")]
@@ -59,6 +70,7 @@ fn sources() -> &'static [(&'static str, &'static str)] {
 #[pyo3(crate = "vi_python::pyo3")]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(pyo3::wrap_pyfunction!(explain, module)?)?;
+    module.add_function(pyo3::wrap_pyfunction!(properties, module)?)?;
     module.add_function(pyo3::wrap_pyfunction!(sources, module)?)?;
     module.add("sources_digest", embedded::DIGEST)?;
     vi_python::populate(module, vi_python_ready::systems())

@@ -187,6 +187,13 @@ def test_a_rust_function_needs_a_crate():
         vi.compile('#[doc = include_str!("/etc/hostname")] struct S { coord x; L = dot(x)^2/2 - x; }')
 
 
+def test_methods_that_do_not_fit_are_refused():
+    with pytest.raises(vi.CompileError, match="the method splitting does not fit this system"):
+        vi.compile("struct S { coord x; L = (1 + x^2)*dot(x)^2/2 - x^2; }", methods="splitting")
+    with pytest.raises(vi.CompileError, match="the method energy needs the rule midpoint"):
+        vi.compile("struct S { coord x; L = dot(x)^2/2 - x^2; discretize trapezoidal; }", methods="energy")
+
+
 def test_functions_that_call_each_other_end_with_a_message():
     chain = " ".join(f"fn f{i + 1}(a) = f{i}(a) + 1;" for i in range(3200))
     with pytest.raises(vi.CompileError, match="inside each other"):

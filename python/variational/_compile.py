@@ -133,6 +133,7 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
         built = _folder() / "modules" / (library + _SUFFIX)
         if not built.exists():
             name = _checked(definition)
+            _suitable(definition, methods)
             _build(definition, name, library, built, methods, verbose)
         cls = _load(library, built)
         cls._source = (definition, methods)  # type: ignore[attr-defined]
@@ -261,6 +262,24 @@ def _checked(definition: str) -> str:
     except ValueError as mistake:
         raise CompileError(str(mistake)) from None
     return name
+
+
+def _suitable(definition: str, methods: str) -> None:
+    """Raises CompileError for a method that needs another L or another rule: cargo would say it in terms of Rust."""
+    words = methods.split("; ")
+    if "splitting" not in words and "energy" not in words:
+        return
+    is_separable, has_step_density = _core.properties(definition)
+    if "splitting" in words and not is_separable:
+        raise CompileError(
+            "the method splitting does not fit this system: it needs `L = v·M v/2 - V(t, q)` with constant masses M, and "
+            'forces of time and coordinates alone; write "gauss 8"'
+        )
+    if "energy" in words and not has_step_density:
+        raise CompileError(
+            "the method energy needs the rule midpoint: write `discretize midpoint;` in the definition, or "
+            '"energy 2" for the methods'
+        )
 
 
 def _build(definition: str, name: str, library: str, built: Path, methods: str, verbose: bool) -> None:

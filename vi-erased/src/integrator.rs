@@ -81,7 +81,7 @@ macro_rules! by_length {
 
 /// Fixed steps of order 2.
 #[must_use]
-pub fn fixed<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Integrator<S, N>
+pub fn fixed<S: Runnable<N>, const N: usize>() -> Integrator<S, N>
 where
     FixedStep: Erasable<S, N>,
 {
@@ -90,7 +90,7 @@ where
 
 /// Fixed steps of order 2, and their compositions of order 4, 6, 8.
 #[must_use]
-pub fn by_rule<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>>
+pub fn by_rule<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>>
 where
     FixedStep: Erasable<S, N>,
     Composition: Erasable<S, N>,

@@ -54,7 +54,8 @@ pub use system::{System, Typed};
 /// | `gauss_lobatto 1, 3` | steps of 1 and of 3 stages that keep constraints |
 /// | `energy_lobatto 2` | energy-preserving steps of 2 stages that keep constraints |
 ///
-/// `fixed`, `fixed_2` and `energy` without stages need the clause `discretize midpoint;`. A system with constraints has
+/// `fixed` and `fixed_2` need a rule, as by the clause `discretize trapezoidal;`, and `energy` without stages one with a
+/// step density, as `discretize midpoint;`. A system with constraints has
 /// only those methods that keep them.
 #[macro_export]
 macro_rules! kind {

@@ -114,3 +114,21 @@ fn a_system_tells_its_declaration() {
     assert_eq!(system.parameters_about().len(), 1);
     assert!(system.conserves_energy() && system.has(Method::Energy) && system.integrators().len() == 9);
 }
+
+mod verlet {
+    vi_core::lagrangian! {
+        /// An oscillator by the trapezoidal rule, which has no energy-preserving steps.
+        pub(super) struct Verlet {
+            coord x;
+            L = dot(x)^2 / 2 - x^2 / 2;
+            discretize trapezoidal;
+        }
+    }
+}
+
+#[test]
+fn a_rule_without_a_step_density_has_fixed_steps() {
+    let system = kind!(verlet::Verlet, { fixed_2; gauss 4 });
+    let methods: Vec<Method> = system.integrators().into_iter().map(|(method, ..)| method).collect();
+    assert_eq!(methods, [Method::Fixed, Method::Gauss]);
+}

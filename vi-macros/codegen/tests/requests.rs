@@ -117,3 +117,19 @@ fn an_input_is_a_parameter_with_a_place_in_a_list() {
     assert_eq!(same, parameters);
     assert!(!parameters.contains("INPUTS"));
 }
+
+#[test]
+fn what_integrators_ask_of_a_system_is_known() {
+    let of = |clauses: &str| {
+        let text = format!("struct S {{ coord x; {clauses} }}");
+        let found = vi_codegen::inspect::properties(text.parse().expect("tokens")).expect("a system");
+        (found.is_separable, found.has_step_density)
+    };
+    assert_eq!(of("L = dot(x)^2 / 2 - x^4; discretize midpoint;"), (true, true));
+    assert_eq!(of("L = dot(x)^2 / 2 - x^4; discretize gauss, trapezoidal, midpoint;"), (true, false));
+    assert_eq!(of("L = (1 + x^2) * dot(x)^2 / 2;"), (false, false));
+    assert_eq!(
+        of("L = dot(x)^2 / 2; force x = -dot(x); discretize { Ld = h * L(t0, q0, (q1 - q0) / h); }"),
+        (false, true)
+    );
+}

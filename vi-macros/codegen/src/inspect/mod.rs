@@ -76,6 +76,31 @@ pub fn stage(tokens: TokenStream, stage: Stage) -> Result<String> {
     })
 }
 
+/// What integrators ask of a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Properties {
+    /// Whether its motion splits into kicks and drifts: `L = v·M v/2 − V(t, q)` with a constant M, and forces of time and
+    /// coordinates alone.
+    pub is_separable: bool,
+    /// Whether its own rule has a step density, which energy-preserving steps of this rule need.
+    pub has_step_density: bool,
+}
+
+/// What integrators ask of a system.
+///
+/// # Errors
+/// The mistakes of the system.
+pub fn properties(tokens: TokenStream) -> Result<Properties> {
+    let system = parse::system(tokens)?;
+    let is_separable = match Compiled::of(&system)? {
+        Compiled::Lines(of) => of.own.findings.force_of_position,
+        Compiled::Loops(of) => of.indexed.separable,
+    };
+    // A written-out rule has one.
+    let has_step_density = system.rules() > 0 && system.named_rules().first().is_none_or(|rule| rule.step_density);
+    Ok(Properties { is_separable, has_step_density })
+}
+
 /// The mathematics of a system: L and f, then for each rule the discrete system, findings and costs. Of a large system
 /// its recursions and sums in loops, and what follows from their derivatives.
 ///
