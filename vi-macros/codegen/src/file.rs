@@ -11,12 +11,13 @@ use std::path::Path;
 
 /// Expands a system, and writes the expansion if `VI_EXPAND_DIR` is set.
 #[must_use]
+#[allow(clippy::needless_pass_by_value, reason = "a macro is given them")]
 pub fn expand(tokens: TokenStream) -> TokenStream {
     let folder = env::var_os("VI_EXPAND_DIR").filter(|folder| !folder.is_empty());
-    expand_into(tokens, folder.as_ref().map(Path::new))
+    expand_into(&tokens, folder.as_ref().map(Path::new))
 }
 
-fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
+fn expand_into(tokens: &TokenStream, folder: Option<&Path>) -> TokenStream {
     // A system with mistakes expands to its errors and writes no file.
     let (items, error) = match Compiled::from_tokens(tokens.clone()) {
         Ok(compiled) => {
@@ -56,7 +57,7 @@ mod tests {
     const SYSTEM: &str = "struct FreeParticle { coord x; L = dot(x)^2 / 2; discretize midpoint; }";
 
     fn expansion(text: &str, folder: Option<&Path>) -> String {
-        expand_into(text.parse().expect("tokens of Rust"), folder).to_string()
+        expand_into(&text.parse().expect("tokens of Rust"), folder).to_string()
     }
 
     #[test]

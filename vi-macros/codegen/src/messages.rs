@@ -361,6 +361,7 @@ fn kinetic_energy_help(why: &Singular) -> String {
 impl Message {
     /// The error.
     #[must_use]
+    #[allow(clippy::too_many_lines)] // one for each mistake
     pub fn what(&self) -> String {
         match self {
             Self::Duplicate { name } => format!("the name `{name}` is declared twice"),

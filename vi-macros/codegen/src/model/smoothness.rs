@@ -257,7 +257,7 @@ fn border(
     let values = at(high, exprs);
     let [difference, then, otherwise] = values[..] else { return None };
     // A pole has no two sides that could agree.
-    let beside = at(high + BESIDE, &exprs[..1]).first().map_or(0.0, |value| value.abs());
+    let beside = at(high + BESIDE, &exprs[..1]).first().map_or(0.0, |value| f64::abs(*value));
     if difference.abs() > POLE * beside {
         return None;
     }
@@ -265,7 +265,7 @@ fn border(
     let difference = if difference.abs() < beside / 2.0 { 0.0 } else { difference };
     let mut around = difference.abs();
     for way in [0.0, 1.0] {
-        let size = at(way, &exprs[..1]).first().map_or(0.0, |value| value.abs());
+        let size = at(way, &exprs[..1]).first().map_or(0.0, |value| f64::abs(*value));
         around = around.max(if size.is_finite() { size } else { 0.0 });
     }
     let is_finite = values.iter().all(|value| value.is_finite());
