@@ -163,7 +163,7 @@ class Undefined(StepError):
     range: list[float] | None
 
 class InconsistentStart(StepError):
-    """The state at the start does not satisfy a constraint."""
+    """A state does not satisfy a constraint."""
 
     constraint: str
     residual: float

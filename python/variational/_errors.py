@@ -106,7 +106,7 @@ ABOUT: dict[str, str] = {
     "Singular": "A matrix to invert is singular.",
     "NonFinite": "A quantity is infinite or not a number.",
     "Undefined": "A table or a Rust function has no value at an argument.",
-    "InconsistentStart": "The state at the start does not satisfy a constraint.",
+    "InconsistentStart": "A state does not satisfy a constraint.",
     "DroppedConstraint": "A dropped constraint does not hold at the end of a step.",
     "NotAssembled": "No state on the constraints was found from a guess.",
     "InconsistentTangent": "A tangent vector does not satisfy the derivatives of a constraint and of its rate.",

@@ -156,7 +156,7 @@ class System:
         return self._at("force", t, q, v, self._shape)
 
     def acceleration(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
-        """The acceleration at (t, q, v)."""
+        """The acceleration at (t, q, v). Raises InconsistentStart if (t, q, v) is off the constraints."""
         return self._at("acceleration", t, q, v, self._shape)
 
     def reaction(self, t: ArrayLike, q: ArrayLike, p: ArrayLike) -> Array:
@@ -201,7 +201,7 @@ class System:
 
     def linearization(self, t: float, q: ArrayLike, v: ArrayLike) -> Linearization:
         """The linearization of (q, v) at (t, q, v): derivatives of its rate of change with respect to the state and the
-        inputs, exact to rounding."""
+        inputs, exact to rounding. Raises InconsistentStart if (t, q, v) is off the constraints."""
         (n,), names, t = self._shape, self.coordinates, number(t, "t")
         found = self._kind.linearization(self._values, t, vector(q, n, "q", names), vector(v, n, "v", names))
         return Linearization(t, *found)
@@ -220,12 +220,14 @@ class System:
         return Equilibrium(t, q, multipliers, *matrices, tuple(free), residual, rates[:, 0] + 1j * rates[:, 1])
 
     def rhs(self, t: float, y: ArrayLike) -> Array:
-        """dy/dt of y = (q, v), for `scipy.integrate.solve_ivp`. y has the shape (2N,) or (2N, K)."""
+        """dy/dt of y = (q, v), for `scipy.integrate.solve_ivp`. y has the shape (2N,) or (2N, K), and may be off the
+        constraints, which the stages of a solver leave."""
         n = len(self.coordinates)
         y = array(y, "y")
         if y.shape[:1] != (2 * n,):
             raise ValueError(f"y must have {2 * n} entries, q and v, not the shape {y.shape}")
-        return np.concatenate([y[n:], self.acceleration(t, y[:n].T, y[n:].T).T])
+        acceleration = self._at("extended_acceleration", t, y[:n].T, y[n:].T, self._shape)
+        return np.concatenate([y[n:], acceleration.T])
 
     @property
     def _shape(self) -> tuple[int, ...]:

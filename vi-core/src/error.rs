@@ -171,7 +171,7 @@ pub enum StepError {
         /// Name of the matrix.
         matrix: &'static str,
     },
-    /// The state at the start does not satisfy a constraint.
+    /// A state does not satisfy a constraint: that of a start, of a checkpoint, or one whose acceleration is asked.
     InconsistentStart {
         /// Name of the constraint.
         constraint: &'static str,
@@ -409,7 +409,7 @@ impl fmt::Display for Reason<'_> {
             // Plus zero: −0 is 0.
             StepError::InconsistentStart { constraint, residual, rate } => write!(
                 f,
-                "the start does not satisfy the constraint `{constraint}`: residual {:.3e}, rate {:.3e}",
+                "the state does not satisfy the constraint `{constraint}`: residual {:.3e}, rate {:.3e}",
                 residual + 0.0,
                 rate + 0.0
             ),

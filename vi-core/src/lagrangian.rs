@@ -40,11 +40,11 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     fn momentum(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N>;
     /// Generalized force f; zero if none is declared.
     fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N>;
-    /// Acceleration `a = (∂²L/∂v²)⁻¹ (L_q + f − L_vt − L_vq v)`.
+    /// Acceleration `a = (∂²L/∂v²)⁻¹ (L_q + f − L_vt − L_vq v)`; with constraints together with their reaction.
     ///
     /// # Errors
     /// [`StepError::Singular`] if the mass matrix is singular, [`StepError::NonFinite`] if a derivative of L or f is
-    /// not finite.
+    /// not finite, [`StepError::InconsistentStart`] at a point off the constraints.
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError>;
     /// The flow at `(t, q, p)`: the velocity of p, and the rates of change of p and E.
     ///

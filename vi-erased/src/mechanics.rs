@@ -8,7 +8,7 @@
 #[cfg(feature = "derivatives")]
 use crate::control::{Linear, Rest};
 use crate::simulation::{Parametric, RunnableWithConstraints};
-use vi_core::constrained::Projected;
+use vi_core::constrained::{Extended, Projected};
 #[cfg(feature = "derivatives")]
 use vi_core::control::{ConstrainedDynamics, Dynamics as _};
 #[cfg(feature = "derivatives")]
@@ -16,7 +16,7 @@ use vi_core::linear::Matrix as _;
 use vi_core::linear::Rectangular as _;
 #[cfg(feature = "derivatives")]
 use vi_core::nalgebra::SMatrix;
-use vi_core::{SVector, State, StepError};
+use vi_core::{Lagrangian as _, SVector, State, StepError};
 
 /// Time, coordinates and velocities.
 pub(crate) type Point<'a, const N: usize> = (f64, &'a SVector<f64, N>, &'a SVector<f64, N>);
@@ -41,6 +41,12 @@ pub trait Mechanics<S: Parametric<N>, const N: usize>: Send + Sync + 'static {
     /// # Errors
     /// As [`State::reaction`].
     fn reaction_force(system: &S, state: &State<N>) -> Result<SVector<f64, N>, StepError>;
+    /// The acceleration at a point, which may be off the constraints, as
+    /// [`vi_core::constrained::Extended`].
+    ///
+    /// # Errors
+    /// [`StepError::Singular`], [`StepError::NonFinite`].
+    fn extended_acceleration(system: &S, at: Point<'_, N>) -> Result<SVector<f64, N>, StepError>;
     /// Appends g of each constraint at a point, zero for nonholonomic ones; then `A v + a` of each.
     fn residuals(system: &S, at: Point<'_, N>, out: &mut Vec<f64>);
     /// The mass matrix at a point.
@@ -93,6 +99,10 @@ impl<S: Free<N>, const N: usize> Mechanics<S, N> for Unconstrained {
         Ok(SVector::zeros())
     }
 
+    fn extended_acceleration(system: &S, (t, q, v): Point<'_, N>) -> Result<SVector<f64, N>, StepError> {
+        system.acceleration(t, q, v)
+    }
+
     fn residuals(_: &S, _: Point<'_, N>, _: &mut Vec<f64>) {}
 
     #[cfg(feature = "derivatives")]
@@ -130,6 +140,10 @@ impl<S: RunnableWithConstraints<N>, const N: usize> Mechanics<S, N> for WithCons
 
     fn reaction_force(system: &S, state: &State<N>) -> Result<SVector<f64, N>, StepError> {
         state.reaction_force(system)
+    }
+
+    fn extended_acceleration(system: &S, (t, q, v): Point<'_, N>) -> Result<SVector<f64, N>, StepError> {
+        Extended(*system).acceleration(t, q, v)
     }
 
     fn residuals(system: &S, (t, q, v): Point<'_, N>, out: &mut Vec<f64>) {

@@ -26,8 +26,10 @@ pub enum Quantity {
     Momentum,
     /// The generalized force at (t, q, v).
     Force,
-    /// The acceleration at (t, q, v).
+    /// The acceleration at (t, q, v), which has to satisfy the constraints.
     Acceleration,
+    /// The same at any (t, q, v), for solvers whose stages leave the constraints.
+    ExtendedAcceleration,
     /// The velocity at (t, q, p).
     Velocity,
     /// The multiplier Λ of each constraint at (t, q, p).
@@ -78,7 +80,7 @@ pub trait System: Send + Sync {
     ///
     /// # Errors
     /// [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] of the first point without a
-    /// value.
+    /// value; [`StepError::InconsistentStart`] of the first point off the constraints without an acceleration.
     fn evaluate(&self, of: Quantity, points: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError>;
     /// The point on the constraints that is nearest to a point, as [`State::projected`]. Without constraints it is the
     /// same point.
@@ -260,6 +262,7 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> S
                         Quantity::Momentum => system.momentum(t, &q, &v),
                         Quantity::Force => system.force(t, &q, &v),
                         Quantity::Acceleration => system.acceleration(t, &q, &v)?,
+                        Quantity::ExtendedAcceleration => C::extended_acceleration(system, (t, &q, &v))?,
                         _ => system.flow(t, &q, &v)?.v,
                     };
                     out.extend_from_slice(vector.as_slice());

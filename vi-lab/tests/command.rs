@@ -199,7 +199,7 @@ fn initial_states_keep_or_meet_the_constraints() {
     assert_refused(&[
         (
             &off,
-            "the start does not satisfy the constraint `rod`: residual 1.700e-1, rate 1.200e0; --project moves the initial \
+            "the state does not satisfy the constraint `rod`: residual 1.700e-1, rate 1.200e0; --project moves the initial \
              state onto the constraints",
         ),
         (

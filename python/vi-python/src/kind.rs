@@ -115,6 +115,7 @@ impl Kind {
             "momentum" => Quantity::Momentum,
             "force" => Quantity::Force,
             "acceleration" => Quantity::Acceleration,
+            "extended_acceleration" => Quantity::ExtendedAcceleration,
             "velocity" => Quantity::Velocity,
             "reaction" => Quantity::Reaction,
             "reaction_force" => Quantity::ReactionForce,

@@ -37,7 +37,8 @@ pub struct Motion<const N: usize> {
 type Change<const N: usize> = (SVector<f64, N>, SVector<f64, N>);
 
 impl<const N: usize> Motion<N> {
-    /// The trajectory at the time `end`, later or earlier.
+    /// The trajectory at the time `end`, later or earlier. With constraints it takes the system as
+    /// [`Extended`](crate::constrained::Extended).
     ///
     /// # Errors
     /// Those of the acceleration; [`StepError::NotConverged`] if the integration fails.
@@ -57,6 +58,9 @@ impl<const N: usize> Motion<N> {
             let step = if last { end - self.t } else { h };
             // A trial step that is too long may end anywhere, even at a state without acceleration.
             let trial = self.extrapolated(system, step);
+            if let Err(failure @ StepError::InconsistentStart { .. }) = trial {
+                return Err(failure);
+            }
             let error = trial.as_ref().map_or(f64::NAN, |(_, error)| *error);
             let is_accurate = error <= TOLERANCE || error <= ROUNDING && error * FALL >= before;
             let goes_on = trials > 0 && (is_accurate || h.abs() > SHORTEST * way.abs());

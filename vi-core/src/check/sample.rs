@@ -10,7 +10,7 @@ use super::comparison::Comparison;
 use super::motion::Motion;
 use super::report::CheckFailure;
 use super::subject::{Checked, ConstrainedChecked, MotionChecked, Place, STEPS};
-use crate::constrained::Constrained;
+use crate::constrained::{Constrained, Extended};
 use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::linear::Matrix;
@@ -189,7 +189,10 @@ pub(super) fn constrained_samples<const N: usize, S: ConstrainedChecked<N>>(
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
     let mass = |at: &Motion<N>| Constrained::point(system, at.t, &at.q, &at.v).mass.dense();
-    Ok(SampledMotion::from(system, place, check)?.samples(system, mass, Sample::has_values))
+    let has_values = |Sample { system, t, q, v, h }: &Sample<S, N>| {
+        Sample { system: Extended(*system), t: *t, q: *q, v: *v, h: *h }.has_values()
+    };
+    Ok(SampledMotion::from(&Extended(*system), place, check)?.samples(system, mass, has_values))
 }
 
 /// The same samples, restricted to those from which a step also has values.

@@ -22,6 +22,7 @@
 //! |---|---|
 //! | `motion` | acceleration, flow and reaction at a state |
 //! | `start` | consistent and redundant constraints at a start |
+//! | `extended` | systems with constraints as ordinary differential equations |
 //! | `independent` | systems with redundant constraints: an independent subset |
 //! | `projection` | the state on the constraints nearest to a given one, [`State::projected`](crate::State::projected) |
 //! | `assembly` | a state on the constraints from a far guess, [`State::assembled`](crate::State::assembled) |
@@ -37,6 +38,7 @@ mod assembly;
 mod density;
 pub(crate) mod energies;
 mod equations;
+mod extended;
 pub(crate) mod guess;
 mod independent;
 pub(crate) mod lengths;
@@ -49,6 +51,7 @@ mod variation;
 
 pub use density::step_density;
 pub(crate) use equations::{discrete_energy, impulses, unknowns};
+pub use extended::Extended;
 pub use independent::Independent;
 pub(crate) use motion::{accelerations, unsolvable};
 pub use motion::{constrained_acceleration, constrained_flow};

@@ -27,6 +27,10 @@ const STALLED: f64 = 64.0;
 /// A reduction of the residual by this factor shows that the factors of the bordered matrix are still good.
 const GOOD: f64 = 1e-3;
 
+/// Largest value of a constraint, and of its rate, over the size of its terms, at a point whose acceleration is asked:
+/// such points are computed outside, to fewer digits than nodes.
+const SATISFIED: f64 = 1e-9;
+
 /// A velocity of momenta.
 pub(crate) struct Velocity<const N: usize, T, M> {
     pub(crate) v: SVector<T, N>,
@@ -155,19 +159,59 @@ pub(crate) fn velocity<S: Constrained<N, T>, const N: usize, T: Real>(
     }
 }
 
-/// The acceleration of a system with constraints at (t, q, v).
+/// The acceleration of a system with constraints at a point (t, q, v) that satisfies them.
 ///
 /// # Errors
-/// [`StepError::Singular`] if the bordered mass matrix is singular, [`StepError::NonFinite`] if a derivative is not
-/// finite.
+/// [`StepError::InconsistentStart`] if the coordinates or the velocities do not satisfy a constraint, to nine digits of
+/// its terms; [`StepError::DroppedConstraint`] for a dropped one; [`StepError::Singular`] if the bordered mass matrix is
+/// singular; [`StepError::NonFinite`] if a derivative is not finite.
 pub fn constrained_acceleration<S: Constrained<N, T>, const N: usize, T: Real>(
     system: &S,
     t: T,
     q: &SVector<T, N>,
     v: &SVector<T, N>,
 ) -> Result<SVector<T, N>, StepError> {
-    let bordered = &mut bordered::<S, N, T>();
-    accelerations(system, (t, q, v), bordered).map(|(acceleration, _)| acceleration)
+    satisfied(system, (t, q, v))?;
+    accelerations(system, (t, q, v), &mut bordered::<S, N, T>()).map(|(acceleration, _)| acceleration)
+}
+
+/// Checks that a point satisfies the constraints. Points that are not finite pass: their acceleration is not finite.
+///
+/// # Errors
+/// [`StepError::InconsistentStart`], [`StepError::DroppedConstraint`].
+fn satisfied<S: Constrained<N, T>, const N: usize, T: Real>(
+    system: &S,
+    (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
+) -> Result<(), StepError> {
+    let point = system.point(t, q, v);
+    let [_, positions] = spread(&point.mass, q, &SVector::zeros());
+    let [_, velocities] = spread(&point.mass, v, &point.momentum);
+    // An angle has the size of a radian, and so have coordinates that are all zero.
+    let is_unit = |i: usize| S::ANGLES[i] || q.iter().all(|entry| entry.to_f64() == 0.0);
+    let sizes = SVector::<T, N>::from_fn(|i, _| {
+        let size = q[i].abs() + positions[i];
+        if is_unit(i) { size + T::one() } else { size }
+    });
+    let values = system.constraints(t, q);
+    let (gradients, offsets) = system.constraint_gradients(t, q);
+    let is_off = |value: T, terms: T| value.to_f64().abs() > SATISFIED * terms.to_f64();
+    for (r, constraint) in S::CONSTRAINTS.iter().enumerate().filter(|(r, _)| !system.is_dropped(*r)) {
+        let (value, offset, row) = (values.as_ref()[r], offsets.as_ref()[r], gradients.row(r));
+        let rate = row.dot(v) + offset;
+        let of_value = row.terms(&sizes) + (offset * t).abs();
+        let of_rate = row.terms(v) + row.terms(&velocities) + offset.abs();
+        if is_off(value, of_value) || is_off(rate, of_rate) {
+            let (residual, rate) = (value.to_f64(), rate.to_f64());
+            return Err(StepError::InconsistentStart { constraint, residual, rate });
+        }
+    }
+    match system.broken(t, q, v) {
+        Some((r, residual)) if residual.is_finite() => {
+            let (t, residual) = (t.to_f64(), residual.to_f64());
+            Err(StepError::DroppedConstraint { t, constraint: S::CONSTRAINTS[r], residual })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The flow of a system with constraints at (t, q, p): the force is `L_q + f + AᵀΛ`, the power `f·v − L_t − Λ·a`.

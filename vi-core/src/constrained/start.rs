@@ -1,7 +1,7 @@
 //! Checks of the constraints at a start.
 
 use super::motion::{Velocity, from_rest};
-use super::{Constrained, ConvertibleConstrained, diagonal, reaction_of, spread};
+use super::{Constrained, ConvertibleConstrained, bordered, diagonal, reaction_of, spread};
 use crate::error::StepError;
 use crate::linear::{Bordered, Matrix, Rectangular};
 use crate::newton::roundings;
@@ -14,6 +14,8 @@ use num_traits::Float as _;
 
 /// Largest g and `A v + a` of a start, in roundings of their terms.
 pub(super) const CONSISTENT: f64 = 16.0;
+/// The same of a stored node: its run measured them with bounds of its own.
+const STORED: f64 = 1024.0;
 /// Rows of A, scaled to 1, whose part across the others is below this are redundant.
 const INDEPENDENT: f64 = 1e-10;
 
@@ -48,9 +50,49 @@ where
         return Err(StepError::Redundant { constraint, of, rank });
     }
     let Velocity { mu, .. } = found?;
+    consistent(system, node, (&v, &mu), (&mass, is_regular.then_some(inverse)), CONSISTENT)?;
+    Ok(v)
+}
 
-    let [_, positions] = spread(&mass, q, &SVector::zeros());
-    let [_, velocities] = spread(&mass, &v, p);
+/// Checks that a stored node satisfies the constraints: a file may contain any numbers.
+///
+/// # Errors
+/// [`StepError::InconsistentStart`], [`StepError::DroppedConstraint`].
+pub(crate) fn check_stored<S, const N: usize>(system: &S, node: &Node<N>) -> Result<(), StepError>
+where
+    S: Constrained<N> + ConvertibleConstrained<N>,
+{
+    let Node { t, q, p, .. } = node;
+    let (gradients, mut none) = system.constraint_gradients(*t, q);
+    none.as_mut().fill(0.0);
+    // Without a velocity the next step fails; the coordinates are measured all the same.
+    let found = from_rest(system, (*t, q, p), &mut bordered::<S, N, f64>());
+    let (v, mu) = found.map_or((SVector::zeros(), none), |Velocity { v, mu, .. }| (v, mu));
+    let mass = system.point(*t, q, &v).mass;
+    let inverse = &mut Bordered::new(N, 0, S::BLOCKS);
+    let is_regular = inverse.factor(&mass, &gradients).is_ok();
+    consistent(system, node, (&v, &mu), (&mass, is_regular.then_some(inverse)), STORED)
+}
+
+/// Checks that a node with the velocity v satisfies the constraints to `limit` roundings, where `L_v(v) = p + Aᵀμ`. With
+/// the factors of a regular mass matrix.
+///
+/// # Errors
+/// [`StepError::InconsistentStart`], [`StepError::DroppedConstraint`].
+fn consistent<S, const N: usize>(
+    system: &S,
+    node: &Node<N>,
+    (v, mu): (&SVector<f64, N>, &S::Multipliers),
+    (mass, inverse): (&impl Matrix<N, f64>, Option<&mut Bordered>),
+    limit: f64,
+) -> Result<(), StepError>
+where
+    S: Constrained<N> + ConvertibleConstrained<N>,
+{
+    let Node { t, q, p, .. } = node;
+    let (gradients, _) = system.constraint_gradients(*t, q);
+    let [_, positions] = spread(mass, q, &SVector::zeros());
+    let [_, velocities] = spread(mass, v, p);
     let rounded = system.convert::<Rounded>();
     let (t, q) = (Rounded::exact(*t), q.map(Rounded::nearest));
     let values = rounded.constraints(t, &q);
@@ -58,7 +100,7 @@ where
     // L_v(v) − p = Aᵀμ: the velocity of p is v − M⁻¹ Aᵀμ. Without an inverse, momenta are compared.
     let impulse = reaction_of(&gradients, mu.as_ref());
     let (mut excess, mut uncertainty) = (impulse, p.abs());
-    if is_regular {
+    if let Some(inverse) = inverse {
         inverse.solve(&mut excess, &mut []);
         // |M⁻¹| |p|: roundings of momenta do not cancel as the momenta may.
         uncertainty = SVector::zeros();
@@ -78,14 +120,14 @@ where
         let of_value = value.ulps() + row.terms(&positions);
         let rate = -row.dot(&excess);
         let is_consistent =
-            roundings(value.to_f64(), of_value) <= CONSISTENT && roundings(rate, bound + of_momentum) <= CONSISTENT;
+            roundings(value.to_f64(), of_value) <= limit && roundings(rate, bound + of_momentum) <= limit;
         if !is_consistent {
             return Err(StepError::InconsistentStart { constraint, residual: value.to_f64(), rate });
         }
     }
-    match system.broken(node.t, &node.q, &v) {
+    match system.broken(node.t, &node.q, v) {
         Some((r, residual)) => Err(StepError::DroppedConstraint { t: node.t, constraint: S::CONSTRAINTS[r], residual }),
-        None => Ok(v),
+        None => Ok(()),
     }
 }
 

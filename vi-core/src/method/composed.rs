@@ -9,7 +9,7 @@
 use super::gauss_lobatto::{ConstrainedStep, ConstrainedSteps};
 use super::{Composition, GaussLobatto, Memory, Method, Problem, Report};
 use crate::constrained::solve::Workspace;
-use crate::constrained::{Constrained, ConvertibleConstrained};
+use crate::constrained::{Constrained, ConvertibleConstrained, start};
 use crate::error::StepError;
 use crate::node::Node;
 use crate::run::Hermite;
@@ -188,5 +188,9 @@ where
         }
         let mut substeps = memory.all.iter().zip(self.scheme.lengths(h));
         substeps.try_for_each(|(memory, h)| Method::<S, N>::check(&self.method, memory, h, t))
+    }
+
+    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
+        start::check_stored(system, node)
     }
 }

@@ -302,6 +302,10 @@ where
         memory.steps.check([unknowns::<N, STAGES>(constraints) + 1, constraints], t)?;
         memory.course.check(t)
     }
+
+    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
+        start::check_stored(system, node)
+    }
 }
 
 impl<const STAGES: usize> StepPower for EnergyPreservingGaussLobatto<STAGES> {

@@ -289,6 +289,10 @@ where
         let constraints = S::CONSTRAINTS.len();
         memory.check([unknowns::<N, STAGES>(constraints), constraints], t)
     }
+
+    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
+        start::check_stored(system, node)
+    }
 }
 
 impl<S, const N: usize, const STAGES: usize> Run<GaussLobatto<STAGES>, S, N>

@@ -327,6 +327,14 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
     fn check(&self, _memory: &Self::Memory, _h: T, _t: T) -> Result<(), StepError> {
         Ok(())
     }
+
+    /// Checks whether a run can continue from a stored node, whose numbers are finite.
+    ///
+    /// # Errors
+    /// The constraint that the node does not satisfy.
+    fn check_node(&self, _system: &S, _node: &Node<N, T>) -> Result<(), StepError> {
+        Ok(())
+    }
 }
 
 /// Rejects zero, subnormal and non-finite h: 1/h must be finite.

@@ -71,7 +71,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     ///
     /// # Errors
     /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`]
-    /// and [`StepError::InvalidInput`] for data that no run of this method can produce.
+    /// and [`StepError::InvalidInput`] for data that no run of this method can produce;
+    /// [`StepError::InconsistentStart`] and [`StepError::DroppedConstraint`] for a node off the constraints.
     pub fn restart(system: S, method: M, checkpoint: Checkpoint<M::Memory, N, T>) -> Result<Self, StepError> {
         let Stored { node, turns, h, memory } = checkpoint.run_of(&system, method.rule())?;
         method.check_length(h)?;
@@ -79,6 +80,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         node.check_finite(t)?;
         angles::check::<S, N, T>(&node.q, &turns)?;
         method.check(&memory, h, t)?;
+        method.check_node(&system, &node)?;
         Ok(Self { turns, ..Self::resumed(method, system, (node, h, memory)) })
     }
 }

@@ -1,8 +1,9 @@
 //! Linearization and equilibria with constraints, against the same systems in angles.
 
+use vi_core::constrained::Extended;
 use vi_core::nalgebra::{DVector, SVector};
 use vi_core::prelude::*;
-use vi_core::{Lagrangian, State, StepError, lagrangian};
+use vi_core::{Constrained, Lagrangian, State, StepError, lagrangian};
 
 lagrangian! {
     /// Two rods, with friction.
@@ -124,6 +125,7 @@ fn linearizations_are_differences() {
     let state = State::projected(&rods, 0.0, [0.6, -0.9, 1.1, -1.7], [0.5, 0.4, 0.3, 0.2]).expect("nearest").state;
     let (q, v) = (state.q, state.velocity(&rods).expect("regular"));
     let found = rods.linearization(0.0, q, v).unwrap_or_else(|failure| panic!("{failure}"));
+    // Off the constraints by the difference.
     let rate = |column: usize, by: f64| {
         let (mut rods, mut q, mut v) = (rods, q, v);
         match column {
@@ -131,7 +133,7 @@ fn linearizations_are_differences() {
             4..8 => v[column - 4] += by,
             _ => rods.push += by,
         }
-        let acceleration = rods.acceleration(0.0, &q, &v).expect("regular");
+        let acceleration = Extended(rods).acceleration(0.0, &q, &v).expect("regular");
         DVector::from_iterator(8, v.iter().chain(&acceleration).copied())
     };
     for column in 0..9 {
@@ -152,6 +154,43 @@ fn linearizations_are_differences() {
     assert_eq!(of_rest.iter().filter(|rate| rate.norm() < 1e-6).count(), 4, "{of_rest:?}");
     let (fast, wanted) = (of_rest.iter().map(|rate| rate.im).fold(0.0, f64::max), rest.frequencies().expect("rates"));
     assert!((fast - wanted[1]).abs() < 1e-12, "{fast} {wanted:?}");
+}
+
+#[test]
+fn accelerations_and_linearizations_off_the_constraints_are_errors() {
+    let rods = Rods::default();
+    let state = State::projected(&rods, 0.0, [0.6, -0.9, 1.1, -1.7], [0.5, 0.4, 0.3, 0.2]).expect("nearest").state;
+    let (q, v) = (state.q, state.velocity(&rods).expect("regular"));
+    assert!(rods.acceleration(0.0, &q, &v).is_ok());
+    assert_eq!(rods.acceleration(0.0, &q, &v), Extended(rods).acceleration(0.0, &q, &v));
+    // The upper rod longer by a millionth; then a velocity along the lower one.
+    let mut along = v;
+    along[2] += 1e-6;
+    for (constraint, q, v) in [("upper", q * (1.0 + 1e-6), v), ("lower", q, along)] {
+        let found = [rods.acceleration(0.0, &q, &v).err(), rods.linearization(0.0, q, v).err()];
+        for failure in found {
+            let Some(StepError::InconsistentStart { constraint: named, residual, rate }) = failure else {
+                panic!("{constraint}: {failure:?}")
+            };
+            let (r, is_upper) = (usize::from(constraint == "lower"), constraint == "upper");
+            let value = rods.constraints(0.0, &q)[r];
+            assert!(named == constraint && (residual - value).abs() < 1e-15, "{failure:?}");
+            assert!(if is_upper { (residual - 2.88e-6).abs() < 1e-10 } else { rate.abs() > 1e-7 }, "{failure:?}");
+        }
+    }
+    // Coordinates at zero have no size.
+    let line = Line::default();
+    assert!(line.linearization(0.0, [0.0; 2], [0.0; 2]).is_ok());
+    assert!(line.acceleration(0.0, &[0.0, 1e-6].into(), &SVector::zeros()).is_err());
+    let (still, blade) = (SVector::zeros(), Blade::default());
+    assert!(blade.acceleration(0.0, &still, &[1.0, 0.0, 2.0].into()).is_ok());
+    let across = blade.acceleration(0.0, &still, &[1.0, 1e-6, 2.0].into());
+    assert!(
+        matches!(across, Err(StepError::InconsistentStart { constraint: "blade", residual: 0.0, rate: -1e-6 })),
+        "{across:?}"
+    );
+    let lost = rods.acceleration(0.0, &q, &(v * f64::NAN));
+    assert!(matches!(lost, Err(StepError::NonFinite { .. })), "{lost:?}");
 }
 
 #[test]

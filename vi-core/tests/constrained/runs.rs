@@ -3,7 +3,10 @@
 use super::systems::{Auto, Driven, Model, PENDULUM, Pendulum};
 use vi_core::prelude::{Event, Moment};
 use vi_core::run::{Checkpoint, DenseOutput};
-use vi_core::{Constrained, GaussLobatto, Run, SVector, Starts, State, StepError, Tolerance};
+use vi_core::{
+    Composition, Constrained, EnergyPreservingGaussLobatto, GaussLobatto, Method, Run, SVector, Starts, State,
+    StepError, Tolerance,
+};
 
 fn pendulum<const STAGES: usize>(h: f64) -> Run<GaussLobatto<STAGES>, Auto<Pendulum, 1>, 2> {
     PENDULUM
@@ -92,6 +95,60 @@ fn a_stored_run_resumes_bit_for_bit() {
     // Of another number of stages.
     let other: Checkpoint<_, 2> = serde_json::from_str(&text).expect("a checkpoint");
     assert!(Run::restart(system, GaussLobatto::<3>, other).is_err());
+}
+
+/// Restarts with the stored node as `change` leaves it.
+fn restarted<M>(method: M, change: impl Fn(&mut serde_json::Value)) -> Result<(), StepError>
+where
+    M: Method<Auto<Pendulum, 1>, 2, Memory: serde::Serialize + serde::de::DeserializeOwned>,
+{
+    let start = PENDULUM.at(0.0, [0.6, -0.8], [0.8, 0.6]);
+    let mut run = start.integrate(method.clone(), 0.02).unwrap_or_else(|error| panic!("{error}"));
+    for _ in 0..10 {
+        run.step().unwrap_or_else(|error| panic!("{error}"));
+    }
+    let mut stored = serde_json::to_value(run.checkpoint()).expect("a text");
+    change(&mut stored["run"]["node"]);
+    let stored: Checkpoint<_, 2> = serde_json::from_value(stored).expect("a checkpoint");
+    Run::restart(PENDULUM, method, stored).map(drop)
+}
+
+/// Multiplies the entries of a vector of a node.
+fn scale(node: &mut serde_json::Value, vector: &str, by: f64) {
+    for entry in node[vector].as_array_mut().expect("a vector") {
+        *entry = (entry.as_f64().expect("a number") * by).into();
+    }
+}
+
+#[test]
+fn a_stored_node_off_the_constraint_is_refused() {
+    fn refuses<M>(method: M)
+    where
+        M: Method<Auto<Pendulum, 1>, 2, Memory: serde::Serialize + serde::de::DeserializeOwned> + Clone,
+    {
+        assert_eq!(restarted(method.clone(), |_| ()), Ok(()));
+        // Faster or slower is another motion, on the constraint.
+        assert_eq!(restarted(method.clone(), |node| scale(node, "p", 1.5)), Ok(()));
+        for by in [1.0 + 1e-9, 1.001, 3.0] {
+            let failure = restarted(method.clone(), |node| scale(node, "q", by)).expect_err("off");
+            let StepError::InconsistentStart { constraint: "rod", residual, .. } = failure else { panic!("{failure}") };
+            assert!((residual - (by * by - 1.0)).abs() < 1e-14, "{failure}");
+        }
+        // Momenta along the rod.
+        let failure = restarted(method, |node| {
+            for k in 0..2 {
+                let along = node["p"][k].as_f64().expect("a number") + 1e-6 * node["q"][k].as_f64().expect("a number");
+                node["p"][k] = along.into();
+            }
+        });
+        let Err(StepError::InconsistentStart { constraint: "rod", residual, rate }) = failure else {
+            panic!("{failure:?}")
+        };
+        assert!(residual.abs() < 1e-14 && (rate - 2e-6).abs() < 1e-12, "{residual:e} {rate:e}");
+    }
+    refuses(GaussLobatto::<2>);
+    refuses(EnergyPreservingGaussLobatto::<1>);
+    refuses(GaussLobatto::<1>.composed(Composition::SUZUKI_4));
 }
 
 #[test]

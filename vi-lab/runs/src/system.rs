@@ -9,15 +9,16 @@ use crate::rival::{self, Ended};
 use core::cell::Cell;
 use core::ops::{Deref, DerefMut};
 use vi_core::check::Motion;
+use vi_core::constrained::Extended;
 use vi_core::gauss::step_density;
 use vi_core::lagrangian::Described;
 use vi_core::method::Controlled;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{Called, EnergyPreservingGaussLobatto, GaussLobatto, SVector, State, StepError};
+use vi_core::{Called, EnergyPreservingGaussLobatto, GaussLobatto, Lagrangian, SVector, State, StepError};
 use vi_erased::integrator::{self, Integrator};
 use vi_erased::mechanics::WithConstraints;
 use vi_erased::plan::{ENERGY_LOBATTO_STAGES, ENERGY_STAGES, LOBATTO_STAGES, STAGES};
-use vi_erased::simulation::{Erasable, Parametric, Runnable, RunnableWithConstraints, vector};
+use vi_erased::simulation::{Erasable, Runnable, RunnableWithConstraints, vector};
 use vi_erased::{Method, PhasePoint, Plan, Typed};
 
 /// A system with its parameters.
@@ -265,7 +266,7 @@ impl<S: RunnableWithConstraints<N> + Described, const N: usize> System for Studi
     }
 
     fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {
-        sized(from)?.at(&self.typed.system, end).map(erased_point)
+        sized(from)?.at(&Extended(self.typed.system), end).map(erased_point)
     }
 
     fn lyapunov(&self, plan: &Plan, _count: usize) -> Result<Box<dyn Exponents>, StepError> {
@@ -280,12 +281,12 @@ impl<S: RunnableWithConstraints<N> + Described, const N: usize> System for Studi
         evaluations: &Cell<u64>,
         watch: Option<&mut dyn FnMut(f64, f64)>,
     ) -> Result<PhasePoint, Ended> {
-        by_rival(self.typed.system, (from, end), tolerance, evaluations, watch)
+        by_rival(Extended(self.typed.system), (from, end), tolerance, evaluations, watch)
     }
 }
 
 /// [`System::rival`].
-fn by_rival<S: Parametric<N>, const N: usize>(
+fn by_rival<S: Lagrangian<N> + Copy, const N: usize>(
     system: S,
     (from, end): (&PhasePoint, f64),
     tolerance: f64,
