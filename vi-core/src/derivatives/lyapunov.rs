@@ -84,12 +84,15 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<
         Ok(())
     }
 
-    /// The estimates, usually in descending order, in units of one over time; NaN before the first step. For a run
-    /// backwards in time they are rates of the reversed flow, relative to the absolute elapsed time.
+    /// The estimates in descending order, in units of one over time; NaN before the first step. For a run backwards in
+    /// time they are rates of the reversed flow, relative to the absolute elapsed time.
     #[must_use]
     pub fn exponents(&self) -> Vec<f64> {
         let t = (self.end - self.start).abs();
-        self.growth.iter().map(|(growth, low)| (growth + low) / t).collect()
+        let mut exponents: Vec<f64> = self.growth.iter().map(|(growth, low)| (growth + low) / t).collect();
+        // Over a short time a later direction may have grown more than one before.
+        exponents.sort_by(|one, other| other.total_cmp(one));
+        exponents
     }
 
     /// The run.
