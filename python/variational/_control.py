@@ -49,7 +49,8 @@ class Equilibrium:
     stiffness: Array
     """Stiffness along them, (D, D)."""
     free: tuple[bool, ...]
-    """For each coordinate, whether nothing depends on it here. It then has the value of the guess."""
+    """For each coordinate, whether nothing depends on it here. It then has the value of the guess. With constraints,
+    whether it changes along a motion along which the forces do not, as the turn of a top about the vertical."""
     residual: float
     """Largest unbalanced force, in units of its rounding error."""
     rates: NDArray[np.complex128]

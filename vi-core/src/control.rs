@@ -78,8 +78,8 @@ pub trait Dynamics<const N: usize>: Collocation<N> + Convertible<N> {
     ///
     /// # Errors
     /// [`StepError::NoEquilibrium`] if there is none near the guess, [`StepError::FreeMotion`] if the equilibria form a
-    /// family along several coordinates, as those of two masses with a spring between them,
-    /// [`StepError::NonFinite`] if a derivative of L or f is not finite.
+    /// family along several coordinates, as those of two masses with a spring between them, or if the forces of a
+    /// coordinate underflow at the guess, [`StepError::NonFinite`] if a derivative of L or f is not finite.
     fn equilibrium(&self, t: f64, guess: impl Numbers<N>) -> Result<Equilibrium<N>, StepError> {
         equilibrium::find(self, t, guess.vector())
     }

@@ -5,6 +5,7 @@ mod checks;
 mod constrained;
 mod derivatives;
 mod equations;
+mod equilibria;
 mod failures;
 mod gauss_alone;
 mod indexed;

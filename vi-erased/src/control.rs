@@ -43,7 +43,7 @@ pub struct Rest {
     pub directions: Vec<f64>,
     /// M, C and K of `M x'' + C x' + K x = 0` along these directions, each D rows of D numbers.
     pub matrices: [Vec<f64>; 3],
-    /// For each coordinate, whether nothing depends on it.
+    /// For each coordinate, whether it changes along a motion along which the forces do not.
     pub free: Vec<bool>,
     /// Largest unbalanced force, in roundings.
     pub residual: f64,
@@ -75,7 +75,7 @@ impl Rest {
             freedom: of.directions.ncols(),
             directions: rows(&of.directions),
             matrices: [&of.mass, &of.damping, &of.stiffness].map(rows),
-            free: vec![false; N],
+            free: of.free().to_vec(),
             residual: of.residual,
             rates: pairs(of.rates()?),
         })

@@ -7,6 +7,10 @@
 //! L_q + f − L_vt + AᵀΛ = 0       g(t, q) = 0
 //! Zᵀ M Z y'' + Zᵀ C Z y' + Zᵀ (K − ∂(AᵀΛ)/∂q) Z y = 0
 //! ```
+//!
+//! Along a symmetry, as the spin of a top, the forces do not change: Newton's iteration then moves across it only. At
+//! least one direction needs a stiffness, and the place of the root has to be known: the stiffness may not change over
+//! its rounding errors, as it does where forces underflow.
 
 use super::equilibrium::oscillations;
 use super::{Linearization, linearized, no_eigenvalues, spectrum};
@@ -32,17 +36,24 @@ const HALVINGS: i32 = 20;
 /// Largest difference of a matrix from its transpose, relative to its entries: roundings of products.
 const SYMMETRIC: f64 = 32.0 * f64::EPSILON;
 
+/// Largest stiffness of a free motion, over the largest one, at equal kinetic energies.
+const FREE: f64 = 1e-11;
+/// Smallest part of a coordinate in a free motion of length 1.
+const MOVES: f64 = 1e-6;
+/// Largest relative change of the stiffness over the rounding errors of a root.
+const CHANGE: f64 = 0.5;
+
 /// Linearization and equilibria of a system with constraints, for every generated one.
 pub trait ConstrainedDynamics<const N: usize>: Constrained<N> + ConvertibleConstrained<N> {
-    /// The linearization of x = (q, v) at (t, q, v): `x' = value + A δx + B δu` with the constrained acceleration, exact
-    /// to rounding. A has 2N rows and columns, B one column for each input.
+    /// The linearization of x = (q, v) at a point (t, q, v) on the constraints: `x' = value + A δx + B δu` with the
+    /// constrained acceleration, exact to rounding. A has 2N rows and columns, B one column for each input.
     ///
     /// Changes δx that satisfy the derivatives of the constraints keep to them. A has the eigenvalue zero twice for each
     /// holonomic constraint, and once for each other.
     ///
     /// # Errors
-    /// [`StepError::Singular`] if the constraints are redundant at q, [`StepError::NonFinite`] if L, f or a derivative is
-    /// not finite.
+    /// [`StepError::InconsistentStart`] if (t, q, v) does not satisfy a constraint, [`StepError::Singular`] if the
+    /// constraints are redundant at q, [`StepError::NonFinite`] if L, f or a derivative is not finite.
     fn linearization(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Linearization, StepError> {
         linearized::<Self, WithConstraints, N>(self, t, q.vector(), v.vector())
     }
@@ -50,12 +61,13 @@ pub trait ConstrainedDynamics<const N: usize>: Constrained<N> + ConvertibleConst
     /// The equilibrium near a guess of the coordinates, at the time t: a state of rest on the constraints without
     /// acceleration. The guess may be off the constraints; [`State::assembled`](crate::State::assembled) moves it first.
     /// With constraints on velocities the equilibria form families: the result is reached from the guess along
-    /// directions that these constraints allow.
+    /// directions that these constraints allow. So they do with a symmetry: the result then has
+    /// [`ConstrainedEquilibrium::free_motions`].
     ///
     /// # Errors
     /// Those of [`State::assembled`](crate::State::assembled); [`StepError::InconsistentStart`] if a constraint moves;
     /// [`StepError::NoEquilibrium`] if there is none near the guess; [`StepError::Singular`] if the forces do not change
-    /// along some direction, or the constraints are redundant; [`StepError::NonFinite`].
+    /// along any direction, or the constraints are redundant; [`StepError::NonFinite`].
     fn equilibrium(&self, t: f64, guess: impl Numbers<N>) -> Result<ConstrainedEquilibrium<N>, StepError> {
         let place = Projection::of(self).assembled(t, guess, [0.0; N])?;
         let (_, rates) = self.constraint_gradients(t, &place.state.q);
@@ -87,14 +99,24 @@ pub struct ConstrainedEquilibrium<const N: usize> {
     pub damping: DMatrix<f64>,
     /// `Zᵀ (K − ∂(AᵀΛ)/∂q) Z`, with `K = −∂F/∂q`.
     pub stiffness: DMatrix<f64>,
+    /// The free motions, along which the forces do not change: one column of length 1 for each, a change of the
+    /// coordinates. None if the equilibrium is isolated.
+    pub free_motions: DMatrix<f64>,
     /// Largest unbalanced force and largest constraint, in units of their rounding-error bounds.
     pub residual: f64,
 }
 
 impl<const N: usize> ConstrainedEquilibrium<N> {
+    /// For each coordinate, whether it changes along a free motion.
+    #[must_use]
+    pub fn free(&self) -> [bool; N] {
+        core::array::from_fn(|k| self.free_motions.row(k).iter().any(|part| part.abs() > MOVES))
+    }
+
     /// The rates λ of small motions e^(λt) along the constraints, two for each direction, in radians per unit of time,
     /// ascending by the size of their imaginary part, then by their real part. The equilibrium is unstable if a real
-    /// part is positive. Without damping and gyroscopic terms, real parts of oscillations are exactly zero.
+    /// part is positive. Without damping and gyroscopic terms, real parts of oscillations are exactly zero, and so are
+    /// both rates of a free motion.
     ///
     /// # Errors
     /// [`StepError::Singular`] if the mass matrix is singular along the constraints, [`StepError::NonFinite`] if the QR
@@ -105,8 +127,10 @@ impl<const N: usize> ConstrainedEquilibrium<N> {
         let is_symmetric = (stiffness - stiffness.transpose()).amax() <= SYMMETRIC * stiffness.amax();
         if damping.iter().all(|entry| *entry == 0.0)
             && is_symmetric
-            && let Some(squares) = spectrum::squared_frequencies(stiffness, mass)
+            && let Some(mut squares) = spectrum::squared_frequencies(stiffness, mass)
         {
+            squares.sort_by(|one, other| one.abs().total_cmp(&other.abs()));
+            squares.iter_mut().take(self.free_motions.ncols()).for_each(|square| *square = 0.0);
             return Ok(oscillations(&squares));
         }
         let factors = mass.clone().lu();
@@ -151,6 +175,8 @@ struct Balance<S: Constrained<N>, const N: usize> {
     stiffness: SMatrix<f64, N, N>,
     /// Of the coordinates in lengths.
     weights: SVector<f64, N>,
+    /// Bound of the rounding errors of a force, over its weight.
+    bound: f64,
     /// Rows over their rounding errors.
     roundings: SVector<f64, N>,
     residual: f64,
@@ -205,6 +231,7 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
             stiffness,
             gradients,
             weights,
+            bound: FLOOR * f64::EPSILON * largest,
             roundings: over,
             residual,
         }
@@ -220,8 +247,11 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
             if found.residual.is_nan() {
                 return Err(StepError::NonFinite { t, quantity: "generalized force", expression: None });
             }
-            let factored = border(bordered, system, &found.stiffness, &found.gradients);
-            factored.map_err(|_| StepError::Singular { t, matrix: "stiffness matrix bordered by the constraints" })?;
+            let singular = StepError::Singular { t, matrix: "stiffness matrix bordered by the constraints" };
+            if border(bordered, system, &found.stiffness, &found.gradients).is_err() {
+                let held = Along::of(&found).ok_or(singular)?.held(&found);
+                border(bordered, system, &held, &found.gradients).map_err(|_| singular)?;
+            }
             let mut correct = |mut force: SVector<f64, N>, mut values: S::Multipliers| {
                 bordered.solve(&mut force, values.as_mut());
                 (force, values)
@@ -245,16 +275,34 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
                 None => break,
             }
         }
-        if found.residual <= FLOOR {
-            return Ok(self.reduced(&found));
+        if found.residual <= FLOOR
+            && let Some(along) = Along::of(&found)
+            && self.is_known(&found, &along)
+        {
+            return Ok(self.reduced(&found, &along));
         }
         let worst = found.roundings.iamax();
         Err(StepError::NoEquilibrium { t, coordinate: S::COORDINATES[worst], force: -found.force[worst] })
     }
 
+    /// Whether the rounding errors of a root are small: the stiffness changes by less than half over them.
+    fn is_known(&self, found: &Balance<S, N>, along: &Along) -> bool {
+        let Along { basis, softest: (stiffness, direction), .. } = along;
+        #[allow(clippy::cast_precision_loss)] // a number of coordinates
+        let error = found.bound * (N as f64).sqrt() / stiffness;
+        let direction = basis * direction;
+        let moved = SVector::<f64, N>::from_fn(|i, _| direction[i] * error / found.weights[i]);
+        // False for NaN.
+        [1.0, -1.0].into_iter().all(|sign| {
+            let there = self.at(found.q + moved * sign, found.multipliers);
+            let change = weighted(&(there.stiffness - found.stiffness), &found.weights) * &direction;
+            (basis.transpose() * change).norm() <= CHANGE * stiffness
+        })
+    }
+
     /// The equilibrium with its matrices along the constraints.
-    fn reduced(&self, found: &Balance<S, N>) -> ConstrainedEquilibrium<N> {
-        let directions = directions(&found.gradients);
+    fn reduced(&self, found: &Balance<S, N>, of: &Along) -> ConstrainedEquilibrium<N> {
+        let directions = directions(found.gradients.rows().map(Row::dense::<N>));
         let along = |matrix: &SMatrix<f64, N, N>| {
             let matrix = DMatrix::from_fn(N, N, |i, j| matrix[(i, j)]);
             directions.transpose() * matrix * &directions
@@ -266,14 +314,79 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
             mass: along(&found.mass),
             damping: along(&found.damping),
             stiffness: along(&found.stiffness),
+            free_motions: of.free_motions(&found.weights),
             residual: found.residual,
             directions,
         }
     }
 }
 
+/// A matrix over the weights of its row and of its column.
+fn weighted<const N: usize>(matrix: &SMatrix<f64, N, N>, weights: &SVector<f64, N>) -> DMatrix<f64> {
+    DMatrix::from_fn(N, N, |i, j| matrix[(i, j)] / (weights[i] * weights[j]))
+}
+
+/// The stiffness along the constraints, in coordinates times their weights: its units do not matter.
+struct Along {
+    /// An orthonormal basis of the directions that the constraints allow.
+    basis: DMatrix<f64>,
+    /// Free motions in this basis, and their forces: the singular vectors on both sides.
+    free: Vec<[DVector<f64>; 2]>,
+    /// The largest singular value.
+    largest: f64,
+    /// The smallest one that is not free, with its direction.
+    softest: (f64, DVector<f64>),
+}
+
+impl Along {
+    /// `None` if no direction has a stiffness.
+    fn of<S: Constrained<N>, const N: usize>(found: &Balance<S, N>) -> Option<Self> {
+        let weights = &found.weights;
+        let basis = directions(found.gradients.rows().map(|row| row.dense::<N>().component_div(weights)));
+        let stiffness = basis.transpose() * weighted(&found.stiffness, weights) * &basis;
+        if stiffness.is_empty() || !stiffness.iter().all(|entry| entry.is_finite()) {
+            return None;
+        }
+        let parts = stiffness.try_svd(true, true, f64::EPSILON, 100 * N)?;
+        let (forces, directions) = (parts.u?, parts.v_t?);
+        let largest = parts.singular_values.iter().copied().fold(0.0, f64::max);
+        let direction = |index: usize| directions.row(index).transpose();
+        let (mut free, mut softest) = (Vec::new(), None);
+        for (index, value) in parts.singular_values.iter().enumerate() {
+            if *value <= FREE * largest {
+                free.push([direction(index), forces.column(index).into_owned()]);
+            } else if softest.as_ref().is_none_or(|(least, _)| value < least) {
+                softest = Some((*value, direction(index)));
+            }
+        }
+        Some(Self { basis, free, largest, softest: softest? })
+    }
+
+    /// The stiffness matrix with the largest stiffness along free motions.
+    fn held<S: Constrained<N>, const N: usize>(&self, found: &Balance<S, N>) -> SMatrix<f64, N, N> {
+        let mut held = found.stiffness;
+        for [direction, force] in &self.free {
+            let [direction, force] = [direction, force].map(|vector| &self.basis * vector);
+            let weights = &found.weights;
+            held += SMatrix::from_fn(|i, j| self.largest * weights[i] * force[i] * direction[j] * weights[j]);
+        }
+        held
+    }
+
+    /// The free motions in coordinates, of length 1.
+    fn free_motions<const N: usize>(&self, weights: &SVector<f64, N>) -> DMatrix<f64> {
+        let mut motions = DMatrix::zeros(N, self.free.len());
+        for (index, [direction, _]) in self.free.iter().enumerate() {
+            let direction = &self.basis * direction;
+            let motion = DVector::from_fn(N, |i, _| direction[i] / weights[i]);
+            motions.set_column(index, &motion.normalize());
+        }
+        motions
+    }
+}
+
 /// An orthonormal basis of the vectors across these gradients, by orthogonalization with pivoting.
-fn directions<const N: usize>(gradients: &impl Rectangular<N, f64>) -> DMatrix<f64> {
+fn directions<const N: usize>(gradients: impl Iterator<Item = SVector<f64, N>>) -> DMatrix<f64> {
     let mut known: Vec<DVector<f64>> = Vec::with_capacity(N);
     let across = |mut vector: DVector<f64>, known: &[DVector<f64>]| {
         // Twice, so that the rest is orthogonal to rounding.
@@ -283,7 +396,7 @@ fn directions<const N: usize>(gradients: &impl Rectangular<N, f64>) -> DMatrix<f
         }
         vector
     };
-    for gradient in gradients.rows().map(Row::dense::<N>).filter(|gradient| gradient.amax() > 0.0) {
+    for gradient in gradients.filter(|gradient| gradient.amax() > 0.0) {
         // By the largest entry first: squares of the entries may overflow or vanish.
         let gradient = DVector::from_column_slice((gradient / gradient.amax()).normalize().as_slice());
         known.push(across(gradient, &known).normalize());

@@ -3,6 +3,10 @@
 //! At rest `M a = F(t, q) = L_q + f − L_vt`. From a guess, damped Newton iteration approaches a root of F: a correction
 //! is halved until K = −∂F/∂q changes by less than half along it, so that the iteration does not leap over a maximum of
 //! the potential to a distant equilibrium. Undamped iteration to the rounding floor follows ([`newton`]).
+//!
+//! A force that vanishes proves nothing where the forces underflow, as far outside of a potential well. So the place of
+//! a root has to be known: K may not change over the rounding errors of the root. The forces that do not depend on a
+//! free coordinate at the guess may not begin with an underflow elsewhere.
 
 use super::{no_eigenvalues, spectrum};
 use crate::collocation::{Collocation, Point};
@@ -13,6 +17,7 @@ use crate::node::Node;
 use crate::real::{Dual, Rounded};
 use crate::state::State;
 use crate::stepping::Convertible;
+use crate::vector::worse;
 use alloc::vec::Vec;
 use core::array;
 use nalgebra::{Complex, DMatrix, SMatrix, SVector};
@@ -25,6 +30,14 @@ const HALVINGS: i32 = 40;
 /// Largest relative change of K over a correction, and the parts of a correction where it is measured.
 const CHANGE: f64 = 0.5;
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
+/// Largest distance from the guess, over its own size or the first correction.
+const REACH: f64 = 1e4;
+/// Binary exponents of the shortest and the longest moves of a free coordinate, and bisections of the place where the
+/// forces begin to depend on it.
+const MOVES: core::ops::Range<i32> = -52..64;
+const BISECTIONS: u32 = 64;
+/// Forces below this are underflows: they have lost digits.
+const UNDERFLOW: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
 /// A state of rest without acceleration. Small motions x about it satisfy `M x'' + C x' + K x = 0`.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,6 +140,9 @@ pub(super) fn find<S: Collocation<N> + Convertible<N>, const N: usize>(
     if (0..N).any(|k| rest.free[k] && roundings(forces.residual[k], forces.scale[k]) > newton::FLOOR) {
         return Err(rest.unbalanced(&guess));
     }
+    if let Some(k) = (0..N).find(|k| rest.free[*k] && rest.underflows(&guess, *k)) {
+        return Err(StepError::FreeMotion { t, coordinate: S::COORDINATES[k] });
+    }
     let near = rest.approached(guess, start)?;
     let root = newton::solve(&rest, near).map_err(|failure| match failure {
         Failure::Singular => rest.free_motion(&near),
@@ -134,6 +150,9 @@ pub(super) fn find<S: Collocation<N> + Convertible<N>, const N: usize>(
     })?;
     if free_coordinate(&rest.held(&root.at.stiffness)).is_some() {
         return Err(rest.free_motion(&root.u));
+    }
+    if !rest.is_known(&root.u, &root.at) {
+        return Err(rest.unbalanced(&root.u));
     }
     let Balance { mass, damping, stiffness, .. } = finite(rest.linearized(&root.u), root.u)?;
     let residual = worst(&root.at.residual, &root.at.scale);
@@ -204,10 +223,14 @@ impl<const N: usize, D: Collocation<N, Dual<f64>>, R: Collocation<N, Dual<Rounde
         // Unlike lengths of the coordinates, the kinetic energy of a correction has no units of its own.
         let weights = at.mass.diagonal().map(f64::abs);
         let size = |u: &SVector<f64, N>| u.component_mul(u).dot(&weights).sqrt();
-        for _ in 0..STEPS {
+        let (guess, mut reach) = (q, REACH * size(&q));
+        for step in 0..STEPS {
             let stiffness = self.held(&at.stiffness);
             let solved = |forces: &SVector<f64, N>| linear::solve(&stiffness, forces);
             let correction = solved(&self.held_forces(&at.residual)).ok_or_else(|| self.free_motion(&q))?;
+            if step == 0 {
+                reach = reach.max(REACH * size(&correction));
+            }
             let is_similar = |factor: f64| {
                 let there = self.linearized(&(q - correction * factor));
                 let change = solved(&((self.held(&there.stiffness) - stiffness) * correction));
@@ -219,12 +242,55 @@ impl<const N: usize, D: Collocation<N, Dual<f64>>, R: Collocation<N, Dual<Rounde
             match factors.into_iter().find(is_short) {
                 // The first trial.
                 Some(factor) if factor > 0.5 => return Ok(q),
+                // The force vanishes far away.
+                Some(factor) if size(&(q - correction * factor - guess)) > reach => return Err(self.unbalanced(&q)),
                 Some(factor) => q -= correction * factor,
                 None => return Err(self.unbalanced(&q)),
             }
             at = self.linearized(&q);
         }
         Err(self.unbalanced(&q))
+    }
+
+    /// Whether the rounding errors of a root are small: K changes by less than half over them.
+    fn is_known(&self, q: &SVector<f64, N>, at: &Balance<N>) -> bool {
+        let stiffness = self.held(&at.stiffness);
+        let Some(inverse) = linear::solve(&stiffness, &SMatrix::<f64, N, N>::identity()) else { return false };
+        let errors = at.residual.abs() + at.scale * (newton::FLOOR * f64::EPSILON);
+        let errors = inverse.abs() * self.held_forces(&errors);
+        let weights = at.mass.diagonal().map(f64::abs);
+        let size = |u: &SVector<f64, N>| u.component_mul(u).dot(&weights).sqrt();
+        // False for NaN.
+        [1.0, -1.0].into_iter().all(|sign| {
+            let there = self.held(&self.linearized(&(q + errors * sign)).stiffness);
+            size(&(inverse * ((there - stiffness) * errors))) <= CHANGE * size(&errors)
+        })
+    }
+
+    /// Whether the forces begin to depend on a free coordinate, elsewhere, by an underflow.
+    fn underflows(&self, q: &SVector<f64, N>, k: usize) -> bool {
+        let (here, length) = (self.linearized(q).residual, if q[k] == 0.0 { 1.0 } else { q[k].abs() });
+        // The largest change of a force and the largest slope; NaN where one has no value.
+        let change = |by: f64| {
+            let mut moved = *q;
+            moved[k] += by;
+            let there = self.linearized(&moved);
+            let slopes = (0..N).flat_map(|j| [there.stiffness[(k, j)], there.stiffness[(j, k)]]);
+            let changes = (0..N).map(|j| there.residual[j] - here[j]);
+            slopes.chain(changes).fold(0.0, |largest, number| worse(number.abs(), largest))
+        };
+        [1.0, -1.0].into_iter().any(|sign| {
+            let moves = || MOVES.map(|exponent| sign * length * 2.0_f64.powi(exponent));
+            let Some(place) = moves().position(|by| change(by) != 0.0) else { return false };
+            let [mut near, mut far] = [place.checked_sub(1), Some(place)]
+                .map(|place| place.and_then(|place| moves().nth(place)).unwrap_or(0.0));
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (near + far);
+                if change(middle) == 0.0 { near = middle } else { far = middle }
+            }
+            // False for NaN.
+            change(far) < UNDERFLOW
+        })
     }
 
     /// The force that remains at a point.

@@ -1,5 +1,6 @@
 //! Linearization and equilibria with constraints, against the same systems in angles.
 
+use super::systems::{Auto, HeavyTop};
 use vi_core::constrained::Extended;
 use vi_core::nalgebra::{DVector, SVector};
 use vi_core::prelude::*;
@@ -72,6 +73,31 @@ fn rods_hang_as_angles_do() {
         assert_eq!(rest.frequencies().expect("frequencies").len(), 2);
         assert!(found.iter().all(|rate| if c == 0.0 { rate.re == 0.0 } else { rate.re < -0.01 }), "{found:?}");
     }
+}
+
+#[test]
+fn a_top_hangs_at_any_turn() {
+    // J1 = 1, m g l = 2. The turn about the vertical is free.
+    let top = Auto(HeavyTop { j: 0.0 });
+    let rest = top.equilibrium(0.0, [0.0, 1.0, 0.0, 0.0]).unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!((rest.q, rest.free()), (SVector::from([0.0, 1.0, 0.0, 0.0]), [false, false, true, false]));
+    for guess in [[0.0, 1.0, 0.0, 0.0], [0.3, 1.1, 0.4, -0.2], [0.1, 0.0, -1.0, 0.6]] {
+        let rest = top.equilibrium(0.0, guess).unwrap_or_else(|failure| panic!("{guess:?}: {failure}"));
+        assert!(rest.q[0].abs() + rest.q[3].abs() < 1e-15 && (rest.q.norm() - 1.0).abs() < 1e-15, "{rest:?}");
+        // The free motion turns b into c.
+        let [motion] = rest.free_motions.as_slice().as_chunks().0 else { panic!("{rest:?}") };
+        let wanted = SVector::from([0.0, -rest.q[2], rest.q[1], 0.0]);
+        assert!((SVector::<f64, 4>::from(*motion).dot(&wanted).abs() - 1.0).abs() < 1e-14, "{rest:?}");
+        let rates = rest.rates().expect("rates");
+        assert_eq!((rates.len(), rates[0].norm(), rates[1].norm()), (6, 0.0, 0.0), "{rates:?}");
+        let frequencies = rest.frequencies().expect("frequencies");
+        let off = frequencies.iter().map(|frequency| (frequency - 2.0_f64.sqrt()).abs()).fold(0.0, f64::max);
+        println!("{off:e}");
+        assert!(frequencies.len() == 2 && off < 1e-14, "{frequencies:?}");
+    }
+    // Upright it falls.
+    let rates = top.equilibrium(0.0, [1.0, 0.0, 0.0, 0.0]).and_then(|rest| rest.rates()).expect("rates");
+    assert_eq!(rates.iter().filter(|rate| (rate.re - 2.0_f64.sqrt()).abs() < 1e-14).count(), 2, "{rates:?}");
 }
 
 #[test]
