@@ -6,23 +6,38 @@
 //!
 //! Each step of τ moves x to the nearest place with these values. A step that fails is halved; after a success the next
 //! one is doubled.
+//!
+//! If the continuation ends early, as beside the centre of a circle, damped Gauss–Newton iteration (Levenberg and
+//! Marquardt) reduces the sum of the squares of the residuals over their sizes, with masses W on the diagonal:
+//!
+//! ```text
+//! δ = −W⁻¹ Aᵀ (A W⁻¹ Aᵀ + λ)⁻¹ g
+//! ```
 
-use super::{Constrained, ConvertibleConstrained, Projected, Projection};
+use super::{Constrained, ConvertibleConstrained, Projected, Projection, weights};
 use crate::error::StepError;
 use crate::linear::Rectangular;
 use crate::state::{Numbers, State};
-use nalgebra::SVector;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector, SVector};
 
 /// The first step of τ, and the shortest.
 const FIRST: f64 = 0.125;
 const SHORTEST: f64 = 1e-6;
 /// Largest number of steps.
 const STEPS: u32 = 400;
+/// Damping λ at the start of the Gauss–Newton iteration, its factor after a trial that failed, and the number of trials:
+/// from 1e-300 beside a centre, λ has to reach 1e300.
+const DAMPING: f64 = 1e-3;
+const HARDER: f64 = 8.0;
+const TRIALS: u32 = 1500;
+/// Residuals over their sizes from which the nearest place is close.
+const CLOSE: f64 = 1e-6;
 
 impl<const N: usize> State<N> {
     /// A state on the constraints from a far guess, for example of a closed loop that is not closed: the nearest state
     /// as by [`State::projected`], otherwise by a continuation in which the residuals of all constraints shrink
-    /// together. [`Projection::holding`] holds coordinates.
+    /// together, or by least squares of the residuals. [`Projection::holding`] holds coordinates.
     ///
     /// A linkage may have several assemblies. The guess chooses one, which is not always the nearest.
     ///
@@ -52,7 +67,7 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projection<'
             let x = match self.nearest(place, &q, None) {
                 Ok(Some(x)) => x,
                 Err(failure @ StepError::NonFinite { .. }) => return Err(failure),
-                _ => self.continued(place)?,
+                _ => self.continued(place).or_else(|failure| self.relaxed(place).ok_or(failure))?,
             };
             self.with_velocities(t, [&q, &x], &v)
         })
@@ -79,6 +94,62 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projection<'
             }
         }
         self.nearest((t, q, v), &x, None).ok().flatten().ok_or_else(|| self.open(t, &x, passed))
+    }
+
+    /// The place on the constraints that damped Gauss–Newton iteration finds from q. `None` if they come no nearer to
+    /// holding.
+    pub(super) fn relaxed(&self, place: (f64, &SVector<f64, N>, &SVector<f64, N>)) -> Option<SVector<f64, N>> {
+        let (t, q, _) = place;
+        let weights = weights(&self.metric(place).diagonal());
+        let fixed = self.fixed(&self.gradients(t, q).0);
+        let rows: Vec<usize> = (0..S::HOLONOMIC).filter(|r| !fixed[*r] && !self.system.is_dropped(*r)).collect();
+        // g, and A over the weights.
+        let at = |x: &SVector<f64, N>| {
+            let (values, gradients) = (self.system.constraints(t, x), self.gradients(t, x).0);
+            let g = DVector::from_iterator(rows.len(), rows.iter().map(|r| values.as_ref()[*r]));
+            let mut a = DMatrix::zeros(rows.len(), N);
+            for (row, r) in rows.iter().enumerate() {
+                gradients.row(*r).iter().for_each(|(column, slope)| a[(row, column)] = slope / weights[column]);
+            }
+            (g, a)
+        };
+        let length = q.component_mul(&weights).norm();
+        let (g, a) = at(q);
+        let sizes = DVector::from_fn(rows.len(), |row, _| {
+            let size = g[row].abs() + a.row(row).norm() * length;
+            if size > 0.0 { size } else { 1.0 }
+        });
+        let over = |(g, mut a): (DVector<f64>, DMatrix<f64>)| {
+            a.row_iter_mut().zip(&sizes).for_each(|(mut row, size)| row /= *size);
+            (g.component_div(&sizes), a)
+        };
+        let (mut x, mut damping) = (*q, DAMPING);
+        let (mut g, mut a) = over((g, a));
+        for _ in 0..TRIALS {
+            // Over the largest entry: products of tiny ones underflow.
+            let largest = a.amax();
+            if largest == 0.0 || !damping.is_finite() {
+                return None;
+            }
+            let unit = &a / largest;
+            let mut normal = &unit * unit.transpose();
+            let added = damping * normal.diagonal().amax();
+            (0..rows.len()).for_each(|row| normal[(row, row)] += added);
+            let step = normal.cholesky().map(|factors| unit.transpose() * factors.solve(&(&g / largest)));
+            let next = step.map(|step| x - SVector::from_fn(|i, _| step[i] / weights[i]));
+            let next = next.map(|next| (next, over(at(&next)))).filter(|(_, (there, _))| there.norm() < g.norm());
+            let Some((there, (g_there, a_there))) = next else {
+                damping *= HARDER;
+                continue;
+            };
+            (x, g, a, damping) = (there, g_there, a_there, (damping / HARDER).min(1.0));
+            if g.norm() < CLOSE
+                && let Ok(Some(found)) = self.nearest(place, &x, None)
+            {
+                return Some(found);
+            }
+        }
+        None
     }
 
     /// The error of a linkage that stays open at x.

@@ -5,19 +5,19 @@
 //! M (w − v) = Aᵀμ     A w + a = 0           velocities, at x
 //! ```
 //!
-//! Held coordinates and their velocities do not change: they have no gradients here.
+//! Held coordinates and their velocities do not change: they have no gradients here. A constraint on held coordinates
+//! alone has to hold already, and has no multiplier.
 
 use super::start::CONSISTENT;
-use super::{
-    Constrained, ConvertibleConstrained, border, is_shortened, reaction_of, spread, unsolvable, weights, with_idle,
-};
-use crate::error::StepError;
+use super::{Constrained, ConvertibleConstrained, is_shortened, reaction_of, spread, unsolvable, weights, with_idle};
+use crate::error::{BORDERED_MASS, StepError};
 use crate::linear::{Bordered, Matrix, Rectangular};
 use crate::newton::roundings;
 use crate::node::Node;
 use crate::real::Rounded;
 use crate::state::{Numbers, State};
 use crate::vector::worse;
+use alloc::vec::Vec;
 use nalgebra::{SMatrix, SVector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -29,6 +29,10 @@ const HALVINGS: u32 = 12;
 const SETTLED: f64 = 1e-8;
 /// The same of a place that satisfies the constraints to half a rounding, and stays.
 const LAST: f64 = 4.0 * f64::EPSILON;
+/// Moves along the constraints, and the longest one, over the coordinates, that may end them: distances of places nearer
+/// to each other are equal to rounding.
+const SLIDES: u32 = 500;
+const ROUGH: f64 = 1e-6;
 
 /// A state on the constraints, and how far it is from the given one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,11 +100,20 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
     /// The nearest state with the held coordinates.
     ///
     /// # Errors
-    /// As [`State::projected`]; [`StepError::Singular`] also if the held coordinates leave no motion.
+    /// As [`State::projected`]; [`StepError::Singular`] also if the held coordinates leave no motion, or do not satisfy
+    /// a constraint on them alone; [`StepError::InconsistentStart`] if their velocities do not.
     pub fn projected(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Projected<N>, StepError> {
         let (q, v) = (q.vector(), v.vector());
         self.explained((t, &q, &v), || {
-            let x = self.nearest((t, &q, &v), &q, None)?.ok_or_else(|| self.open(t, &q, 0.0))?;
+            let place = (t, &q, &v);
+            let x = match self.nearest(place, &q, None) {
+                Ok(Some(x)) => x,
+                Err(failure @ StepError::NonFinite { .. }) => return Err(failure),
+                failure => {
+                    let failure = failure.err().unwrap_or_else(|| self.open(t, &q, 0.0));
+                    self.slid(place).ok_or(failure)?
+                }
+            };
             self.with_velocities(t, [&q, &x], &v)
         })
     }
@@ -116,6 +129,24 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
         find().map_err(|failure| failure.explained(self.system, &given, 0.0, v))
     }
 
+    /// For each constraint that is not dropped, whether the held coordinates alone decide on it.
+    pub(super) fn fixed(&self, gradients: &S::Gradients) -> Vec<bool> {
+        let is_zero = |r: usize| gradients.row(r).iter().all(|(_, entry)| entry == 0.0);
+        let is_fixed = |r: usize| self.held.contains(&true) && !self.system.is_dropped(r) && is_zero(r);
+        (0..S::CONSTRAINTS.len()).map(is_fixed).collect()
+    }
+
+    /// Factors the mass matrix bordered by gradients, without dropped and fixed constraints.
+    fn border(
+        &self,
+        bordered: &mut Bordered,
+        (mass, gradients, fixed): (&SMatrix<f64, N, N>, &S::Gradients, &[bool]),
+        t: f64,
+    ) -> Result<(), StepError> {
+        let factored = bordered.factor_without(mass, gradients, |r| fixed[r] || self.system.is_dropped(r));
+        factored.map_err(|failure| unsolvable(failure, t))
+    }
+
     /// The mass matrix without the coupling of held coordinates.
     fn mass(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SMatrix<f64, N, N> {
         let mass = self.system.point(t, q, v).mass.dense();
@@ -126,14 +157,14 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
     }
 
     /// The mass matrix that measures moves; see [`with_idle`].
-    fn metric(&self, (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>)) -> SMatrix<f64, N, N> {
+    pub(super) fn metric(&self, (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>)) -> SMatrix<f64, N, N> {
         let mass = self.mass(t, q, v);
         let (gradients, _) = self.gradients(t, q);
         with_idle(&mass, &gradients, S::HOLONOMIC).unwrap_or(mass)
     }
 
     /// A and a, without gradients along held coordinates.
-    fn gradients(&self, t: f64, q: &SVector<f64, N>) -> (S::Gradients, S::Multipliers) {
+    pub(super) fn gradients(&self, t: f64, q: &SVector<f64, N>) -> (S::Gradients, S::Multipliers) {
         let (mut gradients, rates) = self.system.constraint_gradients(t, q);
         for r in 0..S::CONSTRAINTS.len() {
             let (columns, values) = gradients.row_mut(r);
@@ -156,9 +187,17 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
         let system = self.system;
         let bordered = &mut Bordered::new(N, S::CONSTRAINTS.len(), &[]);
         let (gradients, _) = self.gradients(t, x);
-        border(bordered, system, &self.mass(t, x, v), &gradients).map_err(|failure| unsolvable(failure, t))?;
+        let fixed = self.fixed(&gradients);
+        self.border(bordered, (&self.mass(t, x, v), &gradients, &fixed), t)?;
         let (all, rates) = system.constraint_gradients(t, x);
         let mut w = *v;
+        for (r, rate) in rates.as_ref().iter().enumerate().filter(|(r, _)| fixed[*r]) {
+            let (row, value) = (all.row(r), all.row(r).dot(v) + rate);
+            if roundings(value, row.terms(v) + rate.abs()) > CONSISTENT {
+                let constraint = S::CONSTRAINTS[r];
+                return Err(StepError::InconsistentStart { constraint, residual: 0.0, rate: value });
+            }
+        }
         // The second correction removes the rounding errors of the first.
         for _ in 0..2 {
             let (mut correction, mut rows) = (SVector::zeros(), rates);
@@ -174,6 +213,43 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
             return Err(StepError::NonFinite { t, quantity: "momentum or energy", expression: None });
         }
         Ok(Projected { state, moved_q: x - q, moved_v: w - v, energy_lost })
+    }
+
+    /// The nearest place from one on the constraints that [`Projection::relaxed`] finds: it slides along the constraints
+    /// while it comes nearer. `None` if there is none, or if it ends elsewhere.
+    fn slid(&self, place: (f64, &SVector<f64, N>, &SVector<f64, N>)) -> Option<SVector<f64, N>> {
+        let (t, q, _) = place;
+        let mass = self.metric(place);
+        let weights = weights(&mass.diagonal());
+        let distance = |x: &SVector<f64, N>| (x - q).dot(&(mass * (x - q)));
+        let mut x = self.relaxed(place)?;
+        let mut last = f64::INFINITY;
+        for _ in 0..SLIDES {
+            // The move to q without its parts across the constraints.
+            let bordered = &mut Bordered::new(N, S::HOLONOMIC, &[]);
+            let (gradients, _) = self.gradients(t, &x);
+            self.border(bordered, (&mass, &gradients, &self.fixed(&gradients)), t).ok()?;
+            let mut along = mass * (q - x);
+            let mut none = self.system.constraints(t, &x);
+            none.as_mut().fill(0.0);
+            bordered.solve(&mut along, &mut none.as_mut()[..S::HOLONOMIC]);
+            let length = along.component_mul(&weights).norm();
+            let size = (x.abs() + q.abs()).component_mul(&weights).norm();
+            if length <= SETTLED * size {
+                return Some(x);
+            }
+            let next = (0..=HALVINGS).find_map(|halved| {
+                let part = 0.5_f64.powi(i32::try_from(halved).unwrap_or(0));
+                let next = self.nearest(place, &(x + along * part), None).ok()??;
+                Some(next).filter(|next| distance(next) < distance(&x))
+            });
+            // Moves that no longer become shorter are roundings.
+            let Some(next) = next.filter(|_| length < last || length > ROUGH * size) else {
+                return (length <= ROUGH * size).then_some(x);
+            };
+            (x, last) = (next, length);
+        }
+        None
     }
 
     /// The coordinates with the values `target` of g, zero without, that are nearest to `from` by the mass matrix at (t,
@@ -196,12 +272,13 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
         let mut zero = system.constraints(t, q);
         zero.as_mut().fill(0.0);
         let target = target.unwrap_or(&zero).as_ref();
+        let fixed = self.fixed(&self.gradients(t, from).0);
         let at = |x: SVector<f64, N>, kappa: S::Multipliers| {
             let mut values = system.constraints(t, &x);
-            for (r, (value, target)) in values.as_mut().iter_mut().zip(target).enumerate() {
-                *value = if system.is_dropped(r) { 0.0 } else { *value - target };
-            }
             let (gradients, _) = self.gradients(t, &x);
+            for (r, (value, target)) in values.as_mut().iter_mut().zip(target).enumerate() {
+                *value = if fixed[r] || system.is_dropped(r) { 0.0 } else { *value - target };
+            }
             let row = mass * (x - from) - reaction_of(&gradients, kappa.as_ref());
             (x, kappa, row, values, gradients)
         };
@@ -214,6 +291,14 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
                 worse(roundings(values.as_ref()[r], bound), worst)
             })
         };
+        // No motion of the other coordinates satisfies these.
+        let mut values = system.constraints(t, from);
+        for (r, (value, target)) in values.as_mut().iter_mut().zip(target).enumerate() {
+            *value = if fixed[r] { *value - target } else { 0.0 };
+        }
+        if fixed.contains(&true) && violation(from, &values, &positions) > CONSISTENT {
+            return Err(StepError::Singular { t, matrix: BORDERED_MASS });
+        }
         let mut found = at(*from, zero);
         let mut iterations = 0;
         loop {
@@ -228,8 +313,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
                     curved[(i, j)] -= slope;
                 }
             }
-            let factored = border(bordered, system, &curved, &gradients);
-            factored.map_err(|failure| unsolvable(failure, t))?;
+            self.border(bordered, (&curved, &gradients, &fixed), t)?;
             let mut correct = |mut row: SVector<f64, N>, mut values: S::Multipliers| {
                 bordered.solve(&mut row, &mut values.as_mut()[..holonomic]);
                 let length = row.component_mul(&weights).norm();

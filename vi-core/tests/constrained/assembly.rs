@@ -1,7 +1,8 @@
 //! States on the constraints from far guesses, and with held coordinates.
 
+use super::systems::PENDULUM;
 use vi_core::constrained::Projection;
-use vi_core::{Constrained, GaussLobatto, Lagrangian, Starts, State, StepError, lagrangian};
+use vi_core::{Constrained, GaussLobatto, Lagrangian, SVector, Starts, State, StepError, lagrangian};
 
 lagrangian! {
     /// Crank, coupler and rocker between the pivots (0, 0) and (3, 0).
@@ -54,6 +55,53 @@ fn a_four_bar_closes_from_a_right_angle_away() {
 }
 
 #[test]
+fn a_rod_is_found_from_beside_its_centre() {
+    for [x, y] in [[1e-300, 0.0], [1e-12, 0.0], [0.0, -1e-9], [1e-8, 1e-9], [-1e-7, 0.0], [1e-4, 2e-4], [3e7, 4e7]] {
+        for found in [State::assembled, State::projected].map(|find| find(&PENDULUM, 0.0, [x, y], [0.0, 0.0])) {
+            let found = found.unwrap_or_else(|failure| panic!("{x} {y}: {failure}"));
+            assert!(off(&PENDULUM, &found.state) < 1e-15, "{found:?}");
+            // Along the radius.
+            let length = f64::hypot(x, y);
+            let wanted = SVector::from([x / length, y / length]);
+            assert!((found.state.q - wanted).amax() < 1e-7, "{x} {y}: {found:?}");
+        }
+    }
+    for found in [State::assembled, State::projected].map(|find| find(&PENDULUM, 0.0, [0.0, 0.0], [0.0, 0.0])) {
+        assert!(found.is_err(), "{found:?}");
+    }
+}
+
+#[test]
+fn a_four_bar_closes_from_any_guess() {
+    let system = FourBar::default();
+    let mut state = 7_u32;
+    let mut draw = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state) / f64::from(1_u32 << 31) - 1.0
+    };
+    let mut worst = 0.0_f64;
+    for _ in 0..200 {
+        let guess: [f64; 4] = core::array::from_fn(|_| 5.0 * draw());
+        let find = [State::assembled::<FourBar>, State::projected::<FourBar>];
+        for found in find.map(|find| find(&system, 0.0, guess, [0.0; 4])) {
+            let found = found.unwrap_or_else(|failure| panic!("{guess:?}: {failure}"));
+            worst = worst.max(off(&system, &found.state));
+        }
+        // The move from the guess is along the gradients, in the metric of the masses.
+        let nearest = State::projected(&system, 0.0, guess, [0.0; 4]).expect("closed");
+        let moved = nearest.moved_q.component_mul(&SVector::from([2.0, 2.0, 1.0, 1.0]));
+        let (rows, _) = system.constraint_gradients(0.0, &nearest.state.q);
+        let rows = [0, 1, 2].map(|r| rows.row(r).dense::<4>());
+        let normals = vi_core::nalgebra::SMatrix::<f64, 4, 3>::from_columns(&rows);
+        let inverse = (normals.transpose() * normals).try_inverse().expect("independent");
+        let rest = (moved - normals * (inverse * (normals.transpose() * moved))).amax();
+        assert!(rest < 1e-4, "{guess:?}: {rest:e}");
+    }
+    println!("{worst:e}");
+    assert!(worst < 1e-13, "{worst:e}");
+}
+
+#[test]
 fn a_linkage_that_is_too_short_stays_open() {
     // 1 + 1 + 0.5 do not reach from 0 to 3: half a unit is missing.
     let system = FourBar { crank: 1.0, coupler: 1.0, rocker: 0.5 };
@@ -90,6 +138,19 @@ fn held_coordinates_stay() {
     // Three rods leave one coordinate.
     let all = Projection::of(&system).holding(&[0, 1]).expect("indices");
     assert!(matches!(all.projected(0.0, q, v), Err(StepError::Singular { .. })));
+    // A crank of the right length, and a velocity across it: the other two rods follow.
+    let (q, v) = ([0.6, 0.8, 2.9, 1.7], [0.8, -0.6, 0.1, 0.2]);
+    for found in [all.projected(0.0, q, v), all.assembled(0.0, q, v)] {
+        let found = found.unwrap_or_else(|failure| panic!("{failure}"));
+        assert!(found.moved_q.rows(0, 2).amax() <= 0.0 && found.moved_v.rows(0, 2).amax() <= 0.0, "{found:?}");
+        assert!(off(&system, &found.state) < 1e-14 && found.moved_q.norm() > 0.01, "{found:?}");
+        system.at_state(found.state).integrate(GaussLobatto::<1>, 0.01).expect("a start");
+    }
+    let along = all.projected(0.0, q, [0.6, 0.8, 0.1, 0.2]);
+    assert!(
+        matches!(along, Err(StepError::InconsistentStart { constraint: "front", residual: 0.0, rate: 2.0 })),
+        "{along:?}"
+    );
     assert!(matches!(Projection::of(&system).holding(&[4]), Err(StepError::InvalidInput { value: 4.0, .. })));
 }
 
