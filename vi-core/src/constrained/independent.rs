@@ -74,6 +74,15 @@ impl<S> Independent<S> {
         self.dropped.get(constraint / 64).is_some_and(|word| word >> (constraint % 64) & 1 == 1)
     }
 
+    /// The names of the dropped constraints.
+    pub fn dropped_names<const N: usize>(&self) -> impl Iterator<Item = &'static str>
+    where
+        S: Constrained<N>,
+    {
+        let names = S::CONSTRAINTS.iter().enumerate();
+        names.filter(|(constraint, _)| self.is_dropped(*constraint)).map(|(_, name)| *name)
+    }
+
     /// The dropped constraints, with the values at a state that they should not have: g, or `A v + a` of a nonholonomic
     /// constraint.
     ///

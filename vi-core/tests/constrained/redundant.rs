@@ -39,6 +39,19 @@ lagrangian! {
     }
 }
 
+lagrangian! {
+    /// The coupler alone: as many constraints as coordinates.
+    struct Bars {
+        param g = 9.81;
+        coord x, y, u, w;
+        L = (dot(x)^2 + dot(y)^2 + dot(u)^2 + dot(w)^2) / 2 - g * (y + w);
+        constraint left = x^2 + y^2 - 1;
+        constraint right = (u - 2)^2 + w^2 - 1;
+        constraint coupler = (u - x)^2 + (w - y)^2 - 4;
+        constraint middle = ((x + u) / 2 - 1)^2 + ((y + w) / 2)^2 - 1;
+    }
+}
+
 /// The cranks at an angle from straight down, and the speed.
 fn place(angle: f64, speed: f64) -> ([f64; 5], [f64; 5]) {
     let (sine, cosine) = angle.sin_cos();
@@ -79,6 +92,26 @@ fn a_third_crank_changes_nothing() {
     println!("{worst:?}");
     // Measured: 4.5e-16, 0, 2.7e-11 (the error of order 6), 0.
     assert!(worst[0] < 1e-15 && worst[1] < 1e-13 && worst[2] < 6e-11 && worst[3] < 1e-13, "{worst:?}");
+}
+
+#[test]
+fn as_many_constraints_as_coordinates_may_move() {
+    let system = Bars::default();
+    let (q, v) = place(0.5, 1.0);
+    let [q, v] = [q, v].map(|of| [of[0], of[1], of[2], of[3]]);
+    let refused = system.at(0.0, q, v).integrate(GaussLobatto::<2>, 0.02).err();
+    assert_eq!(refused, Some(StepError::Redundant { constraint: "middle", of: 4, rank: 3 }));
+    let kept = Independent::at(system, 0.0, q).unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!(kept.dropped_names().count(), 1);
+    let mut run = kept.at(0.0, q, v).integrate(GaussLobatto::<3>, 0.02).unwrap_or_else(|failure| panic!("{failure}"));
+    let mut angle = Angle::default().at(0.0, [0.5], [1.0]).integrate(Gauss::<6>, 0.02).expect("regular");
+    for _ in 0..200 {
+        let state = run.step().unwrap_or_else(|failure| panic!("{failure}"));
+        let exact = angle.step().unwrap_or_else(|failure| panic!("{failure}")).q[0];
+        // As with the mass on a spring.
+        assert!((state.q[0] - exact.sin()).abs() < 6e-11, "{}", state.q[0] - exact.sin());
+        assert!(system.constraints(0.0, &state.q).iter().all(|value| value.abs() < 1e-14), "{state:?}");
+    }
 }
 
 #[test]

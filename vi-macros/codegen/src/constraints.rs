@@ -18,7 +18,7 @@ pub enum ConstraintMistake {
     Twice { name: String },
     /// A constraint without a coordinate and a velocity.
     Constant { name: String },
-    /// As many constraints as coordinates, or more.
+    /// As many constraints as coordinates, or more, which leave no motion.
     TooMany { count: usize, size: usize },
     /// A constraint that is a multiple of an earlier one.
     Same { name: String, other: String },
@@ -110,7 +110,10 @@ impl ConstraintMistake {
             Self::Constant { .. } => {
                 "write an expression of coordinates that is 0, as in `constraint rod = x^2 + y^2 - l^2;`".to_owned()
             }
-            Self::TooMany { .. } => "write fewer constraints than coordinates".to_owned(),
+            Self::TooMany { .. } => {
+                "write fewer constraints than coordinates, or defaults of the parameters with which the mechanism moves"
+                    .to_owned()
+            }
             Self::Same { .. } | Self::Dependent { .. } => {
                 "remove it: its reaction would have no unique value".to_owned()
             }

@@ -86,6 +86,41 @@ fn constraints_without_motion() {
         &format!("{rolling}, «c» = dot(x) - z * dot(y); {space}"),
         "3 constraint(s) on 3 coordinate(s) leave no motion",
     );
+    // A frame of three bars.
+    let bars = "coord x, y, u, w; L = dot(x)^2 + dot(y)^2 + dot(u)^2 + dot(w)^2; constraint left = x^2 + y^2 - 1;";
+    case(
+        &format!(
+            "param b = 2, c = 1; {bars} constraint right = (u - b)^2 + w^2 - 1, coupler = (u - x)^2 + (w - y)^2 - b^2, \
+             «brace» = u^2 + w^2 - 3 * c;"
+        ),
+        "4 constraint(s) on 4 coordinate(s) leave no motion",
+    );
+    // A third crank of a parallelogram follows from the others where they hold.
+    let third = "constraint right = (u - b)^2 + w^2 - 1, coupler = (u - x)^2 + (w - y)^2 - b^2, \
+                 middle = ((x + u) / 2 - b / 2)^2 + ((y + w) / 2)^2 - c^2;";
+    assert_eq!(errors(&format!("struct System {{ param b = 2, c = 1; {bars} {third} }}")), []);
+    case(
+        &format!("param b = 2, c = 1; {bars} {third} constraint «again» = 4 - 4 * x^2 - 4 * y^2;"),
+        "the constraint `again` repeats `left` up to a factor",
+    );
+}
+
+#[test]
+fn a_planar_linkage_of_bodies_in_space_moves() {
+    // Four hinges of five constraints, and three quaternions: 23 constraints on 21 coordinates, and one motion.
+    let linkage = "param l[3] = [1.0, 3.0, 2.5], d = 3.2; coord x[3][3]; rotation R[3]; \
+        let w[i in 0..3] = rate(R[i]); \
+        L = sum(i in 0..3, dot(x[i]) * dot(x[i]) / 2 + w[i] * w[i] / 2 - x[i][1]); \
+        let ez = [0, 0, 1], ex = [1, 0, 0], ey = [0, 1, 0]; \
+        constraint pin_a = x[0] - turn(R[0], l[0] / 2 * ex); \
+        constraint pin_b = x[0] + turn(R[0], l[0] / 2 * ex) - x[1] + turn(R[1], l[1] / 2 * ex); \
+        constraint pin_c = x[1] + turn(R[1], l[1] / 2 * ex) - x[2] - turn(R[2], l[2] / 2 * ex); \
+        constraint pin_d = x[2] - turn(R[2], l[2] / 2 * ex) - [d, 0, 0]; \
+        constraint across_a = [ez * turn(R[0], ex), ez * turn(R[0], ey)]; \
+        constraint across_b = [turn(R[0], ez) * turn(R[1], ex), turn(R[0], ez) * turn(R[1], ey)]; \
+        constraint across_c = [turn(R[1], ez) * turn(R[2], ex), turn(R[1], ez) * turn(R[2], ey)]; \
+        constraint across_d = [ez * turn(R[2], ex), ez * turn(R[2], ey)];";
+    assert_eq!(errors(&format!("struct System {{ {linkage} }}")), []);
 }
 
 #[test]

@@ -119,7 +119,6 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     // A derivative with a jump is no derivative.
     constraint::check_smoothness(pool, &model)?;
     dependent?;
-    constraint::check_count(&model)?;
     singular?;
     if let Some(condition) = smoothness::jump_of_lagrangian(pool, &model) {
         let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));

@@ -8,7 +8,9 @@
 //! ```
 //!
 //! Whether constraints are independent is decided at points of a fixed sequence, as for the mass matrix: rows of A that
-//! are dependent at all of them are dependent everywhere, except with negligible probability.
+//! are dependent at all of them are dependent everywhere, except with negligible probability. As many constraints as
+//! coordinates may depend on each other only where they hold, as those of mechanisms that move nevertheless: see
+//! `mobility`.
 
 use super::context::Context;
 use super::force::{over, path};
@@ -18,7 +20,7 @@ use super::rotation;
 use super::scope::{Meaning, Scope};
 use super::smoothness::{jump, with_conditions};
 use super::value::Value;
-use super::{Coordinate, FunctionKind, Model, Parameter, TableKind, indices};
+use super::{Coordinate, FunctionKind, Model, Parameter, TableKind, indices, mobility};
 use crate::arrays::bracketed;
 use crate::constraints::ConstraintMistake;
 use crate::limits::bounded;
@@ -247,16 +249,8 @@ pub(super) fn rows(pool: &mut Pool<Symbol>, constraints: &[Constraint], dimensio
     constraints.iter().map(|constraint| constraint.rate(pool, dimension).row).collect()
 }
 
-/// Reports as many constraints as coordinates, or more; those that depend on others are reported before.
-pub(super) fn check_count(model: &Model) -> Result<()> {
-    let (count, size) = (model.constraints.len(), model.dimension());
-    match model.constraints.get(size).or(model.constraints.last()).filter(|_| count >= size) {
-        Some(first) => Err(error(first.name.span(), &Message::Constraint(ConstraintMistake::TooMany { count, size }))),
-        None => Ok(()),
-    }
-}
-
-/// Reports constraints on velocities that are derivatives of functions, without inputs, then one that depends on others.
+/// Reports constraints on velocities that are derivatives of functions, without inputs, then one that depends on others,
+/// then constraints that leave no motion.
 pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
     let (constraints, parameters, dimension) = (&model.constraints, &model.parameters, model.dimension());
     let mut errors = Errors::default();
@@ -283,8 +277,7 @@ pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
         }
     }
     let rows = rows(pool, constraints, dimension);
-    // Behind as many independent ones as coordinates, each depends on them: `check_count` reports these.
-    let dependent = dependent(pool, &rows, dimension, parameters).filter(|row| *row < dimension);
+    let dependent = dependent(pool, &rows, dimension, parameters);
     if !integrable && let Some(dependent) = dependent {
         let constraint = &constraints[dependent];
         let name = constraint.text();
@@ -299,15 +292,25 @@ pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
             None => ConstraintMistake::Dependent { name },
         };
         at(constraint, mistake);
+    } else if !integrable && constraints.len() >= dimension {
+        let moves = mobility::leave_motion(pool, constraints, dimension, parameters);
+        if let Some(first) = constraints.get(dimension).or(constraints.last()).filter(|_| !moves) {
+            at(first, ConstraintMistake::TooMany { count: constraints.len(), size: dimension });
+        }
     }
     errors.finish(())
 }
 
-/// The first row that depends on those before it, at every point.
+/// The first row that depends on those before it, at every point; beyond as many as coordinates, that depends on a
+/// single one.
 fn dependent(pool: &Pool<Symbol>, rows: &[Vec<Expr>], dimension: usize, parameters: &[Parameter]) -> Option<usize> {
+    let (rows, more) = rows.split_at(rows.len().min(dimension));
     // One test for the usual case.
     if !is_dependent(pool, rows, dimension, parameters) {
-        return None;
+        let repeats = |row: &Vec<Expr>| {
+            rows.iter().any(|other| is_dependent(pool, &[other.clone(), row.clone()], dimension, parameters))
+        };
+        return more.iter().position(repeats).map(|index| rows.len() + index);
     }
     (1..=rows.len()).find(|count| is_dependent(pool, &rows[..*count], dimension, parameters)).map(|count| count - 1)
 }

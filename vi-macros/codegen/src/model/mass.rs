@@ -39,6 +39,10 @@ pub(super) fn check(
 ) -> Result<()> {
     let dimension = coordinates.len();
     let Some((momenta, mass)) = mass(pool, lagrangian, dimension) else { return Ok(()) };
+    if rows.len() >= dimension {
+        // Where they are independent, they allow no direction.
+        return Ok(());
+    }
     if !rows.is_empty() {
         return check_bordered(pool, (coordinates, parameters), (lagrangian, &mass), rows);
     }

@@ -17,6 +17,7 @@ mod function;
 mod lengths;
 mod lets;
 mod mass;
+mod mobility;
 mod point;
 mod probe;
 mod resolve;
