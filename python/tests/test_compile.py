@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import variational as vi
+from variational import _compile
 
 DOUBLE = """
 /// Two pendula, one hanging from the other.
@@ -173,9 +174,21 @@ def test_vectors_a_table_of_a_file_and_an_input(warm_cache, tmp_path, monkeypatc
     # m v' = thrust - v/2, by hand; fixed steps of order 2.
     assert abs(speed(Glider) - (3.0 - 2.0 * np.exp(-0.25 * 2.0))) < 1e-5
     (tmp_path / "drag.csv").write_text("v,drag\n0,0\n1,0\n2,0\n9,0\n")
+    # A pickle keeps the values that its tables had.
+    stored = pickle.dumps(Glider(m=3.0))
     Changed = vi.compile(definition, methods="fixed")
     assert Changed is not Glider
     assert abs(speed(Changed) - 2.5) < 1e-12
+    again = pickle.loads(stored)
+    assert type(again) is Glider and again.m == 3.0
+    assert pickle.loads(pickle.dumps(Changed)) is Changed
+    # From the cache, and without it not at all.
+    monkeypatch.setattr(_compile, "_loaded", {})
+    assert speed(type(pickle.loads(stored))) == speed(Glider)
+    monkeypatch.setattr(_compile, "_loaded", {})
+    monkeypatch.setenv("VARIATIONAL_CACHE", str(tmp_path / "empty"))
+    with pytest.raises(ValueError, match=r"other values when it was pickled: .*drag\.csv changed or is missing"):
+        pickle.loads(stored)
 
 
 def test_a_rust_function_needs_a_crate():

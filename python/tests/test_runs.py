@@ -291,12 +291,29 @@ def test_tables_and_plots(kepler):
     assert len(below.lines) == 1
 
 
-def test_solutions_are_pickled(kepler):
-    sol = kepler.until(1.0, dense=True)
-    again = pickle.loads(pickle.dumps(sol))
-    assert np.array_equal(again.q, sol.q)
+@pytest.mark.parametrize("begin", [lambda run: run, lambda run: run.step(0.02), lambda run: run.set(mu=1.1)])
+def test_solutions_are_pickled_with_their_dense_output(kepler, begin):
+    sol = begin(kepler).until(1.0, every=3, dense=True)
+    times = np.linspace(sol.t[0], 1.0, 50)
+    for again in (pickle.loads(pickle.dumps(sol)), copy.deepcopy(sol)):
+        assert np.array_equal(again.q, sol.q) and again.sol is again
+        assert np.array_equal(again(times), sol(times))
+        assert np.array_equal(pickle.loads(pickle.dumps(again))(times), sol(times))
+    plain = pickle.loads(pickle.dumps(kepler.until(2.0)))
     with pytest.raises(ValueError, match="dense=True"):
+        plain(1.5)
+    again = pickle.loads(pickle.dumps(sol))
+    again.q = again.q + 1e-16 + 1e-16 * np.abs(again.q)
+    again.q[0, 0] += 1e-12
+    with pytest.raises(ValueError, match="cannot be restored"):
         again(0.5)
+
+
+def test_dense_output_of_a_failed_run_is_pickled():
+    run = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.05, method="energy", stages=3)
+    sol = run.until(3.0, dense=True, on_error="return")
+    again = pickle.loads(pickle.dumps(sol))
+    assert not again.success and np.array_equal(again(sol.t), sol(sol.t))
 
 
 def test_a_callback_may_move_the_run_beyond_the_end():

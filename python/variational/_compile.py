@@ -91,8 +91,20 @@ def _pickled(cls: Any) -> Any:
     return (_unpickled, cls._source)
 
 
-def _unpickled(definition: str, methods: str) -> type[System]:
-    return compile(definition, methods=methods)
+def _unpickled(definition: str, methods: str, tables: str) -> type[System]:
+    """The class of a pickle. Its tables have the values that they had: from the library in the cache, or from files
+    that have not changed since.
+
+    Raises ValueError for files that have.
+    """
+    digest = _digest(definition, methods, tables)
+    if digest not in _loaded and not _built(digest).exists() and _located(definition)[1] != tables:
+        files = ", ".join(found[2] for found in _TABLE.finditer(definition))
+        raise ValueError(
+            f"the tables of this system had other values when it was pickled: {files} changed or is missing, and the "
+            "library of the old system is not in the cache. Restore the file, or make the pickle again"
+        )
+    return _class(definition, methods, tables, False)
 
 
 copyreg.pickle(_Compiled, _pickled)
@@ -124,22 +136,39 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
     if methods is not None and not isinstance(methods, str):
         raise TypeError(f'methods must be a text such as "fixed; gauss 8", not {type(methods).__name__}')
     definition, tables = _located(definition)
-    code = _without_comments(definition)
-    methods = _methods(methods, code)
-    key = "\0".join([definition, tables, methods, str(CONTRACT), _core.sources_digest, sysconfig.get_platform()])
-    digest = hashlib.sha256(key.encode()).hexdigest()[:20]
+    return _class(definition, _methods(methods, _without_comments(definition)), tables, verbose)
+
+
+def _class(definition: str, methods: str, tables: str, verbose: bool) -> type[System]:
+    """The class of a definition with absolute paths, whose tables have this digest."""
+    digest = _digest(definition, methods, tables)
     if digest not in _loaded:
-        library = f"s_{digest}"
-        built = _folder() / "modules" / (library + _SUFFIX)
+        built = _built(digest)
         if not built.exists():
             name = _checked(definition)
             _suitable(definition, methods)
-            _build(definition, name, library, built, methods, verbose)
-        cls = _load(library, built)
-        cls._source = (definition, methods)  # type: ignore[attr-defined]
+            _build(definition, name, built, methods, tables, verbose)
+        cls = _load(_library(digest), built)
+        cls._source = (definition, methods, tables)  # type: ignore[attr-defined]
         cls.definition = inspect.cleandoc(definition)
         _loaded[digest] = cls
     return _loaded[digest]
+
+
+def _digest(definition: str, methods: str, tables: str) -> str:
+    """A digest of everything that a library depends on."""
+    key = "\0".join([definition, tables, methods, str(CONTRACT), _core.sources_digest, sysconfig.get_platform()])
+    return hashlib.sha256(key.encode()).hexdigest()[:20]
+
+
+def _library(digest: str) -> str:
+    """The name of a library."""
+    return f"s_{digest}"
+
+
+def _built(digest: str) -> Path:
+    """The file of a library in the cache."""
+    return _folder() / "modules" / (_library(digest) + _SUFFIX)
 
 
 def warm(verbose: bool = True) -> None:
@@ -282,7 +311,7 @@ def _suitable(definition: str, methods: str) -> None:
         )
 
 
-def _build(definition: str, name: str, library: str, built: Path, methods: str, verbose: bool) -> None:
+def _build(definition: str, name: str, built: Path, methods: str, tables: str, verbose: bool) -> None:
     cargo = shutil.which("cargo") or shutil.which("cargo", path=str(Path.home() / ".cargo" / "bin"))
     if cargo is None:
         raise CompileError(
@@ -297,9 +326,12 @@ def _build(definition: str, name: str, library: str, built: Path, methods: str, 
                 workspace = _workspace(folder)
                 has_constraints = _CONSTRAINT.search(_without_comments(definition)) is not None
                 words = _words(methods, has_constraints)
+                library = built.name.removesuffix(_SUFFIX)
                 text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=words)
                 (workspace / "compiled" / "src" / "lib.rs").write_text(text, encoding="utf-8")
                 _cargo(cargo, workspace, folder / "target", verbose)
+                if _located(definition)[1] != tables:
+                    raise CompileError("a file of a table changed during the build: compile again")
                 part = built.with_suffix(".part")
                 shutil.copyfile(folder / "target" / "release" / _LIBRARY, part)
                 os.replace(part, built)

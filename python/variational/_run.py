@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import pickle
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -153,13 +154,23 @@ class Run:
         _check_on_error(on_error)
         system = self.system
         if callback is None:
+            again = self._repeats(end, steps, every) if dense else None
             (t, q, p), error, polynomials = self._run.advance(end, steps, every, bool(dense))
-            return _finished(Solution(system, t, q, p, error, polynomials), on_error)
+            return _finished(Solution(system, t, q, p, error, polynomials, again), on_error)
         if dense:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
         if not callable(callback):
             raise TypeError(f"callback must be a function of the run, not {callback!r}")
         return _finished(self._called(end, steps, every, callback), on_error)
+
+    def _repeats(self, end: float | None, steps: int | None, every: int) -> Callable[[], Any] | None:
+        """A function that takes the same steps with dense output from the present state, and that can be pickled; None
+        if the state cannot be stored."""
+        try:
+            start = self.checkpoint()
+        except ValueError:
+            return None
+        return functools.partial(_advanced, start, end, steps, every)
 
     def _called(self, end: float | None, left: int | None, every: int, callback: Callable[[Run], Any]) -> Solution:
         """The rows of a run with a callback, which may move it beyond the end."""
@@ -334,6 +345,11 @@ def _pairs(cls: type[System], parameters: Mapping[str, Any]) -> list[tuple[int, 
 
 def _restarted(system: System, integrator: tuple[str, int | None, bool], stored: str) -> Run:
     return Run(type(system), system._kind.restart(system._values, integrator, stored))
+
+
+def _advanced(start: bytes, end: float | None, steps: int | None, every: int) -> Any:
+    """The rows, the error and the dense output of a stored run."""
+    return pickle.loads(start)._run.advance(end, steps, every, True)
 
 
 def _finished(solution: Any, on_error: str) -> Any:

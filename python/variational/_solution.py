@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -45,13 +45,23 @@ class Solution(ByName):
     `dense=True` the call `sol(t)`.
     """
 
-    def __init__(self, system: System, t: Array, q: Array, p: Array, error: StepError | None = None, dense: Any = None):
+    def __init__(
+        self,
+        system: System,
+        t: Array,
+        q: Array,
+        p: Array,
+        error: StepError | None = None,
+        dense: Any = None,
+        again: Callable[[], tuple[Any, Any, Any]] | None = None,
+    ):
         self.system = system
         self.t = t
         self.q = q
         self.p = p
         self.error = error
         self._dense = dense
+        self._again = again
 
     @cached_property
     def v(self) -> Array:
@@ -97,7 +107,7 @@ class Solution(ByName):
     @property
     def sol(self) -> Solution | None:
         """The solution itself if it has dense output: scipy's name."""
-        return None if self._dense is None else self
+        return None if self._dense is None and self._again is None else self
 
     def __call__(self, t: ArrayLike) -> Array:
         """(q, v) at times between the first and the last row: shape (2N,) at one time, (2N, K) at K times."""
@@ -107,7 +117,7 @@ class Solution(ByName):
     def states(self, t: ArrayLike) -> tuple[Array, Array, Array]:
         """q, p and v at times between the first and the last row, by dense output: shape (N,) or (K, N)."""
         if self._dense is None:
-            raise ValueError("this solution has no dense output: call until or steps with dense=True")
+            self._dense = self._repeated()
         times = array(t, "t")
         finite(times, "t")
         if times.ndim > 1:
@@ -123,6 +133,18 @@ class Solution(ByName):
             q, p, v = self._dense(np.ascontiguousarray(times.reshape(-1)))
         return (q, p, v) if times.ndim else (q[0], p[0], v[0])
 
+    def _repeated(self) -> Any:
+        """The dense output of an unpickled solution, from the same steps."""
+        if self._again is None:
+            raise ValueError("this solution has no dense output: call until or steps with dense=True")
+        rows, _, dense = self._again()
+        if not all(map(np.array_equal, rows, (self.t, self.q, self.p))):
+            raise ValueError(
+                "the dense output of this solution cannot be restored: its steps round differently on this machine; "
+                "evaluate it before it is pickled, or run it here"
+            )
+        return dense
+
     def __len__(self) -> int:
         return len(self.t)
 
@@ -135,7 +157,7 @@ class Solution(ByName):
         return f"<{name} of {self.system!r}: {rows}, t = {self.t[0]:g} to {self.t[-1]:g}{failed}>"
 
     def __getstate__(self) -> dict[str, Any]:
-        # Dense output is not pickled: it belongs to the compiled module.
+        # Dense output belongs to the compiled module: an unpickled solution takes the steps again when it is called.
         return {**self.__dict__, "_dense": None}
 
     def _columns(self) -> Iterator[tuple[str, Array]]:
@@ -166,7 +188,7 @@ class Solution(ByName):
             _, axes = plt.subplots(2, 1, sharex=True, layout="constrained")
         above, below = axes
         # Long steps would show as corners.
-        is_smooth = self._dense is not None and len(self)
+        is_smooth = self.sol is not None and len(self)
         t = np.linspace(self.t[0], self.t[-1], _SMOOTH) if is_smooth else self.t
         q = self.states(t)[0] if is_smooth else self.q
         for index, name in enumerate(self.system.coordinates):

@@ -352,9 +352,9 @@ class System:
 
 def _unpickled(module: str, name: str, definition: str, source: Any, values: list[float]) -> System:
     if source is not None:
-        from ._compile import compile
+        from . import _compile
 
-        cls = compile(source[0], methods=source[1])
+        cls = _compile._unpickled(*source)
     else:
         cls = getattr(importlib.import_module(module), name)
     if cls.definition != definition:
