@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from ._arrays import Array, number
+import numpy as np
+
+from ._arrays import Array, _shown, number
 from ._names import course
 
 
@@ -32,8 +35,8 @@ class Period:
 
 Function = Callable[[float, Array, Array], float]
 Watched = Event | Period | str | Function
-"""An event, the name of a coordinate that crosses zero, or a function g(t, q, v). As in scipy, a function may have an
-attribute `direction`."""
+"""An event, the name of a coordinate that crosses zero, or a function g(t, q, v), whose sign changes at the event. As
+in scipy, a function may have an attribute `direction`."""
 
 
 _PERIOD = 4.0
@@ -50,10 +53,10 @@ def descriptions(events: Watched | Iterable[Watched], cls: Any, h: float) -> lis
         raise TypeError(f"events must be an Event, a function g(t, q, v), or a list of them, not {events!r}") from None
     if not listed:
         raise ValueError("give at least one event")
-    return [_description(event, cls, _PERIOD * h) for event in listed]
+    return [_description(event, cls, _PERIOD * h, f"event {index}") for index, event in enumerate(listed)]
 
 
-def _description(event: Watched, cls: Any, least: float) -> tuple:
+def _description(event: Watched, cls: Any, least: float, place: str) -> tuple:
     if isinstance(event, str):
         event = Event(event)
     if isinstance(event, Event):
@@ -67,8 +70,47 @@ def _description(event: Watched, cls: Any, least: float) -> tuple:
             raise ValueError(f"a period must be at least four steps, here {least:g}: use at(times), or shorter steps")
         return (number(event.start, "start"), period)
     if callable(event):
-        return (event, _sign(getattr(event, "direction", 0)))
+        name = getattr(event, "__name__", "<lambda>")
+        name = place if name == "<lambda>" else f"{place}, `{name}`,"
+        _check_arguments(event, name)
+        return (event, _sign(getattr(event, "direction", 0)), name)
     raise TypeError(f"an event must be an Event or a function g(t, q, v), not {event!r}")
+
+
+def _check_arguments(event: Function, name: str) -> None:
+    """Raises TypeError for a function that cannot be called as g(t, q, v)."""
+    try:
+        signature = inspect.signature(event)
+    except (TypeError, ValueError):
+        # Some functions of C modules have none.
+        return
+    try:
+        signature.bind(0.0, None, None)
+    except TypeError:
+        raise TypeError(
+            f"{name} must be a function g(t, q, v), not of the arguments {signature}: scipy's y is (q, v)"
+        ) from None
+
+
+def value(found: Any, name: str) -> float:
+    """The value of a function at a state, which is no float: Rust calls this with the name of the event.
+
+    Raises TypeError for what is no real number, and for a truth value, which has no zero.
+    """
+    if isinstance(found, bool) or (np.ndim(found) == 0 and getattr(found, "dtype", None) == np.bool_):
+        raise TypeError(
+            f"{name} returned {bool(found)}, the truth of a condition: return a number that changes its sign at the "
+            "event, such as q[0] in place of q[0] < 0"
+        )
+    if found is None:
+        raise TypeError(f"{name} returned None: return a number that changes its sign at the event, such as q[0]")
+    if isinstance(found, (str, bytes, complex)) or np.ndim(found) != 0:
+        shape = f"an array of shape {np.shape(found)}" if isinstance(found, np.ndarray) else _shown(found)
+        raise TypeError(f"{name} returned {shape}: return one real number, such as q[0]")
+    try:
+        return float(found)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} returned {_shown(found)}: return one real number, such as q[0]") from None
 
 
 def _sign(direction: Any) -> int:

@@ -6,6 +6,7 @@
 use crate::failure::wrong;
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyFloat;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use vi_erased::section::{Direction, Section, Watch};
@@ -17,8 +18,8 @@ pub(crate) enum Description {
     Value(bool, usize, f64, i32),
     /// The time of the first one, and the period.
     Period(f64, f64),
-    /// A function g(t, q, v), and the direction.
-    Function(Py<PyAny>, i32),
+    /// A function g(t, q, v), the direction, and its name in messages.
+    Function(Py<PyAny>, i32, String),
 }
 
 /// The exception that a function raised.
@@ -60,9 +61,9 @@ pub(crate) fn sections(events: Vec<Description>, n: usize, raised: &Raised) -> P
             Description::Value(true, index, at, to) => Section::Velocity { index, at, direction: direction(to) },
             Description::Value(false, index, at, to) => Section::Coordinate { index, at, direction: direction(to) },
             Description::Period(start, period) => Section::Period { start, period },
-            Description::Function(g, to) => {
+            Description::Function(g, to, name) => {
                 has_functions = true;
-                function(g, to, raised.clone())
+                function(g, to, name, raised.clone())
             }
         });
     }
@@ -78,15 +79,15 @@ fn direction(of: i32) -> Direction {
     }
 }
 
-/// A Python function as an event.
-fn function(g: Py<PyAny>, to: i32, raised: Raised) -> Section {
+/// A Python function as an event of this name.
+fn function(g: Py<PyAny>, to: i32, name: String, raised: Raised) -> Section {
     let watch = move |t: f64, q: &[f64], v: &[f64]| {
         if raised.is_some() {
             return f64::NAN;
         }
         Python::attach(|py| {
             let arguments = (t, PyArray1::from_slice(py, q), PyArray1::from_slice(py, v));
-            let value = g.bind(py).call1(arguments).and_then(|value| value.extract::<f64>());
+            let value = g.bind(py).call1(arguments).and_then(|value| number(&value, &name));
             value.unwrap_or_else(|error| {
                 raised.keep(error);
                 f64::NAN
@@ -94,6 +95,14 @@ fn function(g: Py<PyAny>, to: i32, raised: Raised) -> Section {
         })
     };
     Section::Function(Watch::new(watch), direction(to))
+}
+
+/// The value of a function. The package refuses what is no number, as the truth value of a condition.
+fn number(value: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
+    match value.cast::<PyFloat>() {
+        Ok(value) => Ok(value.value()),
+        Err(_) => value.py().import("variational._events")?.call_method1("value", (value, name))?.extract(),
+    }
 }
 
 /// A constant function that looks for signals.
