@@ -183,6 +183,59 @@ def test_exceptions_of_event_functions_come_out(kepler):
     assert kepler.step().t > 0.0
 
 
+def changed_event(name, value):
+    def event(t, q, v):
+        return q[0]
+
+    setattr(event, name, value)
+    return event
+
+
+REFUSED = [
+    (lambda run: setattr(run.system, "l", 5.0), AttributeError, r"run\.set\(l=…\) changes the run"),
+    (lambda run: run.system.set(l=5.0, g=1.0), AttributeError, r"run\.set\(l=…, g=…\) changes the run"),
+    (lambda run: setattr(run.until(1.0).system, "l", 5.0), AttributeError, r"run\.set\(l=…\)"),
+    (lambda run: setattr(pickle.loads(pickle.dumps(run.until(1.0))).system, "l", 5.0), AttributeError, r"run\.set"),
+    (lambda run: run.q.__setitem__(0, 5.0), ValueError, "read-only"),
+    (lambda run: run.p.__setitem__(0, 5.0), ValueError, "read-only"),
+    (lambda run: run.v.__setitem__(0, 5.0), ValueError, "read-only"),
+    (lambda run: run.until(1.0).q.__setitem__(0, 5.0), ValueError, "read-only"),
+    (lambda run: run.until(1.0).v.__setitem__(0, 5.0), ValueError, "read-only"),
+    (lambda run: run.until(1.0)["θ"].__setitem__(0, 5.0), ValueError, "read-only"),
+    (lambda run: pickle.loads(pickle.dumps(run.until(1.0))).q.__setitem__(0, 5.0), ValueError, "read-only"),
+    (lambda run: run.at([1.0]).energy.__setitem__(0, 5.0), ValueError, "read-only"),
+    (lambda run: run.events("θ", 9.0).t.__setitem__(0, 5.0), ValueError, "read-only"),
+    (lambda run: setattr(run, "q", [1.0]), AttributeError, r"run\.set_state\(q=…\)"),
+    (lambda run: setattr(run, "h", 0.1), AttributeError, r"run\.step\(h\)"),
+    (lambda run: setattr(run, "l", 0.1), AttributeError, r"run\.set\(l=…\)"),
+    (lambda run: setattr(run, "x", 0.1), AttributeError, r"run\.x cannot be assigned"),
+    (lambda run: setattr(vi.Event("θ"), "terminal", True), AttributeError, r"run\.next_event"),
+    (lambda run: setattr(vi.Event("θ"), "direction", 1), AttributeError, r"write Event\(…\) with it"),
+    (lambda run: run.events(changed_event("terminal", True), 9.0), ValueError, "event 0, `event`, .*next_event"),
+    (lambda run: run.next_event(changed_event("terminal", 3), 9.0), ValueError, "k calls of next_event"),
+    (lambda run: run.next_event(changed_event("terminal", False), 9.0), ValueError, r"run\.events"),
+]
+
+
+@pytest.mark.parametrize("index", range(len(REFUSED)))
+def test_a_change_without_effect_is_refused(index):
+    change, exception, words = REFUSED[index]
+    with pytest.raises(exception, match=words):
+        change(vi.Pendulum().integrate([1.0], h=0.1))
+
+
+def test_what_belongs_to_a_run_can_be_copied():
+    run = vi.Pendulum(l=2.0).integrate([1.0], h=0.1)
+    mine = run.system.copy()
+    mine.l = 5.0
+    assert (mine.l, run.system.l) == (5.0, 2.0)
+    assert run.system == pickle.loads(pickle.dumps(run.system)).set(l=2.0)
+    assert run.next_event(changed_event("terminal", True), 9.0).q.shape == (1, 1)
+    q = run.q.copy()
+    q[0] = 0.5
+    assert run.set_state(q=q, parameters={"l": 3.0}).q[0] == 0.5 and run.system.l == 3.0
+
+
 def below(t, q, v):
     return q[0] < 0.0
 
@@ -226,8 +279,6 @@ def test_parameters_change_on_the_way():
     run = vi.Pendulum().integrate([1.0], h=0.01)
     run.set(l=2.0, g=1.0)
     assert (run.system.l, run.system.g) == (2.0, 1.0)
-    run.system.l = 5.0
-    assert run.system.l == 2.0
     with pytest.raises(vi.InvalidInput):
         run.set(l=np.nan)
     with pytest.raises(TypeError, match="did you mean 'l'"):

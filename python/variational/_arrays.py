@@ -44,6 +44,12 @@ def vector(value: ArrayLike, size: int, name: str, coordinates: tuple[str, ...])
     return np.ascontiguousarray(found)
 
 
+def fixed(values: Array) -> Array:
+    """The array, which can no longer be written."""
+    values.flags.writeable = False
+    return values
+
+
 def finite(values: Array, name: str) -> None:
     """Raises InvalidInput if an entry is infinite or not a number."""
     # For a few entries quicker than numpy.

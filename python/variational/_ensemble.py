@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arrays import Array, array, count, finite, number, ordered
+from ._arrays import Array, array, count, finite, fixed, number, ordered
 from ._solution import ByName
 
 if TYPE_CHECKING:
@@ -35,9 +35,9 @@ class Ensemble(ByName):
         parameters: dict[str, Array],
     ):
         self.system = system
-        self.t = t
-        self.q = q
-        self.p = p
+        self.t = fixed(t)
+        self.q = fixed(q)
+        self.p = fixed(p)
         self.errors = errors
         self.parameters = parameters
         self._values = values
@@ -57,7 +57,7 @@ class Ensemble(ByName):
                     out[rows] = found[0]
                 else:
                     part[is_there] = found
-        return out
+        return fixed(out)
 
     @cached_property
     def v(self) -> Array:
@@ -118,9 +118,17 @@ def ensemble(
     limit = _threads(threads)
     (ts, qs, ps), errors = system._kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit)
     shape = (many,) if listed_times is None else (many, len(listed_times))
-    differing = {name: of[..., 0] if parameter.length is None else of for name, (parameter, of) in given.items()}
+    differing = {
+        name: fixed((of[..., 0] if parameter.length is None else of).copy()) for name, (parameter, of) in given.items()
+    }
     return Ensemble(
-        system.copy(), ts.reshape(shape), qs.reshape(*shape, n), ps.reshape(*shape, n), errors, values, differing
+        system.copy()._fixed(),
+        ts.reshape(shape),
+        qs.reshape(*shape, n),
+        ps.reshape(*shape, n),
+        errors,
+        values,
+        differing,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import FrozenInstanceError, dataclass
 from typing import Any
 
 import numpy as np
@@ -33,6 +33,16 @@ class Period:
     start: float = 0.0
 
 
+def _refuse(self: Any, name: str, value: Any) -> None:
+    raise FrozenInstanceError(
+        f"{name} of an event cannot be assigned: write {type(self).__name__}(…) with it"
+        + (", and run.next_event(event, until), which stops the run there" if name == "terminal" else "")
+    )
+
+
+for _cls in (Event, Period):
+    _cls.__setattr__ = _refuse  # type: ignore[method-assign, assignment]
+
 Function = Callable[[float, Array, Array], float]
 Watched = Event | Period | str | Function
 """An event, the name of a coordinate that crosses zero, or a function g(t, q, v), whose sign changes at the event. As
@@ -43,8 +53,8 @@ _PERIOD = 4.0
 """Steps in the shortest period: the search looks at eighths of a step."""
 
 
-def descriptions(events: Watched | Iterable[Watched], cls: Any, h: float) -> list[tuple]:
-    """The events as `_core` reads them, for a run with steps of about the length h."""
+def descriptions(events: Watched | Iterable[Watched], cls: Any, h: float, is_first: bool) -> list[tuple]:
+    """The events as `_core` reads them, for a run with steps of about the length h; `is_first` if it stops at one."""
     if isinstance(events, (Event, Period, str)) or callable(events):
         events = [events]
     try:
@@ -53,10 +63,10 @@ def descriptions(events: Watched | Iterable[Watched], cls: Any, h: float) -> lis
         raise TypeError(f"events must be an Event, a function g(t, q, v), or a list of them, not {events!r}") from None
     if not listed:
         raise ValueError("give at least one event")
-    return [_description(event, cls, _PERIOD * h, f"event {index}") for index, event in enumerate(listed)]
+    return [_description(event, cls, _PERIOD * h, f"event {index}", is_first) for index, event in enumerate(listed)]
 
 
-def _description(event: Watched, cls: Any, least: float, place: str) -> tuple:
+def _description(event: Watched, cls: Any, least: float, place: str, is_first: bool) -> tuple:
     if isinstance(event, str):
         event = Event(event)
     if isinstance(event, Event):
@@ -73,6 +83,13 @@ def _description(event: Watched, cls: Any, least: float, place: str) -> tuple:
         name = getattr(event, "__name__", "<lambda>")
         name = place if name == "<lambda>" else f"{place}, `{name}`,"
         _check_arguments(event, name)
+        if not is_first and getattr(event, "terminal", False):
+            raise ValueError(f"{name} has terminal = {event.terminal!r}: run.next_event(…) stops the run at an event")
+        if is_first and getattr(event, "terminal", True) not in (True, 1):
+            raise ValueError(
+                f"{name} has terminal = {event.terminal!r}: next_event stops the run at the first of its events; "
+                "run.events(…) records events on the way, and k calls of next_event find the k-th one"
+            )
         return (event, _sign(getattr(event, "direction", 0)), name)
     raise TypeError(f"an event must be an Event or a function g(t, q, v), not {event!r}")
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arrays import Array, count, number, ordered, real, vector
+from ._arrays import Array, count, fixed, number, ordered, real, vector
 from ._control import Linearization
 from ._events import Watched, descriptions
 from ._solution import Events, Solution
@@ -38,7 +38,8 @@ class ErrorEstimate(NamedTuple):
 class Run:
     """A run. It holds the last node: time `t`, coordinates `q`, momenta `p`.
 
-    `step`, `steps`, `until`, `at` and `events` continue from there.
+    `step`, `steps`, `until`, `at` and `events` continue from there. Its arrays cannot be written: `set_state` continues
+    from another state.
     """
 
     __slots__ = ("_cls", "_run")
@@ -46,6 +47,18 @@ class Run:
     def __init__(self, cls: type[System], run: Any):
         self._cls = cls
         self._run = run
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in Run.__slots__:
+            object.__setattr__(self, name, value)
+        elif name in ("t", "q", "v", "p"):
+            raise AttributeError(f"run.{name} cannot be assigned: run.set_state({name}=…) continues from another state")
+        elif name == "h":
+            raise AttributeError("run.h cannot be assigned: run.step(h) takes a step of another length")
+        elif name in self._cls.parameters:
+            raise AttributeError(f"a run has no attribute {name!r}: run.set({name}=…) changes the parameter")
+        else:
+            raise AttributeError(f"run.{name} cannot be assigned")
 
     @property
     def t(self) -> float:
@@ -55,22 +68,22 @@ class Run:
     @property
     def q(self) -> Array:
         """Coordinates of the last node."""
-        return self._run.q
+        return fixed(self._run.q)
 
     @property
     def p(self) -> Array:
         """Momenta of the last node."""
-        return self._run.p
+        return fixed(self._run.p)
 
     @property
     def v(self) -> Array:
         """Velocities of the last node."""
-        return self._run.v
+        return fixed(self._run.v)
 
     @property
     def reactions(self) -> Array:
         """The multiplier Λ of each constraint at the last node, in the order of `system.constraints`."""
-        return self.system.reaction(self.t, self.q, self.p)
+        return fixed(self.system.reaction(self.t, self.q, self.p))
 
     @property
     def h(self) -> float:
@@ -101,8 +114,8 @@ class Run:
 
     @property
     def system(self) -> System:
-        """A copy of the system with the present parameters. `set` changes those of the run."""
-        return self._cls._of(self._run.parameters)
+        """The system with the present parameters, which cannot be set there: `run.set` changes them."""
+        return self._cls._of(self._run.parameters)._fixed()
 
     def __repr__(self) -> str:
         method, stages, is_transformed = self._run.integrator
@@ -212,7 +225,7 @@ class Run:
     def _events(self, events: Any, until: float, is_first: bool, on_error: str) -> Events:
         _check_on_error(on_error)
         end = number(until, "until")
-        wanted = descriptions(events, self._cls, abs(self.h))
+        wanted = descriptions(events, self._cls, abs(self.h), is_first)
         (t, q, p), error, met = self._run.events(wanted, end, is_first)
         which = np.array([index for index, _ in met], dtype=np.intp)
         rising = np.array([rises for _, rises in met], dtype=np.bool_)
@@ -240,7 +253,7 @@ class Run:
         t = self.t if t is None else number(t, "t")
         q = self.q if q is None else vector(q, len(names), "q", names)
         if v is not None:
-            system = self.system.set(**(parameters or {}))
+            system = self.system.copy().set(**(parameters or {}))
             p = system.momentum(t, q, vector(v, len(names), "v", names))
         p = self.p if p is None else vector(p, len(names), "p", names)
         self._run.set_state(t, q, p, _pairs(self._cls, parameters or {}))
@@ -379,7 +392,7 @@ def _joined(system: System, parts: list[Solution], error: Any) -> Solution:
     joined = Solution(system, all_of("t"), all_of("q"), all_of("p"), error)
     if any(part.system != system for part in parts):
         # Velocity, energy and reactions of each row belong to the parameters of its step.
-        joined.__dict__.update({name: all_of(name) for name in ("v", "energy", "reactions")})
+        joined.__dict__.update({name: fixed(all_of(name)) for name in ("v", "energy", "reactions")})
     return joined
 
 

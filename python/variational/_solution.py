@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import Array, array, finite
+from ._arrays import Array, array, finite, fixed
 from ._names import course
 
 if TYPE_CHECKING:
@@ -33,6 +33,14 @@ class ByName:
         is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
         return (self.v if is_velocity else self.q)[..., index]
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        # A pickle does not tell what can be written.
+        self.system._fixed()
+        for values in self.__dict__.values():
+            if isinstance(values, np.ndarray):
+                fixed(values)
+
     # `sol["x"]` would otherwise make the rows a sequence of their names.
     __iter__ = None
 
@@ -42,7 +50,7 @@ class Solution(ByName):
 
     `sol["x"]` and `sol["dot(x)"]` are the values of a coordinate and of its velocity. Names and shapes of
     `scipy.integrate.solve_ivp` are there too: `y` = (q, v) of shape (2N, K), `success`, `status`, `message`, and with
-    `dense=True` the call `sol(t)`.
+    `dense=True` the call `sol(t)`. The arrays cannot be written: velocities and energies follow from q and p.
     """
 
     def __init__(
@@ -56,9 +64,9 @@ class Solution(ByName):
         again: Callable[[], tuple[Any, Any, Any]] | None = None,
     ):
         self.system = system
-        self.t = t
-        self.q = q
-        self.p = p
+        self.t = fixed(t)
+        self.q = fixed(q)
+        self.p = fixed(p)
         self.error = error
         self._dense = dense
         self._again = again
@@ -66,17 +74,17 @@ class Solution(ByName):
     @cached_property
     def v(self) -> Array:
         """Velocities."""
-        return self.system.velocity(self.t, self.q, self.p)
+        return fixed(self.system.velocity(self.t, self.q, self.p))
 
     @cached_property
     def energy(self) -> Array:
         """The energy H."""
-        return np.asarray(self.system._at("hamiltonian", self.t, self.q, self.p, second="p"))
+        return fixed(np.asarray(self.system._at("hamiltonian", self.t, self.q, self.p, second="p")))
 
     @cached_property
     def reactions(self) -> Array:
         """The multiplier Λ of each constraint, (K, C) in the order of `system.constraints`."""
-        return self.system.reaction(self.t, self.q, self.p)
+        return fixed(self.system.reaction(self.t, self.q, self.p))
 
     @property
     def residual(self) -> Array:
@@ -87,7 +95,7 @@ class Solution(ByName):
     @property
     def y(self) -> Array:
         """(q, v), of shape (2N, K) as in scipy."""
-        return np.concatenate([self.q, self.v], axis=-1).T
+        return fixed(np.concatenate([self.q, self.v], axis=-1).T)
 
     @property
     def success(self) -> bool:
@@ -216,8 +224,8 @@ class Events(Solution):
         rising: NDArray[np.bool_],
     ):
         super().__init__(system, t, q, p, error)
-        self.which = which
-        self.rising = rising
+        self.which = fixed(which)
+        self.rising = fixed(rising)
 
     def of(self, index: int) -> Events:
         """The rows of one of the given events."""

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Array, array, finite, number, vector
+from ._arrays import Array, array, finite, fixed, number, vector
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble
@@ -40,11 +40,10 @@ class Parameter:
             return self
         if self.length is None:
             return float(system._values[self.start])
-        values = system._values[self.start : self.start + self.length].reshape(self.shape).copy()
-        values.flags.writeable = False
-        return values
+        return fixed(system._values[self.start : self.start + self.length].reshape(self.shape).copy())
 
     def __set__(self, system: System, value: ArrayLike) -> None:
+        system._check_writable(f"{self.name}=…")
         numbers = self.numbers(value)
         system._values[self.start : self.start + len(numbers)] = numbers
 
@@ -90,6 +89,7 @@ class System:
 
     def set(self, **parameters: Any) -> System:
         """Sets parameters, and returns the system. If one is wrong, none is set."""
+        self._check_writable(", ".join(f"{name}=…" for name in parameters))
         changes = [(self._parameter(name), value) for name, value in parameters.items()]
         for parameter, numbers in [(parameter, parameter.numbers(value)) for parameter, value in changes]:
             self._values[parameter.start : parameter.start + len(numbers)] = numbers
@@ -127,6 +127,19 @@ class System:
         # A compiled system is known by its text. It is compiled again if it is not in the cache.
         source = getattr(cls, "_source", None)
         return (_unpickled, (cls.__module__, cls.__qualname__, cls.definition, source, self._values.tolist()))
+
+    def _fixed(self) -> System:
+        """The system, whose parameters can no longer be set: the system of a run, or of its rows."""
+        fixed(self._values)
+        return self
+
+    def _check_writable(self, change: str) -> None:
+        """Raises AttributeError for the system of a run or of its rows, on which a change has no effect."""
+        if change and not self._values.flags.writeable:
+            raise AttributeError(
+                f"this system belongs to a run or to its rows, and cannot be changed: run.set({change}) changes the "
+                "run from here on, and copy() returns a system of your own"
+            )
 
     @classmethod
     def _of(cls, values: ArrayLike) -> System:
