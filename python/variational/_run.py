@@ -97,12 +97,17 @@ class Run:
 
     @property
     def discrete_energy(self) -> float | None:
-        """The discrete energy of the last step, which energy-preserving steps preserve; None without such a step."""
+        """The discrete energy of the last step; None without such a step.
+
+        Energy-preserving steps keep it: it changes only by the work of forces and moving constraints, and by an
+        explicit time. With a shift they keep `shifted_energy` instead.
+        """
         return self._run.discrete_energy
 
     @property
     def shifted_energy(self) -> float | None:
-        """The energy that steps with a shift preserve; None for other steps."""
+        """The energy that steps with a shift keep; None for other steps. It changes only by the work of forces and
+        moving constraints, and by an explicit time."""
         found = self._run.shifted_energy
         return None if found is None else found[0]
 

@@ -34,7 +34,7 @@ pub struct Row {
     /// E, the discrete energy of the interval that ends at the node; `None` before the first fixed step and for
     /// compositions, whose step is not an interval of one discrete Lagrangian.
     pub discrete_energy: Option<f64>,
-    /// E', the energy conserved by steps with a shift; `None` for other methods, whose rows have no such column.
+    /// E', the energy that steps with a shift keep; `None` for other methods, whose rows have no such column.
     pub shifted_energy: Option<f64>,
     /// The constraints at the node; `None` for systems without, whose rows have no such columns.
     pub constraints: Option<AtConstraints>,
@@ -99,7 +99,7 @@ pub trait Steps {
     fn energy(&self) -> Result<f64, StepError>;
     /// E, the discrete energy of the interval that ends at the last node; `None` without such an interval.
     fn discrete_energy(&self) -> Option<f64>;
-    /// E', conserved by steps with a shift, and that shift; `None` for other methods.
+    /// E', which steps with a shift keep, and that shift; `None` for other methods.
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
         None
     }

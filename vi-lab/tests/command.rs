@@ -627,6 +627,18 @@ fn steps_with_a_shift_keep_an_energy_of_their_own() {
     println!("H deviates by {total:e}, E by {discrete:e}, E' by {shifted:e}");
     assert!((total / 1.21e-8 - 1.0).abs() < 0.01 && (discrete / 4.08e-8 - 1.0).abs() < 0.01, "{total:e}, {discrete:e}");
     assert!(shifted < 5e-16, "{shifted:e}");
+    // With a force, and with a constraint.
+    let words = |system: &str, options: &[&str]| {
+        let head = lab(&[&["run", system, "--method", "energy", "--steps", "1"], options].concat()).1;
+        head.lines().find_map(|line| Some(line.split_once("for compositions; ")?.1.to_owned()))
+    };
+    let changes = "changes only by the work of forces and constraints, and with an explicit time";
+    assert_eq!(words("damped-oscillator", &[]), Some(format!("E {changes}")));
+    assert_eq!(words("damped-oscillator", &["--fallback"]), Some(format!("E {changes}, but for fixed steps")));
+    let shifted = words("damped-oscillator", &["--shift", "9"]).expect("a header");
+    assert!(shifted.starts_with(&format!("E': E − C h^2 D*, which {changes}, with C")), "{shifted}");
+    assert_eq!(words("rod-pendulum", &[]).as_deref(), Some("E is conserved if no constraint does work"));
+    assert_eq!(words("kepler", &[]).as_deref(), Some("E is conserved"));
     // The order of the stages without a shift: E is conserved, and H is closer to it.
     let (_, csv, _) =
         lab(&["run", "kepler", "--method", "energy", "--stages", "3", "--h", "0.05", "--q", "0.7,0", "--v", "0,1.36"]);

@@ -256,8 +256,9 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.node.state().energy(&self.system)
     }
 
-    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step, which energy-preserving runs preserve. It differs from
-    /// [`Run::energy`].
+    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step. Energy-preserving runs keep it: it changes only by the work
+    /// of forces and moving constraints, and by an explicit time. With a shift they keep [`Run::shifted_energy`] instead.
+    /// It differs from [`Run::energy`].
     ///
     /// `None` before the first step, for compositions, and if it is not finite. For Gauss steps also after
     /// [`Run::step_of`] and [`Run::set_parameters`].

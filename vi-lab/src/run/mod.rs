@@ -61,18 +61,23 @@ const CONSTANTS: [&str; ENERGY_STAGES.len()] = ["1/8", "1/864", "1/288000"];
 const CONSTRAINTS: &str =
     "Λ: multiplier of each constraint at the node; residual: the largest |g| and |A v + a| there; ";
 
-/// Description of the columns of constraints and energies for a plan, and which energy is conserved.
+/// Description of the columns of constraints and energies for a plan, and how the energy changes that its steps keep.
 fn energies(system: &dyn System, plan: &Plan) -> String {
     let constraints = if system.has_constraints() { CONSTRAINTS } else { "" };
+    let changes = match (system.conserves_energy(), system.has_constraints()) {
+        (true, false) => "is conserved",
+        (true, true) => "is conserved if no constraint does work",
+        (false, _) => "changes only by the work of forces and constraints, and with an explicit time",
+    };
     let kept = match (plan.method, plan.shift) {
         (Method::Energy, Some(Shift::Of(shift))) => {
             let stages = plan.energy_stages().unwrap_or(1);
             let constant = CONSTANTS.get(stages - 1).copied().unwrap_or_default();
             let (order, shift) = (2 * stages, short(shift));
-            format!("; E': E − C h^{order} D*, which is conserved, with C = {constant} and the shift D* = {shift}")
+            format!("; E': E − C h^{order} D*, which {changes}, with C = {constant} and the shift D* = {shift}")
         }
-        (Method::Energy, _) if plan.fallback => "; E is conserved except by fixed steps".to_owned(),
-        (Method::Energy, _) => "; E is conserved".to_owned(),
+        (Method::Energy, _) if plan.fallback => format!("; E {changes}, but for fixed steps"),
+        (Method::Energy, _) => format!("; E {changes}"),
         _ => String::new(),
     };
     format!("{constraints}{ENERGIES}{kept}")
@@ -82,9 +87,10 @@ fn energies(system: &dyn System, plan: &Plan) -> String {
 #[derive(Clone, Debug, Default, Args)]
 #[command(after_help = "\
 Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, from its coordinates and momenta. E is the \
-discrete energy of the interval that ends at the node, which --method energy preserves. Its error is bounded: O(h²) with fixed steps, \
+discrete energy of the interval that ends at the node, which --method energy keeps: it changes only by the work of forces and constraints, \
+and with an explicit time. Its error is bounded: O(h²) with fixed steps, \
 O(h^2S) with Gauss steps of S stages. With --method energy or fixed, H and E differ by h²D/8 to leading order, with the step density D. \
-With --shift D* a column E' precedes h: E' = E − C h^2S D*, C = 1/8, 1/864, 1/288000 for S = 1, 2, 3. E' is then conserved, and E and H oscillate. E is empty (NaN in .npy) \
+With --shift D* a column E' precedes h: E' = E − C h^2S D*, C = 1/8, 1/864, 1/288000 for S = 1, 2, 3. --method energy then keeps E', and E and H oscillate. E is empty (NaN in .npy) \
 in the first row of a run of fixed or Gauss steps, and for compositions, whose step is not one interval. The last step to --until T may be shorter; then it has no E. H is empty if the momenta have no velocity; \
 standard error reports the number of such rows. h is the length of the step before the node. \
 With constraints, columns Λ_… and residual follow the momenta: the multiplier of each constraint at the node, \
