@@ -2,8 +2,8 @@
 //!
 //! `sweep.json` is the [`Description`] of the sweep. `K.csv` is chunk K: a first line with the fingerprint of the
 //! description and K; the rows, each after the name of its table, with the row of a run after its rows in other tables;
-//! a last line with counts of rows and failures. A process writes a chunk under a temporary name, syncs it and renames
-//! it. So an existing chunk is complete, for any number of processes.
+//! a last line with counts of rows and failures, and a checksum of all text before. A process writes a chunk under a
+//! temporary name, syncs it and renames it. So an existing chunk is complete, for any number of processes.
 
 use super::schema::{Column, MOST, Schema};
 use crate::place::{self, Temporary};
@@ -16,6 +16,8 @@ use vi_report::failure::Failure;
 
 const DESCRIPTION: &str = "sweep.json";
 const LOCK: &str = "lock";
+/// What stands before the checksum in the last line of a chunk.
+const CHECKSUM: &str = ", checksum ";
 /// Maximum bytes of an entry of a row, with its comma.
 const LONGEST_ENTRY: usize = 64;
 
@@ -195,7 +197,9 @@ impl Chunks {
     ) -> io::Result<()> {
         let (temporary, file) = Temporary::create(path)?;
         let mut file = BufWriter::with_capacity(1 << 16, file);
-        file.write_all(self.first_line(number).as_bytes())?;
+        let first = self.first_line(number);
+        file.write_all(first.as_bytes())?;
+        let mut sum = fingerprint(&[first.as_str()]);
         let schemas = &self.description.schemas;
         let mut tables = vec![Vec::new(); schemas.len()];
         let (mut text, mut rows, mut failed) = (String::new(), 0_u64, 0_u64);
@@ -204,14 +208,18 @@ impl Chunks {
             for (schema, numbers) in schemas.iter().zip(&mut tables).rev() {
                 for row in numbers.chunks_exact(schema.columns.len()) {
                     text.clear();
+                    text.push_str(&schema.table);
+                    text.push(',');
                     schema.write(row, &mut text);
-                    write!(file, "{},{text}", schema.table)?;
+                    file.write_all(text.as_bytes())?;
+                    sum = hashed(sum, text.as_bytes());
                     rows += 1;
                 }
                 numbers.clear();
             }
         }
-        writeln!(file, "# {rows} rows, {failed} failed")?;
+        let counts = format!("# {rows} rows, {failed} failed");
+        writeln!(file, "{counts}{CHECKSUM}{:016x}", hashed(sum, counts.as_bytes()))?;
         file.into_inner()?.sync_all()?;
         temporary.finish()
     }
@@ -231,6 +239,7 @@ impl Chunks {
         let mut file = BufReader::with_capacity(1 << 16, File::open(&path).map_err(failed)?);
         let mut items = self.description.runs(&(number..number + 1));
         let (mut row, mut line, mut lines) = (Vec::new(), Vec::new(), 0_u64);
+        let mut sum = fingerprint(&[]);
         loop {
             line.clear();
             (&mut file).take(longest as u64).read_until(b'\n', &mut line).map_err(failed)?;
@@ -244,13 +253,17 @@ impl Chunks {
                 if text != self.first_line(number).trim_end() {
                     return Err(wrong("this is a chunk of another sweep, or another chunk"));
                 }
-            } else if let Some(counts) = text.strip_prefix('#') {
+            } else if text.starts_with('#') {
+                let (counts, checksum) = text.split_once(CHECKSUM).unwrap_or((text, ""));
                 let rows = lines - 1;
                 let failures =
-                    counts.strip_prefix(&format!(" {rows} rows, ")).and_then(|end| end.strip_suffix(" failed"));
+                    counts.strip_prefix(&format!("# {rows} rows, ")).and_then(|end| end.strip_suffix(" failed"));
                 let failures = failures.and_then(|failures| failures.parse().ok()).filter(|failures| *failures <= rows);
                 let failures = failures.filter(|_| items.is_empty());
                 let failures = failures.ok_or_else(|| wrong("rows above are missing or added"))?;
+                if checksum != format!("{:016x}", hashed(sum, counts.as_bytes())) {
+                    return Err(wrong("the checksum does not match: the file was edited"));
+                }
                 let is_last = file.fill_buf().map_err(failed)?.is_empty();
                 return if is_last { Ok(failures) } else { Err(wrong("there is text after the last line")) };
             } else {
@@ -264,6 +277,7 @@ impl Chunks {
                 take(table, &row)?;
                 items.start += u64::from(table == 0);
             }
+            sum = hashed(sum, &line);
             lines += 1;
         }
     }
@@ -282,8 +296,12 @@ fn remove_temporaries(folder: &Path) -> io::Result<()> {
 
 /// FNV-1a of texts, 64 bits: the same in every version of this program.
 pub(super) fn fingerprint(texts: &[&str]) -> u64 {
-    let bytes = texts.iter().flat_map(|text| text.bytes());
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+    texts.iter().fold(0xcbf2_9ce4_8422_2325, |hash, text| hashed(hash, text.as_bytes()))
+}
+
+/// FNV-1a, continued over further bytes.
+fn hashed(hash: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
 #[cfg(test)]
@@ -408,10 +426,14 @@ mod tests {
         let whole = fs::read_to_string(&path).expect("the chunk");
         let lines: Vec<&str> = whole.lines().collect();
         let rows = ["series,2,0.0", "series,2,0.5", "runs,2,-0.5", "series,3,0.0", "series,3,0.5", "series,3,1.0"];
-        assert_eq!((&lines[1..7], &lines[7..]), (rows.as_slice(), ["runs,3,-0.5", "# 7 rows, 1 failed"].as_slice()));
+        assert_eq!((&lines[1..7], lines[7]), (rows.as_slice(), "runs,3,-0.5"));
+        let (last, sum) = lines[8].split_once(CHECKSUM).expect("a checksum");
+        let before = &whole[..whole.len() - CHECKSUM.len() - 17];
+        assert_eq!((last, sum), ("# 7 rows, 1 failed", format!("{:016x}", fingerprint(&[before])).as_str()));
         let without = |line: usize| [&lines[..line], &lines[line + 1..]].concat().join("\n") + "\n";
         let changed = |line: usize, text: &str| whole.replacen(lines[line], text, 1);
         let (counts, cut) = ("rows above are missing or added", "the line is truncated or not text");
+        let edited = "the checksum does not match: the file was edited";
         let misplaced = |run: u64| format!("a row of run {run} cannot be here: rows are missing or added");
         for (text, line, what) in [
             (without(0), 1, "this is a chunk of another sweep, or another chunk"),
@@ -432,7 +454,16 @@ mod tests {
             (changed(3, &"9".repeat(1000)), 4, cut),
             (changed(8, "# 6 rows, 1 failed"), 9, counts),
             (changed(8, "# 7 rows, 18446744073709551615 failed"), 9, counts),
-            (changed(8, "# 7 rows, 1 failed\nruns,4,-0.5"), 9, "there is text after the last line"),
+            (changed(8, &format!("{}\nruns,4,-0.5", lines[8])), 9, "there is text after the last line"),
+            // Rows that could be those of a chunk.
+            (changed(3, "runs,2,-0.25"), 9, edited),
+            (changed(3, "runs,2,"), 9, edited),
+            (changed(1, "series,2,-0.0"), 9, edited),
+            (without(1).replacen("# 7 rows", "# 6 rows", 1), 8, edited),
+            (changed(8, &lines[8].replacen("1 failed", "0 failed", 1)), 9, edited),
+            (changed(8, "# 7 rows, 1 failed"), 9, edited),
+            (changed(8, "# 7 rows, 1 failed, checksum "), 9, edited),
+            (changed(8, &format!("{} ", lines[8])), 9, edited),
         ] {
             assert!(text != whole);
             fs::write(&path, &text).expect("the chunk is written");

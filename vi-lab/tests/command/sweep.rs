@@ -483,6 +483,12 @@ fn a_chunk_that_was_changed_is_named_and_made_again() {
         (good.replacen("series,7,0.025,", "series,7,", 1), 2, "the row of `series` has 6 columns instead of 7"),
         (good.replacen("\nseries,", "\nseries,7,0.0,0.0,0.0,0.0,0.0,0.0\nseries,", 1), lines + 1, counts),
         (good.trim_end().to_owned(), lines, "the line is truncated or not text"),
+        (
+            good.replacen("series,7,0.025,", "series,7,0.035,", 1),
+            lines,
+            "the checksum does not match: the file was edited",
+        ),
+        (good.replacen("series,7,0.025,", "series,7,,", 1), lines, "the checksum does not match: the file was edited"),
     ] {
         assert!(bad != good);
         fs::write(&path, bad).expect("the chunk is written");
