@@ -191,6 +191,46 @@ def test_vectors_a_table_of_a_file_and_an_input(warm_cache, tmp_path, monkeypatc
         pickle.loads(stored)
 
 
+def run_clean(cache):
+    environment = {**os.environ, "VARIATIONAL_CACHE": str(cache)}
+    command = [sys.executable, "-m", "variational", "clean"]
+    outcome = subprocess.run(command, capture_output=True, text=True, cwd=cache.parent, env=environment)
+    return outcome.returncode, outcome.stderr
+
+
+def test_clean_deletes_only_what_the_package_has_made(tmp_path, monkeypatch):
+    # A folder of the user, which the variable names.
+    thesis = tmp_path / "precious" / "thesis"
+    thesis.mkdir(parents=True)
+    (thesis / "results.csv").write_text("data\n")
+    status, message = run_clean(tmp_path / "precious")
+    assert status == 1 and "error: there are no compiled systems to delete in" in message and "thesis" in message
+    assert (thesis / "results.csv").read_text() == "data\n"
+    # The same with a cache in it, as `compile` begins it.
+    monkeypatch.setenv("VARIATIONAL_CACHE", str(tmp_path / "precious"))
+    monkeypatch.setattr(_compile, "_cargo", fails)
+    with pytest.raises(vi.CompileError, match="no cargo here"):
+        vi.compile(SPRING.format(9.5), methods="fixed")
+    (folder,) = (path for path in (tmp_path / "precious").iterdir() if path.name != "thesis")
+    assert (folder / "workspace" / "Cargo.toml").exists()
+    (tmp_path / "precious" / "link").symlink_to(folder, target_is_directory=True)
+    status, message = run_clean(tmp_path / "precious")
+    assert status == 0 and "variational did not make link, thesis" in message
+    assert sorted(path.name for path in (tmp_path / "precious").iterdir()) == ["link", "thesis"]
+    assert (thesis / "results.csv").read_text() == "data\n"
+    # Nothing else: the folder goes too. Without a cache there is nothing to do.
+    monkeypatch.setenv("VARIATIONAL_CACHE", str(tmp_path / "new"))
+    with pytest.raises(vi.CompileError, match="no cargo here"):
+        vi.compile(SPRING.format(9.5), methods="fixed")
+    for _ in range(2):
+        assert run_clean(tmp_path / "new") == (0, "")
+        assert not (tmp_path / "new").exists()
+
+
+def fails(*arguments):
+    raise vi.CompileError("no cargo here")
+
+
 def test_a_rust_function_needs_a_crate():
     with pytest.raises(vi.CompileError, match=r"(?s)`cl` is a Rust function.*vi-lab new NAME --python"):
         vi.compile("struct S { coord x; fn cl(a) = crate::aero::cl; L = dot(x)^2/2 - cl(x); }")

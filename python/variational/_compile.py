@@ -7,6 +7,7 @@ everything that it depends on; later it is loaded without cargo.
                       target      what cargo built
                       modules     the libraries of systems
                       lock        held during a build
+                      MARK        that `clean` may delete the folder
 """
 
 from __future__ import annotations
@@ -58,6 +59,10 @@ _BEFORE = "#![allow(warnings)]\nvi_core::lagrangian! {\n"
 _AFTER = "\n}}\nvi_python::module!(@inner {library}, {name}, {{ {methods} }});\n"
 
 _SPRING = "struct Spring { param k = 1.0; coord x; L = dot(x)^2 / 2 - k * x^2 / 2; discretize midpoint; }"
+
+
+_MARK = "variational-cache.txt"
+_MARKED = "This folder was made by the Python package variational. `python -m variational clean` deletes it.\n"
 
 
 class CompileError(Exception):
@@ -176,9 +181,29 @@ def warm(verbose: bool = True) -> None:
     compile(_SPRING, verbose=verbose)
 
 
-def clean() -> None:
-    """Deletes the cache of compiled systems. A program that uses one of them must not run."""
-    shutil.rmtree(cache(), ignore_errors=True)
+def clean() -> tuple[list[Path], list[Path]]:
+    """Deletes the folders in the cache that this package has made. Returns them, and what else is there and stays. A
+    program that uses one of the systems must not run.
+
+    Raises OSError for a folder that cannot be deleted.
+    """
+    folder = cache()
+    deleted, left = [], []
+    for entry in sorted(folder.iterdir()) if folder.is_dir() else []:
+        if not entry.is_symlink() and (entry / _MARK).is_file():
+            # The mark goes last: an interrupted call can be repeated.
+            for part in entry.iterdir():
+                if part.is_dir() and not part.is_symlink():
+                    shutil.rmtree(part)
+                elif part.name != _MARK:
+                    part.unlink()
+            shutil.rmtree(entry)
+            deleted.append(entry)
+        else:
+            left.append(entry)
+    if deleted and not left:
+        folder.rmdir()
+    return deleted, left
 
 
 def _folder() -> Path:
@@ -319,7 +344,10 @@ def _build(definition: str, name: str, built: Path, methods: str, tables: str, v
         )
     folder = _folder()
     try:
-        built.parent.mkdir(parents=True, exist_ok=True)
+        # Only this user may write, for any umask.
+        folder.mkdir(mode=0o755, parents=True, exist_ok=True)
+        (folder / _MARK).write_text(_MARKED, encoding="utf-8")
+        built.parent.mkdir(mode=0o755, exist_ok=True)
         with locked(folder / "lock"):
             # Another process may have built it meanwhile.
             if not built.exists():
