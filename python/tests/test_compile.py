@@ -231,6 +231,50 @@ def fails(*arguments):
     raise vi.CompileError("no cargo here")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="modes and owners of Unix")
+def test_a_library_that_others_can_write_is_not_loaded(warm_cache, tmp_path, monkeypatch):
+    Spring = vi.compile(SPRING.format(2.0), methods="fixed")
+    library = _compile._built(_compile._digest(*Spring._source[:2], Spring._source[2]))
+    assert library.stat().st_mode & 0o777 == 0o644
+    (tmp_path / "cache").mkdir(mode=0o755)
+    old = os.umask(0)
+    try:
+        with monkeypatch.context() as other:
+            other.setenv("VARIATIONAL_CACHE", str(tmp_path / "cache"))
+            other.setattr(_compile, "_cargo", fails)
+            with pytest.raises(vi.CompileError, match="no cargo here"):
+                vi.compile(SPRING.format(9.5), methods="fixed")
+    finally:
+        os.umask(old)
+    (folder,) = (tmp_path / "cache").iterdir()
+    planted = folder / "modules" / library.name
+    planted.write_bytes(library.read_bytes())
+    planted.chmod(0o644)
+    monkeypatch.setenv("VARIATIONAL_CACHE", str(tmp_path / "cache"))
+
+    def load():
+        monkeypatch.setattr(_compile, "_loaded", {})
+        return vi.compile(SPRING.format(2.0), methods="fixed")
+
+    assert load()().k == 2.0
+    for path in (planted, planted.parent, folder, tmp_path / "cache"):
+        mode = path.stat().st_mode & 0o777
+        path.chmod(mode | 0o002)
+        with pytest.raises(vi.CompileError, match=rf"{path.name} can be written by other users \(mode {mode | 2:o}\)"):
+            load()
+        path.chmod(mode)
+    # As a folder for temporary files.
+    (tmp_path / "cache").chmod(0o1777)
+    assert load()().k == 2.0
+    if os.geteuid() == 0:
+        for path in (planted, planted.parent, folder):
+            os.chown(path, 65534, -1)
+            with pytest.raises(vi.CompileError, match=rf"{path.name} belongs to another user, 65534"):
+                load()
+            os.chown(path, 0, -1)
+        assert load()().k == 2.0
+
+
 def test_a_rust_function_needs_a_crate():
     with pytest.raises(vi.CompileError, match=r"(?s)`cl` is a Rust function.*vi-lab new NAME --python"):
         vi.compile("struct S { coord x; fn cl(a) = crate::aero::cl; L = dot(x)^2/2 - cl(x); }")

@@ -19,6 +19,7 @@ import inspect
 import os
 import re
 import shutil
+import stat
 import subprocess
 import sys
 import sysconfig
@@ -153,6 +154,7 @@ def _class(definition: str, methods: str, tables: str, verbose: bool) -> type[Sy
             name = _checked(definition)
             _suitable(definition, methods)
             _build(definition, name, built, methods, tables, verbose)
+        _check_private(built)
         cls = _load(_library(digest), built)
         cls._source = (definition, methods, tables)  # type: ignore[attr-defined]
         cls.definition = inspect.cleandoc(definition)
@@ -164,6 +166,30 @@ def _digest(definition: str, methods: str, tables: str) -> str:
     """A digest of everything that a library depends on."""
     key = "\0".join([definition, tables, methods, str(CONTRACT), _core.sources_digest, sysconfig.get_platform()])
     return hashlib.sha256(key.encode()).hexdigest()[:20]
+
+
+def _check_private(path: Path) -> None:
+    """Checks that no other user can have written a file of the cache, because its code runs in this process.
+
+    Raises CompileError.
+    """
+    if os.name == "nt":
+        return
+    remedy = "code in it would run here: delete it, or set VARIATIONAL_CACHE to a folder of your own"
+    for of in (path, *path.relative_to(cache()).parents):
+        of = cache() / of
+        state = of.stat()
+        if of == cache():
+            # Folders such as /tmp protect the files of each user.
+            others = stat.S_IWOTH if not state.st_mode & stat.S_ISVTX else 0
+        else:
+            others = stat.S_IWGRP | stat.S_IWOTH
+            if state.st_uid not in (os.geteuid(), 0):
+                raise CompileError(f"{of} belongs to another user, {state.st_uid}, and {remedy}")
+        if state.st_mode & others:
+            mode = stat.S_IMODE(state.st_mode)
+            what = f"can be written by other users (mode {mode:o})"
+            raise CompileError(f"{of} {what}, and {remedy}, or take the right away")
 
 
 def _library(digest: str) -> str:
@@ -346,8 +372,11 @@ def _build(definition: str, name: str, built: Path, methods: str, tables: str, v
     try:
         # Only this user may write, for any umask.
         folder.mkdir(mode=0o755, parents=True, exist_ok=True)
+        (folder / "target").mkdir(mode=0o700, exist_ok=True)
         (folder / _MARK).write_text(_MARKED, encoding="utf-8")
         built.parent.mkdir(mode=0o755, exist_ok=True)
+        # What is built here is loaded.
+        _check_private(built.parent)
         with locked(folder / "lock"):
             # Another process may have built it meanwhile.
             if not built.exists():
@@ -362,6 +391,7 @@ def _build(definition: str, name: str, built: Path, methods: str, tables: str, v
                     raise CompileError("a file of a table changed during the build: compile again")
                 part = built.with_suffix(".part")
                 shutil.copyfile(folder / "target" / "release" / _LIBRARY, part)
+                part.chmod(0o644)
                 os.replace(part, built)
     except OSError as error:
         raise CompileError(
@@ -375,6 +405,7 @@ def _workspace(folder: Path) -> Path:
     if not workspace.exists():
         part = folder / "workspace.part"
         shutil.rmtree(part, ignore_errors=True)
+        part.mkdir(mode=0o700)
         files = {
             **dict(_core.sources()),
             "compiled/Cargo.toml": _MANIFEST,
