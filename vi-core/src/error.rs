@@ -5,6 +5,9 @@ use core::fmt;
 /// Name of the bordered mass matrix in errors.
 pub(crate) const BORDERED_MASS: &str = "mass matrix bordered by the constraints";
 
+/// A gap that is this many times as large as its residual belongs to a gradient that almost vanishes.
+const STEEP: f64 = 1e4;
+
 /// The reason why a step failed.
 ///
 /// The integrator still holds the last good state, and a further call returns the same error.
@@ -416,6 +419,13 @@ impl fmt::Display for Reason<'_> {
             StepError::DroppedConstraint { t, constraint, residual } => {
                 write!(f, "the dropped constraint `{constraint}` does not hold at t = {t:.9}: residual {residual:.3e}")
             }
+            // The gap is the residual over the length of the gradient.
+            StepError::NotAssembled { t, constraint, residual, gap, passed: 0.0 } if *gap > STEEP * residual.abs() => {
+                write!(
+                    f,
+                    "the constraints cannot be satisfied from this guess at t = {t:.9}: `{constraint}` is {residual:.3e}, and its gradient almost vanishes there, as at the centre of a circle"
+                )
+            }
             StepError::NotAssembled { t, constraint, residual, gap, passed } => write!(
                 f,
                 "the constraints cannot be satisfied together from this guess at t = {t:.9}: `{constraint}` stays {residual:.3e}, a gap of {gap:.3e}, with {:.0} % of the residuals removed",
@@ -425,6 +435,12 @@ impl fmt::Display for Reason<'_> {
                 f,
                 "a tangent vector at t = {t:.9} does not satisfy the constraint `{constraint}`: residual {residual:.3e}, impulse {impulse:.3e}"
             ),
+            StepError::Redundant { constraint, rank: 0, .. } => {
+                write!(
+                    f,
+                    "the gradient of the constraint `{constraint}` is zero at the start, as that of a rod without length"
+                )
+            }
             StepError::Redundant { constraint, of, rank } => write!(
                 f,
                 "the constraint `{constraint}` follows from the others: {rank} of {of} constraints are independent at the start"
@@ -574,6 +590,7 @@ impl fmt::Display for StepError {
             Self::InconsistentTangent { .. } => {
                 f.write_str("; `Tangent::project` moves tangent vectors to admissible ones")
             }
+            Self::Redundant { rank: 0, .. } => f.write_str("; correct its lengths, or start elsewhere"),
             Self::Redundant { constraint, .. } => write!(
                 f,
                 "; drop `{constraint}`, start elsewhere, or integrate `Independent::at(system, t, q)`, which keeps an independent subset"

@@ -222,9 +222,26 @@ fn initial_states_keep_or_meet_the_constraints() {
             &["run", "rod-pendulum", "--method", "energy", "--start", "midpoint"],
             "steps with constraints start from the initial state; remove --start",
         ),
+        (
+            &["run", "four-bar", "--set", "b=1e3", "--steps", "3"],
+            "four-bar has no initial state for these parameters: its constraints cannot be satisfied together; set other \
+             lengths with --set, or give a start with --q and --v",
+        ),
         (&["run", "kepler", "--project"], "kepler has no constraints to --project onto; remove it"),
         (&["lyapunov", "heavy-top"], "heavy-top has constraints: exponents of such motions are not supported"),
     ]);
+    let (status, _, errors) = lab(&["run", "rod-pendulum", "--set", "l=0", "--steps", "3"]);
+    assert_eq!(status, Some(1));
+    let zero = "error: the gradient of the constraint `rod` is zero at the start, as that of a rod without length\n";
+    let remedy = "\nwhat to do: set another length with --set, or start elsewhere with --q\n";
+    assert!(errors.starts_with(zero) && errors.ends_with(remedy), "{errors}");
+    let centre = ["run", "rod-pendulum", "--q", "1e-9,0", "--v", "0,0", "--project", "--steps", "3"];
+    let (status, _, errors) = lab(&centre);
+    assert!(status == Some(1) && errors.contains("almost vanishes there, as at the centre of a circle\n"), "{errors}");
+    assert!(
+        errors.ends_with("\nwhat to do: start from another guess with --q, or set other lengths with --set\n"),
+        "{errors}"
+    );
 }
 
 #[test]

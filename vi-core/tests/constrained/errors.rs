@@ -137,6 +137,23 @@ fn a_flat_linkage_is_singular() {
     let point = Auto(Pendulum { length: 0.0, g: 9.81 });
     let failure = point.at(0.0, [0.0, 0.0], [0.0, 0.0]).integrate(GaussLobatto::<1>, 0.05).err();
     assert_eq!(failure, Some(StepError::Redundant { constraint: "rod", of: 1, rank: 0 }));
+    let text = failure.map(|failure| failure.to_string()).unwrap_or_default();
+    let expected = "the gradient of the constraint `rod` is zero at the start, as that of a rod without length; correct its lengths, or start elsewhere";
+    assert_eq!(text, expected);
+}
+
+#[test]
+fn a_guess_at_the_centre_of_a_circle_is_named() {
+    let pendulum = Auto(Pendulum { length: 1.0, g: 9.81 });
+    let failure = State::projected(&pendulum, 0.0, [1e-9, 0.0], [0.0, 0.0]).err();
+    let text = failure.map(|failure| failure.to_string()).unwrap_or_default();
+    assert!(
+        text.contains("`rod` is -1.000e0, and its gradient almost vanishes there, as at the centre of a circle"),
+        "{text}"
+    );
+    assert!(text.contains("or start from another guess"), "{text}");
+    // From farther away the nearest state is found.
+    State::projected(&pendulum, 0.0, [0.5, 0.0], [0.0, 0.0]).unwrap_or_else(|error| panic!("{error}"));
 }
 
 lagrangian! {

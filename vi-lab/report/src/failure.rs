@@ -158,7 +158,10 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
             | StepError::StepRatio { .. }
             | StepError::DegenerateStep { .. },
             _,
-        ) => "use fixed steps with --method fixed, which exist here; another --h, --q or --v may avoid this state",
+        ) => {
+            "use steps of given length, which exist here: --method fixed or gauss, with constraints gauss-lobatto; \
+                  another --h, --q or --v may avoid this state"
+        }
         (StepError::NotConverged { .. }, Method::Energy) => {
             "use shorter steps with --h, or fixed steps with --method fixed"
         }
@@ -169,6 +172,8 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
         (StepError::TimeScale { .. }, _) => {
             "use shorter steps with --dtau, or steps in time with --h, or write a `time_scale` that is positive there"
         }
+        (StepError::NotAssembled { .. }, _) => "start from another guess with --q, or set other lengths with --set",
+        (StepError::Redundant { rank: 0, .. }, _) => "set another length with --set, or start elsewhere with --q",
         (StepError::Redundant { .. }, _) => "start elsewhere with --q, or remove this constraint from the system",
         _ => return None,
     };

@@ -38,6 +38,22 @@ impl Placement {
         }
     }
 
+    /// Checks that a system has a default initial state for its parameters.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if it has none.
+    pub(super) fn check(self, system: &dyn System, plan: &Plan) -> Result<(), Failure> {
+        let is_finite = plan.q.iter().chain(&plan.v).all(|value| value.is_finite());
+        if !self.follows || is_finite || system.start().is_none() {
+            return Ok(());
+        }
+        Err(Failure::Input(format!(
+            "{} has no initial state for these parameters: its constraints cannot be satisfied together; set other \
+             lengths with --set, or give a start with --q and --v",
+            kebab(system.name())
+        )))
+    }
+
     /// Moves the initial state onto the constraints. Returns how far the coordinates and the velocities moved.
     ///
     /// # Errors

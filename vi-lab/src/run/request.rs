@@ -241,6 +241,7 @@ impl Request {
         if let (Some(sweep), Some(item)) = (&scene.sweep, arguments.item) {
             set_item((sweep, item), placement, system.as_mut(), &mut plan)?;
         }
+        placement.check(system.as_ref(), &plan)?;
         check_initial(system.as_ref(), &plan)?;
         let given = plan.clone();
         let moved = placement.project(system.as_ref(), &mut plan).map_err(|error| Failure::start(error, &given))?;
