@@ -204,6 +204,30 @@ def test_a_text_with_constraints(warm_cache):
     assert (caught.value.constraint, caught.value.of, caught.value.rank) == ("bowl", 2, 1)
 
 
+DRIVEN = """
+struct Belt {
+    param m = 0.5, l = 0.8, g = 9.81;
+    input u = 0.0;
+    coord x, a;
+    L = 3 * dot(x)^2 / 2 + m * (dot(x)^2 + 2 * l * cos(a) * dot(x) * dot(a) + l^2 * dot(a)^2) / 2 + m * g * l * cos(a);
+    constraint drive = dot(x) - u;
+}
+"""
+
+
+def test_a_prescribed_velocity_changes_with_the_state(warm_cache):
+    belt = vi.compile(DRIVEN)()
+    run = belt.integrate([0.0, 0.4], [0.0, 0.0], h=0.01)
+    with pytest.raises(vi.InconsistentStart, match=r"run\.set_state\(q=at\.q, v=at\.v, parameters=dict\(u=…\)\)"):
+        run.set(u=0.7)
+    assert run.system.u == 0.0
+    at = run.system.copy().set(u=0.7).project(run.q, run.v, t=run.t)
+    run.set_state(q=at.q, v=at.v, parameters=dict(u=0.7))
+    # The impulse of the drive turns the pendulum: m l² a' + m l cos(a) x' stays 0.
+    np.testing.assert_allclose(run.v, [0.7, -0.7 * np.cos(0.4) / 0.8], rtol=1e-14)
+    assert run.until(1.0).v[-1, 0] == pytest.approx(0.7, rel=1e-13)
+
+
 def test_a_length_changes_with_the_state():
     run = vi.RodPendulum().integrate([0.6, -0.8], [0.8, 0.6], h=0.01)
     run.steps(5)

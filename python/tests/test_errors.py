@@ -76,6 +76,31 @@ FAILURES = {
 }
 
 
+ROD = {"q": [0.6, -0.8], "h": 0.05, "method": "energy", "stages": 2}
+OF_METHODS = {
+    "a run": lambda: vi.RodPendulum().integrate(**ROD).until(5.0),
+    "a step": lambda: [run.step() for run in [vi.RodPendulum().integrate(**ROD)] for _ in range(100)],
+    "times": lambda: vi.RodPendulum().integrate(**ROD).at([5.0]),
+    "events": lambda: vi.RodPendulum().integrate(**ROD).events("x", 5.0),
+    "a callback": lambda: vi.RodPendulum().integrate(**ROD).until(5.0, callback=lambda run: None),
+}
+
+
+@pytest.mark.parametrize("name", OF_METHODS)
+def test_advice_names_methods_of_the_system(name):
+    with pytest.raises(vi.StepError, match=r'or (with )?method="gauss-lobatto"') as caught:
+        OF_METHODS[name]()
+    assert 'method="gauss"' not in str(caught.value) and "fixed" not in str(caught.value)
+
+
+def test_advice_of_an_ensemble_names_methods_of_the_system():
+    rods = vi.RodPendulum().ensemble(**ROD, until=5.0)
+    assert 'method="gauss-lobatto"' in str(rods.errors[0]) and 'method="gauss"' not in str(rods.errors[0])
+    well = vi.DoubleWell().ensemble([1.001], h=0.01, method="energy", until=10.0)
+    assert 'method="fixed" or method="gauss" and h=' in str(well.errors[0])
+    assert "stages=1 and shift_from=duration" in str(well.errors[0])
+
+
 @pytest.mark.parametrize("name", FAILURES)
 def test_fields_have_their_types(name):
     with pytest.raises(getattr(vi, name)) as caught:

@@ -250,7 +250,7 @@ VALUES = [
     (lambda t, q, v: "text", "event 1 returned 'text'"),
     (lambda t, q, v: 1j, "event 1 returned 1j"),
     (lambda t, q, v: object(), "event 1 returned <object"),
-    (lambda t, y: y[0], r"event 1 must be a function g\(t, q, v\), not of the arguments \(t, y\)"),
+    (lambda t, y: y[0], r"event 1 must be a function g\(t, q, v\), not of \(t, y\)"),
 ]
 
 

@@ -30,7 +30,7 @@ from typing import Any
 from . import _core
 from ._binding import CONTRACT, _bind
 from ._lock import locked
-from ._system import System
+from ._system import System, SystemType
 
 _SUFFIX = ".pyd" if os.name == "nt" else ".abi3.so"
 _LIBRARY = {"win32": "compiled.dll", "darwin": "libcompiled.dylib"}.get(sys.platform, "libcompiled.so")
@@ -89,7 +89,7 @@ def cache() -> Path:
 _loaded: dict[str, type[System]] = {}
 
 
-class _Compiled(type):
+class _Compiled(SystemType):
     """The type of compiled classes. A pickle of one holds its text."""
 
 

@@ -52,7 +52,8 @@ class Equilibrium:
     """For each coordinate, whether nothing depends on it here. It then has the value of the guess. With constraints,
     whether it changes along a motion along which the forces do not, as the turn of a top about the vertical."""
     residual: float
-    """Largest unbalanced force, in units of its rounding error."""
+    """Largest unbalanced force on a coordinate, divided by the bound of its rounding error: a number without a unit.
+    Numbers below ten are rounding."""
     rates: NDArray[np.complex128]
     """The 2D rates of small motions exp(rate t), in radians per unit of time. One with a positive real part grows."""
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Array, array, count, finite, fixed, number, ordered
+from ._errors import advised
 from ._solution import ByName
 
 if TYPE_CHECKING:
@@ -117,6 +118,7 @@ def ensemble(
     listed_times = None if times is None else ordered(times, request.h or request.dtau or 1.0).tolist()
     limit = _threads(threads)
     (ts, qs, ps), errors = system._kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit)
+    errors = [advised(error, cls) for error in errors]
     shape = (many,) if listed_times is None else (many, len(listed_times))
     differing = {
         name: fixed((of[..., 0] if parameter.length is None else of).copy()) for name, (parameter, of) in given.items()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -121,16 +121,13 @@ ABOUT: dict[str, str] = {
     "InvalidInput": "An input is outside of its allowed range.",
 }
 
-_BESIDE_ENERGY = 'continue with fallback=True, or with method="gauss"'
-
 ADVICE: dict[str, str] = {
-    "NoForwardStep": _BESIDE_ENERGY + ' or "fixed" and h={h:.3g}; with stages=1 and shift_from=duration, steps exist',
-    "StepRatio": _BESIDE_ENERGY
-    + ' or "fixed" and h={previous:.3g}; with stages=1 and shift_from=duration, steps exist',
-    "DegenerateStep": _BESIDE_ENERGY + ' or "fixed" and h={h:.3g}',
-    "StepBounds": _BESIDE_ENERGY,
+    "NoForwardStep": "continue with fallback=True, or with {others} and h={h:.3g}{shifted}",
+    "StepRatio": "continue with fallback=True, or with {others} and h={previous:.3g}{shifted}",
+    "DegenerateStep": "continue with fallback=True, or with {others} and h={h:.3g}",
+    "StepBounds": "continue with fallback=True, or with {others}",
     "NoForwardGaussStep": (
-        'use shift={twice:.3e}, which exceeds the largest |D| so far, fallback=True, or method="gauss" with h={h:.3g}'
+        "use shift={twice:.3e}, which exceeds the largest |D| so far, fallback=True, or {others} with h={h:.3g}"
     ),
     "ShiftTooLarge": "start with h={shorter:.1g} or shorter",
     "NotConverged": "take a step shorter than h={h:.3g}",
@@ -165,15 +162,41 @@ for _name in FIELDS:
     )
 
 
+_ENERGY_STEPS = ("NoForwardStep", "StepRatio", "DegenerateStep", "StepBounds", "NoForwardGaussStep")
+"""Failures whose advice names other methods."""
+
+
 def _exception(variant: str, reason: str, fields: Mapping[str, Any]) -> StepError:
     """The exception of a failed step: Rust calls this with the name and the fields of its error."""
-    message = reason
+    message = _message(variant, reason, fields, (("gauss", 8, False), ("fixed", None, False), ("energy", 1, False)))
+    return globals().get(variant, StepError)(message, reason, fields)
+
+
+def advised(error: Any, cls: Any) -> Any:
+    """The exception, whose advice names only integrators that the class of a system has; None for None."""
+    variant = type(error).__name__
+    if variant in _ENERGY_STEPS:
+        error.args = (_message(variant, error.reason, error.fields, cls.integrators),)
+    return error
+
+
+def _message(
+    variant: str, reason: str, fields: Mapping[str, Any], integrators: Iterable[tuple[str, int | None, bool]]
+) -> str:
+    """The reason, and what to do in a system with these integrators."""
     numbers = {**fields, "twice": 2.0 * fields.get("largest", 0.0), "h": abs(fields.get("h", 0.0))}
     if variant == "NotConverged" and numbers["h"] == 0.0:
-        message += "; start from the momenta of a velocity, or take a shorter h"
-    elif variant in ADVICE:
-        message += "; " + ADVICE[variant].format_map(numbers)
-    return globals().get(variant, StepError)(message, reason, fields)
+        return f"{reason}; start from the momenta of a velocity, or take a shorter h"
+    if variant == "Redundant" and not fields.get("rank"):
+        return f"{reason}; correct its lengths, or start elsewhere"
+    if variant not in ADVICE:
+        return reason
+    built = [(method, stages) for method, stages, is_transformed in integrators if not is_transformed]
+    others = dict.fromkeys(method for method, _ in built if method in ("gauss", "gauss-lobatto", "fixed"))
+    least = min((stages for method, stages in built if method == "energy" and stages), default=None)
+    numbers["others"] = " or ".join(f'method="{method}"' for method in others) or "a method of compile"
+    numbers["shifted"] = f"; with stages={least} and shift_from=duration, steps exist" if least else ""
+    return f"{reason}; {ADVICE[variant].format_map(numbers)}"
 
 
 def _invalid(input: str, allowed: str, value: float) -> StepError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import FrozenInstanceError, dataclass
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ._arrays import Array, _shown, number
+from ._calls import unfit
 from ._names import course
 
 
@@ -82,7 +82,8 @@ def _description(event: Watched, cls: Any, least: float, place: str, is_first: b
     if callable(event):
         name = getattr(event, "__name__", "<lambda>")
         name = place if name == "<lambda>" else f"{place}, `{name}`,"
-        _check_arguments(event, name)
+        if (arguments := unfit(event, 3)) is not None:
+            raise TypeError(f"{name} must be a function g(t, q, v), not of {arguments}: scipy's y is (q, v)")
         if not is_first and getattr(event, "terminal", False):
             raise ValueError(f"{name} has terminal = {event.terminal!r}: run.next_event(…) stops the run at an event")
         if is_first and getattr(event, "terminal", True) not in (True, 1):
@@ -92,21 +93,6 @@ def _description(event: Watched, cls: Any, least: float, place: str, is_first: b
             )
         return (event, _sign(getattr(event, "direction", 0)), name)
     raise TypeError(f"an event must be an Event or a function g(t, q, v), not {event!r}")
-
-
-def _check_arguments(event: Function, name: str) -> None:
-    """Raises TypeError for a function that cannot be called as g(t, q, v)."""
-    try:
-        signature = inspect.signature(event)
-    except (TypeError, ValueError):
-        # Some functions of C modules have none.
-        return
-    try:
-        signature.bind(0.0, None, None)
-    except TypeError:
-        raise TypeError(
-            f"{name} must be a function g(t, q, v), not of the arguments {signature}: scipy's y is (q, v)"
-        ) from None
 
 
 def value(found: Any, name: str) -> float:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import contextlib
 import functools
 import pickle
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Array, count, fixed, number, ordered, real, vector
+from ._calls import check_arguments, unfit
 from ._control import Linearization
+from ._errors import InconsistentStart, StepError, advised  # type: ignore[attr-defined]
 from ._events import Watched, descriptions
 from ._solution import Events, Solution
 
@@ -129,7 +131,10 @@ class Run:
 
     def step(self, h: float | None = None) -> Run:
         """Takes one step, of the length h if given, and returns the run."""
-        self._run.step(None if h is None else real(h, "h"))
+        try:
+            self._run.step(None if h is None else real(h, "h"))
+        except StepError as error:
+            raise advised(error, self._cls) from None
         return self
 
     def until(
@@ -174,11 +179,13 @@ class Run:
         if callback is None:
             again = self._repeats(end, steps, every) if dense else None
             (t, q, p), error, polynomials = self._run.advance(end, steps, every, bool(dense))
-            return _finished(Solution(system, t, q, p, error, polynomials, again), on_error)
+            return _finished(Solution(system, t, q, p, advised(error, self._cls), polynomials, again), on_error)
         if dense:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
         if not callable(callback):
             raise TypeError(f"callback must be a function of the run, not {callback!r}")
+        if (arguments := unfit(callback, 1)) is not None:
+            raise TypeError(f"callback must be a function of one argument, the run, not of {arguments}")
         return _finished(self._called(end, steps, every, callback), on_error)
 
     def _repeats(self, end: float | None, steps: int | None, every: int) -> Callable[[], Any] | None:
@@ -201,6 +208,7 @@ class Run:
                 few = every if left is None else min(every, left)
                 (t, q, p), error, _ = self._run.advance(end, few, few or 1, False)
                 parts.append(Solution(self.system, t, q, p))
+                error = advised(error, self._cls)
                 left = None if left is None else left - few
                 if error is not None or len(t) == 1 or _is_true(callback(self)):
                     break
@@ -217,7 +225,7 @@ class Run:
         """The states at times in the order of the run, as accurate as nodes. The run keeps its own steps."""
         _check_on_error(on_error)
         (t, q, p), error, _ = self._run.at(ordered(times, self.h))
-        return _finished(Solution(self.system, t, q, p, error), on_error)
+        return _finished(Solution(self.system, t, q, p, advised(error, self._cls)), on_error)
 
     def events(self, events: Watched | Iterable[Watched], until: float, *, on_error: str = "raise") -> Events:
         """Takes steps to the time `until`, and returns the events on the way, located to rounding."""
@@ -234,11 +242,23 @@ class Run:
         (t, q, p), error, met = self._run.events(wanted, end, is_first)
         which = np.array([index for index, _ in met], dtype=np.intp)
         rising = np.array([rises for _, rises in met], dtype=np.bool_)
-        return _finished(Events(self.system, t, q, p, error, which, rising), on_error)
+        return _finished(Events(self.system, t, q, p, advised(error, self._cls), which, rising), on_error)
 
     def set(self, **parameters: Any) -> Run:
-        """Changes parameters from here on. Coordinates and momenta stay."""
-        self._run.set_parameters(_pairs(self._cls, parameters))
+        """Changes parameters from here on. Coordinates and momenta stay.
+
+        A parameter of a constraint may need another state: then InconsistentStart names the call.
+        """
+        try:
+            self._run.set_parameters(_pairs(self._cls, parameters))
+        except InconsistentStart as error:
+            changed = ", ".join(f"{name}=…" for name in parameters)
+            error.args = (
+                f"{error.reason}; set keeps the coordinates and the momenta, which this change does not allow. Project "
+                f"them first: at = run.system.copy().set({changed}).project(run.q, run.v, t=run.t), then "
+                f"run.set_state(q=at.q, v=at.v, parameters=dict({changed}))",
+            )
+            raise
         return self
 
     def set_state(
@@ -272,7 +292,8 @@ class Run:
         """
         n = len(self._cls.coordinates)
         names, indices = self._wrt(wrt)
-        columns = self._run.tangent(_count(steps, "the number of steps"), indices).T
+        with self._advising():
+            columns = self._run.tangent(_count(steps, "the number of steps"), indices).T
         found = {"q": columns[:, :n].copy(), "p": columns[:, n : 2 * n].copy()}
         return {**found, **self._split(columns[:, 2 * n :], names)}
 
@@ -289,8 +310,16 @@ class Run:
             raise TypeError("give q or p: the derivatives of the function at the end")
         slope = [np.zeros(n) if x is None else vector(x, n, name, names_of) for x, name in ((q, "q"), (p, "p"))]
         names, indices = self._wrt(wrt)
-        found = self._run.gradient(_count(steps, "the number of steps"), np.concatenate(slope), indices)
+        with self._advising():
+            found = self._run.gradient(_count(steps, "the number of steps"), np.concatenate(slope), indices)
         return {"q": found[:n].copy(), "p": found[n : 2 * n].copy(), **self._split(found[2 * n :], names)}
+
+    @contextlib.contextmanager
+    def _advising(self) -> Iterator[None]:
+        try:
+            yield
+        except StepError as error:
+            raise advised(error, self._cls) from None
 
     def _wrt(self, wrt: Sequence[str]) -> tuple[list[str], list[int]]:
         names = [wrt] if isinstance(wrt, str) else list(wrt)
@@ -352,6 +381,9 @@ class Run:
 
     def __reduce__(self) -> Any:
         return (_restarted, (self.system, self._run.integrator, self._run.checkpoint()))
+
+
+check_arguments(Run, ["until", "steps", "at", "events", "next_event", "set_state", "tangent", "gradient"])
 
 
 def _pairs(cls: type[System], parameters: Mapping[str, Any]) -> list[tuple[int, float]]:

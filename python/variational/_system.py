@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
+import inspect
 import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Array, array, finite, fixed, number, vector
+from ._calls import check_arguments
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble
@@ -59,7 +61,16 @@ class Parameter:
         return np.broadcast_to(found.reshape(-1) if found.shape else found, (self.length,))
 
 
-class System:
+class SystemType(type):
+    """The type of the classes of systems. Their parameters belong to systems, not to the class."""
+
+    def __setattr__(cls, name: str, value: Any) -> None:
+        if name in cls.__dict__.get("parameters", ()):
+            raise AttributeError(f"{name} is a parameter of a system, not of its class: write {cls.__name__}({name}=…)")
+        super().__setattr__(name, value)
+
+
+class System(metaclass=SystemType):
     """A mechanical system with its parameters: the base of the classes of all systems."""
 
     __slots__ = ("_values",)
@@ -99,6 +110,9 @@ class System:
     def _parameter(cls, name: str) -> Parameter:
         name = among(name, cls.parameters) if isinstance(name, str) else name
         if name not in cls.parameters:
+            whole = name.partition("[")[0] if isinstance(name, str) else name
+            if whole != name and whole in cls.parameters:
+                raise TypeError(f"{name!r} is one entry of an array: give all of them, {whole}=[…]")
             known = ", ".join(cls.parameters) or "none"
             raise TypeError(f"{cls.__name__} has no parameter {name!r}{meant(name, cls.parameters)}; it has {known}")
         return cls.__dict__[name]
@@ -361,6 +375,10 @@ class System:
 
     def _repr_latex_(self) -> str:
         return self.explain().equations()
+
+
+_ANSWERS = [name for name, of in vars(System).items() if inspect.isfunction(of) and not name.startswith("_")]
+check_arguments(System, [name for name in _ANSWERS if name not in ("set", "copy")])
 
 
 def _unpickled(module: str, name: str, definition: str, source: Any, values: list[float]) -> System:
