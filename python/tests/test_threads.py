@@ -64,7 +64,26 @@ def test_runs_of_several_threads_are_independent():
     assert all(np.array_equal(q, found[0]) for q in found)
 
 
+SQUEEZER = {
+    "q": [
+        -0.06171389001427645,
+        0.0,
+        0.4552798191630704,
+        0.2226683901658859,
+        0.48736497954384256,
+        -0.2226683901658859,
+        1.2305474445498212,
+    ],
+    "h": 0.005,
+    "method": "energy",
+    "stages": 2,
+    # Steps short enough for its motion are hours over this time.
+    "shift_from": 1.0,
+}
+
 LONG = {
+    "a measured shift": lambda: vi.AndrewsSqueezer().integrate(**SQUEEZER),
+    "ensemble of measured shifts": lambda: vi.AndrewsSqueezer().ensemble(**SQUEEZER, until=1.0),
     "steps": lambda: long_run().steps(10**12, every=10**12),
     "until": lambda: long_run().until(1e10, every=10**12),
     "at": lambda: long_run().at([1e10]),

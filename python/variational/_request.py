@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ._system import System
 
 _MOST = 1e6
-"""Steps over which a shift is measured: no signal interrupts them."""
+"""Steps of h over which a shift is measured; the measurement may halve them."""
 
 
 @dataclass(slots=True)

@@ -22,8 +22,9 @@ use vi_core::{
     Gauss, GaussLobatto, InTransformedTime, Presumed, Run, Splitting, Starts, State, StepError,
 };
 
-/// Starts a run of a plan from a state.
-type Begin<S, const N: usize> = fn(S, &Plan, State<N>) -> Result<Box<dyn Simulation>, StepError>;
+/// Starts a run of a plan from a state, as [`System::begin_while`](crate::System::begin_while).
+type Begin<S, const N: usize> =
+    fn(S, &Plan, State<N>, &mut dyn FnMut() -> bool) -> Result<Box<dyn Simulation>, StepError>;
 /// Restarts a stored run.
 #[cfg(feature = "checkpoints")]
 type Restart<S> = fn(S, &str) -> Result<Box<dyn Simulation>, String>;
@@ -73,7 +74,7 @@ macro_rules! integrator {
 /// An integrator whose runs begin with a plan's step length.
 macro_rules! by_length {
     ($kind:expr, $stages:expr, $system:expr, $method:expr) => {
-        integrator!(($kind, $stages, false), $system, $method, |system: S, plan: &Plan, state: State<N>| {
+        integrator!(($kind, $stages, false), $system, $method, |system: S, plan: &Plan, state: State<N>, _| {
             Ok(erased($system(system).at_state(state).integrate($method, plan.length())?))
         })
     };
@@ -135,18 +136,19 @@ where
     Called<S>: Runnable<N>,
     InTransformedTime<Gauss<STAGES>>: Erasable<Called<S>, N>,
 {
-    integrator!((Method::Gauss, Some(STAGES), true), Called, Gauss::<STAGES>.in_transformed_time(), |system: S,
-                                                                                                     plan: &Plan,
-                                                                                                     state: State<
-        N,
-    >| {
-        // Otherwise they would be built for every system.
-        if !<S as Collocation<N>>::SCALES_TIME {
-            return Err(StepError::NoTimeScale { system: S::NAME });
+    integrator!(
+        (Method::Gauss, Some(STAGES), true),
+        Called,
+        Gauss::<STAGES>.in_transformed_time(),
+        |system: S, plan: &Plan, state: State<N>, _| {
+            // Otherwise they would be built for every system.
+            if !<S as Collocation<N>>::SCALES_TIME {
+                return Err(StepError::NoTimeScale { system: S::NAME });
+            }
+            let dtau = plan.dtau.unwrap_or(plan.h);
+            Ok(erased(Called(system).at_state(state).integrate(Gauss::<STAGES>.in_transformed_time(), dtau)?))
         }
-        let dtau = plan.dtau.unwrap_or(plan.h);
-        Ok(erased(Called(system).at_state(state).integrate(Gauss::<STAGES>.in_transformed_time(), dtau)?))
-    })
+    )
 }
 
 /// Energy-preserving steps of order 2.
@@ -155,19 +157,24 @@ pub fn energy<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Integrato
 where
     EnergyPreserving: Erasable<S, N, Memory: Controlled<f64>>,
 {
-    integrator!((Method::Energy, None, false), identity, EnergyPreserving, |system: S, plan: &Plan, state: State<N>| {
-        let h = plan.length().length(&system.at_state(state), &EnergyPreserving)?;
-        let State { t, q, .. } = state;
-        let v = || state.velocity(&system);
-        let run = match plan.start {
-            Start::State => system.at_state(state).integrate(EnergyPreserving, h)?,
-            Start::Midpoint => EnergyPreserving::from_midpoint(system, t, q, v()?, h)?,
-            Start::Points => {
-                EnergyPreserving::from_points(system, (t, q), start::second_point(&system, t, q, v()?, h)?)?
-            }
-        };
-        Ok(erased(run.with_fallback(fallback(plan))))
-    })
+    integrator!(
+        (Method::Energy, None, false),
+        identity,
+        EnergyPreserving,
+        |system: S, plan: &Plan, state: State<N>, _| {
+            let h = plan.length().length(&system.at_state(state), &EnergyPreserving)?;
+            let State { t, q, .. } = state;
+            let v = || state.velocity(&system);
+            let run = match plan.start {
+                Start::State => system.at_state(state).integrate(EnergyPreserving, h)?,
+                Start::Midpoint => EnergyPreserving::from_midpoint(system, t, q, v()?, h)?,
+                Start::Points => {
+                    EnergyPreserving::from_points(system, (t, q), start::second_point(&system, t, q, v()?, h)?)?
+                }
+            };
+            Ok(erased(run.with_fallback(fallback(plan))))
+        }
+    )
 }
 
 /// Energy-preserving Gauss steps of the given number of stages.
@@ -181,8 +188,9 @@ where
         (Method::Energy, Some(STAGES), false),
         Called,
         EnergyPreservingGauss::<STAGES>,
-        |system: S, plan: &Plan, state: State<N>| {
-            shifted(Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.length())?, plan)
+        |system: S, plan: &Plan, state: State<N>, goes_on| {
+            let run = Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.length())?;
+            shifted(run, plan, goes_on)
         }
     )
 }
@@ -191,7 +199,11 @@ where
 ///
 /// # Errors
 /// Those of the shift.
-fn shifted<M, S, const N: usize>(run: Run<M, S, N>, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>
+fn shifted<M, S, const N: usize>(
+    run: Run<M, S, N>,
+    plan: &Plan,
+    goes_on: &mut dyn FnMut() -> bool,
+) -> Result<Box<dyn Simulation>, StepError>
 where
     M: Shiftable<S, N> + Erasable<S, N, Memory: Controlled<f64>>,
     S: Parametric<N>,
@@ -199,7 +211,7 @@ where
     let run = match plan.shift {
         None => run,
         Some(Shift::Of(shift)) => run.with_shift(shift)?,
-        Some(Shift::Over(time)) => run.with_shift_from(time)?,
+        Some(Shift::Over(time)) => run.with_shift_from_while(time, goes_on)?,
     };
     Ok(erased_with(run.with_fallback(fallback(plan)), plan.shift.is_some()))
 }
@@ -215,8 +227,9 @@ where
         (Method::Energy, Some(STAGES), false),
         identity,
         EnergyPreservingGaussLobatto::<STAGES>,
-        |system: S, plan: &Plan, state: State<N>| {
-            shifted(system.at_state(state).integrate(EnergyPreservingGaussLobatto::<STAGES>, plan.length())?, plan)
+        |system: S, plan: &Plan, state: State<N>, goes_on| {
+            let run = system.at_state(state).integrate(EnergyPreservingGaussLobatto::<STAGES>, plan.length())?;
+            shifted(run, plan, goes_on)
         }
     )
 }

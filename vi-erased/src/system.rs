@@ -97,7 +97,15 @@ pub trait System: Send + Sync {
     /// The error of the integrators for the initial state. [`StepError::InvalidInput`] for wrong numbers of coordinates
     /// or velocities, and for stages that are not built; [`StepError::NoRule`] for a method that needs a rule which the
     /// system does not have, [`StepError::HasConstraints`] for one that does not keep its constraints.
-    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
+    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
+        self.begin_while(plan, &mut || true)
+    }
+    /// As [`System::begin`], but a measurement of a shift asks `goes_on` before each step. Once it is false, the
+    /// measurement ends with [`StepError::InvalidInput`].
+    ///
+    /// # Errors
+    /// As [`System::begin`].
+    fn begin_while(&self, plan: &Plan, goes_on: &mut dyn FnMut() -> bool) -> Result<Box<dyn Simulation>, StepError>;
     /// The run of an integrator as [`Session::checkpoint`](crate::Session::checkpoint) stored it.
     ///
     /// # Errors
@@ -288,13 +296,13 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> S
         self
     }
 
-    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
+    fn begin_while(&self, plan: &Plan, goes_on: &mut dyn FnMut() -> bool) -> Result<Box<dyn Simulation>, StepError> {
         let q = vector(&plan.q, "number of coordinates")?;
         let state = match &plan.p {
             Some(p) => State { t: plan.t, q, p: vector(p, "number of momenta")? },
             None => State::at(&self.system, plan.t, q, vector::<N>(&plan.v, "number of velocities")?),
         };
-        (self.integrator(plan.wanted())?.begin)(self.system, plan, state)
+        (self.integrator(plan.wanted())?.begin)(self.system, plan, state, goes_on)
     }
 
     #[cfg(feature = "checkpoints")]

@@ -106,7 +106,8 @@ impl Ensemble<'_> {
             return Ok((rows, None));
         }
         let (system, plan) = (self.plan)(index)?;
-        let outcome = system.begin(&plan).and_then(|mut run| match &self.output {
+        let goes_on = &mut || !is_stopped.load(Ordering::Relaxed);
+        let outcome = system.begin_while(&plan, goes_on).and_then(|mut run| match &self.output {
             Output::End(end) => to_the_end(&mut *run, *end, is_stopped, &mut rows),
             Output::Times(times) => {
                 let mut left = &times[..];

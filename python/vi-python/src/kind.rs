@@ -4,7 +4,7 @@ use crate::ensemble::{Ensemble, Output};
 use crate::failure::{Raise as _, wrong};
 use crate::request::Request;
 use crate::rows::{Linearized, linearized, matrix, rows, vector};
-use crate::run::Run;
+use crate::run::{Run, Signal};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use vi_erased::System;
@@ -207,9 +207,11 @@ impl Kind {
         let v = v.map_or_else(|| Ok(vec![0.0; self.n]), |v| vector(&v, self.n, "v"))?;
         let p = p.map(|p| vector(&p, self.n, "p")).transpose()?;
         let plan = Plan { p, ..request.plan(&*system, t, q, v)? };
-        // A tolerance or a measured shift takes thousands of steps.
-        let run = py.detach(|| system.begin(&plan)).raise(py)?;
-        Ok(Run::new(run, plan.wanted()))
+        // A tolerance takes thousands of steps, a measured shift up to billions.
+        let mut signal = Signal::new();
+        let run = py.detach(|| system.begin_while(&plan, &mut || signal.is_silent()));
+        signal.check()?;
+        Ok(Run::new(run.raise(py)?, plan.wanted()))
     }
 
     /// Restarts a stored run.

@@ -270,7 +270,7 @@ impl Run {
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
         Self::check_parameters(run, parameters.iter().copied())?;
-        let mut signal = Signal::default();
+        let mut signal = Signal::new();
         let rows = py.detach(|| run.tangent(steps, &parameters, &mut || signal.is_silent())).raise(py)?;
         let rows = signal.unless_raised(rows)?;
         Ok(PyArray2::from_vec2(py, &rows)?)
@@ -294,7 +294,7 @@ impl Run {
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
         Self::check_parameters(run, parameters.iter().copied())?;
-        let mut signal = Signal::default();
+        let mut signal = Signal::new();
         let found = py.detach(|| run.gradient(steps, &slope, &parameters, &mut || signal.is_silent())).raise(py)?;
         Ok(PyArray1::from_vec(py, signal.unless_raised(found)?))
     }
@@ -324,24 +324,32 @@ impl Run {
     }
 }
 
-/// Steps of a derivative between two looks at signals.
-const DERIVED: u32 = 1024;
+/// Time between two looks at signals.
+const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Looks for Ctrl-C on the way of a derivative.
-#[derive(Default)]
-struct Signal {
-    steps: u32,
+/// Looks for Ctrl-C on the way of a derivative or of a measurement, whose steps may take microseconds or milliseconds.
+pub(crate) struct Signal {
+    looked: Instant,
     raised: Option<PyErr>,
 }
 
 impl Signal {
+    pub(crate) fn new() -> Self {
+        Self { looked: Instant::now(), raised: None }
+    }
+
     /// Whether none has come so far.
-    fn is_silent(&mut self) -> bool {
-        self.steps += 1;
-        if self.steps.is_multiple_of(DERIVED) {
+    pub(crate) fn is_silent(&mut self) -> bool {
+        if self.raised.is_none() && self.looked.elapsed() > PATIENCE {
+            self.looked = Instant::now();
             self.raised = Python::attach(|py| py.check_signals()).err();
         }
         self.raised.is_none()
+    }
+
+    /// The exception of a signal, if one has come.
+    pub(crate) fn check(self) -> PyResult<()> {
+        self.raised.map_or(Ok(()), Err)
     }
 
     /// What was found, or the exception.

@@ -85,11 +85,26 @@ where
     /// [`StepError::InvalidInput`] for a duration that is not positive and finite, or over which no fixed steps
     /// preserve the energy; [`StepError::ShiftTooLarge`] if the first step is too long for this shift; those of fixed
     /// steps of the same order and of [`step_density`](crate::gauss::step_density).
-    pub fn with_shift_from(mut self, duration: f64) -> Result<Self, StepError> {
+    pub fn with_shift_from(self, duration: f64) -> Result<Self, StepError> {
+        self.with_shift_from_while(duration, &mut || true)
+    }
+
+    /// [`Run::with_shift_from`], which asks `goes_on` before each step that it measures. Short steps over a long duration
+    /// take hours: once `goes_on` is false, the measurement ends with the error of a duration without fixed steps that
+    /// preserve the energy.
+    ///
+    /// # Errors
+    /// Those of [`Run::with_shift_from`].
+    #[doc(hidden)]
+    pub fn with_shift_from_while(
+        mut self,
+        duration: f64,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Self, StepError> {
         check_forward("the duration over which the step density is measured", duration)?;
         let mut h = M::course(&self.memory).h();
         for _ in 0..HALVINGS {
-            if let Some(Maxima { density, scale, size }) = self.met_along(h, duration)? {
+            if let Some(Maxima { density, scale, size }) = self.met_along(h, duration, goes_on)? {
                 let shift = 2.0 * density;
                 let course = M::course_mut(&mut self.memory);
                 let first = course.h();
@@ -107,8 +122,9 @@ where
         })
     }
 
-    /// Maxima along fixed steps of the length h over `duration` from here; `None` if their energy error is too large.
-    fn met_along(&self, h: f64, duration: f64) -> Result<Option<Maxima>, StepError> {
+    /// Maxima along fixed steps of the length h over `duration` from here; `None` if their energy error is too large, or
+    /// if `goes_on` is false before one of them.
+    fn met_along(&self, h: f64, duration: f64, goes_on: &mut dyn FnMut() -> bool) -> Result<Option<Maxima>, StepError> {
         let system = &self.system;
         let mut steps = Starts::at_state(*system, self.node.state()).integrate(M::FIXED, h)?;
         let end = self.node.t + duration;
@@ -119,6 +135,9 @@ where
         let mut count = 0.0;
         let mut largest_missed = 0.0_f64;
         while steps.node.t < end {
+            if !goes_on() {
+                return Ok(None);
+            }
             match steps.step() {
                 Ok(_) => {}
                 Err(StepError::StagesUnsettled { .. } | StepError::TooLong { .. }) => return Ok(None),
