@@ -2,9 +2,11 @@
 
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -148,6 +150,38 @@ def test_an_interrupted_build_is_taken_up(warm_cache, tmp_path):
         os.killpg(process.pid, 9)
     process.wait()
     assert vi.compile(SPRING.format(8.5), methods="fixed")().k == 8.5
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+def test_an_interrupt_ends_the_compiler_too(tmp_path):
+    # In place of cargo: a process with a child, as cargo has rustc.
+    cargo = tmp_path / "cargo"
+    cargo.write_text(f"#!/bin/sh\nsleep 300 &\necho $! > {tmp_path}/child\nwait\n")
+    cargo.chmod(0o755)
+    path = f"{tmp_path}:{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path, "VARIATIONAL_CACHE": str(tmp_path / "cache")}
+    code = f"import variational as vi; vi.compile({SPRING.format(8.25)!r}, methods='fixed')"
+    process = subprocess.Popen([sys.executable, "-c", code], env=environment, stderr=subprocess.PIPE, text=True)
+    while not (tmp_path / "child").exists() or not (tmp_path / "child").read_text().strip():
+        assert process.poll() is None
+        time.sleep(0.02)
+    child = int((tmp_path / "child").read_text())
+    process.send_signal(signal.SIGINT)
+    assert "KeyboardInterrupt" in process.communicate(timeout=60)[1]
+    deadline = time.monotonic() + 60
+    while is_running(child):
+        assert time.monotonic() < deadline, "the child of cargo is still running"
+        time.sleep(0.02)
+
+
+def is_running(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    # An ended process stays in the table until its parent has asked for it.
+    status = Path(f"/proc/{process}/stat")
+    return not status.exists() or status.read_text().rpartition(")")[2].split()[0] != "Z"
 
 
 def test_vectors_a_table_of_a_file_and_an_input(warm_cache, tmp_path, monkeypatch):

@@ -12,6 +12,7 @@ everything that it depends on; later it is loaded without cargo.
 
 from __future__ import annotations
 
+import contextlib
 import copyreg
 import hashlib
 import importlib.util
@@ -19,6 +20,7 @@ import inspect
 import os
 import re
 import shutil
+import signal
 import stat
 import subprocess
 import sys
@@ -430,7 +432,7 @@ def _cargo(cargo: str, workspace: Path, target: Path, verbose: bool) -> None:
     }
     environment |= {"CARGO_TERM_COLOR": "never", "PYO3_NO_PYTHON": "1", "PYO3_BUILD_EXTENSION_MODULE": "1"}
     command = [cargo, "build", "--release", "--package", "compiled", "--target-dir", str(target)]
-    outcome = subprocess.run(
+    with subprocess.Popen(
         command if verbose else [*command, "--quiet"],
         cwd=workspace,
         env=environment,
@@ -438,9 +440,25 @@ def _cargo(cargo: str, workspace: Path, target: Path, verbose: bool) -> None:
         stderr=None if verbose else subprocess.PIPE,
         encoding="utf-8",
         errors="replace",
-    )
-    if outcome.returncode != 0:
-        raise CompileError(_reason(outcome.stderr or "cargo failed; its messages are above"))
+        # A group of its own: an interrupted build ends with all compilers that cargo has started.
+        start_new_session=True,
+    ) as process:
+        try:
+            _, messages = process.communicate()
+        except BaseException:
+            _kill(process)
+            raise
+    if process.returncode != 0:
+        raise CompileError(_reason(messages or "cargo failed; its messages are above"))
+
+
+def _kill(process: subprocess.Popen[str]) -> None:
+    """Ends a process and its children."""
+    if os.name == "nt":
+        process.kill()
+    else:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
 
 
 def _reason(messages: str) -> str:
