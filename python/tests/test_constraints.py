@@ -83,6 +83,25 @@ def test_a_start_off_the_constraints_is_refused_or_moved():
         system.project([0.0, 0.0])
 
 
+def test_far_guesses_are_assembled():
+    linkage, far = vi.FourBar(), [4.0, 1.8, -0.1, 6.8]
+    # Near the constraints both are the same.
+    near = [0.0, 1.0, 2.6, 2.5]
+    for mine, theirs in zip(linkage.assemble(near), linkage.project(near), strict=True):
+        assert np.array_equal(mine, theirs)
+    with pytest.raises(vi.NotAssembled, match=r"system\.assemble\(q, v\) takes far guesses"):
+        linkage.project(far)
+    found = linkage.assemble(far, t=2.0)
+    assert np.abs(linkage.residuals(2.0, found.q, found.v)).max() < 1e-13
+    assert found.moved_q == pytest.approx(found.q - far, rel=1e-14)
+    linkage.integrate(found.q, found.v, h=0.005).steps(10)
+    # A bar that is too long stays open, without constraints nothing moves.
+    with pytest.raises(vi.NotAssembled) as caught:
+        vi.FourBar(b=100.0).assemble(near)
+    assert caught.value.constraint in linkage.constraints and 0.0 < caught.value.passed < 1.0
+    assert np.array_equal(vi.Kepler().assemble([0.4, 0.0]).q, [0.4, 0.0])
+
+
 def test_methods_without_constraints_are_refused():
     with pytest.raises(ValueError, match=r"RodPendulum has no method 'gauss'.*has constraints"):
         vi.RodPendulum().integrate([0.6, -0.8], h=0.01, method="gauss")

@@ -18,6 +18,7 @@ from ._calls import check_arguments
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble
+from ._errors import NotAssembled  # type: ignore[attr-defined]
 from ._explanation import Explanation
 from ._names import among, meant
 from ._request import checked
@@ -203,12 +204,28 @@ class System(metaclass=SystemType):
         """The state on the constraints nearest to (t, q, v) in the metric of the mass matrix, and how far it is.
 
         Raises NotAssembled if no coordinates near q satisfy the constraints, Singular if the constraints depend on each
-        other on the way.
+        other on the way. `assemble` starts from far guesses.
         """
+        try:
+            return self._moved(q, v, t, False)
+        except NotAssembled as error:
+            error.args = (f"{error}; system.assemble(q, v) takes far guesses",)
+            raise
+
+    def assemble(self, q: ArrayLike, v: ArrayLike | None = None, *, t: float = 0.0) -> Projected:
+        """A state on the constraints from a far guess (t, q, v), for example of a loop that is not closed, and how far
+        it is: that of `project` if there is one, otherwise by a continuation in which all residuals shrink together.
+
+        A linkage may have several assemblies. The guess chooses one, which is not always the nearest. Raises
+        NotAssembled with the constraint that stays open, Singular if the constraints depend on each other at the guess.
+        """
+        return self._moved(q, v, t, True)
+
+    def _moved(self, q: ArrayLike, v: ArrayLike | None, t: float, is_far: bool) -> Projected:
         (n,), names = self._shape, self.coordinates
         q = vector(q, n, "q", names)
         v = np.zeros(n) if v is None else vector(v, n, "v", names)
-        return Projected(*self._kind.project(self._values, number(t, "t"), q, v))
+        return Projected(*self._kind.project(self._values, number(t, "t"), q, v, is_far))
 
     def mass_matrix(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
         """The mass matrix M = ∂²L/∂v² at (t, q, v): (..., N, N)."""

@@ -31,6 +31,12 @@ pub trait Mechanics<S: Parametric<N>, const N: usize>: Send + Sync + 'static {
     /// # Errors
     /// As [`State::projected`].
     fn projected(system: &S, at: Point<'_, N>) -> Result<Projected<N>, StepError>;
+    /// A state on the constraints from a point that may be far from them, as [`State::assembled`].
+    ///
+    /// # Errors
+    /// As [`State::assembled`].
+    #[cfg(feature = "derivatives")]
+    fn assembled(system: &S, at: Point<'_, N>) -> Result<Projected<N>, StepError>;
     /// Appends the multipliers Λ at a state, as [`State::reaction`].
     ///
     /// # Errors
@@ -91,6 +97,11 @@ impl<S: Free<N>, const N: usize> Mechanics<S, N> for Unconstrained {
         Ok(Projected { state, moved_q: SVector::zeros(), moved_v: SVector::zeros(), energy_lost: 0.0 })
     }
 
+    #[cfg(feature = "derivatives")]
+    fn assembled(system: &S, at: Point<'_, N>) -> Result<Projected<N>, StepError> {
+        <Self as Mechanics<S, N>>::projected(system, at)
+    }
+
     fn reaction(_: &S, _: &State<N>, _: &mut Vec<f64>) -> Result<(), StepError> {
         Ok(())
     }
@@ -131,6 +142,11 @@ impl<S: RunnableWithConstraints<N>, const N: usize> Mechanics<S, N> for WithCons
 
     fn projected(system: &S, (t, q, v): Point<'_, N>) -> Result<Projected<N>, StepError> {
         State::projected(system, t, *q, *v)
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn assembled(system: &S, (t, q, v): Point<'_, N>) -> Result<Projected<N>, StepError> {
+        State::assembled(system, t, *q, *v)
     }
 
     fn reaction(system: &S, state: &State<N>, out: &mut Vec<f64>) -> Result<(), StepError> {

@@ -5,7 +5,7 @@
 #[cfg(feature = "derivatives")]
 use crate::control::Control;
 use crate::integrator::Integrator;
-use crate::mechanics::{Mechanics, Unconstrained};
+use crate::mechanics::{Mechanics, Point, Unconstrained};
 use crate::plan::{Built, Method, PhasePoint, Plan};
 use crate::simulation::{Parametric, Simulation, vector, wrong_size};
 use std::sync::Arc;
@@ -88,6 +88,13 @@ pub trait System: Send + Sync {
     /// # Errors
     /// As [`State::projected`]; [`StepError::InvalidInput`] for a point with another number of coordinates.
     fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
+    /// A point on the constraints from one that may be far from them, as [`State::assembled`]. Without constraints it is
+    /// the same point.
+    ///
+    /// # Errors
+    /// As [`State::assembled`]; [`StepError::InvalidInput`] for a point with another number of coordinates.
+    #[cfg(feature = "derivatives")]
+    fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
     /// What a controller asks of it.
     #[cfg(feature = "derivatives")]
     fn control(&self) -> &dyn Control;
@@ -203,6 +210,21 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N>, const N: usize> Typed<S, 
     }
 }
 
+/// A function that moves a point of a system onto its constraints.
+type Mover<S, const N: usize> = fn(&S, Point<'_, N>) -> Result<Projected<N>, StepError>;
+
+impl<S: Parametric<N>, C, const N: usize> Typed<S, N, C> {
+    /// A point that `mover` has moved onto the constraints.
+    fn moved(&self, at: &PhasePoint, mover: Mover<S, N>) -> Result<OnConstraints, StepError> {
+        let PhasePoint { t, q, v } = at;
+        let (q, v) = (vector(q, "number of coordinates")?, vector(v, "number of velocities")?);
+        let Projected { state, moved_q, moved_v, .. } = mover(&self.system, (*t, &q, &v))?;
+        // The velocity itself: that of the momenta has a further rounding.
+        let [q, v, moved_q, moved_v] = [state.q, v + moved_v, moved_q, moved_v].map(|of| of.as_slice().to_vec());
+        Ok(OnConstraints { point: PhasePoint { t: *t, q, v }, moved_q, moved_v })
+    }
+}
+
 impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> System for Typed<S, N, C> {
     fn name(&self) -> &'static str {
         S::NAME
@@ -283,12 +305,12 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> S
     }
 
     fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError> {
-        let PhasePoint { t, q, v } = at;
-        let (q, v) = (vector(q, "number of coordinates")?, vector(v, "number of velocities")?);
-        let Projected { state, moved_q, moved_v, .. } = C::projected(&self.system, (*t, &q, &v))?;
-        // The velocity itself: that of the momenta has a further rounding.
-        let [q, v, moved_q, moved_v] = [state.q, v + moved_v, moved_q, moved_v].map(|of| of.as_slice().to_vec());
-        Ok(OnConstraints { point: PhasePoint { t: *t, q, v }, moved_q, moved_v })
+        self.moved(at, C::projected)
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError> {
+        self.moved(at, C::assembled)
     }
 
     #[cfg(feature = "derivatives")]

@@ -173,7 +173,9 @@ impl Kind {
         Ok((vectors, matrices.collect::<PyResult<_>>()?, free, residual, rates))
     }
 
-    /// The nearest coordinates and velocities on the constraints, and their changes.
+    /// The nearest coordinates and velocities on the constraints, or those that a continuation from a far guess finds,
+    /// and their changes.
+    #[pyo3(signature = (parameters, t, q, v, is_far=false))]
     #[allow(clippy::type_complexity)] // fields of a Python class
     fn project<'py>(
         &self,
@@ -182,10 +184,12 @@ impl Kind {
         t: f64,
         q: PyReadonlyArray1<'py, f64>,
         v: PyReadonlyArray1<'py, f64>,
+        is_far: bool,
     ) -> PyResult<[Bound<'py, PyArray1<f64>>; 4]> {
         let system = self.with(parameters.as_slice()?)?;
         let at = PhasePoint { t, q: vector(&q, self.n, "q")?, v: vector(&v, self.n, "v")? };
-        let OnConstraints { point, moved_q, moved_v } = system.project(&at).raise(py)?;
+        let found = if is_far { system.assemble(&at) } else { system.project(&at) };
+        let OnConstraints { point, moved_q, moved_v } = found.raise(py)?;
         Ok([point.q, point.v, moved_q, moved_v].map(|of| PyArray1::from_vec(py, of)))
     }
 
