@@ -5,7 +5,7 @@ use crate::support::ending;
 use vi_core::node::Node;
 use vi_core::stepping::FixedStepping;
 use vi_core::{FixedStep, SVector, Starts, State, StepError};
-use vi_systems::{DoubleWell, Kepler, Pendulum};
+use vi_systems::{DoubleWell, Kepler, Pendulum, RotatingHoop, SphericalPendulum};
 
 #[test]
 fn a_step_of_kepler_exists_up_to_its_bound() {
@@ -94,4 +94,31 @@ fn every_step_below_the_bound_is_taken() {
             assert_eq!(ending::fixed(run, 50), None, "h = {h}, {start:?}");
         }
     }
+}
+
+/// The coordinates after the first step.
+fn first<S: FixedStepping<N>, const N: usize>(
+    system: S,
+    q: [f64; N],
+    v: [f64; N],
+    h: f64,
+) -> Result<SVector<f64, N>, StepError> {
+    let mut run = system.at(0.0, q, v).integrate(FixedStep, h)?;
+    run.step().map(|state| state.q)
+}
+
+#[test]
+fn a_long_step_takes_the_root_that_short_steps_lead_to() -> Result<(), StepError> {
+    // The coordinates are those of continuation from h = 0 with 30 digits. Newton iteration from the start finds other
+    // roots.
+    let pendulum = first(Pendulum::default(), [0.617_877_13], [-1.344_352_42], 4.0)?;
+    let hoop = first(RotatingHoop::default(), [-2.560_990_024_390_331], [-1.057_514_412_026_922], 0.8)?;
+    let well = first(DoubleWell::default(), [-0.995_271_648_905_431_6], [0.682_351_423_365_381_3], 3.0)?;
+    let start = ([0.159_564_342_795_291_95, 0.0], [-2.038_901_313_124_093, 0.305_182_449_532_556_35]);
+    let spherical = first(SphericalPendulum::default(), start.0, start.1, 0.4)?;
+    let expected = [-1.466_389_25, -0.493_494_210_982_868_6, -0.035_444_653_096_64, -0.118_619_661_7];
+    for (q, expected) in [pendulum[0], hoop[0], well[0], spherical[0]].into_iter().zip(expected) {
+        assert!((q - expected).abs() < 1e-7, "{q} instead of {expected}");
+    }
+    Ok(())
 }

@@ -8,12 +8,13 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub(crate) enum Branch {
-    /// The root that Newton iteration reaches from the velocity of the last step, or extrapolated from the last steps.
-    /// It depends on the earlier steps only.
+    /// The root that Newton iteration reaches from the velocity of the last step, or extrapolated from the last steps,
+    /// if it is connected with h = 0; otherwise the root that is, or
+    /// [`StepError::TooLong`](crate::error::StepError::TooLong).
     #[default]
     Nearest,
     /// The root that is connected with h = 0: there it is the velocity of p. It depends on the state alone. The solver
-    /// follows it in sixteen parts or more, at 20 to 40 times the cost. If the branch ends before h, it returns
-    /// [`StepError::NotConverged`](crate::error::StepError::NotConverged).
+    /// follows it in sixteen parts or more, at 20 to 40 times the cost. If the branch turns back before h, it returns
+    /// [`StepError::TooLong`](crate::error::StepError::TooLong).
     Connected,
 }

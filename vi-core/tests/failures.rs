@@ -195,6 +195,35 @@ fn assert_typed(error: StepError) {
 }
 
 #[test]
+fn a_step_whose_branch_ends_before_is_too_long() {
+    let system = UnitMass(DoubleWell);
+    let start = system.at(0.0, [-0.501_788_718_293_452_4], [0.482_599_976_848_844_04]);
+    let step = |h: f64| -> Result<f64, StepError> {
+        let mut run = start.integrate(FixedStep, h)?;
+        run.step().map(|_| run.v()[0])
+    };
+    // By continuation with 30 digits the branch turns back at h = 2.1340050. Newton iteration finds v = 0.0729 beyond.
+    let error = step(3.018_217_936_830_678_7).map_or_else(|error| error, |v| panic!("{v}"));
+    let StepError::TooLong { t: 0.0, h, longest } = error else { panic!("{error}") };
+    assert!(h > 3.0 && (longest - 1.707_204_0_f64).abs() < 1e-5, "{error}");
+    assert!(step(longest).is_ok() && step(2.13).is_ok() && step(2.14).is_err(), "{error}");
+    assert_eq!(
+        error.to_string(),
+        "the step from t = 0.000000000 is too long: with h = 3.018e0 no solution continues those of short steps; try h = 1.707e0"
+    );
+}
+
+#[test]
+fn a_long_step_takes_the_connected_root() {
+    let start = UnitMass(DoubleWell).at(0.0, [-0.995_271_648_905_431_6], [0.682_351_423_365_381_3]);
+    let mut run = start.integrate(FixedStep, 3.0).unwrap_or_else(|error| panic!("{error}"));
+    assert!(run.step().is_ok());
+    // By continuation with 30 digits.
+    let off: f64 = run.state().q[0] + 0.035_444_653_096_64;
+    assert!(off.abs() < 1e-10, "{off:e}");
+}
+
+#[test]
 fn a_step_must_be_a_step() {
     let system = UnitMass(DoubleWell);
     let state = State::at(&system, 0.0_f64, [0.74], [0.0]);

@@ -25,8 +25,8 @@
 //! fused multiply-add give results that differ by rounding.
 //!
 //! If the momentum equation has one root, a trajectory agrees with [`vi_core::FixedStep`] and with individually
-//! converged steps to a few roundings, which the motion may amplify. If it has several roots, the initial guess selects
-//! one. An ensemble uses another guess, so its root may differ.
+//! converged steps to a few roundings, which the motion may amplify. If it has several roots, both take the one that is
+//! connected with h = 0.
 
 // A call inside a loop over trajectories prevents vectorization.
 #![allow(clippy::inline_always)]

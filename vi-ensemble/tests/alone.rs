@@ -262,7 +262,11 @@ fn a_run_ends_where_the_fixed_step_does() -> Result<(), StepError> {
             }
             Err(ended) => {
                 assert_eq!(failure.map(|(step, _)| step), Some(ended.steps));
-                assert!(matches!(ended.error, StepError::NonFinite { .. } | StepError::NotConverged { .. }), "{ended}");
+                let is_typed = matches!(
+                    ended.error,
+                    StepError::NonFinite { .. } | StepError::NotConverged { .. } | StepError::TooLong { .. }
+                );
+                assert!(is_typed, "{ended}");
                 (&ended.state, u32::try_from(ended.steps).unwrap_or(u32::MAX))
             }
         };

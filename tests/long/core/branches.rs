@@ -96,7 +96,7 @@ fn the_connected_root_is_taken_or_none(lengths: &[f64]) {
             Connected,
             |before: State<1>, step: Result<f64, StepError>| match (step, branch(before, h)) {
                 (Ok(v), Some(expected)) if (v - expected).abs() < 1e-6 => same += 1,
-                (Err(StepError::NotConverged { .. }), None) => ended += 1,
+                (Err(StepError::NotConverged { .. } | StepError::TooLong { .. }), None) => ended += 1,
                 (step, expected) => {
                     println!("h = {h}: {before:?}: {step:?} instead of {expected:?}");
                     different += 1;
@@ -106,13 +106,14 @@ fn the_connected_root_is_taken_or_none(lengths: &[f64]) {
         println!("h = {h}: {same} steps the same, {ended} branches end, {different} differ");
         // Measured: at most 1 differs, at nearly touching branches.
         assert!(same > 800 && ended > 0 && different <= 2, "h = {h}: {same}, {ended}, {different}");
-        // The nearest root is occasionally another one.
+        // Steps from extrapolated velocities take it too, or are refused.
         let mut others = 0;
         each_step!(60, h, FixedStep, |before: State<1>, step: Result<f64, StepError>| {
-            others += u32::from(!matches!((step, branch(before, h)), (Ok(v), Some(w)) if (v - w).abs() < 1e-6));
+            let is_same = |v: f64| branch(before, h).is_some_and(|w| (v - w).abs() < 1e-6);
+            others += u32::from(step.is_ok_and(|v| !is_same(v)));
         });
-        // Measured: 5 at h = 2.1, and more beyond.
-        assert!(others > 2, "h = {h}: {others}");
+        println!("h = {h}: {others} steps take another root");
+        assert!(others <= 2, "h = {h}: {others}");
     }
 }
 

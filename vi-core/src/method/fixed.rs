@@ -11,8 +11,9 @@
 //! coordinates is one matrix product. If this does not reach the rounding floor, Newton iteration continues. If that
 //! fails, continuation in h follows v from the velocity of p. Every accepted v satisfies the equation to rounding.
 //!
-//! Beyond a certain h the equation has several roots. [`FixedStep`] takes the one that Newton iteration reaches from
-//! the velocities of the last steps; [`Connected`] takes the one that is connected with h = 0. With `L = v·Mv/2 − V(q)`
+//! Beyond a certain h the equation has several roots. Both methods take the one that is connected with h = 0, or return
+//! [`StepError::TooLong`] if its branch turns back before h. [`FixedStep`] checks a root that few corrections of an
+//! extrapolated velocity do not reach; [`Connected`] follows the branch in every step. With `L = v·Mv/2 − V(q)`
 //! and the midpoint rule the Jacobian is `M + (h²/4) ∇²V`, and the root is unique for `h < 2/√(−V''_min/m)`. Beyond,
 //! roots appear and vanish in pairs.
 
@@ -36,7 +37,7 @@ pub struct FixedStep;
 /// Fixed steps of order 2 on the branch that is connected with h = 0: [`FixedStep::connected`].
 ///
 /// A step depends on the state alone. It costs 20 to 40 times as much as one of [`FixedStep`], in sixteen parts or
-/// more. If the branch ends before h, the step returns [`StepError::NotConverged`].
+/// more. If the branch turns back before h, the step returns [`StepError::TooLong`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Connected;
 
@@ -355,8 +356,11 @@ fn found<S: FixedStepping<N, T>, P, const N: usize, T: Scalar>(
     branch: Branch,
 ) -> Result<FixedSolution<N, T>, StepError> {
     let Problem { system, node, h, .. } = at;
-    let searched = || memory.steps.searched(&Called(*system), node, branch);
-    let found = corrected.map_or_else(searched, Ok).and_then(|solved| {
+    let solved = match corrected {
+        Some(solved) => memory.steps.connected(&Called(*system), node, solved),
+        None => memory.steps.searched(&Called(*system), node, branch),
+    };
+    let found = solved.and_then(|solved| {
         let mut after = *node;
         after.advance(h, &solved.v, &solved.increment);
         after.check_finite(node.t).map(|()| FixedSolution { solved, is_common: false })

@@ -4,6 +4,8 @@
 //! with h = 0. The parts of h double after a success and halve after a failure. The branch ends at a singular Jacobian:
 //! then no part is small enough and the step has no such root. The determinant keeps its sign up to the turning point
 //! and has the other sign beyond.
+//!
+//! [`is_connected`] shows with five evaluations that a root is on this branch, if the step is not long.
 
 use super::newton;
 use crate::error::{Residuals, StepError};
@@ -11,7 +13,8 @@ use crate::linear::{self, Matrix};
 use crate::newton::Failure;
 use crate::node::Node;
 use crate::real::Scalar;
-use crate::stepping::FixedStepping;
+use crate::stepping::{FixedStepping, MomentumEquation};
+use crate::vector::length_squared;
 use nalgebra::SVector;
 
 /// Parameters of the continuation: the parts of h, and the allowed distance between two roots.
@@ -31,7 +34,7 @@ impl Pace {
     const RESCUE: Self = Self { largest_part: 1.0, least_part: 1.0 / 64.0, iterations: u32::MAX, signed: false };
     /// Stays on the branch.
     pub(crate) const CLOSE: Self =
-        Self { largest_part: 1.0 / 16.0, least_part: 1.0 / 65536.0, iterations: 3, signed: true };
+        Self { largest_part: 1.0 / 16.0, least_part: 1.0 / 1_073_741_824.0, iterations: 3, signed: true };
 }
 
 /// A velocity, and the number of iterations.
@@ -60,10 +63,61 @@ pub(crate) fn nearest<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     }
 }
 
+/// Margin of the length to try if a branch ends: close to its end a root is hardly determined.
+const MARGIN: f64 = 0.8;
+/// Ratio of the last slope of a branch to its mean from which it counts as vertical.
+const STEEP: f64 = 30.0;
+/// Bounds of the change of the Jacobian in a step, in masses, for a root that needs no continuation.
+const STIFFNESS: [f64; 2] = [-0.3, 1.0];
+/// Largest distance of the roots of shorter steps from the line to such a root, in changes of the velocity.
+const BEND: f64 = 0.25;
+/// The shorter steps.
+const SHORTER: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// Whether the roots of shorter steps are close to the line from the velocity of p to this root, and the Jacobian on this
+/// line is close to the mass matrix: then the root is connected with h = 0. A root of a long step may fail although it
+/// is connected.
+///
+/// Lengths of velocities are those of the kinetic energy, so that coordinates may have different units.
+#[cold]
+pub(crate) fn is_connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    v: &SVector<T, N>,
+) -> bool {
+    let MomentumEquation { residual, jacobian: mass } = system.momentum_equation(node, T::zero(), v);
+    // From v to the velocity of p, which is linear in p.
+    let Some(change) = linear::solve(&mass, &residual) else { return false };
+    let size = |matrix: &S::Jacobian, u: &SVector<T, N>| matrix.multiply(u).dot(u);
+    let moved = size(&mass, &change);
+    let rounding = size(&mass, v) * T::real(T::EPSILON);
+    // Along the change of the velocity and along each coordinate.
+    let is_regular = |matrix: &S::Jacobian, part: f64| {
+        let [least, most] = STIFFNESS.map(|stiffness| T::real(1.0 + part * stiffness));
+        let is_within = |along: T, mass: T| mass * least <= along && along <= mass * most;
+        is_within(size(matrix, &change), moved) && (0..N).all(|i| is_within(matrix.entry(i, i), mass.entry(i, i)))
+    };
+    let is_on_line = |part: f64| {
+        let line = v - change * T::real(1.0 - part);
+        let MomentumEquation { residual, jacobian } = system.momentum_equation(node, h * T::real(part), &line);
+        let off = linear::solve(&jacobian, &residual);
+        is_regular(&jacobian, part)
+            && off.is_some_and(|off| size(&mass, &off) <= moved * T::real(BEND * BEND) + rounding)
+    };
+    if !SHORTER.into_iter().all(is_on_line) {
+        return false;
+    }
+    let ended = system.momentum_equation(node, h, v).jacobian;
+    let sign = |matrix: &S::Jacobian| linear::determinant_sign(&matrix.dense());
+    is_regular(&ended, 1.0) && sign(&ended) == sign(&mass)
+}
+
 /// The root at `h` on the branch connected with h = 0.
 ///
 /// # Errors
-/// [`StepError::NotConverged`] if the branch ends before h; [`StepError::NonFinite`], [`StepError::Singular`].
+/// [`StepError::TooLong`] if the pace stays on the branch and it turns back before h; [`StepError::NotConverged`] if no
+/// root is found; [`StepError::NonFinite`], [`StepError::Singular`].
 #[cold]
 pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
@@ -76,18 +130,41 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     let sign = |h: T, v: &SVector<T, N>| {
         if pace.signed { linear::determinant_sign(&system.momentum_equation(node, h, v).jacobian.dense()) } else { 1 }
     };
-    let forward = sign(T::zero(), &v);
+    let (start, forward) = (v, sign(T::zero(), &v));
+    // Shorter parts would not change h.
+    let least_part = pace.least_part.max(16.0 * T::EPSILON);
     let (mut reached, mut part, mut spent) = (0.0, pace.largest_part, 0);
+    // The change of v over the last part, and this part.
+    let mut last = (SVector::zeros(), 1.0);
     while reached < 1.0 {
         let target = f64::min(reached + part, 1.0);
         let at = h * T::real(target);
-        let root = newton::solve(system, node, at, v);
+        let guess = v + last.0 * T::real((target - reached) / last.1);
+        let root = newton::solve(system, node, at, guess);
         match root {
-            Ok(root) if root.above_floor <= pace.iterations && sign(at, &root.u) == forward => {
+            Ok(root)
+                if root.above_floor <= pace.iterations
+                    && sign(at, &root.u) == forward
+                    && (!pace.signed || {
+                        let middle = h * T::real(0.5 * (reached + target));
+                        let allowed = bend([&start, &v, &root.u], (target - reached) / target);
+                        let far =
+                            |root: &SVector<T, N>, guess: &SVector<T, N>| length_squared(&(root - guess)) > allowed;
+                        !far(&root.u, &guess)
+                            || newton::solve(system, node, middle, v).is_ok_and(|middle| {
+                                middle.above_floor <= pace.iterations && !far(&middle.u, &((v + root.u) * T::real(0.5)))
+                            })
+                    }) =>
+            {
+                last = (root.u - v, target - reached);
                 (v, reached, part) = (root.u, target, pace.largest_part.min(2.0 * part));
                 spent += root.iterations;
             }
-            _ if part > pace.least_part => part /= 2.0,
+            _ if part > least_part => part /= 2.0,
+            _ if pace.signed && is_vertical(&(last.0 * T::real(reached / last.1)), &(v - start)) => {
+                let (t, h) = (node.t.to_f64(), h.to_f64());
+                return Err(StepError::TooLong { t, h, longest: (MARGIN * reached * h).abs() });
+            }
             _ => {
                 // The residual of the last root in the whole step, or the residual of the stalled iteration.
                 let residual = newton::residual(system, node, h, &v);
@@ -108,4 +185,18 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
         }
     }
     Ok(BranchPoint { v, iterations: spent })
+}
+
+/// Whether a branch turns back: there it is vertical over h. At a jump of a force it ends without that, and its
+/// continuation beyond is a root that steps may take.
+fn is_vertical<const N: usize, T: Scalar>(slope: &SVector<T, N>, mean: &SVector<T, N>) -> bool {
+    length_squared(slope) > length_squared(mean) * T::real(STEEP * STEEP)
+}
+
+/// The square of the distance of a root from a line that is allowed in a part of a branch: of its start, the root
+/// before and the next. A jump to another branch is as long in a short part, and has no root in its middle.
+fn bend<const N: usize, T: Scalar>([start, before, next]: [&SVector<T, N>; 3], part: f64) -> T {
+    // The mean slope counts where v has an extremum, and roots that differ by rounding are the same.
+    let mean = length_squared(&(next - start)) * T::real(part * part);
+    (length_squared(&(next - before)) + mean) * T::real(BEND * BEND) + length_squared(next) * T::real(T::EPSILON)
 }

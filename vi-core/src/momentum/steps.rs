@@ -28,7 +28,7 @@ use crate::node::Node;
 use crate::predictor::Predictor;
 use crate::real::{Real, Scalar};
 use crate::stepping::{FixedStepping, MomentumEquation, MomentumResidual};
-use crate::vector::Vector;
+use crate::vector::{Vector, length_squared};
 use core::hint::black_box;
 use nalgebra::SVector;
 
@@ -328,13 +328,54 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         branch: Branch,
     ) -> Result<MomentumStep<N, T>, StepError> {
         let (h, start) = (self.h, self.v());
-        let BranchPoint { v, iterations } = match branch {
-            Branch::Nearest => continuation::nearest(system, node, h, start, start)?,
-            Branch::Connected => continuation::solve(system, node, h, start, continuation::Pace::CLOSE)?,
-        };
+        match branch {
+            Branch::Nearest => {
+                let found = continuation::nearest(system, node, h, start, start)?;
+                self.connected(system, node, self.step_of(system, node, found))
+            }
+            Branch::Connected => {
+                let found = continuation::solve(system, node, h, start, continuation::Pace::CLOSE)?;
+                Ok(self.step_of(system, node, found))
+            }
+        }
+    }
+
+    /// The step if its root is connected with h = 0; otherwise the root that is.
+    ///
+    /// # Errors
+    /// [`StepError::TooLong`] if there is none.
+    #[cold]
+    pub(crate) fn connected<S: FixedStepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        solved: MomentumStep<N, T>,
+    ) -> Result<MomentumStep<N, T>, StepError> {
+        // A root within rounding of its guess after fewer corrections is as close to it as short steps are.
+        let is_close = solved.predicted && solved.iterations < CORRECTIONS;
+        if is_close || S::CONSTANT_JACOBIAN || continuation::is_connected(system, node, self.h, &solved.v) {
+            return Ok(solved);
+        }
+        match continuation::solve(system, node, self.h, solved.v, continuation::Pace::CLOSE) {
+            Ok(found) if !are_one(&found.v, &solved.v) => Ok(self.step_of(system, node, found)),
+            Err(failure @ StepError::TooLong { .. }) => Err(failure),
+            // The same root, or none that a turn of the branch separates from it: a force jumps, or nothing leads from h = 0
+            // since the momenta have no velocity.
+            _ => Ok(solved),
+        }
+    }
+
+    /// The step of a root.
+    fn step_of<S: FixedStepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        BranchPoint { v, iterations }: BranchPoint<N, T>,
+    ) -> MomentumStep<N, T> {
+        let h = self.h;
         let MomentumResidual { residual, increment, .. } = system.momentum_residual(node, h, &v);
         let measured = StepResidual { residual, scale: system.momentum_rounding(node, h, &v) };
-        Ok(MomentumStep { v, increment, iterations, measured, remainder: SVector::zeros(), predicted: false })
+        MomentumStep { v, increment, iterations, measured, remainder: SVector::zeros(), predicted: false }
     }
 
     /// Records a common step.
@@ -361,6 +402,12 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         self.begun = true;
         self.changed = false;
     }
+}
+
+/// Whether two roots are the same but for rounding. That of a nearly singular equation moves by half of the digits.
+fn are_one<const N: usize, T: Scalar>(one: &SVector<T, N>, other: &SVector<T, N>) -> bool {
+    let size = length_squared(one) + length_squared(other);
+    length_squared(&(one - other)) <= size * T::real(T::EPSILON)
 }
 
 /// Lower bound of the scale of each row.
