@@ -257,8 +257,9 @@ fn a_length_is_a_number_or_a_tolerance_of_any_precision() {
         assert!(matches!(h(double, FixedStep, Tolerance(tolerance)), Err(StepError::InvalidInput { .. })));
     }
     assert!(matches!(h(single, FixedStep, Tolerance(1e-9)), Err(StepError::InvalidInput { .. })));
-    // At rest nothing is off.
-    assert!(h(HarmonicOscillator::default().at(0.0, [0.0], [0.0]), FixedStep, Tolerance(1e-9)).is_ok());
+    // At rest there is no error to compare.
+    let rest = h(HarmonicOscillator::default().at(0.0, [0.0], [0.0]), FixedStep, Tolerance(1e-9));
+    assert!(matches!(rest, Err(StepError::Tolerance { estimate: 0.0, .. })), "{rest:?}");
 }
 
 lagrangian! {

@@ -189,6 +189,8 @@ def _message(
         return f"{reason}; start from the momenta of a velocity, or take a shorter h"
     if variant == "Redundant" and not fields.get("rank"):
         return f"{reason}; correct its lengths, or start elsewhere"
+    if variant == "Tolerance" and not fields.get("estimate"):
+        return f"{reason}; give a step length h"
     if variant not in ADVICE:
         return reason
     built = [(method, stages) for method, stages, is_transformed in integrators if not is_transformed]

@@ -503,6 +503,9 @@ impl fmt::Debug for StepError {
     }
 }
 
+/// Advice if the error of a step is too large.
+const SHORTER: &str = "; take shorter steps, a method of higher order, or allow a larger error";
+
 impl fmt::Display for StepError {
     /// Writes the reason, then advice if there is any.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -564,12 +567,7 @@ impl fmt::Display for StepError {
                 f,
                 "; set the velocity toward the zero to zero and change the system so that it stays at rest, or search without event {event}"
             ),
-            Self::Tolerance { estimate: 0.0, .. } => {
-                f.write_str("; give a step length h, or start away from the equilibrium")
-            }
-            Self::Tolerance { .. } => {
-                f.write_str("; take shorter steps, a method of higher order, or allow a larger error")
-            }
+            Self::Tolerance { estimate, .. } => f.write_str(if *estimate > 0.0 { SHORTER } else { "; give a step length h" }),
             Self::Undefined { range: Some(_), .. } => f.write_str(
                 "; write `hold` or `extend` in its `table`, add points, or stop the run before it leaves them",
             ),

@@ -16,7 +16,7 @@ use super::newton::Buffer;
 use super::points::{AnyDerivatives, ErasedSystem};
 use super::solve::{Start, Step, constant};
 use super::stages::{Stages, at, stage, time};
-use super::tableau::Tableau;
+use super::tableau::{Tableau, real};
 use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::node::Node;
@@ -52,7 +52,7 @@ fn decay<const N: usize, const S: usize>(stages: &Stages<N, S>) -> f64 {
     let Tableau { b, legendre, .. } = const { &Tableau::<S>::VALUES };
     let coefficient = |row: &[f64; S], k: usize| {
         let sum: f64 = (0..S).map(|i| b[i] * legendre[k][i] * row[i]).sum();
-        ((2 * k + 1) as f64 * sum).abs()
+        (real(2 * k + 1) * sum).abs()
     };
     let of_row = |row: &[f64; S]| {
         let largest = (0..S).map(|k| coefficient(row, k)).fold(0.0, f64::max);

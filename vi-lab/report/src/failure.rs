@@ -83,6 +83,7 @@ impl Failure {
     }
 
     /// A failed start from the initial state; an input that no integrator accepts is wrong input.
+    #[must_use]
     pub fn start(error: StepError, plan: &Plan) -> Self {
         let Plan { t, q, v, .. } = plan;
         match error {

@@ -173,7 +173,9 @@ fn square(vector: &[f64]) -> f64 {
 fn rank(mut rows: Vec<Vec<f64>>) -> usize {
     for row in &mut rows {
         let length = square(row).sqrt();
-        row.iter_mut().for_each(|entry| *entry /= if length > 0.0 { length } else { 1.0 });
+        for entry in row.iter_mut() {
+            *entry /= if length > 0.0 { length } else { 1.0 };
+        }
     }
     let mut rank = 0;
     loop {
