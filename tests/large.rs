@@ -3,6 +3,7 @@
 use std::thread;
 use vi_core::check::{self, Place};
 use vi_core::collocation::Collocation;
+use vi_core::constrained::Extended;
 use vi_core::linear::{Matrix, Rectangular};
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
@@ -609,7 +610,8 @@ where
         sums.see(ours.momentum_dq.dense(), theirs.momentum_dq.dense());
         sums.see(ours.force_dq.dense(), theirs.force_dq.dense());
         sums.see(ours.force_dv.dense(), theirs.force_dv.dense());
-        let accelerations = (loops.acceleration(t, &q, &v), lines.acceleration(t, &q, &v));
+        // These points are off the constraints.
+        let accelerations = (Extended(loops).acceleration(t, &q, &v), Extended(lines).acceleration(t, &q, &v));
         solutions.see(accelerations.0.expect("an acceleration"), accelerations.1.expect("an acceleration"));
         let p = lines.momentum(t, &q, &v);
         let (ours, theirs) = (loops.flow(t, &q, &p).expect("a flow"), lines.flow(t, &q, &p).expect("a flow"));

@@ -18,7 +18,6 @@ from ._calls import check_arguments
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble
-from ._errors import NotAssembled  # type: ignore[attr-defined]
 from ._explanation import Explanation
 from ._names import among, meant
 from ._request import checked
@@ -203,14 +202,10 @@ class System(metaclass=SystemType):
     def project(self, q: ArrayLike, v: ArrayLike | None = None, *, t: float = 0.0) -> Projected:
         """The state on the constraints nearest to (t, q, v) in the metric of the mass matrix, and how far it is.
 
-        Raises NotAssembled if no coordinates near q satisfy the constraints, Singular if the constraints depend on each
-        other on the way. `assemble` starts from far guesses.
+        Raises NotAssembled if no coordinates are found that satisfy the constraints, Singular if the constraints depend on
+        each other on the way. From a far guess it may find another assembly than `assemble`.
         """
-        try:
-            return self._moved(q, v, t, False)
-        except NotAssembled as error:
-            error.args = (f"{error}; system.assemble(q, v) takes far guesses",)
-            raise
+        return self._moved(q, v, t, False)
 
     def assemble(self, q: ArrayLike, v: ArrayLike | None = None, *, t: float = 0.0) -> Projected:
         """A state on the constraints from a far guess (t, q, v), for example of a loop that is not closed, and how far

@@ -24,11 +24,15 @@ use crate::stepping::Convertible;
 use nalgebra::SMatrix;
 use vi_dispatch::Instructions;
 
-/// The contraction of a fixed-point iteration up to which its solution needs no proof. Measured over 10⁵ steps of plunging
-/// orbits: solutions on other branches have 0.3 or more.
+/// The contraction of a fixed-point iteration up to which its solution needs no proof: it is the only one near the guess.
+/// Measured on 180 plunging orbits with 2, 3, 4 and 8 stages: no step was taken on another branch than that of an
+/// independent continuation.
 pub(super) const FAST: f64 = 0.25;
-/// The same of Newton iteration. A stiff linear system has one solution for each length, and a contraction of zero.
+/// The same of Newton iteration, which finds solutions farther away: with 0.25 it took another branch in ten of 527 such
+/// steps.
 const FAST_NEWTON: f64 = 0.05;
+/// Iterations in which only a guess close to its solution converges. The contraction is then not measured.
+pub(super) const FEW: u32 = 3;
 /// The last coefficients of resolved stages, relative to the largest one. Measured on Kepler's problem: up to 0.09 for
 /// e = 0.6, 1.0 in a step that loses a plunging orbit.
 const RESOLVED: f64 = 0.1;
@@ -106,10 +110,9 @@ pub(super) fn is_proven<const N: usize, const S: usize>(
     step: &Step<N, S>,
     by_newton: bool,
 ) -> bool {
-    let fast = if by_newton { FAST_NEWTON } else { FAST };
-    step.convergence.contraction <= fast
-        || S >= FEWEST && decay(&step.stages) <= RESOLVED
-        || is_linear(system, node, step)
+    let convergence = &step.convergence;
+    let is_fast = if by_newton { convergence.contraction <= FAST_NEWTON } else { convergence.is_fast() };
+    is_fast || S >= FEWEST && decay(&step.stages) <= RESOLVED || is_linear(system, node, step)
 }
 
 impl<const N: usize, const S: usize> Start<'_, N, S> {
@@ -130,7 +133,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Collocation<N> + Convertible<N>,
     {
         let from = constant(system, self.node)?;
-        let too_long = |longest: f64| StepError::TooLong { t: self.node.t, h: self.h, longest: longest * self.h };
+        let too_long =
+            |longest: f64| StepError::TooLong { t: self.node.t, h: self.h, longest: (longest * self.h).abs() };
         let mut solved = |part: f64, stages: &Stages<N, S>| {
             let Self { node, h, pause, .. } = *self;
             let start = Start { node, h: part * h, stages, are_last: false, before: &Convergence::NONE, pause };

@@ -14,6 +14,7 @@
 //! every step would let the energy drift. Rounding hides that error in the change, so the iteration predicts it: each
 //! iteration multiplies it by the contraction, which is measured while changes exceed rounding.
 
+use super::connected::{FAST, FEW};
 use super::stages::Stages;
 use crate::error::StepError;
 use crate::newton::FLOOR;
@@ -155,6 +156,12 @@ impl Convergence {
         let [change, contraction] =
             [change, contraction].map(|ratio| if is_beyond(ratio) { f64::INFINITY } else { ratio });
         StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness }
+    }
+
+    /// Whether the iteration contracted so fast that its solution is the only one near the guess.
+    #[inline(always)]
+    pub(crate) fn is_fast(&self) -> bool {
+        self.contraction <= FAST || self.iterations <= FEW
     }
 
     /// Whether the stages are at the rounding floor of their positions.

@@ -4,7 +4,7 @@
 //! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
 //! no state. The stages of every [`Step`] satisfy their equations to rounding.
 
-use super::connected::{FAST, is_proven};
+use super::connected::is_proven;
 use super::fixed_point::{self, Convergence, Equations, FixedPointResult, NOISE, Pause, StageIncrement};
 use super::general::{General, equations};
 use super::linearization::Linearization;
@@ -66,7 +66,7 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
     pub(crate) fn is_step(&self, node: &Node<N>, h: f64) -> bool {
         let StageIncrement { velocity, momentum } = &self.increment;
         let convergence = &self.iteration.convergence;
-        convergence.is_at_floor() && convergence.contraction <= FAST && node.stays_finite(h, velocity, momentum)
+        convergence.is_at_floor() && convergence.is_fast() && node.stays_finite(h, velocity, momentum)
     }
 
     /// Whether the stages are finite and near a solution, but not at the rounding floor.

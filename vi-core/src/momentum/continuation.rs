@@ -65,6 +65,8 @@ pub(crate) fn nearest<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
 
 /// Margin of the length to try if a branch ends: close to its end a root is hardly determined.
 const MARGIN: f64 = 0.8;
+/// Most solved parts of a continuation that stays on the branch.
+const SOLVES: u32 = 256;
 /// Ratio of the last slope of a branch to its mean from which it counts as vertical.
 const STEEP: f64 = 30.0;
 /// Bounds of the change of the Jacobian in a step, in masses, for a root that needs no continuation.
@@ -136,7 +138,16 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     let (mut reached, mut part, mut spent) = (0.0, pace.largest_part, 0);
     // The change of v over the last part, and this part.
     let mut last = (SVector::zeros(), 1.0);
+    let too_long = |reached: f64| {
+        let (t, h) = (node.t.to_f64(), h.to_f64());
+        StepError::TooLong { t, h, longest: (MARGIN * reached * h).abs() }
+    };
+    let mut solves = 0;
     while reached < 1.0 {
+        solves += 1;
+        if pace.signed && solves > SOLVES && reached > 0.0 {
+            return Err(too_long(reached));
+        }
         let target = f64::min(reached + part, 1.0);
         let at = h * T::real(target);
         let guess = v + last.0 * T::real((target - reached) / last.1);
@@ -162,8 +173,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
             }
             _ if part > least_part => part /= 2.0,
             _ if pace.signed && is_vertical(&(last.0 * T::real(reached / last.1)), &(v - start)) => {
-                let (t, h) = (node.t.to_f64(), h.to_f64());
-                return Err(StepError::TooLong { t, h, longest: (MARGIN * reached * h).abs() });
+                return Err(too_long(reached));
             }
             _ => {
                 // The residual of the last root in the whole step, or the residual of the stalled iteration.

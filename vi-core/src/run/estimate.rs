@@ -157,7 +157,7 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let displacement = hv.map(f64::abs);
     let action = v.zip_map(&after.p, |v, p| (v.to_f64() * p.to_f64()).abs());
     let stiffness = stiffness(system, after, &displacement);
-    let energy = energy_error::<M, S, N, T>(system, [&before.state(), &after.state()], action.sum())?;
+    let energy = energy_error::<M, S, N, T>(system, [&before.state(), &after.state()], action.sum());
     let error = q.zip_map(&error_of_hv, f64::max).zip_map(&unresolved, f64::max);
     Ok(Measurement { error, of: LocalError { q, hv: error_of_hv }, displacement, action, hv, stiffness, energy })
 }
@@ -191,13 +191,15 @@ fn energy_error<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
     system: &S,
     [before, after]: [&State<N, T>; 2],
     action: f64,
-) -> Result<f64, StepError> {
+) -> f64 {
     if !S::AUTONOMOUS || S::FORCED || M::HAS_REACTIONS {
-        return Ok(0.0);
+        return 0.0;
     }
-    let [before, after] = [before.energy(system)?.to_f64(), after.energy(system)?.to_f64()];
+    // An energy may be infinite although the forces are not.
+    let (Ok(before), Ok(after)) = (before.energy(system), after.energy(system)) else { return 0.0 };
+    let [before, after] = [before, after].map(|energy| energy.to_f64());
     let error = known(after - before) / before.abs().max(after.abs()).max(action);
-    Ok(if error > GROSS { error } else { 0.0 })
+    if error > GROSS { error } else { 0.0 }
 }
 
 /// `|∂(L_q + f)_i/∂q_i|` of each coordinate at a node, by central differences over small parts of a displacement.
