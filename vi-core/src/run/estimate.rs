@@ -197,7 +197,7 @@ fn energy_error<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
     }
     // An energy may be infinite although the forces are not.
     let (Ok(before), Ok(after)) = (before.energy(system), after.energy(system)) else { return 0.0 };
-    let [before, after] = [before, after].map(|energy| energy.to_f64());
+    let [before, after] = [before.to_f64(), after.to_f64()];
     let error = known(after - before) / before.abs().max(after.abs()).max(action);
     if error > GROSS { error } else { 0.0 }
 }

@@ -235,7 +235,9 @@ pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         // Standard error may be closed; the rows are complete.
         let _ = writeln!(io::stderr(), "{note}");
     }
-    if let Some(found) = simulation.largest_error() {
+    // Also of a motion that ends by an error: the step before may be the cause. Files and signals say nothing about it.
+    let is_of_motion = |failure: &Failure| matches!(failure, Failure::Step { .. } | Failure::Ended { .. });
+    if let Some(found) = simulation.largest_error().filter(|_| outcome.as_ref().err().is_none_or(is_of_motion)) {
         let _ = writeln!(io::stderr(), "{}", accuracy(&found, &request.system.coordinates()));
     }
     // After any end, and if one output failed, each sink writes what it can.
