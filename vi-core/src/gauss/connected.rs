@@ -12,9 +12,10 @@
 
 use super::fixed_point::{Convergence, Equations as _};
 use super::general::equations;
+use super::linearization::Linearization;
 use super::newton::Buffer;
 use super::points::{AnyDerivatives, ErasedSystem};
-use super::solve::{Start, Step, constant};
+use super::solve::{StageSolution, Start, Step, constant};
 use super::stages::{Stages, at, stage, time};
 use super::tableau::{Tableau, real};
 use crate::collocation::Collocation;
@@ -24,15 +25,9 @@ use crate::stepping::Convertible;
 use nalgebra::SMatrix;
 use vi_dispatch::Instructions;
 
-/// The contraction of a fixed-point iteration up to which its solution needs no proof: it is the only one near the guess.
-/// Measured on 180 plunging orbits with 2, 3, 4 and 8 stages: no step was taken on another branch than that of an
-/// independent continuation.
-pub(super) const FAST: f64 = 0.25;
-/// The same of Newton iteration, which finds solutions farther away: with 0.25 it took another branch in ten of 527 such
-/// steps.
+/// The contraction of Newton iteration up to which its solution needs no proof. It finds solutions farther away than
+/// fixed-point iteration: with 0.25 another branch was taken in ten of 517 plunging orbits.
 const FAST_NEWTON: f64 = 0.05;
-/// Iterations in which only a guess close to its solution converges. The contraction is then not measured.
-pub(super) const FEW: u32 = 3;
 /// The last coefficients of resolved stages, relative to the largest one. Measured on Kepler's problem: up to 0.09 for
 /// e = 0.6, 1.0 in a step that loses a plunging orbit.
 const RESOLVED: f64 = 0.1;
@@ -104,25 +99,41 @@ fn is_linear<const N: usize, const S: usize>(system: &ErasedSystem<'_, N>, node:
 }
 
 /// Whether the contraction of its iteration, its stages, or its equations prove that a step continues short ones.
-pub(super) fn is_proven<const N: usize, const S: usize>(
-    system: &ErasedSystem<'_, N>,
-    node: &Node<N>,
-    step: &Step<N, S>,
-    by_newton: bool,
-) -> bool {
+fn is_proven<const N: usize, const S: usize>(system: &ErasedSystem<'_, N>, node: &Node<N>, step: &Step<N, S>) -> bool {
     let convergence = &step.convergence;
-    let is_fast = if by_newton { convergence.contraction <= FAST_NEWTON } else { convergence.is_fast() };
+    let is_fast = if step.by_newton { convergence.contraction <= FAST_NEWTON } else { convergence.is_fast() };
     is_fast || S >= FEWEST && decay(&step.stages) <= RESOLVED || is_linear(system, node, step)
 }
 
 impl<const N: usize, const S: usize> Start<'_, N, S> {
+    /// The step, if fixed-point iteration failed, contracted slowly or was skipped. `last` is the linearization of the
+    /// previous step, if that had the same length.
+    ///
+    /// # Errors
+    /// [`StepError::StagesUnsettled`], [`StepError::TooLong`], or the reason why the stages have no value.
+    #[cold]
+    pub(crate) fn recover<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+        left: (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
+        cache: &mut Buffer<N, S>,
+    ) -> Result<Step<N, S>, StepError>
+    where
+        Y: Collocation<N> + Convertible<N>,
+    {
+        let step = self.recovered(system, instructions, left, cache)?;
+        let is_proven = is_proven(&ErasedSystem::of(system), self.node, &step);
+        if is_proven { Ok(step) } else { self.continued(system, instructions, step, cache) }
+    }
+
     /// The step of this length that continues those of short lengths: `step` itself, bit for bit, if it does.
     ///
     /// # Errors
     /// [`StepError::TooLong`] if the branch ends at a shorter length, or has not been followed to this one.
     #[cold]
     #[inline(never)]
-    pub(super) fn continued<Y>(
+    fn continued<Y>(
         &self,
         system: &Y,
         instructions: Instructions,
@@ -142,44 +153,43 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         };
         let mut solves = 0;
         let mut part = 1.0;
-        let mut last = loop {
+        let mut found = loop {
             part *= 0.5;
             solves += 1;
             if solves > HALVINGS {
                 return Err(too_long(part));
             }
-            if let Some(short) = solved(part, &from).filter(|short| short.is_proven) {
-                break short.stages;
+            let is_proven = |short: &Step<N, S>| is_proven(&ErasedSystem::of(system), self.node, short);
+            if let Some(short) = solved(part, &from).filter(is_proven) {
+                break short;
             }
         };
-        let mut before = None;
+        let mut before: Option<(f64, Stages<N, S>)> = None;
         let mut increase: f64 = 0.5;
         while part < 1.0 {
             solves += 1;
             if increase < LEAST || solves > SOLVES {
                 return Err(too_long(0.8 * part));
             }
+            let last = &found.stages;
             let next = 1.0_f64.min(part * (1.0 + increase));
             let guess = match &before {
                 Some((part_before, before)) => {
                     let ratio = (next - part) / (part - part_before);
-                    combined(&last, before, |last, before| last + ratio * (last - before))
+                    combined(last, before, |last, before| last + ratio * (last - before))
                 }
-                None => at(&last, |c| next / part * c),
+                None => at(last, |c| next / part * c),
             };
             match solved(next, &guess) {
-                Some(found) if distance(&guess, &found.stages, &from) <= NEAR => {
-                    before = Some((part, last));
-                    (part, last) = (next, found.stages);
+                Some(longer) if distance(&guess, &longer.stages, &from) <= NEAR => {
+                    before = Some((part, found.stages));
+                    (part, found) = (next, longer);
                     increase = 0.5_f64.min(1.5 * increase);
-                    if part >= 1.0 {
-                        let is_same = distance(&step.stages, &found.stages, &from) <= EQUAL;
-                        return Ok(if is_same { step } else { Step { linearization: None, ..found } });
-                    }
                 }
                 _ => increase *= 0.5,
             }
         }
-        Err(too_long(part))
+        let is_same = distance(&step.stages, &found.stages, &from) <= EQUAL;
+        Ok(if is_same { step } else { Step { linearization: None, ..found } })
     }
 }

@@ -14,7 +14,6 @@
 //! every step would let the energy drift. Rounding hides that error in the change, so the iteration predicts it: each
 //! iteration multiplies it by the contraction, which is measured while changes exceed rounding.
 
-use super::connected::{FAST, FEW};
 use super::stages::Stages;
 use crate::error::StepError;
 use crate::newton::FLOOR;
@@ -31,6 +30,12 @@ pub(crate) const FAR: f64 = 1e3;
 /// Smallest change, in ulps of q, that measures the contraction together with a change at the floor; one or two ulps
 /// are noise.
 pub(crate) const NOISE: f64 = 64.0;
+/// The contraction up to which a solution needs no proof that it continues those of short steps: it is the only one near
+/// the guess. Measured on 180 plunging orbits with 2, 3, 4 and 8 stages: no step was taken on another branch than that of
+/// an independent continuation.
+const FAST: f64 = 0.25;
+/// Iterations in which only a guess close to its solution converges. The contraction is then not measured.
+const FEW: u32 = 3;
 /// Iterations without a smaller change, after which the iteration has stalled.
 const STALLS: u32 = 4;
 /// Ulps of q that an ulp of the terms of v counts as, because the mass matrix solves for velocities.

@@ -4,7 +4,6 @@
 //! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
 //! no state. The stages of every [`Step`] satisfy their equations to rounding.
 
-use super::connected::is_proven;
 use super::fixed_point::{self, Convergence, Equations, FixedPointResult, NOISE, Pause, StageIncrement};
 use super::general::{General, equations};
 use super::linearization::Linearization;
@@ -48,8 +47,8 @@ pub struct Step<const N: usize, const S: usize> {
     pub(crate) pause: Pause,
     /// The linearization for the next step, if Newton iteration solved this one.
     pub(crate) linearization: Option<Linearization<N>>,
-    /// Whether the iteration or the stages prove that the step continues short ones.
-    pub(crate) is_proven: bool,
+    /// Whether Newton iteration solved this one.
+    pub(crate) by_newton: bool,
 }
 
 /// The stages after an iteration.
@@ -80,7 +79,7 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
     fn step(&self, h: f64, pause: Pause) -> Step<N, S> {
         let Self { increment, stages, iteration, .. } = self;
         let convergence = iteration.convergence;
-        Step { h, increment: *increment, stages: *stages, convergence, pause, linearization: None, is_proven: true }
+        Step { h, increment: *increment, stages: *stages, convergence, pause, linearization: None, by_newton: false }
     }
 }
 
@@ -109,7 +108,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let mut after = *self.node;
         after.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
         let mut step = solved.step(self.h, self.pause);
-        step.is_proven = is_proven(system, self.node, &step, newton.is_some());
+        step.by_newton = newton.is_some();
         step.convergence.change = self.residual(system, solved);
         (after.is_finite() && step.convergence.is_at_floor()).then_some(step)
     }
@@ -190,30 +189,10 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         }
     }
 
-    /// The step, if fixed-point iteration failed, contracted slowly or was skipped. `last` is the linearization of the
-    /// previous step, if that had the same length.
+    /// The step from a guess of its stages, whether or not it continues short ones.
     ///
     /// # Errors
-    /// [`StepError::StagesUnsettled`], [`StepError::TooLong`], or the reason why the stages have no value.
-    #[cold]
-    pub(crate) fn recover<Y>(
-        &self,
-        system: &Y,
-        instructions: Instructions,
-        left: (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
-        cache: &mut Buffer<N, S>,
-    ) -> Result<Step<N, S>, StepError>
-    where
-        Y: Collocation<N> + Convertible<N>,
-    {
-        let step = self.recovered(system, instructions, left, cache)?;
-        if step.is_proven { Ok(step) } else { self.continued(system, instructions, step, cache) }
-    }
-
-    /// The step from a guess of its stages, whether or not it is proven to continue short ones.
-    ///
-    /// # Errors
-    /// As [`Start::recover`].
+    /// As [`Start::recovered`].
     pub(super) fn unproven<Y>(
         &self,
         system: &Y,
@@ -223,18 +202,19 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     where
         Y: Collocation<N> + Convertible<N>,
     {
-        let solved = self.side_by_side(system, instructions, None);
-        if solved.is_step(self.node, self.h) {
-            return Ok(solved.step(self.h, self.pause));
-        }
-        self.recovered(system, instructions, (Some(&solved), None), cache)
+        // Steps of other lengths do not end a pause.
+        self.by_fixed_point(system, instructions)
+            .map(|step| Step { pause: self.pause, ..step })
+            .or_else(|left| self.recovered(system, instructions, (Some(&left), None), cache))
     }
 
-    /// The step of [`Start::recover`], before its proof.
+    /// The step, if fixed-point iteration failed, contracted slowly or was skipped, whether or not it continues short ones.
+    /// `last` is the linearization of the previous step, if that had the same length.
     ///
     /// # Errors
     /// [`StepError::StagesUnsettled`], or the reason why the stages have no value.
-    fn recovered<Y>(
+    #[cold]
+    pub(super) fn recovered<Y>(
         &self,
         system: &Y,
         instructions: Instructions,
