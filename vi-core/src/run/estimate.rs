@@ -93,11 +93,9 @@ struct Measurement<const N: usize> {
     /// The larger error of q and h·v.
     error: SVector<f64, N>,
     of: LocalError<N>,
-    /// `|h v|` and `|p v|` at the end of the step.
-    displacement: SVector<f64, N>,
-    action: SVector<f64, N>,
-    /// `h v` there.
+    /// `h v` and `|p v|` at the end of the step.
     hv: SVector<f64, N>,
+    action: SVector<f64, N>,
     /// `|∂(L_q + f)_i/∂q_i|` at the end of the step.
     stiffness: SVector<f64, N>,
     /// `|H1 − H0|` of a system that conserves H, relative to the energy, if it exceeds [`GROSS`]; else zero.
@@ -109,7 +107,7 @@ impl<const N: usize> Measurement<N> {
         let infinite = SVector::repeat(f64::INFINITY);
         let of = LocalError { q: infinite, hv: infinite };
         let zeros = SVector::zeros();
-        Self { error: infinite, of, displacement: zeros, action: zeros, hv: zeros, stiffness: zeros, energy: 0.0 }
+        Self { error: infinite, of, hv: zeros, action: zeros, stiffness: zeros, energy: 0.0 }
     }
 }
 
@@ -142,7 +140,8 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let h = duration(before, after);
     let half = h * T::real(0.5);
     let (middle, memory) = method.step_of(system, (before, memory), [half, *of_run])?;
-    let unresolved = unresolved(run, &before.state(), (&middle, &memory, half))?;
+    let start = (before.state(), before.state().velocity(system)?);
+    let unresolved = unresolved(run, &start, (&middle, &memory, half))?;
     let (end, _) = method.step_of(system, (&middle, &memory), [duration(&middle, after), *of_run])?;
     let v = after.state().velocity(system)?;
     let better = end.state().velocity(system)?;
@@ -154,12 +153,11 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let q = q.map(|entry| known(factor * entry.to_f64()));
     let error_of_hv = (v - better).map(|entry| known(factor * length * entry.to_f64()));
     let hv = v.map(|entry| length * entry.to_f64());
-    let displacement = hv.map(f64::abs);
     let action = v.zip_map(&after.p, |v, p| (v.to_f64() * p.to_f64()).abs());
-    let stiffness = stiffness(system, after, &displacement);
-    let energy = energy_error::<M, S, N, T>(system, [&before.state(), &after.state()], action.sum());
+    let stiffness = stiffness(system, after, &hv);
+    let energy = energy_error::<M, S, N, T>(system, [start, (after.state(), v)], action.sum());
     let error = q.zip_map(&error_of_hv, f64::max).zip_map(&unresolved, f64::max);
-    Ok(Measurement { error, of: LocalError { q, hv: error_of_hv }, displacement, action, hv, stiffness, energy })
+    Ok(Measurement { error, of: LocalError { q, hv: error_of_hv }, hv, action, stiffness, energy })
 }
 
 /// For each coordinate, `h |u'(t0) − v0|` of the half step with the dense output u, if that exceeds half of the
@@ -169,12 +167,12 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
 /// an even number of stages both return the state from which they started, and their difference is no error.
 fn unresolved<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     run: &Run<M, S, N, T>,
-    before: &State<N, T>,
+    (before, v): &(State<N, T>, SVector<T, N>),
     (middle, memory, half): (&Node<N, T>, &M::Memory, T),
 ) -> Result<SVector<f64, N>, StepError> {
     let Run { method, system, .. } = run;
     let output = method.dense_output(system, before, middle, half, memory)?;
-    let (v, after) = (before.velocity(system)?, middle.state().velocity(system)?);
+    let after = middle.state().velocity(system)?;
     let missed = output.velocity(before.t) - v;
     Ok(SVector::from_fn(|i, _| {
         let [missed, before, after] = [missed[i], v[i], after[i]].map(|speed| (half * speed).to_f64().abs());
@@ -189,15 +187,17 @@ fn unresolved<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T:
 /// so may its halves.
 fn energy_error<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     system: &S,
-    [before, after]: [&State<N, T>; 2],
+    ends: [(State<N, T>, SVector<T, N>); 2],
     action: f64,
 ) -> f64 {
     if !S::AUTONOMOUS || S::FORCED || M::HAS_REACTIONS {
         return 0.0;
     }
+    let [before, after] = ends.map(|(State { t, q, .. }, v)| system.energy(t, &q, &v).to_f64());
     // An energy may be infinite although the forces are not.
-    let (Ok(before), Ok(after)) = (before.energy(system), after.energy(system)) else { return 0.0 };
-    let [before, after] = [before.to_f64(), after.to_f64()];
+    if !(before.is_finite() && after.is_finite()) {
+        return 0.0;
+    }
     let error = known(after - before) / before.abs().max(after.abs()).max(action);
     if error > GROSS { error } else { 0.0 }
 }
@@ -209,7 +209,7 @@ fn stiffness<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
     displacement: &SVector<f64, N>,
 ) -> SVector<f64, N> {
     SVector::from_fn(|i, _| {
-        let length = (PROBE * displacement[i]).max(T::EPSILON.powf(2.0 / 3.0) * node.q[i].to_f64().abs());
+        let length = (PROBE * displacement[i].abs()).max(T::EPSILON.powf(2.0 / 3.0) * node.q[i].to_f64().abs());
         let force = |length: f64| {
             let mut q = node.q;
             q[i] += T::real(length);
@@ -544,7 +544,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 
     fn add(&mut self, found: &Measurement<N>) {
         self.action = self.action.zip_map(&found.action, f64::max);
-        self.displacement = self.displacement.zip_map(&found.displacement, f64::max);
+        self.displacement = self.displacement.zip_map(&found.hv, |largest, hv| largest.max(hv.abs()));
         let first = *self.first_hv.get_or_insert(found.hv);
         self.deflection = self.deflection.zip_map(&(found.hv - first), |largest, hv| largest.max(hv.abs()));
         self.stiffness = self.stiffness.zip_map(&found.stiffness, f64::max);
