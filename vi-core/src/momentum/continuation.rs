@@ -152,20 +152,20 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
         let at = h * T::real(target);
         let guess = v + last.0 * T::real((target - reached) / last.1);
         let root = newton::solve(system, node, at, guess);
+        // Close to its guess, or with the root of half of the part close to the middle.
+        let stays = |next: &SVector<T, N>| {
+            let allowed = bend([&start, &v, next], (target - reached) / target);
+            let is_far = |root: &SVector<T, N>, guess: &SVector<T, N>| length_squared(&(root - guess)) > allowed;
+            let middle = || newton::solve(system, node, h * T::real(0.5 * (reached + target)), v);
+            let is_between = |middle: &SVector<T, N>| !is_far(middle, &((v + next) * T::real(0.5)));
+            !is_far(next, &guess)
+                || middle().is_ok_and(|root| root.above_floor <= pace.iterations && is_between(&root.u))
+        };
         match root {
             Ok(root)
                 if root.above_floor <= pace.iterations
                     && sign(at, &root.u) == forward
-                    && (!pace.signed || {
-                        let middle = h * T::real(0.5 * (reached + target));
-                        let allowed = bend([&start, &v, &root.u], (target - reached) / target);
-                        let far =
-                            |root: &SVector<T, N>, guess: &SVector<T, N>| length_squared(&(root - guess)) > allowed;
-                        !far(&root.u, &guess)
-                            || newton::solve(system, node, middle, v).is_ok_and(|middle| {
-                                middle.above_floor <= pace.iterations && !far(&middle.u, &((v + root.u) * T::real(0.5)))
-                            })
-                    }) =>
+                    && (!pace.signed || stays(&root.u)) =>
             {
                 last = (root.u - v, target - reached);
                 (v, reached, part) = (root.u, target, pace.largest_part.min(2.0 * part));
