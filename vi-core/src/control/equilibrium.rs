@@ -180,6 +180,13 @@ struct Balance<const N: usize> {
     scale: SVector<f64, N>,
 }
 
+/// The size of a move by the diagonal of a mass matrix. Unlike lengths of the coordinates, its kinetic energy has no units
+/// of its own.
+fn size_by<const N: usize>(mass: &SMatrix<f64, N, N>) -> impl Fn(&SVector<f64, N>) -> f64 + use<N> {
+    let weights = mass.diagonal().map(f64::abs);
+    move |u| u.component_mul(u).dot(&weights).sqrt()
+}
+
 impl<const N: usize> Balance<N> {
     fn is_finite(&self) -> bool {
         let Self { residual, stiffness, damping, mass, .. } = self;
@@ -220,9 +227,7 @@ impl<const N: usize, D: Collocation<N, Dual<f64>>, R: Collocation<N, Dual<Rounde
 
     /// A point from which undamped Newton iteration converges.
     fn approached(&self, mut q: SVector<f64, N>, mut at: Balance<N>) -> Result<SVector<f64, N>, StepError> {
-        // Unlike lengths of the coordinates, the kinetic energy of a correction has no units of its own.
-        let weights = at.mass.diagonal().map(f64::abs);
-        let size = |u: &SVector<f64, N>| u.component_mul(u).dot(&weights).sqrt();
+        let size = size_by(&at.mass);
         let (guess, mut reach) = (q, REACH * size(&q));
         for step in 0..STEPS {
             let stiffness = self.held(&at.stiffness);
@@ -258,8 +263,7 @@ impl<const N: usize, D: Collocation<N, Dual<f64>>, R: Collocation<N, Dual<Rounde
         let Some(inverse) = linear::solve(&stiffness, &SMatrix::<f64, N, N>::identity()) else { return false };
         let errors = at.residual.abs() + at.scale * (newton::FLOOR * f64::EPSILON);
         let errors = inverse.abs() * self.held_forces(&errors);
-        let weights = at.mass.diagonal().map(f64::abs);
-        let size = |u: &SVector<f64, N>| u.component_mul(u).dot(&weights).sqrt();
+        let size = size_by(&at.mass);
         // False for NaN.
         [1.0, -1.0].into_iter().all(|sign| {
             let there = self.held(&self.linearized(&(q + errors * sign)).stiffness);
