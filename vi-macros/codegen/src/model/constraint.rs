@@ -293,7 +293,7 @@ pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
         };
         at(constraint, mistake);
     } else if !integrable && constraints.len() >= dimension {
-        let moves = mobility::leave_motion(pool, constraints, dimension, parameters);
+        let moves = mobility::leave_motion(pool, (constraints, &rows), dimension, parameters);
         if let Some(first) = constraints.get(dimension).or(constraints.last()).filter(|_| !moves) {
             at(first, ConstraintMistake::TooMany { count: constraints.len(), size: dimension });
         }

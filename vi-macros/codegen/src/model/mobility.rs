@@ -39,10 +39,10 @@ enum Place {
     Lost,
 }
 
-/// Whether these constraints leave a motion at default parameters, or may.
+/// Whether these constraints, with the rows of A, leave a motion at default parameters, or may.
 pub(super) fn leave_motion(
-    pool: &mut Pool<Symbol>,
-    constraints: &[Constraint],
+    pool: &Pool<Symbol>,
+    (constraints, rows): (&[Constraint], &[Vec<Expr>]),
     dimension: usize,
     parameters: &[Parameter],
 ) -> bool {
@@ -52,12 +52,8 @@ pub(super) fn leave_motion(
     let holonomic = constraints.iter().filter(|constraint| constraint.is_holonomic);
     let mut exprs: Vec<Expr> = holonomic.map(|constraint| constraint.value).collect();
     let values = exprs.len();
-    for constraint in constraints.iter().filter(|constraint| constraint.is_holonomic) {
-        exprs.extend(constraint.rate(pool, dimension).row);
-    }
-    for constraint in constraints.iter().filter(|constraint| !constraint.is_holonomic) {
-        exprs.extend(constraint.rate(pool, dimension).row);
-    }
+    // Holonomic constraints come first.
+    exprs.extend(rows.iter().flatten());
     let linkage = Linkage { pool, exprs, values, dimension, parameters };
     let mut is_rigid = true;
     for start in 0..STARTS {
