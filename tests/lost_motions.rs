@@ -44,7 +44,7 @@ fn the_step_that_destroys_an_orbit_is_measured() {
             check(watched(start, start.integrate(FixedStep, 0.5 * h), 9.0), &what);
         }
     }
-    // Most of the longer steps lose the orbit: measured 108 of 144.
+    // Measured: 86 of 144, those that end by an error among them.
     assert!(lost > 50, "{lost}");
 }
 
@@ -77,7 +77,7 @@ fn a_bounce_within_one_step_is_measured() {
     let mut run = start.integrate(FixedStep, 0.01).expect("a start").monitored();
     run.until(2.8).expect("steps");
     let found = run.largest();
-    // Measured: 9.5, relative to a quarter of the change of h v. The velocity of y is wrong by 0.37 of 1.
+    // Measured: 49, relative to a quarter of the change of h v.
     assert!(found.estimate > 1.0 && found.coordinate == 1 && (found.t - 0.48).abs() < 0.02, "{found:?}");
 }
 
@@ -94,11 +94,11 @@ fn the_scale_of_a_rotor_is_a_turn() {
             assert!(off < bound && found < 1.5e-6, "{:?}: off by {off:e}, estimate {found:e}", run.run().h());
         }
     }
-    // Measured at t = 20 in radians, for the speeds 10 and 100.
-    check(&Gauss::<8>, 2e-4);
-    check(&Gauss::<4>, 2e-4);
-    check(&Composition::KAHAN_LI_8, 3e-4);
-    check(&FixedStep, 1e-2);
+    // Measured at t = 20 in radians, the larger one: 1.4e-5, 7.9e-5, 1.4e-4, 4.6e-3.
+    check(&Gauss::<8>, 2e-5);
+    check(&Gauss::<4>, 1e-4);
+    check(&Composition::KAHAN_LI_8, 2e-4);
+    check(&FixedStep, 5e-3);
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn stiff_steps_of_an_even_number_of_stages_are_measured() {
         found
     }
     for found in [estimates::<2>(), estimates::<4>(), estimates::<8>()] {
-        // Measured: 0.12 to 1.5; the true errors are 0.6 to 2 of the amplitude.
+        // Measured: 0.63 to 2.0; the true errors are 0.6 to 2 of the amplitude.
         assert!(found.iter().all(|estimate| *estimate > 0.1), "{found:?}");
     }
 }
@@ -189,7 +189,7 @@ fn a_step_does_not_jump_over_a_pole() {
     let energy = run.energy().expect("H");
     let error = loop {
         match run.step() {
-            // Measured: 7e-15 before the pole at t = 0.6, where H once jumped by 0.098.
+            // Measured: 1.8e-15 before the pole at t = 0.6, where H once jumped by 0.098.
             Ok(_) => assert!((run.energy().expect("H") - energy).abs() < 1e-12, "t = {}", run.t()),
             Err(error) => break error,
         }
