@@ -10,7 +10,8 @@
 //! | `separable`, `general` | the stage equations: forces of the position alone, and any system |
 //! | `fixed_point` | fixed-point iteration to convergence |
 //! | `solve` | the solver of a step, with runtime dispatch to SIMD instructions |
-//! | `connected` | whether a long step continues short ones |
+//! | `branch` | the branch of steps of all lengths, from h → 0 |
+//! | `connected` | whether a long step lies on it |
 //! | `points` | the equations of motion at a point, generic and type-erased |
 //! | `linearization` | the point of a linearization, and how stiff a step is there |
 //! | `newton` | simplified Newton iteration, linearized at the middle of the step |
@@ -28,6 +29,7 @@
 // One index addresses several arrays, so that a SIMD register holds neighbours.
 #![allow(clippy::needless_range_loop)]
 
+pub(crate) mod branch;
 mod connected;
 pub mod density;
 pub(crate) mod energies;
