@@ -1,9 +1,17 @@
-//! The initial guess of a step, extrapolated from the unknowns of the last steps, as in `crate::predictor`. The number
-//! of constraints is no constant of a type, so that the unknowns are a list.
+//! The initial guess of a step, extrapolated from the unknowns of the last steps, as in `crate::predictor`, or from the
+//! node alone. The number of constraints is no constant of a type, so that the unknowns are a list.
 
+use super::equations::unknowns;
+use super::{Constrained, accelerations};
+use crate::error::StepError;
+use crate::gauss::lobatto::Lobatto;
+use crate::gauss::tableau::Tableau;
+use crate::linear::Bordered;
+use crate::node::Node;
 use crate::predictor::weights;
 use crate::vector::worse;
 use alloc::vec::Vec;
+use nalgebra::SVector;
 
 /// Highest degree of the extrapolation.
 const HIGHEST: usize = 5;
@@ -68,6 +76,28 @@ impl Extrapolation {
         let is_valid = |u: &Vec<f64>| u.len() == count && longest(u).is_finite();
         self.degree <= HIGHEST && self.last.len() == HIGHEST + 1 && self.last.iter().all(is_valid)
     }
+}
+
+/// Unknowns of a step of length h from a node with the velocity v: velocities with constant acceleration, and the
+/// impulses of the multipliers at the node. Factors the bordered mass matrix.
+///
+/// # Errors
+/// [`StepError::Singular`] and [`StepError::NonFinite`].
+pub(crate) fn from_node<S: Constrained<N>, const N: usize, const STAGES: usize>(
+    system: &S,
+    (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
+    bordered: &mut Bordered,
+) -> Result<Vec<f64>, StepError> {
+    let (acceleration, multipliers) = accelerations(system, (node.t, &node.q, v), bordered)?;
+    // Room for the length of the step.
+    let mut guess = Vec::with_capacity(unknowns::<N, STAGES>(S::CONSTRAINTS.len()) + 1);
+    for c in const { Tableau::<STAGES>::VALUES.c } {
+        guess.extend((v + acceleration * (h * c)).iter());
+    }
+    for b in const { Lobatto::<STAGES>::VALUES.b } {
+        guess.extend(multipliers.as_ref().iter().map(|multiplier| multiplier * (h * b)));
+    }
+    Ok(guess)
 }
 
 #[cfg(test)]

@@ -4,14 +4,11 @@
 
 use super::energies::{energies, power_of};
 use super::equations::{Rows, impulses, stage_velocity, unknowns};
-use super::guess::Extrapolation;
-use super::solve::{Solution, Solved, Workspace, projected, unprojected};
-use super::{Constrained, ConvertibleConstrained, accelerations, bordered, density};
+use super::guess::{Extrapolation, from_node};
+use super::solve::{Solution, Solved, Workspace, projected};
+use super::{Constrained, ConvertibleConstrained, bordered, connected, density};
 use crate::error::StepError;
 use crate::gauss::density::power;
-use crate::gauss::lobatto::Lobatto;
-use crate::gauss::tableau::Tableau;
-use crate::linear::Bordered;
 use crate::method::length::Trial;
 use crate::method::preserving::{Ended, NodeEnergy, StepsOfAnyLength, excess_of, measured};
 use crate::node::Node;
@@ -43,6 +40,7 @@ pub(crate) struct TriedLength<const N: usize, const STAGES: usize, M> {
     /// Largest residual of the step equations, over its rounding-error bound.
     of_rows: f64,
     iterations: u32,
+    contraction: f64,
     /// `E0(h) − C_s h^2s D_*` less the energy of the node.
     residual: f64,
     /// `E1 − E0` without the projection.
@@ -84,28 +82,6 @@ pub struct TakenLength<const N: usize, const STAGES: usize, M> {
     pub(crate) residual: f64,
 }
 
-/// Unknowns of a step of length h from a node with the velocity v: velocities with constant acceleration, and the
-/// impulses of the multipliers at the node. Factors the bordered mass matrix.
-///
-/// # Errors
-/// [`StepError::Singular`] and [`StepError::NonFinite`].
-pub(crate) fn from_node<S: Constrained<N>, const N: usize, const STAGES: usize>(
-    system: &S,
-    (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
-    bordered: &mut Bordered,
-) -> Result<Vec<f64>, StepError> {
-    let (acceleration, multipliers) = accelerations(system, (node.t, &node.q, v), bordered)?;
-    // Room for the length of the step.
-    let mut guess = Vec::with_capacity(unknowns::<N, STAGES>(S::CONSTRAINTS.len()) + 1);
-    for c in const { Tableau::<STAGES>::VALUES.c } {
-        guess.extend((v + acceleration * (h * c)).iter());
-    }
-    for b in const { Lobatto::<STAGES>::VALUES.b } {
-        guess.extend(multipliers.as_ref().iter().map(|multiplier| multiplier * (h * b)));
-    }
-    Ok(guess)
-}
-
 impl<S, const N: usize> ConstrainedLengths<'_, S, N>
 where
     S: Constrained<N> + ConvertibleConstrained<N>,
@@ -145,11 +121,11 @@ where
     ) -> Result<Solution<Rows<S, N, STAGES>>, StepError> {
         let Self { system, sign, workspace, .. } = self;
         let (workspace, of) = (&mut **workspace.borrow_mut(), (node, h, *sign));
-        unprojected::<S, N, STAGES>(system, of, u, workspace, is_factored).or_else(|left| {
+        connected::unprojected::<S, N, STAGES>(system, of, u, workspace, is_factored).or_else(|left| {
             let flow = node.state().raw_flow(*system).map_err(|_| left)?;
             let bordered = &mut bordered::<S, N, f64>();
             *u = from_node::<S, N, STAGES>(system, (node, h, &flow.v), bordered).map_err(|_| left)?;
-            unprojected::<S, N, STAGES>(system, of, u, workspace, false).map_err(|_| left)
+            connected::unprojected::<S, N, STAGES>(system, of, u, workspace, false).map_err(|_| left)
         })
     }
 
@@ -176,6 +152,7 @@ where
             }),
             of_rows: solution.residual,
             iterations: solution.iterations,
+            contraction: solution.contraction,
             residual,
             work: energies.work,
             size: energies.size,
@@ -233,9 +210,14 @@ where
         let workspace = &mut **workspace.borrow_mut();
         let mut u = core::mem::take(&mut workspace.unknowns);
         trial.write(&mut u);
-        let TriedLength { h, of_rows: residual, iterations, .. } = *trial;
+        let TriedLength { h, of_rows: residual, iterations, contraction, .. } = *trial;
         let rows = Rows::<S, N, STAGES>::at(system, node, h, &u);
-        let solved = projected(*system, (node, h, *sign), (&Solution { rows, residual, iterations }, &u), workspace);
+        let solved = projected(
+            *system,
+            (node, h, *sign),
+            (&Solution { rows, residual, iterations, contraction }, &u),
+            workspace,
+        );
         workspace.unknowns = u;
         let (Solved { mut end, mu, residual, .. }, v) = solved?;
         let gain = trial.work - power_of::<S, N, f64>(system, (end.t, &end.q), mu.as_ref());

@@ -28,6 +28,7 @@
 //! | `assembly` | a state on the constraints from a far guess, [`State::assembled`](crate::State::assembled) |
 //! | `equations` | the equations of a step of [`GaussLobatto`](crate::GaussLobatto), and their Jacobian |
 //! | `solve` | their solution to the rounding floor |
+//! | `connected` | whether a long step continues short ones |
 //! | `reduced` | the same for point masses in a uniform field, in the impulses alone |
 //! | `guess` | the initial guess of a step |
 //! | `lengths` | steps of any length, for [`EnergyPreservingGaussLobatto`](crate::EnergyPreservingGaussLobatto) |
@@ -35,6 +36,7 @@
 //! | `variation` | tangent vectors of a step |
 
 mod assembly;
+pub(crate) mod connected;
 mod density;
 pub(crate) mod energies;
 mod equations;

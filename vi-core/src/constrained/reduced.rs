@@ -12,7 +12,7 @@
 //! pivot that is not positive, a residual above the floor, rows that fill S.
 
 use super::equations::Place;
-use super::solve::Solved;
+use super::solve::{Solved, contracted};
 use super::{Constrained, diagonal};
 use crate::linear::{Rectangular, Row};
 use crate::newton::{FLOOR, roundings};
@@ -307,10 +307,11 @@ pub(crate) fn step<S: Constrained<N>, const N: usize>(
         SVector::<f64, N>::from_fn(|i, _| (node.p[i] + (node.p_low[i] + force[i] * (h * 0.5))) * reduced.inverse[i]);
     reduced.add(&reduced.weighted, lambda, &mut v);
 
-    let (mut iterations, mut before, mut is_factored) = (0, f64::INFINITY, false);
+    let (mut iterations, mut before, mut is_factored, mut contraction) = (0, f64::INFINITY, false, 0.0);
     let residual = loop {
         let end: Place<N, f64> = (t1, node.q + (node.q_low + v * h));
         let residual = constraints(system, &end, h, reduced);
+        contraction = contracted(contraction, [before, residual]);
         if !is_factored || residual > FLOOR && residual > FALLEN * before {
             is_factored = reduced.schur.factor(&reduced.last, &reduced.weighted);
         }
@@ -338,7 +339,7 @@ pub(crate) fn step<S: Constrained<N>, const N: usize>(
     let (end, mu, of_velocity) = projected(system, (node, h, &v), force * h + reaction, reduced)?;
     let residual = worse(of_velocity, residual);
     // False for NaN.
-    (residual <= FLOOR).then_some(Solved { end, mu, residual, iterations })
+    (residual <= FLOOR).then_some(Solved { end, mu, residual, iterations, contraction })
 }
 
 /// g/h at the end of a step, in `known`, and A and a there. Returns the largest row over its rounding.

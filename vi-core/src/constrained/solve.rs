@@ -10,7 +10,7 @@
 
 use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
-use super::reduced::{self, Reduced};
+use super::reduced::Reduced;
 use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, is_shortened, reaction_of, weights};
 use crate::error::{Residuals, StepError};
 use crate::linear::{Bordered, Factored, Rectangular, Row, Unsolvable};
@@ -29,6 +29,8 @@ const HALVINGS: u32 = 12;
 const FALLEN: f64 = 0.1;
 /// Corrections without a halving after the last one that reduced the residual.
 const WHOLE: u32 = 3;
+/// Residuals up to this are noise of rounding.
+const NOISE: f64 = 64.0;
 /// A solution after more iterations has its determinant evaluated anew.
 const FEW: u32 = 8;
 
@@ -41,7 +43,7 @@ pub struct Workspace {
     signs: [i8; 2],
     jacobian: Factored,
     /// The solver of midpoint steps in the impulses alone, if the system allows it.
-    reduced: Option<Box<Reduced>>,
+    pub(super) reduced: Option<Box<Reduced>>,
     /// Right-hand side and solution in the order of elimination.
     eliminated: Vec<f64>,
     correction: Vec<f64>,
@@ -60,6 +62,8 @@ pub(crate) struct Solved<const N: usize, M> {
     pub(crate) mu: M,
     pub(crate) residual: f64,
     pub(crate) iterations: u32,
+    /// The largest ratio of two residuals in turn, above the noise of rounding.
+    pub(crate) contraction: f64,
 }
 
 /// The equations of a step at its solution.
@@ -67,36 +71,17 @@ pub(crate) struct Solution<R> {
     pub(crate) rows: R,
     pub(crate) residual: f64,
     pub(crate) iterations: u32,
+    /// As of [`Solved`].
+    pub(crate) contraction: f64,
 }
 
-/// Solves the step of length h from `node`, with the guess in `u`; replaces it by the unknowns. `sign` is the sign of
-/// the determinant of the bordered mass matrix, `is_next` says that the step follows the last one of the workspace.
+/// Solves the equations of the step of length h from `node`, without its projection, with the guess in `u`; replaces it
+/// by the unknowns. `sign` is the sign of the determinant of the bordered mass matrix. If `is_factored`, the workspace
+/// holds the factors of a step of nearly this length from the same node. The step may be on another branch than that of
+/// short ones.
 ///
 /// # Errors
 /// [`StepError::NotConverged`], [`StepError::Singular`], [`StepError::NonFinite`].
-pub(crate) fn step<S, const N: usize, const STAGES: usize>(
-    system: &S,
-    (node, h, sign, is_next): (&Node<N>, f64, i8, bool),
-    u: &mut Vec<f64>,
-    workspace: &mut Workspace,
-) -> Result<Solved<N, S::Multipliers>, StepError>
-where
-    S: Constrained<N> + ConvertibleConstrained<N>,
-{
-    let reduced = workspace.reduced.as_mut().filter(|_| S::POINT_MASSES && sign > 0);
-    if let Some(solved) = reduced.and_then(|reduced| reduced::step(system, (node, h, is_next), u, reduced)) {
-        return Ok(solved);
-    }
-    let of = (node, h, sign);
-    let solution = unprojected::<S, N, STAGES>(system, of, u, workspace, false)?;
-    projected(system, of, (&solution, u), workspace).map(|(solved, _)| solved)
-}
-
-/// Solves the equations of a step, without its projection. If `is_factored`, the workspace holds the factors of a step
-/// of nearly this length from the same node.
-///
-/// # Errors
-/// As [`step`].
 pub(crate) fn unprojected<S, const N: usize, const STAGES: usize>(
     system: &S,
     (node, h, sign): (&Node<N>, f64, i8),
@@ -113,7 +98,7 @@ where
     let rows = |u: &[f64]| Rows::<S, N, STAGES>::from_start(system, (node, h), &start, u);
     let mut at = rows(u);
     let mut residual = at.residual();
-    let (mut iterations, mut residuals) = (0, Residuals::new());
+    let (mut iterations, mut residuals, mut contraction) = (0, Residuals::new(), 0.0);
     let mut has_right_sign = is_factored && workspace.jacobian.determinant_sign() == of_short_steps;
     let failed = |iterations, residual, residuals: &Residuals| {
         let turn = turn(system, node, h);
@@ -155,13 +140,14 @@ where
         iterations += 1;
         core::mem::swap(u, &mut workspace.trial);
         is_factored = next_residual <= FLOOR || next_residual < FALLEN * residual;
+        contraction = contracted(contraction, [residual, next_residual]);
         (at, residual) = (next, next_residual);
     }
     if iterations > FEW || !has_right_sign {
         has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
     }
     if has_right_sign {
-        Ok(Solution { rows: at, residual, iterations })
+        Ok(Solution { rows: at, residual, iterations, contraction })
     } else if at.is_straight() {
         Err(unsolvable(Unsolvable::Singular, node.t))
     } else {
@@ -172,7 +158,7 @@ where
 /// The end of a solved step, with its projection, and the velocity there.
 ///
 /// # Errors
-/// As [`step`].
+/// As [`unprojected`].
 pub(crate) fn projected<S, const N: usize, const STAGES: usize>(
     system: &S,
     (node, h, sign): (&Node<N>, f64, i8),
@@ -182,7 +168,7 @@ pub(crate) fn projected<S, const N: usize, const STAGES: usize>(
 where
     S: Constrained<N>,
 {
-    let Solution { rows: at, residual, iterations } = solution;
+    let Solution { rows: at, residual, iterations, contraction } = solution;
     let (t, q) = at.end();
     let p = node.p + (node.p_low + at.increment);
     let projected = velocity(system, (t, &q, &p), &stage_velocity(u, STAGES - 1), &mut workspace.bordered)?;
@@ -213,7 +199,8 @@ where
     }
     end.add_momentum(&reaction_of(gradients, last.as_ref()));
     end.check_finite(node.t)?;
-    Ok((Solved { end, mu, residual: residual.max(of_velocity), iterations: *iterations }, v))
+    let (residual, iterations, contraction) = (residual.max(of_velocity), *iterations, *contraction);
+    Ok((Solved { end, mu, residual, iterations, contraction }, v))
 }
 
 impl Workspace {
@@ -346,6 +333,12 @@ where
     let u: Vec<Rounded> = u.iter().map(|entry| Rounded::nearest(*entry)).collect();
     let node = node.map(Rounded::exact);
     Rows::<_, N, STAGES, Rounded>::at(&system.convert::<Rounded>(), &node, Rounded::exact(h), &u).bounded_residual()
+}
+
+/// The largest contraction so far after two residuals in turn.
+#[inline(always)]
+pub(crate) fn contracted(contraction: f64, [before, after]: [f64; 2]) -> f64 {
+    if after > NOISE { contraction.max(after / before) } else { contraction }
 }
 
 /// The part of a step over which the turn of a gradient is measured.

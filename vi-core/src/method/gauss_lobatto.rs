@@ -17,12 +17,13 @@
 //! West, Discrete mechanics and variational integrators, 2001, section 3.5. `constrained::solve` solves the equations.
 //!
 //! L is evaluated off the constraint, where g = O(h²), and has to be smooth there. A step does not exist if the gradient
-//! of a constraint turns by about a radian in it: [`StepError::NotConverged`].
+//! of a constraint turns by about a radian in it: [`StepError::NotConverged`]. A step that does not continue short ones is
+//! [`StepError::TooLong`].
 
 use super::{Memory, Method, Problem, Report};
-use crate::constrained::guess::Extrapolation;
-use crate::constrained::lengths::from_node;
-use crate::constrained::solve::{self, Solved, Workspace};
+use crate::constrained::connected;
+use crate::constrained::guess::{Extrapolation, from_node};
+use crate::constrained::solve::{Solved, Workspace};
 use crate::constrained::{Constrained, ConvertibleConstrained, bordered, discrete_energy, impulses, start, unknowns};
 use crate::error::StepError;
 use crate::linear::Bordered;
@@ -200,8 +201,9 @@ where
         unknowns.resize(count, 0.0);
         memory.unknowns.guess(&mut unknowns);
         let is_next = memory.has_step(node);
-        let solved = solve::step::<S, N, STAGES>(system, (node, h, memory.sign, is_next), &mut unknowns, workspace)?;
-        let Solved { end, mu, residual, iterations } = solved;
+        let solved =
+            connected::step::<S, N, STAGES>(system, (node, h, memory.sign, is_next), &mut unknowns, workspace)?;
+        let Solved { end, mu, residual, iterations, .. } = solved;
         Ok(ConstrainedStep { end, unknowns, mu, residual, iterations })
     }
 
