@@ -26,8 +26,8 @@ pub enum ConstraintMistake {
     Dependent { name: String },
     /// A term that is not linear in the velocities.
     Nonlinear,
-    /// A constraint on velocities that is the derivative of a function, with the function if it is known.
-    Integrable { name: String, function: Option<String> },
+    /// A constraint on velocities that is the derivative of this function.
+    Integrable { name: String, function: String },
     /// A constraint that has a jump or a kink at the border of this condition.
     Jump { name: String, condition: String },
     /// A constraint with a linear table.
@@ -67,11 +67,8 @@ impl ConstraintMistake {
             Self::Same { name, other } => format!("the constraint `{name}` repeats `{other}` up to a factor"),
             Self::Dependent { name } => format!("the constraint `{name}` follows from those before it"),
             Self::Nonlinear => "a constraint must be linear in the velocities".to_owned(),
-            Self::Integrable { name, function: Some(function) } => {
+            Self::Integrable { name, function } => {
                 format!("the constraint `{name}` is the time derivative of `{function}`")
-            }
-            Self::Integrable { name, function: None } => {
-                format!("the constraint `{name}` is the time derivative of a function of the coordinates")
             }
             Self::Jump { name, condition } => {
                 format!("the constraint `{name}` has a jump or a kink where `{condition}` is zero")
@@ -121,13 +118,10 @@ impl ConstraintMistake {
                 "write terms `a * dot(x)`; constraints with powers, functions or products of velocities are not supported"
                     .to_owned()
             }
-            Self::Integrable { name, function: Some(function) } => format!(
+            Self::Integrable { name, function } => format!(
                 "constrain that, with its constant as a parameter: `constraint {name} = {function} - c0;`; a constraint on its velocity would \
                  drift"
             ),
-            Self::Integrable { .. } => {
-                "constrain that function, with its constant as a parameter; a constraint on its velocity would drift".to_owned()
-            }
             Self::Jump { .. } => {
                 "velocities would jump there: make both expressions and their derivatives equal where the condition changes"
                     .to_owned()

@@ -249,7 +249,7 @@ pub(super) fn rows(pool: &mut Pool<Symbol>, constraints: &[Constraint], dimensio
     constraints.iter().map(|constraint| constraint.rate(pool, dimension).row).collect()
 }
 
-/// Reports constraints on velocities that are derivatives of functions, without inputs, then one that depends on others,
+/// Reports constraints on velocities that are derivatives of functions of a closed form, without inputs, then one that depends on others,
 /// then constraints that leave no motion.
 pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
     let (constraints, parameters, dimension) = (&model.constraints, &model.parameters, model.dimension());
@@ -269,9 +269,11 @@ pub(super) fn check(pool: &mut Pool<Symbol>, model: &Model) -> Result<()> {
         constraints.iter().zip(of_inputs).filter(|(constraint, of_input)| !constraint.is_holonomic && !of_input);
     for (constraint, _) in given {
         let rate = constraint.rate(pool, dimension);
-        if is_derivative(pool, &rate, parameters) {
-            let function =
-                potential(pool, &rate).map(|of| pool.render_within(CHARACTERS, of, &|symbol| model.spell(symbol)));
+        // Without a closed form only its velocity can be constrained.
+        if is_derivative(pool, &rate, parameters)
+            && let Some(function) = potential(pool, &rate)
+        {
+            let function = pool.render_within(CHARACTERS, function, &|symbol| model.spell(symbol));
             at(constraint, ConstraintMistake::Integrable { name: constraint.text(), function });
             integrable = true;
         }
@@ -365,7 +367,7 @@ pub(super) fn vanish(pool: &Pool<Symbol>, exprs: &[Expr], parameters: &[Paramete
     is_known
 }
 
-/// A function with these derivatives, if it is a sum of powers, sines and cosines.
+/// A function with these derivatives, if it is a sum of powers, sines, cosines and exponentials.
 fn potential(pool: &mut Pool<Symbol>, Rate { row, rest }: &Rate) -> Option<Expr> {
     let by_coordinate = row.iter().enumerate().map(|(index, entry)| (Variable::Coordinate(index), *entry));
     let slopes: Vec<(Variable, Expr)> = by_coordinate.chain([(Variable::Time, *rest)]).collect();
@@ -405,7 +407,7 @@ fn antiderivative(pool: &mut Pool<Symbol>, expr: Expr, by: Variable) -> Option<E
     Some(pool.sum(&parts))
 }
 
-/// A function whose derivative is this product: c x^n, c sin(k x + …) or c cos(k x + …).
+/// A function whose derivative is this product: c x^n, or c times the sine, cosine or exponential of k x + ….
 fn of_term(pool: &mut Pool<Symbol>, term: Expr, by: Variable) -> Option<Expr> {
     let one = Rational::from_integer(1.into());
     let is_variable = |symbol: &Symbol| *symbol == Symbol::Continuous(by);
@@ -426,18 +428,21 @@ fn of_term(pool: &mut Pool<Symbol>, term: Expr, by: Variable) -> Option<Expr> {
             pool.scale(power, &next.recip())
         }
         [(base, exponent)] if *exponent == one => {
-            let Node::Call(function @ (Function::Sin | Function::Cos), arguments) = pool.node(*base).clone() else {
-                return None;
+            let Node::Call(function, arguments) = pool.node(*base).clone() else { return None };
+            let (integral, sign) = match function {
+                Function::Sin => (Function::Cos, -1),
+                Function::Cos => (Function::Sin, 1),
+                Function::Exp => (Function::Exp, 1),
+                _ => return None,
             };
             let argument = *arguments.first()?;
             let rate = slope(pool, argument, by);
             if pool.depends_on(rate, &is_variable) {
                 return None;
             }
-            let other = if function == Function::Sin { Function::Cos } else { Function::Sin };
-            let whole = pool.call(other, &[argument]);
+            let whole = pool.call(integral, &[argument]);
             let whole = pool.div(whole, rate);
-            if function == Function::Sin { pool.neg(whole) } else { whole }
+            pool.scale(whole, &Rational::from_integer(sign.into()))
         }
         _ => return None,
     };
