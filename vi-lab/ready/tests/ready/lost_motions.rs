@@ -1,0 +1,165 @@
+//! Runs of every ready system by every method, from random starts and with steps up to far too long ones: one that loses
+//! its motion has a large estimate or ends by an error.
+//!
+//! The true motion is that of short Gauss steps. Runs are short: the sum of many small errors, or their growth in a
+//! chaotic motion, shows in no estimate of one step.
+
+use vi_erased::plan::{Method, PhasePoint, Plan};
+use vi_runs::entry::Entry;
+
+/// Numbers between −1 and 1.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        #[allow(clippy::cast_precision_loss)] // 53 bits
+        let unit = (self.0 >> 11) as f64 / (1_u64 << 53) as f64;
+        2.0 * unit - 1.0
+    }
+}
+
+/// Duration of a run, in default steps of its system.
+const DURATION: u32 = 512;
+/// Ratios of the steps to the default ones.
+const RATIOS: [u32; 4] = [4, 16, 32, 64];
+/// The relative error from which a motion is lost.
+const LOST: f64 = 0.1;
+/// The estimate from which a run says so.
+const SAID: f64 = 1e-3;
+
+/// Nodes of a motion: coordinates and H, at equal distances in time.
+type Nodes = Vec<(Vec<f64>, f64)>;
+
+/// The nodes after each of a number of steps; `None` if the run ends before.
+fn nodes(entry: &Entry, plan: &Plan, steps: u32) -> Option<Nodes> {
+    let mut run = entry.system.begin(plan).ok()?;
+    let mut nodes = vec![(run.q().to_vec(), run.energy().ok()?)];
+    for _ in 0..steps {
+        run.advance().ok()?;
+        nodes.push((run.q().to_vec(), run.energy().ok()?));
+    }
+    Some(nodes)
+}
+
+/// Counts over all runs.
+#[derive(Debug, Default)]
+struct Counts {
+    runs: u32,
+    lost: u32,
+    ended: u32,
+    /// Lost motions without a word.
+    silent: Vec<String>,
+    /// Large estimates of small errors.
+    alarms: u32,
+}
+
+impl Counts {
+    /// Runs from one start by every method with every step.
+    fn check(&mut self, entry: &Entry, start: &PhasePoint) {
+        let constrained = entry.system.has_constraints();
+        let accurate = if constrained { Method::GaussLobatto } else { Method::Gauss };
+        let plan = |method: Method, h: f64| Plan::new(method, h, start.clone());
+        let truth = |parts: u32| nodes(entry, &plan(accurate, entry.h / f64::from(parts)), DURATION * parts);
+        let (Some(truth), Some(check)) = (truth(2), truth(1)) else { return };
+        let range = |of: &dyn Fn(&(Vec<f64>, f64)) -> f64| {
+            let values = || truth.iter().map(of);
+            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+        };
+        let ranges: Vec<f64> = (0..start.q.len()).map(|i| range(&|node: &(Vec<f64>, f64)| node.0[i])).collect();
+        let longest = ranges.iter().copied().fold(0.0, f64::max);
+        let size = truth.iter().map(|node| node.1.abs()).fold(range(&|node: &(Vec<f64>, f64)| node.1), f64::max);
+        // Relative errors of q and of H at a node. A coordinate that hardly moves has no scale.
+        let off = |one: &(Vec<f64>, f64), other: &(Vec<f64>, f64)| {
+            let moved = (0..start.q.len()).filter(|i| ranges[*i] > 1e-3 * longest);
+            let positions = moved.map(|i| (one.0[i] - other.0[i]).abs() / ranges[i]).fold(0.0, f64::max);
+            positions.max((one.1 - other.1).abs() / size)
+        };
+        if check.iter().enumerate().any(|(k, node)| off(node, &truth[2 * k]) > 1e-6) {
+            return;
+        }
+        for method in Method::ALL.into_iter().filter(|method| entry.system.has(*method)) {
+            for ratio in RATIOS {
+                let h = entry.h * f64::from(ratio);
+                let what = || format!("{}, {method:?}, h = {h}, {start:?}", entry.system.name());
+                let Ok(mut run) = entry.system.begin(&plan(method, h)) else {
+                    self.ended += 1;
+                    continue;
+                };
+                run.monitor();
+                let end = entry.h * f64::from(DURATION);
+                let mut worst: f64 = 0.0;
+                let mut steps = 0;
+                let ended = loop {
+                    if run.t() >= end * (1.0 - 1e-12) {
+                        break false;
+                    }
+                    if run.advance_to(end).is_err() {
+                        break true;
+                    }
+                    steps += 1;
+                    // Energy-preserving steps have nodes of their own.
+                    let is_end = run.t() >= end * (1.0 - 1e-12);
+                    let place =
+                        if method == Method::Energy { 2 * DURATION } else { (2 * ratio * steps).min(2 * DURATION) };
+                    if is_end || method != Method::Energy {
+                        let energy = run.energy().unwrap_or(f64::INFINITY);
+                        worst = worst.max(off(&(run.q().to_vec(), energy), &truth[place as usize]));
+                    }
+                };
+                self.runs += 1;
+                let estimate = run.largest_error().map_or(0.0, |found| found.estimate);
+                if ended {
+                    self.ended += 1;
+                } else if worst > LOST {
+                    self.lost += 1;
+                    if estimate < SAID {
+                        self.silent.push(format!("{}: off by {worst:.2e}, estimate {estimate:.2e}", what()));
+                    }
+                } else if estimate > SAID && estimate > 10.0 * worst {
+                    self.alarms += 1;
+                }
+            }
+        }
+    }
+}
+
+/// Random starts of every system.
+fn counts(starts: u32) -> Counts {
+    let (mut counts, mut random) = (Counts::default(), Random(1));
+    for entry in vi_ready::systems() {
+        for k in 0..starts {
+            let mut start = PhasePoint { t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
+            if entry.system.has_constraints() {
+                // A faster or slower motion from the same place is on the constraints, too.
+                let factor = if k == 0 { 1.0 } else { 1.0 + 0.7 * random.next() };
+                start.v.iter_mut().for_each(|v| *v *= factor);
+            } else if k > 0 {
+                start.q.iter_mut().for_each(|q| *q *= 1.0 + 0.5 * random.next());
+                start.v.iter_mut().for_each(|v| *v = *v * (1.0 + 0.7 * random.next()) + 0.1 * random.next());
+            }
+            counts.check(&entry, &start);
+        }
+    }
+    counts.silent.iter().for_each(|what| println!("{what}"));
+    let Counts { runs, lost, ended, silent, alarms } = &counts;
+    println!("{runs} runs: {lost} lost, {} of them silent, {ended} ended, {alarms} false alarms", silent.len());
+    counts
+}
+
+#[test]
+fn no_motion_is_lost_without_a_word() {
+    let counts = counts(1);
+    assert!(counts.silent.is_empty(), "{:?}", counts.silent);
+    assert!(counts.runs > 500 && counts.lost > 20, "{counts:?}");
+    assert!(f64::from(counts.alarms) < 0.05 * f64::from(counts.runs), "{counts:?}");
+}
+
+#[test]
+#[ignore = "many steps: `.ci/run nightly`"]
+fn no_motion_of_many_is_lost_without_a_word() {
+    let counts = counts(12);
+    assert!(counts.silent.is_empty(), "{:?}", counts.silent);
+    assert!(counts.lost > 300, "{counts:?}");
+    assert!(f64::from(counts.alarms) < 0.05 * f64::from(counts.runs), "{counts:?}");
+}

@@ -1,0 +1,64 @@
+//! Every predefined system starts with every method.
+
+mod lost_motions;
+
+use vi_core::StepError;
+use vi_erased::plan::{ENERGY_LOBATTO_STAGES, Method, PhasePoint, Plan, Shift};
+
+#[test]
+fn every_entry_starts_and_keeps_its_parameters() {
+    for mut entry in vi_ready::systems() {
+        let size = entry.system.coordinates().len();
+        let name = entry.system.name();
+        assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
+        let methods: &[Method] = if entry.system.has_constraints() {
+            &[Method::GaussLobatto, Method::Energy]
+        } else {
+            &[Method::Fixed, Method::KahanLi6, Method::Gauss, Method::Energy]
+        };
+        for &method in methods {
+            let start = PhasePoint { t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
+            let mut plan = Plan::new(method, entry.h, start);
+            if method == Method::Energy && entry.system.has_constraints() {
+                let shift = Some(Shift::Over(20.0 * entry.h));
+                plan = Plan { stages: Some(ENERGY_LOBATTO_STAGES), shift, ..plan };
+            }
+            let begun = entry.system.begin(&plan);
+            let mut run = begun.unwrap_or_else(|error| panic!("{name}: {error}"));
+            let first = run.t();
+            for _ in 0..10 {
+                run.advance().unwrap_or_else(|error| panic!("{name}, {method:?}: {error}"));
+            }
+            assert!(run.t() > first && run.evaluations() > 0, "{name}");
+        }
+        for (parameter, value) in entry.system.parameters() {
+            assert!(entry.system.set(parameter, value + 1.0), "{name}: {parameter}");
+        }
+        assert!(!entry.system.set("no such parameter", 1.0));
+    }
+}
+
+#[test]
+fn starts_with_constraints_follow_the_parameters() {
+    let entry = vi_ready::systems().into_iter().find(|entry| entry.system.name() == "RodPendulum").expect("a system");
+    let mut system = entry.system.copy();
+    assert!(system.set("l", 0.5));
+    let [q, v] = system.start().expect("a start");
+    assert!((q[0].hypot(q[1]) - 0.5).abs() < 1e-15, "{q:?}");
+    // The start of the default parameters is off the constraint by g = 1 − 1/4.
+    let plan = |q: &[f64]| Plan::new(Method::GaussLobatto, 0.01, PhasePoint { t: 0.0, q: q.to_vec(), v: v.clone() });
+    assert!(system.begin(&plan(&q)).is_ok());
+    let refused = system.begin(&plan(&entry.q)).err();
+    let is_off = matches!(refused, Some(StepError::InconsistentStart { constraint: "rod", residual, rate: 0.0 })
+        if (residual - 0.75).abs() < 1e-15);
+    assert!(is_off, "{refused:?}");
+    let point = PhasePoint { t: 0.0, q: entry.q.clone(), v: vec![1.0, 0.0] };
+    let found = system.project(&point).expect("a state on the constraints");
+    // Half the way to the pivot, and without the part of the velocity along the rod.
+    let (sin, cos) = 1.0_f64.sin_cos();
+    let wanted = [0.5 * sin, -0.5 * cos, cos * cos, sin * cos];
+    for (found, wanted) in found.point.q.iter().chain(&found.point.v).zip(wanted) {
+        assert!((found - wanted).abs() < 1e-15, "{found} instead of {wanted}");
+    }
+    assert!(system.begin(&plan(&found.point.q)).is_ok());
+}
