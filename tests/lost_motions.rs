@@ -6,9 +6,10 @@
 use vi_core::collocation::Collocation;
 use vi_core::stepping::Convertible;
 use vi_core::{
-    Composition, FixedStep, Gauss, Method, Run, SVector, Start, Starts, State, StepError, Tolerance, lagrangian,
+    Composition, EnergyPreserving, FixedStep, Gauss, GaussLobatto, Method, Run, SVector, Start, Starts, State,
+    StepError, Tolerance, lagrangian,
 };
-use vi_systems::{DampedOscillator, HarmonicOscillator, Kepler, Pendulum, SphericalPendulum, ThreeBody};
+use vi_systems::{DampedOscillator, DoubleWell, HarmonicOscillator, Kepler, Pendulum, SphericalPendulum, ThreeBody};
 
 /// A start on the x axis at the apocentre r of an orbit with a = 1.
 fn plunging(r: f64) -> Start<Kepler, 2> {
@@ -208,4 +209,55 @@ fn long_steps_of_one_branch_are_taken() {
     let (q, p) = (SVector::from([0.040_868_182_465_850_715, 1.221]), SVector::from([-0.642_908_199, 0.065_245_13]));
     let near = SphericalPendulum::default().at_state(State { t: 0.0, q, p });
     near.integrate(Gauss::<1>, 0.0389).expect("a start").step().expect("a step on the branch");
+}
+
+lagrangian! {
+    /// Kepler's problem in a plane of space.
+    struct Plane {
+        coord x, y, z;
+        L = (dot(x)^2 + dot(y)^2 + dot(z)^2) / 2 + 1 / sqrt(x^2 + y^2 + z^2);
+        constraint flat = z;
+    }
+}
+
+#[test]
+fn steps_with_constraints_continue_short_ones() {
+    let (mut taken, mut refused) = (0, 0);
+    for k in 0..120_u32 {
+        let [r, phi, fall] = [0.2 + 0.05 * f64::from(k % 20), 0.9 * f64::from(k % 4), 0.01 * f64::from(k % 20)];
+        let h = 0.02 * f64::from(1_u32 << (k % 6));
+        let (q, v) = ([r * phi.cos(), r * phi.sin()], [fall - 1.0, 0.05 * f64::from(k % 5)]);
+        let start = Plane::default().at(0.0, [q[0], q[1], 0.0], [v[0], v[1], 0.0]);
+        let constrained = start.integrate(GaussLobatto::<4>, h).and_then(|mut run| run.step());
+        match (constrained, step::<4>(h, q, v)) {
+            (Ok(one), Ok(other)) => {
+                taken += 1;
+                assert!((one.q.fixed_rows::<2>(0) - other.q).norm() < 1e-9 * (1.0 + other.q.norm()), "{q:?}, h = {h}");
+            }
+            (Err(_), _) => refused += 1,
+            (Ok(one), Err(error)) => panic!("{q:?}, {v:?}, h = {h}: {:?}; {error}", one.q),
+        }
+    }
+    println!("{taken} taken, {refused} refused");
+    assert!(taken > 90 && refused > 5, "{taken}, {refused}");
+}
+
+#[test]
+fn an_energy_preserving_step_that_is_too_long_asks_for_shorter_ones() {
+    // h ω = 2.8: the first steps exist, and resolve no motion.
+    let start = DoubleWell::default().at(0.0, [0.995], [0.0]);
+    let mut run = start.integrate(EnergyPreserving, 2.0).expect("a start");
+    let error = run.until(1000.0).expect_err("a step that is too long");
+    let StepError::TooLong { longest, .. } = error else { panic!("{error}") };
+    assert!(longest < 2.0 && error.to_string().contains("; try h = "), "{error}");
+}
+
+#[test]
+fn a_length_below_the_rounding_of_the_energy_is_an_error() {
+    let start = Kepler::default().at(0.0, [1.0, 0.0], [0.0, 1.2]);
+    for h in [1e-8, 1e-7] {
+        let error = start.integrate(EnergyPreserving, h).and_then(|mut run| run.step()).expect_err("no length");
+        assert!(matches!(error, StepError::DegenerateStep { .. }), "{h:e}: {error}");
+    }
+    start.integrate(EnergyPreserving, 1e-6).and_then(|mut run| run.step()).expect("a step");
 }

@@ -511,19 +511,15 @@ impl fmt::Display for StepError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.reason().fmt(f)?;
         match self {
-            Self::DegenerateStep { h, .. } => write!(
-                f,
-                "; continue by `with_fallback(Fallback::FixedSteps)` or by fixed steps of h = {h:.3e}, or try longer steps, fewer stages, or another shift by `with_shift` of energy-preserving Gauss steps"
+            Self::DegenerateStep { .. } => f.write_str(
+                "; continue by `with_fallback(Fallback::FixedSteps)` or by fixed steps, or try longer steps, fewer stages, or another shift by `with_shift` of energy-preserving Gauss steps",
             ),
-            Self::NoForwardStep { h, .. } | Self::StepRatio { previous: h, .. } => {
-                write!(
-                    f,
-                    "; continue by `with_fallback(Fallback::FixedSteps)`, by fixed steps of h = {h:.3e}, or by energy-preserving Gauss steps with a shift, which `with_shift_from(duration)` measures"
-                )
-            }
-            Self::NoForwardGaussStep { h, largest, .. } => write!(
+            Self::NoForwardStep { .. } | Self::StepRatio { .. } => f.write_str(
+                "; start with a shorter step, or continue by `with_fallback(Fallback::FixedSteps)`, by `FixedStep` or `Gauss`, or by energy-preserving Gauss steps with a shift, which `with_shift_from(duration)` measures",
+            ),
+            Self::NoForwardGaussStep { largest, .. } => write!(
                 f,
-                "; use `with_shift_from(duration)`, or `with_shift({:.3e})`, which exceeds the largest |D| so far, another number of stages, `with_fallback(Fallback::FixedSteps)`, or fixed steps of h = {h:.3e}",
+                "; start with a shorter step, use `with_shift_from(duration)`, or `with_shift({:.3e})`, which exceeds the largest |D| so far, another number of stages, `with_fallback(Fallback::FixedSteps)`, or `FixedStep` or `Gauss`",
                 2.0 * largest
             ),
             Self::ShiftTooLarge { shorter, .. } => write!(f, "; start with steps of {shorter:.1e} or shorter"),

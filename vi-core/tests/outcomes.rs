@@ -117,7 +117,7 @@ fn an_error_ends_with_advice() {
     let degenerate = StepError::DegenerateStep { t: 1.0, h: 0.5, density: 0.0 };
     let ratio = StepError::StepRatio { t: 1.0, previous: 0.5, found: 2.0 };
     let bounds = StepError::StepBounds { t: 1.0, found: 0.25, h_min: 0.5, h_max: 1.0 };
-    let continuation = "; continue by `with_fallback(Fallback::FixedSteps)`, by fixed steps of h = 5.000e-1, or by energy-preserving Gauss steps with a shift, which `with_shift_from(duration)` measures";
+    let continuation = "; start with a shorter step, or continue by `with_fallback(Fallback::FixedSteps)`, by `FixedStep` or `Gauss`, or by energy-preserving Gauss steps with a shift, which `with_shift_from(duration)` measures";
     let gauss = StepError::NoForwardGaussStep {
         t: 1.0,
         h: 0.5,
@@ -133,12 +133,12 @@ fn an_error_ends_with_advice() {
         (no_step, continuation),
         (
             degenerate,
-            "; continue by `with_fallback(Fallback::FixedSteps)` or by fixed steps of h = 5.000e-1, or try longer steps, fewer stages, or another shift by `with_shift` of energy-preserving Gauss steps",
+            "; continue by `with_fallback(Fallback::FixedSteps)` or by fixed steps, or try longer steps, fewer stages, or another shift by `with_shift` of energy-preserving Gauss steps",
         ),
         (ratio, continuation),
         (
             gauss,
-            "; use `with_shift_from(duration)`, or `with_shift(8.000e0)`, which exceeds the largest |D| so far, another number of stages, `with_fallback(Fallback::FixedSteps)`, or fixed steps of h = 5.000e-1",
+            "; start with a shorter step, use `with_shift_from(duration)`, or `with_shift(8.000e0)`, which exceeds the largest |D| so far, another number of stages, `with_fallback(Fallback::FixedSteps)`, or `FixedStep` or `Gauss`",
         ),
         (
             bounds,

@@ -49,6 +49,12 @@ impl<const N: usize, T: Scalar> Last<N, T> {
         }
     }
 
+    /// Whether a run has started with this interval, and has not taken a step.
+    pub(crate) fn is_first(&self) -> bool {
+        let Self { h, previous, density, density_before, .. } = self;
+        !self.is_step && h == previous && density == density_before
+    }
+
     /// The interval after the next step.
     #[inline(always)]
     pub(crate) fn followed(&self, step: &EnergyStep<N, T>) -> Self {

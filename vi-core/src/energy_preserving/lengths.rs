@@ -173,7 +173,8 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Sear
     fn fixed(&self, h: T) -> Result<(After<N, T>, [T; 2]), StepError> {
         let Self { system, node, lengths: Lengths { last, .. } } = *self;
         let guess = last.v + last.slope() * ((last.h + h) * T::real(0.5));
-        let BranchPoint { v, iterations } = continuation::nearest(system, node, h, guess, last.v)?;
+        let nearest = continuation::nearest(system, node, h, guess, last.v)?;
+        let BranchPoint { v, iterations } = continuation::connected(system, node, h, &nearest.v)?.unwrap_or(nearest);
         let equations = system.extended_system(node, h, &v);
         let t = node.t.to_f64();
         let singular = StepError::Singular { t, matrix: "derivative of the momentum equation" };

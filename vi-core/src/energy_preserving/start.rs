@@ -9,6 +9,7 @@ use crate::called::Called;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::momentum::continuation::{self, BranchPoint};
+use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::{Real, Scalar};
 use crate::stepping::EnergyStepping;
@@ -18,7 +19,7 @@ use nalgebra::SVector;
 /// discrete energy `D1 L_d + g_d⁻` of that step.
 ///
 /// # Errors
-/// Those of a fixed step of that length.
+/// Those of a fixed step of that length; [`StepError::TooLong`] if it does not continue short ones.
 pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &mut Node<N, T>,
@@ -28,9 +29,9 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     let state = node.state();
     let rest = state.velocity(system)?;
     let called = &Called(*system);
-    let first = continuation::nearest(called, node, h, rest, rest);
     let explained = |failure: StepError| failure.explained(system, node, h, &rest);
-    let BranchPoint { v, .. } = first.map_err(explained)?;
+    let first = continuation::nearest(called, node, h, rest, rest).map_err(explained)?;
+    let BranchPoint { v, .. } = continuation::connected(called, node, h, &first.v)?.unwrap_or(first);
     let bare = Node::new(state, T::zero());
     let equations = called.extended_system(&bare, h, &v);
     let t = state.t.to_f64();
@@ -46,6 +47,26 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     node.energy = energy;
     // The first step is this one, so that the interval before it is an equal one.
     Ok(Lengths::new(Last::first(v, h, density, SVector::zeros())))
+}
+
+/// Smallest `h² |D|` that determines a length, in roundings of the energy of a step: `H − E = h² D/8` may be off by
+/// [`FLOOR`] of them, and h then by a quarter.
+const LEAST: f64 = 16.0 * FLOOR;
+
+/// Checks that the energy determines the length of the first step after `last`.
+///
+/// # Errors
+/// [`StepError::DegenerateStep`].
+pub(crate) fn check_length<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    last: &Last<N, T>,
+) -> Result<(), StepError> {
+    let [h, density] = [last.h, last.density].map(T::to_f64);
+    let rounding = T::EPSILON * system.extended_rounding(node, last.h, &last.v).energy.to_f64();
+    // Also true for NaN, which later checks name.
+    let is_determined = !(h * h * density.abs() <= LEAST * rounding);
+    if is_determined { Ok(()) } else { Err(StepError::DegenerateStep { t: node.t.to_f64(), h, density }) }
 }
 
 /// The run at the end of the step `(v, h)` from `start`.

@@ -57,6 +57,11 @@ impl StepHistory {
         }
     }
 
+    /// Whether the run has taken no step.
+    pub(crate) fn is_first(&self) -> bool {
+        self.densities.is_none()
+    }
+
     /// Length of the last step.
     pub(crate) fn h(&self) -> f64 {
         self.h

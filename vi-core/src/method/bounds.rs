@@ -392,6 +392,31 @@ impl<T: Scalar> Phase<T> {
     }
 }
 
+/// Smallest `H − E`, in `h² D`, of a run that starts with a step of the length h.
+const SAME: f64 = 1e-3;
+/// Halvings of a length after which a step fails.
+const HALVINGS: i32 = 16;
+
+/// The error if the step fails after a first one, or a long one, of the length h: [`StepError::TooLong`] if a run that
+/// starts from the node with a shorter length takes a step.
+#[cold]
+pub(super) fn too_long(failure: StepError, [t, h]: [f64; 2], mut starts: impl FnMut(f64) -> bool) -> StepError {
+    let may_be_too_long = match failure {
+        // A run that continues with H = E has no step of any length.
+        StepError::NoForwardStep { h, excess, density, .. } => excess.abs() > SAME * h * h * density.abs(),
+        StepError::NoForwardGaussStep { .. }
+        | StepError::StepRatio { .. }
+        | StepError::NotConverged { .. }
+        | StepError::StagesUnsettled { .. } => true,
+        _ => false,
+    };
+    let mut shorter = (1..=HALVINGS).map(|halved| h * 0.5_f64.powi(halved));
+    match shorter.find(|shorter| may_be_too_long && starts(*shorter)) {
+        Some(longest) => StepError::TooLong { t, h, longest },
+        None => failure,
+    }
+}
+
 /// The step of a method that finds its length.
 pub(super) const FORWARD: &str = "the step h of a method that only goes forward in time";
 

@@ -13,7 +13,7 @@
 //!
 //! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
 
-use super::bounds::{Alternating, FORWARD, check_forward};
+use super::bounds::{Alternating, FORWARD, Fallback, check_forward, too_long};
 use super::{Method, Problem, Report};
 use crate::angles;
 use crate::called::Called;
@@ -24,6 +24,7 @@ use crate::energy_preserving::lengths::{After, Lengths, Search};
 use crate::energy_preserving::predicted::Predicted;
 use crate::energy_preserving::start;
 use crate::error::StepError;
+use crate::momentum::continuation;
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::run::{Hermite, Run};
@@ -99,8 +100,26 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         (): &mut (),
         (): (),
     ) -> Result<EnergySolution<N, T>, StepError> {
-        let after = Search { system: &Called(*at.system), node: at.node, lengths: memory }.next();
-        after.map(EnergySolution::After).map_err(|failure| explained(failure, at.system, at.node, memory))
+        let Problem { system, node, .. } = at;
+        let called = &Called(*system);
+        let is_first = memory.last.is_first();
+        if is_first && memory.control.fallback == Fallback::Stop {
+            start::check_length(called, node, &memory.last)?;
+        }
+        let failure = match (Search { system: called, node, lengths: memory }).next() {
+            Ok(after) => return Ok(EnergySolution::After(after)),
+            Err(failure) => explained(failure, system, node, memory),
+        };
+        // Steps of any method that are so long resolve no motion.
+        let is_long = || !continuation::is_connected(called, node, memory.last.h, &memory.last.v);
+        if !is_first && !is_long() {
+            return Err(failure);
+        }
+        Err(too_long(failure, [node.t.to_f64(), memory.last.h.to_f64()], |h| {
+            let mut node = Node::new(node.state(), T::zero());
+            let lengths = start::from_state(system, &mut node, T::real(h));
+            lengths.is_ok_and(|lengths| Search { system: called, node: &node, lengths: &lengths }.next().is_ok())
+        }))
     }
 
     #[inline(always)]

@@ -33,7 +33,7 @@
 //! The stages and the energy of every accepted step are at the rounding floor. Theory and measurements:
 //! `docs/theory.md`.
 
-use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, check_forward};
+use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, check_forward, too_long};
 use super::gauss::{Gauss, GaussOutput, LastStages};
 use super::length::Trial;
 use super::preserving::{Ended, Preserving, PreservingStep, StepsOfAnyLength, check_power, measured, order};
@@ -279,12 +279,22 @@ where
 
     fn recover(
         &self,
-        _at: Problem<'_, S, Instructions, N>,
-        _memory: &Self::Memory,
-        _cache: &mut Self::Cache,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
         left: StepError,
     ) -> Result<Self::Step, StepError> {
-        Err(left)
+        let Problem { system, prepared, node, .. } = at;
+        // A start of another length has no shift.
+        if !memory.course.is_first() || memory.course.shift != 0.0 {
+            return Err(left);
+        }
+        Err(too_long(left, [node.t, memory.course.h()], |h| {
+            let mut node = Node::new(node.state(), 0.0);
+            let memory = self.begin(system, &mut node, h);
+            let at = Problem { system, prepared, node: &node, h };
+            memory.is_ok_and(|memory| self.attempt(at, &memory, cache).is_ok())
+        }))
     }
 
     fn take(

@@ -18,13 +18,14 @@
 //! D_s depends on L beside the constraints, and in Cartesian coordinates it changes its sign in most motions: in every
 //! oscillation of a pendulum. Therefore start with a shift, [`Run::with_shift_from`].
 
-use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, check_forward};
+use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, check_forward, too_long};
 use super::gauss_lobatto::{ConstrainedSteps, GaussLobatto, Impulses};
 use super::length::Trial;
 use super::preserving::{Preserving, PreservingStep, StepsOfAnyLength, check_power, measured, order};
 use super::shift::{Shiftable, StepPower};
 use super::{Memory, Method, Problem, Report};
-use crate::constrained::lengths::{ConstrainedLengths, TakenLength, TriedLength, from_node};
+use crate::constrained::guess::from_node;
+use crate::constrained::lengths::{ConstrainedLengths, TakenLength, TriedLength};
 use crate::constrained::solve::Workspace;
 use crate::constrained::{Constrained, ConvertibleConstrained, bordered, energies, start, step_density, unknowns};
 use crate::energy_preserving::start::check_density;
@@ -170,12 +171,22 @@ where
 
     fn recover(
         &self,
-        _at: Problem<'_, S, (), N>,
-        _memory: &Self::Memory,
-        _cache: &mut Self::Cache,
+        at: Problem<'_, S, (), N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
         left: StepError,
     ) -> Result<Self::Step, StepError> {
-        Err(left)
+        let Problem { system, prepared, node, .. } = at;
+        // A start of another length has no shift.
+        if !memory.course.is_first() || memory.course.shift != 0.0 {
+            return Err(left);
+        }
+        Err(too_long(left, [node.t, memory.course.h()], |h| {
+            let mut node = Node::new(node.state(), 0.0);
+            let memory = self.begin(system, &mut node, h);
+            let at = Problem { system, prepared, node: &node, h };
+            memory.is_ok_and(|memory| self.attempt(at, &memory, cache).is_ok())
+        }))
     }
 
     fn take(

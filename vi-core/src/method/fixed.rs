@@ -21,6 +21,7 @@ use super::{Memory, Method, Problem, Report};
 use crate::branch::Branch;
 use crate::called::Called;
 use crate::error::StepError;
+use crate::momentum::continuation;
 use crate::momentum::steps::{Corrector, MomentumStep, Steps};
 use crate::node::Node;
 use crate::real::Scalar;
@@ -100,7 +101,9 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     }
 
     fn begin(&self, system: &S, node: &mut Node<N, T>, h: T) -> Result<Velocities<N, T>, StepError> {
-        Ok(Velocities { steps: Steps::new(h, node.state().velocity(system)?), iterations: 0 })
+        let v = node.state().velocity(system)?;
+        continuation::check_linear(&Called(*system), node, h)?;
+        Ok(Velocities { steps: Steps::new(h, v), iterations: 0 })
     }
 
     #[inline(always)]
@@ -149,11 +152,12 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
 
     fn with_length(
         &self,
-        _system: &S,
+        system: &S,
         memory: &Velocities<N, T>,
-        _node: &Node<N, T>,
+        node: &Node<N, T>,
         h: T,
     ) -> Result<Velocities<N, T>, StepError> {
+        continuation::check_linear(&Called(*system), node, h)?;
         Ok(memory.with_length(h))
     }
 
@@ -161,9 +165,10 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
         &self,
         [_, after]: [&S; 2],
         node: &mut Node<N, T>,
-        _h: T,
+        h: T,
         memory: &Velocities<N, T>,
     ) -> Result<Velocities<N, T>, StepError> {
+        continuation::check_linear(&Called(*after), node, h)?;
         memory.with_system(after, node)
     }
 
@@ -245,11 +250,12 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
 
     fn with_length(
         &self,
-        _system: &S,
+        system: &S,
         memory: &Velocities<N, T>,
-        _node: &Node<N, T>,
+        node: &Node<N, T>,
         h: T,
     ) -> Result<Velocities<N, T>, StepError> {
+        continuation::check_linear(&Called(*system), node, h)?;
         Ok(memory.with_length(h))
     }
 
@@ -257,9 +263,10 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         &self,
         [_, after]: [&S; 2],
         node: &mut Node<N, T>,
-        _h: T,
+        h: T,
         memory: &Velocities<N, T>,
     ) -> Result<Velocities<N, T>, StepError> {
+        continuation::check_linear(&Called(*after), node, h)?;
         memory.with_system(after, node)
     }
 

@@ -115,6 +115,66 @@ pub(crate) fn is_connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     is_regular(&ended, 1.0) && sign(&ended) == sign(&mass)
 }
 
+/// Parts of a length at which a constant Jacobian is evaluated.
+const PARTS: u32 = 32;
+
+/// Checks the length h of all steps with a constant Jacobian: it is regular for shorter steps.
+///
+/// # Errors
+/// [`StepError::TooLong`].
+pub(crate) fn check_linear<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+) -> Result<(), StepError> {
+    if !S::CONSTANT_JACOBIAN {
+        return Ok(());
+    }
+    let jacobian =
+        |part: f64| system.momentum_equation(&Node::zeros(), h * T::real(part), &SVector::zeros()).jacobian.dense();
+    let mass = jacobian(0.0);
+    let sign = linear::determinant_sign(&mass);
+    let is_regular = |part: &f64| {
+        let at = jacobian(*part);
+        // Two signs that change at once show on the diagonal.
+        linear::determinant_sign(&at) == sign && (0..N).all(|i| !(at[(i, i)] * mass[(i, i)] < T::zero()))
+    };
+    let mut parts = (1..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
+    let Some(singular) = parts.find(|part| !is_regular(part)) else { return Ok(()) };
+    let (t, h) = (node.t.to_f64(), h.to_f64());
+    let longest = (MARGIN * (singular - f64::from(PARTS).recip()).max(0.5 / f64::from(PARTS)) * h).abs();
+    Err(StepError::TooLong { t, h, longest })
+}
+
+/// The root that is connected with h = 0, if that is another one than `v`.
+///
+/// # Errors
+/// [`StepError::TooLong`] if there is none.
+#[cold]
+pub(crate) fn connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    v: &SVector<T, N>,
+) -> Result<Option<BranchPoint<N, T>>, StepError> {
+    if S::CONSTANT_JACOBIAN || is_connected(system, node, h, v) {
+        return Ok(None);
+    }
+    match solve(system, node, h, *v, Pace::CLOSE) {
+        Ok(found) if !are_one(&found.v, v) => Ok(Some(found)),
+        Err(failure @ StepError::TooLong { .. }) => Err(failure),
+        // The same root, or none that a turn of the branch separates from it: a force jumps, or nothing leads from h = 0
+        // since the momenta have no velocity.
+        _ => Ok(None),
+    }
+}
+
+/// Whether two roots are the same but for rounding. That of a nearly singular equation moves by half of the digits.
+fn are_one<const N: usize, T: Scalar>(one: &SVector<T, N>, other: &SVector<T, N>) -> bool {
+    let size = length_squared(one) + length_squared(other);
+    length_squared(&(one - other)) <= size * T::real(T::EPSILON)
+}
+
 /// The root at `h` on the branch connected with h = 0.
 ///
 /// # Errors

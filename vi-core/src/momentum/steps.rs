@@ -28,7 +28,7 @@ use crate::node::Node;
 use crate::predictor::Predictor;
 use crate::real::{Real, Scalar};
 use crate::stepping::{FixedStepping, MomentumEquation, MomentumResidual};
-use crate::vector::{Vector, length_squared};
+use crate::vector::Vector;
 use core::hint::black_box;
 use nalgebra::SVector;
 
@@ -353,16 +353,11 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     ) -> Result<MomentumStep<N, T>, StepError> {
         // A root within rounding of its guess after fewer corrections is as close to it as short steps are.
         let is_close = solved.predicted && solved.iterations < CORRECTIONS;
-        if is_close || S::CONSTANT_JACOBIAN || continuation::is_connected(system, node, self.h, &solved.v) {
+        if is_close {
             return Ok(solved);
         }
-        match continuation::solve(system, node, self.h, solved.v, continuation::Pace::CLOSE) {
-            Ok(found) if !are_one(&found.v, &solved.v) => Ok(self.step_of(system, node, found)),
-            Err(failure @ StepError::TooLong { .. }) => Err(failure),
-            // The same root, or none that a turn of the branch separates from it: a force jumps, or nothing leads from h = 0
-            // since the momenta have no velocity.
-            _ => Ok(solved),
-        }
+        let other = continuation::connected(system, node, self.h, &solved.v)?;
+        Ok(other.map_or(solved, |found| self.step_of(system, node, found)))
     }
 
     /// The step of a root.
@@ -402,12 +397,6 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         self.begun = true;
         self.changed = false;
     }
-}
-
-/// Whether two roots are the same but for rounding. That of a nearly singular equation moves by half of the digits.
-fn are_one<const N: usize, T: Scalar>(one: &SVector<T, N>, other: &SVector<T, N>) -> bool {
-    let size = length_squared(one) + length_squared(other);
-    length_squared(&(one - other)) <= size * T::real(T::EPSILON)
 }
 
 /// Lower bound of the scale of each row.

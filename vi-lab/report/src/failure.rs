@@ -153,6 +153,7 @@ fn suggestion(error: &clap::Error) -> Option<String> {
 pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
     let step = if plan.dtau.is_some() { "--dtau" } else { "--h" };
     let advice = match (error, plan.method) {
+        (StepError::TooLong { longest, .. }, _) => return Some(format!("try {step} {}", about(*longest))),
         (
             StepError::NoForwardStep { .. }
             | StepError::NoForwardGaussStep { .. }
@@ -160,8 +161,8 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
             | StepError::DegenerateStep { .. },
             _,
         ) => {
-            "use steps of given length, which exist here: --method fixed or gauss, with constraints gauss-lobatto; \
-                  another --h, --q or --v may avoid this state"
+            "start with a shorter --h, or use steps of given length: --method fixed or gauss, with constraints \
+                  gauss-lobatto; another --q or --v may avoid this state"
         }
         (StepError::NotConverged { .. }, Method::Energy) => {
             "use shorter steps with --h, or fixed steps with --method fixed"
@@ -169,7 +170,6 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
         (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => {
             return Some(format!("use shorter steps with {step}"));
         }
-        (StepError::TooLong { longest, .. }, _) => return Some(format!("try {step} {}", about(*longest))),
         (StepError::TimeScale { .. }, _) => {
             "use shorter steps with --dtau, or steps in time with --h, or write a `time_scale` that is positive there"
         }

@@ -49,7 +49,7 @@ pub(super) fn of(request: &Request, error: &StepError, node: &Row) -> Option<Str
     if !others.is_empty() {
         ways.push(format!("other orders have other step densities: {}", others.join("; ")));
     }
-    ways.push(format!("--fallback continues with fixed steps of h = {}", about(node.h)));
+    ways.push("--fallback continues with fixed steps".to_owned());
     ways.push(if request.system.has_constraints() {
         "--method gauss-lobatto needs no step density".to_owned()
     } else {
