@@ -15,7 +15,14 @@ pub struct Table {
     /// Stem of the file name.
     pub name: &'static str,
     head: Vec<String>,
-    rows: Vec<Vec<String>>,
+    rows: Vec<Row>,
+}
+
+/// The cells of a row, and the part of the page to which the last one links.
+#[derive(Clone, Debug)]
+struct Row {
+    cells: Vec<String>,
+    target: Option<&'static str>,
 }
 
 impl Table {
@@ -26,7 +33,12 @@ impl Table {
 
     /// Adds a row.
     pub fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.rows.push(Vec::from(cells));
+        self.rows.push(Row { cells: Vec::from(cells), target: None });
+    }
+
+    /// Adds a row whose last cell links to a figure, table or section of the same page.
+    pub fn linked_row<const N: usize>(&mut self, cells: [String; N], target: &'static str) {
+        self.rows.push(Row { cells: Vec::from(cells), target: Some(target) });
     }
 
     /// The table as an HTML element.
@@ -40,8 +52,12 @@ impl Table {
         html.push_str("</tr></thead>\n<tbody>\n");
         for row in &self.rows {
             html.push_str("<tr>");
-            for cell in row {
-                let _ = write!(html, "<td>{}</td>", escape(cell));
+            for (index, cell) in row.cells.iter().enumerate() {
+                let text = escape(cell);
+                let _ = match row.target.filter(|_| index + 1 == row.cells.len()) {
+                    Some(target) => write!(html, "<td><a href=\"#{target}\">{text}</a></td>"),
+                    None => write!(html, "<td>{text}</td>"),
+                };
             }
             html.push_str("</tr>\n");
         }
@@ -53,7 +69,7 @@ impl Table {
     #[must_use]
     pub fn csv(&self) -> String {
         let mut csv = String::new();
-        for row in core::iter::once(&self.head).chain(&self.rows) {
+        for row in core::iter::once(&self.head).chain(self.rows.iter().map(|row| &row.cells)) {
             csv.push_str(&row.iter().map(|cell| csv_field(cell)).collect::<Vec<_>>().join(","));
             csv.push('\n');
         }
@@ -69,7 +85,7 @@ impl Table {
             .set_width(WIDTH)
             .set_header(&self.head);
         for row in &self.rows {
-            text.add_row(row);
+            text.add_row(&row.cells);
         }
         text.trim_fmt()
     }
@@ -92,5 +108,13 @@ mod tests {
         assert_eq!(table.csv(), "claim,number\n\"h < h0, \"\"always\"\"\",1e-14\n");
         assert!(table.html().contains("<td>h &lt; h0, &quot;always&quot;</td><td>1e-14</td>"));
         assert!(table.text().contains("1e-14"));
+    }
+
+    #[test]
+    fn the_last_cell_of_a_linked_row_links() {
+        let mut table = Table::new("test", ["what", "where"]);
+        table.linked_row(["a < b".to_owned(), "Figure 1".to_owned()], "portrait");
+        assert!(table.html().contains("<tr><td>a &lt; b</td><td><a href=\"#portrait\">Figure 1</a></td></tr>"));
+        assert_eq!(table.csv(), "what,where\na < b,Figure 1\n");
     }
 }
