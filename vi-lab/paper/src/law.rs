@@ -20,12 +20,11 @@ const UNTIL: f64 = 40.0;
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.section("The step law");
     book.prose(
-        "Why does the step vary as it does, and why does it grow with damping? The energy-preserving step is encoded in a \
-         quantity of second order: <i>H</i>(<i>t<sub>k</sub></i>, <i>q<sub>k</sub></i>, <i>p<sub>k</sub></i>) − \
-         <i>E<sub>k</sub></i> = <i>h</i>²<i>D</i>/8 + <i>O</i>(<i>h</i>³). So a step exists, for small \
-         <i>h</i><sub>0</sub>, while <i>D</i> keeps its sign; where <i>D</i> goes to zero the step blows up, and then there \
-         is no solution, whatever the solver. Without forces, in any number of degrees of freedom, and for quadratic \
-         Lagrangians, damping included,",
+        "A quantity of second order determines the length of the energy-preserving step: <i>H</i>(<i>t<sub>k</sub></i>, <i>q<sub>k</sub></i>, <i>p<sub>k</sub></i>) − \
+         <i>E<sub>k</sub></i> = <i>h</i>²<i>D</i>/8 + <i>O</i>(<i>h</i>³). So, for small \
+         <i>h</i><sub>0</sub>, a step exists while <i>D</i> keeps its sign. As <i>D</i> → 0 the length diverges, and beyond that \
+         point no solver finds a step. The first law below holds without forces, in any number of degrees of freedom. The second \
+         one holds for quadratic Lagrangians, damping included.",
     );
     let h = sub(&id("h"), &id("k"));
     let third = row(&[num("1"), op("/"), num("3")]);
@@ -63,11 +62,11 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         table.row([system.to_owned(), quantity.to_owned(), a, b, c, power]);
     }
     book.table(
-        &table,
+        table,
         "Relative spread, largest over smallest minus one, along the motion up to <i>t</i> = 40; <i>D</i> at the midpoints.",
-    )?;
-    book.claim(
-        "what the step length follows (open in the paper)",
+    );
+    book.item(
+        "the adaptive step is coupled with the dynamics: by which law (open in the paper)",
         "—",
         format!(
             "h D^(1/3) constant up to order {} in h; with linear damping h √D constant to {}",
@@ -75,6 +74,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
             scientific(exact)
         ),
         Verdict::Answered.when(orders.iter().all(|order| (order - 2.0).abs() < 0.1)),
+        "step-law",
     );
     Ok(())
 }

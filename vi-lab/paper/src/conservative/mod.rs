@@ -1,11 +1,13 @@
 //! The conservative example: a particle in a double well, `L = m v²/2 − (q⁴ − q²)/2`, m = 1, from rest.
 //!
-//! In: the length of the long runs. Out: the sections on phase portraits, energy, step length, the initial step, and
-//! condition numbers. All runs use the paper's start: the second node from an accurate solution at h0.
+//! In: the length of the long runs. Out: the sections on phase portraits, energy and its two parts, step length, the initial
+//! step, and condition numbers. All runs use the paper's start: the second node from an accurate solution at h0.
 
 mod condition;
 mod energy;
 mod initial_step;
+mod parts;
+mod plain;
 mod portrait;
 mod runs;
 mod step_length;
@@ -41,8 +43,9 @@ pub(super) fn chapter(book: &mut Book, study: &Study, progress: &mut Progress) -
          oscillation in the right well, and at <i>q</i><sub>0</sub> = 0.995, just below the barrier, for an orbit that \
          almost stops near the saddle at the origin. Each is run with <i>h</i><sub>0</sub> = 0.01 and 0.1.",
     );
-    portrait::section(book, &runs)?;
-    energy::section(book, &runs)?;
+    portrait::section(book, &runs);
+    energy::section(book, &runs);
+    parts::section(book, &runs);
     step_length::section(book, &runs)?;
     progress.message("initial steps");
     initial_step::section(book, study)?;

@@ -54,6 +54,12 @@ pub(super) struct Track {
 pub(super) struct Pair {
     /// Amplitude and initial step.
     pub(super) case: Case,
+    /// `E_1 − H_0`: the discretization error of the first interval.
+    pub(super) start: f64,
+    /// Largest abs(E_k − E_1) if the velocity of a step is recomputed from its stored nodes.
+    pub(super) stored: f64,
+    /// Largest abs(E_k − E_1) of fixed steps that are as many as the energy-preserving ones, and their length.
+    pub(super) as_many: (f64, f64),
     /// The energy-preserving integrator.
     pub(super) energy: Track,
     /// The fixed-step integrator.
@@ -83,8 +89,13 @@ impl Pair {
         let state = integrator.state();
         let energy = integrator.node().energy;
         let mut adaptive = Track::new(case.h0);
+        let mut stored = 0.0_f64;
         for index in 1..=steps {
+            let before = integrator.state();
             let step = integrator.detailed_step()?;
+            let quotient = (step.q - before.q) / (step.t - before.t);
+            let recomputed = system.energy(step.midpoint.0, &((step.q + before.q) / 2.0), &quotient) - energy;
+            stored = stored.max(recomputed.abs());
             let (t, q, v) = step.midpoint;
             let error = system.energy(t, &q, &v) - energy;
             adaptive.take(index, Sample { t, q: q.x, v: v.x, h: step.h, error }, step.iterations);
@@ -105,8 +116,28 @@ impl Pair {
             progress.advance();
         }
         fixed.end(steps);
-        Ok(Self { case, energy: adaptive, fixed })
+        let start = energy - system.energy(0.0, &SVector::from([case.q0]), &SVector::zeros());
+        let as_many = as_many(case.q0, &adaptive.samples)?;
+        Ok(Self { case, start, stored, as_many, energy: adaptive, fixed })
     }
+}
+
+/// The largest abs(E_k − E_1) and the length of fixed steps that take the time of these samples in as many steps.
+fn as_many(q0: f64, samples: &[Sample]) -> Result<(f64, f64), StepError> {
+    let until = samples.last().map_or(0.0, |sample| sample.t + sample.h / 2.0);
+    let h = samples.iter().map(|sample| sample.h).sum::<f64>() / f64::from(u32::try_from(samples.len()).unwrap_or(1));
+    let integrator = Case { q0, h0: h }.start()?;
+    let (system, energy) = (*integrator.system(), integrator.node().energy);
+    let mut integrator = system.at_state(integrator.state()).integrate(FixedStep, h)?;
+    let mut worst = 0.0_f64;
+    while integrator.t() < until {
+        let before = integrator.state();
+        integrator.step()?;
+        let v = integrator.v();
+        let error = system.energy(before.t + h / 2.0, &(before.q + v * (h / 2.0)), &v) - energy;
+        worst = worst.max(error.abs());
+    }
+    Ok((worst, h))
 }
 
 impl Track {

@@ -53,7 +53,8 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         &chart,
         "Along this swing <i>D</i><sub>1</sub> keeps its sign, <i>D</i><sub>2</sub> and <i>D</i><sub>3</sub> do not: runs of \
          short steps end where the density comes to zero.",
-    )
+    );
+    Ok(())
 }
 
 /// `H − E = C_s h^2s D_s + …`, `D_s = (d/dτ)^2s H(t + τ, π(τ))`.

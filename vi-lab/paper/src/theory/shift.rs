@@ -77,7 +77,8 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         scientific(top - bottom),
         scientific(predicted[0] - predicted[1])
     );
-    book.figure(&chart, &caption)
+    book.figure(&chart, &caption);
+    Ok(())
 }
 
 /// The nodes of the run, its shift measured.

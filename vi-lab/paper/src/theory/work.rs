@@ -33,8 +33,8 @@ type Ladder = Vec<(f64, f64)>;
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.section("What it costs: the error at equal work");
     book.prose(
-        "A step that finds its own length tries two or three. Kepler’s problem, the worst error of the position in the tenth period \
-         over the evaluations of the whole run: energy-preserving steps of order 2 to 6 against fixed steps of the same order.",
+        "A step that finds its own length tries two or three. The figures show Kepler’s problem: the largest error of the position in \
+         the tenth period over the evaluations of the whole run, for energy-preserving and fixed steps of the same order.",
     );
     let mut table = Table::new("theory-work", ["eccentricity", "order", "fixed steps", "energy-preserving", "ratio"]);
     let orbits = [(0.3, "theory-work-0.3", [false; 3]), (0.6, "theory-work-0.6", [false, false, true])];
@@ -51,19 +51,27 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
             orbit.ladder(2, |h| orbit.energy_gauss::<3>(h, shifted[2])),
         ];
         let mut series = Vec::new();
+        let mut worse = Ladder::new();
         for (index, (fixed, energy)) in fixed.into_iter().zip(energy).enumerate() {
             let order = 2 * (index + 1);
             let fixed = fixed.map_err(unexpected("Kepler"))?;
             let energy = energy.map_err(unexpected("Kepler"))?;
             let note = if shifted[index] { ", with a shift" } else { "" };
+            let [(fixed, worse_fixed), (energy, worse_energy)] = [&fixed, &energy].map(efficient);
+            worse.extend(worse_fixed.into_iter().chain(worse_energy));
             let [by_fixed, by_energy] = [&fixed, &energy].map(price);
-            let cells = [by_fixed, by_energy, by_energy / by_fixed];
-            let [by_fixed, by_energy, ratio] =
-                cells.map(|cell| if cell.is_nan() { "–".to_owned() } else { format!("{cell:.3}") });
-            let whole = |cell: String| cell.split('.').next().unwrap_or_default().to_owned();
-            table.row([eccentricity.to_string(), format!("{order}{note}"), whole(by_fixed), whole(by_energy), ratio]);
+            let ratio = match (by_fixed, by_energy) {
+                (Some(Price::Exact(fixed)), Some(Price::Exact(energy))) => format!("{:.3}", energy / fixed),
+                _ => "–".to_owned(),
+            };
+            let text = |price: Option<Price>| price.map_or_else(|| "–".to_owned(), Price::text);
+            let cells = [eccentricity.to_string(), format!("{order}{note}"), text(by_fixed), text(by_energy), ratio];
+            table.row(cells);
             series.push(Series::line(format!("fixed, order {order}"), FIXED[index], fixed));
             series.push(Series::line(format!("energy, order {order}{note}"), super::LOOKS[index], energy));
+        }
+        if !worse.is_empty() {
+            series.push(Series::scatter("inefficient", Look::RIVAL.dots(5.0), worse));
         }
         let chart = Chart {
             name,
@@ -73,17 +81,21 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
             equal_aspect: false,
             series,
         };
-        book.figure(&chart, caption(eccentricity))?;
+        book.figure(&chart, caption(eccentricity));
     }
     let head = format!(
-        "Evaluations to an error of {COMPARED}, between the runs of a ladder, and how many times as many it takes to keep the energy."
+        "Evaluations for an error of {COMPARED}, interpolated between two runs of a ladder, and the ratio of both. “≤”: the longest \
+         efficient step already has a smaller error."
     );
-    book.table(&table, &head)
+    book.table(table, &head);
+    Ok(())
 }
 
 fn caption(eccentricity: f64) -> &'static str {
     if eccentricity < 0.5 {
-        "A nearly round orbit. Steps that follow the motion pay at order 2; the table says what finding their length costs at order 4 and 6."
+        "A nearly round orbit. Steps that follow the motion pay at order 2. At order 4 and 6 finding their length costs more than it \
+         saves. Crosses: inefficient runs. Their steps are so long that the prediction fails and each step searches; a shorter step \
+         has a smaller error and costs less. They are not part of the curves and of the table."
     } else {
         "An eccentric orbit. At order 6 no step exists beyond <i>e</i> = 0.587 but with a shift, whose steps vary less."
     }
@@ -179,12 +191,61 @@ fn count(evaluations: u64) -> f64 {
     evaluations as f64
 }
 
-/// The evaluations at which a ladder comes to the error that is compared, between two runs by a power law; not a number where none does.
-fn price(ladder: &Ladder) -> f64 {
-    let pair =
-        ladder.iter().zip(ladder.iter().skip(1)).find(|(above, below)| above.1 > COMPARED && below.1 <= COMPARED);
-    pair.map_or(f64::NAN, |(above, below)| {
-        let part = (above.1 / COMPARED).ln() / (above.1 / below.1).ln();
-        above.0 * (below.0 / above.0).powf(part)
-    })
+/// Splits the runs of a ladder, longest step first, into the efficient ones and the rest: a run is inefficient if a run with a shorter
+/// step needs no more evaluations.
+fn efficient(ladder: &Ladder) -> (Ladder, Ladder) {
+    let least = |from: usize| ladder.iter().skip(from).map(|(work, _)| *work).fold(f64::INFINITY, f64::min);
+    let is_efficient: Vec<bool> =
+        ladder.iter().enumerate().map(|(index, (work, _))| *work < least(index + 1)).collect();
+    let part = |wanted: bool| {
+        let runs = ladder.iter().zip(&is_efficient).filter(|(_, is_efficient)| **is_efficient == wanted);
+        runs.map(|(run, _)| *run).collect()
+    };
+    (part(true), part(false))
+}
+
+/// The evaluations for the error that is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Price {
+    /// Between two runs, by a power law.
+    Exact(f64),
+    /// The longest step has a smaller error.
+    AtMost(f64),
+}
+
+impl Price {
+    fn text(self) -> String {
+        match self {
+            Self::Exact(evaluations) => format!("{evaluations:.0}"),
+            Self::AtMost(evaluations) => format!("≤ {evaluations:.0}"),
+        }
+    }
+}
+
+/// The price of an error; `None` if no run of the ladder has so small an error.
+fn price(ladder: &Ladder) -> Option<Price> {
+    let first = ladder.first().filter(|(_, error)| *error <= COMPARED);
+    if let Some((work, _)) = first {
+        return Some(Price::AtMost(*work));
+    }
+    let mut pairs = ladder.iter().zip(ladder.iter().skip(1));
+    let (above, below) = pairs.find(|(above, below)| above.1 > COMPARED && below.1 <= COMPARED)?;
+    let part = (above.1 / COMPARED).ln() / (above.1 / below.1).ln();
+    Some(Price::Exact(above.0 * (below.0 / above.0).powf(part)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inefficient_runs_are_no_part_of_a_price() {
+        let ladder = vec![(300.0, 1e-2), (100.0, 1e-4), (200.0, 1e-6)];
+        let (kept, dropped) = efficient(&ladder);
+        assert_eq!((kept.len(), dropped), (2, vec![(300.0, 1e-2)]));
+        assert_eq!(price(&kept), Some(Price::AtMost(100.0)));
+        assert_eq!(price(&vec![(100.0, 1e-2), (200.0, 5e-3)]), None);
+        let exact = price(&vec![(100.0, 1e-2), (10_000.0, 1e-4)]);
+        assert!(matches!(exact, Some(Price::Exact(work)) if (work - 1000.0).abs() < 1e-9), "{exact:?}");
+    }
 }

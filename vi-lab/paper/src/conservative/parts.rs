@@ -1,0 +1,80 @@
+//! The two parts of the energy error (Remarks 5 and 6 of the paper): the discrete energy error and the discretization error.
+
+use super::super::book::{Book, Verdict};
+use super::plain::density;
+use super::runs::{Pair, Track};
+use vi_report::chart::{Axis, Chart, Look, Series};
+use vi_report::numbers::scientific;
+use vi_report::table::Table;
+
+/// The section: one figure with both parts, and a table for all cases.
+pub(super) fn section(book: &mut Book, runs: &[Pair]) {
+    book.section("The two parts of the energy error");
+    book.prose(
+        "Remark 5 of the paper splits the usual energy error <i>E<sub>k</sub></i> − <i>H</i><sub>0</sub>: the discrete energy \
+         error <i>E<sub>k</sub></i> − <i>E</i><sub>1</sub> comes from the solver and from the method, the discretization error \
+         <i>E</i><sub>1</sub> − <i>H</i><sub>0</sub> from the start. Here \
+         <i>E</i><sub>1</sub> − <i>H</i><sub>0</sub> ≈ −<i>h</i><sub>0</sub>²<i>D</i>/8. Remark 6 states that for a \
+         conservative system the second part is constant and larger by orders of magnitude.",
+    );
+    let mut table = Table::new(
+        "energy-parts",
+        [
+            "case",
+            "discretization error E₁ − H₀",
+            "−h₀²D/8",
+            "discrete error, energy-preserving",
+            "discrete error, fixed step",
+        ],
+    );
+    let mut holds = true;
+    for run in runs {
+        let law = -run.case.h0.powi(2) * density(run.case.q0, 0.0) / 8.0;
+        table.row([
+            run.case.label(),
+            scientific(run.start),
+            scientific(law),
+            scientific(run.energy.error),
+            scientific(run.fixed.error),
+        ]);
+        holds &= run.energy.error < 1e-6 * run.start.abs() && (run.start / law - 1.0).abs() < 0.03;
+    }
+    if let Some(run) = runs.iter().find(|run| run.case.q0 > 0.9 && run.case.h0 < 0.05) {
+        figure(book, run);
+    }
+    book.table(table, "Both parts for all cases, over the whole runs.");
+    let ratios = runs.iter().map(|run| scientific(run.start.abs() / run.energy.error));
+    book.item(
+        "Remarks 5 and 6: the discretization error is constant, and orders of magnitude larger than the discrete error",
+        "—",
+        format!("larger by factors of {}", ratios.collect::<Vec<_>>().join(", ")),
+        Verdict::Agrees.when(holds),
+        "energy-parts-figure",
+    );
+}
+
+fn figure(book: &mut Book, run: &Pair) {
+    let points = |track: &Track| {
+        let sizes = track.samples.iter().map(|sample| (sample.t, sample.error.abs()));
+        sizes.filter(|(_, error)| *error > 0.0).collect::<Vec<_>>()
+    };
+    let end = run.fixed.samples.last().map_or(0.0, |sample| sample.t);
+    let constant = vec![(0.0, run.start.abs()), (end, run.start.abs())];
+    let chart = Chart {
+        name: "energy-parts-figure",
+        title: format!("Both parts of the energy error, {}", run.case.label()),
+        x: Axis::linear("t"),
+        y: Axis::log10("size").over(1e-18, 1e-3),
+        equal_aspect: false,
+        series: vec![
+            Series::line("|E₁ − H₀|, both", Look::EXACT, constant),
+            Series::scatter("|Eₖ − E₁|, fixed", Look::FIXED.dots(1.6), points(&run.fixed)),
+            Series::scatter("|Eₖ − E₁|, energy", Look::ENERGY.dots(1.6), points(&run.energy)),
+        ],
+    };
+    book.figure(
+        &chart,
+        "Dashed: the discretization error, constant and the same for both, because both start from the same interval. Points: the \
+         discrete energy error of each step. Steps with <i>E<sub>k</sub></i> = <i>E</i><sub>1</sub> in every bit have no point.",
+    );
+}
