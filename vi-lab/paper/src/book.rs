@@ -16,6 +16,8 @@ pub(super) enum Verdict {
     Smaller,
     /// A printed formula that differs from the derived one.
     Misprint,
+    /// A statement that is corrected here.
+    Corrected,
     /// One part of the sentence holds, another does not.
     InPart,
     /// An open question of the paper, answered on this page.
@@ -35,6 +37,7 @@ impl Verdict {
             Self::Agrees => "agrees",
             Self::Smaller => "agrees; our error is smaller",
             Self::Misprint => "misprint",
+            Self::Corrected => "corrected",
             Self::InPart => "agrees in part",
             Self::Answered => "answered",
             Self::Differs => "does not agree",
@@ -149,11 +152,11 @@ impl Book {
             match part {
                 Part::Figure(figure, _) => {
                     figures += 1;
-                    places.push((figure.name, format!("Figure {figures}")));
+                    places.push((figure.name, format!("Figure\u{a0}{figures}")));
                 }
                 Part::Table(table, _) => {
                     tables += 1;
-                    places.push((table.name, format!("Table {tables}")));
+                    places.push((table.name, format!("Table\u{a0}{tables}")));
                 }
                 Part::Items => tables += 1,
                 Part::Section(_) | Part::Prose(_) | Part::Formula(_) => {}

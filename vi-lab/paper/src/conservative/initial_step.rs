@@ -249,8 +249,9 @@ fn energy(book: &mut Book, ladders: &[Ladder]) {
             "Over {most} steps. In (<i>v</i>, <i>h</i>) the energy error has no trend in <i>h</i><sub>0</sub>. In \
              (<i>q</i><sub>1</sub>, <i>t</i><sub>1</sub>) the quotient \
              (<i>q</i><sub>1</sub> − <i>q</i><sub>0</sub>)/(<i>t</i><sub>1</sub> − <i>t</i><sub>0</sub>) cancels, and below \
-             <i>h</i><sub>0</sub> = 3·10⁻⁴ the error grows. Runs that end early have no point; <a href=\"#initial-step\">the \
-             table</a> names their last step."
+             <i>h</i><sub>0</sub> = {} the error grows at <i>q</i><sub>0</sub> = 0.74. Runs that end early have no point; <a href=\"#initial-step\">the \
+             table</a> names their last step.",
+            growth_from(ladders).map_or_else(|| "–".to_owned(), scientific)
         ),
     );
     let all = || ladders.iter().flat_map(|ladder| &ladder.rungs);
@@ -278,6 +279,15 @@ fn energy(book: &mut Book, ladders: &[Ladder]) {
         Verdict::InPart.when(plain.1 < 1e-12 && ours.1 < 1e-15),
         "initial-step-energy",
     );
+}
+
+/// The longest initial step from which the energy error in (q1, t1) is twice that at 0.01, for the smaller amplitude.
+fn growth_from(ladders: &[Ladder]) -> Option<f64> {
+    let rungs = &ladders.first()?.rungs;
+    let usual = rungs.iter().find(|rung| rung.h0.total_cmp(&PAPER[0]).is_eq())?.points.energy;
+    let grown = rungs.iter().rev().find(|rung| rung.h0 < PAPER[0] && rung.points.energy > 2.0 * usual);
+    let index = rungs.iter().position(|rung| Some(rung.h0) == grown.map(|grown| grown.h0))?;
+    rungs.get(index + 1).map(|rung| rung.h0)
 }
 
 /// What tolerance, unknowns and a carried energy change, at the paper's initial steps.
@@ -381,14 +391,19 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
     };
     let (low, high) = at(1e-6);
     let (lowest, highest) = at(1e-7);
+    let least = if highest / lowest > 1.0 + 1e-10 {
+        format!("At 10⁻⁷ it ranges from {lowest:.3} to {highest:.3}")
+    } else {
+        "At 10⁻⁷ every step keeps the length of the last one".to_owned()
+    };
     book.figure(
         &chart,
         &format!(
             "The largest relative deviation of <i>h<sub>k</sub></i> from \
              <i>h</i><sub>0</sub>(<i>D</i><sub>0</sub>/<i>D<sub>k</sub></i>)<sup>1/3</sup>. Right of the minimum it is the \
              <i>O</i>(<i>h</i>²) of the step law, left of it rounding. At <i>h</i><sub>0</sub> = 10⁻⁶ and \
-             <i>q</i><sub>0</sub> = 0.74 the <i>h</i>/<i>h</i><sub>0</sub> of this project ranges from {low:.4} to {high:.4}, at 10⁻⁷ \
-             from {lowest:.3} to {highest:.3}: there the energy no longer determines the length."
+             <i>q</i><sub>0</sub> = 0.74 the <i>h</i>/<i>h</i><sub>0</sub> of this project ranges from {low:.4} to {high:.4}. \
+             {least}: the energy no longer determines it. Such runs have no point."
         ),
     );
     let (least, largest) = extremes(fine(ladders).map(|rung| rung.ours.deviation / rung.ours.law));
@@ -508,8 +523,8 @@ fn table(book: &mut Book, ladders: &[Ladder]) {
     }
     book.table(
         table,
-        "The initial step: range of the steps of this project, largest energy error with the three solvers, largest deviation of \
-         the step length from the step law, error of the trajectory.",
+        "The initial step. Columns: range of the steps of this project, largest energy error of the three solvers, largest deviation \
+         from the step law, error of the trajectory.",
     );
 }
 

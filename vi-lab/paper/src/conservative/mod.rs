@@ -39,9 +39,9 @@ pub(super) fn chapter(book: &mut Book, study: &Study, progress: &mut Progress) -
     let quartic = row(&[sup(&id("q"), &num("4")), op("−"), sup(&id("q"), &num("2"))]);
     book.formula(&[id("L"), op("="), half_v2, op("−"), frac(&quartic, &num("2"))].concat());
     book.prose(
-        "The particle of mass <i>m</i> = 1 starts from rest, at <i>q</i><sub>0</sub> = 0.74 for a small, nearly harmonic \
-         oscillation in the right well, and at <i>q</i><sub>0</sub> = 0.995, just below the barrier, for an orbit that \
-         almost stops near the saddle at the origin. Each is run with <i>h</i><sub>0</sub> = 0.01 and 0.1.",
+        "The particle of mass <i>m</i> = 1 starts from rest. From <i>q</i><sub>0</sub> = 0.74 it oscillates nearly harmonically in \
+         the right well. From <i>q</i><sub>0</sub> = 0.995, just below the barrier, it almost stops near the saddle at the \
+         origin. Each motion is run with <i>h</i><sub>0</sub> = 0.01 and 0.1.",
     );
     portrait::section(book, &runs);
     energy::section(book, &runs);

@@ -12,6 +12,8 @@ use vi_report::table::Table;
 
 /// Time that the figures show.
 const UNTIL: f64 = 100.0;
+/// Time over which early errors are averaged.
+const EARLY: f64 = 20.0;
 /// Points of the exact curve.
 const FINENESS: u32 = 4000;
 /// Half a period of the energy error: the energy error oscillates with twice the frequency of the motion.
@@ -311,22 +313,30 @@ fn row(book: &mut Book, table: &mut Table, run: &Damped, amplitudes: &Amplitudes
             scientific(ratio),
             scientific(last)
         ),
-        // Measured: the law holds to 6 %.
+        // Measured: the law holds to 1.6 %.
         Verdict::Agrees.when(
             last > ratio && (late / expected - 1.0).abs() < 0.1 && (late_fixed / expected_fixed - 1.0).abs() < 0.1,
         ),
         run.names.absolute,
     );
+    let [mean, mean_fixed] = [&run.adaptive, &run.constant].map(|sampled| {
+        let early = sampled.samples.iter().take_while(|sample| sample.t < EARLY);
+        let sizes = || early.clone().map(|sample| (run.absolute(sample).abs(), 1.0));
+        let (sum, count) = sizes().fold((0.0, 0.0), |(sum, count), (size, one)| (sum + size, count + one));
+        sum / count
+    });
     let [start, start_fixed] =
         [&run.adaptive, &run.constant].map(|sampled| sampled.samples.first().map_or(f64::NAN, |s| run.absolute(s)));
     book.item(
         &format!("ζ = {zeta}: same energy accuracy at the start, the energy-preserving integrator better initially"),
         "—",
         format!(
-            "both start at {}; the first amplitudes are {} energy-preserving and {} fixed, but the mean error of the fixed step is smaller",
+            "both start at {}; first amplitude {} energy-preserving, {} fixed; mean size up to t = {EARLY} {} and {}",
             scientific(start),
             scientific(early),
-            scientific(early_fixed)
+            scientific(early_fixed),
+            scientific(mean),
+            scientific(mean_fixed)
         ),
         Verdict::InPart.when(start.total_cmp(&start_fixed).is_eq() && early < early_fixed),
         run.names.absolute,
@@ -424,7 +434,8 @@ mod tests {
             for (is_adaptive, envelope) in [(true, &amplitudes.adaptive), (false, &amplitudes.constant)] {
                 let (t, measured) = envelope.last().copied().expect("a window");
                 let deviation = (measured / law(zeta, t, is_adaptive) - 1.0).abs();
-                assert!(deviation < 0.1, "ζ = {zeta}, adaptive {is_adaptive}: {deviation}");
+                // Measured: at most 0.016.
+                assert!(deviation < 0.05, "ζ = {zeta}, adaptive {is_adaptive}: {deviation}");
             }
         }
     }

@@ -10,7 +10,7 @@ use vi_report::page::math::{frac, id, num, op, row, sub, sub_sup, sup};
 
 /// Where the pendulum is released.
 const ANGLE: f64 = 2.0;
-/// More than half a swing.
+/// More than half an oscillation.
 const UNTIL: f64 = 5.0;
 /// Steps of the runs with 1, 2 and 3 stages.
 const STEPS: [f64; ENERGY_STAGES.len()] = [0.01, 0.03, 0.08];
@@ -20,8 +20,8 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.section("Beyond the paper: energy-preserving steps of order 2s");
     book.prose(
         "The paper’s step has one stage. The same idea with the <i>s</i> stages of a Gauss step, and its length, as unknowns \
-         gives order 2<i>s</i>; see <code>docs/theory.md</code> for derivations and prior work. How long a step is follows \
-         from a step density of its own, where <i>π</i> is the Taylor polynomial of degree <i>s</i> of the motion:",
+         gives order 2<i>s</i>; see <code>docs/theory.md</code> for derivations and prior work. A step density \
+         <i>D<sub>s</sub></i> determines the length of a step. <i>π</i> is the Taylor polynomial of degree <i>s</i> of the motion:",
     );
     book.formula(&statement());
     book.prose(
@@ -51,7 +51,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     };
     book.figure(
         &chart,
-        "Along this swing <i>D</i><sub>1</sub> keeps its sign, <i>D</i><sub>2</sub> and <i>D</i><sub>3</sub> do not: runs of \
+        "Along this motion <i>D</i><sub>1</sub> keeps its sign, <i>D</i><sub>2</sub> and <i>D</i><sub>3</sub> do not: runs of \
          short steps end where the density comes to zero.",
     );
     Ok(())

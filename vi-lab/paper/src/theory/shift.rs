@@ -1,4 +1,4 @@
-//! The shift: what it keeps, and by how much H and E swing.
+//! The shift: what it keeps, and by how much H and E oscillate.
 
 use super::super::book::Book;
 use super::super::unexpected;
@@ -11,7 +11,7 @@ use vi_report::page::math::{id, num, op, row, sub, sup};
 
 const ANGLE: f64 = 2.0;
 const H: f64 = 0.05;
-/// Two periods of the swing.
+/// Two periods.
 const UNTIL: f64 = 16.5;
 /// `C_2`.
 const CONSTANT: f64 = 1.0 / 864.0;
@@ -71,7 +71,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     };
     let caption = format!(
         "Without a shift this run ends at <i>t</i> = 0.45. With <i>D</i><sub>∗</sub> = {shift:.1}, twice the largest \
-         |<i>D</i><sub>2</sub>|, it goes on: <i>E</i>′ stays within {}, <i>H</i> swings by {}, as the law predicts (dashed: {}), and \
+         |<i>D</i><sub>2</sub>|, it goes on: <i>E</i>′ stays within {}, <i>H</i> oscillates by {}, as the law predicts (dashed: {}), and \
          <i>E</i> by four times as much.",
         scientific(high - low),
         scientific(top - bottom),

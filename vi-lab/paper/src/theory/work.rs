@@ -94,8 +94,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
 fn caption(eccentricity: f64) -> &'static str {
     if eccentricity < 0.5 {
         "A nearly round orbit. Steps that follow the motion pay at order 2. At order 4 and 6 finding their length costs more than it \
-         saves. Crosses: inefficient runs. Their steps are so long that the prediction fails and each step searches; a shorter step \
-         has a smaller error and costs less. They are not part of the curves and of the table."
+         saves. Crosses mark inefficient runs: a shorter step has a smaller error and costs less. The curves and the table omit them."
     } else {
         "An eccentric orbit. At order 6 no step exists beyond <i>e</i> = 0.587 but with a shift, whose steps vary less."
     }
