@@ -129,6 +129,6 @@ fn figure(book: &mut Book, runs: &[(Case, Along)], name: &'static str) {
     book.figure(
         &chart,
         "The same equations in three forms, at the same solutions. Lines: <i>h</i><sub>0</sub> = 0.01, dashes: \
-         <i>h</i><sub>0</sub> = 0.1. Scaled, both coincide.",
+         <i>h</i><sub>0</sub> = 0.1. Scaled, the two are close.",
     );
 }

@@ -115,6 +115,11 @@ impl Outcome {
         outcome
     }
 
+    /// Whether the energy determined the steps. If all have the same length to ten digits, the run took its predictions.
+    fn is_determined(&self) -> bool {
+        self.lengths.1 / self.lengths.0 > 1.0 + 1e-10
+    }
+
     /// The largest energy error of a run that did not end early.
     fn complete(&self, most: u32) -> Option<f64> {
         (self.steps == most).then_some(self.energy)
@@ -255,28 +260,30 @@ fn energy(book: &mut Book, ladders: &[Ladder]) {
         ),
     );
     let all = || ladders.iter().flat_map(|ladder| &ladder.rungs);
-    let in_range = |pick: fn(&Rung) -> Outcome, low: f64| {
-        extremes(all().filter(|rung| rung.h0 >= low).filter_map(|rung| pick(rung).complete(most)))
-    };
-    let plain = in_range(|rung| rung.plain, 1e-4);
-    let ours = in_range(|rung| rung.ours, 1e-4);
-    let [coarse, fine] = [0.1, 0.01].map(|h0: f64| {
-        let rung = all().find(|rung| rung.h0.total_cmp(&h0).is_eq());
-        rung.map_or(f64::NAN, |rung| rung.plain.energy)
-    });
+    let in_range =
+        |pick: Pick| extremes(all().filter(|rung| rung.h0 > 9e-6).filter_map(|rung| pick(rung).complete(most)));
+    let plain = in_range(|rung| rung.plain);
+    let ours = in_range(|rung| rung.ours);
+    let powers: Vec<f64> = ladders
+        .iter()
+        .map(|ladder| {
+            let points = curve(ladder, |rung| rung.plain.complete(most));
+            order(&points.into_iter().filter(|(h0, error)| *h0 > 9e-6 && *error > 0.0).collect::<Vec<_>>())
+        })
+        .collect();
+    let text = powers.iter().map(|power| format!("{power:.2}")).collect::<Vec<_>>().join(" and ");
     book.item(
         "a smaller initial step spoils the energy: 0.1 slightly better than 0.01",
         "—",
         format!(
-            "(v, h) in plain double: {} to {} for h₀ = 10⁻⁴ … 0.1, {} at 0.1 and {} at 0.01 (q₀ = 0.74), no trend; this project {} to {}",
+            "h₀ = 10⁻⁵ … 0.1, (v, h) in plain double: {} to {}, as h₀ to the power {text}: no trend; this project {} to {}",
             scientific(plain.0),
             scientific(plain.1),
-            scientific(coarse),
-            scientific(fine),
             scientific(ours.0),
             scientific(ours.1)
         ),
-        Verdict::InPart.when(plain.1 < 1e-12 && ours.1 < 1e-15),
+        // Measured: powers −0.09 and −0.14.
+        Verdict::InPart.when(plain.1 < 1e-12 && ours.1 < 1e-15 && powers.iter().all(|power| power.abs() < 0.3)),
         "initial-step-energy",
     );
 }
@@ -358,11 +365,10 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
         ("E carried", Look::OTHERS[3], |rung| rung.carried),
         ("this project", Look::ENERGY, |rung| rung.ours),
     ];
-    // If all steps have the same length to ten digits, the run took its predictions: the energy did not determine them.
     let deviation = |pick: Pick| {
         move |rung: &Rung| {
             let outcome = pick(rung);
-            (outcome.lengths.1 / outcome.lengths.0 > 1.0 + 1e-10).then_some(outcome.deviation)
+            outcome.is_determined().then_some(outcome.deviation)
         }
     };
     let mut series = Vec::new();
@@ -424,7 +430,7 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
             scientific(least),
             scientific(largest)
         ),
-        // Measured: 0.09 to 0.43 and 1.4; over 3000 steps 0.08 to 0.50 and 0.96.
+        // Measured: 0.09 to 0.52 and 1.8; over 3000 steps 0.08 to 0.50 and 0.96.
         Verdict::Agrees.when(least > 0.02 && largest < 1.0 && plain > 0.5),
         "initial-step-length",
     );
@@ -432,7 +438,8 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
 
 /// The rungs in which rounding dominates the step length and the energy still determines it.
 fn fine(ladders: &[Ladder]) -> impl Iterator<Item = &Rung> {
-    ladders.iter().flat_map(|ladder| &ladder.rungs).filter(|rung| (9e-7..2e-4).contains(&rung.h0))
+    let all = ladders.iter().flat_map(|ladder| &ladder.rungs);
+    all.filter(|rung| (9e-7..2e-4).contains(&rung.h0) && rung.ours.is_determined())
 }
 
 /// Error of the trajectory against h0.
@@ -579,9 +586,11 @@ mod tests {
                 let carried = by_velocity(case, most, CARRIED).expect("a start");
                 let mine = ours(case, most).expect("a start");
                 assert_eq!((carried.steps, mine.steps), (most, most));
+                // Measured: at most 1.5e-16 and 1.6e-16.
                 assert!(carried.energy < 4e-16 && mine.energy < 4e-16, "{case:?}: {carried:?} {mine:?}");
                 if h0 < 1e-3 {
                     let [ratio, plain] = [mine, carried].map(|outcome| outcome.deviation / outcome.law);
+                    // Measured: 0.08 to 0.43, and 1.3 to 15.
                     assert!(ratio > 0.02 && ratio < 1.0 && plain > 0.5, "{case:?}: {ratio} {plain}");
                 }
             }
@@ -596,7 +605,8 @@ mod tests {
                 by_velocity(case, 5000, solver).expect("a start").energy
             });
             let floor = by_velocity(case, 5000, PLAIN).expect("a start").energy;
-            assert!(errors[0] > errors[1] && errors[1] > floor, "{case:?}: {errors:?} {floor}");
+            // Measured at q0 = 0.74, h0 = 0.01: 3.5e-13, 1.0e-13, 3.6e-16.
+            assert!(errors[0] > errors[1] && errors[1] > 3.0 * floor, "{case:?}: {errors:?} {floor}");
         }
     }
 }

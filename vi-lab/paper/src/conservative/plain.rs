@@ -139,7 +139,8 @@ mod tests {
             let seen = plain.step(Solver { tolerance: None, is_carried: true }).expect("a step");
             worst = worst.max((seen.q - step.midpoint.1.x).abs()).max((seen.h - step.h).abs());
         }
-        assert!(worst < 1e-10, "{worst}");
+        // Measured 2.5e-12: the roundings of 200 plain steps.
+        assert!(worst < 1e-11, "{worst}");
     }
 
     #[test]
@@ -149,6 +150,7 @@ mod tests {
             let (determinant, expected) = Plain::determinant(middle, v, h);
             worst = worst.max((determinant / expected - 1.0).abs());
         }
+        // Measured 2.4e-14.
         assert!(worst < 1e-13, "{worst}");
     }
 
@@ -164,6 +166,7 @@ mod tests {
         let mut wrong = Plain { energy: plain.energy + error, ..plain };
         let change = wrong.step(solver).expect("a step").h - seen.h;
         let law = -4.0 * error / (seen.h * density(seen.q, seen.v));
-        assert!((change / law - 1.0).abs() < 0.01, "{change} {law}");
+        // Measured 2.5e-4, a quarter of the relative error of H − E.
+        assert!((change / law - 1.0).abs() < 1e-3, "{change} {law}");
     }
 }

@@ -147,6 +147,7 @@ mod tests {
             worst = worst.max((density - (1.0 + c * c - 2.0 * c * bottom)).abs());
             assert!(density > amplitude.sin().powi(2) - 1e-14, "{q}: {density}");
         }
-        assert!(worst < 1e-14, "{worst}");
+        // Measured 8.9e-16.
+        assert!(worst < 4e-15, "{worst}");
     }
 }
