@@ -114,8 +114,8 @@ fn proof(book: &mut Book) -> Result<(), Failure> {
         drop = drop.max(measured.drop);
     }
     book.prose(&format!(
-        "<i>B</i> ≈ 2<i>D</i>/<i>h</i> is large and positive for small <i>h</i>. So no step is shorter than the one before: the growth \
-         of <i>h</i> is monotonic in the discrete motion, not only on average. Along the three runs up to <i>t</i> = {SHOWN}, \
+        "<i>B</i> ≈ 2<i>D</i>/<i>h</i> is large and positive for small <i>h</i>. So with a positive semidefinite <i>C</i> no step is \
+         shorter than the one before: the growth of <i>h</i> is monotonic in the discrete motion, not only on average. Along the three runs up to <i>t</i> = {SHOWN}, \
          <i>B</i> is at least {}, the identity holds to {} of <i>h</i>, and {}.",
         scientific(least),
         scientific(worst),
