@@ -49,9 +49,9 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     Ok(Lengths::new(Last::first(v, h, density, SVector::zeros())))
 }
 
-/// Smallest `h² |D|` that determines a length, in roundings of the energy of a step: `H − E = h² D/8` may be off by
-/// [`FLOOR`] of them, and h then by a quarter.
-const LEAST: f64 = 16.0 * FLOOR;
+/// Smallest `h² |D|` that determines a length, in roundings of the energy of a step. `H − E = h² D/8`, off by one of them,
+/// changes h by an eighth; off by [`FLOOR`], which is accepted, by half of it.
+const LEAST: f64 = 8.0 * FLOOR;
 
 /// Checks that the energy determines the length of the first step after `last`.
 ///

@@ -145,6 +145,9 @@ pub(crate) fn weights<const N: usize>(matrix: &SMatrix<f64, N, N>) -> [[f64; N];
 /// Sign of the determinant, by elimination with partial pivoting: −1, 0 or 1; 0 if an entry is NaN.
 #[must_use]
 pub fn determinant_sign<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> i8 {
+    if let Some(sign) = dense::sign_of_few(matrix) {
+        return sign;
+    }
     let mut a = *matrix;
     let mut weights = dense::weights(&a);
     let mut sign = 1;
