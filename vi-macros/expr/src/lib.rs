@@ -32,7 +32,7 @@
 //! | `table` | values by index |
 //! | `effort` | work limits |
 //! | `number` | exact powers of numbers, bounded |
-//! | `sum`, `product`, `call`, `opaque` | the canonical forms, each with its rules |
+//! | `sum`, `squares`, `product`, `call`, `opaque` | the canonical forms, each with its rules |
 //! | `derivative`, `substitute`, `expand`, `ramp` | new expressions from old |
 //! | `ball`, `elementary`, `constant` | numbers and functions of any precision; constants, rounded once |
 //! | `collect` | merges terms that differ by constants |
@@ -59,6 +59,7 @@ mod product;
 mod ramp;
 mod render;
 mod rounding;
+mod squares;
 mod substitute;
 mod sum;
 mod table;

@@ -25,6 +25,8 @@ pub struct Pool<S> {
     pub(crate) constant: Vec<bool>,
     /// Some node is constant but not an exact number.
     pub(crate) has_irrational: bool,
+    /// Some product has the square of a sine or cosine, circular or hyperbolic.
+    pub(crate) has_squares: bool,
     /// Values of constant nodes, with their precision in bits.
     pub(crate) balls: RefCell<Table<Expr, (u64, Ball)>>,
     /// Work limit, and the remaining work.
@@ -46,6 +48,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             nodes: Distinct::default(),
             constant: Vec::new(),
             has_irrational: false,
+            has_squares: false,
             balls: RefCell::default(),
             limit: usize::MAX,
             left: Cell::new(usize::MAX),
@@ -210,6 +213,9 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         let constant =
             !matches!(node, Node::Symbol(_) | Node::Opaque(..)) && !node.any_child(|child| !self.constant[child.0]);
         self.constant.push(constant);
+        if let Node::Product(product) = &node {
+            self.has_squares = self.has_squares || product.factors.iter().any(|factor| self.is_square(factor));
+        }
         self.has_irrational |= constant && !matches!(node, Node::Number(_));
         Expr(self.nodes.insert_full(Arc::new(node)).0)
     }

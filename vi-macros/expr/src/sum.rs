@@ -1,7 +1,7 @@
 //! Canonical sums.
 //!
 //! In: a linear combination of expressions. Out: `constant + Σ coefficient·term`, with nested sums flattened, equal
-//! terms collected and numbers folded.
+//! terms collected, numbers folded, and squares of sines and cosines merged (see `squares`).
 //!
 //! AFTER THIS no term is a number or a sum, and numeric coefficients exist only in a [`Sum`].
 
@@ -47,22 +47,37 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// `Σ coefficient·term`; undefined if a term is, for any coefficient.
     pub fn combination(&mut self, parts: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
         let mut constant = Rational::zero();
+        let Some(terms) = self.flattened(&mut constant, parts) else { return Expr::UNDEFINED };
+        let mut terms = self.collected(terms);
+        while let Some(parts) = self.without_squares(&terms) {
+            let Some(flat) = self.flattened(&mut constant, parts) else { return Expr::UNDEFINED };
+            terms = self.collected(flat);
+        }
+        self.intern_sum(constant, terms)
+    }
+
+    /// The terms of all parts, whose numbers are added to `constant`; `None` if a part is undefined.
+    fn flattened(
+        &self,
+        constant: &mut Rational,
+        parts: impl IntoIterator<Item = (Expr, Rational)>,
+    ) -> Option<Vec<(Expr, Rational)>> {
         let mut terms = Vec::new();
         for (expr, coefficient) in parts {
             if self.is_undefined(expr) {
-                return Expr::UNDEFINED;
+                return None;
             }
             if coefficient.is_zero() {
                 continue;
             }
             match self.node(expr) {
                 Node::Number(value) => {
-                    constant = number::sum(&constant, &number::product(&coefficient, value));
-                    self.spend_on(&constant);
+                    *constant = number::sum(constant, &number::product(&coefficient, value));
+                    self.spend_on(constant);
                 }
                 Node::Sum(sum) => {
-                    constant = number::sum(&constant, &number::product(&coefficient, &sum.constant));
-                    self.spend_on(&constant);
+                    *constant = number::sum(constant, &number::product(&coefficient, &sum.constant));
+                    self.spend_on(constant);
                     for (term, inner) in &sum.terms {
                         let product = number::product(&coefficient, inner);
                         self.spend_on(&product);
@@ -72,12 +87,11 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                 _ => terms.push((expr, coefficient)),
             }
             if self.is_exhausted() {
-                return Expr::UNDEFINED;
+                return None;
             }
         }
         self.spend(MADE * terms.len());
-        let terms = self.collected(terms);
-        self.intern_sum(constant, terms)
+        Some(terms)
     }
 
     fn intern_sum(&mut self, constant: Rational, terms: Vec<(Expr, Rational)>) -> Expr {

@@ -1,7 +1,7 @@
 //! The canonical forms, one rule per line.
 
-use crate::Pool;
 use crate::notation::{read, write};
+use crate::{Pool, ratio};
 
 /// Each line: input, and the text of its canonical form. Parsing the output must give the same expression.
 #[track_caller]
@@ -53,6 +53,45 @@ fn sums() {
          -x - y => -x - y
          x^2 - 2*x + 1 => x^2 - 2*x + 1",
     );
+}
+
+#[test]
+fn squares_of_sines_and_cosines() {
+    check(
+        "sin(x)^2 + cos(x)^2 => 1
+         cos(x)^2 + sin(x)^2 - 1 => 0
+         3*sin(x)^2 + 3*cos(x)^2 - y => 3 - y
+         y*sin(x)^2/2 + y*cos(x)^2/2 => y/2
+         (x + y)*sin(z)^2 + (x + y)*cos(z)^2 => x + y
+         (y*cos(x))^2 + (y*sin(x))^2 => y^2
+         sin(x)^3 + sin(x)*cos(x)^2 => sin(x)
+         sin(x)^2/y + cos(x)^2/y => 1/y
+         sin(x*y)^2 + cos(x*y)^2 => 1
+         sin(x)^2*sin(y)^2 + sin(x)^2*cos(y)^2 + cos(x)^2*sin(y)^2 + cos(x)^2*cos(y)^2 => 1
+         cosh(x)^2 - sinh(x)^2 => 1
+         y*sinh(x)^2 - y*cosh(x)^2 => -y
+         sin(1)^2 + cos(1)^2 => 1",
+    );
+    // Another coefficient, argument or sign.
+    check(
+        "2*sin(x)^2 + cos(x)^2 => 2*sin(x)^2 + cos(x)^2
+         sin(x)^2 + cos(y)^2 => sin(x)^2 + cos(y)^2
+         sin(x)^2 - cos(x)^2 => sin(x)^2 - cos(x)^2
+         cosh(x)^2 + sinh(x)^2 => cosh(x)^2 + sinh(x)^2
+         y*sin(x)^2 + z*cos(x)^2 => y*sin(x)^2 + z*cos(x)^2
+         sin(x)^2 + cosh(x)^2 => sin(x)^2 + cosh(x)^2
+         sin(x)*cos(x) + sin(x)^2 => sin(x)*cos(x) + sin(x)^2",
+    );
+}
+
+/// A search that merges nothing adds no node: the order of terms is that of their nodes.
+#[test]
+fn a_search_for_squares_leaves_no_trace() {
+    let mut pool = Pool::new();
+    let parts = ["sin(x)^2*y", "cos(x)^2*y", "z"].map(|text| read(&mut pool, text));
+    let nodes = pool.len();
+    pool.combination(parts.into_iter().zip([2, 1, 1].map(|factor| ratio(factor, 1))));
+    assert_eq!(pool.len(), nodes + 1, "the sum alone");
 }
 
 #[test]
