@@ -43,6 +43,32 @@ fn what_the_jacobian_depends_on() {
 }
 
 #[test]
+fn a_time_that_cancels_is_no_dependence() {
+    let autonomous = |body: &str| findings(body).autonomous;
+    // By hand: the factor is 1; the turning frame has the kinetic energy ((x' - w y)² + (y' + w x)²)/2.
+    assert!(autonomous("coord x; L = dot(x)^2/2 - (sin(t)^2 + cos(t)^2)*x^2/2; discretize midpoint;"));
+    assert!(autonomous(
+        "param k = 1; coord x; L = dot(x)^2/2 - k*sin(3*t)^2*x^2 - k*cos(3*t)^2*x^2; discretize midpoint;"
+    ));
+    assert!(autonomous(
+        "coord x; L = dot(x)^2/2 - x^2; force x = -(cosh(t)^2 - sinh(t)^2)*dot(x); discretize midpoint;"
+    ));
+    let turning = "param w = 1; coord x, y; let X = x*cos(w*t) - y*sin(w*t), Y = x*sin(w*t) + y*cos(w*t); \
+                   L = (dot(X)^2 + dot(Y)^2)/2 - x^4; discretize midpoint;";
+    assert!(autonomous(turning));
+    // The Coriolis force of the frame makes the matrix of a step depend on h, not on the time.
+    assert_eq!(findings(&turning.replace("x^4", "x^2")).steps.expect("a rule").jacobian, Dependence::Step);
+    for depends in [
+        "coord x; L = dot(x)^2/2 - (2*sin(t)^2 + cos(t)^2)*x^2/2; discretize midpoint;",
+        "coord x; L = dot(x)^2/2 - (sin(t)^2 + cos(2*t)^2)*x^2/2; discretize midpoint;",
+        "coord x; L = dot(x)^2/2 - x^2; force x = (sin(t)^2 - cos(t)^2)*dot(x); discretize midpoint;",
+    ] {
+        assert!(!autonomous(depends), "{depends}");
+    }
+    assert!(!autonomous(&turning.replace("x^4", "X^4")));
+}
+
+#[test]
 fn findings_in_words() {
     let free = "coord x, y; L = (dot(x)^2 + dot(y)^2)/2 - t*y; discretize midpoint;";
     let wanted = [

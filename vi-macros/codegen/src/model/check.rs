@@ -8,7 +8,7 @@ use super::scope::Meaning;
 use super::value::Value;
 use super::{
     Coordinate, Model, Parameter, Rule, angles, check_state, constraint, force, function, indices, lets, mass, rule,
-    smoothness, time_scale,
+    smoothness, time_scale, timeless,
 };
 use crate::arrays::ArrayMistake;
 use crate::functions::FunctionMistake;
@@ -86,6 +86,10 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     };
     let kept = scope.kept.as_deref().unwrap_or_default();
     let lagrangian = rotation::with_inertia(pool, lagrangian, kept, (&coordinates, &parameters));
+    // A large system is not multiplied out: its sums have to stay loops.
+    let mut without_time = |expr| if is_large { expr } else { timeless::timeless(pool, expr) };
+    let lagrangian = without_time(lagrangian);
+    let forces = forces.into_iter().map(without_time).collect();
     let lagrangian_span = system.lagrangians[0].name.span();
     let rows = constraint::rows(pool, &constraints, coordinates.len());
     let singular = if is_large {

@@ -27,6 +27,7 @@ mod scope;
 mod smoothness;
 mod table;
 mod time_scale;
+mod timeless;
 mod value;
 mod vector;
 
