@@ -82,9 +82,10 @@ impl Method {
 }
 
 /// The first interval of the energy-preserving integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start {
-    /// The first interval begins at the initial state.
+    /// The first interval begins at the initial state, as with `integrate`.
+    #[default]
     State,
     /// The initial state is the midpoint of the first interval.
     Midpoint,
@@ -215,7 +216,7 @@ impl Plan {
     /// A run with steps of length h from a point, with the defaults of the method.
     #[must_use]
     pub fn new(method: Method, h: f64, PhasePoint { t, q, v }: PhasePoint) -> Self {
-        let (start, shift, tolerance) = (Start::Midpoint, None, None);
+        let (start, shift, tolerance) = (Start::default(), None, None);
         Self { method, start, stages: None, shift, fallback: false, dtau: None, h, tolerance, t, q, v, p: None }
     }
 

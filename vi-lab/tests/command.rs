@@ -265,9 +265,13 @@ fn every_system_runs_by_every_method_and_is_explained() {
 
 #[test]
 fn both_methods_write_csv_to_standard_output() {
-    for (method, first, tolerance) in [("fixed", 0.0, 2e-8), ("energy", 0.005, 1e-16)] {
-        let (status, csv, errors) = lab(&["run", "double-well", "--method", method, "--steps", "500"]);
-        assert_eq!((status, errors.as_str()), (Some(0), ""), "{method}");
+    for (method, start, first, tolerance) in
+        [("fixed", "state", 0.0, 2e-8), ("energy", "state", 0.0, 1e-16), ("energy", "midpoint", 0.005, 1e-16)]
+    {
+        let of_start: &[&str] = if start == "state" { &[] } else { &["--start", start] };
+        let run = ["run", "double-well", "--method", method, "--steps", "500"];
+        let (status, csv, errors) = lab(&[run.as_slice(), of_start].concat());
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{method}, {start}");
         assert!(
             csv.starts_with("# vi-lab ")
                 && csv.contains(&format!("# command: vi-lab run double-well --method {method}"))

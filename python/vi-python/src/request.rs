@@ -31,7 +31,7 @@ impl Request {
             Method::named(&self.method).ok_or_else(|| wrong(format!("there is no method {:?}", self.method)))?;
         let h = self.h.or(self.dtau).unwrap_or(f64::NAN);
         let plan = Plan {
-            start: Start::State,
+            start: Start::default(),
             stages: self.stages,
             shift: self.shift_from.map(Shift::Over).or(self.shift.map(Shift::Of)),
             fallback: self.fallback,

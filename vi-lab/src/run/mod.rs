@@ -104,8 +104,8 @@ stages has its own D. With --shift D* they exist while D + D* keeps its sign. A 
 the closer they are to fixed steps. --shift auto takes twice the largest |D| of fixed steps over the run, or over its first 10000 steps, and the \
 header of the CSV contains it. --fallback takes fixed steps if there is no energy-preserving one.
 
-Rows: the first row is the first node of the integrator. With --method energy and --start midpoint the initial \
-state is the midpoint of the first interval, and the first node is half a step later. With --stages or --shift the first row is the initial state. The last node is always written.
+Rows: the first row is the initial state. With --start midpoint or points it is the end of the first interval, \
+half a step or one step later. The last node is always written.
 
 Exit status: 0 success; 1 a step or a file failed; 2 the input is wrong; 130 and 143 the run was interrupted \
 (SIGINT, SIGTERM); 141 standard output was closed, as after `| head`. After any end the written rows are complete, \
@@ -121,7 +121,7 @@ pub(crate) struct Arguments {
     /// Integrator [default: fixed; gauss without a rule; gauss-lobatto with constraints]
     #[arg(long, value_parser = named::<Method>())]
     pub(crate) method: Option<Method>,
-    /// First interval of energy-preserving steps without --stages and --shift [default: midpoint]
+    /// First interval of energy-preserving steps without --stages and --shift [default: state]
     #[arg(long, value_parser = named::<Start>())]
     pub(crate) start: Option<Start>,
     /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3 (order 2, 4 or 6), 2 with constraints; of

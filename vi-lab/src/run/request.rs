@@ -78,7 +78,7 @@ impl Length {
         }
     }
 
-    /// Whether the end precedes the first node: with --start midpoint that node is half a step late.
+    /// Whether the end precedes the first node: with --start midpoint and points that node is later than the initial state.
     pub(crate) fn is_before(self, run: &dyn Steps) -> bool {
         matches!(self, Self::Until(end) if (end - run.t()) * run.h() < 0.0)
     }
@@ -232,7 +232,7 @@ impl Request {
         let usual = if system.has_constraints() { entry.h } else { entry.h * usual_length(method, stages) };
         let h = arguments.h.or(scene.h).unwrap_or(usual);
         let mut plan = Plan {
-            start: options.start.unwrap_or(Start::Midpoint),
+            start: options.start.unwrap_or_default(),
             stages,
             fallback: options.fallback,
             ..Plan::new(method, h, start)

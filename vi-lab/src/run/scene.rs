@@ -3,7 +3,7 @@
 //! ```toml
 //! system = "damped-oscillator"      # required; everything else has a default or comes from the command line
 //! method = "energy"
-//! start = "midpoint"                # of energy-preserving steps without stages and shift
+//! start = "state"                   # of energy-preserving steps without stages and shift
 //! stages = 2                        # of Gauss steps, and of energy-preserving ones
 //! shift = "auto"                    # of energy-preserving steps, or a number
 //! fallback = true                   # of energy-preserving steps: fixed ones where there is none
@@ -18,7 +18,7 @@
 //! c = 0.04
 //! ```
 //!
-//! A table `[sweep]` makes it many runs: see `sweep/scene.rs`.
+//! A table `[sweep]` makes it many runs: see `sweep/scene.rs`. `docs/scenes.md` lists all entries.
 
 use super::shift::{self, Wanted};
 use crate::entries::{choice, count};
@@ -146,6 +146,38 @@ mod tests {
         for (text, expected) in [("\"auto\"", Wanted::Auto), ("2", Wanted::Given(2.0)), ("1.5", Wanted::Given(1.5))] {
             let text = format!("system = \"kepler\"\nshift = {text}\nfallback = true\n");
             assert_eq!(Scene::parse(&text), Ok(shifted(expected)));
+        }
+    }
+
+    /// The entries that a table accepts, by the message about an unknown one.
+    fn accepted(text: &str) -> Vec<String> {
+        let message = Scene::parse(text).expect_err("an unknown entry");
+        let list = message.split("expected one of ").nth(1).expect("the entries");
+        list.split('`').skip(1).step_by(2).map(str::to_owned).take_while(|name| name != "method = \"energy\"").collect()
+    }
+
+    #[test]
+    fn the_page_of_scenes_lists_all_entries() {
+        let page = include_str!("../../../docs/scenes.md");
+        let listed = |heading: &str| -> Vec<String> {
+            let section = page.split("\n## ").find(|section| section.starts_with(heading)).expect("a section");
+            let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
+            rows.filter_map(|row| Some(row.split_once('`')?.0.to_owned())).collect()
+        };
+        for (heading, table) in [
+            ("The run", "colour = 1\n"),
+            ("`[sweep]`", "system = \"kepler\"\n[sweep]\ncolour = 1\n"),
+            ("A table of `over`", "system = \"kepler\"\n[sweep]\nover = [{ colour = 1 }]\n"),
+            ("The table `section`", "system = \"kepler\"\n[sweep]\nover = []\nsection = { colour = 1 }\n"),
+        ] {
+            let (mut listed, mut accepted) = (listed(heading), accepted(table));
+            assert!(accepted.len() > 3, "{table}: {accepted:?}");
+            listed.sort();
+            accepted.sort();
+            assert_eq!(listed, accepted, "{heading}");
+        }
+        for method in Method::ALL {
+            assert!(page.contains(&format!("`\"{}\"`", vi_erased::plan::Named::name(method))), "{method:?}");
         }
     }
 

@@ -153,7 +153,9 @@ impl Task<'_> {
             Method::Gauss(stages) => (plan::Method::Gauss, Some(stages)),
             Method::Rival | Method::Heyoka => return None,
         };
-        Some(Plan { stages, ..Plan::new(method, self.setting, self.start.clone()) })
+        // The start whose midpoints lie on the energy of the motion.
+        let start = plan::Start::Midpoint;
+        Some(Plan { stages, start, ..Plan::new(method, self.setting, self.start.clone()) })
     }
 
     /// The final state, and the evaluations of its run.

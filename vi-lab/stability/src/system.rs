@@ -6,7 +6,7 @@
 use super::atlas::{Atlas, Axes, Grid, Labels};
 use super::ending::{Course, Limit, size};
 use super::span::Span;
-use vi_erased::plan::{Method, PhasePoint, Plan};
+use vi_erased::plan::{Method, PhasePoint, Plan, Start};
 use vi_erased::simulation::Simulation;
 use vi_report::catalogue::kebab;
 use vi_report::chart::{Class, Look, Series, boundary, middles};
@@ -139,7 +139,9 @@ fn varied(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) ->
     let mut system = entry.system.copy();
     let q = entry.q.clone();
     let v = entry.v.clone();
-    let mut plan = Plan::new(method, entry.h, PhasePoint { t: 0.0, q, v });
+    // Every midpoint of these runs lies on the energy of the cell.
+    let start = Start::Midpoint;
+    let mut plan = Plan { start, ..Plan::new(method, entry.h, PhasePoint { t: 0.0, q, v }) };
     for (span, value) in axes.iter().zip([place.0, place.1]) {
         span.quantity.set(value, system.as_mut(), &mut plan);
     }

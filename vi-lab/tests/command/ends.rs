@@ -104,7 +104,7 @@ fn a_sweep_ends_its_runs_as_a_run_does() {
 #[test]
 fn an_end_before_the_first_node_is_refused() {
     assert_refused(&[(
-        &["run", "kepler", "--method", "energy", "--h", "0.01", "--until", "0.001"],
+        &["run", "kepler", "--method", "energy", "--start", "midpoint", "--h", "0.01", "--until", "0.001"],
         "the first node, at t = 0.005, is after --until",
     )]);
 }
