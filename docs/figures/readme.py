@@ -48,15 +48,15 @@ def energy(command):
         for of, text, _ in CURVES:
             if of == name and f"{float(row['evaluations per time']):.0f} evaluations" not in text:
                 raise SystemExit(f"{name} takes {row['evaluations per time']} evaluations in a unit of time: {text}")
-    width, height, left, right, top, bottom = 860, 380, 62, 250, 46, 44
+    width, height, left, right, top, bottom = 860, 400, 66, 236, 50, 50
     low, high, start, end = -16, -4, math.log10(2 * math.pi), math.log10(1600 * math.pi)
     x_of = lambda x: left + (math.log10(x) - start) / (end - start) * (width - left - right)
     y_of = lambda y: top + (high - math.log10(y)) / (high - low) * (height - top - bottom)
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" {FONT} font-size="13">',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" {FONT} font-size="16">',
         "<title>Relative energy error of a planet over 800 periods</title>",
         f'<rect width="{width}" height="{height}" rx="8" fill="#ffffff"/>',
-        f'<text x="{left}" y="26" font-size="16" fill="#1f2328">Relative energy error of a planet, e = 0.6, over 800 periods</text>',
+        f'<text x="{left}" y="30" font-size="20" fill="#1f2328">Relative energy error of a planet, e = 0.6, over 800 periods</text>',
     ]
     for power in range(low, high + 1, 2):
         y = y_of(10.0**power)
@@ -67,7 +67,7 @@ def energy(command):
         x = x_of(2 * math.pi * periods)
         parts.append(f'<path d="M{x:.1f} {height - bottom}v5" stroke="{TEXT}"/>')
         parts.append(f'<text x="{x:.1f}" y="{height - bottom + 20}" fill="{TEXT}" text-anchor="middle">{periods}</text>')
-    parts.append(f'<text x="{(left + width - right) / 2}" y="{height - 8}" fill="{TEXT}" text-anchor="middle">periods</text>')
+    parts.append(f'<text x="{(left + width - right) / 2}" y="{height - 10}" fill="{TEXT}" text-anchor="middle">periods; evaluations of the equations per unit of time</text>')
     for name, text, colour in CURVES:
         points = [(x, y) for x, y in series[name] if math.log10(x) >= start]
         # A running maximum is constant between its points; one point for each pixel is enough.
@@ -81,7 +81,7 @@ def energy(command):
         method, price = text.rsplit(", ", 1)
         x, y = kept[-1]
         parts.append(f'<text x="{x + 10:.1f}" y="{y:.1f}" fill="{colour}" font-weight="600">{method}</text>')
-        parts.append(f'<text x="{x + 10:.1f}" y="{y + 16:.1f}" fill="{TEXT}" font-size="12">{price} per unit of time</text>')
+        parts.append(f'<text x="{x + 10:.1f}" y="{y + 18:.1f}" fill="{TEXT}" font-size="15">{price}</text>')
     return "\n".join([*parts, "</svg>\n"])
 
 
@@ -100,8 +100,8 @@ def mechanism(command):
         if abs(turned) >= 2 * math.pi:
             break
     period = nodes[count][0]
-    width, height, scale = 430, 330, 68.0
-    place = lambda x, y: (100 + scale * x, 220 - scale * y)
+    width, height, scale = 430, 400, 76.0
+    place = lambda x, y: (100 + scale * x, 262 - scale * y)
     at = lambda k: nodes[round(count * k / frames)][1:]
     joints = [[place(x1, y1), place(x2, y2)] for x1, y1, x2, y2 in map(at, range(frames + 1))]
     middle = lambda one, other: ((one[0] + other[0]) / 2, (one[1] + other[1]) / 2)
@@ -117,7 +117,7 @@ def mechanism(command):
     path = [middle(*pair) for pair in joints]
     ground = "".join(f'<path d="M{x - 14} {y + 16}h28M{x} {y}l-9 16M{x} {y}l9 16" stroke="{TEXT}" stroke-width="2" fill="none"/>' for x, y in (left, right))
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" {FONT} font-size="13">',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" {FONT} font-size="16">',
         "<title>A four-bar linkage, integrated in the coordinates of its joints with three constraints</title>",
         f'<rect width="{width}" height="{height}" rx="8" fill="#ffffff"/>',
         f'<polygon points="{text_of(path[:-1])}" fill="none" stroke="#e16f24" stroke-width="1.5" stroke-dasharray="3 3"/>',
@@ -127,7 +127,7 @@ def mechanism(command):
         joint([other for _, other in joints], 7, "#0969da"),
         joint(path, 5, "#e16f24"),
         "".join(f'<circle cx="{x}" cy="{y}" r="6" fill="{TEXT}"/>' for x, y in (left, right)),
-        f'<text x="{width / 2}" y="{height - 14}" fill="{TEXT}" text-anchor="middle">Four bars, a closed loop: constraints to rounding at every node</text>',
+        f'<text x="{width / 2}" y="{height - 14}" fill="{TEXT}" text-anchor="middle">A closed loop of four bars</text>',
     ]
     return "\n".join([*parts, "</svg>\n"])
 
