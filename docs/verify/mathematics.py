@@ -740,3 +740,54 @@ def a_free_rotor(claim):
     p0 = v - impulse * sp.Matrix([1, 0])
     # Tangent to the circle at the start: the component along (1, 0) is zero, and the other is w.
     same(p0[1].subs(sp.sin(turn), claim(h * w)), w)
+
+
+@statement(PAGE, "The second derivative of the energy row with respect to v is A, exactly for a constant mass matrix")
+def curvature_of_the_energy_row(claim):
+    q, v = sp.symbols("q_:2"), sp.symbols("v_:2")
+    M = sp.Matrix([[2, R(1, 2)], [R(1, 2), 1]])
+    V = lambda x: x[0] ** 4 / 4 - x[0] * x[1] ** 2 + x[1] ** 3 / 3
+    w = sp.Matrix(v)
+    middle = [q[i] + h * v[i] / 2 for i in range(2)]
+    e = (w.T * M * w)[0] / 2 + V(middle)
+    slope = sp.Matrix([sp.diff(V(q), x) for x in q]).subs(dict(zip(q, middle)), simultaneous=True)
+    A = (M * w + h / 2 * slope).jacobian(v)
+    same(sp.hessian(e, v), claim(A))
+
+
+@statement(PAGE, "L_v(T_i, Q_i, V_i) = p0 + h Σ_k a_ik F_k + h Σ_j â_ij A_jᵀ Λ_j", "With `â_ij = b̃_j (1 − ã_ji/b_i)` this is", "Because ã_si = b_i")
+def stages_with_constraints(claim):
+    x = sp.Symbol("x")
+    for s in (1, 2, 3):
+        nodes = sorted(sp.solve(sp.legendre(s, 2 * x - 1), x))
+        basis = [sp.prod([(x - b) / (a - b) for b in nodes if b != a]) for a in nodes]
+        integral = lambda of, to: sp.integrate(sp.expand(of), (x, 0, to))
+        a, b = [[integral(of, to) for of in basis] for to in nodes], [integral(of, 1) for of in basis]
+        # The ends and the zeros of the derivative of a Legendre polynomial.
+        ends = sorted({sp.S.Zero, sp.S.One, *sp.solve(sp.diff(sp.legendre(s, 2 * x - 1), x), x)})
+        at_ends = [[integral(of, to) for of in basis] for to in ends]
+        for i in range(s):
+            # What ∂S/∂V_i and the increment of p leave in front of h F_k; in front of h A_jᵀ Λ_j it is â_ij at once.
+            for k in range(s):
+                same(b[k] - b[k] * a[k][i] / b[i], claim(a[i][k]))
+            same(at_ends[s][i], claim(b[i]))
+
+
+@statement(PAGE, "H − E0(h) = C_s h^2s D_s + …", "D_s = (d/dτ)^2s H(t+τ, π_q, π_p) + (s+1)/s (d/dτ)^2s [Λ·g(t+τ, π_q)]")
+def length_of_a_step_with_constraints(claim):
+    # A pendulum of unit length and mass, g = 9.81, turned by 0.8 rad with 1.3 rad per unit of time; s = 1.
+    g, angle, rate = mpf("9.81"), mpf("0.8"), mpf("1.3")
+    position, tangent = (sin(angle), -cos(angle)), (cos(angle), sin(angle))
+    p = (rate * tangent[0], rate * tangent[1])
+    H = rate**2 / 2 + g * position[1]
+    def excess(h):
+        def velocity(impulse):
+            return p[0] + h / 2 * impulse * position[0], p[1] - h / 2 * g + h / 2 * impulse * position[1]
+        def gap(impulse):
+            v = velocity(impulse)
+            return ((position[0] + h * v[0]) ** 2 + (position[1] + h * v[1]) ** 2 - 1) / h
+        v = velocity(findroot(gap, -(rate**2)))
+        return H - (v[0] ** 2 + v[1] ** 2) / 2 - g * (position[1] + h / 2 * v[1])
+    D = g**2 * sin(angle) ** 2 - 2 * g * rate**2 * cos(angle) - rate**4
+    # Measured: 1.7e-12.
+    limit(lambda h: excess(h) / h**2, claim(D / 8), "2e-11")
