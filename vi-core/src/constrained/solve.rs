@@ -29,8 +29,8 @@ const HALVINGS: u32 = 12;
 const FALLEN: f64 = 0.1;
 /// Corrections without a halving after the last one that reduced the residual.
 const WHOLE: u32 = 3;
-/// Residuals up to this are noise of rounding.
-const NOISE: f64 = 64.0;
+/// Residuals up to this are noise of rounding, of linkages far from the origin too, and their guess was close.
+const NOISE: f64 = 1e4;
 /// A solution after more iterations has its determinant evaluated anew.
 const FEW: u32 = 8;
 

@@ -392,26 +392,41 @@ impl<T: Scalar> Phase<T> {
     }
 }
 
-/// Smallest `H − E`, in `h² D`, of a run that starts with a step of the length h.
-const SAME: f64 = 1e-3;
-/// Halvings of a length after which a step fails.
+/// Largest difference, in `H − E`, of the energies of a run and of another one that starts in the same state by the same
+/// length.
+const ALIKE: f64 = 0.5;
+/// Halvings of a length after which no step follows.
 const HALVINGS: i32 = 16;
 
-/// The error if the step fails after a first one, or a long one, of the length h: [`StepError::TooLong`] if a run that
-/// starts from the node with a shorter length takes a step.
+/// A run that starts from the node with some length: its energy, and whether it takes a step.
+pub(super) struct FirstStep {
+    pub(super) energy: f64,
+    pub(super) exists: bool,
+}
+
+/// The error if the first step after one of the length h fails: [`StepError::TooLong`] if a run that `starts` from the
+/// node with a shorter length takes a step. A run that continues with an energy of its own cannot begin anew: its
+/// `energies`, E and H − E, are not those of a start.
 #[cold]
-pub(super) fn too_long(failure: StepError, [t, h]: [f64; 2], mut starts: impl FnMut(f64) -> bool) -> StepError {
-    let may_be_too_long = match failure {
-        // A run that continues with H = E has no step of any length.
-        StepError::NoForwardStep { h, excess, density, .. } => excess.abs() > SAME * h * h * density.abs(),
-        StepError::NoForwardGaussStep { .. }
-        | StepError::StepRatio { .. }
-        | StepError::NotConverged { .. }
-        | StepError::StagesUnsettled { .. } => true,
-        _ => false,
-    };
+pub(super) fn too_long(
+    failure: StepError,
+    ([t, h], energies): ([f64; 2], [f64; 2]),
+    mut starts: impl FnMut(f64) -> Option<FirstStep>,
+) -> StepError {
+    let may_be_too_long = matches!(
+        failure,
+        StepError::NoForwardStep { .. }
+            | StepError::NoForwardGaussStep { .. }
+            | StepError::NotConverged { .. }
+            | StepError::StagesUnsettled { .. }
+    );
+    let [energy, excess] = energies;
+    let is_alike = |start: FirstStep| (start.energy - energy).abs() <= ALIKE * excess.abs();
+    if !may_be_too_long || !starts(h).is_some_and(is_alike) {
+        return failure;
+    }
     let mut shorter = (1..=HALVINGS).map(|halved| h * 0.5_f64.powi(halved));
-    match shorter.find(|shorter| may_be_too_long && starts(*shorter)) {
+    match shorter.find(|shorter| starts(*shorter).is_some_and(|start| start.exists)) {
         Some(longest) => StepError::TooLong { t, h, longest },
         None => failure,
     }

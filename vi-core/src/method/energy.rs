@@ -13,7 +13,7 @@
 //!
 //! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
 
-use super::bounds::{Alternating, FORWARD, Fallback, check_forward, too_long};
+use super::bounds::{Alternating, FORWARD, Fallback, FirstStep, check_forward, too_long};
 use super::{Method, Problem, Report};
 use crate::angles;
 use crate::called::Called;
@@ -24,7 +24,6 @@ use crate::energy_preserving::lengths::{After, Lengths, Search};
 use crate::energy_preserving::predicted::Predicted;
 use crate::energy_preserving::start;
 use crate::error::StepError;
-use crate::momentum::continuation;
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::run::{Hermite, Run};
@@ -110,16 +109,30 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
             Ok(after) => return Ok(EnergySolution::After(after)),
             Err(failure) => explained(failure, system, node, memory),
         };
-        // Steps of any method that are so long resolve no motion.
-        let is_long = || !continuation::is_connected(called, node, memory.last.h, &memory.last.v);
-        if !is_first && !is_long() {
+        if !is_first {
             return Err(failure);
         }
-        Err(too_long(failure, [node.t.to_f64(), memory.last.h.to_f64()], |h| {
+        let Ok(energy) = node.state().energy(system) else { return Err(failure) };
+        let energies = [node.energy, energy - node.energy].map(T::to_f64);
+        let of = ([node.t, memory.last.h].map(T::to_f64), energies);
+        let first_step = |node: Node<N, T>, lengths: &Lengths<N, T>| {
+            let exists = Search { system: called, node: &node, lengths }.next().is_ok();
+            Some(FirstStep { energy: node.energy.to_f64(), exists })
+        };
+        let from_state = |h: f64| {
             let mut node = Node::new(node.state(), T::zero());
-            let lengths = start::from_state(system, &mut node, T::real(h));
-            lengths.is_ok_and(|lengths| Search { system: called, node: &node, lengths: &lengths }.next().is_ok())
-        }))
+            let lengths = start::from_state(system, &mut node, T::real(h)).ok()?;
+            first_step(node, &lengths)
+        };
+        let from_midpoint = |h: f64| {
+            let Last { h: whole, v, .. } = &memory.last;
+            let h = T::real(h);
+            let mut start = *node;
+            start.shift((*whole + h) * T::real(-0.5), v);
+            let After { node, lengths } = start::first_interval(called, start, h, *v).ok()?;
+            first_step(node, &lengths)
+        };
+        Err(too_long(too_long(failure, of, from_state), of, from_midpoint))
     }
 
     #[inline(always)]

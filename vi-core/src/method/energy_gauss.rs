@@ -33,7 +33,7 @@
 //! The stages and the energy of every accepted step are at the rounding floor. Theory and measurements:
 //! `docs/theory.md`.
 
-use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, check_forward, too_long};
+use super::bounds::{Alternating, Control, Controlled, FORWARD, FirstStep, Phase, check_forward, too_long};
 use super::gauss::{Gauss, GaussOutput, LastStages};
 use super::length::Trial;
 use super::preserving::{Ended, Preserving, PreservingStep, StepsOfAnyLength, check_power, measured, order};
@@ -285,15 +285,16 @@ where
         left: StepError,
     ) -> Result<Self::Step, StepError> {
         let Problem { system, prepared, node, .. } = at;
+        let course = &memory.course;
         // A start of another length has no shift.
-        if !memory.course.is_first() || memory.course.shift != 0.0 {
+        if !course.is_first() || course.shift != 0.0 {
             return Err(left);
         }
-        Err(too_long(left, [node.t, memory.course.h()], |h| {
+        Err(too_long(left, ([node.t, course.h()], [node.energy, course.excess]), |h| {
             let mut node = Node::new(node.state(), 0.0);
-            let memory = self.begin(system, &mut node, h);
+            let memory = self.begin(system, &mut node, h).ok()?;
             let at = Problem { system, prepared, node: &node, h };
-            memory.is_ok_and(|memory| self.attempt(at, &memory, cache).is_ok())
+            Some(FirstStep { energy: node.energy, exists: self.attempt(at, &memory, cache).is_ok() })
         }))
     }
 

@@ -82,7 +82,7 @@ const SHORTER: [f64; 3] = [0.25, 0.5, 0.75];
 ///
 /// Lengths of velocities are those of the kinetic energy, so that coordinates may have different units.
 #[cold]
-pub(crate) fn is_connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
+fn is_connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,

@@ -189,7 +189,7 @@ fn derivatives_of_functions() {
     derivative("cos(m * t) * dot(x) - m * sin(m * t) * x", "cos(m*t)*x", "");
     // A velocity that an input prescribes has no such function.
     assert_eq!(errors(&format!("struct System {{ input u = 0; constraint c = dot(x) - u; {REST} }}")), []);
-    derivative("dot(x) * exp(x * y) * y + dot(y) * exp(x * y) * x", "exp(y*x)", "");
+    derivative("dot(x) * exp(x * y) * y + dot(y) * exp(x * y) * x", "exp(x*y)", "");
     // Without a closed form, such as that of the length of a road, only the velocity can be constrained.
     let road = "constraint c = r * dot(y) + sqrt(1 + (a * k * sin(k * x))^2) * dot(x);";
     assert_eq!(errors(&format!("struct System {{ param r = 0.5, a = 0.3, k = 1.2; {road} {REST} }}")), []);
