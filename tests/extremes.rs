@@ -277,3 +277,25 @@ fn a_slope_that_is_no_number_is_not_a_singular_mass() {
     let step = at_rest.step();
     assert!(matches!(step, Err(StepError::NonFinite { .. })), "{step:?}");
 }
+
+lagrangian! {
+    /// A mass in a frame that turns about the vertical, in a steep potential.
+    struct Turning {
+        param w = 1.0;
+        coord x, y;
+        let X = x * cos(w * t) - y * sin(w * t), Y = x * sin(w * t) + y * cos(w * t);
+        L = (dot(X)^2 + dot(Y)^2) / 2 - 1e6 * (x - 1)^8;
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn a_time_that_cancels_costs_no_digits() {
+    const { assert!(<Turning as Lagrangian<2>>::AUTONOMOUS) };
+    let state = Turning::default().at(0.0, [1.001, 0.0], [0.0, -1.0]).state;
+    // (x' − w y)² + (y' + w x)² of the kinetic energy has the Hamiltonian (x'² + y'² − w² (x² + y²))/2: 1e-3 by hand.
+    let wanted = (1.0 - 1.001_f64.powi(2)) / 2.0 + 1e6 * 0.001_f64.powi(8);
+    let energy = state.energy(&Turning::default()).expect("an energy");
+    // Multiplied out, the potential is off by 4e-9.
+    assert!((energy - wanted).abs() < 1e-14, "{energy:e} {wanted:e}");
+}

@@ -1,15 +1,15 @@
 //! Squares of sines and cosines with equal coefficients.
 //!
-//! In: the terms of a canonical sum. Out: the same sum with fewer terms, for any product P:
+//! In: the terms of a canonical sum. Out: the same sum with fewer terms, for any product P without these functions of u:
 //!
 //! - `c P sin(u)^2 + c P cos(u)^2 = c P`
 //! - `c P cosh(u)^2 - c P sinh(u)^2 = c P`
 //!
-//! Squares with different coefficients stay: `2 sin(u)^2 + cos(u)^2` has no form with fewer terms.
+//! Squares with different coefficients stay: `2 sin(u)^2 + cos(u)^2` has no form with fewer terms. Higher powers stay, too:
+//! with them, sums that are equal could take forms whose difference is not seen to be zero.
 
 use std::hash::Hash;
 
-use num_traits::{One, Zero};
 use rustc_hash::FxHashMap;
 
 use crate::{Expr, Function, Node, Pool, Product, Rational};
@@ -21,9 +21,9 @@ type Key<S> = (Expr, bool, Node<S>);
 type Pair = [Option<usize>; 2];
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// Whether the power is a square of such a function, or a higher integer power.
+    /// Whether the power is a square of such a function.
     pub(crate) fn is_square(&self, (base, exponent): &(Expr, Rational)) -> bool {
-        exponent.is_integer() && *exponent > Rational::one() && self.of_circle(*base).is_some()
+        *exponent == Rational::from_integer(2.into()) && self.of_circle(*base).is_some()
     }
 
     /// Place in a [`Pair`], whether the function is hyperbolic, and its argument.
@@ -53,9 +53,15 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             for (index, factor) in factors.iter().enumerate().filter(|(_, factor)| self.is_square(factor)) {
                 let Some((side, is_hyperbolic, argument)) = self.of_circle(factor.0) else { continue };
                 let mut rest = factors.clone();
-                rest[index].1 -= Rational::from_integer(2.into());
-                rest.retain(|(_, exponent)| !exponent.is_zero());
+                rest.remove(index);
                 self.spend(rest.len());
+                let is_of_same = |(base, _): &(Expr, Rational)| {
+                    self.of_circle(*base)
+                        .is_some_and(|(_, hyperbolic, of)| (hyperbolic, of) == (is_hyperbolic, argument))
+                };
+                if rest.iter().any(is_of_same) {
+                    continue;
+                }
                 let key = (argument, is_hyperbolic, Node::Product(Product { factors: rest.clone() }));
                 let pair = pairs.entry(key).or_default();
                 pair[side] = Some(place);

@@ -1,9 +1,10 @@
 //! Explicit time that cancels.
 //!
-//! In: an expression in t. Out: the same expression multiplied out, if t cancels in it: a mass in a frame that turns
-//! about the vertical has `(dot(x) - w*y)^2 + …` in place of sines of `w*t`. Others are unchanged.
+//! In: an expression in t. Out: the same expression with its terms in t multiplied out, if t cancels in them: a mass in a
+//! frame that turns about the vertical has `(dot(x) - w*y)^2 + …` in place of sines of `w*t`. Others are unchanged, and
+//! so are terms without t: multiplied out, they might lose digits.
 
-use vi_expr::{Expr, Pool};
+use vi_expr::{Expr, Node, Pool};
 
 use super::probe;
 use crate::symbol::{Symbol, Variable};
@@ -37,8 +38,26 @@ pub(super) fn timeless(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
     if !(0..POINTS).all(is_zero) {
         return expr;
     }
-    match trial.expand(expr) {
-        Ok(expanded) if !trial.depends_on(expanded, &is_time) => pool.expand(expr).unwrap_or(expr),
-        _ => expr,
+    let expanded = multiplied_out(&mut trial, expr);
+    if expanded.is_some_and(|expanded| !trial.depends_on(expanded, &is_time)) {
+        multiplied_out(pool, expr).unwrap_or(expr)
+    } else {
+        expr
     }
+}
+
+/// The expression with its terms in t multiplied out; `None` if it becomes too large.
+fn multiplied_out(pool: &mut Pool<Symbol>, expr: Expr) -> Option<Expr> {
+    let Node::Sum(sum) = pool.node(expr).clone() else { return pool.expand(expr).ok() };
+    let (mut moving, mut fixed) = (Vec::new(), Vec::new());
+    for (term, coefficient) in sum.terms {
+        let of_time = pool.depends_on(term, &is_time);
+        let term = pool.scale(term, &coefficient);
+        if of_time { &mut moving } else { &mut fixed }.push(term);
+    }
+    let moving = pool.sum(&moving);
+    let expanded = pool.expand(moving).ok()?;
+    let constant = pool.number(sum.constant);
+    fixed.extend([expanded, constant]);
+    Some(pool.sum(&fixed))
 }

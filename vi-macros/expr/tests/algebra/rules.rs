@@ -64,7 +64,6 @@ fn squares_of_sines_and_cosines() {
          y*sin(x)^2/2 + y*cos(x)^2/2 => y/2
          (x + y)*sin(z)^2 + (x + y)*cos(z)^2 => x + y
          (y*cos(x))^2 + (y*sin(x))^2 => y^2
-         sin(x)^3 + sin(x)*cos(x)^2 => sin(x)
          sin(x)^2/y + cos(x)^2/y => 1/y
          sin(x*y)^2 + cos(x*y)^2 => 1
          sin(x)^2*sin(y)^2 + sin(x)^2*cos(y)^2 + cos(x)^2*sin(y)^2 + cos(x)^2*cos(y)^2 => 1
@@ -72,9 +71,11 @@ fn squares_of_sines_and_cosines() {
          y*sinh(x)^2 - y*cosh(x)^2 => -y
          sin(1)^2 + cos(1)^2 => 1",
     );
-    // Another coefficient, argument or sign.
+    // Another coefficient, argument or sign, or a higher power: merged, equal sums could differ.
     check(
-        "2*sin(x)^2 + cos(x)^2 => 2*sin(x)^2 + cos(x)^2
+        "sin(x)^3 + sin(x)*cos(x)^2 => sin(x)^3 + sin(x)*cos(x)^2
+         (sin(x)^4 + sin(x)^2*cos(x)^2) + cos(x)^4 - (sin(x)^4 + (sin(x)^2*cos(x)^2 + cos(x)^4)) => 0
+         2*sin(x)^2 + cos(x)^2 => 2*sin(x)^2 + cos(x)^2
          sin(x)^2 + cos(y)^2 => sin(x)^2 + cos(y)^2
          sin(x)^2 - cos(x)^2 => sin(x)^2 - cos(x)^2
          cosh(x)^2 + sinh(x)^2 => cosh(x)^2 + sinh(x)^2
