@@ -286,3 +286,73 @@ fn a_length_below_the_rounding_of_the_energy_is_an_error() {
     }
     start.integrate(EnergyPreserving, 1e-6).and_then(|mut run| run.step()).expect("a step");
 }
+
+lagrangian! {
+    /// A spherical pendulum with a coordinate across its plane of motion, which is zero up to rounding.
+    struct Across {
+        coord x, y, z, w;
+        L = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2) / 2 - 9.81 * z;
+        constraint rod = x^2 + y^2 + z^2 - 1;
+        constraint across = w - 0.8 * x + 0.6 * y;
+    }
+}
+
+lagrangian! {
+    /// A pendulum on a rod with a mass on a stiff, damped spring.
+    struct SpringRod {
+        param k = 2.25e6, c = 1.0;
+        coord x, y, u;
+        L = (dot(x)^2 + dot(y)^2 + dot(u)^2) / 2 - 9.81 * y - k * (u - x)^2 / 2;
+        force u = -c * dot(u);
+        constraint rod = x^2 + y^2 - 1;
+    }
+}
+
+#[test]
+fn long_steps_with_constraints_are_not_refused_for_rounding() {
+    fn check<const S: usize>() {
+        let (sin, cos) = 1.0_f64.sin_cos();
+        let start = Across::default().at(0.0, [0.6 * sin, 0.8 * sin, -cos, 0.0], [0.0; 4]);
+        let mut run = start.integrate(GaussLobatto::<S>, 0.15).expect("a start");
+        for k in 0..300 {
+            run.step().unwrap_or_else(|error| panic!("{S} stages, step {k}: {error}"));
+        }
+        // h ω = 30 … 300 of a spring that the steps do not resolve.
+        for [k, c] in [[2.25e6, 1.0], [2.25e6, 100.0], [2.5e7, 100.0]] {
+            let start = SpringRod { k, c }.at(0.0, [sin, -cos, sin + 0.001], [0.0; 3]);
+            let mut run = start.integrate(GaussLobatto::<S>, 0.02).expect("a start");
+            for step in 0..200 {
+                run.step().unwrap_or_else(|error| panic!("{S} stages, k = {k}, step {step}: {error}"));
+            }
+        }
+    }
+    check::<1>();
+    check::<3>();
+}
+
+lagrangian! {
+    /// A charge in a magnetic field on a hill.
+    struct Gyro {
+        param b = 3.0;
+        coord x, y;
+        L = (dot(x)^2 + dot(y)^2) / 2 + b * (x * dot(y) - y * dot(x)) / 2 + (x^2 + y^2) / 2;
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn linear_steps_beyond_a_singular_length_are_refused() {
+    let first = |b: f64, h: f64| {
+        Gyro { b }.at(0.0, [1.0, 0.5], [0.0, 0.0]).integrate(FixedStep, h).and_then(|mut run| run.step())
+    };
+    // Without a field both coordinates are singular at h = 2.
+    for h in [2.1, -3.0, 1e3, 1e6] {
+        let Err(StepError::TooLong { longest, .. }) = first(0.0, h) else { panic!("{h}") };
+        assert!(longest > 1.5 && longest < 2.0, "{h}: {longest}");
+        first(0.0, longest).expect("a step");
+    }
+    // det = (1 − h²/4)² + (b h/2)² is positive.
+    for h in [1.9, 2.1, -2.1, 3.0] {
+        first(3.0, h).expect("a step");
+    }
+}

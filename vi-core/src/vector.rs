@@ -2,6 +2,8 @@
 
 use crate::real::Real;
 use nalgebra::SVector;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// A vector of numbers T.
 pub(crate) trait Vector<T: Real>: Copy + PartialEq {
@@ -65,4 +67,15 @@ impl<const N: usize, T: Real> Vector<T> for VelocityStep<N, T> {
     fn longest(&self) -> f64 {
         worse(self.h.to_f64().abs(), self.v.longest())
     }
+}
+
+/// Weights of coordinates in the length of a correction, from the diagonal of the mass matrix: its square roots, and the
+/// largest of them for coordinates without mass.
+///
+/// Lengths of corrections show whether an iteration converges also where residuals of momenta and of constraints, in
+/// roundings of their terms, cannot be compared: a rod far from the origin has large terms in its constraint only.
+pub(crate) fn weights<const N: usize>(mass: &SVector<f64, N>) -> SVector<f64, N> {
+    let largest = mass.max();
+    let largest = if largest > 0.0 { largest } else { 1.0 };
+    mass.map(|mass| if mass > 0.0 { mass } else { largest }.sqrt())
 }

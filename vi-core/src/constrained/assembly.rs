@@ -14,10 +14,11 @@
 //! δ = −W⁻¹ Aᵀ (A W⁻¹ Aᵀ + λ)⁻¹ g
 //! ```
 
-use super::{Constrained, ConvertibleConstrained, Projected, Projection, weights};
+use super::{Constrained, ConvertibleConstrained, Projected, Projection};
 use crate::error::StepError;
 use crate::linear::Rectangular;
 use crate::state::{Numbers, State};
+use crate::vector::weights;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector, SVector};
 

@@ -7,13 +7,17 @@ use super::equations::{Rows, stage_velocity};
 use super::guess::from_node;
 use super::reduced;
 use super::solve::{self, Solution, Solved, Workspace};
-use super::{Constrained, ConvertibleConstrained, bordered};
+use super::{Constrained, ConvertibleConstrained, bordered, diagonal};
 use crate::error::StepError;
 use crate::gauss::branch::{self, EQUAL, FAST, NEAR, Shorter, StepsFromNode, distance, is_resolved};
 use crate::gauss::stages::{Stages, set};
 use crate::node::Node;
+use crate::vector::weights;
 use alloc::vec::Vec;
 use nalgebra::SVector;
+
+/// Residual of an iteration that has stalled near its solution.
+const STALLED: f64 = 1e4;
 
 /// Solves the step of length h from `node`, with the guess in `u`; replaces it by the unknowns. `sign` is the sign of
 /// the determinant of the bordered mass matrix, `is_next` says that the step follows the last one of the workspace.
@@ -86,15 +90,17 @@ where
     S: Constrained<N> + ConvertibleConstrained<N>,
 {
     let taken = velocities::<N, STAGES>(u);
-    if is_resolved(&taken) {
+    let flow = node.state().raw_flow(system)?;
+    let weights = weights(&diagonal(&system.point(node.t, &node.q, &flow.v).mass)).into();
+    if is_resolved(&taken, &weights) {
         return Ok(None);
     }
-    let flow = node.state().raw_flow(system)?;
     let from = flow.v.data.0[0].map(|entry| [entry; STAGES]);
-    let steps = &mut StepsFrom::<S, N, STAGES> { system, node, h, sign, v: flow.v, from: &from, taken: u, workspace };
+    let steps =
+        &mut StepsFrom::<S, N, STAGES> { system, node, h, sign, v: flow.v, from: &from, weights, taken: u, workspace };
     let too_long = |part: f64| StepError::TooLong { t: node.t, h, longest: (part * h).abs() };
     let found = branch::follow(steps).map_err(too_long)?.unknowns;
-    let is_same = distance(&taken, &velocities(&found), &from) <= EQUAL;
+    let is_same = distance([&taken, &velocities(&found)], &from, &weights) <= EQUAL;
     Ok(if is_same { None } else { Some(found) })
 }
 
@@ -116,6 +122,7 @@ struct StepsFrom<'a, S, const N: usize, const STAGES: usize> {
     v: SVector<f64, N>,
     /// Stages equal to it.
     from: &'a Stages<N, STAGES>,
+    weights: [f64; N],
     /// The unknowns of the solved step of the whole length.
     taken: &'a [f64],
     workspace: &'a mut Workspace,
@@ -134,8 +141,14 @@ where
     fn solved(&mut self, part: f64, mut unknowns: Vec<f64>) -> Option<Unknowns> {
         let Self { system, node, h, sign, workspace, .. } = self;
         let of = (*node, *h * part, *sign);
-        let solution = solve::unprojected::<S, N, STAGES>(*system, of, &mut unknowns, workspace, false).ok()?;
-        Some(Unknowns { unknowns, contraction: solution.contraction })
+        match solve::unprojected::<S, N, STAGES>(*system, of, &mut unknowns, workspace, false) {
+            Ok(solution) => Some(Unknowns { unknowns, contraction: solution.contraction }),
+            // A guess for the next part needs no more digits.
+            Err(StepError::NotConverged { residual, .. }) if residual < STALLED => {
+                Some(Unknowns { unknowns, contraction: f64::INFINITY })
+            }
+            Err(_) => None,
+        }
     }
 }
 
@@ -148,9 +161,9 @@ where
     fn short(&mut self, part: f64) -> Option<Unknowns> {
         let of = (self.node, self.h * part, &self.v);
         let guess = from_node::<S, N, STAGES>(self.system, of, &mut bordered::<S, N, f64>()).ok()?;
-        let is_proven =
-            |step: &Unknowns| step.contraction <= FAST || is_resolved(&velocities::<N, STAGES>(&step.unknowns));
-        self.solved(part, guess).filter(is_proven)
+        let step = self.solved(part, guess)?;
+        let is_resolved = || is_resolved(&velocities::<N, STAGES>(&step.unknowns), &self.weights);
+        (step.contraction <= FAST || is_resolved()).then_some(step)
     }
 
     fn longer(&mut self, part: f64, shorter: [&Shorter<Unknowns>; 2]) -> Option<Unknowns> {
@@ -166,6 +179,6 @@ where
         let near = velocities::<N, STAGES>(&guess);
         let whole = || Unknowns { unknowns: self.taken.to_vec(), contraction: 0.0 };
         let found = self.solved(part, guess).or_else(|| (part >= 1.0).then(whole));
-        found.filter(|step| distance(&near, &velocities(&step.unknowns), self.from) <= NEAR)
+        found.filter(|step| distance([&near, &velocities(&step.unknowns)], self.from, &self.weights) <= NEAR)
     }
 }

@@ -294,17 +294,6 @@ pub(crate) fn with_idle<const N: usize>(
     })
 }
 
-/// Weights of coordinates in the length of a correction, from the diagonal of the mass matrix: its square roots, and the
-/// largest of them for coordinates without mass.
-///
-/// Lengths of corrections show whether an iteration converges also where residuals of momenta and of constraints, in
-/// roundings of their terms, cannot be compared: a rod far from the origin has large terms in its constraint only.
-pub(crate) fn weights<const N: usize>(mass: &SVector<f64, N>) -> SVector<f64, N> {
-    let largest = mass.max();
-    let largest = if largest > 0.0 { largest } else { 1.0 };
-    mass.map(|mass| if mass > 0.0 { mass } else { largest }.sqrt())
-}
-
 /// Whether a part of a correction of this length brought the place of convergence nearer: `behind` is the length of the
 /// next correction with the same factors. Deuflhard's natural monotonicity test.
 pub(crate) fn is_shortened(behind: f64, length: f64, part: f64) -> bool {

@@ -9,14 +9,14 @@
 //! alone has to hold already, and has no multiplier.
 
 use super::start::CONSISTENT;
-use super::{Constrained, ConvertibleConstrained, is_shortened, reaction_of, spread, unsolvable, weights, with_idle};
+use super::{Constrained, ConvertibleConstrained, is_shortened, reaction_of, spread, unsolvable, with_idle};
 use crate::error::{BORDERED_MASS, StepError};
 use crate::linear::{Bordered, Matrix, Rectangular};
 use crate::newton::roundings;
 use crate::node::Node;
 use crate::real::Rounded;
 use crate::state::{Numbers, State};
-use crate::vector::worse;
+use crate::vector::{weights, worse};
 use alloc::vec::Vec;
 use nalgebra::{SMatrix, SVector};
 #[cfg(not(feature = "std"))]

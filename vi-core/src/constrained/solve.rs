@@ -11,12 +11,13 @@
 use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
 use super::reduced::Reduced;
-use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, is_shortened, reaction_of, weights};
+use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, is_shortened, reaction_of};
 use crate::error::{Residuals, StepError};
 use crate::linear::{Bordered, Factored, Rectangular, Row, Unsolvable};
 use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::Rounded;
+use crate::vector::weights;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use nalgebra::SVector;

@@ -17,7 +17,7 @@ use super::{Linearization, linearized, no_eigenvalues, spectrum};
 use crate::collocation::Point;
 use crate::constrained::{
     Constrained, ConvertibleConstrained, Projection, accelerations, border, bordered, is_reduced, is_shortened,
-    reaction_of, weights,
+    reaction_of,
 };
 use crate::derivatives::WithConstraints;
 use crate::error::StepError;
@@ -25,6 +25,7 @@ use crate::linear::{Bordered, Matrix, Rectangular, Row};
 use crate::newton::{FLOOR, roundings};
 use crate::real::{Dual, Rounded};
 use crate::state::Numbers;
+use crate::vector::weights;
 use crate::vector::worse;
 use alloc::vec::Vec;
 use nalgebra::{Complex, DMatrix, DVector, SMatrix, SVector};

@@ -30,6 +30,8 @@ const INCREASES: [f64; 2] = [0.5, 1e-4];
 const MARGIN: f64 = 0.8;
 /// The largest distance from a guess to its solution, relative to the range of the stages.
 pub(crate) const NEAR: f64 = 0.25;
+/// Roundings of the largest row of stages that a row may be off.
+const NOISE: f64 = 4096.0;
 /// The largest such distance between two numbers of one solution.
 pub(crate) const EQUAL: f64 = 1e-6;
 
@@ -98,29 +100,42 @@ pub(crate) fn follow<B: StepsFromNode>(steps: &mut B) -> Result<B::Solution, f64
 }
 
 /// Whether the last two Legendre coefficients of each row of stages are small: their step is resolved. False if there are
-/// too few stages to know.
-pub(crate) fn is_resolved<const N: usize, const S: usize>(stages: &Stages<N, S>) -> bool {
+/// too few stages to know. `weights` make rows comparable: one that is rounding of the others counts as zero.
+pub(crate) fn is_resolved<const N: usize, const S: usize>(stages: &Stages<N, S>, weights: &[f64; N]) -> bool {
     let Tableau { b, legendre, .. } = const { &Tableau::<S>::VALUES };
     let coefficient = |row: &[f64; S], k: usize| {
         let sum: f64 = (0..S).map(|i| b[i] * legendre[k][i] * row[i]).sum();
         (real(2 * k + 1) * sum).abs()
     };
-    let is_smooth = |row: &[f64; S]| {
+    let noise = noise([stages], weights);
+    let is_smooth = |(row, weight): (&[f64; S], &f64)| {
         let largest = (0..S).map(|k| coefficient(row, k)).fold(0.0, f64::max);
         let last = coefficient(row, S - 1).max(coefficient(row, S.saturating_sub(2)));
-        last <= largest * RESOLVED || last <= 64.0 * f64::EPSILON * largest
+        last <= largest * RESOLVED || last * weight <= noise
     };
-    S >= FEWEST && stages.iter().all(is_smooth)
+    S >= FEWEST && stages.iter().zip(weights).all(is_smooth)
 }
 
-/// The largest distance of stages, relative to the range of their row and of its value at the node, `from`.
-pub(crate) fn distance<const N: usize, const S: usize>(a: &Stages<N, S>, b: &Stages<N, S>, from: &Stages<N, S>) -> f64 {
-    let of_row = |((a, b), from): ((&[f64; S], &[f64; S]), &[f64; S])| {
-        let values = || a.iter().chain(b).chain(&from[..1]).copied();
+/// The largest distance of stages, relative to the range of their row and of its value at the node, `from`. `weights`
+/// make rows comparable: a distance that is rounding of the largest row counts as zero.
+pub(crate) fn distance<const N: usize, const S: usize>(
+    [a, b]: [&Stages<N, S>; 2],
+    from: &Stages<N, S>,
+    weights: &[f64; N],
+) -> f64 {
+    let noise = noise([a, b], weights);
+    let of_row = |k: usize| {
+        let values = || a[k].iter().chain(&b[k]).chain(&from[k][..1]).copied();
         let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
-        let size = a.iter().chain(b).map(|entry| entry.abs()).fold(0.0, f64::max);
-        let distance = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        if distance > 64.0 * f64::EPSILON * size { distance / range } else { 0.0 }
+        let distance = a[k].iter().zip(&b[k]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if distance * weights[k] > noise { distance / range } else { 0.0 }
     };
-    a.iter().zip(b).zip(from).map(of_row).fold(0.0, f64::max)
+    (0..N).map(of_row).fold(0.0, f64::max)
+}
+
+/// Rounding of the largest row, weighted.
+fn noise<const N: usize, const S: usize, const K: usize>(stages: [&Stages<N, S>; K], weights: &[f64; N]) -> f64 {
+    let rows = stages.into_iter().flat_map(|stages| stages.iter().zip(weights));
+    let sizes = rows.flat_map(|(row, weight)| row.iter().map(move |entry| (entry * weight).abs()));
+    NOISE * f64::EPSILON * sizes.fold(0.0, f64::max)
 }

@@ -8,13 +8,14 @@ use super::fixed_point::{Convergence, Equations as _};
 use super::general::equations;
 use super::linearization::Linearization;
 use super::newton::Buffer;
-use super::points::{AnyDerivatives, ErasedSystem};
+use super::points::{AnyDerivatives, ErasedSystem, Form, Points};
 use super::solve::{StageSolution, Start, Step, constant};
 use super::stages::{Stages, at, stage, time};
 use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::node::Node;
 use crate::stepping::Convertible;
+use crate::vector;
 use nalgebra::SMatrix;
 use vi_dispatch::Instructions;
 
@@ -37,11 +38,24 @@ fn is_linear<const N: usize, const S: usize>(system: &ErasedSystem<'_, N>, node:
     (1..S).all(|i| is_equal(at(i))) && is_equal(system.derivatives(node.t, &node.q, &stage(&v, 0)))
 }
 
+/// Weights of the stages of each coordinate: velocities are comparable by their kinetic energies, and forces of a
+/// separable system by those that they add.
+fn weights<const N: usize, const S: usize>(
+    system: &ErasedSystem<'_, N>,
+    node: &Node<N>,
+    step: &Step<N, S>,
+) -> [f64; N] {
+    let v = stage(&equations(system, node, step.h, step.stages).velocity(), 0);
+    let roots = vector::weights(&Points::<N, f64>::at(system, node.t, &node.q, &v).mass.diagonal());
+    let are_forces = Points::<N, f64>::form(system) == Form::Separable;
+    roots.map(|root| if are_forces { root.recip() } else { root }).into()
+}
+
 /// Whether the contraction of its iteration, its stages, or its equations prove that a step continues short ones.
 fn is_proven<const N: usize, const S: usize>(system: &ErasedSystem<'_, N>, node: &Node<N>, step: &Step<N, S>) -> bool {
     let convergence = &step.convergence;
     let is_fast = if step.by_newton { convergence.contraction <= FAST } else { convergence.is_fast() };
-    is_fast || is_resolved(&step.stages) || is_linear(system, node, step)
+    is_fast || is_resolved(&step.stages, &weights(system, node, step)) || is_linear(system, node, step)
 }
 
 impl<const N: usize, const S: usize> Start<'_, N, S> {
@@ -83,10 +97,11 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Collocation<N> + Convertible<N>,
     {
         let from = constant(system, self.node)?;
-        let steps = &mut StepsFrom { start: self, system, instructions, cache, from: &from, taken: &step };
+        let weights = weights(&ErasedSystem::of(system), self.node, &step);
+        let steps = &mut StepsFrom { start: self, system, instructions, cache, from: &from, weights, taken: &step };
         let too_long = |part: f64| StepError::TooLong { t: self.node.t, h: self.h, longest: (part * self.h).abs() };
         let found = branch::follow(steps).map_err(too_long)?;
-        let is_same = distance(&step.stages, &found.stages, &from) <= EQUAL;
+        let is_same = distance([&step.stages, &found.stages], &from, &weights) <= EQUAL;
         Ok(if is_same { step } else { Step { linearization: None, ..found } })
     }
 }
@@ -99,6 +114,7 @@ struct StepsFrom<'a, Y, const N: usize, const S: usize> {
     cache: &'a mut Buffer<N, S>,
     /// The stages equal to the node.
     from: &'a Stages<N, S>,
+    weights: [f64; N],
     /// The solved step of the whole length.
     taken: &'a Step<N, S>,
 }
@@ -134,6 +150,6 @@ where
             at(last, |c| part / shorter[1].part * c)
         };
         let found = self.solved(part, &guess).or_else(|| (part >= 1.0).then_some(*self.taken));
-        found.filter(|step| distance(&guess, &step.stages, self.from) <= NEAR)
+        found.filter(|step| distance([&guess, &step.stages], self.from, &self.weights) <= NEAR)
     }
 }

@@ -117,6 +117,8 @@ fn is_connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
 
 /// Parts of a length at which a constant Jacobian is evaluated.
 const PARTS: u32 = 32;
+/// Bisections of the part from which on it is singular.
+const BISECTIONS: u32 = 40;
 
 /// Checks the length h of all steps with a constant Jacobian: it is regular for shorter steps.
 ///
@@ -134,16 +136,22 @@ pub(crate) fn check_linear<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
         |part: f64| system.momentum_equation(&Node::zeros(), h * T::real(part), &SVector::zeros()).jacobian.dense();
     let mass = jacobian(0.0);
     let sign = linear::determinant_sign(&mass);
-    let is_regular = |part: &f64| {
-        let at = jacobian(*part);
-        // Two signs that change at once show on the diagonal.
-        linear::determinant_sign(&at) == sign && (0..N).all(|i| !(at[(i, i)] * mass[(i, i)] < T::zero()))
+    let is_regular = |part: f64| {
+        let at = jacobian(part);
+        // Two signs that change at once show on the diagonal of a symmetric matrix.
+        let is_negative = |i: usize| at[(i, i)] * mass[(i, i)] < T::zero();
+        linear::determinant_sign(&at) == sign && (at != at.transpose() || !(0..N).any(is_negative))
     };
-    let mut parts = (1..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
-    let Some(singular) = parts.find(|part| !is_regular(part)) else { return Ok(()) };
+    let parts = (1..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
+    let Some(singular) = { parts }.find(|part| !is_regular(*part)) else { return Ok(()) };
+    let [mut regular, mut singular] = [singular - f64::from(PARTS).recip(), singular];
+    // A part that is negligible may still be singular.
+    for _ in 0..BISECTIONS {
+        let middle = if regular > 0.0 { 0.5 * (regular + singular) } else { singular / f64::from(PARTS) };
+        if is_regular(middle) { regular = middle } else { singular = middle }
+    }
     let (t, h) = (node.t.to_f64(), h.to_f64());
-    let longest = (MARGIN * (singular - f64::from(PARTS).recip()).max(0.5 / f64::from(PARTS)) * h).abs();
-    Err(StepError::TooLong { t, h, longest })
+    Err(StepError::TooLong { t, h, longest: (MARGIN * regular * h).abs() })
 }
 
 /// The root that is connected with h = 0, if that is another one than `v`.
