@@ -144,7 +144,10 @@ where
         match solve::unprojected::<S, N, STAGES>(*system, of, &mut unknowns, workspace, false) {
             Ok(solution) => Some(Unknowns { unknowns, contraction: solution.contraction }),
             // A guess for the next part needs no more digits.
-            Err(StepError::NotConverged { residual, .. }) if residual < STALLED => {
+            Err(StepError::NotConverged { residual, .. })
+                if residual < STALLED
+                    && solve::has_sign_of_short_steps::<S, N, STAGES>(*system, of, &unknowns, workspace) =>
+            {
                 Some(Unknowns { unknowns, contraction: f64::INFINITY })
             }
             Err(_) => None,

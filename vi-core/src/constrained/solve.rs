@@ -93,8 +93,7 @@ pub(crate) fn unprojected<S, const N: usize, const STAGES: usize>(
 where
     S: Constrained<N> + ConvertibleConstrained<N>,
 {
-    let kept = [S::HOLONOMIC, S::CONSTRAINTS.len()].map(|count| (0..count).filter(|r| !system.is_dropped(*r)).count());
-    let of_short_steps = expected_sign(workspace.signs, (sign, STAGES), kept);
+    let of_short_steps = sign_of_short_steps::<S, N, STAGES>(system, sign, workspace);
     let start = system.constraint_gradients(node.t, &node.q);
     let rows = |u: &[f64]| Rows::<S, N, STAGES>::from_start(system, (node, h), &start, u);
     let mut at = rows(u);
@@ -154,6 +153,27 @@ where
     } else {
         Err(failed(iterations, residual, &residuals))
     }
+}
+
+/// The sign that the determinant of the Jacobian has in short steps.
+fn sign_of_short_steps<S: Constrained<N>, const N: usize, const STAGES: usize>(
+    system: &S,
+    sign: i8,
+    workspace: &Workspace,
+) -> i8 {
+    let kept = [S::HOLONOMIC, S::CONSTRAINTS.len()].map(|count| (0..count).filter(|r| !system.is_dropped(*r)).count());
+    expected_sign(workspace.signs, (sign, STAGES), kept)
+}
+
+/// Whether the determinant of the Jacobian at u has the sign that it has in short steps.
+pub(super) fn has_sign_of_short_steps<S: Constrained<N>, const N: usize, const STAGES: usize>(
+    system: &S,
+    (node, h, sign): (&Node<N>, f64, i8),
+    u: &[f64],
+    workspace: &mut Workspace,
+) -> bool {
+    let rows = Rows::<S, N, STAGES>::at(system, node, h, u);
+    workspace.factor(&rows, system, h, u) == sign_of_short_steps::<S, N, STAGES>(system, sign, workspace)
 }
 
 /// The end of a solved step, with its projection, and the velocity there.

@@ -64,9 +64,9 @@ pub(crate) fn check_length<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
 ) -> Result<(), StepError> {
     let [h, density] = [last.h, last.density].map(T::to_f64);
     let rounding = T::EPSILON * system.extended_rounding(node, last.h, &last.v).energy.to_f64();
-    // Also true for NaN, which later checks name.
-    let is_determined = !(h * h * density.abs() <= LEAST * rounding);
-    if is_determined { Ok(()) } else { Err(StepError::DegenerateStep { t: node.t.to_f64(), h, density }) }
+    // False for NaN, which later checks name.
+    let is_lost = h * h * density.abs() <= LEAST * rounding;
+    if is_lost { Err(StepError::DegenerateStep { t: node.t.to_f64(), h, density }) } else { Ok(()) }
 }
 
 /// The run at the end of the step `(v, h)` from `start`.

@@ -395,13 +395,13 @@ fn substitute_together<T: Real, const N: usize, const C: usize>(a: &SMatrix<T, N
 pub(super) fn sign_of_few<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> Option<i8> {
     let [left, right] = match N {
         1 => [a[(0, 0)].to_f64(), 0.0],
-        2 => [a[(0, 0)] * a[(1, 1)], a[(0, 1)] * a[(1, 0)]].map(|product| product.to_f64()),
+        2 => [a[(0, 0)] * a[(1, 1)], a[(0, 1)] * a[(1, 0)]].map(T::to_f64),
         _ => return None,
     };
     let determinant = left - right;
     // False for NaN and for infinite products.
     let is_known = determinant.abs() > 64.0 * T::EPSILON * (left.abs() + right.abs());
-    is_known.then(|| if determinant > 0.0 { 1 } else { -1 })
+    is_known.then_some(if determinant > 0.0 { 1 } else { -1 })
 }
 
 /// Rounds of scaling. Each takes the square root of the ratio of a row or column to its target: ratios of 10⁴⁰ become

@@ -28,16 +28,19 @@ const LOST: f64 = 0.1;
 /// The estimate from which a run says so.
 const SAID: f64 = 1e-3;
 
-/// Nodes of a motion: coordinates and H, at equal distances in time.
-type Nodes = Vec<(Vec<f64>, f64)>;
+/// Coordinates and H at a node.
+struct Node {
+    q: Vec<f64>,
+    energy: f64,
+}
 
 /// The nodes after each of a number of steps; `None` if the run ends before.
-fn nodes(entry: &Entry, plan: &Plan, steps: u32) -> Option<Nodes> {
+fn nodes(entry: &Entry, plan: &Plan, steps: u32) -> Option<Vec<Node>> {
     let mut run = entry.system.begin(plan).ok()?;
-    let mut nodes = vec![(run.q().to_vec(), run.energy().ok()?)];
+    let mut nodes = vec![Node { q: run.q().to_vec(), energy: run.energy().ok()? }];
     for _ in 0..steps {
         run.advance().ok()?;
-        nodes.push((run.q().to_vec(), run.energy().ok()?));
+        nodes.push(Node { q: run.q().to_vec(), energy: run.energy().ok()? });
     }
     Some(nodes)
 }
@@ -62,18 +65,18 @@ impl Counts {
         let plan = |method: Method, h: f64| Plan::new(method, h, start.clone());
         let truth = |parts: u32| nodes(entry, &plan(accurate, entry.h / f64::from(parts)), DURATION * parts);
         let (Some(truth), Some(check)) = (truth(2), truth(1)) else { return };
-        let range = |of: &dyn Fn(&(Vec<f64>, f64)) -> f64| {
+        let range = |of: &dyn Fn(&Node) -> f64| {
             let values = || truth.iter().map(of);
             values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
         };
-        let ranges: Vec<f64> = (0..start.q.len()).map(|i| range(&|node: &(Vec<f64>, f64)| node.0[i])).collect();
+        let ranges: Vec<f64> = (0..start.q.len()).map(|i| range(&|node| node.q[i])).collect();
         let longest = ranges.iter().copied().fold(0.0, f64::max);
-        let size = truth.iter().map(|node| node.1.abs()).fold(range(&|node: &(Vec<f64>, f64)| node.1), f64::max);
+        let size = truth.iter().map(|node| node.energy.abs()).fold(range(&|node| node.energy), f64::max);
         // Relative errors of q and of H at a node. A coordinate that hardly moves has no scale.
-        let off = |one: &(Vec<f64>, f64), other: &(Vec<f64>, f64)| {
+        let off = |one: &Node, other: &Node| {
             let moved = (0..start.q.len()).filter(|i| ranges[*i] > 1e-3 * longest);
-            let positions = moved.map(|i| (one.0[i] - other.0[i]).abs() / ranges[i]).fold(0.0, f64::max);
-            positions.max((one.1 - other.1).abs() / size)
+            let positions = moved.map(|i| (one.q[i] - other.q[i]).abs() / ranges[i]).fold(0.0, f64::max);
+            positions.max((one.energy - other.energy).abs() / size)
         };
         if check.iter().enumerate().any(|(k, node)| off(node, &truth[2 * k]) > 1e-6) {
             return;
@@ -104,7 +107,7 @@ impl Counts {
                         if method == Method::Energy { 2 * DURATION } else { (2 * ratio * steps).min(2 * DURATION) };
                     if is_end || method != Method::Energy {
                         let energy = run.energy().unwrap_or(f64::INFINITY);
-                        worst = worst.max(off(&(run.q().to_vec(), energy), &truth[place as usize]));
+                        worst = worst.max(off(&Node { q: run.q().to_vec(), energy }, &truth[place as usize]));
                     }
                 };
                 self.runs += 1;
