@@ -57,8 +57,6 @@ pub use extended::Extended;
 pub use independent::Independent;
 pub(crate) use motion::{accelerations, unsolvable};
 pub use motion::{constrained_acceleration, constrained_flow};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 pub use projection::{Projected, Projection};
 pub(crate) use variation::velocity_along;
 
