@@ -50,8 +50,8 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
 }
 
 /// Smallest `h² |D|` that determines a length, in roundings of the energy of a step. `H − E = h² D/8`, off by one of them,
-/// changes h by a twelfth; off by [`FLOOR`], which is accepted, by a third.
-const LEAST: f64 = 12.0 * FLOOR;
+/// changes h by an eighth; off by [`FLOOR`], which is accepted, by half. The paper's double well with h0 = 1e-6 is above.
+const LEAST: f64 = 8.0 * FLOOR;
 
 /// Checks that the energy determines the length of the first step after `last`.
 ///
