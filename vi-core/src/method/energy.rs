@@ -109,30 +109,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
             Ok(after) => return Ok(EnergySolution::After(after)),
             Err(failure) => explained(failure, system, node, memory),
         };
-        if !is_first {
-            return Err(failure);
-        }
-        let Ok(energy) = node.state().energy(system) else { return Err(failure) };
-        let energies = [node.energy, energy - node.energy].map(T::to_f64);
-        let of = ([node.t, memory.last.h].map(T::to_f64), energies);
-        let first_step = |node: Node<N, T>, lengths: &Lengths<N, T>| {
-            let exists = Search { system: called, node: &node, lengths }.next().is_ok();
-            Some(FirstStep { energy: node.energy.to_f64(), exists })
-        };
-        let from_state = |h: f64| {
-            let mut node = Node::new(node.state(), T::zero());
-            let lengths = start::from_state(system, &mut node, T::real(h)).ok()?;
-            first_step(node, &lengths)
-        };
-        let from_midpoint = |h: f64| {
-            let Last { h: whole, v, .. } = &memory.last;
-            let h = T::real(h);
-            let mut start = *node;
-            start.shift((*whole + h) * T::real(-0.5), v);
-            let After { node, lengths } = start::first_interval(called, start, h, *v).ok()?;
-            first_step(node, &lengths)
-        };
-        Err(too_long(too_long(failure, of, from_state), of, from_midpoint))
+        Err(if is_first { first_failure(failure, called, node, &memory.last) } else { failure })
     }
 
     #[inline(always)]
@@ -234,6 +211,37 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     fn check(&self, memory: &Lengths<N, T>, _h: T, t: T) -> Result<(), StepError> {
         memory.check(t)
     }
+}
+
+/// The error of a first step: it names a shorter length, if a run that starts with it from the state, or with the same
+/// midpoint, takes a step.
+#[cold]
+fn first_failure<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
+    failure: StepError,
+    system: &S,
+    node: &Node<N, T>,
+    last: &Last<N, T>,
+) -> StepError {
+    let Ok(energy) = node.state().energy(system) else { return failure };
+    let energies = [node.energy, energy - node.energy].map(T::to_f64);
+    let of = ([node.t, last.h].map(T::to_f64), energies);
+    let first_step = |node: Node<N, T>, lengths: &Lengths<N, T>| {
+        let exists = Search { system, node: &node, lengths }.next().is_ok();
+        Some(FirstStep { energy: node.energy.to_f64(), exists })
+    };
+    let from_state = |h: f64| {
+        let mut node = Node::new(node.state(), T::zero());
+        let lengths = start::from_state(system, &mut node, T::real(h)).ok()?;
+        first_step(node, &lengths)
+    };
+    let from_midpoint = |h: f64| {
+        let h = T::real(h);
+        let mut start = *node;
+        start.shift((last.h + h) * T::real(-0.5), &last.v);
+        let After { node, lengths } = start::first_interval(system, start, h, last.v).ok()?;
+        first_step(node, &lengths)
+    };
+    too_long(too_long(failure, of, from_state), of, from_midpoint)
 }
 
 /// Adds the expression that is not finite to a failure.

@@ -33,10 +33,10 @@
 //! The stages and the energy of every accepted step are at the rounding floor. Theory and measurements:
 //! `docs/theory.md`.
 
-use super::bounds::{Alternating, Control, Controlled, FORWARD, FirstStep, Phase, check_forward, too_long};
+use super::bounds::{Alternating, Control, Controlled, FORWARD, Phase, check_forward};
 use super::gauss::{Gauss, GaussOutput, LastStages};
 use super::length::Trial;
-use super::preserving::{Ended, Preserving, PreservingStep, StepsOfAnyLength, check_power, measured, order};
+use super::preserving::{Ended, Preserving, PreservingStep, StepsOfAnyLength, check_power, failed, measured, order};
 use super::shift::{Shiftable, StepPower};
 use super::{Memory, Method, Problem, Report};
 use crate::collocation::Collocation;
@@ -284,18 +284,7 @@ where
         cache: &mut Self::Cache,
         left: StepError,
     ) -> Result<Self::Step, StepError> {
-        let Problem { system, prepared, node, .. } = at;
-        let course = &memory.course;
-        // A start of another length has no shift.
-        if !course.is_first() || course.shift != 0.0 {
-            return Err(left);
-        }
-        Err(too_long(left, ([node.t, course.h()], [node.energy, course.excess]), |h| {
-            let mut node = Node::new(node.state(), 0.0);
-            let memory = self.begin(system, &mut node, h).ok()?;
-            let at = Problem { system, prepared, node: &node, h };
-            Some(FirstStep { energy: node.energy, exists: self.attempt(at, &memory, cache).is_ok() })
-        }))
+        Err(failed(self, at, &memory.course, cache, left))
     }
 
     fn take(

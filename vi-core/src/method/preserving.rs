@@ -3,8 +3,9 @@
 //! A method solves steps of a given length, with their discrete energies ([`StepsOfAnyLength`]). This module finds the
 //! length whose step has the energy of the node, or takes fixed steps if the user allows them.
 
-use super::bounds::{Alternating, Control, RATIO};
+use super::bounds::{Alternating, Control, FirstStep, RATIO, too_long};
 use super::length::{Search, Trial};
+use super::{Method, Problem};
 use crate::error::StepError;
 use crate::gauss::density::power;
 use crate::gauss::history::StepHistory;
@@ -242,6 +243,28 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Alternating<f64>
     fn control_of(found: &mut PreservingStep<P::Taken>) -> &mut Control {
         &mut found.course.control
     }
+}
+
+/// The error of a failed attempt. That of a first step names a shorter length, if one leads to a step.
+#[cold]
+pub(super) fn failed<M: Method<S, N>, S, const N: usize>(
+    method: &M,
+    at: Problem<'_, S, M::Prepared, N>,
+    course: &StepHistory,
+    cache: &mut M::Cache,
+    failure: StepError,
+) -> StepError {
+    // A start of another length has no shift.
+    if !course.is_first() || course.shift != 0.0 {
+        return failure;
+    }
+    let Problem { system, prepared, node, .. } = at;
+    too_long(failure, ([node.t, course.h()], [node.energy, course.excess]), |h| {
+        let mut node = Node::new(node.state(), 0.0);
+        let memory = method.begin(system, &mut node, h).ok()?;
+        let at = Problem { system, prepared, node: &node, h };
+        Some(FirstStep { energy: node.energy, exists: method.attempt(at, &memory, cache).is_ok() })
+    })
 }
 
 /// `H − E'` at a node, and the size of the terms of H.
