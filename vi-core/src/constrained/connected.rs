@@ -35,8 +35,9 @@ where
 {
     let of = (node, h, sign);
     let reduced = workspace.reduced.as_mut().filter(|_| S::POINT_MASSES && sign > 0);
-    if let Some(solved) = reduced.and_then(|reduced| reduced::step(system, (node, h, is_next), u, reduced)) {
-        if solved.contraction <= FAST {
+    let solved = reduced.and_then(|reduced| reduced::step(system, (node, h, is_next), u, reduced));
+    if let Some((solved, contraction)) = solved {
+        if contraction <= FAST {
             return Ok(solved);
         }
         match continued::<S, N, STAGES>(system, of, u, workspace)? {
@@ -64,15 +65,15 @@ pub(crate) fn unprojected<S, const N: usize, const STAGES: usize>(
 where
     S: Constrained<N> + ConvertibleConstrained<N>,
 {
-    let solution = solve::unprojected::<S, N, STAGES>(system, of, u, workspace, is_factored)?;
-    if solution.contraction <= FAST {
+    let (solution, contraction) = solve::unprojected::<S, N, STAGES>(system, of, u, workspace, is_factored)?;
+    if contraction <= FAST {
         return Ok(solution);
     }
     match continued::<S, N, STAGES>(system, of, u, workspace)? {
         None => Ok(solution),
         Some(found) => {
             *u = found;
-            solve::unprojected(system, of, u, workspace, false)
+            solve::unprojected(system, of, u, workspace, false).map(|(solution, _)| solution)
         }
     }
 }
@@ -142,7 +143,7 @@ where
         let Self { system, node, h, sign, workspace, .. } = self;
         let of = (*node, *h * part, *sign);
         match solve::unprojected::<S, N, STAGES>(*system, of, &mut unknowns, workspace, false) {
-            Ok(solution) => Some(Unknowns { unknowns, contraction: solution.contraction }),
+            Ok((_, contraction)) => Some(Unknowns { unknowns, contraction }),
             // A guess for the next part needs no more digits.
             Err(StepError::NotConverged { residual, .. })
                 if residual < STALLED

@@ -40,7 +40,6 @@ pub(crate) struct TriedLength<const N: usize, const STAGES: usize, M> {
     /// Largest residual of the step equations, over its rounding-error bound.
     of_rows: f64,
     iterations: u32,
-    contraction: f64,
     /// `E0(h) − C_s h^2s D_*` less the energy of the node.
     residual: f64,
     /// `E1 − E0` without the projection.
@@ -152,7 +151,6 @@ where
             }),
             of_rows: solution.residual,
             iterations: solution.iterations,
-            contraction: solution.contraction,
             residual,
             work: energies.work,
             size: energies.size,
@@ -210,14 +208,9 @@ where
         let workspace = &mut **workspace.borrow_mut();
         let mut u = core::mem::take(&mut workspace.unknowns);
         trial.write(&mut u);
-        let TriedLength { h, of_rows: residual, iterations, contraction, .. } = *trial;
+        let TriedLength { h, of_rows: residual, iterations, .. } = *trial;
         let rows = Rows::<S, N, STAGES>::at(system, node, h, &u);
-        let solved = projected(
-            *system,
-            (node, h, *sign),
-            (&Solution { rows, residual, iterations, contraction }, &u),
-            workspace,
-        );
+        let solved = projected(*system, (node, h, *sign), (&Solution { rows, residual, iterations }, &u), workspace);
         workspace.unknowns = u;
         let (Solved { mut end, mu, residual, .. }, v) = solved?;
         let gain = trial.work - power_of::<S, N, f64>(system, (end.t, &end.q), mu.as_ref());

@@ -290,13 +290,14 @@ fn write<const N: usize>(gradients: &impl Rectangular<N, f64>, entries: &mut [f6
 }
 
 /// Solves the step of length h from `node`, with the guess of the impulses in `u`; replaces it by velocities and
-/// impulses. `None` if the general solver has to.
+/// impulses, and returns the contraction as [`solve::unprojected`](super::solve::unprojected). `None` if the general
+/// solver has to.
 pub(crate) fn step<S: Constrained<N>, const N: usize>(
     system: &S,
     (node, h, is_next): (&Node<N>, f64, bool),
     u: &mut [f64],
     reduced: &mut Reduced,
-) -> Option<Solved<N, S::Multipliers>> {
+) -> Option<(Solved<N, S::Multipliers>, f64)> {
     if !reduced.begin(system, node, is_next) {
         return None;
     }
@@ -339,7 +340,7 @@ pub(crate) fn step<S: Constrained<N>, const N: usize>(
     let (end, mu, of_velocity) = projected(system, (node, h, &v), force * h + reaction, reduced)?;
     let residual = worse(of_velocity, residual);
     // False for NaN.
-    (residual <= FLOOR).then_some(Solved { end, mu, residual, iterations, contraction })
+    (residual <= FLOOR).then_some((Solved { end, mu, residual, iterations }, contraction))
 }
 
 /// g/h at the end of a step, in `known`, and A and a there. Returns the largest row over its rounding.

@@ -63,8 +63,6 @@ pub(crate) struct Solved<const N: usize, M> {
     pub(crate) mu: M,
     pub(crate) residual: f64,
     pub(crate) iterations: u32,
-    /// The largest ratio of two residuals in turn, above the noise of rounding.
-    pub(crate) contraction: f64,
 }
 
 /// The equations of a step at its solution.
@@ -72,14 +70,12 @@ pub(crate) struct Solution<R> {
     pub(crate) rows: R,
     pub(crate) residual: f64,
     pub(crate) iterations: u32,
-    /// As of [`Solved`].
-    pub(crate) contraction: f64,
 }
 
 /// Solves the equations of the step of length h from `node`, without its projection, with the guess in `u`; replaces it
 /// by the unknowns. `sign` is the sign of the determinant of the bordered mass matrix. If `is_factored`, the workspace
 /// holds the factors of a step of nearly this length from the same node. The step may be on another branch than that of
-/// short ones.
+/// short ones. Returns the contraction, too: the largest ratio of two residuals in turn, above the noise of rounding.
 ///
 /// # Errors
 /// [`StepError::NotConverged`], [`StepError::Singular`], [`StepError::NonFinite`].
@@ -89,7 +85,7 @@ pub(crate) fn unprojected<S, const N: usize, const STAGES: usize>(
     u: &mut Vec<f64>,
     workspace: &mut Workspace,
     mut is_factored: bool,
-) -> Result<Solution<Rows<S, N, STAGES>>, StepError>
+) -> Result<(Solution<Rows<S, N, STAGES>>, f64), StepError>
 where
     S: Constrained<N> + ConvertibleConstrained<N>,
 {
@@ -147,7 +143,7 @@ where
         has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
     }
     if has_right_sign {
-        Ok(Solution { rows: at, residual, iterations, contraction })
+        Ok((Solution { rows: at, residual, iterations }, contraction))
     } else if at.is_straight() {
         Err(unsolvable(Unsolvable::Singular, node.t))
     } else {
@@ -189,7 +185,7 @@ pub(crate) fn projected<S, const N: usize, const STAGES: usize>(
 where
     S: Constrained<N>,
 {
-    let Solution { rows: at, residual, iterations, contraction } = solution;
+    let Solution { rows: at, residual, iterations } = solution;
     let (t, q) = at.end();
     let p = node.p + (node.p_low + at.increment);
     let projected = velocity(system, (t, &q, &p), &stage_velocity(u, STAGES - 1), &mut workspace.bordered)?;
@@ -220,8 +216,7 @@ where
     }
     end.add_momentum(&reaction_of(gradients, last.as_ref()));
     end.check_finite(node.t)?;
-    let (residual, iterations, contraction) = (residual.max(of_velocity), *iterations, *contraction);
-    Ok((Solved { end, mu, residual, iterations, contraction }, v))
+    Ok((Solved { end, mu, residual: residual.max(of_velocity), iterations: *iterations }, v))
 }
 
 impl Workspace {
