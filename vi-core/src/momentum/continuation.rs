@@ -118,7 +118,7 @@ fn is_connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
 /// Parts of a length at which a constant Jacobian is evaluated.
 const PARTS: u32 = 32;
 /// Bisections of the part from which on it is singular.
-const BISECTIONS: u32 = 40;
+const BISECTIONS: u32 = 60;
 
 /// Checks the length h of all steps with a constant Jacobian: it is regular for shorter steps.
 ///
@@ -142,12 +142,12 @@ pub(crate) fn check_linear<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
         let is_negative = |i: usize| at[(i, i)] * mass[(i, i)] < T::zero();
         linear::determinant_sign(&at) == sign && (at != at.transpose() || !(0..N).any(is_negative))
     };
-    let parts = (1..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
-    let Some(singular) = { parts }.find(|part| !is_regular(*part)) else { return Ok(()) };
-    let [mut regular, mut singular] = [singular - f64::from(PARTS).recip(), singular];
-    // A part that is negligible may still be singular.
+    let width = f64::from(PARTS).recip();
+    let mut parts = (1..=PARTS).map(|part| width * f64::from(part));
+    let Some(mut singular) = parts.find(|part| !is_regular(*part)) else { return Ok(()) };
+    let mut regular = singular - width;
     for _ in 0..BISECTIONS {
-        let middle = if regular > 0.0 { 0.5 * (regular + singular) } else { singular / f64::from(PARTS) };
+        let middle = 0.5 * (regular + singular);
         if is_regular(middle) { regular = middle } else { singular = middle }
     }
     let (t, h) = (node.t.to_f64(), h.to_f64());
