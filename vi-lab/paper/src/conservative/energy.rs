@@ -75,7 +75,7 @@ fn items(book: &mut Book, runs: &[Pair]) {
                 name,
             );
             let printed = published.next().unwrap_or(f64::NAN);
-            // A printed power of ten stands for numbers within a factor of ten.
+            // The paper prints powers of ten: a factor of ten counts as agreement.
             let is_near = (0.1..10.0).contains(&(run.fixed.error / printed));
             book.item(
                 &format!("{what}: fixed step"),
