@@ -701,15 +701,24 @@ def time_transformation(claim):
     same(sp.diff(K, time), claim(-g * by(time) + (H - E) * sp.diff(g, time)))
 
 
+def gauss_nodes(s):
+    """The zeros of the Legendre polynomial of degree s on [0, 1]."""
+    x = sp.Symbol("x")
+    return sorted(sp.solve(sp.legendre(s, 2 * x - 1), x))
+
+
+def gauss_integrals(s):
+    """Integrals of the Lagrange polynomials of the Gauss nodes, from 0 to each of a list of ends."""
+    x, nodes = sp.Symbol("x"), gauss_nodes(s)
+    basis = [sp.expand(sp.prod([(x - b) / (a - b) for b in nodes if b != a])) for a in nodes]
+    return lambda ends: [[sp.integrate(of, (x, 0, end)) for of in basis] for end in ends]
+
+
 @statement(PAGE, "Gauss satisfies `b_k a_ki + b_i a_ik = b_i b_k`", "Because ã_si = b_i")
 def gauss_and_lobatto(claim):
-    x = sp.Symbol("x")
     for s in (1, 2, 3):
-        nodes = sorted(sp.solve(sp.legendre(s, 2 * x - 1), x))
-        basis = [sp.prod([(x - b) / (a - b) for b in nodes if b != a]) for a in nodes]
-        integral = lambda of, to: sp.integrate(sp.expand(of), (x, 0, to))
-        a = [[integral(of, to) for of in basis] for to in nodes]
-        b = [integral(of, 1) for of in basis]
+        integrals = gauss_integrals(s)
+        a, [b] = integrals(gauss_nodes(s)), integrals([1])
         for i in range(s):
             for j in range(s):
                 same(b[j] * a[j][i] + b[i] * a[i][j], claim(b[i] * b[j]))
@@ -759,13 +768,11 @@ def curvature_of_the_energy_row(claim):
 def stages_with_constraints(claim):
     x = sp.Symbol("x")
     for s in (1, 2, 3):
-        nodes = sorted(sp.solve(sp.legendre(s, 2 * x - 1), x))
-        basis = [sp.prod([(x - b) / (a - b) for b in nodes if b != a]) for a in nodes]
-        integral = lambda of, to: sp.integrate(sp.expand(of), (x, 0, to))
-        a, b = [[integral(of, to) for of in basis] for to in nodes], [integral(of, 1) for of in basis]
+        integrals = gauss_integrals(s)
+        a, [b] = integrals(gauss_nodes(s)), integrals([1])
         # The ends and the zeros of the derivative of a Legendre polynomial.
         ends = sorted({sp.S.Zero, sp.S.One, *sp.solve(sp.diff(sp.legendre(s, 2 * x - 1), x), x)})
-        at_ends = [[integral(of, to) for of in basis] for to in ends]
+        at_ends = integrals(ends)
         for i in range(s):
             # What ∂S/∂V_i and the increment of p leave in front of h F_k; in front of h A_jᵀ Λ_j it is â_ij at once.
             for k in range(s):
