@@ -4,7 +4,7 @@
 
 use std::hint::black_box;
 use std::time::Instant;
-use vi_core::collocation::Collocation;
+use vi_core::motion::Motion;
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
     EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Lagrangian, Method, Run, Splitting, Starts, State,
@@ -60,7 +60,7 @@ fn print(system: &str, [fixed, others @ ..]: [f64; 6]) {
 /// Times a system from a start with steps of h, and Gauss steps of `long`.
 fn times<S, const N: usize>(system: S, (q, v): ([f64; N], [f64; N]), [h, long]: [f64; 2]) -> Result<(), StepError>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N>,
+    S: EnergyStepping<N> + Motion<N> + Convertible<N>,
 {
     let start = black_box(State::at(&system, 0.0, q, v));
     let start = || system.at_state(start);

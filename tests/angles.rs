@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use vi_core::derivatives::{Differentiable, Tangent, Variation};
 use vi_core::real::Dual;
 use vi_core::run::{Checkpoint, Crossing, DenseOutput, Event, Moment};
+use vi_core::stepping::Convertible;
 use vi_core::{
     Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Lagrangian, Method, Run, Start,
     Starts, State, StepError, lagrangian,
@@ -306,7 +307,7 @@ fn checkpoints_carry_the_turns() {
 fn same_tangent<M, S, const N: usize>(start: Start<S, N>, method: M, h: f64)
 where
     M: Differentiable<S, N>,
-    S: Lagrangian<N> + Copy,
+    S: Convertible<N>,
 {
     let start = start.integrate(method, h).expect("a start");
     let mut turned = start.clone();

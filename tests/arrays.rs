@@ -1,7 +1,7 @@
 //! Systems with arrays against known results: force and frequencies of the chain by hand, the N-pendulum of two links
 //! against the double pendulum, order 2, and the energy of both integrators.
 
-use crate::support::exact::Motion;
+use crate::support::exact::Trajectory;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, Starts, State, lagrangian};
 use vi_systems::{DoublePendulum, FpuChain, NPendulum};
@@ -92,7 +92,7 @@ fn linear_modes_keep_their_shape_and_frequency() {
 fn order<const N: usize, S: EnergyStepping<N> + Copy>(system: S, q: [f64; N], v: [f64; N], h: f64, steps: usize) {
     let mut time = 0.0;
     (0..steps).for_each(|_| time += h);
-    let exact = Motion::new(0.0, q, v).at(&system, time);
+    let exact = Trajectory::new(0.0, q, v).at(&system, time);
     let errors = [1, 2, 4, 8].map(|parts: u16| {
         let state = fixed(system, q, v, h / f64::from(parts), steps * usize::from(parts));
         (state.q - exact.q).amax()

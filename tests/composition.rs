@@ -1,7 +1,7 @@
 //! Compositions: against 50-digit references, their order by slope, and their instability for damping with negative
 //! substeps.
 
-use crate::support::exact::Motion;
+use crate::support::exact::Trajectory;
 use crate::support::reference::{file, number, steps, vector};
 use crate::support::slope;
 use vi_core::stepping::FixedStepping;
@@ -46,7 +46,7 @@ fn the_references_are_followed() {
 fn order<const N: usize, S: FixedStepping<N> + Copy>(
     system: S,
     scheme: Composition,
-    motion: &[Motion<N>],
+    motion: &[Trajectory<N>],
     counts: [u32; 4],
 ) {
     let (start, ends) = motion.split_first().expect("a start");
@@ -71,8 +71,8 @@ fn order<const N: usize, S: FixedStepping<N> + Copy>(
 }
 
 /// An accurate motion at five equally spaced times.
-fn motion<const N: usize, S: FixedStepping<N>>(system: &S, q: [f64; N], v: [f64; N], apart: f64) -> [Motion<N>; 5] {
-    let start = Motion::new(0.0, q, v);
+fn motion<const N: usize, S: FixedStepping<N>>(system: &S, q: [f64; N], v: [f64; N], apart: f64) -> [Trajectory<N>; 5] {
+    let start = Trajectory::new(0.0, q, v);
     [0.0, 1.0, 2.0, 3.0, 4.0].map(|part| start.at(system, part * apart))
 }
 

@@ -171,7 +171,7 @@ fn a_cart_pole_at_the_top_is_that_of_textbooks() {
 
     // Nothing depends on the place of the cart, so that it stays that of the guess.
     let top = pole.equilibrium(0.0, [0.7, 0.3]).expect("an equilibrium");
-    assert_eq!((top.q, top.free), (SVector::from([0.7, 0.0]), [true, false]));
+    assert_eq!((top.q, top.free()), (SVector::from([0.7, 0.0]), [true, false]));
     near_rates(&top.rates().expect("rates"), &[-fall, 0.0, 0.0, fall].map(|re| Complex::new(re, 0.0)), 1e-15);
     let below = pole.equilibrium(0.0, [0.7, 2.9]).expect("an equilibrium");
     assert!((below.q[1] - PI).abs() <= f64::EPSILON * PI, "{below:?}");

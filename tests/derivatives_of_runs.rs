@@ -2,9 +2,7 @@
 
 use crate::gauss::Everything;
 use nalgebra::{DMatrix, DVector};
-use vi_core::derivatives::{
-    Covector, Differentiable, Lyapunov, Objective, Tangent, Unconstrained, Variation, gradient,
-};
+use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
 use vi_core::linear::Matrix;
 use vi_core::node::Node;
 use vi_core::real::Dual;
@@ -19,7 +17,7 @@ use vi_systems::{
 };
 
 /// The columns of the tangent map over `steps` steps.
-fn tangent_map<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+fn tangent_map<M: Differentiable<S, N>, S: Convertible<N>, const N: usize>(
     run: Run<M, S, N>,
     steps: usize,
 ) -> (Run<M, S, N>, DMatrix<f64>) {
@@ -49,7 +47,7 @@ fn defect(map: &DMatrix<f64>) -> f64 {
 
 fn is_symplectic<S, const N: usize>(system: S, q: [f64; N], v: [f64; N], h: f64) -> f64
 where
-    S: Discretized<N> + vi_core::collocation::Collocation<N>,
+    S: Discretized<N> + vi_core::motion::Motion<N>,
 {
     let start = State::at(&system, 0.3, q, v);
     let (_, fixed) = tangent_map(system.at_state(start).integrate(FixedStep, h).expect("valid"), 20);
@@ -155,7 +153,7 @@ fn differs<M, S, const N: usize>(
 ) -> f64
 where
     M: Differentiable<S, N>,
-    S: Lagrangian<N> + Copy,
+    S: Convertible<N>,
 {
     let zeros = SVector::zeros();
     let end = |q: &SVector<f64, N>, p: &SVector<f64, N>, parameter: f64| {
@@ -337,7 +335,7 @@ fn of_time<const N: usize>() -> Variation<N> {
 
 #[test]
 fn adjoint_and_tangent_agree() {
-    fn worst<M: Differentiable<Everything, 2, Kind = Unconstrained>>(run: &Run<M, Everything, 2>, steps: u64) -> f64 {
+    fn worst<M: Differentiable<Everything, 2>>(run: &Run<M, Everything, 2>, steps: u64) -> f64 {
         let mut all: Vec<_> =
             [1, 5, 1000].map(|kept| gradient(run, steps, kept, &SquaredDistances).expect("solvable")).into();
         let found = all.pop().expect("three");
@@ -401,8 +399,8 @@ fn the_time_of_an_autonomous_run_is_carried_back() {
     /// the initial time.
     fn worst<M, S>(run: &Run<M, S, 1>, steps: u64) -> (f64, f64)
     where
-        M: Differentiable<S, 1, Kind = Unconstrained>,
-        S: Convertible<1> + vi_core::collocation::Collocation<1>,
+        M: Differentiable<S, 1>,
+        S: Convertible<1> + vi_core::motion::Motion<1>,
     {
         let start = gradient(run, steps, 3, &Squares).expect("solvable").start;
         let mut varied = Variation::of_state();
@@ -487,7 +485,7 @@ fn separated<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run: &Run
 /// Exponents of three chaotic motions over these tenths of 40 000, 40 000 and 20 000 steps, against the separation of
 /// neighbours.
 fn exponents_agree_with_separations(tenths: u32, [separation, pairing]: [f64; 2]) {
-    fn both<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+    fn both<M: Differentiable<S, N>, S: Convertible<N>, const N: usize>(
         run: &Run<M, S, N>,
         steps: u32,
     ) -> (Vec<f64>, f64) {
@@ -567,7 +565,7 @@ impl Driven {
 
 #[test]
 fn gradients_of_inputs_that_bring_energy() {
-    fn worst<M: Differentiable<Everything, 2, Kind = Unconstrained>>(run: &Run<M, Everything, 2>) -> f64 {
+    fn worst<M: Differentiable<Everything, 2>>(run: &Run<M, Everything, 2>) -> f64 {
         let inputs = [0.0, 8.4, 9.1, 1.4, -7.6, -9.6, -2.8, 6.6, 9.9, 4.1, -5.4, -10.0].map(|part| 1.4 + 1e-3 * part);
         let found = gradient(run, 12, 3, &Driven { inputs }).expect("solvable");
         let mut worst = 0.0_f64;

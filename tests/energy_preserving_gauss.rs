@@ -2,7 +2,7 @@
 
 use crate::gauss::{Everything, System};
 use crate::support::assert_order_of;
-use crate::support::exact::Motion;
+use crate::support::exact::Trajectory;
 use crate::support::reference::{file, number, vector};
 use crate::support::scenes::{self, Scene};
 use core::f64::consts::{FRAC_PI_2, TAU};
@@ -166,7 +166,7 @@ fn order<const N: usize, const S: usize>(scene: &Scene<impl System<N>, N>, longe
             let h = longest / part;
             let run = begin::<N, S, _>(scene.system, (scene.q, scene.v), h);
             let mut run = run.with_shift(shift).expect("a shift");
-            let mut exact = Motion::new(0.2, scene.q, scene.v);
+            let mut exact = Trajectory::new(0.2, scene.q, scene.v);
             let mut error = 0.0_f64;
             while run.state().t < 0.2 + span {
                 let node = run.step().unwrap_or_else(|error| panic!("{}: {error}", name_of(&scene.system)));
@@ -856,7 +856,7 @@ fn states_at_times_are_those_of_the_motion_and_the_energy_stays() {
     for k in 1..=20 {
         let t = 0.2 + 0.31 * f64::from(k);
         let state = run.until(t).expect("a state");
-        let exact = Motion::new(0.2, q, v).at(&system, t);
+        let exact = Trajectory::new(0.2, q, v).at(&system, t);
         assert_eq!(state.t.to_bits(), t.to_bits());
         worst = worst.max((state.q - exact.q).amax());
     }

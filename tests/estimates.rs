@@ -3,7 +3,7 @@
 //! The true error is that against sixteen steps of `Gauss::<8>` from the same node.
 
 use crate::support::scenes::{self, Scene, each_system};
-use vi_core::collocation::Collocation;
+use vi_core::motion::Motion;
 use vi_core::run::{Event, Length, LocalError, Monitored};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
@@ -43,7 +43,7 @@ fn larger<const N: usize>(error: &LocalError<N>) -> SVector<f64, N> {
 }
 
 /// The true error of a step.
-fn truth<S: Collocation<N> + Convertible<N>, const N: usize>(
+fn truth<S: Motion<N> + Convertible<N>, const N: usize>(
     system: S,
     [before, after]: [State<N>; 2],
 ) -> Option<SVector<f64, N>> {
@@ -60,7 +60,7 @@ fn truth<S: Collocation<N> + Convertible<N>, const N: usize>(
 fn compare<M, S, const N: usize>(counts: &mut Counts, start: Start<S, N>, method: M, h: f64)
 where
     M: Method<S, N>,
-    S: Collocation<N> + Convertible<N>,
+    S: Motion<N> + Convertible<N>,
 {
     let Ok(run) = start.integrate(method, h) else { return };
     let mut run = run.monitored();
@@ -93,7 +93,7 @@ where
 
 /// Measured over 400 steps each, 184 029 in all: 99.8 % within a factor of ten, 0.04 % below a tenth, all of them with steps that are no approximation any more (true errors
 /// above 1 %); the largest value of a run at least 0.34 of the true one.
-fn each_method<S: Collocation<N> + Convertible<N> + EnergyStepping<N>, const N: usize>(scene: Scene<S, N>) {
+fn each_method<S: Motion<N> + Convertible<N> + EnergyStepping<N>, const N: usize>(scene: Scene<S, N>) {
     let start = scene.system.at(0.0, scene.q, scene.v);
     let mut counts = Counts::default();
     for factor in [0.25, 1.0, 4.0, 16.0, 64.0] {
@@ -205,7 +205,7 @@ fn a_short_pericentre_is_not_missed() {
 fn by_tolerance<M, S, const N: usize>(start: Start<S, N>, method: M, tolerance: f64) -> f64
 where
     M: Method<S, N>,
-    S: Collocation<N> + Convertible<N>,
+    S: Motion<N> + Convertible<N>,
 {
     let run = start.integrate(method, Tolerance(tolerance)).unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
     let mut run = run.monitored();
@@ -217,7 +217,7 @@ where
 
 #[test]
 fn a_step_from_a_tolerance_has_its_error() {
-    fn each<S: Collocation<N> + Convertible<N> + EnergyStepping<N>, const N: usize>(scene: Scene<S, N>) {
+    fn each<S: Motion<N> + Convertible<N> + EnergyStepping<N>, const N: usize>(scene: Scene<S, N>) {
         let start = scene.system.at(0.0, scene.q, scene.v);
         for tolerance in [1e-4, 1e-6, 1e-9] {
             let errors = [

@@ -1,7 +1,7 @@
 //! Events against exact times, with every method: times, simultaneous events, consecutive searches, invalid functions.
 
 use core::f64::consts::{FRAC_PI_6, PI, TAU};
-use vi_core::collocation::TimeScale;
+use vi_core::motion::TimeScale;
 use vi_core::run::{Crossing, Event, Met};
 use vi_core::stepping::{Convertible, EnergyStepping, FixedStepping};
 use vi_core::{

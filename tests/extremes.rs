@@ -1,6 +1,6 @@
 //! States and parameters at the limits of double precision: each gives a step, or an error that names the cause.
 
-use vi_core::collocation::Collocation;
+use vi_core::motion::Motion;
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
     EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Lagrangian, Run, SVector, Starts, State,
@@ -77,7 +77,7 @@ slopeless! {
 /// Asserts that every function is not finite at the origin, so that no shorter step helps.
 fn loses_its_slope<S, const N: usize>(system: S)
 where
-    S: Collocation<N> + Convertible<N> + EnergyStepping<N> + core::fmt::Debug,
+    S: Motion<N> + Convertible<N> + EnergyStepping<N> + core::fmt::Debug,
 {
     let zero = SVector::zeros();
     let start = State { t: 0.0, q: zero, p: zero };

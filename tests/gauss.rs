@@ -2,11 +2,11 @@
 
 use crate::gauss_stiff;
 use crate::support::assert_order_of;
-use crate::support::exact::Motion;
+use crate::support::exact::Trajectory;
 use crate::support::reference::{file, number, steps, vector};
 use crate::support::scenes::{self, Scene};
 use serde_json::Value;
-use vi_core::collocation::Collocation;
+use vi_core::kind::Free;
 use vi_core::stepping::{Convertible, FixedStepping};
 use vi_core::{FixedStep, Gauss, Lagrangian, Run, Starts, State, StepError, lagrangian, run::Checkpoint};
 use vi_systems::{
@@ -45,8 +45,8 @@ lagrangian! {
 }
 
 /// The requirements of a Gauss step on a system.
-pub(crate) trait System<const N: usize>: Collocation<N> + Convertible<N> + FixedStepping<N> + Copy {}
-impl<const N: usize, S: Collocation<N> + Convertible<N> + FixedStepping<N> + Copy> System<N> for S {}
+pub(crate) trait System<const N: usize>: Convertible<N, Kind = Free> + FixedStepping<N> {}
+impl<const N: usize, S: Convertible<N, Kind = Free> + FixedStepping<N>> System<N> for S {}
 
 /// Compares a run with a reference: nodes, and the discrete energy of the last interval.
 fn follows<const N: usize, const S: usize>(name: &str, system: impl System<N>, case: &Value, limits: [f64; 3]) {
@@ -97,10 +97,11 @@ fn steps_are_those_of_the_references() {
 
 /// The slope of the error of S stages over a ladder of steps, the longest first.
 fn order<const N: usize, const S: usize>(scene: &Scene<impl System<N>, N>, longest: f64, tolerance: f64) {
-    let start = Motion::new(0.2, scene.q, scene.v);
+    let start = Trajectory::new(0.2, scene.q, scene.v);
     let quarter = 2.0 * longest;
     // At four times, since an error that changes sign is small nearby.
-    let exact: Vec<Motion<N>> = (1..=4).map(|k| start.at(&scene.system, start.t + f64::from(k) * quarter)).collect();
+    let exact: Vec<Trajectory<N>> =
+        (1..=4).map(|k| start.at(&scene.system, start.t + f64::from(k) * quarter)).collect();
     let points: Vec<(f64, f64)> = [2_u32, 3, 4, 5, 6, 7, 8]
         .into_iter()
         .map(|count| {

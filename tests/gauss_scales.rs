@@ -49,7 +49,7 @@ fn first<S, const N: usize, const STAGES: usize>(
     h: f64,
 ) -> Result<State<N>, StepError>
 where
-    S: vi_core::collocation::Collocation<N> + vi_core::stepping::Convertible<N> + vi_core::stepping::FixedStepping<N>,
+    S: vi_core::motion::Motion<N> + vi_core::stepping::Convertible<N> + vi_core::stepping::FixedStepping<N>,
 {
     system.at(0.0, q, v).integrate(Gauss::<STAGES>, h)?.step()
 }

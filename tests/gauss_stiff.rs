@@ -183,7 +183,7 @@ lagrangian! {
 
 /// The number of accepted steps; each satisfies its equations.
 fn accepted<const S: usize, const N: usize>(
-    mut run: vi_core::Run<Gauss<S>, impl vi_core::collocation::Collocation<N> + vi_core::stepping::Convertible<N>, N>,
+    mut run: vi_core::Run<Gauss<S>, impl vi_core::stepping::Convertible<N, Kind = vi_core::kind::Free>, N>,
 ) -> u32 {
     for steps in 0..20 {
         let before = run.state();

@@ -2,8 +2,8 @@
 //! pole, a driven pivot.
 
 use crate::support::slope;
-use vi_core::collocation::Collocation;
-use vi_core::derivatives::{Differentiable, Unconstrained};
+use vi_core::derivatives::Differentiable;
+use vi_core::motion::Motion;
 use vi_core::nalgebra::DMatrix;
 use vi_core::prelude::*;
 use vi_core::stepping::Convertible;
@@ -30,8 +30,8 @@ lagrangian! {
 /// inputs. Returns the largest error relative to the largest entry.
 fn error_of_linearization<M, S, const N: usize>(mut run: Run<M, S, N>, set: impl Fn(&mut S, usize, f64)) -> f64
 where
-    M: Differentiable<S, N, Kind = Unconstrained>,
-    S: Convertible<N> + Collocation<N>,
+    M: Differentiable<S, N>,
+    S: Convertible<N> + Motion<N>,
 {
     const DELTA: f64 = 1e-5;
     for _ in 0..5 {

@@ -2,15 +2,16 @@
 
 use std::thread;
 use vi_core::check::{self, Place};
-use vi_core::collocation::Collocation;
 use vi_core::constrained::Extended;
+use vi_core::kind::{Bound, Form};
 use vi_core::linear::{Matrix, Rectangular};
+use vi_core::motion::Motion;
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::prelude::*;
 use vi_core::rules::{By, Midpoint, Own, Trapezoidal};
 use vi_core::stepping::{Convertible, Discretized, EnergyStepping, FixedStepping};
-use vi_core::{Constrained, ConvertibleConstrained, DiscreteLagrangian, Interval, Lagrangian, SVector, Starts};
+use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, Starts};
 
 /// A system twice.
 macro_rules! twice {
@@ -161,8 +162,8 @@ impl Worst {
 /// differences of sums, `solved` those of what the mass matrix solves.
 fn compare<A, B, const N: usize>(loops: A, lines: B, spread: f64, [off, solved]: [f64; 2])
 where
-    A: EnergyStepping<N> + Collocation<N> + DiscreteLagrangian<N> + Convertible<N> + Discretized<N>,
-    B: EnergyStepping<N> + Collocation<N> + DiscreteLagrangian<N> + Convertible<N> + Discretized<N>,
+    A: EnergyStepping<N> + Motion<N> + DiscreteLagrangian<N> + Convertible<N> + Discretized<N>,
+    B: EnergyStepping<N> + Motion<N> + DiscreteLagrangian<N> + Convertible<N> + Discretized<N>,
 {
     assert_eq!((A::AUTONOMOUS, A::FORCED, A::CYCLIC), (B::AUTONOMOUS, B::FORCED, B::CYCLIC));
     let (mut sums, mut solutions) = (Worst::default(), Worst::default());
@@ -174,7 +175,7 @@ where
         sums.number(loops.energy(t, &q, &v), lines.energy(t, &q, &v));
         sums.see(loops.momentum(t, &q, &v), lines.momentum(t, &q, &v));
         sums.see(loops.force(t, &q, &v), lines.force(t, &q, &v));
-        sums.number(Collocation::power(&loops, t, &q, &v), Collocation::power(&lines, t, &q, &v));
+        sums.number(Motion::power(&loops, t, &q, &v), Motion::power(&lines, t, &q, &v));
         let accelerations = (loops.acceleration(t, &q, &v), lines.acceleration(t, &q, &v));
         solutions.see(accelerations.0.expect("an acceleration"), accelerations.1.expect("an acceleration"));
         let densities = (loops.step_density(t, &q, &v), lines.step_density(t, &q, &v));
@@ -291,8 +292,8 @@ where
 /// Compares steps of both.
 fn compare_steps<A, B, const N: usize>(loops: A, lines: B, q: SVector<f64, N>, off: f64)
 where
-    A: EnergyStepping<N> + Collocation<N> + DiscreteLagrangian<N> + Convertible<N> + Discretized<N>,
-    B: EnergyStepping<N> + Collocation<N> + DiscreteLagrangian<N> + Convertible<N> + Discretized<N>,
+    A: EnergyStepping<N> + Motion<N> + DiscreteLagrangian<N> + Convertible<N> + Discretized<N>,
+    B: EnergyStepping<N> + Motion<N> + DiscreteLagrangian<N> + Convertible<N> + Discretized<N>,
 {
     let v = numbers::<N>(7);
     let fixed = (
@@ -376,7 +377,7 @@ fn explicit_steps_in_loops_are_those_in_lines() {
 /// The end of a run from links at rest but for this velocity, and the turns of the links.
 fn end_and_turns<S>(system: S, v: SVector<f64, 6>) -> Result<(State<6>, [i64; 6]), StepError>
 where
-    S: Collocation<6> + Convertible<6>,
+    S: Convertible<6>,
 {
     let mut run = system.at(0.0, [0.1; 6], v).integrate(Gauss::<3>, 0.01)?;
     Ok((run.until(1.0)?, run.turns()))
@@ -558,13 +559,6 @@ twice! { NeedlesInLines NeedlesInLoops {
     torque R[i in 0..N] = [0, motor, 0];
 } }
 
-/// A system with K constraints and dense rows, or in the form of its zero pattern.
-trait Bound<const N: usize, const K: usize>: Constrained<N, Multipliers = [f64; K]> + ConvertibleConstrained<N> {}
-impl<S, const N: usize, const K: usize> Bound<N, K> for S where
-    S: Constrained<N, Multipliers = [f64; K]> + ConvertibleConstrained<N>
-{
-}
-
 fn dense<const N: usize, const R: usize>(rows: &impl Rectangular<N, f64>) -> SMatrix<f64, R, N> {
     assert_eq!(rows.rows().count(), R);
     let mut matrix = SMatrix::<f64, R, N>::zeros();
@@ -575,10 +569,12 @@ fn dense<const N: usize, const R: usize>(rows: &impl Rectangular<N, f64>) -> SMa
 }
 
 /// Compares all functions of a system with constraints in loops with those in lines.
-fn compare_constrained<A, B, const N: usize, const K: usize>(loops: A, lines: B, [off, solved]: [f64; 2])
+fn compare_constrained<A, B, F, G, const N: usize, const K: usize>(loops: A, lines: B, [off, solved]: [f64; 2])
 where
-    A: Bound<N, K>,
-    B: Bound<N, K>,
+    F: Form,
+    G: Form,
+    A: Convertible<N, Kind = Bound<K, F>>,
+    B: Convertible<N, Kind = Bound<K, G>>,
 {
     assert_eq!((A::AUTONOMOUS, A::FORCED, A::CYCLIC), (B::AUTONOMOUS, B::FORCED, B::CYCLIC));
     assert_eq!((A::CONSTRAINTS, A::HOLONOMIC), (B::CONSTRAINTS, B::HOLONOMIC));
@@ -623,20 +619,20 @@ where
 }
 
 /// Compares runs of both from the state nearest to q, and how well the constraints hold.
-fn compare_constrained_steps<A, B, const N: usize, const K: usize>(
+fn compare_constrained_steps<A, B, F, G, const N: usize, const K: usize>(
     (loops, lines): (A, B),
     q: SVector<f64, N>,
     [h, until]: [f64; 2],
     off: f64,
 ) where
-    A: Bound<N, K> + Starts<N>,
-    B: Bound<N, K> + Starts<N>,
+    F: Form,
+    G: Form,
+    A: Convertible<N, Kind = Bound<K, F>>,
+    B: Convertible<N, Kind = Bound<K, G>>,
 {
     let start = State::projected(&lines, 0.0, q, numbers::<N>(7)).expect("a start").state;
-    let ours =
-        loops.at_state(start).integrate(GaussLobatto::<2>, h).and_then(|mut run| run.until(until)).expect("steps");
-    let theirs =
-        lines.at_state(start).integrate(GaussLobatto::<2>, h).and_then(|mut run| run.until(until)).expect("steps");
+    let ours = loops.at_state(start).integrate(Gauss::<2>, h).and_then(|mut run| run.until(until)).expect("steps");
+    let theirs = lines.at_state(start).integrate(Gauss::<2>, h).and_then(|mut run| run.until(until)).expect("steps");
     let moved = (theirs.q - start.q).amax();
     let found = (ours.q - theirs.q).amax().max((ours.p - theirs.p).amax()) / moved;
     let held = loops.constraints(until, &ours.q).into_iter().fold(0.0_f64, |worst, value| worst.max(value.abs()));
@@ -655,7 +651,7 @@ fn a_closed_chain_in_loops_is_one_in_lines() {
 #[test]
 fn rotations_in_loops_are_rotations_in_lines() {
     // Measured: 8.8 and 6.3.
-    compare_constrained::<_, _, 8, 2>(NeedlesInLoops::default(), NeedlesInLines::default(), [10.0, 10.0]);
+    compare_constrained(NeedlesInLoops::default(), NeedlesInLines::default(), [10.0, 10.0]);
 }
 
 #[test]
@@ -682,7 +678,7 @@ fn constraints_are_finite_where_one_has_an_infinite_second_derivative() {
         dense::<4, 4>(&RoughInLines::default().reaction_derivatives(0.0, &q, &[0.3, 0.2])),
     ];
     assert!(ours == theirs && ours[(0, 0)] > 0.5, "{ours} {theirs}");
-    let mut run = RoughInLoops::default().at(0.0, q, v).integrate(GaussLobatto::<2>, 0.01).expect("a start");
+    let mut run = RoughInLoops::default().at(0.0, q, v).integrate(Gauss::<2>, 0.01).expect("a start");
     assert!(run.until(0.2).expect("steps").q[0] > 0.7);
 }
 

@@ -2,8 +2,8 @@
 //!
 //! The product tends to zero, or the step returns a typed error.
 
-use vi_core::collocation::Collocation;
 use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, Variation, gradient};
+use vi_core::motion::Motion;
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
@@ -120,7 +120,7 @@ fn after<M: Method<S, 1>, S: Lagrangian<1> + Copy>(run: Result<Run<M, S, 1>, Ste
 /// Before the first contact a ball from (1, 0) is on the parabola, by every integrator.
 fn falls_freely<S>(system: S)
 where
-    S: Batch<1> + Collocation<1> + Convertible<1> + EnergyStepping<1>,
+    S: Batch<1> + Motion<1> + Convertible<1> + EnergyStepping<1>,
 {
     let start = State::at(&system, 0.0, [1.0], [0.0]);
     let is_on_parabola = |state: &State<1>, name: &str| {
@@ -156,7 +156,7 @@ fn a_ball_falls_freely_above_its_floor() {
 /// The largest energy errors of fixed steps, compositions, Gauss steps and energy-preserving steps over some bounces.
 fn bounces<S, const N: usize>(system: S, q: [f64; N], h: f64, is_there: fn(&SVector<f64, N>) -> bool) -> [f64; 4]
 where
-    S: Batch<N> + Collocation<N> + Convertible<N> + EnergyStepping<N>,
+    S: Batch<N> + Motion<N> + Convertible<N> + EnergyStepping<N>,
 {
     let start = State::at(&system, 0.0, q, [0.0; N]);
     let energy = EnergyPreserving::from_midpoint(system, 0.0, q, [0.0; N], h).expect("a valid start");
@@ -195,7 +195,7 @@ fn a_ball_bounces() {
 #[test]
 fn the_curvature_of_the_floor_is_that_of_the_formula() {
     let system = Floor::default();
-    let at = |z: f64| Collocation::point_derivatives(&system, 0.0, &[z].into(), &[0.0].into()).force_dq[(0, 0)];
+    let at = |z: f64| Motion::point_derivatives(&system, 0.0, &[z].into(), &[0.0].into()).force_dq[(0, 0)];
     assert_eq!(SVector::<f64, 3>::from([at(0.3 + 1e-15), at(0.4), at(1e9)]), SVector::<f64, 3>::zeros());
     // −k n (n − 1) d^(n − 2)
     let wanted = -100.0 * 0.75 / 0.2_f64.sqrt();
@@ -340,7 +340,7 @@ impl<M: Method<S, 1>, S> Objective<M, S, 1> for Height {
 fn varied<M, S>(run: Run<M, S, 1>, variations: Vec<Variation<1>>) -> Vec<[f64; 2]>
 where
     M: Differentiable<S, 1>,
-    S: Lagrangian<1> + Copy,
+    S: Convertible<1>,
 {
     let mut tangent = Tangent::new(run, variations);
     for _ in 0..60 {

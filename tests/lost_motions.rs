@@ -3,11 +3,10 @@
 //! The starts are those of runs that once ended with a small estimate. True motions are those of `Gauss::<8>` with much
 //! shorter steps, or exact.
 
-use vi_core::collocation::Collocation;
 use vi_core::stepping::Convertible;
 use vi_core::{
-    Composition, EnergyPreserving, FixedStep, Gauss, GaussLobatto, Method, Run, SVector, Start, Starts, State,
-    StepError, Tolerance, lagrangian,
+    Composition, EnergyPreserving, FixedStep, Gauss, Method, Run, SVector, Start, Starts, State, StepError, Tolerance,
+    lagrangian,
 };
 use vi_systems::{DampedOscillator, DoubleWell, HarmonicOscillator, Kepler, Pendulum, SphericalPendulum, ThreeBody};
 
@@ -20,7 +19,7 @@ fn plunging(r: f64) -> Start<Kepler, 2> {
 fn watched<M, S, const N: usize>(start: Start<S, N>, run: Result<Run<M, S, N>, StepError>, until: f64) -> [f64; 2]
 where
     M: Method<S, N>,
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
     let Ok(run) = run else { return [f64::INFINITY; 2] };
     let mut run = run.monitored();
@@ -228,7 +227,7 @@ fn steps_with_constraints_continue_short_ones() {
         let h = 0.02 * f64::from(1_u32 << (k % 6));
         let (q, v) = ([r * phi.cos(), r * phi.sin()], [fall - 1.0, 0.05 * f64::from(k % 5)]);
         let start = Plane::default().at(0.0, [q[0], q[1], 0.0], [v[0], v[1], 0.0]);
-        let constrained = start.integrate(GaussLobatto::<4>, h).and_then(|mut run| run.step());
+        let constrained = start.integrate(Gauss::<4>, h).and_then(|mut run| run.step());
         match (constrained, step::<4>(h, q, v)) {
             (Ok(one), Ok(other)) => {
                 taken += 1;
@@ -313,14 +312,14 @@ fn long_steps_with_constraints_are_not_refused_for_rounding() {
     fn check<const S: usize>() {
         let (sin, cos) = 1.0_f64.sin_cos();
         let start = Across::default().at(0.0, [0.6 * sin, 0.8 * sin, -cos, 0.0], [0.0; 4]);
-        let mut run = start.integrate(GaussLobatto::<S>, 0.15).expect("a start");
+        let mut run = start.integrate(Gauss::<S>, 0.15).expect("a start");
         for k in 0..300 {
             run.step().unwrap_or_else(|error| panic!("{S} stages, step {k}: {error}"));
         }
         // h ω = 30 … 300 of a spring that the steps do not resolve.
         for [k, c] in [[2.25e6, 1.0], [2.25e6, 100.0], [2.5e7, 100.0]] {
             let start = SpringRod { k, c }.at(0.0, [sin, -cos, sin + 0.001], [0.0; 3]);
-            let mut run = start.integrate(GaussLobatto::<S>, 0.02).expect("a start");
+            let mut run = start.integrate(Gauss::<S>, 0.02).expect("a start");
             for step in 0..200 {
                 run.step().unwrap_or_else(|error| panic!("{S} stages, k = {k}, step {step}: {error}"));
             }

@@ -4,7 +4,7 @@
 //! energy-preserving integrator. The order is the slope of log(error) over log(h), fitted over a ladder of steps.
 //! Points near the rounding plateau are dropped; at least three must remain.
 
-use crate::support::exact::Motion;
+use crate::support::exact::Trajectory;
 use crate::support::reference::{file, number};
 use crate::support::scenes::{Scene, each_system};
 use crate::support::slope;
@@ -22,7 +22,7 @@ const FIXED_PLATEAU: f64 = 1e-11;
 const ENERGY_PRESERVING_PLATEAU: f64 = 1e-8;
 
 /// The largest difference in coordinates and momenta.
-fn difference<const N: usize>(system: &impl Lagrangian<N>, state: &State<N>, exact: &Motion<N>) -> f64 {
+fn difference<const N: usize>(system: &impl Lagrangian<N>, state: &State<N>, exact: &Trajectory<N>) -> f64 {
     let p = system.momentum(exact.t, &exact.q, &exact.v);
     (state.q - exact.q).amax().max((state.p - p).amax())
 }
@@ -32,7 +32,7 @@ const FROM_TWO: f64 = 0.02;
 
 fn fixed_step<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
     let Scene { system, q, v, h, .. } = scene;
-    let start = Motion::new(0.2, q, v);
+    let start = Trajectory::new(0.2, q, v);
     let span = h * f64::from(STEPS);
     let exact = start.at(&system, start.t + span);
     let points: Vec<(f64, f64)> = LADDER
@@ -53,9 +53,9 @@ fn fixed_step<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
 /// The energy-preserving integrator from one of its starts, given the start of the motion and h0.
 fn energy_preserving<const N: usize, S: EnergyStepping<N> + Copy>(
     scene: &Scene<S, N>,
-    begin: impl Fn(&S, &Motion<N>, f64) -> Result<Run<EnergyPreserving, S, N>, StepError>,
+    begin: impl Fn(&S, &Trajectory<N>, f64) -> Result<Run<EnergyPreserving, S, N>, StepError>,
 ) {
-    let start = Motion::new(0.2, scene.q, scene.v);
+    let start = Trajectory::new(0.2, scene.q, scene.v);
     let span = scene.h * f64::from(STEPS);
     assert!(span <= scene.span, "{}: a step has to exist all the time", S::NAME);
     let end = start.at(&scene.system, start.t + span);
@@ -106,7 +106,7 @@ fn accurate<const N: usize>(name: &str, system: impl Lagrangian<N>) {
         |list: &serde_json::Value| -> Vec<f64> { list.as_array().expect("a list").iter().map(number).collect() };
     let vector = |list: &[f64]| vi_core::SVector::<f64, N>::from_column_slice(list);
     let (q, v) = (numbers(&file[name]["q0"]), numbers(&file[name]["v0"]));
-    let mut motion = Motion::new(0.0, vector(&q), vector(&v));
+    let mut motion = Trajectory::new(0.0, vector(&q), vector(&v));
     let mut worst = 0.0_f64;
     for entry in file[name]["states_qv"].as_array().expect("a list of states") {
         motion = motion.at(&system, number(&entry["t"]));

@@ -4,7 +4,7 @@ use crate::support::assert_order_of;
 use crate::support::reference::{file, number, steps, vector};
 use serde_json::Value;
 use std::f64::consts::PI;
-use vi_core::collocation::{Collocation, TimeScale};
+use vi_core::motion::{Motion, TimeScale};
 use vi_core::real::Dual;
 use vi_core::run::DenseOutput;
 use vi_core::stepping::{Convertible, FixedStepping};

@@ -2,8 +2,8 @@
 //! what they share with other methods.
 
 use crate::support::slope;
-use vi_core::collocation::Separable;
 use vi_core::derivatives::{Covector, Objective, Tangent, Variation, gradient};
+use vi_core::motion::Separable;
 use vi_core::stepping::Convertible;
 use vi_core::{Gauss, Presumed, Run, SVector, Splitting, Starts, State, StepError, Tolerance, lagrangian};
 use vi_systems::{DampedOscillator, DoublePendulum, FpuChain, OuterSolarSystem, Pendulum};
@@ -289,7 +289,7 @@ fn runs_restart_change_and_end_as_others() {
 }
 
 /// The refusal of a system whose motion does not split.
-fn refused<S: Convertible<N, In<f64> = S> + vi_core::collocation::Collocation<N>, const N: usize>(system: S) {
+fn refused<S: Convertible<N, In<f64> = S, Kind = vi_core::kind::Free>, const N: usize>(system: S) {
     let begun = Presumed(system).at(0.0, [0.5; N], [0.1; N]).integrate(Splitting::VERLET, 0.01);
     let failure = begun.map(drop).expect_err("no splitting");
     assert_eq!(failure, StepError::NotSeparable { system: S::NAME });

@@ -1,7 +1,7 @@
 //! The trapezoidal rule: Störmer–Verlet for separable L, order 2 otherwise, slots against dual numbers; and the
 //! written-out midpoint rule, which equals the named one bit for bit.
 
-use crate::support::exact::Motion;
+use crate::support::exact::Trajectory;
 use vi_core::real::Dual;
 use vi_core::stepping::FixedStepping;
 use vi_core::{DiscreteLagrangian, FixedStep, Interval, Run, SVector, Starts, State, lagrangian};
@@ -91,7 +91,7 @@ fn it_is_verlet_for_a_separable_lagrangian() {
 
 /// Checks that errors against an accurate motion fall by 4 per halving of the step.
 fn order<const N: usize, S: FixedStepping<N> + Copy>(system: S, q: [f64; N], v: [f64; N]) {
-    let exact = Motion::new(0.0, q, v).at(&system, 2.0);
+    let exact = Trajectory::new(0.0, q, v).at(&system, 2.0);
     let momentum = system.momentum(2.0, &exact.q, &exact.v);
     let errors = [50, 100, 200, 400].map(|steps: u32| {
         let mut run = run(system, q, v, 2.0 / f64::from(steps));

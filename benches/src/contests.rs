@@ -14,9 +14,9 @@ use crate::rods::{AngleChain, RodChain, straight};
 use crate::run::{Adjoint, Other};
 use core::array::from_fn;
 use std::hint::black_box;
-use vi_core::derivatives::{Differentiable, Tangent, Variation, Varying};
-use vi_core::stepping::{Batch, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, Gauss, GaussLobatto, Run, SVector, Starts, State};
+use vi_core::derivatives::{Differentiable, Tangent, Variation};
+use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, FixedStep, Gauss, Run, SVector, Starts, State};
 use vi_ensemble::Ensemble;
 use vi_systems::{DoublePendulum, DoubleWell, FpuChain, HeavyTop, Kepler, NPendulum};
 
@@ -152,7 +152,7 @@ fn double_pendulum() -> Contest {
 fn derivatives<M, S, const N: usize>(name: &'static str, run: &Run<M, S, N>) -> Contest
 where
     M: Differentiable<S, N> + 'static,
-    S: Varying<N, M::Kind> + 'static,
+    S: Convertible<N> + 'static,
 {
     let along = |count: usize| Tangent::new(run.clone(), Variation::of_state().into_iter().take(count).collect());
     Contest::new(name, run.clone())
@@ -233,7 +233,7 @@ where
 /// A chain of ten rods with constraints, and in angles. Angles have other steps: only their time is compared.
 fn rods() -> Contest {
     let (system, start, h) = (black_box(RodChain::default()), straight::<20>(), black_box(0.01));
-    let run = system.at(0.0, start[0], start[1]).integrate(GaussLobatto::<1>, h).expect("a regular start");
+    let run = system.at(0.0, start[0], start[1]).integrate(Gauss::<1>, h).expect("a regular start");
     let angle = 0.75_f64.atan();
     let angles = fixed(&black_box(AngleChain::default()), ([angle; 10], [0.1; 10]), h);
     let (parameters, places) = ([system.m, system.l, system.g], [start[0].as_slice(), &start[1]]);
@@ -249,7 +249,7 @@ fn rods() -> Contest {
 fn heavy_top() -> Contest {
     let (system, h) = (black_box(HeavyTop::default()), black_box(0.01));
     let (q, v) = system.start();
-    let run = system.at(0.0, q, v).integrate(GaussLobatto::<1>, h).expect("a regular start");
+    let run = system.at(0.0, q, v).integrate(Gauss::<1>, h).expect("a regular start");
     let (inertia, weight) = ([system.J1, system.J1, system.J3], system.m * system.g * system.l);
     let by_hand = hand::heavy_top::Fixed::<Compensated>::new(inertia, weight, [q, v], h);
     let plain = hand::heavy_top::Fixed::<Plain>::new(inertia, weight, [q, v], h);

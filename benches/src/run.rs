@@ -4,8 +4,8 @@
 //! inside, so that a step is inlined into it as in a user's program.
 
 use std::cell::Cell;
-use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, Varying, gradient};
-use vi_core::stepping::Batch;
+use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, gradient};
+use vi_core::stepping::{Batch, Convertible};
 use vi_core::{Lagrangian, Method, State, StepError};
 use vi_ensemble::Ensemble;
 
@@ -74,7 +74,7 @@ impl<S: Batch<N>, const N: usize> Run for Ensemble<S, N> {
     }
 }
 
-impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Stepper for Tangent<M, S, N> {
+impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Stepper for Tangent<M, S, N> {
     fn step(&mut self) {
         taken(Tangent::step(self));
     }
@@ -110,7 +110,7 @@ pub struct Adjoint<M: Method<S, N>, S, const N: usize> {
     pub keeps_all: bool,
 }
 
-impl<M: Differentiable<S, N>, S: Varying<N, M::Kind>, const N: usize> Run for Adjoint<M, S, N> {
+impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Run for Adjoint<M, S, N> {
     fn run(&self, steps: usize) -> Vec<f64> {
         let end = Cell::new(None);
         let kept = if self.keeps_all { steps } else { 0 };

@@ -184,7 +184,7 @@ const _: () = {
             ::vi_core::lagrangian::Flow<2, T>,
             ::vi_core::StepError,
         > {
-            let at_rest = ::vi_core::collocation::Collocation::point(
+            let at_rest = ::vi_core::motion::Motion::point(
                 self,
                 t,
                 q,
@@ -195,14 +195,8 @@ const _: () = {
                 &at_rest.mass,
                 &(p - at_rest.momentum),
             )?;
-            let force = ::vi_core::collocation::Collocation::point(self, t, q, &velocity)
-                .force;
-            let power = ::vi_core::collocation::Collocation::power(
-                self,
-                t,
-                q,
-                &velocity,
-            );
+            let force = ::vi_core::motion::Motion::point(self, t, q, &velocity).force;
+            let power = ::vi_core::motion::Motion::power(self, t, q, &velocity);
             ::core::result::Result::Ok(::vi_core::lagrangian::Flow {
                 v: velocity,
                 force,
@@ -244,8 +238,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T>
-    for Kepler<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::motion::Motion<2, T> for Kepler<T> {
+        type Kind = ::vi_core::kind::Free;
         type Mass = ::vi_core::linear::Banded<2, 1, T>;
         type PointMatrix = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_MASS: bool = true;
@@ -265,14 +259,14 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 2>,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::collocation::Point<2, T, Self::Mass> {
+        ) -> ::vi_core::motion::Point<2, T, Self::Mass> {
             let [x_dot, y_dot]: [T; 2] = (*v).into();
             let [x, y]: [T; 2] = (*q).into();
             let real = T::real;
             let s1 = x * x + y * y;
             let s2 = s1.recip();
             let s3 = s2 * s2 * s1.sqrt();
-            ::vi_core::collocation::Point {
+            ::vi_core::motion::Point {
                 momentum: ::vi_core::SVector::from([x_dot, y_dot]),
                 force: ::vi_core::SVector::from([
                     -(self.mu * x * s3),
@@ -293,7 +287,7 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 2>,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
+        ) -> ::vi_core::motion::PointDerivatives<Self::PointMatrix> {
             let [x, y]: [T; 2] = (*q).into();
             let real = T::real;
             let s1 = x * x;
@@ -305,7 +299,7 @@ const _: () = {
             let s7 = s5 * s6;
             let s8 = s5 * s4 * s6;
             let s9 = self.mu * x * y * s8 * real(3.0);
-            ::vi_core::collocation::PointDerivatives {
+            ::vi_core::motion::PointDerivatives {
                 momentum_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
                     &[real(0.0), real(0.0), real(0.0), real(0.0)],
                 ),
@@ -351,7 +345,7 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 2>,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::collocation::ScaledPoint<2, T, Self::Mass> {
+        ) -> ::vi_core::motion::ScaledPoint<2, T, Self::Mass> {
             let [x_dot, y_dot]: [T; 2] = (*v).into();
             let [x, y]: [T; 2] = (*q).into();
             let real = T::real;
@@ -361,8 +355,8 @@ const _: () = {
             let s4 = s3 * s2;
             let s5 = s2.sqrt();
             let s6 = s3 * s3 * s2;
-            ::vi_core::collocation::ScaledPoint {
-                point: ::vi_core::collocation::Point {
+            ::vi_core::motion::ScaledPoint {
+                point: ::vi_core::motion::Point {
                     momentum: ::vi_core::SVector::from([x_dot, y_dot]),
                     force: ::vi_core::SVector::from([
                         -(self.mu * x * s6),
@@ -385,10 +379,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<2, T>
-    for Kepler<T> {}
-    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Separable<2, T>
-    for Kepler<T> {}
+    impl<T: ::vi_core::real::Real> ::vi_core::motion::TimeScale<2, T> for Kepler<T> {}
+    impl<T: ::vi_core::real::Real> ::vi_core::motion::Separable<2, T> for Kepler<T> {}
     impl ::vi_core::stepping::Convertible<2> for Kepler<f64> {
         type In<T: ::vi_core::real::Real> = Kepler<T>;
         #[inline(always)]

@@ -4,7 +4,8 @@
 //! charts, a few in the mechanism.
 
 use crate::svg::{Chart, Line, Picture, Style};
-use vi_core::{Constrained, ConvertibleConstrained, GaussLobatto, Starts, State, StepError};
+use vi_core::stepping::Convertible;
+use vi_core::{Gauss, Starts, State, StepError};
 use vi_systems::{
     AndrewsSqueezer, ChaplyginSleigh, DoubleRodPendulum, FourBar, HeavyTop, RodChain, RodPendulum, RollingBall,
     RollingDisk, SliderCrank,
@@ -22,14 +23,14 @@ struct Row<const N: usize> {
 /// The nodes of a run of steps of order 6.
 fn motion<S, const N: usize>(system: S, start: ([f64; N], [f64; N]), h: f64, end: f64) -> Result<Vec<Row<N>>, StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let row = |state: State<N>| -> Result<Row<N>, StepError> {
         let reaction = state.reaction(&system)?.as_ref().to_vec();
         let v = state.velocity(&system)?.into();
         Ok(Row { t: state.t, q: state.q.into(), v, reaction, energy: state.energy(&system)? })
     };
-    let mut run = system.at(0.0, start.0, start.1).integrate(GaussLobatto::<3>, h)?;
+    let mut run = system.at(0.0, start.0, start.1).integrate(Gauss::<3>, h)?;
     let mut rows = vec![row(run.state())?];
     while run.t() < end - h / 2.0 {
         rows.push(row(run.step()?)?);

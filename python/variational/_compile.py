@@ -132,7 +132,7 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
 
     `methods` lists the integrators to build: "fixed; compositions; gauss 4, 8; energy; energy 2". The default is
     "fixed; gauss 8", without "fixed" for a system without the clause `discretize`, and with "transformed 8" for one
-    with a `time_scale`. A system with constraints has "gauss-lobatto 3", "energy 2" and other stages of both.
+    with a `time_scale`, and "gauss 3" for one with constraints, which has "gauss" and "energy" with stages.
 
     It needs cargo, https://rustup.rs. The first build takes about a minute and later ones seconds; a system that was
     compiled before is loaded in milliseconds.
@@ -248,7 +248,6 @@ _MOST_STAGES = {
     "splitting": 0,
     "energy": 3,
     "gauss": 16,
-    "gauss-lobatto": 16,
     "transformed": 16,
 }
 
@@ -262,12 +261,14 @@ def _methods(methods: str | None, code: str) -> str:
     has_scale = re.search(r"\btime_scale\b", code) is not None
     has_constraints = _CONSTRAINT.search(code) is not None
     if methods is None and has_constraints:
-        return "gauss-lobatto 3"
+        return "gauss 3"
     if methods is None:
         return "; ".join(["fixed"] * has_rule + ["gauss 8"] + ["transformed 8"] * has_scale)
     found = []
     for part in filter(None, (part.strip() for part in methods.split(";"))):
         word, _, rest = part.partition(" ")
+        # The name of "gauss" with constraints in earlier versions, which pickles hold.
+        word = "gauss" if word == "gauss-lobatto" else word
         stages = [stage.strip() for stage in rest.split(",")] if rest.strip() else []
         most = _MOST_STAGES.get(word)
         if most is None:
@@ -278,21 +279,17 @@ def _methods(methods: str | None, code: str) -> str:
                 several = " (compositions has suzuki-4, kahan-li-6 and kahan-li-8)"
             raise CompileError(
                 f"there is no method {word!r}{several}: "
-                "write fixed, compositions, splitting, gauss 8, transformed 8, energy, energy 2, gauss-lobatto 3"
+                "write fixed, compositions, splitting, gauss 8, transformed 8, energy, energy 2"
             )
         if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):
             limits = f"stages from 1 to {most}" if most else "no stages"
             raise CompileError(f"{word} has {limits}, not {rest!r}")
         if word in ("gauss", "transformed") and not stages:
             raise CompileError(f'{word} needs its stages, such as "{word} 8"')
-        if word == "gauss-lobatto" and not stages:
-            raise CompileError('gauss-lobatto needs its stages, such as "gauss-lobatto 3"')
-        if has_constraints and word not in ("gauss-lobatto", "energy"):
-            raise CompileError(f'the method {word} does not keep constraints: write "gauss-lobatto 3" or "energy 2"')
+        if has_constraints and word not in ("gauss", "energy"):
+            raise CompileError(f'the method {word} does not keep constraints: write "gauss 3" or "energy 2"')
         if has_constraints and not stages:
             raise CompileError('energy needs its stages with constraints: write "energy 2"')
-        if word == "gauss-lobatto" and not has_constraints:
-            raise CompileError('the method gauss-lobatto is for definitions with a constraint: write "gauss 8"')
         if not stages and word != "splitting" and not has_rule:
             raise CompileError(f"the method {word} needs the clause `discretize midpoint;` in the definition")
         if word == "transformed" and not has_scale:
@@ -303,11 +300,8 @@ def _methods(methods: str | None, code: str) -> str:
     return "; ".join(found)
 
 
-def _words(methods: str, has_constraints: bool) -> str:
+def _words(methods: str) -> str:
     """The integrators in the words of Rust's macro: its `fixed` has the compositions."""
-    if has_constraints:
-        # A name with a hyphen is no word of Rust.
-        return methods.replace("gauss-lobatto", "gauss_lobatto").replace("energy", "energy_lobatto")
     words = methods.split("; ")
     if "compositions" in words:
         words = ["fixed", *(word for word in words if word not in ("fixed", "compositions"))]
@@ -384,7 +378,7 @@ def _build(definition: str, name: str, built: Path, methods: str, tables: str, v
             if not built.exists():
                 workspace = _workspace(folder)
                 has_constraints = _CONSTRAINT.search(_without_comments(definition)) is not None
-                words = _words(methods, has_constraints)
+                words = _words(methods)
                 library = built.name.removesuffix(_SUFFIX)
                 text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=words)
                 (workspace / "compiled" / "src" / "lib.rs").write_text(text, encoding="utf-8")

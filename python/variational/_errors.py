@@ -138,7 +138,7 @@ ADVICE: dict[str, str] = {
     "NotSeparable": 'use method="gauss"',
     "NoStepDensity": 'make the table cubic, or use method="fixed" or "gauss"',
     "NoRule": 'add `discretize midpoint;` to its definition, or use method="gauss"',
-    "HasConstraints": 'use method="gauss-lobatto"',
+    "HasConstraints": 'use method="gauss"',
     "Ambiguous": "write a Lagrangian with one branch",
     "InconsistentStart": "system.project(q, v) moves a state onto the constraints and returns by how much",
     "DroppedConstraint": "start elsewhere, or correct its lengths",
@@ -194,7 +194,7 @@ def _message(
     if variant not in ADVICE:
         return reason
     built = [(method, stages) for method, stages, is_transformed in integrators if not is_transformed]
-    others = dict.fromkeys(method for method, _ in built if method in ("gauss", "gauss-lobatto", "fixed"))
+    others = dict.fromkeys(method for method, _ in built if method in ("gauss", "fixed"))
     least = min((stages for method, stages in built if method == "energy" and stages), default=None)
     numbers["others"] = " or ".join(f'method="{method}"' for method in others) or "a method of compile"
     numbers["shifted"] = f"; with stages={least} and shift_from=duration, steps exist" if least else ""

@@ -50,8 +50,9 @@ def checked(
     """
     if (h is None) + (tolerance is None) + (dtau is None) != 2:
         raise TypeError("give one of h, tolerance and dtau: h=0.05 is a step of this length")
-    if method is None:
-        method = "gauss-lobatto" if cls.constraints else "gauss"
+    # "gauss-lobatto" is the name of "gauss" with constraints in earlier versions.
+    if method is None or method == "gauss-lobatto":
+        method = "gauss"
     if method not in cls._methods:
         known = ", ".join(f'"{name}"' for name in cls._methods)
         close = meant(method, cls._methods) if isinstance(method, str) else ""
@@ -64,7 +65,7 @@ def checked(
         raise ValueError('shift, shift_from and fallback are options of method="energy"')
     if shift is not None and shift_from is not None:
         raise TypeError("give one of shift and shift_from, not both")
-    if stages is not None and method not in ("gauss", "gauss-lobatto", "energy"):
+    if stages is not None and method not in ("gauss", "energy"):
         raise ValueError(f"method={method!r} has no stages: leave out stages=")
     request = Request(
         method=method,

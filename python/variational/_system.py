@@ -328,7 +328,7 @@ class System(metaclass=SystemType):
         method : str
             "gauss", the default, "fixed", "suzuki-4", "kahan-li-6", "kahan-li-8" or "energy"; "splitting-4" or
             "splitting-6" if the mass matrix is constant and no force depends on velocities. A system with constraints
-            has "gauss-lobatto" and "energy".
+            has "gauss" and "energy".
         stages : int
             Stages of Gauss steps, whose order is twice that number, also with constraints; of energy-preserving steps.
         shift, shift_from : float

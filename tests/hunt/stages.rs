@@ -15,8 +15,8 @@ use crate::support::Sequence;
 use crate::support::ending::assert_typed;
 use crate::support::scenes::{self, Scene};
 use crate::support::twice::Twice;
-use vi_core::collocation::{Collocation, Point, ScaledPoint, TimeScale};
 use vi_core::linear::Matrix;
+use vi_core::motion::{Motion, Point, ScaledPoint, TimeScale};
 use vi_core::node::Node;
 use vi_core::real::{Number, Real, Rounded};
 use vi_core::stepping::{Convertible, FixedStepping};
@@ -111,7 +111,7 @@ impl<const N: usize, T: Real> Start<N, T> {
 
 /// The stage at (t, q, v), the residual of its momentum with respect to `p`, and M⁻¹ of that; rates are those of
 /// transformed or plain time.
-fn stage<Y: Collocation<N, T>, T: Real, const N: usize>(
+fn stage<Y: Motion<N, T>, T: Real, const N: usize>(
     system: &Y,
     is_scaled: bool,
     (t, q, v): (T, SVector<T, N>, SVector<T, N>),
@@ -128,7 +128,7 @@ fn stage<Y: Collocation<N, T>, T: Real, const N: usize>(
 }
 
 /// The stages of a step of length h, in time or transformed time; `None` if fixed-point iteration does not find them.
-fn solved<Y: Collocation<N, Twice>, const N: usize, const S: usize>(
+fn solved<Y: Motion<N, Twice>, const N: usize, const S: usize>(
     system: &Y,
     tableau: &Tableau<S>,
     start: &Start<N, Twice>,
@@ -329,7 +329,7 @@ fn hunted<M, Y, const N: usize, const S: usize>(
     );
 }
 
-fn by_gauss_steps<Y: Convertible<N> + FixedStepping<N> + Collocation<N>, const N: usize, const S: usize>(
+fn by_gauss_steps<Y: Convertible<N> + FixedStepping<N> + Motion<N>, const N: usize, const S: usize>(
     scene: &Scene<Y, N>,
 ) {
     let judge = Judge { system: &scene.system, tableau: Tableau::<S>::new(), is_scaled: false, shift: None };
@@ -339,7 +339,7 @@ fn by_gauss_steps<Y: Convertible<N> + FixedStepping<N> + Collocation<N>, const N
 
 fn by_energy_preserving_steps<Y, const N: usize, const S: usize>(scene: &Scene<Y, N>, constant: f64)
 where
-    Y: Convertible<N> + FixedStepping<N> + Collocation<N>,
+    Y: Convertible<N> + FixedStepping<N> + Motion<N>,
 {
     // Large enough for steps near the scene, and small enough for the energy to matter.
     let state = State::at(&scene.system, 0.0, scene.q, scene.v);
@@ -351,7 +351,7 @@ where
     hunted(scene, "energy-preserving Gauss steps", &judge, begin, |run| (run.h(), run.residual()));
 }
 
-fn hunt<Y: Convertible<N> + FixedStepping<N> + Collocation<N>, const N: usize>(scene: Scene<Y, N>) {
+fn hunt<Y: Convertible<N> + FixedStepping<N> + Motion<N>, const N: usize>(scene: Scene<Y, N>) {
     by_gauss_steps::<_, N, 2>(&scene);
     by_gauss_steps::<_, N, 5>(&scene);
     by_energy_preserving_steps::<_, N, 1>(&scene, 1.0 / 8.0);
@@ -362,9 +362,9 @@ scenes::each_system!(hunt);
 
 /// Systems whose motion changes suddenly.
 mod sudden {
-    use super::{Collocation, Convertible, FixedStepping, Scene, by_gauss_steps};
+    use super::{Convertible, FixedStepping, Motion, Scene, by_gauss_steps};
 
-    fn hunt<Y: Convertible<N> + FixedStepping<N> + Collocation<N>, const N: usize>(scene: Scene<Y, N>) {
+    fn hunt<Y: Convertible<N> + FixedStepping<N> + Motion<N>, const N: usize>(scene: Scene<Y, N>) {
         by_gauss_steps::<_, N, 3>(&scene);
     }
 

@@ -4,7 +4,7 @@
 //! The double well and the oscillator use the paper's start, the others the midpoint start.
 
 use crate::support::ending::{self, Ending};
-use crate::support::exact::Motion;
+use crate::support::exact::Trajectory;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{EnergyPreserving, FixedStep, Starts, State, StepError, lagrangian};
 use vi_systems::{
@@ -21,7 +21,7 @@ fn from_midpoint<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v
 }
 
 fn from_points<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h0: f64) -> Ending {
-    let second = Motion::new(0.0, q, v).at(&system, h0);
+    let second = Trajectory::new(0.0, q, v).at(&system, h0);
     let run = EnergyPreserving::from_points(system, (0.0, q), (second.t, second.q)).expect("a valid start");
     ending::energy_preserving(run, ENDLESS)
 }

@@ -1,7 +1,7 @@
 //! Preserved quantities: the energy of the energy-preserving integrator, momenta of cyclic coordinates, angular
 //! momentum; and the errors of other quantities against the table of `docs/mathematics.md`. Runs of a million steps.
 
-use crate::support::exact::Motion;
+use crate::support::exact::Trajectory;
 use crate::support::reference::{file, number, vector};
 use crate::support::scenes::{self, Scene};
 use core::ops::RangeInclusive;
@@ -34,7 +34,7 @@ fn papers_start<const N: usize, S: EnergyStepping<N> + Copy>(
     v0: [f64; N],
     h0: f64,
 ) -> Run<EnergyPreserving, S, N> {
-    let second = Motion::new(0.0, q0, v0).at(&system, h0);
+    let second = Trajectory::new(0.0, q0, v0).at(&system, h0);
     EnergyPreserving::from_points(system, (0.0, q0), (h0, second.q)).expect("a valid start")
 }
 

@@ -3,12 +3,13 @@
 
 use core::cell::Cell;
 use std::thread;
-use vi_core::check::Motion;
+use vi_core::check::Trajectory;
 use vi_core::lagrangian::Flow;
+use vi_core::motion::Motion as _;
 use vi_core::nalgebra::SMatrix;
 use vi_core::prelude::*;
 use vi_core::stepping::{Convertible, EnergyStepping};
-use vi_core::{Constrained, Lagrangian, SVector, StepError, linear};
+use vi_core::{Lagrangian, SVector, StepError, linear};
 use vi_runs::rival;
 
 macro_rules! links {
@@ -142,7 +143,7 @@ fn compare<S, F, const N: usize>(
     [end, h]: [f64; 2],
     off: f64,
 ) where
-    S: EnergyStepping<N> + Convertible<N> + vi_core::collocation::Collocation<N>,
+    S: EnergyStepping<N> + Convertible<N>,
     F: Fn(&SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, N>,
 {
     let by_hand = ByHand(by_hand);
@@ -151,7 +152,7 @@ fn compare<S, F, const N: usize>(
     let of_acceleration = (ours - theirs).amax() / theirs.amax();
     let mut run = system.at(0.0, q, v).integrate(Gauss::<6>, h).expect("a start");
     let ours = run.until(end).expect("steps");
-    let start = Motion { t: 0.0, q, v };
+    let start = Trajectory { t: 0.0, q, v };
     let theirs = rival::motion(by_hand, &start, end, 1e-13, &Cell::new(0), &mut |_| ()).expect("steps");
     let moved = (theirs.q - q).amax();
     let found = (ours.q - theirs.q).amax() / moved;
@@ -221,7 +222,7 @@ fn forty_closed_links_take_steps_of_order_four() {
     });
     let start = State::assembled(&system, 0.0, guess, SVector::zeros()).expect("a start").state;
     let ends = [0.01, 0.005, 0.0025].map(|h| {
-        let mut run = system.at_state(start).integrate(GaussLobatto::<2>, h).expect("a start");
+        let mut run = system.at_state(start).integrate(Gauss::<2>, h).expect("a start");
         let energy = run.energy().expect("an energy");
         let state = run.until(0.4).expect("steps");
         let held = system.constraints(state.t, &state.q).into_iter().fold(0.0_f64, |worst, of| worst.max(of.abs()));

@@ -6,11 +6,11 @@ use vi_core::{Lagrangian, SVector};
 
 /// A state of a motion: time, coordinates, velocities.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion<const N: usize>(check::Motion<N>);
+pub(crate) struct Trajectory<const N: usize>(check::Trajectory<N>);
 
-impl<const N: usize> Motion<N> {
+impl<const N: usize> Trajectory<N> {
     pub(crate) fn new(t: f64, q: impl Into<SVector<f64, N>>, v: impl Into<SVector<f64, N>>) -> Self {
-        Self(check::Motion { t, q: q.into(), v: v.into() })
+        Self(check::Trajectory { t, q: q.into(), v: v.into() })
     }
 
     /// The same motion at the time `end`, later or earlier.
@@ -19,10 +19,10 @@ impl<const N: usize> Motion<N> {
     }
 }
 
-impl<const N: usize> Deref for Motion<N> {
-    type Target = check::Motion<N>;
+impl<const N: usize> Deref for Trajectory<N> {
+    type Target = check::Trajectory<N>;
 
-    fn deref(&self) -> &check::Motion<N> {
+    fn deref(&self) -> &check::Trajectory<N> {
         &self.0
     }
 }

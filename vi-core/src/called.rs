@@ -12,13 +12,13 @@ use core::ops::{Deref, DerefMut};
 /// steps in plain numbers instead of SIMD vectors. Its states agree with those of the system to rounding.
 ///
 /// Generic code also uses it for a system whose time scale is unknown at compile time: `in_transformed_time` then
-/// checks [`Collocation::SCALES_TIME`](crate::collocation::Collocation::SCALES_TIME) at run time.
+/// checks [`Motion::SCALES_TIME`](crate::motion::Motion::SCALES_TIME) at run time.
 #[derive(Clone, Copy, Debug)]
 pub struct Called<S>(pub S);
 
-/// A system of generic code, presumed [`Separable`](crate::collocation::Separable):
+/// A system of generic code, presumed [`Separable`](crate::motion::Separable):
 /// `Presumed(system).at(t, q, v).integrate(Splitting::BLANES_MOAN_6, h)` checks
-/// [`Collocation::SEPARABLE`](crate::collocation::Collocation::SEPARABLE) when a run begins. Its functions are inlined.
+/// [`Motion::SEPARABLE`](crate::motion::Motion::SEPARABLE) when a run begins. Its functions are inlined.
 #[derive(Clone, Copy, Debug)]
 pub struct Presumed<S>(pub S);
 

@@ -12,7 +12,7 @@
 //!
 //! | check | condition | systems |
 //! |---|---|---|
-//! | [`derivatives()`] | momentum, energy, acceleration, the equations at a point and their derivatives equal those of dual numbers | all |
+//! | [`derivatives()`] | momentum, energy, the equations at a point and their derivatives equal those of dual numbers; without constraints the acceleration too | all |
 //! | [`slots()`] | D1…D4 are the derivatives of L_d; `L_d/h → L`, `(f_d⁻ + f_d⁺)/h → f`, `(g_d⁻ + g_d⁺)/h → −f·v` | with a rule |
 //! | [`steps()`] | the equations and increments of a step, and p1, E1 of actual steps, follow from the slots; their derivatives equal those of dual numbers | with a rule |
 //! | [`energy_equations()`] | the energy row of a step follows from the slots; its Jacobian and the step density equal those of dual numbers | with energy-preserving steps |
@@ -24,26 +24,22 @@
 //! | [`step_law()`] | `h D^(1/3)` is constant to O(h²) | midpoint rule, without force |
 //! | [`gauss_order()`] | the error of Gauss steps decreases with h⁴ | all |
 //! | [`gauss_momenta()`] | momenta of cyclic coordinates are constant bit for bit over Gauss steps | with a cyclic coordinate |
-//! | [`gauss_symplecticity()`] | the derivatives at a point are those of a Lagrangian | without force |
-//! | [`constrained_derivatives()`] | momentum, energy, the equations at a point and their derivatives equal those of dual numbers | with constraints |
-//! | [`constraints()`] | gradients, rates and reactions equal those of dual numbers; the constraints hold at the nodes of `GaussLobatto` | with constraints |
+//! | [`gauss_symplecticity()`] | the derivatives at a point are those of a Lagrangian, and gradients of constraints those of functions | without force, constraints on positions only |
+//! | [`constraints()`] | gradients, rates and reactions equal those of dual numbers; the constraints hold at the nodes of `Gauss` | with constraints |
 //! | [`reaction()`] | acceleration and multipliers satisfy the equations of motion and keep the rates of the constraints | with constraints |
-//! | [`lobatto_order()`] | the error of steps with two stages decreases with h⁴ | with constraints |
-//! | [`lobatto_symplecticity()`] | the derivatives at a point and the gradients are those of functions | holonomic constraints, without force |
 //!
 //! The clause `check { … }` of `lagrangian!` writes one test for each applicable check; for a system without a rule,
-//! the checks of Gauss steps; for one with constraints, those of Gauss–Lobatto steps. No check can detect that L is not the intended Lagrangian.
+//! the checks of Gauss steps, and those of its constraints. No check can detect that L is not the intended Lagrangian.
 
 mod bounded;
 mod comparison;
-mod constrained;
+mod constraints;
 mod derivatives;
 mod energy;
 mod energy_equations;
 mod gauss;
 mod ladder;
 mod length;
-mod motion;
 mod order;
 mod report;
 mod sample;
@@ -52,17 +48,18 @@ mod step_law;
 mod steps;
 mod subject;
 mod symmetries;
+mod trajectory;
 
-pub use constrained::{constrained_derivatives, constraints, lobatto_order, lobatto_symplecticity, reaction};
+pub use constraints::{constraints, reaction};
 pub use derivatives::derivatives;
 pub use energy::energy;
 pub use energy_equations::energy_equations;
 pub use gauss::{gauss_momenta, gauss_order, gauss_symplecticity};
-pub use motion::Motion;
 pub use order::order;
 pub use report::{CheckFailure, Report};
 pub use slots::slots;
 pub use step_law::step_law;
 pub use steps::steps;
-pub use subject::{Checked, ConstrainedChecked, EnergyChecked, MotionChecked, Place};
+pub use subject::{Checked, EnergyChecked, MotionChecked, Place};
 pub use symmetries::{momenta, reversibility, symplecticity};
+pub use trajectory::Trajectory;

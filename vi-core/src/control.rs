@@ -1,6 +1,6 @@
 //! What a controller asks of a system: mass matrix, bias, inverse dynamics, linearizations, equilibria.
 //!
-//! Along the motion `M a + b = 0`, with the mass matrix `M = L_vv` and the bias
+//! Along the motion `M a + b = AᵀΛ`, with the mass matrix `M = L_vv`, the reaction AᵀΛ of constraints, and the bias
 //!
 //! ```text
 //! b = L_vt + L_vq v − L_q − f            inputs and parameters as they are set
@@ -11,21 +11,22 @@
 //!
 //! | file | contents |
 //! |---|---|
-//! | `equilibrium` | states of rest, with their matrices and frequencies |
-//! | `constrained` | linearization and equilibria with constraints |
+//! | `equilibrium` | a state of rest, with its matrices and frequencies |
+//! | `free`, `bound` | the search for it without and with constraints |
 //! | `spectrum` | eigenvalues of matrices of a size known at run time |
 
-mod constrained;
+mod bound;
 mod equilibrium;
+mod free;
 mod spectrum;
 
-pub use constrained::{ConstrainedDynamics, ConstrainedEquilibrium};
 pub use equilibrium::Equilibrium;
 
-use crate::collocation::Collocation;
-use crate::derivatives::{Differentiable, TOGETHER, Tangent, Unconstrained, Variation, Varied, Varying};
+use crate::derivatives::{Differentiable, TOGETHER, Tangent, Variation, Varied};
 use crate::error::StepError;
+use crate::kind::Kind;
 use crate::lagrangian::{Lagrangian, Parameters};
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::Dual;
 use crate::run::Run;
@@ -38,21 +39,21 @@ use nalgebra::{Complex, DMatrix, DVector, SMatrix, SVector};
 ///
 /// All functions use the inputs and parameters as they are set. Times, coordinates, velocities, accelerations and
 /// forces are in the units of the system.
-pub trait Dynamics<const N: usize>: Collocation<N> + Convertible<N> {
+pub trait Dynamics<const N: usize>: Convertible<N> {
     /// The mass matrix `M = L_vv` at (t, q, v). Its entries are not finite where L is not.
     fn mass_matrix(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> SMatrix<f64, N, N> {
         use crate::linear::Matrix;
         self.point(t, &q.vector(), &v.vector()).mass.dense()
     }
 
-    /// The bias b at (t, q, v), with `M a + b = 0` along the motion: Coriolis and centrifugal terms, gravity and other
+    /// The bias b at (t, q, v), with `M a + b = AᵀΛ` along the motion: Coriolis and centrifugal terms, gravity and other
     /// potentials, and generalized forces, with inputs as set. Its entries are not finite where L or f is not.
     fn bias(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> SVector<f64, N> {
         self.inverse_dynamics(t, q, v, SVector::zeros())
     }
 
-    /// The generalized force `M a + b` that has to be added for the acceleration a at (t, q, v). It is zero for the
-    /// acceleration of the motion. Its entries are not finite where L or f is not.
+    /// The generalized force `M a + b` that has to be added for the acceleration a at (t, q, v); a part `AᵀΛ` of it may
+    /// come from constraints. It is zero for the acceleration of a motion without constraints. Its entries are not finite where L or f is not.
     fn inverse_dynamics(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>, a: impl Numbers<N>) -> SVector<f64, N> {
         let (q, v, a) = (q.vector(), v.vector(), a.vector());
         let along = |value: f64, slope: f64| Dual { value, slope };
@@ -64,31 +65,41 @@ pub trait Dynamics<const N: usize>: Collocation<N> + Convertible<N> {
     /// The linearization of x = (q, v) at (t, q, v): `x' = value + A δx + B δu`, exact to rounding. A has 2N rows and
     /// columns, B one column for each input.
     ///
+    /// With constraints, the point has to satisfy them. Changes δx that satisfy the derivatives of the constraints keep to
+    /// them. A has the eigenvalue zero twice for each holonomic constraint, and once for each other.
+    ///
     /// # Errors
-    /// [`StepError::Singular`] if the mass matrix is singular, [`StepError::NonFinite`] if L, f or a derivative is not
-    /// finite.
+    /// [`StepError::Singular`] if the mass matrix is singular or the constraints are redundant at q,
+    /// [`StepError::InconsistentStart`] if (t, q, v) does not satisfy a constraint, [`StepError::NonFinite`] if L, f or a
+    /// derivative is not finite.
     fn linearization(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Linearization, StepError> {
-        linearized::<Self, Unconstrained, N>(self, t, q.vector(), v.vector())
+        linearized(self, t, q.vector(), v.vector())
     }
 
-    /// The equilibrium near a guess of the coordinates, at the time t: a state of rest without acceleration,
-    /// `L_q + f = L_vt` at v = 0. See [`Equilibrium`].
+    /// The equilibrium near a guess of the coordinates, at the time t: a state of rest without acceleration. See
+    /// [`Equilibrium`].
     ///
-    /// A coordinate on which nothing depends at the guess, as the place of a cart, keeps the value of the guess.
+    /// Without constraints, a coordinate on which nothing depends at the guess, as the place of a cart, keeps the value of
+    /// the guess. With constraints, the guess may be off them: [`State::assembled`] moves it first. With constraints on
+    /// velocities the equilibria form families: the result is reached from the guess along directions that these
+    /// constraints allow. So they do with a symmetry: the result then has [`Equilibrium::free_motions`].
     ///
     /// # Errors
-    /// [`StepError::NoEquilibrium`] if there is none near the guess, [`StepError::FreeMotion`] if the equilibria form a
-    /// family along several coordinates, as those of two masses with a spring between them, or if the forces of a
-    /// coordinate underflow at the guess, [`StepError::NonFinite`] if a derivative of L or f is not finite.
+    /// [`StepError::NoEquilibrium`] if there is none near the guess; [`StepError::NonFinite`] if a derivative of L or f is
+    /// not finite. Without constraints [`StepError::FreeMotion`] if the equilibria form a family along several
+    /// coordinates, as those of two masses with a spring between them, or if the forces of a coordinate underflow at the
+    /// guess. With constraints those of [`State::assembled`]; [`StepError::InconsistentStart`] if a constraint moves;
+    /// [`StepError::Singular`] if the forces do not change along any direction, or the constraints are redundant.
     fn equilibrium(&self, t: f64, guess: impl Numbers<N>) -> Result<Equilibrium<N>, StepError> {
-        equilibrium::find(self, t, guess.vector())
+        let guess = guess.vector();
+        if const { Self::Kind::COUNT == 0 } { free::find(self, t, guess) } else { bound::find(self, t, guess) }
     }
 }
 
-impl<S: Collocation<N> + Convertible<N>, const N: usize> Dynamics<N> for S {}
+impl<S: Convertible<N>, const N: usize> Dynamics<N> for S {}
 
 /// The linearization of x = (q, v) with the acceleration of a system.
-fn linearized<S: Varying<N, K>, K, const N: usize>(
+fn linearized<S: Convertible<N>, const N: usize>(
     system: &S,
     t: f64,
     q: SVector<f64, N>,
@@ -103,7 +114,7 @@ fn linearized<S: Varying<N, K>, K, const N: usize>(
     let mut derivatives = DMatrix::zeros(2 * N, columns.len());
     derivatives.view_mut((0, N), (N, N)).fill_with_identity();
     for columns in columns.chunks(TOGETHER) {
-        let mut varying = system.over::<Varied>();
+        let mut varying = system.convert::<Varied>();
         let (mut q, mut v) = (q.map(Varied::fixed), v.map(Varied::fixed));
         for (direction, column) in columns.iter().enumerate() {
             let varied = match *column {
@@ -171,7 +182,7 @@ fn no_eigenvalues(t: f64) -> StepError {
 impl<M, S, const N: usize> Run<M, S, N>
 where
     M: Differentiable<S, N>,
-    S: Varying<N, M::Kind>,
+    S: Convertible<N>,
 {
     /// The linearization of the next step: how (q, p) at its end changes with (q, p) at the node, and with the inputs
     /// over the step. It is exact to rounding, and the run does not change.

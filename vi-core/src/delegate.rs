@@ -2,10 +2,11 @@
 //! functions are not inlined, and for those of generic code.
 
 use crate::called::{Called, Presumed};
-use crate::collocation::{Collocation, Separable, TimeScale};
 use crate::discrete::DiscreteLagrangian;
 use crate::forward;
+use crate::kind::Free;
 use crate::lagrangian::{Lagrangian, Parameters};
+use crate::motion::{Motion, Separable, TimeScale};
 use crate::real::Real;
 use crate::rules::{By, Own, Rule};
 use crate::stepping::{Batch, Convertible, Discretized, EnergyStepping, FixedStepping};
@@ -18,9 +19,10 @@ macro_rules! motion {
             forward! { [N T S] self => self; [#[inline]] lagrangian energy momentum force acceleration flow }
         }
 
-        impl<const N: usize, T: Real, S: Collocation<N, T>$(, $rule: Rule)?> Collocation<N, T> for $wrapper {
-            forward! { [N T S] self => self; $attribute collocation_types point sides point_derivatives scaled_point }
-            forward! { [N T S] self => self; [#[inline]] power }
+        impl<const N: usize, T: Real, S: Motion<N, T>$(, $rule: Rule)?> Motion<N, T> for $wrapper {
+            forward! { [N T S] self => self; $attribute motion_types point sides point_derivatives scaled_point }
+            forward! { [N T S] self => self; [#[inline]] power applied constraints constraint_gradients }
+            forward! { [N T S] self => self; [#[inline]] constraint_rate_derivatives reaction_derivatives dropped_constraints }
         }
     };
 }
@@ -84,14 +86,14 @@ impl<const N: usize, T: Real, S: TimeScale<N, T>> TimeScale<N, T> for &S {}
 impl<const N: usize, T: Real, S: TimeScale<N, T>, R: Rule> TimeScale<N, T> for By<S, R> {}
 
 // Whether a time scale exists is checked when a run begins.
-impl<const N: usize, T: Real, S: Collocation<N, T>> TimeScale<N, T> for Called<S> {}
+impl<const N: usize, T: Real, S: Motion<N, T, Kind = Free>> TimeScale<N, T> for Called<S> {}
 
 impl<const N: usize, T: Real, S: Separable<N, T>> Separable<N, T> for &S {}
 
 impl<const N: usize, T: Real, S: Separable<N, T>, R: Rule> Separable<N, T> for By<S, R> {}
 
 // Whether the equations have this form is checked when a run begins.
-impl<const N: usize, T: Real, S: Collocation<N, T>> Separable<N, T> for Presumed<S> {}
+impl<const N: usize, T: Real, S: Motion<N, T, Kind = Free>> Separable<N, T> for Presumed<S> {}
 
 impl<const N: usize, S: Convertible<N>> Convertible<N> for &S {
     type In<T: Real> = S::In<T>;

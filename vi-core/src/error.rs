@@ -546,10 +546,9 @@ impl fmt::Display for StepError {
             Self::NoTimeScale { .. } => {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or use `Gauss`")
             }
-            Self::NotSeparable { .. } => f.write_str("; take `Gauss`"),
+            Self::NotSeparable { .. } | Self::HasConstraints { .. } => f.write_str("; take `Gauss`"),
             Self::NoStepDensity { .. } => f.write_str("; make the table `cubic`, or take `FixedStep` or `Gauss`"),
             Self::NoRule { .. } => f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`"),
-            Self::HasConstraints { .. } => f.write_str("; take `GaussLobatto`"),
             Self::Ambiguous { .. } => {
                 f.write_str("; L is not defined at rest and has a branch on each side: write an L with one branch")
             }

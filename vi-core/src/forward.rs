@@ -7,7 +7,7 @@
 //! forward! { [N T S R] self => &self.system; [#[inline]] lagrangian energy momentum }
 //! ```
 //!
-//! writes these functions with these attributes. `lagrangian_constants`, `collocation_types` and `stepping_types` write
+//! writes these functions with these attributes. `lagrangian_constants`, `motion_types` and `stepping_types` write
 //! the types and constants of a trait.
 
 /// Writes functions that call those of another system; see the source of this module.
@@ -80,27 +80,77 @@ macro_rules! forward {
     };
 
     // The equations of motion at a point.
-    (@collocation_types [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        type Mass = <$s as $crate::collocation::Collocation<$n, $t>>::Mass;
-        type PointMatrix = <$s as $crate::collocation::Collocation<$n, $t>>::PointMatrix;
-        const CONSTANT_MASS: bool = <$s as $crate::collocation::Collocation<$n, $t>>::CONSTANT_MASS;
-        const SEPARABLE: bool = <$s as $crate::collocation::Collocation<$n, $t>>::SEPARABLE;
-        const SCALES_TIME: bool = <$s as $crate::collocation::Collocation<$n, $t>>::SCALES_TIME;
+    (@motion_types [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        type Kind = <$s as $crate::motion::Motion<$n, $t>>::Kind;
+        type Mass = <$s as $crate::motion::Motion<$n, $t>>::Mass;
+        type PointMatrix = <$s as $crate::motion::Motion<$n, $t>>::PointMatrix;
+        const CONSTANT_MASS: bool = <$s as $crate::motion::Motion<$n, $t>>::CONSTANT_MASS;
+        const SEPARABLE: bool = <$s as $crate::motion::Motion<$n, $t>>::SEPARABLE;
+        const SCALES_TIME: bool = <$s as $crate::motion::Motion<$n, $t>>::SCALES_TIME;
+        const POINT_MASSES: bool = <$s as $crate::motion::Motion<$n, $t>>::POINT_MASSES;
+        const CONSTRAINTS: &'static [&'static str] = <$s as $crate::motion::Motion<$n, $t>>::CONSTRAINTS;
+        const HOLONOMIC: usize = <$s as $crate::motion::Motion<$n, $t>>::HOLONOMIC;
+        const BLOCKS: &'static [$crate::linear::Block] = <$s as $crate::motion::Motion<$n, $t>>::BLOCKS;
     };
     (@point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, point -> $crate::collocation::Point<$n, $t, Self::Mass>, $($rest)* }
+        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, point -> $crate::motion::Point<$n, $t, Self::Mass>, $($rest)* }
     };
     (@sides [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, sides -> $crate::collocation::Sides<$n, $t>, $($rest)* }
+        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, sides -> $crate::motion::Sides<$n, $t>, $($rest)* }
     };
     (@point_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, point_derivatives -> $crate::collocation::PointDerivatives<Self::PointMatrix>, $($rest)* }
+        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, point_derivatives -> $crate::motion::PointDerivatives<Self::PointMatrix>, $($rest)* }
     };
     (@power [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, power -> $t, $($rest)* }
+        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, power -> $t, $($rest)* }
     };
     (@scaled_point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::collocation::Collocation<$n, $t>, scaled_point -> $crate::collocation::ScaledPoint<$n, $t, Self::Mass>, $($rest)* }
+        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, scaled_point -> $crate::motion::ScaledPoint<$n, $t, Self::Mass>, $($rest)* }
+    };
+
+    // The constraints.
+    (@applied [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, applied -> $crate::SVector<$t, $n>, $($rest)* }
+    };
+    (@constraints [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) [$($at:tt)*]) => {
+        $($at)*
+        fn constraints(&$this, t: $t, q: &$crate::SVector<$t, $n>) -> $crate::kind::Multipliers<Self, $n, $t> {
+            <$s as $crate::motion::Motion<$n, $t>>::constraints($to, t, q)
+        }
+    };
+    (@constraint_gradients [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) [$($at:tt)*]) => {
+        $($at)*
+        fn constraint_gradients(
+            &$this,
+            t: $t,
+            q: &$crate::SVector<$t, $n>,
+        ) -> ($crate::kind::Gradients<Self, $n, $t>, $crate::kind::Multipliers<Self, $n, $t>) {
+            <$s as $crate::motion::Motion<$n, $t>>::constraint_gradients($to, t, q)
+        }
+    };
+    (@constraint_rate_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, constraint_rate_derivatives -> ($crate::kind::Gradients<Self, $n, $t>, $crate::kind::Multipliers<Self, $n, $t>), $($rest)* }
+    };
+    (@reaction_derivatives [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) [$($at:tt)*]) => {
+        $($at)*
+        fn reaction_derivatives(
+            &$this,
+            t: $t,
+            q: &$crate::SVector<$t, $n>,
+            multipliers: &$crate::kind::Multipliers<Self, $n, $t>,
+        ) -> $crate::kind::ReactionMatrix<Self, $n, $t> {
+            <$s as $crate::motion::Motion<$n, $t>>::reaction_derivatives($to, t, q, multipliers)
+        }
+    };
+    (@dropped_constraints [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) [$($at:tt)*]) => {
+        $($at)*
+        fn is_dropped(&$this, constraint: usize) -> bool {
+            <$s as $crate::motion::Motion<$n, $t>>::is_dropped($to, constraint)
+        }
+        $($at)*
+        fn broken(&$this, t: $t, q: &$crate::SVector<$t, $n>, v: &$crate::SVector<$t, $n>) -> Option<(usize, $t)> {
+            <$s as $crate::motion::Motion<$n, $t>>::broken($to, t, q, v)
+        }
     };
 
     // The slots of the discrete system, all nine.

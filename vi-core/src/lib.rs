@@ -80,7 +80,7 @@ mod branch;
 pub mod called;
 #[cfg(feature = "alloc")]
 pub mod check;
-pub mod collocation;
+
 mod compensated;
 #[cfg(feature = "alloc")]
 pub mod condition;
@@ -99,11 +99,13 @@ mod forward;
 pub mod function;
 pub mod gauss;
 pub mod indexed;
+pub mod kind;
 pub mod lagrangian;
 mod legendre;
 pub mod linear;
 pub mod method;
 mod momentum;
+pub mod motion;
 mod newton;
 pub mod node;
 mod predictor;
@@ -120,17 +122,15 @@ mod vector;
 
 pub use called::{Called, Presumed};
 #[cfg(feature = "alloc")]
-pub use constrained::{Constrained, ConvertibleConstrained};
-#[cfg(feature = "alloc")]
-pub use control::{ConstrainedDynamics, Dynamics};
+pub use control::Dynamics;
 pub use discrete::DiscreteLagrangian;
 pub use error::StepError;
 pub use lagrangian::Lagrangian;
 #[cfg(feature = "alloc")]
-pub use method::{Composed, Composition, EnergyPreservingGaussLobatto, GaussLobatto};
+pub use method::{Composed, Composition};
 pub use method::{
-    Connected, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime, Method,
-    Splitting,
+    Connected, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep, Gauss,
+    GaussLobatto, InTransformedTime, Method, Splitting,
 };
 pub use nalgebra;
 pub use nalgebra::SVector;
@@ -141,10 +141,10 @@ pub use vi_macros::lagrangian;
 /// The names that a typical program needs.
 pub mod prelude {
     #[cfg(feature = "alloc")]
-    pub use crate::control::{ConstrainedDynamics as _, Dynamics as _};
+    pub use crate::control::Dynamics as _;
     pub use crate::error::StepError;
     #[cfg(feature = "alloc")]
-    pub use crate::method::{Composition, EnergyPreservingGaussLobatto, GaussLobatto};
+    pub use crate::method::Composition;
     pub use crate::method::{EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method, Splitting};
     pub use crate::real::Number;
     #[cfg(feature = "alloc")]

@@ -4,11 +4,11 @@
 //! derivatives and rounding-error bounds. They also return the increments of momentum and energy. Every rule implements
 //! [`FixedStepping`]. Rules whose steps have a density also implement [`EnergyStepping`].
 
-use crate::collocation::Collocation;
 use crate::discrete::DiscreteLagrangian;
 use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::linear::Matrix;
+use crate::motion::Motion;
 use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::{Real, Rounded};
@@ -22,7 +22,7 @@ use nalgebra::{SMatrix, SVector};
     message = "`{Self}` takes no fixed steps by the rule `{R}`",
     note = "add `discretize midpoint;` to `{Self}`; `Own` is the first rule of that clause, and `discretize midpoint, trapezoidal;` adds another",
     note = "`Gauss` and `EnergyPreservingGauss` need no rule",
-    note = "a system with constraints takes the steps of `GaussLobatto`; `GaussLobatto::<1>` is its midpoint rule"
+    note = "a system with constraints takes the steps of `Gauss`; `Gauss::<1>` is its midpoint rule"
 )]
 pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T> + Copy {
     /// Matrix type of A, with its zero pattern.
@@ -95,9 +95,9 @@ pub trait EnergyStepping<const N: usize, T: Real = f64, R = Own>: FixedStepping<
 }
 
 /// A system that evaluates in other number types. Every generated system does.
-pub trait Convertible<const N: usize> {
+pub trait Convertible<const N: usize>: Motion<N> {
     /// The same system over the numbers T.
-    type In<T: Real>: Collocation<N, T> + Parameters<T>;
+    type In<T: Real>: Motion<N, T, Kind = Self::Kind> + Parameters<T>;
     /// Whether Gauss steps evaluate all stages in SIMD vectors, with one copy of the code per instruction set.
     const SIDE_BY_SIDE: bool = true;
 
@@ -116,7 +116,7 @@ pub trait Discretized<const N: usize, R = Own>:
     FixedStepping<N, f64, R> + DiscreteLagrangian<N, f64, R> + Convertible<N>
 {
     /// The same system over the numbers T.
-    type Steps<T: Real>: Collocation<N, T> + FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R> + Parameters<T>;
+    type Steps<T: Real>: Motion<N, T> + FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R> + Parameters<T>;
 
     /// Converts the system; every parameter is rounded to T.
     fn steps<T: Real>(&self) -> Self::Steps<T>;

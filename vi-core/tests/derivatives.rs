@@ -1,9 +1,6 @@
 //! Derivatives of runs by every method, over steps, times, events and changes: against differences of the same runs, tangent against adjoint, symplecticity.
 
-use vi_core::collocation::Collocation;
-use vi_core::derivatives::{
-    Covector, Differentiable, Lyapunov, Objective, Tangent, Unconstrained, Variation, gradient,
-};
+use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
 use vi_core::lagrangian::Parameters;
 use vi_core::nalgebra::{DMatrix, SVector};
 use vi_core::real::{Dual, Number, Real};
@@ -61,7 +58,7 @@ fn impact<T: Real>(State { t, q, p }: State<2, T>) -> State<2, T> {
     State { t, q, p: SVector::from([p[0] + T::real(0.1) * q[0] * p[1], -T::real(0.7) * p[1]]) }
 }
 
-fn follow<M: Differentiable<S, 2>, S: Lagrangian<2> + Parameters + Copy>(run: &mut Run<M, S, 2>, legs: &[Leg]) {
+fn follow<M: Differentiable<S, 2>, S: Convertible<2> + Parameters>(run: &mut Run<M, S, 2>, legs: &[Leg]) {
     for leg in legs {
         match *leg {
             Leg::Steps(count) => (0..count).try_for_each(|_| run.step().map(drop)),
@@ -80,8 +77,8 @@ fn follow<M: Differentiable<S, 2>, S: Lagrangian<2> + Parameters + Copy>(run: &m
 
 fn follow_tangent<M, S>(tangent: &mut Tangent<M, S, 2>, legs: &[Leg])
 where
-    M: Differentiable<S, 2, Kind = Unconstrained>,
-    S: Convertible<2> + Parameters + Collocation<2>,
+    M: Differentiable<S, 2>,
+    S: Convertible<2> + Parameters,
 {
     for leg in legs {
         match *leg {
@@ -115,7 +112,7 @@ fn directions<S: Lagrangian<2>>(with_length: bool) -> Vec<Variation<2>> {
 /// The run whose start is moved along a direction.
 fn moved<M: Differentiable<S, 2>, S>(case: &Case<M, S>, along: &Variation<2>, by: f64) -> Run<M, S, 2>
 where
-    S: Lagrangian<2> + Parameters + Copy,
+    S: Convertible<2> + Parameters,
 {
     let mut system = case.system;
     for (name, slope) in S::PARAMETERS.iter().zip(&along.parameters) {
@@ -129,7 +126,7 @@ where
 
 /// What is differentiated.
 #[derive(Clone)]
-struct Case<M: Differentiable<S, 2>, S: Lagrangian<2> + Copy> {
+struct Case<M: Differentiable<S, 2>, S: Convertible<2>> {
     method: M,
     system: S,
     h: f64,
@@ -143,8 +140,8 @@ struct Case<M: Differentiable<S, 2>, S: Lagrangian<2> + Copy> {
 /// The largest difference of derivatives over some legs from central differences, relative to their size.
 fn differs<M, S>(case: &Case<M, S>, legs: &[Leg]) -> f64
 where
-    M: Differentiable<S, 2, Kind = Unconstrained>,
-    S: Convertible<2> + Parameters + Collocation<2>,
+    M: Differentiable<S, 2>,
+    S: Convertible<2> + Parameters,
 {
     let directions = directions::<S>(case.is_given_length);
     let start = moved(case, &Variation::zero(), 0.0);
@@ -192,23 +189,18 @@ const LEGS: [&[Leg]; 7] = [
 fn derivatives_of_every_method_are_those_of_differences() {
     fn all<M, S>(case: &Case<M, S>, bound: f64)
     where
-        M: Differentiable<S, 2, Kind = Unconstrained>,
-        S: Convertible<2> + Parameters + Collocation<2>,
+        M: Differentiable<S, 2>,
+        S: Convertible<2> + Parameters,
     {
         let errors = LEGS.map(|legs| differs(case, legs));
         println!("{:?} {}: {}", case.method, S::NAME, errors.map(|error| format!("{error:.1e}")).join(" "));
         assert!(errors.iter().all(|error| *error <= bound), "{:?}: {errors:?}", case.method);
     }
-    fn case<M: Differentiable<S, 2>, S: Lagrangian<2> + Copy>(method: M, system: S, h: f64) -> Case<M, S> {
+    fn case<M: Differentiable<S, 2>, S: Convertible<2>>(method: M, system: S, h: f64) -> Case<M, S> {
         Case { method, system, h, option: |run| run, is_given_length: true, distance: 5e-4 }
     }
     /// The distance is larger if the length of a step is known to fewer digits.
-    fn kept<M: Differentiable<S, 2>, S: Lagrangian<2> + Copy>(
-        method: M,
-        system: S,
-        h: f64,
-        distance: f64,
-    ) -> Case<M, S> {
+    fn kept<M: Differentiable<S, 2>, S: Convertible<2>>(method: M, system: S, h: f64, distance: f64) -> Case<M, S> {
         Case { is_given_length: false, distance, ..case(method, system, h) }
     }
     let (driven, free) = (Driven::default(), Free::default());
@@ -247,7 +239,7 @@ fn maps_of_steps_that_find_their_length_are_symplectic() {
         }
     }
     /// The map of some steps in extended phase space.
-    fn map<M: Differentiable<S, 2>, S: Lagrangian<2> + Copy>(run: Run<M, S, 2>, steps: usize) -> DMatrix<f64> {
+    fn map<M: Differentiable<S, 2>, S: Convertible<2>>(run: Run<M, S, 2>, steps: usize) -> DMatrix<f64> {
         let mut all = Variation::of_state();
         all.insert(0, Variation { t: 1.0, ..Variation::zero() });
         all.insert(3, Variation { energy: -1.0, ..Variation::zero() });
@@ -269,7 +261,7 @@ fn maps_of_steps_that_find_their_length_are_symplectic() {
 /// Squares of times, coordinates and momenta at the nodes, c an input of each step.
 struct Squares;
 
-impl<M: Differentiable<Driven, 2, Kind = Unconstrained>> Objective<M, Driven, 2> for Squares {
+impl<M: Differentiable<Driven, 2>> Objective<M, Driven, 2> for Squares {
     fn prepare(&self, step: u64, run: &mut Run<M, Driven, 2>) -> Result<(), StepError> {
         let input = if step.is_multiple_of(2) { 0.07 } else { 0.12 };
         run.set_parameters(|system| system.c = input)
@@ -285,7 +277,7 @@ impl<M: Differentiable<Driven, 2, Kind = Unconstrained>> Objective<M, Driven, 2>
 
 #[test]
 fn the_adjoint_agrees_with_tangents() {
-    fn worst<M: Differentiable<Driven, 2, Kind = Unconstrained>>(method: M, h: f64, steps: u64) -> f64 {
+    fn worst<M: Differentiable<Driven, 2>>(method: M, h: f64, steps: u64) -> f64 {
         let run = Driven::default().at_state(START).integrate(method, h).expect("a start");
         let found = gradient(&run, steps, 2, &Squares).expect("regular");
         let mut varied = directions::<Driven>(false);
@@ -340,10 +332,7 @@ fn the_adjoint_agrees_with_tangents() {
 }
 
 /// What H at the node of a run changes by along a variation: by the energy that a run started there in transformed time keeps.
-fn energy_slope<M: Differentiable<Driven, 2, Kind = Unconstrained>>(
-    run: &Run<M, Driven, 2>,
-    along: &Variation<2>,
-) -> f64 {
+fn energy_slope<M: Differentiable<Driven, 2>>(run: &Run<M, Driven, 2>, along: &Variation<2>) -> f64 {
     let beside = run.system().at_state(run.state()).integrate(Gauss::<1>.in_transformed_time(), 0.1).expect("a start");
     Tangent::from_start(beside, vec![along.clone()]).expect("regular").variations()[0].energy
 }

@@ -56,7 +56,7 @@ fn forces_that_underflow_are_no_equilibrium() {
     let hill = Hill::default();
     let top = hill.equilibrium(0.0, [0.1, -0.2, 7.0]).unwrap_or_else(|failure| panic!("{failure}"));
     assert!(top.q[0].abs() + top.q[1].abs() < 1e-15 && top.q[2].to_bits() == 7.0_f64.to_bits(), "{top:?}");
-    assert_eq!(top.free, [false, false, true]);
+    assert_eq!(top.free(), [false, false, true]);
     for [x, y] in [[3.0, 2.0], [6.0, 1.0], [19.0, 20.0], [27.0, 3.0], [30.0, 0.0], [0.0, -1e3]] {
         assert!(is_none(&hill.equilibrium(0.0, [x, y, 0.0])), "{x} {y}");
     }

@@ -1,7 +1,7 @@
 //! A system without a rule: every method that needs none takes the same steps as with a rule.
 
-use vi_core::collocation::TimeScale;
 use vi_core::derivatives::{Tangent, Variation};
+use vi_core::motion::TimeScale;
 use vi_core::stepping::Convertible;
 use vi_core::{EnergyPreservingGauss, Gauss, Run, Starts, State, StepError};
 

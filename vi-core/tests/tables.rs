@@ -1,9 +1,9 @@
 //! Runs that leave a table: every method names it, in a step, at the start and after a change.
 
 use crate::systems::{Fields, Potential, UnitMass};
-use vi_core::collocation::{Collocation, Point, PointDerivatives, TimeScale};
 use vi_core::function::Jets;
 use vi_core::lagrangian::{Parameters, Undefined};
+use vi_core::motion::{Motion, Point, PointDerivatives, TimeScale};
 use vi_core::nalgebra::SMatrix;
 use vi_core::prelude::*;
 use vi_core::real::Real;
@@ -39,7 +39,8 @@ impl<T: Real> Potential<1, T> for Slide {
     }
 }
 
-impl<T: Real> Collocation<1, T> for UnitMass<Slide> {
+impl<T: Real> Motion<1, T> for UnitMass<Slide> {
+    type Kind = vi_core::kind::Free;
     type Mass = SMatrix<T, 1, 1>;
     type PointMatrix = SMatrix<T, 1, 1>;
     const CONSTANT_MASS: bool = true;

@@ -8,7 +8,7 @@ use crate::single::Single;
 use rayon::prelude::*;
 use vi_core::{Lagrangian, Method, Run, State};
 
-/// Many runs with one method: Gauss, compositions, energy-preserving, `GaussLobatto` with constraints. For small systems with fixed steps of order 2,
+/// Many runs with one method: Gauss, compositions, energy-preserving, `Gauss` with constraints. For small systems with fixed steps of order 2,
 /// [`Ensemble`](crate::Ensemble) is several times as fast. Uses the threads of the current rayon pool.
 ///
 /// ```

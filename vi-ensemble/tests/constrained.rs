@@ -1,6 +1,6 @@
 //! Many runs of a system with constraints, against each alone.
 
-use vi_core::{GaussLobatto, Run, Starts, State, StepError, lagrangian};
+use vi_core::{Gauss, Run, Starts, State, StepError, lagrangian};
 use vi_ensemble::{Ended, Runs};
 
 lagrangian! {
@@ -18,11 +18,11 @@ const STEPS: u32 = 40;
 const MEMBERS: u32 = 60;
 
 /// Member k: its weight, length and speed differ. The heaviest fall so fast that a rod turns by a right angle in a step.
-fn member<const STAGES: usize>(k: u32) -> Result<Run<GaussLobatto<STAGES>, Rods, 4>, StepError> {
+fn member<const STAGES: usize>(k: u32) -> Result<Run<Gauss<STAGES>, Rods, 4>, StepError> {
     let part = f64::from(k) / f64::from(MEMBERS);
     let rods = Rods { g: 400.0 * part * part, l: 1.0 + part };
     let (q, v) = ([0.9 + part, 0.4, 1.5 + part, 1.0], [0.1, part, 0.0, 0.2]);
-    rods.at_state(State::projected(&rods, 0.0, q, v)?.state).integrate(GaussLobatto, 0.05)
+    rods.at_state(State::projected(&rods, 0.0, q, v)?.state).integrate(Gauss, 0.05)
 }
 
 fn check<const STAGES: usize>() {

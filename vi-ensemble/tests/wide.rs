@@ -3,7 +3,7 @@
 //! A type-erased system ([`Called`]) is solved in plain numbers, the system itself by the copy of the loop for the vectors that the processor has.
 //! Builds with debug assertions have no copy for AVX-512: `.ci/run vectors` runs these tests in release.
 
-use vi_core::collocation::Collocation;
+use vi_core::motion::Motion;
 use vi_core::stepping::Convertible;
 use vi_core::{Called, Gauss, Starts as _, State, StepError};
 use vi_dispatch::Instructions;
@@ -17,7 +17,7 @@ fn states<S, const N: usize, const STAGES: usize>(
     steps: usize,
 ) -> Result<Vec<State<N>>, StepError>
 where
-    S: Collocation<N> + Convertible<N> + Copy,
+    S: Motion<N> + Convertible<N> + Copy,
 {
     let mut run = system.at(0.0, q, v).integrate(Gauss::<STAGES>, h)?;
     (0..steps).map(|_| run.step()).collect()
@@ -30,7 +30,7 @@ fn difference<S, const N: usize, const STAGES: usize>(
     steps: usize,
 ) -> Result<f64, StepError>
 where
-    S: Collocation<N> + Convertible<N> + Copy + Default,
+    S: Motion<N> + Convertible<N> + Copy + Default,
 {
     let wide = states::<_, N, STAGES>(S::default(), start, h, steps)?;
     let plain = states::<_, N, STAGES>(Called(S::default()), start, h, steps)?;

@@ -1,11 +1,10 @@
 //! What a controller asks of a system and of a run, type-erased. Matrices are flat, row by row.
 
-use crate::mechanics::Mechanics;
-use crate::simulation::{Parametric, vector};
+use crate::simulation::{Runnable, vector};
 use crate::system::Typed;
-use vi_core::control::{ConstrainedEquilibrium, Equilibrium, Linearization};
+use vi_core::control::{Dynamics as _, Equilibrium, Linearization};
 use vi_core::lagrangian::Described;
-use vi_core::nalgebra::{Complex, DMatrix, SMatrix};
+use vi_core::nalgebra::{Complex, DMatrix};
 use vi_core::{SVector, StepError};
 
 /// A linearization: `value + A δx + B δu`.
@@ -28,7 +27,7 @@ impl From<Linearization> for Linear {
     }
 }
 
-/// A state of rest without acceleration, as [`Equilibrium`] or [`ConstrainedEquilibrium`].
+/// A state of rest without acceleration, as [`Equilibrium`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
     /// Time.
@@ -53,20 +52,6 @@ pub struct Rest {
 
 impl Rest {
     pub(crate) fn of<const N: usize>(of: &Equilibrium<N>) -> Result<Self, StepError> {
-        Ok(Self {
-            t: of.t,
-            q: of.q.as_slice().to_vec(),
-            multipliers: Vec::new(),
-            freedom: N,
-            directions: SMatrix::<f64, N, N>::identity().as_slice().to_vec(),
-            matrices: [of.mass, of.damping, of.stiffness].map(|matrix| matrix.transpose().as_slice().to_vec()),
-            free: of.free.to_vec(),
-            residual: of.residual,
-            rates: pairs(of.rates()?),
-        })
-    }
-
-    pub(crate) fn on_constraints<const N: usize>(of: &ConstrainedEquilibrium<N>) -> Result<Self, StepError> {
         let rows = |matrix: &DMatrix<f64>| matrix.transpose().as_slice().to_vec();
         Ok(Self {
             t: of.t,
@@ -98,42 +83,40 @@ pub trait Control {
     /// The linearization of x = (q, v).
     ///
     /// # Errors
-    /// As [`vi_core::control::Dynamics::linearization`], or with constraints
-    /// [`vi_core::control::ConstrainedDynamics::linearization`]; [`StepError::InvalidInput`] for another number of
-    /// coordinates or velocities, here and below.
+    /// As [`vi_core::control::Dynamics::linearization`]; [`StepError::InvalidInput`] for another number of coordinates
+    /// or velocities, here and below.
     fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError>;
     /// The equilibrium near a guess of the coordinates.
     ///
     /// # Errors
-    /// As [`vi_core::control::Dynamics::equilibrium`], or with constraints
-    /// [`vi_core::control::ConstrainedDynamics::equilibrium`].
+    /// As [`vi_core::control::Dynamics::equilibrium`].
     fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError>;
 }
 
-impl<S: Parametric<N> + Described, C: Mechanics<S, N>, const N: usize> Control for Typed<S, N, C> {
+impl<S: Runnable<N> + Described, const N: usize> Control for Typed<S, N> {
     fn inputs(&self) -> &'static [usize] {
         S::INPUTS
     }
 
     fn mass_matrix(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
-        for (t, q, v) in each(points) {
-            out.extend_from_slice(C::mass_matrix(&self.system, (t, &q, &v)).transpose().as_slice());
+        for (t, q, v) in each::<N>(points) {
+            out.extend_from_slice(self.system.mass_matrix(t, q, v).transpose().as_slice());
         }
     }
 
     fn bias(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
         for (t, q, v) in each::<N>(points) {
-            out.extend_from_slice(C::bias(&self.system, (t, &q, &v)).as_slice());
+            out.extend_from_slice(self.system.bias(t, q, v).as_slice());
         }
     }
 
     fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError> {
-        let (q, v) = (vector(q, "number of coordinates")?, vector(v, "number of velocities")?);
-        C::linearization(&self.system, (t, &q, &v))
+        let (q, v) = (vector::<N>(q, "number of coordinates")?, vector::<N>(v, "number of velocities")?);
+        self.system.linearization(t, q, v).map(Linear::from)
     }
 
     fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError> {
-        C::equilibrium(&self.system, t, vector(guess, "number of coordinates")?)
+        Rest::of(&self.system.equilibrium(t, vector::<N>(guess, "number of coordinates")?)?)
     }
 }
 

@@ -1,128 +1,38 @@
 //! Derivatives of runs.
 //!
 //! In: a run of known types. Out: its linearization, tangent vectors and gradients as plain numbers, and the run at
-//! their end. With constraints, the change of one coordinate alone is no motion: fixed steps have a linearization only.
+//! their end. With constraints, the change of one coordinate alone is no motion: runs have a linearization only.
 
-use crate::control::Linear;
-use crate::simulation::{Parametric, Runnable, RunnableWithConstraints};
-use vi_core::derivatives::{
-    Covector, Differentiable, Objective, Tangent, Unconstrained, Variation, WithConstraints, gradient,
-};
-use vi_core::{
-    Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, FixedStep, Gauss, GaussLobatto,
-    InTransformedTime, Method, Run, Splitting, State, StepError,
-};
+use crate::simulation::Runnable;
+use vi_core::derivatives::{self, Covector, Differentiable, Objective, Tangent, Variation};
+use vi_core::kind::Kind;
+use vi_core::{Method, Run, State, StepError};
 
-/// The reason why a run with constraints has no derivative by single coordinates.
-const OF_CONSTRAINTS: &str =
-    "a change of one coordinate alone leaves the constraints; use the linearization of the run";
-/// The reason why steps with constraints that find their length have no linearization.
-const OF_LENGTHS: &str = "steps that keep constraints and an energy have no linearization; use fixed steps";
+/// Checks that a change of one coordinate alone is a motion.
+///
+/// # Errors
+/// [`StepError::NoDerivative`] with constraints.
+fn check_free<S: Runnable<N>, const N: usize>(t: f64) -> Result<(), StepError> {
+    let because = "a change of one coordinate alone leaves the constraints; use the linearization of the run";
+    if const { S::Kind::COUNT == 0 } { Ok(()) } else { Err(StepError::NoDerivative { t, because }) }
+}
 
 /// A value at the end of some steps, and the run there; `None` if it was interrupted.
 type AtEnd<M, S, Y, const N: usize> = Result<Option<(Run<M, S, N>, Y)>, StepError>;
 
-/// A method whose runs have derivatives, or report that they have none.
-pub trait Derived<S: Parametric<N>, const N: usize>: Method<S, N> {
-    /// As [`Session::linearization`](crate::Session::linearization).
-    ///
-    /// # Errors
-    /// As there. [`StepError::NoDerivative`] by default.
-    fn linearization(run: &Run<Self, S, N>) -> Result<Linear, StepError> {
-        Err(StepError::NoDerivative { t: run.t(), because: OF_LENGTHS })
-    }
-    /// As [`Session::tangent`](crate::Session::tangent); `begins` if the run is where it began.
-    ///
-    /// # Errors
-    /// As there. [`StepError::NoDerivative`] by default.
-    fn tangent(
-        run: &Run<Self, S, N>,
-        _begins: bool,
-        _steps: u64,
-        _parameters: &[usize],
-        _goes_on: &mut dyn FnMut() -> bool,
-    ) -> AtEnd<Self, S, Vec<Vec<f64>>, N> {
-        Err(StepError::NoDerivative { t: run.t(), because: OF_CONSTRAINTS })
-    }
-    /// As [`Session::gradient`](crate::Session::gradient), for a number of steps and the slope at their end.
-    ///
-    /// # Errors
-    /// As there. [`StepError::NoDerivative`] by default.
-    fn gradient(
-        run: &Run<Self, S, N>,
-        _begins: bool,
-        _end: (u64, Covector<N>),
-        _parameters: &[usize],
-        _goes_on: &mut dyn FnMut() -> bool,
-    ) -> AtEnd<Self, S, Vec<f64>, N> {
-        Err(StepError::NoDerivative { t: run.t(), because: OF_CONSTRAINTS })
-    }
-}
-
-/// A method with derivatives.
-macro_rules! derived {
-    ($method:ty $(, $stages:ident)?) => {
-        impl<S: Runnable<N>, const N: usize $(, const $stages: usize)?> Derived<S, N> for $method
-        where
-            $method: Differentiable<S, N, Kind = Unconstrained>,
-        {
-            fn linearization(run: &Run<Self, S, N>) -> Result<Linear, StepError> {
-                run.linearization().map(Linear::from)
-            }
-
-            fn tangent(
-                run: &Run<Self, S, N>,
-                begins: bool,
-                steps: u64,
-                parameters: &[usize],
-                goes_on: &mut dyn FnMut() -> bool,
-            ) -> AtEnd<Self, S, Vec<Vec<f64>>, N> {
-                tangent_of(run, begins, steps, parameters, goes_on)
-            }
-
-            fn gradient(
-                run: &Run<Self, S, N>,
-                begins: bool,
-                end: (u64, Covector<N>),
-                parameters: &[usize],
-                goes_on: &mut dyn FnMut() -> bool,
-            ) -> AtEnd<Self, S, Vec<f64>, N> {
-                gradient_of(run, begins, end, parameters, goes_on)
-            }
-        }
-    };
-}
-
-derived!(FixedStep);
-derived!(Composition);
-derived!(Splitting);
-derived!(EnergyPreserving);
-derived!(Gauss<STAGES>, STAGES);
-derived!(InTransformedTime<Gauss<STAGES>>, STAGES);
-derived!(EnergyPreservingGauss<STAGES>, STAGES);
-
-impl<S: RunnableWithConstraints<N>, const N: usize, const STAGES: usize> Derived<S, N> for GaussLobatto<STAGES>
-where
-    Self: Differentiable<S, N, Kind = WithConstraints>,
-{
-    fn linearization(run: &Run<Self, S, N>) -> Result<Linear, StepError> {
-        run.linearization().map(Linear::from)
-    }
-}
-
-impl<S: RunnableWithConstraints<N>, const N: usize, const STAGES: usize> Derived<S, N>
-    for EnergyPreservingGaussLobatto<STAGES>
-{
-}
-
-/// Derivatives of the node after steps by the start.
-fn tangent_of<M: Differentiable<S, N, Kind = Unconstrained>, S: Runnable<N>, const N: usize>(
+/// Derivatives of the node after steps by the start, as [`Session::tangent`](crate::Session::tangent); `begins` if the run
+/// is where it began.
+///
+/// # Errors
+/// As there.
+pub(crate) fn tangent<M: Differentiable<S, N>, S: Runnable<N>, const N: usize>(
     run: &Run<M, S, N>,
     begins: bool,
     steps: u64,
     parameters: &[usize],
     goes_on: &mut dyn FnMut() -> bool,
 ) -> AtEnd<M, S, Vec<Vec<f64>>, N> {
+    check_free::<S, N>(run.t())?;
     let mut tangent = varied(run, begins, parameters)?;
     for _ in 0..steps {
         if !goes_on() {
@@ -138,14 +48,19 @@ fn tangent_of<M: Differentiable<S, N, Kind = Unconstrained>, S: Runnable<N>, con
 /// Steps of a stretch of a gradient, whose states are all kept.
 const STRETCH: u64 = 2048;
 
-/// The gradient of a linear function of the node after steps, by one backward pass.
-fn gradient_of<M: Differentiable<S, N, Kind = Unconstrained>, S: Runnable<N>, const N: usize>(
+/// The gradient of a linear function of the node after steps, by one backward pass, as
+/// [`Session::gradient`](crate::Session::gradient).
+///
+/// # Errors
+/// As there.
+pub(crate) fn gradient<M: Differentiable<S, N>, S: Runnable<N>, const N: usize>(
     run: &Run<M, S, N>,
     begins: bool,
     (steps, mut slope): (u64, Covector<N>),
     parameters: &[usize],
     goes_on: &mut dyn FnMut() -> bool,
 ) -> AtEnd<M, S, Vec<f64>, N> {
+    check_free::<S, N>(run.t())?;
     let names: Vec<&'static str> = parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
     // The run at the start of each stretch; the pass goes back from the last one.
     let (mut ahead, mut stretches, mut left) = (run.clone(), Vec::new(), steps);
@@ -167,7 +82,7 @@ fn gradient_of<M: Differentiable<S, N, Kind = Unconstrained>, S: Runnable<N>, co
             return Ok(None);
         }
         let objective = AtTheEnd { steps: *few, slope, parameters: &names };
-        let found = gradient(run, *few, usize::MAX, &objective)?;
+        let found = derivatives::gradient(run, *few, usize::MAX, &objective)?;
         slope = found.start;
         for of_a_step in &found.parameters {
             sums.iter_mut().zip(of_a_step).for_each(|(sum, slope)| *sum += slope);
@@ -216,7 +131,7 @@ fn directions<const N: usize>(parameters: &[usize]) -> Vec<Variation<N>> {
 ///
 /// # Errors
 /// As [`Tangent::from_start`] and [`Tangent::from_change`].
-fn varied<M: Differentiable<S, N, Kind = Unconstrained>, S: Runnable<N>, const N: usize>(
+fn varied<M: Differentiable<S, N>, S: Runnable<N>, const N: usize>(
     run: &Run<M, S, N>,
     begins: bool,
     parameters: &[usize],

@@ -1,25 +1,20 @@
 //! Integrators that are built for a system.
 //!
-//! In: the type of a system. Out: for each method an [`Integrator`], which starts its runs. Fixed, Gauss and
-//! Gauss–Lobatto steps, kicks and drifts are optimised for the system; the others take [`Called`] systems, which build
+//! In: the type of a system. Out: for each method an [`Integrator`], which starts its runs. Fixed and Gauss steps, kicks
+//! and drifts are optimised for the system; the others take [`Called`] systems, which build
 //! in a third of the time and differ by rounding.
 
-use crate::mechanics::{Unconstrained, WithConstraints};
 use crate::plan::{Built, Method, Plan, Shift, Start};
-use crate::simulation::{
-    AtConstraints, Erasable, Parametric, Runnable, RunnableWithConstraints, ShiftedEnergy, Simulation, Supported,
-    at_constraints, erased, erased_with,
-};
+use crate::simulation::{Erasable, Runnable, ShiftedEnergy, Simulation, Supported, erased, erased_with};
 use crate::start;
 use core::convert::identity;
-use core::marker::PhantomData;
-use vi_core::collocation::Collocation;
+use vi_core::kind::{Free, Kind};
 use vi_core::method::{Controlled, Shiftable};
 use vi_core::run::Length as _;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{
-    Called, Composition, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep,
-    Gauss, GaussLobatto, InTransformedTime, Presumed, Run, Splitting, Starts, State, StepError,
+    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
+    Presumed, Run, Splitting, Starts, State, StepError,
 };
 
 /// Starts a run of a plan from a state, as [`System::begin_while`](crate::System::begin_while).
@@ -29,26 +24,25 @@ type Begin<S, const N: usize> =
 #[cfg(feature = "checkpoints")]
 type Restart<S> = fn(S, &str) -> Result<Box<dyn Simulation>, String>;
 
-/// An integrator that is built for a system of the kind C of [`Mechanics`](crate::mechanics::Mechanics).
+/// An integrator that is built for a system.
 #[derive(Clone, Copy)]
-pub struct Integrator<S, const N: usize, C = Unconstrained> {
+pub struct Integrator<S, const N: usize> {
     /// Which one it is.
     pub built: Built,
     pub(crate) begin: Begin<S, N>,
     #[cfg(feature = "checkpoints")]
     pub(crate) restart: Restart<S>,
-    kind: PhantomData<C>,
 }
 
 /// Integrators of several words of [`kind!`](crate::kind).
 #[must_use]
-pub fn all<S, C, const N: usize, const K: usize>(of: [Vec<Integrator<S, N, C>>; K]) -> Vec<Integrator<S, N, C>> {
+pub fn all<S, const N: usize, const K: usize>(of: [Vec<Integrator<S, N>>; K]) -> Vec<Integrator<S, N>> {
     of.into_iter().flatten().collect()
 }
 
 /// Reads a stored run of the method M.
 #[cfg(feature = "checkpoints")]
-fn restarted<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(
+fn restarted<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
     system: S,
     method: M,
     stored: &str,
@@ -66,7 +60,6 @@ macro_rules! integrator {
             begin: $begin,
             #[cfg(feature = "checkpoints")]
             restart: |system, stored| restarted($system(system), $method, stored),
-            kind: PhantomData,
         }
     };
 }
@@ -106,12 +99,12 @@ where
 
 /// Kicks and drifts of order 4 and 6; none for a system whose motion does not split.
 #[must_use]
-pub fn splitting<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>>
+pub fn splitting<S: Runnable<N, Kind = Free>, const N: usize>() -> Vec<Integrator<S, N>>
 where
     Presumed<S>: Runnable<N>,
     Splitting: Erasable<Presumed<S>, N>,
 {
-    if const { !<S as Collocation<N>>::SEPARABLE } {
+    if const { !S::SEPARABLE } {
         return Vec::new();
     }
     vec![
@@ -131,7 +124,7 @@ where
 
 /// Gauss steps in transformed time.
 #[must_use]
-pub fn transformed<S: Runnable<N>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
+pub fn transformed<S: Runnable<N, Kind = Free>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
 where
     Called<S>: Runnable<N>,
     InTransformedTime<Gauss<STAGES>>: Erasable<Called<S>, N>,
@@ -142,7 +135,7 @@ where
         Gauss::<STAGES>.in_transformed_time(),
         |system: S, plan: &Plan, state: State<N>, _| {
             // Otherwise they would be built for every system.
-            if !<S as Collocation<N>>::SCALES_TIME {
+            if !S::SCALES_TIME {
                 return Err(StepError::NoTimeScale { system: S::NAME });
             }
             let dtau = plan.dtau.unwrap_or(plan.h);
@@ -177,22 +170,31 @@ where
     )
 }
 
+/// An integrator of energy-preserving Gauss steps.
+macro_rules! energy_gauss {
+    ($system:expr) => {
+        integrator!(
+            (Method::Energy, Some(STAGES), false),
+            $system,
+            EnergyPreservingGauss::<STAGES>,
+            |system: S, plan: &Plan, state: State<N>, goes_on| {
+                let run = $system(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.length())?;
+                shifted(run, plan, goes_on)
+            }
+        )
+    };
+}
+
 /// Energy-preserving Gauss steps of the given number of stages.
 #[must_use]
 pub fn energy_gauss<S: Runnable<N>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
 where
     Called<S>: Runnable<N>,
+    EnergyPreservingGauss<STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
     EnergyPreservingGauss<STAGES>: Erasable<Called<S>, N, Memory: Controlled<f64>>,
 {
-    integrator!(
-        (Method::Energy, Some(STAGES), false),
-        Called,
-        EnergyPreservingGauss::<STAGES>,
-        |system: S, plan: &Plan, state: State<N>, goes_on| {
-            let run = Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.length())?;
-            shifted(run, plan, goes_on)
-        }
-    )
+    // With constraints most of a step is elimination, which calls no function of the system.
+    if const { S::Kind::COUNT == 0 } { energy_gauss!(Called) } else { energy_gauss!(identity) }
 }
 
 /// A run of energy-preserving steps with the shift and the fallback of a plan.
@@ -206,7 +208,7 @@ fn shifted<M, S, const N: usize>(
 ) -> Result<Box<dyn Simulation>, StepError>
 where
     M: Shiftable<S, N> + Erasable<S, N, Memory: Controlled<f64>>,
-    S: Parametric<N>,
+    S: Runnable<N>,
 {
     let run = match plan.shift {
         None => run,
@@ -214,34 +216,6 @@ where
         Some(Shift::Over(time)) => run.with_shift_from_while(time, goes_on)?,
     };
     Ok(erased_with(run.with_fallback(fallback(plan)), plan.shift.is_some()))
-}
-
-/// Energy-preserving steps of the given number of stages that keep constraints.
-#[must_use]
-pub fn energy_lobatto<S, const N: usize, const STAGES: usize>() -> Integrator<S, N, WithConstraints>
-where
-    S: RunnableWithConstraints<N>,
-    EnergyPreservingGaussLobatto<STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
-{
-    integrator!(
-        (Method::Energy, Some(STAGES), false),
-        identity,
-        EnergyPreservingGaussLobatto::<STAGES>,
-        |system: S, plan: &Plan, state: State<N>, goes_on| {
-            let run = system.at_state(state).integrate(EnergyPreservingGaussLobatto::<STAGES>, plan.length())?;
-            shifted(run, plan, goes_on)
-        }
-    )
-}
-
-/// Steps of the given number of stages that keep constraints.
-#[must_use]
-pub fn gauss_lobatto<S, const N: usize, const STAGES: usize>() -> Integrator<S, N, WithConstraints>
-where
-    S: RunnableWithConstraints<N>,
-    GaussLobatto<STAGES>: Erasable<S, N>,
-{
-    by_length!(Method::GaussLobatto, Some(STAGES), identity, GaussLobatto::<STAGES>)
 }
 
 /// The action if there is no energy-preserving step.
@@ -327,36 +301,5 @@ where
 
     fn shifted_energy(run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
         Some(ShiftedEnergy { energy: run.shifted_energy(), shift: run.shift() })
-    }
-}
-
-impl<S: RunnableWithConstraints<N>, const N: usize, const STAGES: usize> Erasable<S, N> for GaussLobatto<STAGES>
-where
-    GaussLobatto<STAGES>: Supported<S, N>,
-{
-    fn evaluations(run: &Run<Self, S, N>) -> u64 {
-        u64::from(run.iterations()) * STAGES as u64
-    }
-
-    fn constraints(system: &S, state: &State<N>) -> Option<AtConstraints> {
-        Some(at_constraints(system, state))
-    }
-}
-
-impl<S: RunnableWithConstraints<N>, const N: usize, const STAGES: usize> Erasable<S, N>
-    for EnergyPreservingGaussLobatto<STAGES>
-where
-    EnergyPreservingGaussLobatto<STAGES>: Supported<S, N>,
-{
-    fn evaluations(run: &Run<Self, S, N>) -> u64 {
-        u64::from(run.iterations()) * STAGES as u64
-    }
-
-    fn shifted_energy(run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
-        Some(ShiftedEnergy { energy: run.shifted_energy(), shift: run.shift() })
-    }
-
-    fn constraints(system: &S, state: &State<N>) -> Option<AtConstraints> {
-        Some(at_constraints(system, state))
     }
 }

@@ -10,7 +10,6 @@
 //! | [`plan`] | the description of a run |
 //! | [`integrator`] | an integrator that is built for a system |
 //! | [`system`] | a system with its parameters |
-//! | [`mechanics`] | with or without constraints |
 //! | [`simulation`] | a started run |
 //! | `session` | a run in the hands of a program; feature `sessions` |
 //! | `control` | mass matrix, linearizations, equilibria; feature `derivatives` |
@@ -23,7 +22,6 @@ pub mod control;
 #[cfg(feature = "derivatives")]
 pub mod derivatives;
 pub mod integrator;
-pub mod mechanics;
 pub mod plan;
 pub mod section;
 #[cfg(feature = "sessions")]
@@ -46,21 +44,19 @@ pub use system::{System, Typed};
 /// |---|---|
 /// | `fixed` | fixed steps of order 2, and their compositions of order 4, 6, 8 |
 /// | `fixed_2` | fixed steps of order 2 only, in half the compile time |
-/// | `gauss 4, 8` | Gauss steps of 4 and of 8 stages |
+/// | `gauss 4, 8` | Gauss steps of 4 and of 8 stages, which keep constraints |
 /// | `transformed 4, 8` | the same in transformed time, for a system with a `time_scale` |
 /// | `splitting` | kicks and drifts of order 4 and 6, for a system whose motion splits |
 /// | `energy` | energy-preserving steps of order 2 |
-/// | `energy 2, 3` | energy-preserving Gauss steps of 2 and of 3 stages |
-/// | `gauss_lobatto 1, 3` | steps of 1 and of 3 stages that keep constraints |
-/// | `energy_lobatto 2` | energy-preserving steps of 2 stages that keep constraints |
+/// | `energy 2, 3` | energy-preserving Gauss steps of 2 and of 3 stages, which keep constraints |
 ///
 /// `fixed` and `fixed_2` need a rule, as by the clause `discretize trapezoidal;`, and `energy` without stages one with a
 /// step density, as `discretize midpoint;`. A system with constraints has
-/// only those methods that keep them.
+/// only `gauss` and `energy` with stages.
 #[macro_export]
 macro_rules! kind {
     ($system:ty, { $($method:ident $($stages:literal),*);* $(;)? }) => {
-        $crate::system::erased::<$system, _, _>($crate::integrator::all([
+        $crate::system::erased::<$system, _>($crate::integrator::all([
             $($crate::integrators!($method $($stages),*)),*
         ]))
     };
@@ -86,12 +82,6 @@ macro_rules! integrators {
     };
     (transformed $($stages:literal),+) => {
         vec![$($crate::integrator::transformed::<_, _, $stages>()),+]
-    };
-    (gauss_lobatto $($stages:literal),+) => {
-        vec![$($crate::integrator::gauss_lobatto::<_, _, $stages>()),+]
-    };
-    (energy_lobatto $($stages:literal),+) => {
-        vec![$($crate::integrator::energy_lobatto::<_, _, $stages>()),+]
     };
     (energy $($stages:literal),+) => {
         vec![$($crate::integrator::energy_gauss::<_, _, $stages>()),+]

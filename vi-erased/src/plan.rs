@@ -21,10 +21,8 @@ pub enum Method {
     Splitting4,
     /// Kicks and drifts of order 6.
     Splitting6,
-    /// Gauss collocation, of order 2S with S stages.
+    /// Gauss steps, of order 2S with S stages. They keep constraints.
     Gauss,
-    /// Steps that keep constraints, of order 2S with S stages.
-    GaussLobatto,
     /// The integrator that solves for its own step and preserves the discrete energy.
     Energy,
 }
@@ -38,16 +36,16 @@ pub const DEFAULT_STAGES: usize = 8;
 /// Numbers of stages of energy-preserving Gauss steps: with more, rounding hides their length.
 pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 
-/// Numbers of stages of steps that keep constraints, for each system with constraints.
-pub const LOBATTO_STAGES: [usize; 3] = [1, 2, 3];
+/// Numbers of stages of Gauss steps of systems with constraints.
+pub const BOUND_STAGES: [usize; 3] = [1, 2, 3];
 /// The default number of these stages: the highest order that is built.
-pub const DEFAULT_LOBATTO_STAGES: usize = 3;
-/// The number of stages of energy-preserving steps that keep constraints, for each system with constraints.
-pub const ENERGY_LOBATTO_STAGES: usize = 2;
+pub const DEFAULT_BOUND_STAGES: usize = 3;
+/// The number of stages of energy-preserving Gauss steps of systems with constraints.
+pub const BOUND_ENERGY_STAGES: usize = 2;
 
 impl Method {
     /// All integrators.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 8] = [
         Self::Fixed,
         Self::Suzuki4,
         Self::KahanLi6,
@@ -55,7 +53,6 @@ impl Method {
         Self::Splitting4,
         Self::Splitting6,
         Self::Gauss,
-        Self::GaussLobatto,
         Self::Energy,
     ];
 
@@ -102,6 +99,8 @@ impl Start {
 pub trait Named: Copy + 'static {
     /// All values.
     const VALUES: &'static [Self];
+    /// Names of earlier versions, which files may hold.
+    const ALIASES: &'static [(&'static str, Self)] = &[];
 
     /// The name.
     #[must_use]
@@ -114,12 +113,14 @@ pub trait Named: Copy + 'static {
     /// The value of this name, if there is one.
     #[must_use]
     fn named(name: &str) -> Option<Self> {
-        Self::VALUES.iter().copied().find(|value| value.name() == name)
+        let alias = || Self::ALIASES.iter().find(|(alias, _)| *alias == name).map(|(_, value)| *value);
+        Self::VALUES.iter().copied().find(|value| value.name() == name).or_else(alias)
     }
 }
 
 impl Named for Method {
     const VALUES: &'static [Self] = &Self::ALL;
+    const ALIASES: &'static [(&'static str, Self)] = &[("gauss-lobatto", Self::Gauss)];
 
     fn name(self) -> &'static str {
         match self {
@@ -130,7 +131,6 @@ impl Named for Method {
             Self::Splitting4 => "splitting-4",
             Self::Splitting6 => "splitting-6",
             Self::Gauss => "gauss",
-            Self::GaussLobatto => "gauss-lobatto",
             Self::Energy => "energy",
         }
     }
@@ -143,8 +143,7 @@ impl Named for Method {
             Self::KahanLi8 => "Seventeen fixed steps composed to order 8, by Kahan and Li",
             Self::Splitting4 => "Kicks and drifts of order 4, by Blanes and Moan, for forces of the coordinates alone",
             Self::Splitting6 => "Kicks and drifts of order 6, by Blanes and Moan, for forces of the coordinates alone",
-            Self::Gauss => "Gauss collocation, of order 2S for --stages S",
-            Self::GaussLobatto => "Steps that keep constraints, of order 2S for --stages S",
+            Self::Gauss => "Gauss steps, of order 2S for --stages S; they keep constraints",
             Self::Energy => "The integrator that solves for its own step and preserves the discrete energy",
         }
     }
@@ -189,8 +188,8 @@ pub struct Plan {
     pub method: Method,
     /// The start of the energy-preserving integrator without stages and shift; unused by others.
     pub start: Start,
-    /// The stages of Gauss steps, one of [`STAGES`], of steps that keep constraints, one of [`LOBATTO_STAGES`], or of
-    /// energy-preserving ones, one of [`ENERGY_STAGES`], with constraints [`ENERGY_LOBATTO_STAGES`].
+    /// The stages of Gauss steps, one of [`STAGES`], with constraints one of [`BOUND_STAGES`]; or of energy-preserving
+    /// ones, one of [`ENERGY_STAGES`], with constraints [`BOUND_ENERGY_STAGES`].
     pub stages: Option<usize>,
     /// The shift of energy-preserving steps.
     pub shift: Option<Shift>,
@@ -226,25 +225,20 @@ impl Plan {
         self.tolerance.map_or(StepLength::Given(self.h), StepLength::Found)
     }
 
-    /// The integrator that it asks for.
+    /// The integrator that it asks for, of a system with or without constraints.
     #[must_use]
-    pub fn wanted(&self) -> Built {
-        (self.method, self.energy_stages().or(self.gauss_stages()), self.dtau.is_some())
+    pub fn wanted(&self, has_constraints: bool) -> Built {
+        (self.method, self.energy_stages().or(self.gauss_stages(has_constraints)), self.dtau.is_some())
     }
 
-    /// The stages of Gauss steps, and of those that keep constraints; `None` for other methods.
+    /// The stages of Gauss steps of a system with or without constraints; `None` for other methods.
     #[must_use]
-    pub fn gauss_stages(&self) -> Option<usize> {
-        let usual = match self.method {
-            Method::Gauss => DEFAULT_STAGES,
-            Method::GaussLobatto => DEFAULT_LOBATTO_STAGES,
-            _ => return None,
-        };
-        Some(self.stages.unwrap_or(usual))
+    pub fn gauss_stages(&self, has_constraints: bool) -> Option<usize> {
+        let usual = if has_constraints { DEFAULT_BOUND_STAGES } else { DEFAULT_STAGES };
+        (self.method == Method::Gauss).then(|| self.stages.unwrap_or(usual))
     }
 
-    /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss), or with
-    /// constraints; `None` for steps with [`EnergyPreserving`](vi_core::EnergyPreserving).
+    /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); `None` for steps with [`EnergyPreserving`](vi_core::EnergyPreserving).
     #[must_use]
     pub fn energy_stages(&self) -> Option<usize> {
         self.stages.or(self.shift.map(|_| 1)).filter(|_| self.method == Method::Energy)

@@ -6,8 +6,10 @@
 
 #[cfg(feature = "derivatives")]
 use crate::control::Linear;
+#[cfg(feature = "derivatives")]
+use crate::derivatives;
 use crate::section::Section;
-use crate::simulation::{Erasable, Met, Parametric, Simulated, Simulation, met, vector};
+use crate::simulation::{Erasable, Met, Runnable, Simulated, Simulation, met, vector};
 #[cfg(feature = "derivatives")]
 use vi_core::derivatives::Covector;
 #[cfg(feature = "checkpoints")]
@@ -56,7 +58,7 @@ impl<D: DenseOutput<N> + Send + Sync, const N: usize> StepOutput for Output<D, N
 }
 
 /// Sets parameters by their indices.
-fn assign<S: Parametric<N>, const N: usize>(system: &mut S, change: &[(usize, f64)]) {
+fn assign<S: Runnable<N>, const N: usize>(system: &mut S, change: &[(usize, f64)]) {
     for (index, value) in change {
         if let Some(place) = S::PARAMETERS.get(*index).and_then(|name| system.parameter_mut(name)) {
             *place = *value;
@@ -172,7 +174,7 @@ pub trait Session {
     ) -> Result<Option<Vec<f64>>, StepError>;
 }
 
-impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     /// Takes one step toward the time `end`; returns whether the run is there.
     #[inline(never)]
     fn approach(&mut self, end: f64) -> Result<bool, StepError> {
@@ -196,7 +198,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
     }
 }
 
-impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M, S, N> {
     fn velocity(&self) -> Result<Vec<f64>, StepError> {
         Ok(self.run.velocity()?.as_slice().to_vec())
     }
@@ -287,7 +289,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
         let events: Vec<_> = sections.iter().map(Section::event).collect();
         let crossing = self.run.next_event(events, end);
         self.resume();
-        Ok(crossing?.map(|crossing| met::<M, S, N>(self.run.system(), &crossing)))
+        Ok(crossing?.map(|crossing| met(self.run.system(), &crossing)))
     }
 
     fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError> {
@@ -311,7 +313,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
 
     #[cfg(feature = "derivatives")]
     fn linearization(&self) -> Result<Linear, StepError> {
-        M::linearization(&self.run)
+        self.run.linearization().map(Linear::from)
     }
 
     #[cfg(feature = "derivatives")]
@@ -321,7 +323,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
         parameters: &[usize],
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Vec<f64>>>, StepError> {
-        let found = M::tangent(&self.run, self.begins(), steps, parameters, goes_on)?;
+        let found = derivatives::tangent(&self.run, self.begins(), steps, parameters, goes_on)?;
         Ok(found.map(|(run, of)| {
             self.run = run;
             self.resume();
@@ -342,7 +344,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
             None => state::<N>(0.0, slope, &[])?,
         };
         let slope = Covector { q, p, ..Covector::zero() };
-        let found = M::gradient(&self.run, self.begins(), (steps, slope), parameters, goes_on)?;
+        let found = derivatives::gradient(&self.run, self.begins(), (steps, slope), parameters, goes_on)?;
         Ok(found.map(|(run, of)| {
             self.run = run;
             self.resume();
@@ -352,7 +354,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Session for Simulated<
 }
 
 #[cfg(feature = "derivatives")]
-impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     /// Whether the run is where it began.
     fn begins(&self) -> bool {
         self.start.as_ref() == Some(self.run.node())

@@ -4,21 +4,21 @@
 //! node. The numbers are those of the generic integrators, to the last bit, and loops over steps are inside, without
 //! virtual calls.
 
-#[cfg(feature = "derivatives")]
-use crate::derivatives::Derived;
-use crate::mechanics::{Mechanics, WithConstraints, largest};
 use crate::section::Section;
 #[cfg(feature = "sessions")]
 use crate::session::Session;
 use std::borrow::Cow;
-use vi_core::collocation::Collocation;
-use vi_core::lagrangian::{Lagrangian, Parameters};
+#[cfg(feature = "derivatives")]
+use vi_core::derivatives::Differentiable as Derived;
+use vi_core::kind::Kind;
+use vi_core::lagrangian::Parameters;
+use vi_core::linear::Rectangular as _;
 #[cfg(feature = "derivatives")]
 use vi_core::node::Node;
 use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor};
 use vi_core::stepping::Convertible;
 use vi_core::support::has_angles;
-use vi_core::{Constrained, ConvertibleConstrained, Method, Run, SVector, State, StepError};
+use vi_core::{Method, Run, SVector, State, StepError};
 
 /// A node, its energies, and the length of the step that led to it.
 #[derive(Clone, Debug, PartialEq)]
@@ -215,7 +215,7 @@ pub(crate) fn wrong_size(values: &[f64], input: &'static str) -> StepError {
 }
 
 /// A method whose runs are erased: what its rows and its evaluations are.
-pub trait Erasable<S: Parametric<N>, const N: usize>: Supported<S, N> {
+pub trait Erasable<S: Runnable<N>, const N: usize>: Supported<S, N> {
     /// Evaluations of the equations in the last step of a run.
     fn evaluations(run: &Run<Self, S, N>) -> u64;
 
@@ -231,62 +231,51 @@ pub trait Erasable<S: Parametric<N>, const N: usize>: Supported<S, N> {
     fn shifted_energy(_run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
         None
     }
-
-    /// The constraints at a state.
-    fn constraints(_system: &S, _state: &State<N>) -> Option<AtConstraints> {
-        None
-    }
 }
 
-/// The constraints at a state.
-pub(crate) fn at_constraints<S: RunnableWithConstraints<N>, const N: usize>(
-    system: &S,
-    state: &State<N>,
-) -> AtConstraints {
-    let mut reactions = Vec::new();
-    let outcome = WithConstraints::reaction(system, state, &mut reactions);
-    let has_reaction = |reaction: f64| Some(reaction).filter(|_| outcome.is_ok());
-    reactions.resize(S::CONSTRAINTS.len(), f64::NAN);
+/// The constraints at a state; `None` for systems without.
+fn at_constraints<S: Runnable<N>, const N: usize>(system: &S, state: &State<N>) -> Option<AtConstraints> {
+    if const { S::Kind::COUNT == 0 } {
+        return None;
+    }
+    let reactions = match state.reaction(system) {
+        Ok(reactions) => reactions.as_ref().iter().copied().map(Some).collect(),
+        Err(_) => vec![None; S::CONSTRAINTS.len()],
+    };
     let residual = state.velocity(system).ok().map(|v| {
         let mut residuals = Vec::new();
-        WithConstraints::residuals(system, (state.t, &state.q, &v), &mut residuals);
+        constraint_residuals(system, (state.t, &state.q, &v), &mut residuals);
         largest(&residuals)
     });
-    AtConstraints { reactions: reactions.into_iter().map(has_reaction).collect(), residual }
+    Some(AtConstraints { reactions, residual })
 }
 
-/// A system with parameters.
-pub trait Parametric<const N: usize>: Lagrangian<N> + Parameters + Copy + Send + Sync + 'static {}
-impl<S: Lagrangian<N> + Parameters + Copy + Send + Sync + 'static, const N: usize> Parametric<N> for S {}
+/// Appends g of each constraint at a point, zero for nonholonomic ones; then `A v + a` of each.
+pub(crate) fn constraint_residuals<S: Runnable<N>, const N: usize>(
+    system: &S,
+    (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>),
+    out: &mut Vec<f64>,
+) {
+    out.extend_from_slice(system.constraints(t, q).as_ref());
+    let (gradients, offsets) = system.constraint_gradients(t, q);
+    out.extend(gradients.rows().zip(offsets.as_ref()).map(|(gradient, offset)| gradient.dot(v) + offset));
+}
 
-/// A system without constraints whose runs are erased.
-pub trait Runnable<const N: usize>: Parametric<N> + Collocation<N> + Convertible<N> {}
-impl<S: Parametric<N> + Collocation<N> + Convertible<N>, const N: usize> Runnable<N> for S {}
+/// The largest of the absolute values; NaN if one is NaN.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, value| if value.is_nan() || value.abs() > most { value.abs() } else { most })
+}
 
-/// A system with constraints whose runs are erased.
-pub trait RunnableWithConstraints<const N: usize>: Parametric<N> + Constrained<N> + ConvertibleConstrained<N> {}
-impl<S: Parametric<N> + Constrained<N> + ConvertibleConstrained<N>, const N: usize> RunnableWithConstraints<N> for S {}
+/// A system whose runs are erased: every generated one.
+pub trait Runnable<const N: usize>: Convertible<N> + Parameters + Send + Sync + 'static {}
+impl<S: Convertible<N> + Parameters + Send + Sync + 'static, const N: usize> Runnable<N> for S {}
 
 #[cfg(not(feature = "derivatives"))]
 use Method as Derived;
 
 /// A method with all that the features ask of it.
-#[cfg(not(feature = "checkpoints"))]
-pub trait Supported<S: Parametric<N>, const N: usize>: Derived<S, N> + 'static {}
-#[cfg(not(feature = "checkpoints"))]
-impl<M: Derived<S, N> + 'static, S: Parametric<N>, const N: usize> Supported<S, N> for M {}
-
-/// A method with all that the features ask of it.
-#[cfg(feature = "checkpoints")]
-pub trait Supported<S: Parametric<N>, const N: usize>: Derived<S, N, Memory: Storable> + 'static {}
-#[cfg(feature = "checkpoints")]
-impl<M: Derived<S, N, Memory: Storable> + 'static, S: Parametric<N>, const N: usize> Supported<S, N> for M {}
-
-/// A memory that serde writes and reads.
-#[cfg(feature = "checkpoints")]
-pub trait Storable: serde::Serialize + serde::de::DeserializeOwned {}
-#[cfg(feature = "checkpoints")]
-impl<Y: serde::Serialize + serde::de::DeserializeOwned> Storable for Y {}
+pub trait Supported<S: Runnable<N>, const N: usize>: Derived<S, N> + 'static {}
+impl<M: Derived<S, N> + 'static, S: Runnable<N>, const N: usize> Supported<S, N> for M {}
 
 /// A run with a method, and the data for its rows.
 #[derive(Clone)]
@@ -307,12 +296,12 @@ pub(crate) struct Simulated<M: Method<S, N>, S, const N: usize> {
 const ROUNDED: f64 = 1e-9;
 
 /// The same run, type-erased.
-pub fn erased<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(run: Run<M, S, N>) -> Box<dyn Simulation> {
+pub fn erased<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(run: Run<M, S, N>) -> Box<dyn Simulation> {
     erased_with(run, false)
 }
 
 /// The same, with E' in its rows if `is_shifted`.
-pub(crate) fn erased_with<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(
+pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
     run: Run<M, S, N>,
     is_shifted: bool,
 ) -> Box<dyn Simulation> {
@@ -327,7 +316,7 @@ pub(crate) fn erased_with<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(
     })
 }
 
-impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     /// Takes notice of the last step.
     pub(crate) fn count(&mut self) {
         self.evaluations += M::evaluations(&self.run);
@@ -363,7 +352,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulated<M, S, N> {
 }
 
 /// A crossing of a run of the system, type-erased.
-pub(crate) fn met<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(system: &S, crossing: &Crossing<N>) -> Met {
+pub(crate) fn met<S: Runnable<N>, const N: usize>(system: &S, crossing: &Crossing<N>) -> Met {
     let Crossing { events, state, length, .. } = crossing;
     let row = Row {
         t: state.t,
@@ -372,13 +361,13 @@ pub(crate) fn met<M: Erasable<S, N>, S: Parametric<N>, const N: usize>(system: &
         energy: state.energy(system).ok(),
         discrete_energy: None,
         shifted_energy: None,
-        constraints: M::constraints(system, state),
+        constraints: at_constraints(system, state),
         h: *length,
     };
     Met { row, events: events.iter().map(|met| (met.event, met.is_rising)).collect() }
 }
 
-impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Steps for Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S, N> {
     fn t(&self) -> f64 {
         self.run.t()
     }
@@ -414,7 +403,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Steps for Simulated<M,
     }
 
     fn constraints(&self) -> Option<AtConstraints> {
-        M::constraints(self.run.system(), &self.run.node().state())
+        at_constraints(self.run.system(), &self.run.node().state())
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
@@ -459,7 +448,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Steps for Simulated<M,
     }
 }
 
-impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulation for Simulated<M, S, N> {
+impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated<M, S, N> {
     fn evaluations(&self) -> u64 {
         self.evaluations
     }
@@ -481,7 +470,7 @@ impl<M: Erasable<S, N>, S: Parametric<N>, const N: usize> Simulation for Simulat
         let mut outcome = Ok(());
         for crossing in self.run.events(events, end) {
             match crossing {
-                Ok(crossing) if take(met::<M, S, N>(&system, &crossing)) => {}
+                Ok(crossing) if take(met(&system, &crossing)) => {}
                 Ok(_) => break,
                 Err(error) => outcome = Err(error),
             }

@@ -5,13 +5,12 @@
 #[cfg(feature = "derivatives")]
 use crate::control::Control;
 use crate::integrator::Integrator;
-use crate::mechanics::{Mechanics, Point, Unconstrained};
 use crate::plan::{Built, Method, PhasePoint, Plan};
-use crate::simulation::{Parametric, Simulation, vector, wrong_size};
+use crate::simulation::{Runnable, Simulation, constraint_residuals, vector, wrong_size};
 use std::sync::Arc;
-use vi_core::constrained::Projected;
+use vi_core::constrained::{Extended, Projected};
 use vi_core::lagrangian::Described;
-use vi_core::{SVector, State, StepError};
+use vi_core::{Lagrangian as _, SVector, State, StepError};
 
 /// A function of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,43 +157,42 @@ impl dyn System + '_ {
     }
 }
 
-/// A system of a known type, and of the kind C of [`Mechanics`].
+/// A system of a known type.
 #[derive(Clone)]
-pub struct Typed<S, const N: usize, C = Unconstrained> {
+pub struct Typed<S, const N: usize> {
     /// The system.
     pub system: S,
-    integrators: Arc<[Integrator<S, N, C>]>,
+    integrators: Arc<[Integrator<S, N>]>,
 }
 
-impl<S: Parametric<N> + Described + Default, C: Mechanics<S, N>, const N: usize> Typed<S, N, C> {
+impl<S: Runnable<N> + Described + Default, const N: usize> Typed<S, N> {
     /// The system with its default parameters.
     #[must_use]
-    pub fn new(integrators: Vec<Integrator<S, N, C>>) -> Self {
+    pub fn new(integrators: Vec<Integrator<S, N>>) -> Self {
         Self { system: S::default(), integrators: integrators.into() }
     }
 }
 
 /// The system with its default parameters, type-erased.
 #[must_use]
-pub fn erased<S, C, const N: usize>(integrators: Vec<Integrator<S, N, C>>) -> Box<dyn System>
+pub fn erased<S, const N: usize>(integrators: Vec<Integrator<S, N>>) -> Box<dyn System>
 where
-    S: Parametric<N> + Described + Default,
-    C: Mechanics<S, N> + Clone,
+    S: Runnable<N> + Described + Default,
 {
     Box::new(Typed::new(integrators))
 }
 
-impl<S: Parametric<N> + Described, C: Mechanics<S, N>, const N: usize> Typed<S, N, C> {
+impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
     /// An integrator.
     ///
     /// # Errors
     /// As [`System::begin`].
-    fn integrator(&self, wanted: Built) -> Result<&Integrator<S, N, C>, StepError> {
+    fn integrator(&self, wanted: Built) -> Result<&Integrator<S, N>, StepError> {
         let found = self.integrators.iter().find(|integrator| integrator.built == wanted);
         let has_method = self.integrators.iter().any(|integrator| integrator.built.0 == wanted.0);
         found.ok_or(match wanted {
             // Methods that keep constraints have stages.
-            (_, stages, _) if !C::CONSTRAINTS.is_empty() && (!has_method || stages.is_none()) => {
+            (_, stages, _) if !S::CONSTRAINTS.is_empty() && (!has_method || stages.is_none()) => {
                 StepError::HasConstraints { system: S::NAME }
             }
             (method, ..) if method.splitting().is_some() => StepError::NotSeparable { system: S::NAME },
@@ -211,21 +209,21 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N>, const N: usize> Typed<S, 
 }
 
 /// A function that moves a point of a system onto its constraints.
-type Mover<S, const N: usize> = fn(&S, Point<'_, N>) -> Result<Projected<N>, StepError>;
+type Mover<S, const N: usize> = fn(&S, f64, SVector<f64, N>, SVector<f64, N>) -> Result<Projected<N>, StepError>;
 
-impl<S: Parametric<N>, C, const N: usize> Typed<S, N, C> {
+impl<S: Runnable<N>, const N: usize> Typed<S, N> {
     /// A point that `mover` has moved onto the constraints.
     fn moved(&self, at: &PhasePoint, mover: Mover<S, N>) -> Result<OnConstraints, StepError> {
         let PhasePoint { t, q, v } = at;
         let (q, v) = (vector(q, "number of coordinates")?, vector(v, "number of velocities")?);
-        let Projected { state, moved_q, moved_v, .. } = mover(&self.system, (*t, &q, &v))?;
+        let Projected { state, moved_q, moved_v, .. } = mover(&self.system, *t, q, v)?;
         // The velocity itself: that of the momenta has a further rounding.
         let [q, v, moved_q, moved_v] = [state.q, v + moved_v, moved_q, moved_v].map(|of| of.as_slice().to_vec());
         Ok(OnConstraints { point: PhasePoint { t: *t, q, v }, moved_q, moved_v })
     }
 }
 
-impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> System for Typed<S, N, C> {
+impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
     fn name(&self) -> &'static str {
         S::NAME
     }
@@ -243,7 +241,7 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> S
     }
 
     fn constraints(&self) -> &'static [&'static str] {
-        C::CONSTRAINTS
+        S::CONSTRAINTS
     }
 
     fn parameters(&self) -> Vec<(&'static str, f64)> {
@@ -279,20 +277,20 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> S
                 Quantity::Energy => system.energy(t, &q, &v),
                 Quantity::Hamiltonian => State { t, q, p: v }.energy(system)?,
                 Quantity::Reaction => {
-                    C::reaction(system, &State { t, q, p: v }, out)?;
+                    out.extend_from_slice(State { t, q, p: v }.reaction(system)?.as_ref());
                     continue;
                 }
                 Quantity::Residuals => {
-                    C::residuals(system, (t, &q, &v), out);
+                    constraint_residuals(system, (t, &q, &v), out);
                     continue;
                 }
                 _ => {
                     let vector = match of {
-                        Quantity::ReactionForce => C::reaction_force(system, &State { t, q, p: v })?,
+                        Quantity::ReactionForce => State { t, q, p: v }.reaction_force(system)?,
                         Quantity::Momentum => system.momentum(t, &q, &v),
                         Quantity::Force => system.force(t, &q, &v),
                         Quantity::Acceleration => system.acceleration(t, &q, &v)?,
-                        Quantity::ExtendedAcceleration => C::extended_acceleration(system, (t, &q, &v))?,
+                        Quantity::ExtendedAcceleration => Extended(*system).acceleration(t, &q, &v)?,
                         _ => system.flow(t, &q, &v)?.v,
                     };
                     out.extend_from_slice(vector.as_slice());
@@ -305,12 +303,12 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> S
     }
 
     fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError> {
-        self.moved(at, C::projected)
+        self.moved(at, State::projected)
     }
 
     #[cfg(feature = "derivatives")]
     fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError> {
-        self.moved(at, C::assembled)
+        self.moved(at, State::assembled)
     }
 
     #[cfg(feature = "derivatives")]
@@ -324,7 +322,7 @@ impl<S: Parametric<N> + Described, C: Mechanics<S, N> + Clone, const N: usize> S
             Some(p) => State { t: plan.t, q, p: vector(p, "number of momenta")? },
             None => State::at(&self.system, plan.t, q, vector::<N>(&plan.v, "number of velocities")?),
         };
-        (self.integrator(plan.wanted())?.begin)(self.system, plan, state, goes_on)
+        (self.integrator(plan.wanted(!S::CONSTRAINTS.is_empty()))?.begin)(self.system, plan, state, goes_on)
     }
 
     #[cfg(feature = "checkpoints")]

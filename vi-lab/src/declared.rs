@@ -6,12 +6,10 @@
 
 use crate::Entry;
 use core::marker::PhantomData;
+use vi_core::kind::{Bound, Form, Free};
 use vi_core::lagrangian::Described;
-use vi_core::method::Controlled;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreservingGaussLobatto, GaussLobatto};
-use vi_erased::plan::{ENERGY_LOBATTO_STAGES, LOBATTO_STAGES};
-use vi_erased::simulation::{Erasable, Runnable, RunnableWithConstraints};
+use vi_erased::simulation::Runnable;
 
 /// A system declared by a program.
 #[derive(Debug)]
@@ -46,20 +44,16 @@ pub trait WithoutRule<const N: usize> {
 
 impl<S, const N: usize> WithRule<N> for &&Declared<S>
 where
-    S: EnergyStepping<N> + Runnable<N> + Described + Default,
+    S: EnergyStepping<N> + Runnable<N, Kind = Free> + Described + Default,
 {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
         Entry::new::<S, N>(about, q, v, h)
     }
 }
 
-impl<S, const N: usize> WithConstraints<N> for &Declared<S>
+impl<S, const N: usize, const K: usize, F: Form> WithConstraints<N> for &Declared<S>
 where
-    S: RunnableWithConstraints<N> + Described + Default,
-    GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
-    GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
-    GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
-    EnergyPreservingGaussLobatto<ENERGY_LOBATTO_STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
+    S: Runnable<N, Kind = Bound<K, F>> + Described + Default,
 {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
         Entry::with_constraints::<S, N>(about, q, v, h)
@@ -68,7 +62,7 @@ where
 
 impl<S, const N: usize> WithoutRule<N> for Declared<S>
 where
-    S: Runnable<N> + Described + Default,
+    S: Runnable<N, Kind = Free> + Described + Default,
 {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
         Entry::with_gauss_only::<S, N>(about, q, v, h)
@@ -111,10 +105,10 @@ mod tests {
         let entry = (&&&Declared::<Rod>::new()).entry("a rod", [0.6, -0.8], [0.0, 0.0], 0.01);
         assert!(entry.system.has_constraints() && !entry.system.has_rule());
         let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
-        let mut run = entry.system.begin(&Plan::new(Method::GaussLobatto, entry.h, start.clone())).expect("a start");
+        let mut run = entry.system.begin(&Plan::new(Method::Gauss, entry.h, start.clone())).expect("a start");
         run.advance_by(10).expect("steps");
         assert!(run.t() > 0.05 && run.q()[0] < 0.6, "{}", run.t());
-        for method in [Method::Fixed, Method::Gauss, Method::Energy] {
+        for method in [Method::Fixed, Method::Splitting6, Method::Energy] {
             let error = entry.system.begin(&Plan::new(method, entry.h, start.clone())).err();
             assert_eq!(error, Some(StepError::HasConstraints { system: "Rod" }));
         }

@@ -46,7 +46,10 @@ pub(crate) fn choice<'de, D: Deserializer<'de>, T: Named>(entry: D) -> Result<Op
 
 /// Reads a choice from the command line.
 pub(crate) fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
-    let values = T::VALUES.iter().map(|value| PossibleValue::new(value.name()).help(value.about()));
+    let values = T::VALUES.iter().map(|value| {
+        let aliases = T::ALIASES.iter().filter(|(_, of)| of.name() == value.name()).map(|(alias, _)| *alias);
+        PossibleValue::new(value.name()).aliases(aliases).help(value.about())
+    });
     PossibleValuesParser::new(values).try_map(|name| T::named(&name).ok_or("no such choice"))
 }
 

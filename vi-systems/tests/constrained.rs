@@ -1,8 +1,9 @@
 //! Systems with constraints move as the same mechanics does by independent equations: in angles, in closed form, by
 //! published numbers.
 
+use vi_core::SVector;
 use vi_core::prelude::*;
-use vi_core::{Constrained, ConvertibleConstrained, SVector};
+use vi_core::stepping::Convertible;
 use vi_systems::{
     AndrewsSqueezer, ChaplyginSleigh, DoublePendulum, DoubleRodPendulum, FourBar, HeavyTop, Pendulum, RodChain,
     RodPendulum, RollingBall, RollingDisk, SliderCrank,
@@ -16,9 +17,9 @@ fn apart<const N: usize>(found: impl Into<SVector<f64, N>>, wanted: impl Into<SV
 /// Coordinates and velocities at the time `end`, by steps of order 6 with constraints.
 fn constrained<S, const N: usize>(system: S, (q, v): ([f64; N], [f64; N]), h: f64, end: f64) -> [SVector<f64, N>; 2]
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
-    let mut run = system.at(0.0, q, v).integrate(GaussLobatto::<3>, h).unwrap_or_else(|error| panic!("{error}"));
+    let mut run = system.at(0.0, q, v).integrate(Gauss::<3>, h).unwrap_or_else(|error| panic!("{error}"));
     let state = run.until(end).unwrap_or_else(|error| panic!("{error}"));
     [state.q, state.velocity(&system).unwrap_or_else(|error| panic!("{error}"))]
 }
@@ -26,7 +27,7 @@ where
 /// Coordinates at the time `end`, by Gauss steps of 8 stages without constraints.
 fn free<S, const N: usize>(system: S, (q, v): ([f64; N], [f64; N]), h: f64, end: f64) -> [f64; N]
 where
-    S: vi_core::collocation::Collocation<N> + vi_core::stepping::Convertible<N>,
+    S: vi_core::motion::Motion<N> + vi_core::stepping::Convertible<N>,
 {
     let mut run = system.at(0.0, q, v).integrate(Gauss::<8>, h).unwrap_or_else(|error| panic!("{error}"));
     run.until(end).unwrap_or_else(|error| panic!("{error}")).q.into()
@@ -37,7 +38,7 @@ where
 fn starts_are_consistent_for_all_parameters() {
     fn check<S, const N: usize>(start: fn(&S) -> ([f64; N], [f64; N]))
     where
-        S: Constrained<N> + ConvertibleConstrained<N> + vi_core::lagrangian::Parameters + Default,
+        S: Convertible<N> + vi_core::lagrangian::Parameters + Default,
     {
         let mut seed = 1_u32;
         for round in 0..20 {
@@ -53,7 +54,7 @@ fn starts_are_consistent_for_all_parameters() {
             // Measured: at most 8.9e-16 and 7.2e-16.
             let (moved_q, moved_v) = (projected.moved_q.amax(), projected.moved_v.amax());
             assert!(moved_q < 2e-15 && moved_v < 2e-15, "{}: {moved_q:e} {moved_v:e}", S::NAME);
-            let run = system.at(0.0, q, v).integrate(GaussLobatto::<1>, 1e-5);
+            let run = system.at(0.0, q, v).integrate(Gauss::<1>, 1e-5);
             run.and_then(|mut run| run.step()).unwrap_or_else(|error| panic!("{}, {round}: {error}", S::NAME));
         }
     }
@@ -73,11 +74,11 @@ fn starts_are_consistent_for_all_parameters() {
 fn lengths_that_do_not_close_are_refused() {
     let short = FourBar { b: 0.2, c: 0.3, ..FourBar::default() };
     let (q, v) = short.start();
-    let failure = short.at(0.0, q, v).integrate(GaussLobatto::<3>, 0.01).err();
+    let failure = short.at(0.0, q, v).integrate(Gauss::<3>, 0.01).err();
     assert!(matches!(failure, Some(StepError::InconsistentStart { .. })), "{failure:?}");
     let wide = AndrewsSqueezer { xa: -0.5, ..AndrewsSqueezer::default() };
     let (q, v) = wide.start();
-    let failure = wide.at(0.0, q, v).integrate(GaussLobatto::<3>, 1e-5).err();
+    let failure = wide.at(0.0, q, v).integrate(Gauss::<3>, 1e-5).err();
     assert!(matches!(failure, Some(StepError::InconsistentStart { .. })), "{failure:?}");
 }
 
@@ -239,7 +240,7 @@ fn a_disk_rolls_as_in_forty_digits() {
     // `rolling_disk` of tests/reference/constraints.json: 100 steps of two stages.
     let system = RollingDisk::default();
     let (q, v) = system.start();
-    let mut run = system.at(0.0, q, v).integrate(GaussLobatto::<2>, 0.02).unwrap_or_else(|error| panic!("{error}"));
+    let mut run = system.at(0.0, q, v).integrate(Gauss::<2>, 0.02).unwrap_or_else(|error| panic!("{error}"));
     for _ in 0..100 {
         run.step().unwrap_or_else(|error| panic!("{error}"));
     }
@@ -274,7 +275,7 @@ fn motions_in_a_plane_and_near_rest_go_on() {
     assert!(found[0].abs() < 1e-18 && (found[1] + 1.0).abs() < 1e-15, "{found}");
     let start = State::projected(&InAPlane::default(), 0.0, [0.5, -0.9, 0.3], [1.0, 0.3, 0.2]);
     let start = start.unwrap_or_else(|error| panic!("{error}")).state;
-    let mut run = InAPlane::default().at_state(start).integrate(GaussLobatto::<3>, 0.01).expect("a start");
+    let mut run = InAPlane::default().at_state(start).integrate(Gauss::<3>, 0.01).expect("a start");
     let state = run.until(5.0).unwrap_or_else(|error| panic!("{error}"));
     // Measured: 0 and 1.1e-16.
     assert!(state.q[2].abs() < 1e-16 && (state.q.norm() - 1.0).abs() < 1e-15, "{}", state.q);

@@ -16,7 +16,7 @@ macro_rules! systems {
 
 macro_rules! with_constraints {
     ($($system:ident),* $(,)?) => {
-        vec![$(kind!($system, { gauss_lobatto 1, 2, 3; energy_lobatto 2 })),*]
+        vec![$(kind!($system, { gauss 1, 2, 3; energy 2 })),*]
     };
 }
 

@@ -215,7 +215,7 @@ impl Kind {
         let mut signal = Signal::new();
         let run = py.detach(|| system.begin_while(&plan, &mut || signal.is_silent()));
         signal.check()?;
-        Ok(Run::new(run.raise(py)?, plan.wanted()))
+        Ok(Run::new(run.raise(py)?, plan.wanted(!system.constraints().is_empty())))
     }
 
     /// Restarts a stored run.

@@ -4,8 +4,7 @@ use crate::failure::wrong;
 use pyo3::prelude::*;
 use vi_erased::System;
 use vi_erased::plan::{
-    Built, DEFAULT_LOBATTO_STAGES, DEFAULT_STAGES, ENERGY_LOBATTO_STAGES, Method, Named as _, PhasePoint, Plan, Shift,
-    Start,
+    BOUND_ENERGY_STAGES, Built, Method, Named as _, PhasePoint, Plan, Shift, Start,
 };
 
 /// Method and options of a run. Python has checked their names.
@@ -40,7 +39,7 @@ impl Request {
             ..Plan::new(method, h, PhasePoint { t, q, v })
         };
         let plan = Plan { stages: stages(&plan, system), ..plan };
-        let wanted = plan.wanted();
+        let wanted = plan.wanted(!system.constraints().is_empty());
         let built = system.integrators();
         if built.contains(&wanted) {
             return Ok(plan);
@@ -57,15 +56,10 @@ impl Request {
 
 /// The stages of a plan: if none are given, the default if it is built, else the most that are built.
 fn stages(plan: &Plan, system: &dyn System) -> Option<usize> {
-    let usual = match plan.method {
-        Method::Gauss => DEFAULT_STAGES,
-        Method::GaussLobatto => DEFAULT_LOBATTO_STAGES,
-        Method::Energy if !system.constraints().is_empty() => ENERGY_LOBATTO_STAGES,
-        _ => return plan.stages,
-    };
-    if plan.stages.is_some() {
-        return plan.stages;
-    }
+    let has_constraints = !system.constraints().is_empty();
+    let of_energy = (plan.method == Method::Energy && has_constraints).then_some(BOUND_ENERGY_STAGES);
+    let usual = plan.gauss_stages(has_constraints).or(of_energy).filter(|_| plan.stages.is_none());
+    let Some(usual) = usual else { return plan.stages };
     let built = system.integrators().into_iter().filter(|of| of.0 == plan.method && of.2 == plan.dtau.is_some());
     let built: Vec<usize> = built.filter_map(|of| of.1).collect();
     if built.contains(&usual) { Some(usual) } else { built.into_iter().max() }

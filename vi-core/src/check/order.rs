@@ -16,10 +16,10 @@
 
 use super::comparison::Comparison;
 use super::ladder::{Law, Measured};
-use super::motion::Motion;
 use super::report::{CheckFailure, Report};
 use super::sample::SampledMotion;
 use super::subject::{Checked, Place, STEPS};
+use super::trajectory::Trajectory;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::{FixedStep, Method};
@@ -56,9 +56,9 @@ pub(super) fn judged<const N: usize, S: Lagrangian<N>, M: Method<Y, N>, Y: Lagra
     if !course.accelerates() {
         return Err(check.vacuous("nothing accelerates, so that steps of any rule are exact; choose another place"));
     }
-    let start = Motion { t: place.t, q: place.q, v: place.v };
+    let start = Trajectory { t: place.t, q: place.q, v: place.v };
     let beside = |vector: &SVector<f64, N>| vector * (1.0 + BESIDE * f64::EPSILON);
-    let other = Motion { q: beside(&start.q), v: beside(&start.v), ..start };
+    let other = Trajectory { q: beside(&start.q), v: beside(&start.v), ..start };
     let paths = |h: f64| -> Result<_, CheckFailure> {
         let paths = [Path::from(system, start, h, 1), Path::from(system, other, h, 2)];
         let [path, other] = paths.map(|path| path.map_err(|error| check.step(error)));
@@ -103,12 +103,12 @@ fn larger(one: f64, other: f64) -> f64 {
 /// The reference trajectory at equal time intervals.
 struct Path<const N: usize> {
     h: f64,
-    states: Vec<Motion<N>>,
+    states: Vec<Trajectory<N>>,
 }
 
 impl<const N: usize> Path<N> {
     /// The reference over [`STEPS`] steps h, each integrated in this many parts.
-    fn from<S: Lagrangian<N>>(system: &S, start: Motion<N>, h: f64, parts: u32) -> Result<Self, StepError> {
+    fn from<S: Lagrangian<N>>(system: &S, start: Trajectory<N>, h: f64, parts: u32) -> Result<Self, StepError> {
         let mut states = vec![start];
         let mut now = start;
         for index in 1..=STEPS * parts {
@@ -122,7 +122,7 @@ impl<const N: usize> Path<N> {
 
     /// The size of each coordinate.
     fn size(&self) -> SVector<f64, N> {
-        let size = |state: &Motion<N>| state.q.abs() + state.v.abs() * state.t.abs();
+        let size = |state: &Trajectory<N>| state.q.abs() + state.v.abs() * state.t.abs();
         self.states.iter().fold(SVector::zeros(), |largest, state| largest.sup(&size(state)))
     }
 
@@ -137,7 +137,7 @@ impl<const N: usize> Path<N> {
         let Some((first, others)) = self.states.split_first() else { return Ok(vec![]) };
         let start = State::at(system, first.t, first.q, first.v);
         let mut run = begin(start, self.h / f64::from(parts))?;
-        let error = |state: &Motion<N>| {
+        let error = |state: &Trajectory<N>| {
             let mut reached = run.step()?;
             for _ in 1..parts {
                 reached = run.step()?;

@@ -7,11 +7,12 @@
 //! the place, a term of order h² would lie below the rounding error of the others.
 
 use super::comparison::Comparison;
-use super::motion::Motion;
 use super::report::CheckFailure;
-use super::subject::{Checked, ConstrainedChecked, MotionChecked, Place, STEPS};
-use crate::constrained::{Constrained, Extended};
+use super::subject::{Checked, MotionChecked, Place, STEPS};
+use super::trajectory::Trajectory;
+use crate::constrained::Extended;
 use crate::error::StepError;
+use crate::kind::Kind;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::linear::Matrix;
 use crate::node::Node;
@@ -53,7 +54,7 @@ pub(super) struct Sample<S, const N: usize> {
 /// far as the integration succeeds.
 pub(super) struct SampledMotion<const N: usize> {
     /// States at equal time intervals.
-    pub(super) states: Vec<Motion<N>>,
+    pub(super) states: Vec<Trajectory<N>>,
     /// The step length: the span divided by [`STEPS`].
     pub(super) h: f64,
 }
@@ -92,7 +93,7 @@ impl<const N: usize> SampledMotion<N> {
 
     /// The trajectory over [`STEPS`] steps h, with a limit of trial steps from one state to the next.
     pub(super) fn over<S: Lagrangian<N>>(system: &S, place: &Place<N>, h: f64, trials: u32) -> Result<Self, StepError> {
-        let mut now = Motion { t: place.t, q: place.q, v: place.v };
+        let mut now = Trajectory { t: place.t, q: place.q, v: place.v };
         let mut states = vec![now];
         for index in 1..SAMPLES {
             let end = place.t + h * f64::from(STEPS) * f64::from(index) / f64::from(SAMPLES - 1);
@@ -117,13 +118,13 @@ impl<const N: usize> SampledMotion<N> {
     }
 
     /// The largest distances from the value at the first state.
-    fn range(&self, of: impl Fn(&Motion<N>) -> SVector<f64, N>) -> SVector<f64, N> {
+    fn range(&self, of: impl Fn(&Trajectory<N>) -> SVector<f64, N>) -> SVector<f64, N> {
         range(self.states.iter().map(of))
     }
 
     /// Nonzero distances for each coordinate and velocity: their extents or, if these are tiny, the extents of a fixed
     /// part of the same kinetic energy.
-    fn extent(&self, mass: impl Fn(&Motion<N>) -> SMatrix<f64, N, N>) -> [SVector<f64, N>; 2] {
+    fn extent(&self, mass: impl Fn(&Trajectory<N>) -> SMatrix<f64, N, N>) -> [SVector<f64, N>; 2] {
         let Some(first) = self.states.first() else { return [SVector::zeros(); 2] };
         let mass = mass(first);
         let weights = SVector::<f64, N>::from_fn(|row, _| match mass[(row, row)].abs().sqrt() {
@@ -135,7 +136,7 @@ impl<const N: usize> SampledMotion<N> {
             let largest = if range.amax() > 0.0 { largest(&range) } else { largest(&otherwise) };
             range.zip_map(&weights, |entry, weight| entry.max(LEAST * largest / weight))
         };
-        let speeds = |_: &Motion<N>| first.v.abs();
+        let speeds = |_: &Trajectory<N>| first.v.abs();
         let [q, v] = [self.range(|state| state.q), self.range(|state| state.v)];
         [positive(q, q), positive(v, speeds(first))]
     }
@@ -144,12 +145,12 @@ impl<const N: usize> SampledMotion<N> {
     fn samples<S: Lagrangian<N> + Parameters + Copy>(
         &self,
         system: &S,
-        mass: impl Fn(&Motion<N>) -> SMatrix<f64, N, N>,
+        mass: impl Fn(&Trajectory<N>) -> SMatrix<f64, N, N>,
         is_defined: fn(&Sample<S, N>) -> bool,
     ) -> Vec<Sample<S, N>> {
         let extent = self.extent(mass);
         let mut draw = Sequence(7);
-        let sample = |state: &Motion<N>| {
+        let sample = |state: &Trajectory<N>| {
             let drawn = draw;
             let mut part = 1.0;
             for _ in 0..RETREATS {
@@ -166,7 +167,23 @@ impl<const N: usize> SampledMotion<N> {
     }
 }
 
-/// The samples near the trajectory from a place.
+/// The nearest place on the constraints; without constraints the place itself.
+///
+/// # Errors
+/// As [`State::projected`].
+pub(super) fn placed<const N: usize, S: MotionChecked<N>>(
+    system: &S,
+    place: &Place<N>,
+    check: &Comparison,
+) -> Result<Place<N>, CheckFailure> {
+    if const { S::Kind::COUNT == 0 } {
+        return Ok(*place);
+    }
+    let nearest = State::projected(system, place.t, place.q, place.v).map_err(|error| check.step(error))?;
+    Ok(Place { q: place.q + nearest.moved_q, v: place.v + nearest.moved_v, ..*place })
+}
+
+/// The samples near the trajectory from a place, with constraints most of them off the constraints.
 ///
 /// # Errors
 /// As [`SampledMotion::from`].
@@ -175,20 +192,7 @@ pub(super) fn samples<const N: usize, S: MotionChecked<N>>(
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    let mass = |at: &Motion<N>| system.point(at.t, &at.q, &at.v).mass.dense();
-    Ok(SampledMotion::from(system, place, check)?.samples(system, mass, Sample::has_values))
-}
-
-/// The samples near the trajectory from a place on the constraints, most of them off the constraints.
-///
-/// # Errors
-/// As [`SampledMotion::from`].
-pub(super) fn constrained_samples<const N: usize, S: ConstrainedChecked<N>>(
-    system: &S,
-    place: &Place<N>,
-    check: &Comparison,
-) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    let mass = |at: &Motion<N>| Constrained::point(system, at.t, &at.q, &at.v).mass.dense();
+    let mass = |at: &Trajectory<N>| system.point(at.t, &at.q, &at.v).mass.dense();
     let has_values = |Sample { system, t, q, v, h }: &Sample<S, N>| {
         Sample { system: Extended(*system), t: *t, q: *q, v: *v, h: *h }.has_values()
     };
@@ -204,7 +208,7 @@ pub(super) fn step_samples<const N: usize, S: Checked<N>>(
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    let mass = |at: &Motion<N>| system.point(at.t, &at.q, &at.v).mass.dense();
+    let mass = |at: &Trajectory<N>| system.point(at.t, &at.q, &at.v).mass.dense();
     Ok(SampledMotion::from(system, place, check)?.samples(system, mass, Sample::has_step))
 }
 
@@ -217,7 +221,7 @@ fn range<const N: usize>(mut vectors: impl Iterator<Item = SVector<f64, N>>) -> 
 /// The sample near a state: part 1 is the largest distance, part 0 the state itself.
 fn beside<const N: usize, S: Lagrangian<N> + Parameters + Copy>(
     system: &S,
-    state: &Motion<N>,
+    state: &Trajectory<N>,
     h: f64,
     [extent_q, extent_v]: &[SVector<f64, N>; 2],
     part: f64,

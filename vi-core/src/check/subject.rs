@@ -1,8 +1,7 @@
 //! Inputs of checks: a system over any number type, and a place at which it is well behaved.
 
 use super::bounded::Bounded;
-use crate::collocation::Collocation;
-use crate::constrained::{Constrained, ConvertibleConstrained};
+
 use crate::lagrangian::Parameters;
 use crate::real::dual::Dual;
 use crate::stepping::{Convertible, Discretized, EnergyStepping};
@@ -27,14 +26,9 @@ pub struct Place<const N: usize> {
 }
 
 /// A system with checkable equations of motion. Every generated system is one.
-pub trait MotionChecked<const N: usize>: Collocation<N> + Convertible<N> + Parameters {}
+pub trait MotionChecked<const N: usize>: Convertible<N> + Parameters {}
 
-impl<const N: usize, S: Collocation<N> + Convertible<N> + Parameters> MotionChecked<N> for S {}
-
-/// A system with constraints with checkable equations of motion. Every generated system with constraints is one.
-pub trait ConstrainedChecked<const N: usize>: Constrained<N> + ConvertibleConstrained<N> + Parameters {}
-
-impl<const N: usize, S: Constrained<N> + ConvertibleConstrained<N> + Parameters> ConstrainedChecked<N> for S {}
+impl<const N: usize, S: Convertible<N> + Parameters> MotionChecked<N> for S {}
 
 /// A system with checkable fixed steps. Every generated system with a rule is one.
 pub trait Checked<const N: usize>: MotionChecked<N> + Discretized<N> {}

@@ -14,10 +14,11 @@
 //! δ = −W⁻¹ Aᵀ (A W⁻¹ Aᵀ + λ)⁻¹ g
 //! ```
 
-use super::{Constrained, ConvertibleConstrained, Projected, Projection};
+use super::{Projected, Projection};
 use crate::error::StepError;
 use crate::linear::Rectangular;
 use crate::state::{Numbers, State};
+use crate::stepping::Convertible;
 use crate::vector::weights;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector, SVector};
@@ -46,7 +47,7 @@ impl<const N: usize> State<N> {
     /// [`StepError::NotAssembled`] if the residuals cannot shrink further, with the constraint that is farthest from
     /// being satisfied; [`StepError::Singular`] if the constraints are redundant at the guess, as in a linkage that is
     /// flat; [`StepError::NonFinite`].
-    pub fn assembled<S: Constrained<N> + ConvertibleConstrained<N>>(
+    pub fn assembled<S: Convertible<N>>(
         system: &S,
         t: f64,
         q: impl Numbers<N>,
@@ -56,7 +57,7 @@ impl<const N: usize> State<N> {
     }
 }
 
-impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projection<'_, S, N> {
+impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
     /// As [`State::assembled`], with the held coordinates.
     ///
     /// # Errors

@@ -7,11 +7,13 @@ use super::equations::{Rows, stage_velocity};
 use super::guess::from_node;
 use super::reduced;
 use super::solve::{self, Solution, Solved, Workspace};
-use super::{Constrained, ConvertibleConstrained, bordered, diagonal};
+use super::{bordered, diagonal};
 use crate::error::StepError;
 use crate::gauss::branch::{self, EQUAL, FAST, NEAR, Shorter, StepsFromNode, distance, is_resolved};
 use crate::gauss::stages::{Stages, set};
+use crate::kind::Multipliers;
 use crate::node::Node;
+use crate::stepping::Convertible;
 use crate::vector::weights;
 use alloc::vec::Vec;
 use nalgebra::SVector;
@@ -29,9 +31,9 @@ pub(crate) fn step<S, const N: usize, const STAGES: usize>(
     (node, h, sign, is_next): (&Node<N>, f64, i8, bool),
     u: &mut Vec<f64>,
     workspace: &mut Workspace,
-) -> Result<Solved<N, S::Multipliers>, StepError>
+) -> Result<Solved<N, Multipliers<S, N>>, StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let of = (node, h, sign);
     let reduced = workspace.reduced.as_mut().filter(|_| S::POINT_MASSES && sign > 0);
@@ -63,7 +65,7 @@ pub(crate) fn unprojected<S, const N: usize, const STAGES: usize>(
     is_factored: bool,
 ) -> Result<Solution<Rows<S, N, STAGES>>, StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let (solution, contraction) = solve::unprojected::<S, N, STAGES>(system, of, u, workspace, is_factored)?;
     if contraction <= FAST {
@@ -88,7 +90,7 @@ fn continued<S, const N: usize, const STAGES: usize>(
     workspace: &mut Workspace,
 ) -> Result<Option<Vec<f64>>, StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let taken = velocities::<N, STAGES>(u);
     let flow = node.state().raw_flow(system)?;
@@ -137,7 +139,7 @@ struct Unknowns {
 
 impl<S, const N: usize, const STAGES: usize> StepsFrom<'_, S, N, STAGES>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     fn solved(&mut self, part: f64, mut unknowns: Vec<f64>) -> Option<Unknowns> {
         let Self { system, node, h, sign, workspace, .. } = self;
@@ -158,7 +160,7 @@ where
 
 impl<S, const N: usize, const STAGES: usize> StepsFromNode for StepsFrom<'_, S, N, STAGES>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     type Solution = Unknowns;
 

@@ -13,12 +13,14 @@
 //! at τ = 0. The second line needs no inverse of M, which may be singular across the constraints. π leaves the
 //! constraint, so D_s depends on L beside it.
 
-use super::{Constrained, ConvertibleConstrained, accelerations, bordered};
+use super::{accelerations, bordered};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::linear::{Matrix, Rectangular};
+use crate::motion::Motion;
 use crate::real::Series;
 use crate::state::State;
+use crate::stepping::Convertible;
 
 /// The step density `D_s` of s = STAGES stages of a system with constraints at a state, in units of energy over time to
 /// the power 2s. For small h an energy-preserving step exists while it keeps its sign.
@@ -27,7 +29,7 @@ use crate::state::State;
 /// As [`State::velocity`]; [`StepError::NonFinite`] if D_s has no value.
 pub fn step_density<S, const N: usize, const STAGES: usize>(system: &S, state: &State<N>) -> Result<f64, StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     const { assert!(STAGES >= 1 && STAGES <= 3, "an energy-preserving step has 1 to 3 stages") };
     density(system, state, STAGES)
@@ -36,7 +38,7 @@ where
 /// The step density of this many stages. A runtime argument, so that one copy serves all.
 fn density<S, const N: usize>(system: &S, state: &State<N>, stages: usize) -> Result<f64, StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let series = system.convert::<Series>();
     let t = Series::variable(state.t);

@@ -9,18 +9,18 @@
 //!
 //! Constraints do work if they move: `a = g_t`, or the part of a nonholonomic constraint without velocities.
 
-use super::Constrained;
 use super::equations::{impulses, places, stage_velocity};
 use crate::gauss::energies::Energies;
 use crate::gauss::lobatto::Lobatto;
 use crate::gauss::tableau::Tableau;
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::Real;
 use nalgebra::SVector;
 
 /// The energies relative to `base` for the step of length h from `node` with these unknowns. E1 and the work lack the
 /// impulse of the projection.
-pub(crate) fn energies<S: Constrained<N, T>, const N: usize, const STAGES: usize, T: Real>(
+pub(crate) fn energies<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real>(
     system: &S,
     (node, h): (&Node<N, T>, T),
     u: &[T],
@@ -53,7 +53,7 @@ pub(crate) fn energies<S: Constrained<N, T>, const N: usize, const STAGES: usize
 }
 
 /// `λ·a` of impulses at a place: the energy that they take from the system.
-pub(crate) fn power_of<S: Constrained<N, T>, const N: usize, T: Real>(
+pub(crate) fn power_of<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     (t, q): (T, &SVector<T, N>),
     impulses: &[T],

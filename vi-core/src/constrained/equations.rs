@@ -16,10 +16,12 @@
 // One index addresses several arrays.
 #![allow(clippy::needless_range_loop)]
 
-use super::{Constrained, diagonal, inertia, reaction_of, reaction_terms, spread};
+use super::{diagonal, inertia, reaction_of, reaction_terms, spread};
 use crate::gauss::lobatto::Lobatto;
 use crate::gauss::tableau::Tableau;
+use crate::kind::{Gradients, Multipliers};
 use crate::linear::{Fronts, Matrix, Rectangular, Row, determinant_sign, scale};
+use crate::motion::Motion;
 use crate::newton::roundings;
 use crate::node::Node;
 use crate::real::{Real, Rounded};
@@ -53,14 +55,14 @@ fn part_of_node<const S: usize>(j: usize, i: usize) -> f64 {
 pub(crate) type Place<const N: usize, T> = (T, SVector<T, N>);
 
 /// The equations at some unknowns.
-pub(crate) struct Rows<S: Constrained<N, T>, const N: usize, const STAGES: usize, T: Real = f64> {
+pub(crate) struct Rows<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real = f64> {
     momentum: [SVector<T, N>; STAGES],
-    constraint: [S::Multipliers; STAGES],
+    constraint: [Multipliers<S, N, T>; STAGES],
     /// The diagonal of M at the first stage.
     mass: SVector<T, N>,
     /// The terms of each row.
     momentum_scale: [SVector<T, N>; STAGES],
-    constraint_scale: [S::Multipliers; STAGES],
+    constraint_scale: [Multipliers<S, N, T>; STAGES],
     /// `Σ b_i V_i`.
     pub(crate) velocity: SVector<T, N>,
     /// `h Σ b_i F_i + Σ A_jᵀ λ_j`.
@@ -69,8 +71,8 @@ pub(crate) struct Rows<S: Constrained<N, T>, const N: usize, const STAGES: usize
     /// The Lobatto nodes 1 … s.
     nodes: [Place<N, T>; STAGES],
     /// A at the Lobatto nodes 0 … s.
-    first: S::Gradients,
-    gradients: [S::Gradients; STAGES],
+    first: Gradients<S, N, T>,
+    gradients: [Gradients<S, N, T>; STAGES],
 }
 
 /// Times and coordinates of the stages, and of the Lobatto nodes 1 … s; the mean velocity.
@@ -99,7 +101,7 @@ pub(crate) fn places<const N: usize, const STAGES: usize, T: Real>(
     (stages, nodes, velocity)
 }
 
-impl<S: Constrained<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, STAGES, T> {
+impl<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, STAGES, T> {
     /// Evaluates the equations of the step of length h from `node`.
     pub(crate) fn at(system: &S, node: &Node<N, T>, h: T, u: &[T]) -> Self {
         let start = system.constraint_gradients(node.t, &node.q);
@@ -110,7 +112,7 @@ impl<S: Constrained<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S,
     pub(crate) fn from_start(
         system: &S,
         (node, h): (&Node<N, T>, T),
-        (first, rest): &(S::Gradients, S::Multipliers),
+        (first, rest): &(Gradients<S, N, T>, Multipliers<S, N, T>),
         u: &[T],
     ) -> Self {
         let Tableau { b, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
@@ -237,19 +239,19 @@ impl<S: Constrained<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S,
     }
 
     /// A at the end of the step.
-    pub(crate) fn end_gradients(&self) -> &S::Gradients {
+    pub(crate) fn end_gradients(&self) -> &Gradients<S, N, T> {
         &self.gradients[STAGES - 1]
     }
 }
 
-impl<S: Constrained<N, Rounded>, const N: usize, const STAGES: usize> Rows<S, N, STAGES, Rounded> {
+impl<S: Motion<N, Rounded>, const N: usize, const STAGES: usize> Rows<S, N, STAGES, Rounded> {
     /// The largest row over its rounding-error bound, by running error analysis.
     pub(crate) fn bounded_residual(&self) -> f64 {
         self.largest(|row, _| roundings(row.to_f64(), row.ulps()))
     }
 }
 
-impl<S: Constrained<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
+impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
     /// Whether no gradient turns far: a shorter step would have a determinant of the same sign.
     pub(crate) fn is_straight(&self) -> bool {
         self.first.rows().zip(self.end_gradients().rows()).all(|(before, after)| {
@@ -392,7 +394,7 @@ pub(crate) fn expected_sign(
 /// ```
 ///
 /// with the energies En_i at the stages.
-pub(crate) fn discrete_energy<S: Constrained<N>, const N: usize, const STAGES: usize>(
+pub(crate) fn discrete_energy<S: Motion<N>, const N: usize, const STAGES: usize>(
     system: &S,
     (node, h): (&Node<N>, f64),
     u: &[f64],

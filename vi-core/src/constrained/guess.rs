@@ -1,12 +1,13 @@
 //! The initial guess of a step, extrapolated from the unknowns of the last steps, as in `crate::predictor`, or from the
 //! node alone. The number of constraints is no constant of a type, so that the unknowns are a list.
 
+use super::accelerations;
 use super::equations::unknowns;
-use super::{Constrained, accelerations};
 use crate::error::StepError;
 use crate::gauss::lobatto::Lobatto;
 use crate::gauss::tableau::Tableau;
 use crate::linear::Bordered;
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::predictor::weights;
 use crate::vector::worse;
@@ -83,7 +84,7 @@ impl Extrapolation {
 ///
 /// # Errors
 /// [`StepError::Singular`] and [`StepError::NonFinite`].
-pub(crate) fn from_node<S: Constrained<N>, const N: usize, const STAGES: usize>(
+pub(crate) fn from_node<S: Motion<N>, const N: usize, const STAGES: usize>(
     system: &S,
     (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
     bordered: &mut Bordered,

@@ -4,15 +4,17 @@
 //! of all. Every step measures the dropped constraints at its end, because elsewhere they may become independent.
 
 use super::start::independent_rows;
-use super::{Constrained, ConvertibleConstrained, constrained_acceleration, constrained_flow};
-use crate::collocation::{Point, PointDerivatives};
+use super::{constrained_acceleration, constrained_flow};
 use crate::error::StepError;
 use crate::forward;
+use crate::kind::{Gradients, Multipliers, ReactionMatrix};
 use crate::lagrangian::{Flow, Lagrangian, Parameters};
-use crate::linear::{Block, Bordered, Rectangular};
+use crate::linear::{Bordered, Rectangular};
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::Real;
 use crate::state::{Numbers, State};
+use crate::stepping::Convertible;
 use alloc::vec::Vec;
 use nalgebra::SVector;
 
@@ -40,7 +42,7 @@ impl<S> Independent<S> {
     /// [`StepError::InvalidInput`] for more than 512 constraints, [`StepError::Singular`], [`StepError::NonFinite`].
     pub fn at<const N: usize>(system: S, t: f64, q: impl Numbers<N>) -> Result<Self, StepError>
     where
-        S: Constrained<N>,
+        S: Motion<N>,
     {
         let of = S::CONSTRAINTS.len();
         if of > 64 * WORDS {
@@ -69,7 +71,7 @@ impl<S> Independent<S> {
         &self.system
     }
 
-    /// Whether the constraint of this index in [`Constrained::CONSTRAINTS`] is dropped.
+    /// Whether the constraint of this index in [`Motion::CONSTRAINTS`] is dropped.
     pub fn is_dropped(&self, constraint: usize) -> bool {
         self.dropped.get(constraint / 64).is_some_and(|word| word >> (constraint % 64) & 1 == 1)
     }
@@ -77,7 +79,7 @@ impl<S> Independent<S> {
     /// The names of the dropped constraints.
     pub fn dropped_names<const N: usize>(&self) -> impl Iterator<Item = &'static str>
     where
-        S: Constrained<N>,
+        S: Motion<N>,
     {
         let names = S::CONSTRAINTS.iter().enumerate();
         names.filter(|(constraint, _)| self.is_dropped(*constraint)).map(|(_, name)| *name)
@@ -90,7 +92,7 @@ impl<S> Independent<S> {
     /// As [`State::velocity`].
     pub fn dropped<const N: usize>(&self, state: &State<N>) -> Result<Vec<(&'static str, f64)>, StepError>
     where
-        S: Constrained<N>,
+        S: Motion<N>,
     {
         let v = state.velocity(self)?;
         Ok(self.measured(state.t, &state.q, &v).map(|(r, value, _)| (S::CONSTRAINTS[r], value)).collect())
@@ -104,7 +106,7 @@ impl<S> Independent<S> {
         v: &SVector<T, N>,
     ) -> impl Iterator<Item = (usize, T, T)>
     where
-        S: Constrained<N, T>,
+        S: Motion<N, T>,
     {
         let values = self.system.constraints(t, q);
         let (gradients, rates) = self.system.constraint_gradients(t, q);
@@ -123,10 +125,10 @@ impl<S> Independent<S> {
     /// Removes the rows of dropped constraints.
     fn without<const N: usize, T: Real>(
         &self,
-        mut rows: (S::Gradients, S::Multipliers),
-    ) -> (S::Gradients, S::Multipliers)
+        mut rows: (Gradients<S, N, T>, Multipliers<S, N, T>),
+    ) -> (Gradients<S, N, T>, Multipliers<S, N, T>)
     where
-        S: Constrained<N, T>,
+        S: Motion<N, T>,
     {
         for r in (0..S::CONSTRAINTS.len()).filter(|r| self.is_dropped(*r)) {
             rows.0.row_mut(r).1.fill(T::zero());
@@ -136,7 +138,7 @@ impl<S> Independent<S> {
     }
 }
 
-impl<const N: usize, T: Real, S: Constrained<N, T>> Lagrangian<N, T> for Independent<S> {
+impl<const N: usize, T: Real, S: Motion<N, T>> Lagrangian<N, T> for Independent<S> {
     forward! { [N T S] self => &self.system; [] lagrangian_constants non_finite undefined }
     forward! { [N T S] self => &self.system; [#[inline]] lagrangian energy momentum force }
 
@@ -149,33 +151,10 @@ impl<const N: usize, T: Real, S: Constrained<N, T>> Lagrangian<N, T> for Indepen
     }
 }
 
-impl<const N: usize, T: Real, S: Constrained<N, T>> Constrained<N, T> for Independent<S> {
-    type Mass = S::Mass;
-    type PointMatrix = S::PointMatrix;
-    const CONSTANT_MASS: bool = S::CONSTANT_MASS;
-    const CONSTRAINTS: &'static [&'static str] = S::CONSTRAINTS;
-    const HOLONOMIC: usize = S::HOLONOMIC;
-    type Multipliers = S::Multipliers;
-    type Gradients = S::Gradients;
-    type ReactionMatrix = S::ReactionMatrix;
-    const BLOCKS: &'static [Block] = S::BLOCKS;
+impl<const N: usize, T: Real, S: Motion<N, T>> Motion<N, T> for Independent<S> {
+    forward! { [N T S] self => &self.system; [] motion_types point point_derivatives power applied constraints }
 
-    fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass> {
-        self.system.point(t, q, v)
-    }
-    fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix> {
-        self.system.point_derivatives(t, q, v)
-    }
-    fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
-        self.system.power(t, q, v)
-    }
-    fn applied(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
-        self.system.applied(t, q, v)
-    }
-    fn constraints(&self, t: T, q: &SVector<T, N>) -> Self::Multipliers {
-        self.system.constraints(t, q)
-    }
-    fn constraint_gradients(&self, t: T, q: &SVector<T, N>) -> (Self::Gradients, Self::Multipliers) {
+    fn constraint_gradients(&self, t: T, q: &SVector<T, N>) -> (Gradients<Self, N, T>, Multipliers<Self, N, T>) {
         self.without(self.system.constraint_gradients(t, q))
     }
     fn constraint_rate_derivatives(
@@ -183,10 +162,15 @@ impl<const N: usize, T: Real, S: Constrained<N, T>> Constrained<N, T> for Indepe
         t: T,
         q: &SVector<T, N>,
         v: &SVector<T, N>,
-    ) -> (Self::Gradients, Self::Multipliers) {
+    ) -> (Gradients<Self, N, T>, Multipliers<Self, N, T>) {
         self.without(self.system.constraint_rate_derivatives(t, q, v))
     }
-    fn reaction_derivatives(&self, t: T, q: &SVector<T, N>, multipliers: &Self::Multipliers) -> Self::ReactionMatrix {
+    fn reaction_derivatives(
+        &self,
+        t: T,
+        q: &SVector<T, N>,
+        multipliers: &Multipliers<Self, N, T>,
+    ) -> ReactionMatrix<Self, N, T> {
         let mut kept = *multipliers;
         for r in (0..S::CONSTRAINTS.len()).filter(|r| self.is_dropped(*r)) {
             kept.as_mut()[r] = T::zero();
@@ -204,7 +188,7 @@ impl<const N: usize, T: Real, S: Constrained<N, T>> Constrained<N, T> for Indepe
     }
 }
 
-impl<const N: usize, S: ConvertibleConstrained<N>> ConvertibleConstrained<N> for Independent<S> {
+impl<const N: usize, S: Convertible<N>> Convertible<N> for Independent<S> {
     type In<T: Real> = Independent<S::In<T>>;
 
     fn convert<T: Real>(&self) -> Self::In<T> {

@@ -6,14 +6,16 @@ use super::energies::{energies, power_of};
 use super::equations::{Rows, impulses, stage_velocity, unknowns};
 use super::guess::{Extrapolation, from_node};
 use super::solve::{Solution, Solved, Workspace, projected};
-use super::{Constrained, ConvertibleConstrained, bordered, connected, density};
+use super::{bordered, connected, density};
 use crate::error::StepError;
 use crate::gauss::density::power;
+use crate::kind::Multipliers;
 use crate::method::length::Trial;
 use crate::method::preserving::{Ended, NodeEnergy, StepsOfAnyLength, excess_of, measured};
 use crate::node::Node;
 use crate::real::Rounded;
 use crate::state::State;
+use crate::stepping::Convertible;
 use alloc::vec::Vec;
 use core::cell::RefCell;
 use nalgebra::SVector;
@@ -83,13 +85,13 @@ pub struct TakenLength<const N: usize, const STAGES: usize, M> {
 
 impl<S, const N: usize> ConstrainedLengths<'_, S, N>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     /// Writes the guess of the step of length h to `u`.
     fn guess<const STAGES: usize>(
         &self,
         h: f64,
-        beside: Option<&TriedLength<N, STAGES, S::Multipliers>>,
+        beside: Option<&TriedLength<N, STAGES, Multipliers<S, N>>>,
         u: &mut Vec<f64>,
     ) {
         let count = unknowns::<N, STAGES>(S::CONSTRAINTS.len());
@@ -134,7 +136,7 @@ where
         (node, h, shift): (&Node<N>, f64, f64),
         u: &[f64],
         solution: &Solution<Rows<S, N, STAGES>>,
-    ) -> Result<TriedLength<N, STAGES, S::Multipliers>, StepError> {
+    ) -> Result<TriedLength<N, STAGES, Multipliers<S, N>>, StepError> {
         let energies = energies::<S, N, STAGES, f64>(self.system, (node, h), u, node.energy);
         let residual = energies.start - node.energy_low - power::<STAGES>(h) * shift;
         if !residual.is_finite() {
@@ -160,10 +162,10 @@ where
 
 impl<S, const N: usize, const STAGES: usize> StepsOfAnyLength<N, STAGES> for ConstrainedLengths<'_, S, N>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
-    type Trial = TriedLength<N, STAGES, S::Multipliers>;
-    type Taken = TakenLength<N, STAGES, S::Multipliers>;
+    type Trial = TriedLength<N, STAGES, Multipliers<S, N>>;
+    type Taken = TakenLength<N, STAGES, Multipliers<S, N>>;
 
     fn tried(
         &self,

@@ -49,7 +49,7 @@ mod projection;
 mod reduced;
 pub(crate) mod solve;
 pub(crate) mod start;
-mod variation;
+pub(crate) mod variation;
 
 pub use density::step_density;
 pub(crate) use equations::{discrete_energy, impulses, unknowns};
@@ -58,155 +58,15 @@ pub use independent::Independent;
 pub(crate) use motion::{accelerations, unsolvable};
 pub use motion::{constrained_acceleration, constrained_flow};
 pub use projection::{Projected, Projection};
-pub(crate) use variation::velocity_along;
 
-use crate::collocation::{Point, PointDerivatives};
-use crate::lagrangian::{Lagrangian, Parameters};
-use crate::linear::{Block, Bordered, Matrix, Rectangular, Row, Unsolvable};
+use crate::kind::Gradients;
+use crate::linear::{Bordered, Matrix, Rectangular, Row, Unsolvable};
+use crate::motion::Motion;
 use crate::real::Real;
-use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
-/// Mechanics with constraints; see the [module](self). A system with constraints implements this instead of
-/// [`Collocation`](crate::collocation::Collocation) and [`FixedStepping`](crate::stepping::FixedStepping), so that no
-/// method that ignores constraints accepts it.
-///
-/// Systems are small and `Copy`. Times, coordinates and velocities are in the units of the system.
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` has no constraints",
-    label = "this system declares no constraint",
-    note = "`Gauss` and `FixedStep` integrate a system without constraints",
-    note = "write a constraint in its `lagrangian!`, for example `constraint rod = x^2 + y^2 - l^2;`"
-)]
-pub trait Constrained<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
-    /// Matrix type of M, with its zero pattern.
-    type Mass: Matrix<N, T>;
-    /// Matrix type of [`PointDerivatives`], with the joint zero pattern of all its matrices.
-    type PointMatrix: Matrix<N, T>;
-    /// Whether M depends on the parameters only.
-    const CONSTANT_MASS: bool;
-    /// Whether L_v is M v with a constant diagonal M, and `L_q + f` depends on t alone: point masses in a uniform field.
-    const POINT_MASSES: bool = false;
-    /// Names of the constraints as declared, entries of arrays as `link[3]`. Holonomic constraints come first.
-    const CONSTRAINTS: &'static [&'static str];
-    /// The number of holonomic constraints.
-    const HOLONOMIC: usize;
-    /// One number for each constraint: `[T; K]`.
-    type Multipliers: Copy + Debug + PartialEq + Send + Sync + AsRef<[T]> + AsMut<[T]>;
-    /// The rows of A and of `(A v + a)_q`: [`Sparse`](crate::linear::Sparse), or dense as `[SVector<T, N>; K]`.
-    type Gradients: Rectangular<N, T> + Copy + Debug + PartialEq + Send + Sync;
-    /// The rows of `∂(Aᵀλ)/∂q`: `Sparse`, or dense as `[SVector<T, N>; N]`.
-    type ReactionMatrix: Rectangular<N, T> + Copy + Debug + PartialEq + Send + Sync;
-    /// The order of elimination of coordinates and multipliers, for all nonzeros of the matrices of this trait together;
-    /// without blocks, dense elimination. Multiplier r is unknown N + r.
-    const BLOCKS: &'static [Block] = &[];
-
-    /// Evaluates `L_v`, `L_q + f` and M at a point.
-    fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
-    /// Evaluates their derivatives at a point.
-    fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix>;
-    /// `f·v − L_t`, the rate of change of the energy without the power `−Λ·a` of the constraints.
-    fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
-    /// `L_q + f − L_vt − L_vq v`: M times the acceleration without the reaction.
-    fn applied(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N>;
-    /// g(t, q) of the holonomic constraints; zero for the others.
-    fn constraints(&self, t: T, q: &SVector<T, N>) -> Self::Multipliers;
-    /// A and a: `g_q` and `g_t` of a holonomic constraint; the coefficients of v and the rest of a nonholonomic one.
-    fn constraint_gradients(&self, t: T, q: &SVector<T, N>) -> (Self::Gradients, Self::Multipliers);
-    /// `(A v + a)_q`, one row for each constraint, and `(A v + a)_t`.
-    fn constraint_rate_derivatives(
-        &self,
-        t: T,
-        q: &SVector<T, N>,
-        v: &SVector<T, N>,
-    ) -> (Self::Gradients, Self::Multipliers);
-    /// `∂(Aᵀλ)/∂q` for constant multipliers λ. Row i, column j is the derivative of entry i with respect to coordinate
-    /// j.
-    fn reaction_derivatives(&self, t: T, q: &SVector<T, N>, multipliers: &Self::Multipliers) -> Self::ReactionMatrix;
-    /// Whether the constraint of this index follows from the others and has no multiplier: its gradients are then zero.
-    /// Only in [`Independent`].
-    fn is_dropped(&self, _constraint: usize) -> bool {
-        false
-    }
-    /// The first dropped constraint that does not hold at a node, by its index, with its value.
-    fn broken(&self, _t: T, _q: &SVector<T, N>, _v: &SVector<T, N>) -> Option<(usize, T)> {
-        None
-    }
-}
-
-/// A system with constraints that evaluates in other number types. Every generated system with constraints does.
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` has no constraints over other number types",
-    note = "every `lagrangian!` with a `constraint` implements it"
-)]
-pub trait ConvertibleConstrained<const N: usize> {
-    /// The same system over the numbers T.
-    type In<T: Real>: Constrained<N, T> + Parameters<T>;
-
-    /// Converts the system; every parameter is rounded to T.
-    fn convert<T: Real>(&self) -> Self::In<T>;
-}
-
-/// A reference to a system with constraints is one.
-impl<const N: usize, T: Real, S: Constrained<N, T>> Constrained<N, T> for &S {
-    type Mass = S::Mass;
-    type PointMatrix = S::PointMatrix;
-    const CONSTANT_MASS: bool = S::CONSTANT_MASS;
-    const POINT_MASSES: bool = S::POINT_MASSES;
-    const CONSTRAINTS: &'static [&'static str] = S::CONSTRAINTS;
-    const HOLONOMIC: usize = S::HOLONOMIC;
-    type Multipliers = S::Multipliers;
-    type Gradients = S::Gradients;
-    type ReactionMatrix = S::ReactionMatrix;
-    const BLOCKS: &'static [Block] = S::BLOCKS;
-
-    fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass> {
-        S::point(self, t, q, v)
-    }
-    fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix> {
-        S::point_derivatives(self, t, q, v)
-    }
-    fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
-        S::power(self, t, q, v)
-    }
-    fn applied(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
-        S::applied(self, t, q, v)
-    }
-    fn constraints(&self, t: T, q: &SVector<T, N>) -> Self::Multipliers {
-        S::constraints(self, t, q)
-    }
-    fn constraint_gradients(&self, t: T, q: &SVector<T, N>) -> (Self::Gradients, Self::Multipliers) {
-        S::constraint_gradients(self, t, q)
-    }
-    fn constraint_rate_derivatives(
-        &self,
-        t: T,
-        q: &SVector<T, N>,
-        v: &SVector<T, N>,
-    ) -> (Self::Gradients, Self::Multipliers) {
-        S::constraint_rate_derivatives(self, t, q, v)
-    }
-    fn reaction_derivatives(&self, t: T, q: &SVector<T, N>, multipliers: &Self::Multipliers) -> Self::ReactionMatrix {
-        S::reaction_derivatives(self, t, q, multipliers)
-    }
-    fn is_dropped(&self, constraint: usize) -> bool {
-        S::is_dropped(self, constraint)
-    }
-    fn broken(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<(usize, T)> {
-        S::broken(self, t, q, v)
-    }
-}
-
-impl<const N: usize, S: ConvertibleConstrained<N>> ConvertibleConstrained<N> for &S {
-    type In<T: Real> = S::In<T>;
-
-    fn convert<T: Real>(&self) -> Self::In<T> {
-        S::convert(self)
-    }
-}
-
 /// The bordered mass matrix of a system, in its blocks.
-pub(crate) fn bordered<S: Constrained<N, T>, const N: usize, T: Real>() -> Bordered<T> {
+pub(crate) fn bordered<S: Motion<N, T>, const N: usize, T: Real>() -> Bordered<T> {
     Bordered::new(N, S::CONSTRAINTS.len(), S::BLOCKS)
 }
 
@@ -214,11 +74,11 @@ pub(crate) fn bordered<S: Constrained<N, T>, const N: usize, T: Real>() -> Borde
 ///
 /// # Errors
 /// As [`Bordered::factor`].
-pub(crate) fn border<S: Constrained<N, T>, const N: usize, T: Real>(
+pub(crate) fn border<S: Motion<N, T>, const N: usize, T: Real>(
     bordered: &mut Bordered<T>,
     system: &S,
     mass: &impl Matrix<N, T>,
-    gradients: &S::Gradients,
+    gradients: &Gradients<S, N, T>,
 ) -> Result<(), Unsolvable> {
     bordered.factor_without(mass, gradients, |r| system.is_dropped(r))
 }

@@ -6,10 +6,12 @@
 //! L_v(t, q, v) = p + Aᵀμ        A v + a = 0
 //! ```
 
-use super::{Constrained, border, bordered, diagonal, inertia, is_reduced, reaction_of, reaction_terms, spread};
+use super::{border, bordered, diagonal, inertia, is_reduced, reaction_of, reaction_terms, spread};
 use crate::error::{BORDERED_MASS, Residuals, StepError};
+use crate::kind::Multipliers;
 use crate::lagrangian::Flow;
 use crate::linear::{Bordered, Rectangular, Unsolvable};
+use crate::motion::Motion;
 use crate::newton::{FLOOR, roundings};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
@@ -53,11 +55,11 @@ pub(crate) fn unsolvable(failure: Unsolvable, t: f64) -> StepError {
 ///
 /// # Errors
 /// [`StepError::Singular`] and [`StepError::NonFinite`].
-pub(crate) fn accelerations<S: Constrained<N, T>, const N: usize, T: Real>(
+pub(crate) fn accelerations<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
     bordered: &mut Bordered<T>,
-) -> Result<(SVector<T, N>, S::Multipliers), StepError> {
+) -> Result<(SVector<T, N>, Multipliers<S, N, T>), StepError> {
     let (gradients, _) = system.constraint_gradients(t, q);
     let (rates_dq, mut multipliers) = system.constraint_rate_derivatives(t, q, v);
     let factored = border(bordered, system, &system.point(t, q, v).mass, &gradients);
@@ -79,16 +81,16 @@ pub(crate) fn accelerations<S: Constrained<N, T>, const N: usize, T: Real>(
 ///
 /// # Errors
 /// [`StepError::Singular`], [`StepError::NonFinite`], and [`StepError::NotConverged`] with h = 0.
-pub(crate) fn velocity<S: Constrained<N, T>, const N: usize, T: Real>(
+pub(crate) fn velocity<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     (t, q, p): (T, &SVector<T, N>, &SVector<T, N>),
     guess: &SVector<T, N>,
     bordered: &mut Bordered<T>,
-) -> Result<Velocity<N, T, S::Multipliers>, StepError> {
+) -> Result<Velocity<N, T, Multipliers<S, N, T>>, StepError> {
     let (gradients, offsets) = system.constraint_gradients(t, q);
     let mut zero = offsets;
     zero.as_mut().fill(T::zero());
-    let at = |v: SVector<T, N>, mu: S::Multipliers| {
+    let at = |v: SVector<T, N>, mu: Multipliers<S, N, T>| {
         let point = system.point(t, q, &v);
         let reaction = reaction_of(&gradients, mu.as_ref());
         let of_reaction = reaction_terms(&gradients, mu.as_ref());
@@ -165,7 +167,7 @@ pub(crate) fn velocity<S: Constrained<N, T>, const N: usize, T: Real>(
 /// [`StepError::InconsistentStart`] if the coordinates or the velocities do not satisfy a constraint, to nine digits of
 /// its terms; [`StepError::DroppedConstraint`] for a dropped one; [`StepError::Singular`] if the bordered mass matrix is
 /// singular; [`StepError::NonFinite`] if a derivative is not finite.
-pub fn constrained_acceleration<S: Constrained<N, T>, const N: usize, T: Real>(
+pub fn constrained_acceleration<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     t: T,
     q: &SVector<T, N>,
@@ -179,7 +181,7 @@ pub fn constrained_acceleration<S: Constrained<N, T>, const N: usize, T: Real>(
 ///
 /// # Errors
 /// [`StepError::InconsistentStart`], [`StepError::DroppedConstraint`].
-fn satisfied<S: Constrained<N, T>, const N: usize, T: Real>(
+fn satisfied<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
 ) -> Result<(), StepError> {
@@ -220,7 +222,7 @@ fn satisfied<S: Constrained<N, T>, const N: usize, T: Real>(
 ///
 /// # Errors
 /// As [`constrained_acceleration`]; [`StepError::NotConverged`] if no velocity has these momenta.
-pub fn constrained_flow<S: Constrained<N, T>, const N: usize, T: Real>(
+pub fn constrained_flow<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     t: T,
     q: &SVector<T, N>,
@@ -240,11 +242,11 @@ pub fn constrained_flow<S: Constrained<N, T>, const N: usize, T: Real>(
 ///
 /// # Errors
 /// Those of the second guess.
-pub(crate) fn from_rest<S: Constrained<N, T>, const N: usize, T: Real>(
+pub(crate) fn from_rest<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     (t, q, p): (T, &SVector<T, N>, &SVector<T, N>),
     bordered: &mut Bordered<T>,
-) -> Result<Velocity<N, T, S::Multipliers>, StepError> {
+) -> Result<Velocity<N, T, Multipliers<S, N, T>>, StepError> {
     velocity(system, (t, q, p), &SVector::zeros(), bordered).or_else(|failure| match failure {
         StepError::Singular { .. } => Err(failure),
         _ => velocity(system, (t, q, p), p, bordered),
@@ -253,12 +255,12 @@ pub(crate) fn from_rest<S: Constrained<N, T>, const N: usize, T: Real>(
 
 impl<const N: usize, T: Scalar> State<N, T> {
     /// The multipliers Λ of the motion at this state, one for each constraint, in the order of
-    /// [`Constrained::CONSTRAINTS`]. They are as accurate as the state. Their unit is that of energy over that of the
+    /// [`Motion::CONSTRAINTS`]. They are as accurate as the state. Their unit is that of energy over that of the
     /// constraint; for a nonholonomic constraint, of power over that of the constraint.
     ///
     /// # Errors
     /// As [`State::velocity`]; [`StepError::Singular`] if the constraints are redundant here.
-    pub fn reaction<S: Constrained<N, T>>(&self, system: &S) -> Result<S::Multipliers, StepError> {
+    pub fn reaction<S: Motion<N, T>>(&self, system: &S) -> Result<Multipliers<S, N, T>, StepError> {
         let node = Node::new(*self, T::zero());
         let bordered = &mut bordered::<S, N, T>();
         let found = node.check_finite(T::zero()).and_then(|()| from_rest(system, (self.t, &self.q, &self.p), bordered));
@@ -270,7 +272,7 @@ impl<const N: usize, T: Scalar> State<N, T> {
     ///
     /// # Errors
     /// As [`State::reaction`].
-    pub fn reaction_force<S: Constrained<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
+    pub fn reaction_force<S: Motion<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
         let multipliers = self.reaction(system)?;
         let (gradients, _) = system.constraint_gradients(self.t, &self.q);
         Ok(reaction_of(&gradients, multipliers.as_ref()))

@@ -9,13 +9,16 @@
 //! alone has to hold already, and has no multiplier.
 
 use super::start::CONSISTENT;
-use super::{Constrained, ConvertibleConstrained, is_shortened, reaction_of, spread, unsolvable, with_idle};
+use super::{is_shortened, reaction_of, spread, unsolvable, with_idle};
 use crate::error::{BORDERED_MASS, StepError};
+use crate::kind::{Gradients, Multipliers};
 use crate::linear::{Bordered, Matrix, Rectangular};
+use crate::motion::Motion;
 use crate::newton::roundings;
 use crate::node::Node;
 use crate::real::Rounded;
 use crate::state::{Numbers, State};
+use crate::stepping::Convertible;
 use crate::vector::{weights, worse};
 use alloc::vec::Vec;
 use nalgebra::{SMatrix, SVector};
@@ -66,7 +69,7 @@ impl<const N: usize> State<N> {
     /// # Errors
     /// [`StepError::NotAssembled`] if no coordinates near q satisfy the constraints, [`StepError::Singular`] if the
     /// constraints are redundant on the way, [`StepError::NonFinite`].
-    pub fn projected<S: Constrained<N> + ConvertibleConstrained<N>>(
+    pub fn projected<S: Convertible<N>>(
         system: &S,
         t: f64,
         q: impl Numbers<N>,
@@ -76,7 +79,7 @@ impl<const N: usize> State<N> {
     }
 }
 
-impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projection<'a, S, N> {
+impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
     /// Moves every coordinate.
     #[must_use]
     pub fn of(system: &'a S) -> Self {
@@ -130,7 +133,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
     }
 
     /// For each constraint that is not dropped, whether the held coordinates alone decide on it.
-    pub(super) fn fixed(&self, gradients: &S::Gradients) -> Vec<bool> {
+    pub(super) fn fixed(&self, gradients: &Gradients<S, N>) -> Vec<bool> {
         let is_zero = |r: usize| gradients.row(r).iter().all(|(_, entry)| entry == 0.0);
         let is_fixed = |r: usize| self.held.contains(&true) && !self.system.is_dropped(r) && is_zero(r);
         (0..S::CONSTRAINTS.len()).map(is_fixed).collect()
@@ -140,7 +143,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
     fn border(
         &self,
         bordered: &mut Bordered,
-        (mass, gradients, fixed): (&SMatrix<f64, N, N>, &S::Gradients, &[bool]),
+        (mass, gradients, fixed): (&SMatrix<f64, N, N>, &Gradients<S, N>, &[bool]),
         t: f64,
     ) -> Result<(), StepError> {
         let factored = bordered.factor_without(mass, gradients, |r| fixed[r] || self.system.is_dropped(r));
@@ -164,7 +167,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
     }
 
     /// A and a, without gradients along held coordinates.
-    pub(super) fn gradients(&self, t: f64, q: &SVector<f64, N>) -> (S::Gradients, S::Multipliers) {
+    pub(super) fn gradients(&self, t: f64, q: &SVector<f64, N>) -> (Gradients<S, N>, Multipliers<S, N>) {
         let (mut gradients, rates) = self.system.constraint_gradients(t, q);
         for r in 0..S::CONSTRAINTS.len() {
             let (columns, values) = gradients.row_mut(r);
@@ -262,7 +265,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
         &self,
         (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>),
         from: &SVector<f64, N>,
-        target: Option<&S::Multipliers>,
+        target: Option<&Multipliers<S, N>>,
     ) -> Result<Option<SVector<f64, N>>, StepError> {
         let (system, holonomic) = (self.system, S::HOLONOMIC);
         let mass = self.metric((t, q, v));
@@ -273,7 +276,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
         zero.as_mut().fill(0.0);
         let target = target.unwrap_or(&zero).as_ref();
         let fixed = self.fixed(&self.gradients(t, from).0);
-        let at = |x: SVector<f64, N>, kappa: S::Multipliers| {
+        let at = |x: SVector<f64, N>, kappa: Multipliers<S, N>| {
             let mut values = system.constraints(t, &x);
             let (gradients, _) = self.gradients(t, &x);
             for (r, (value, target)) in values.as_mut().iter_mut().zip(target).enumerate() {
@@ -283,7 +286,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
             (x, kappa, row, values, gradients)
         };
         // The largest constraint over its rounding errors, with coordinates that are known to `known` ulps.
-        let violation = |x: &SVector<f64, N>, values: &S::Multipliers, known: &SVector<f64, N>| {
+        let violation = |x: &SVector<f64, N>, values: &Multipliers<S, N>, known: &SVector<f64, N>| {
             let (all, _) = system.constraint_gradients(t, x);
             let bounds = system.convert::<Rounded>().constraints(Rounded::exact(t), &x.map(Rounded::nearest));
             (0..holonomic).fold(0.0, |worst, r| {
@@ -314,7 +317,7 @@ impl<'a, S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Projecti
                 }
             }
             self.border(bordered, (&curved, &gradients, &fixed), t)?;
-            let mut correct = |mut row: SVector<f64, N>, mut values: S::Multipliers| {
+            let mut correct = |mut row: SVector<f64, N>, mut values: Multipliers<S, N>| {
                 bordered.solve(&mut row, &mut values.as_mut()[..holonomic]);
                 let length = row.component_mul(&weights).norm();
                 (row, values, length)

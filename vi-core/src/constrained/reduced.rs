@@ -11,10 +11,12 @@
 //! in any order of elimination; the fewest couplings come first. Whatever is unusual is left to the general solver: a
 //! pivot that is not positive, a residual above the floor, rows that fill S.
 
+use super::diagonal;
 use super::equations::Place;
 use super::solve::{Solved, contracted};
-use super::{Constrained, diagonal};
+use crate::kind::Multipliers;
 use crate::linear::{Rectangular, Row};
+use crate::motion::Motion;
 use crate::newton::{FLOOR, roundings};
 use crate::node::Node;
 use crate::vector::worse;
@@ -201,7 +203,7 @@ impl Schur {
 
 impl Reduced {
     /// Allocates; `None` if the system needs the general solver.
-    pub(crate) fn new<S: Constrained<N>, const N: usize>(system: &S, node: &Node<N>) -> Option<Self> {
+    pub(crate) fn new<S: Motion<N>, const N: usize>(system: &S, node: &Node<N>) -> Option<Self> {
         let count = S::CONSTRAINTS.len();
         if !S::POINT_MASSES || S::HOLONOMIC < count {
             return None;
@@ -220,7 +222,7 @@ impl Reduced {
     }
 
     /// A and M⁻¹ at the start of a step. `is_next` if the step follows the last one of the same system.
-    fn begin<S: Constrained<N>, const N: usize>(&mut self, system: &S, node: &Node<N>, is_next: bool) -> bool {
+    fn begin<S: Motion<N>, const N: usize>(&mut self, system: &S, node: &Node<N>, is_next: bool) -> bool {
         if is_next && node.q.as_slice() == self.end {
             core::mem::swap(&mut self.first, &mut self.last);
         } else {
@@ -292,12 +294,12 @@ fn write<const N: usize>(gradients: &impl Rectangular<N, f64>, entries: &mut [f6
 /// Solves the step of length h from `node`, with the guess of the impulses in `u`; replaces it by velocities and
 /// impulses, and returns the contraction as [`solve::unprojected`](super::solve::unprojected). `None` if the general
 /// solver has to.
-pub(crate) fn step<S: Constrained<N>, const N: usize>(
+pub(crate) fn step<S: Motion<N>, const N: usize>(
     system: &S,
     (node, h, is_next): (&Node<N>, f64, bool),
     u: &mut [f64],
     reduced: &mut Reduced,
-) -> Option<(Solved<N, S::Multipliers>, f64)> {
+) -> Option<(Solved<N, Multipliers<S, N>>, f64)> {
     if !reduced.begin(system, node, is_next) {
         return None;
     }
@@ -345,12 +347,7 @@ pub(crate) fn step<S: Constrained<N>, const N: usize>(
 
 /// g/h at the end of a step, in `known`, and A and a there. Returns the largest row over its rounding.
 #[inline(always)]
-fn constraints<S: Constrained<N>, const N: usize>(
-    system: &S,
-    (t, q): &Place<N, f64>,
-    h: f64,
-    reduced: &mut Reduced,
-) -> f64 {
+fn constraints<S: Motion<N>, const N: usize>(system: &S, (t, q): &Place<N, f64>, h: f64, reduced: &mut Reduced) -> f64 {
     let values = system.constraints(*t, q);
     let (gradients, rates) = system.constraint_gradients(*t, q);
     write(&gradients, &mut reduced.last);
@@ -366,7 +363,7 @@ fn constraints<S: Constrained<N>, const N: usize>(
 
 /// The largest momentum row over its rounding.
 #[inline(always)]
-fn momenta<S: Constrained<N>, const N: usize>(
+fn momenta<S: Motion<N>, const N: usize>(
     system: &S,
     (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
     reaction: &SVector<f64, N>,
@@ -385,12 +382,12 @@ fn momenta<S: Constrained<N>, const N: usize>(
 
 /// The end of a step with consistent momenta, the impulse for that, and the residual of `A v + a`.
 #[inline(always)]
-fn projected<S: Constrained<N>, const N: usize>(
+fn projected<S: Motion<N>, const N: usize>(
     system: &S,
     (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
     mut increment: SVector<f64, N>,
     reduced: &mut Reduced,
-) -> Option<(Node<N>, S::Multipliers, f64)> {
+) -> Option<(Node<N>, Multipliers<S, N>, f64)> {
     for ((weighted, entry), column) in reduced.weighted.iter_mut().zip(&reduced.last).zip(&reduced.columns) {
         *weighted = entry * reduced.inverse[*column];
     }

@@ -11,12 +11,15 @@
 use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
 use super::reduced::Reduced;
-use super::{Constrained, ConvertibleConstrained, bordered, diagonal, is_reduced, is_shortened, reaction_of};
+use super::{bordered, diagonal, is_reduced, is_shortened, reaction_of};
 use crate::error::{Residuals, StepError};
+use crate::kind::Multipliers;
 use crate::linear::{Bordered, Factored, Rectangular, Row, Unsolvable};
+use crate::motion::Motion;
 use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::Rounded;
+use crate::stepping::Convertible;
 use crate::vector::weights;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -87,7 +90,7 @@ pub(crate) fn unprojected<S, const N: usize, const STAGES: usize>(
     mut is_factored: bool,
 ) -> Result<(Solution<Rows<S, N, STAGES>>, f64), StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let of_short_steps = sign_of_short_steps::<S, N, STAGES>(system, sign, workspace);
     let start = system.constraint_gradients(node.t, &node.q);
@@ -152,7 +155,7 @@ where
 }
 
 /// The sign that the determinant of the Jacobian has in short steps.
-fn sign_of_short_steps<S: Constrained<N>, const N: usize, const STAGES: usize>(
+fn sign_of_short_steps<S: Motion<N>, const N: usize, const STAGES: usize>(
     system: &S,
     sign: i8,
     workspace: &Workspace,
@@ -162,7 +165,7 @@ fn sign_of_short_steps<S: Constrained<N>, const N: usize, const STAGES: usize>(
 }
 
 /// Whether the determinant of the Jacobian at u has the sign that it has in short steps.
-pub(super) fn has_sign_of_short_steps<S: Constrained<N>, const N: usize, const STAGES: usize>(
+pub(super) fn has_sign_of_short_steps<S: Motion<N>, const N: usize, const STAGES: usize>(
     system: &S,
     (node, h, sign): (&Node<N>, f64, i8),
     u: &[f64],
@@ -181,9 +184,9 @@ pub(crate) fn projected<S, const N: usize, const STAGES: usize>(
     (node, h, sign): (&Node<N>, f64, i8),
     (solution, u): (&Solution<Rows<S, N, STAGES>>, &[f64]),
     workspace: &mut Workspace,
-) -> Result<(Solved<N, S::Multipliers>, SVector<f64, N>), StepError>
+) -> Result<(Solved<N, Multipliers<S, N>>, SVector<f64, N>), StepError>
 where
-    S: Constrained<N>,
+    S: Motion<N>,
 {
     let Solution { rows: at, residual, iterations } = solution;
     let (t, q) = at.end();
@@ -221,7 +224,7 @@ where
 
 impl Workspace {
     /// Allocates for the steps of a system.
-    pub(crate) fn new<S: Constrained<N>, const N: usize, const STAGES: usize>() -> Self {
+    pub(crate) fn new<S: Motion<N>, const N: usize, const STAGES: usize>() -> Self {
         let constraints = S::CONSTRAINTS.len();
         let unknowns = unknowns::<N, STAGES>(constraints);
         Self {
@@ -239,13 +242,13 @@ impl Workspace {
     }
 
     /// The same for fixed steps from a node on, in the impulses alone if the system has such steps.
-    pub(crate) fn of_steps<S: Constrained<N>, const N: usize, const STAGES: usize>(system: &S, node: &Node<N>) -> Self {
+    pub(crate) fn of_steps<S: Motion<N>, const N: usize, const STAGES: usize>(system: &S, node: &Node<N>) -> Self {
         let reduced = if STAGES == 1 { Reduced::new(system, node).map(Box::new) } else { None };
         Self { reduced, ..Self::new::<S, N, STAGES>() }
     }
 
     /// Factors the Jacobian at u, and returns the sign of its determinant.
-    pub(crate) fn factor<S: Constrained<N>, const N: usize, const STAGES: usize>(
+    pub(crate) fn factor<S: Motion<N>, const N: usize, const STAGES: usize>(
         &mut self,
         at: &Rows<S, N, STAGES>,
         system: &S,
@@ -282,7 +285,7 @@ impl Workspace {
 
     /// Writes u less a correction to `trial`: the longest of its halves that reduces the residual, or has a shorter
     /// correction behind it. Returns the rows there and their residual; `None` if there is none.
-    fn corrected<S: Constrained<N>, const N: usize, const STAGES: usize>(
+    fn corrected<S: Motion<N>, const N: usize, const STAGES: usize>(
         &mut self,
         at: &Rows<S, N, STAGES>,
         u: &[f64],
@@ -305,7 +308,7 @@ impl Workspace {
     }
 
     /// Computes the correction of these rows.
-    fn correct<S: Constrained<N>, const N: usize, const STAGES: usize>(&mut self, at: &Rows<S, N, STAGES>) {
+    fn correct<S: Motion<N>, const N: usize, const STAGES: usize>(&mut self, at: &Rows<S, N, STAGES>) {
         let mut correction = core::mem::take(&mut self.correction);
         at.write(&mut correction);
         self.solve(&mut correction);
@@ -321,7 +324,7 @@ impl Workspace {
 
     /// Whether the correction of the velocities at `next` is shorter than the last one, with the same factors.
     #[cold]
-    fn brings_nearer<S: Constrained<N>, const N: usize, const STAGES: usize>(
+    fn brings_nearer<S: Motion<N>, const N: usize, const STAGES: usize>(
         &mut self,
         at: &Rows<S, N, STAGES>,
         next: &Rows<S, N, STAGES>,
@@ -344,7 +347,7 @@ impl Workspace {
 #[cold]
 fn bounded<S, const N: usize, const STAGES: usize>(system: &S, node: &Node<N>, h: f64, u: &[f64]) -> f64
 where
-    S: ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let u: Vec<Rounded> = u.iter().map(|entry| Rounded::nearest(*entry)).collect();
     let node = node.map(Rounded::exact);
@@ -363,7 +366,7 @@ const PART: f64 = 1.0 / 1024.0;
 /// The angle in degrees by which the gradient of a constraint turns in a step of the length h, at the velocity of its
 /// start. Lengths are by the diagonal of the mass matrix.
 #[cold]
-fn turn<S: Constrained<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> f32 {
+fn turn<S: Motion<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> f32 {
     let Ok(flow) = system.flow(node.t, &node.q, &node.p) else { return 0.0 };
     let mass = diagonal(&system.point(node.t, &node.q, &flow.v).mass);
     let weights = mass.map(|entry| if entry > 0.0 { entry.sqrt().recip() } else { 1.0 });

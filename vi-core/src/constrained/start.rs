@@ -1,12 +1,15 @@
 //! Checks of the constraints at a start.
 
 use super::motion::{Velocity, from_rest};
-use super::{Constrained, ConvertibleConstrained, bordered, diagonal, reaction_of, spread};
+use super::{bordered, diagonal, reaction_of, spread};
 use crate::error::StepError;
+use crate::kind::Multipliers;
 use crate::linear::{Bordered, Matrix, Rectangular};
+use crate::motion::Motion;
 use crate::newton::roundings;
 use crate::node::Node;
 use crate::real::{Real, Rounded};
+use crate::stepping::Convertible;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, SVector};
 #[cfg(not(feature = "std"))]
@@ -30,7 +33,7 @@ pub(crate) fn checked<S, const N: usize>(
     bordered: &mut Bordered,
 ) -> Result<SVector<f64, N>, StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     node.check_finite(0.0)?;
     let Node { t, q, p, .. } = node;
@@ -60,7 +63,7 @@ where
 /// [`StepError::InconsistentStart`], [`StepError::DroppedConstraint`].
 pub(crate) fn check_stored<S, const N: usize>(system: &S, node: &Node<N>) -> Result<(), StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let Node { t, q, p, .. } = node;
     let (gradients, mut none) = system.constraint_gradients(*t, q);
@@ -82,12 +85,12 @@ where
 fn consistent<S, const N: usize>(
     system: &S,
     node: &Node<N>,
-    (v, mu): (&SVector<f64, N>, &S::Multipliers),
+    (v, mu): (&SVector<f64, N>, &Multipliers<S, N>),
     (mass, inverse): (&impl Matrix<N, f64>, Option<&mut Bordered>),
     limit: f64,
 ) -> Result<(), StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let Node { t, q, p, .. } = node;
     let (gradients, _) = system.constraint_gradients(*t, q);

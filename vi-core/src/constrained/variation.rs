@@ -15,60 +15,32 @@
 use super::equations::{Rows, stage_velocity};
 use super::motion::{Velocity, from_rest, unsolvable, velocity};
 use super::solve::Workspace;
-use super::{Constrained, ConvertibleConstrained, border, bordered, reaction_of, with_idle};
+use super::{border, bordered, reaction_of, with_idle};
 use crate::derivatives::{
-    Differentiable, TOGETHER, Variation, Varied, WithConstraints, more_parameters, not_finite, not_last, singular,
+    Differentiable, TOGETHER, Variation, Varied, more_parameters, not_finite, not_last, singular,
 };
 use crate::error::StepError;
+use crate::kind::{Bound, Form, Kind};
 use crate::lagrangian::Lagrangian;
 use crate::linear::{Bordered, Matrix, Rectangular};
-use crate::method::gauss_lobatto::ConstrainedSteps;
-use crate::method::{Composed, GaussLobatto};
+use crate::method::gauss::bound::ConstrainedSteps;
+use crate::method::{Composed, Gauss};
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::Dual;
 use crate::run::Run;
 use crate::state::State;
+use crate::stepping::Convertible;
 use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Largest part of a tangent vector across the constraints. Central differences have about nine digits.
 const ADMISSIBLE: f64 = 1e-8;
 
-impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for GaussLobatto<STAGES>
+impl<S, const N: usize, const K: usize, F: Form> Differentiable<S, N> for Composed<Gauss<1>>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N, Kind = Bound<K, F>>,
 {
-    type Kind = WithConstraints;
-
-    /// Allocates the matrix of the step.
-    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let Run { system, node, memory, .. } = run;
-        let (start, h, u, mu) = memory.last(node).ok_or_else(|| not_last(before.t))?;
-        if start != before {
-            return Err(not_last(before.t));
-        }
-        vary::<S, N, STAGES>(system, (before, h), (u, mu), variations)
-    }
-
-    fn dimension() -> usize {
-        2 * N - S::HOLONOMIC - S::CONSTRAINTS.len()
-    }
-
-    fn project(system: &S, node: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        project(system, node, variations).map(drop)
-    }
-
-    fn check_admissible(run: &Run<Self, S, N>, variations: &[Variation<N>]) -> Result<(), StepError> {
-        check(&run.system, (&run.node, run.h), variations)
-    }
-}
-
-impl<S, const N: usize> Differentiable<S, N> for Composed<GaussLobatto<1>>
-where
-    S: Constrained<N> + ConvertibleConstrained<N>,
-{
-    type Kind = WithConstraints;
-
     /// Allocates the matrix of a substep.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { system, node, memory, h, .. } = run;
@@ -89,25 +61,10 @@ where
         }
         Ok(())
     }
-
-    fn dimension() -> usize {
-        <GaussLobatto<1> as Differentiable<S, N>>::dimension()
-    }
-
-    fn project(system: &S, node: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        project(system, node, variations).map(drop)
-    }
-
-    fn check_admissible(run: &Run<Self, S, N>, variations: &[Variation<N>]) -> Result<(), StepError> {
-        check(&run.system, (&run.node, run.h), variations)
-    }
 }
 
 /// The system with parameters that vary in each direction.
-fn varied<S: ConvertibleConstrained<N> + Lagrangian<N>, const N: usize>(
-    system: &S,
-    variations: &[Variation<N>],
-) -> S::In<Varied> {
+fn varied<S: Convertible<N> + Lagrangian<N>, const N: usize>(system: &S, variations: &[Variation<N>]) -> S::In<Varied> {
     Variation::vary_parameters(variations, S::PARAMETERS, system.convert::<Varied>())
 }
 
@@ -117,14 +74,14 @@ fn along<const N: usize>(of: &SVector<Varied, N>, direction: usize) -> SVector<f
 }
 
 /// Maps admissible tangent vectors at the start of a step to those at its end.
-fn vary<S, const N: usize, const STAGES: usize>(
+pub(crate) fn vary<S, const N: usize, const STAGES: usize>(
     system: &S,
     (before, h): (&Node<N>, f64),
     (u, mu): (&[f64], &[f64]),
     variations: &mut [Variation<N>],
 ) -> Result<(), StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let workspace = &mut Workspace::new::<S, N, STAGES>();
     let rows = Rows::<S, N, STAGES>::at(system, before, h, u);
@@ -190,17 +147,32 @@ struct Correction<const N: usize> {
     v: SVector<f64, N>,
 }
 
+/// Moves tangent vectors at a node to admissible ones. Without constraints all are.
+///
+/// # Errors
+/// [`StepError::Singular`], [`StepError::NonFinite`]; [`StepError::NoDerivative`] for too many parameters.
+pub(crate) fn project<S, const N: usize>(
+    system: &S,
+    node: &Node<N>,
+    variations: &mut [Variation<N>],
+) -> Result<(), StepError>
+where
+    S: Convertible<N>,
+{
+    if const { S::Kind::COUNT == 0 } { Ok(()) } else { corrected(system, node, variations).map(drop) }
+}
+
 /// Moves tangent vectors at a node to admissible ones, and returns the changes.
 ///
 /// # Errors
 /// [`StepError::Singular`], [`StepError::NonFinite`]; [`StepError::NoDerivative`] for too many parameters.
-fn project<S, const N: usize>(
+fn corrected<S, const N: usize>(
     system: &S,
     node: &Node<N>,
     variations: &mut [Variation<N>],
 ) -> Result<Vec<Correction<N>>, StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let Node { t, q, p, .. } = *node;
     if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
@@ -262,16 +234,19 @@ where
 ///
 /// # Errors
 /// [`StepError::InconsistentTangent`]; those of [`project`].
-fn check<S, const N: usize>(
+pub(crate) fn check_admissible<S, const N: usize>(
     system: &S,
     (node, h): (&Node<N>, f64),
     variations: &[Variation<N>],
 ) -> Result<(), StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
+    if const { S::Kind::COUNT == 0 } {
+        return Ok(());
+    }
     let mut admissible = variations.to_vec();
-    let corrections = project(system, node, &mut admissible)?;
+    let corrections = corrected(system, node, &mut admissible)?;
     let v = node.state().velocity(system)?;
     let mass = system.point(node.t, &node.q, &v).mass;
     let (gradients, _) = system.constraint_gradients(node.t, &node.q);
@@ -311,7 +286,7 @@ pub(crate) fn velocity_along<S, const N: usize>(
     variation: &Variation<N>,
 ) -> Result<SVector<f64, N>, StepError>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let bordered = &mut bordered::<S, N, f64>();
     let (gradients, _) = system.constraint_gradients(state.t, &state.q);

@@ -18,12 +18,13 @@
 
 use super::steps::Differentiable;
 use super::variation::{Variation, changes_of_energy};
-use super::varying::Varying;
+use crate::constrained::variation;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::run::Run;
 use crate::state::State;
+use crate::stepping::Convertible;
 use alloc::vec::Vec;
 use nalgebra::SVector;
 
@@ -99,7 +100,7 @@ pub fn gradient<M, S, const N: usize>(
 ) -> Result<Gradient<N>, StepError>
 where
     M: Differentiable<S, N>,
-    S: Varying<N, M::Kind>,
+    S: Convertible<N>,
 {
     let named = objective.parameters().iter().map(|name| Variation::of_parameter::<S>(name));
     let of_parameters: Vec<_> = named.collect::<Result<_, _>>()?;
@@ -140,14 +141,14 @@ where
             let before = place.checked_sub(1).map_or(&station, |place| &inner[place]);
             let after = inner.get(place).unwrap_or(&end);
             variations.clone_from_slice(&directions);
-            M::project(after.system(), before.node(), &mut variations)?;
+            variation::project(after.system(), before.node(), &mut variations)?;
             after.vary(before.node(), &mut variations)?;
             changes.clear();
             changes.extend(variations.iter().map(|variation| slope.of(variation)));
             if M::KEEPS_ENERGY && (are_varied || !have_equal_parameters(before.system(), after.system())) {
                 let state = before.node().state();
-                let gained = changes_of_energy::<S, M::Kind, N>(after.system(), &state, &directions)?;
-                let lost = changes_of_energy::<S, M::Kind, N>(before.system(), &state, &directions)?;
+                let gained = changes_of_energy(after.system(), &state, &directions)?;
+                let lost = changes_of_energy(before.system(), &state, &directions)?;
                 // The run still has the parameters of the previous step.
                 let of_energy = changes[2 * N];
                 for (index, change) in changes.iter_mut().enumerate() {
@@ -198,7 +199,7 @@ fn stride(steps: u64, kept: usize) -> u64 {
 }
 
 /// The runs at the nodes from `first`, if given, to `last`.
-fn between<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+fn between<M: Differentiable<S, N>, S: Convertible<N>, const N: usize>(
     start: &Run<M, S, N>,
     first: u64,
     last: u64,
@@ -225,9 +226,7 @@ fn have_equal_parameters<S: Lagrangian<N>, const N: usize>(one: &S, other: &S) -
 
 /// Splits the derivatives in all directions: the covector at the start of a step, and the derivatives with respect to
 /// the parameters of the step.
-fn sorted<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
-    changes: &[f64],
-) -> (Covector<N>, Vec<f64>) {
+fn sorted<M: Differentiable<S, N>, S: Convertible<N>, const N: usize>(changes: &[f64]) -> (Covector<N>, Vec<f64>) {
     let mut changes = changes.iter().copied();
     let mut next = || changes.next().unwrap_or(0.0);
     let q = SVector::from_fn(|_, _| next());

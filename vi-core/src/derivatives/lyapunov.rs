@@ -14,11 +14,13 @@
 use super::steps::Differentiable;
 use super::tangent::Tangent;
 use super::variation::Variation;
+use super::variation::dimension;
 use crate::compensated;
+use crate::constrained::variation;
 use crate::error::StepError;
-use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::run::Run;
+use crate::stepping::Convertible;
 use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -34,7 +36,7 @@ pub struct Lyapunov<M: Method<S, N>, S, const N: usize> {
     growth: Vec<(f64, f64)>,
 }
 
-impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<M, S, N> {
+impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Lyapunov<M, S, N> {
     /// Estimates the `count` largest exponents of a run. The first directions are fixed, so that results are
     /// reproducible.
     ///
@@ -42,7 +44,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<
     /// [`StepError::InvalidInput`] unless `count` is 1 to 2N, less 2 for each holonomic and 1 for each nonholonomic
     /// constraint.
     pub fn new(run: Run<M, S, N>, count: usize) -> Result<Self, StepError> {
-        if count == 0 || count > M::dimension() {
+        if count == 0 || count > dimension::<S, N>() {
             #[allow(clippy::cast_precision_loss)] // for the message
             let value = count as f64;
             let allowed =
@@ -51,12 +53,12 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<
         }
         let start = run.t();
         let mut variations = Variation::of_state();
-        if M::dimension() == 2 * N {
+        if dimension::<S, N>() == 2 * N {
             variations.truncate(count);
             variations.iter_mut().for_each(turn);
         } else {
             variations.iter_mut().for_each(turn);
-            M::project(run.system(), run.node(), &mut variations)?;
+            variation::project(run.system(), run.node(), &mut variations)?;
             keep_independent(&mut variations, count);
         }
         orthogonalize(&mut variations);

@@ -21,7 +21,6 @@
 //! | `variation` | tangent vectors, and their dual numbers |
 //! | `steps` | tangent vectors of one step, for each method |
 //! | `splitting` | those of a splitting step |
-//! | `varying` | what they need of a system, with and without constraints |
 //! | `tangent` | tangent vectors along a run, to times, events and across changes |
 //! | `adjoint` | the gradient of an objective, by one backward pass |
 //! | `lyapunov` | Lyapunov exponents |
@@ -32,7 +31,6 @@ mod splitting;
 mod steps;
 mod tangent;
 mod variation;
-mod varying;
 
 pub use adjoint::{Covector, Gradient, Objective, gradient};
 pub use lyapunov::Lyapunov;
@@ -41,4 +39,3 @@ pub(crate) use steps::{Sought, check_fallback, not_last, singular};
 pub use tangent::Tangent;
 pub use variation::Variation;
 pub(crate) use variation::{TOGETHER, Varied, changes_of_energy, more_parameters, not_finite};
-pub use varying::{Unconstrained, Varying, WithConstraints};

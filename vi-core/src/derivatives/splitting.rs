@@ -2,11 +2,10 @@
 
 use super::steps::{Differentiable, not_last};
 use super::variation::{TOGETHER, Variation, Varied, more_parameters};
-use super::varying::Unconstrained;
-use crate::collocation::Separable;
 use crate::error::StepError;
 use crate::method::Splitting;
 use crate::method::splitting::step;
+use crate::motion::Separable;
 use crate::node::Node;
 use crate::run::Run;
 use crate::stepping::Convertible;
@@ -18,8 +17,6 @@ impl<S, const N: usize> Differentiable<S, N> for Splitting
 where
     S: Separable<N> + Convertible<N>,
 {
-    type Kind = Unconstrained;
-
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { method, system, node, h, .. } = run;
         let end = step(method, system, (before, *h));

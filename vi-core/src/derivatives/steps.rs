@@ -5,25 +5,22 @@
 //! the node; dual numbers provide those with respect to the time and the parameters, if a direction needs them.
 
 use super::variation::{TOGETHER, Variation, Varied, more_parameters, not_finite};
-use super::varying::Unconstrained;
 use crate::angles;
 use crate::energy_preserving::interval::Last;
 use crate::error::StepError;
-use crate::lagrangian::Lagrangian;
 use crate::linear::{self, Matrix};
 use crate::method::{Composition, Connected, EnergyPreserving, Fallback, FixedStep, Method};
 use crate::momentum::steps::Steps;
 use crate::node::Node;
 use crate::real::{Dual, Real, Slopes};
 use crate::run::Run;
-use crate::stepping::{Discretized, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives};
+use crate::stepping::{
+    Convertible, Discretized, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives,
+};
 use nalgebra::{SMatrix, SVector};
 
 /// A method whose steps have derivatives.
-pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> {
-    /// The kind of its systems, of which [`Varying`](super::Varying) is required: [`Unconstrained`] or
-    /// [`WithConstraints`](super::WithConstraints).
-    type Kind;
+pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
     /// Whether the preserved energy is a variable beside coordinates and momenta.
     const KEEPS_ENERGY: bool = false;
     /// Whether a step depends on its start time.
@@ -46,28 +43,6 @@ pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> 
         let mut aside = Run::resumed(method.clone(), *system, (*node, length, memory));
         aside.step()?;
         aside.vary(node, variations)
-    }
-
-    /// The number of independent admissible tangent vectors at a node, with fixed time and parameters.
-    #[must_use]
-    fn dimension() -> usize {
-        2 * N
-    }
-
-    /// [`Tangent::project`](super::Tangent::project) for a system at a node.
-    ///
-    /// # Errors
-    /// As [`Tangent::project`](super::Tangent::project).
-    fn project(_system: &S, _node: &Node<N>, _variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        Ok(())
-    }
-
-    /// Checks that tangent vectors at the node of a run are admissible.
-    ///
-    /// # Errors
-    /// [`StepError::InconsistentTangent`].
-    fn check_admissible(_run: &Run<Self, S, N>, _variations: &[Variation<N>]) -> Result<(), StepError> {
-        Ok(())
     }
 
     /// Sets `energy` of tangent vectors at the start of a run by [`Start::integrate`](crate::Start::integrate): the
@@ -100,7 +75,7 @@ pub(crate) fn check_fallback(fallback: Fallback, t: f64) -> Result<(), StepError
     if fallback == Fallback::Stop { Ok(()) } else { Err(StepError::NoDerivative { t, because }) }
 }
 
-impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
+impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Run<M, S, N> {
     /// Maps tangent vectors at `before`, the start node of the last step, to those at its end node.
     ///
     /// The step is the one that [`Run::step`] took last. With constraints, the vectors have to be admissible:
@@ -260,8 +235,6 @@ impl<S, const N: usize> Differentiable<S, N> for FixedStep
 where
     S: Discretized<N>,
 {
-    type Kind = Unconstrained;
-
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         vary_fixed(run, run.memory.steps.v(), run.memory.steps.has_parameters_of_last(), before, variations)
     }
@@ -271,8 +244,6 @@ impl<S, const N: usize> Differentiable<S, N> for Connected
 where
     S: Discretized<N>,
 {
-    type Kind = Unconstrained;
-
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         vary_fixed(run, run.memory.steps.v(), run.memory.steps.has_parameters_of_last(), before, variations)
     }
@@ -362,8 +333,6 @@ impl<S, const N: usize> Differentiable<S, N> for Composition
 where
     S: Discretized<N>,
 {
-    type Kind = Unconstrained;
-
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { system, memory, .. } = run;
         if !memory.all.iter().all(Steps::has_parameters_of_last) {
@@ -385,7 +354,6 @@ where
     S: EnergyStepping<N> + Discretized<N>,
     S::Steps<Varied>: EnergyStepping<N, Varied>,
 {
-    type Kind = Unconstrained;
     const KEEPS_ENERGY: bool = true;
 
     /// The preserved energy is a variable beside q and p, and the step length varies. With [`Fallback::FixedSteps`] the

@@ -13,14 +13,17 @@
 //! ∂z/∂ℓ is the derivative of the discrete step. It differs from that of the flow by the order of the method.
 
 use super::steps::Differentiable;
+use super::variation::along_parameters;
+use super::variation::velocity_along;
 use super::variation::{Variation, changes_of_energy, not_finite};
-use super::varying::{Varying, varied};
+use crate::constrained::variation;
 use crate::error::StepError;
-use crate::lagrangian::{Flow, Lagrangian, Parameters};
+use crate::lagrangian::{Flow, Parameters};
 use crate::method::Method;
 use crate::real::Dual;
 use crate::run::{Crossing, Event, Moment, Run};
 use crate::state::State;
+use crate::stepping::Convertible;
 use alloc::vec::Vec;
 
 /// A run with tangent vectors at its node.
@@ -33,7 +36,7 @@ pub struct Tangent<M: Method<S, N>, S, const N: usize> {
     are_admissible: bool,
 }
 
-impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M, S, N> {
+impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Tangent<M, S, N> {
     /// Combines a run and tangent vectors at its current node.
     #[must_use]
     pub fn new(run: Run<M, S, N>, variations: Vec<Variation<N>>) -> Self {
@@ -64,7 +67,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
         }
         self.latched(|tangent| {
             let Run { system, node, .. } = &tangent.run;
-            M::project(system, node, &mut tangent.variations)?;
+            variation::project(system, node, &mut tangent.variations)?;
             tangent.are_admissible = true;
             Ok(())
         })
@@ -136,7 +139,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
     /// Checks vectors that the caller gave or changed.
     fn check(&mut self) -> Result<(), StepError> {
         if !self.are_admissible {
-            M::check_admissible(&self.run, &self.variations)?;
+            variation::check_admissible(&self.run.system, (&self.run.node, self.run.h), &self.variations)?;
             self.are_admissible = true;
         }
         Ok(())
@@ -203,7 +206,7 @@ impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M
 impl<M, S, const N: usize> Tangent<M, S, N>
 where
     M: Differentiable<S, N>,
-    S: Varying<N, M::Kind>,
+    S: Convertible<N>,
 {
     /// A run at any node with tangent vectors of its present state and parameters. They vary as by
     /// [`Run::set_state`] and [`Run::set_parameters`]: the function sets `energy` of each vector to the derivative of H.
@@ -212,7 +215,7 @@ where
     /// As [`State::velocity`].
     pub fn from_change(run: Run<M, S, N>, mut variations: Vec<Variation<N>>) -> Result<Self, StepError> {
         if M::KEEPS_ENERGY {
-            let changes = changes_of_energy::<S, M::Kind, N>(run.system(), &run.node().state(), &variations)?;
+            let changes = changes_of_energy(run.system(), &run.node().state(), &variations)?;
             variations.iter_mut().zip(changes).for_each(|(variation, change)| variation.energy = change);
         }
         Ok(Self::new(run, variations))
@@ -240,16 +243,16 @@ where
     /// # Errors
     /// As [`Run::set_parameters`]; [`StepError::NonFinite`] if a derivative is not finite. Further calls return the
     /// same error.
-    pub fn set_parameters(&mut self, change: impl Fn(&mut S::Over<Dual<f64>>)) -> Result<(), StepError>
+    pub fn set_parameters(&mut self, change: impl Fn(&mut S::In<Dual<f64>>)) -> Result<(), StepError>
     where
         S: Parameters,
     {
         self.latched(|tangent| {
             let state = tangent.run.node().state();
-            let before = changes_of_energy::<S, M::Kind, N>(tangent.run.system(), &state, &tangent.variations)?;
+            let before = changes_of_energy(tangent.run.system(), &state, &tangent.variations)?;
             let plain = Variation::zero();
             let numbers = |variation: &Variation<N>, run: &Run<M, S, N>| {
-                let mut system = varied::<S, M::Kind, N>(run.system(), variation);
+                let mut system = along_parameters(run.system(), variation);
                 change(&mut system);
                 let named = S::PARAMETERS.iter().map(|name| system.parameter_mut(name).copied());
                 named.map(|number| number.unwrap_or(Dual::fixed(0.0))).collect::<Vec<_>>()
@@ -267,7 +270,7 @@ where
             for (variation, slopes) in tangent.variations.iter_mut().zip(slopes) {
                 variation.parameters = slopes.into_iter().map(|number| number.slope).collect();
             }
-            let after = changes_of_energy::<S, M::Kind, N>(tangent.run.system(), &state, &tangent.variations)?;
+            let after = changes_of_energy(tangent.run.system(), &state, &tangent.variations)?;
             tangent.gain_energy(&before, &after)
         })
     }
@@ -282,16 +285,16 @@ where
     /// error.
     pub fn set_state(
         &mut self,
-        map: impl Fn(&S::Over<Dual<f64>>, State<N, Dual<f64>>) -> State<N, Dual<f64>>,
+        map: impl Fn(&S::In<Dual<f64>>, State<N, Dual<f64>>) -> State<N, Dual<f64>>,
     ) -> Result<(), StepError> {
         self.latched(|tangent| {
             let State { t, q, p } = tangent.run.state();
             let node = tangent.run.node().state();
-            let before = changes_of_energy::<S, M::Kind, N>(tangent.run.system(), &node, &tangent.variations)?;
+            let before = changes_of_energy(tangent.run.system(), &node, &tangent.variations)?;
             let mapped = |variation: &Variation<N>, run: &Run<M, S, N>| {
                 let along = |value: f64, slope: f64| Dual { value, slope };
                 let (q, p) = (q.zip_map(&variation.q, along), p.zip_map(&variation.p, along));
-                map(&varied::<S, M::Kind, N>(run.system(), variation), State { t: along(t, variation.t), q, p })
+                map(&along_parameters(run.system(), variation), State { t: along(t, variation.t), q, p })
             };
             let State { t, q, p } = mapped(&Variation::zero(), &tangent.run);
             let varied: Vec<_> = tangent.variations.iter().map(|variation| mapped(variation, &tangent.run)).collect();
@@ -301,8 +304,7 @@ where
                 let slope = |number: Dual<f64>| number.slope;
                 (variation.t, variation.q, variation.p) = (t.slope, q.map(slope), p.map(slope));
             }
-            let after =
-                changes_of_energy::<S, M::Kind, N>(tangent.run.system(), &tangent.run.state(), &tangent.variations)?;
+            let after = changes_of_energy(tangent.run.system(), &tangent.run.state(), &tangent.variations)?;
             tangent.gain_energy(&before, &after)
         })
     }
@@ -341,7 +343,7 @@ where
         let reduced = State { t, q: after.node().q, p };
         let slope = |variation: &Variation<N>| {
             let along = |value: f64, slope: f64| Dual { value, slope };
-            let of_v = system.velocity_along(&reduced, &v, variation)?;
+            let of_v = velocity_along(&system, &reduced, &v, variation)?;
             let (q, v) = (q.zip_map(&variation.q, along), v.zip_map(&of_v, along));
             event.slope(&Moment { t: along(t, variation.t), q, v }).ok_or(not_finite(t))
         };

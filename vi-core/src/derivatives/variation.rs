@@ -1,8 +1,11 @@
 //! Tangent vectors of nodes and parameters, and their dual numbers.
 
-use super::varying::Varying;
+use crate::constrained;
 use crate::error::StepError;
+use crate::kind::Kind;
 use crate::lagrangian::{Lagrangian, Parameters};
+use crate::linear;
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::{Dual, Slopes};
 use crate::state::State;
@@ -228,23 +231,68 @@ impl<const N: usize> Variation<N> {
 }
 
 /// Derivative of H at a state in each direction: `v·δp − δL` at fixed v.
-pub(crate) fn changes_of_energy<S, K, const N: usize>(
+pub(crate) fn changes_of_energy<S, const N: usize>(
     system: &S,
     state: &State<N>,
     directions: &[Variation<N>],
 ) -> Result<Vec<f64>, StepError>
 where
-    S: Varying<N, K>,
+    S: Convertible<N>,
 {
     let v = state.velocity(system)?;
     let node = Node::new(*state, 0.0);
     let mut changes = Vec::with_capacity(directions.len());
     for directions in directions.chunks(TOGETHER) {
         let node = Variation::node::<TOGETHER>(directions, &node);
-        let varied = Variation::vary_parameters(directions, S::PARAMETERS, system.over::<Varied>());
+        let varied = Variation::vary_parameters(directions, S::PARAMETERS, system.convert::<Varied>());
         let varied = varied.lagrangian(node.t, &node.q, &v.map(Dual::fixed));
         let of_lagrangian = varied.slope.0.into_iter();
         changes.extend(directions.iter().zip(of_lagrangian).map(|(direction, slope)| v.dot(&direction.p) - slope));
     }
     Ok(changes)
+}
+
+/// The number of independent admissible tangent vectors at a node, with fixed time and parameters.
+pub(crate) const fn dimension<S: Motion<N>, const N: usize>() -> usize {
+    2 * N - S::HOLONOMIC - S::CONSTRAINTS.len()
+}
+
+/// The derivative of the velocity v of a state, whose momenta are `state.p`, along a tangent vector.
+///
+/// # Errors
+/// [`StepError::Singular`] if the mass matrix, bordered by the constraints, is singular.
+pub(super) fn velocity_along<S, const N: usize>(
+    system: &S,
+    state: &State<N>,
+    v: &SVector<f64, N>,
+    variation: &Variation<N>,
+) -> Result<SVector<f64, N>, StepError>
+where
+    S: Convertible<N>,
+{
+    if const { S::Kind::COUNT > 0 } {
+        return constrained::variation::velocity_along(system, state, v, variation);
+    }
+    let State { t, q, .. } = state;
+    let matrix = system.point(*t, q, v).mass;
+    let along = |value: f64, slope: f64| Dual { value, slope };
+    // L_v(t, q, v) = p
+    let system = along_parameters(system, variation);
+    let point = system.point(along(*t, variation.t), &q.zip_map(&variation.q, along), &v.map(Dual::fixed));
+    let of_v = linear::solve(&matrix, &(variation.p - point.momentum.map(|entry| entry.slope)));
+    of_v.ok_or(StepError::Singular { t: *t, matrix: "mass matrix" })
+}
+
+/// A system with parameters that vary in one direction.
+pub(super) fn along_parameters<S: Convertible<N>, const N: usize>(
+    system: &S,
+    variation: &Variation<N>,
+) -> S::In<Dual<f64>> {
+    let mut varied = system.convert::<Dual<f64>>();
+    for (name, slope) in S::PARAMETERS.iter().zip(&variation.parameters) {
+        if let Some(parameter) = varied.parameter_mut(name) {
+            parameter.slope = *slope;
+        }
+    }
+    varied
 }

@@ -11,7 +11,6 @@ use super::newton::Buffer;
 use super::points::{AnyDerivatives, ErasedSystem, Form, Points};
 use super::solve::{StageSolution, Start, Step, constant};
 use super::stages::{Stages, at, stage, time};
-use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::node::Node;
 use crate::stepping::Convertible;
@@ -73,7 +72,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
-        Y: Collocation<N> + Convertible<N>,
+        Y: Convertible<N>,
     {
         let step = self.recovered(system, instructions, left, cache)?;
         let is_proven = is_proven(&ErasedSystem::of(system), self.node, &step);
@@ -94,7 +93,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
-        Y: Collocation<N> + Convertible<N>,
+        Y: Convertible<N>,
     {
         let from = constant(system, self.node)?;
         let weights = weights(&ErasedSystem::of(system), self.node, &step);
@@ -121,7 +120,7 @@ struct StepsFrom<'a, Y, const N: usize, const S: usize> {
 
 impl<Y, const N: usize, const S: usize> StepsFrom<'_, Y, N, S>
 where
-    Y: Collocation<N> + Convertible<N>,
+    Y: Convertible<N>,
 {
     fn solved(&mut self, part: f64, stages: &Stages<N, S>) -> Option<Step<N, S>> {
         let Start { node, h, pause, .. } = *self.start;
@@ -132,7 +131,7 @@ where
 
 impl<Y, const N: usize, const S: usize> StepsFromNode for StepsFrom<'_, Y, N, S>
 where
-    Y: Collocation<N> + Convertible<N>,
+    Y: Convertible<N>,
 {
     type Solution = Step<N, S>;
 

@@ -11,9 +11,9 @@
 //! of a point that the steps also use. D_s is therefore independent of the step solver. For s = 1 it is `step_density`
 //! of the generated rule. `docs/theory.md` derives it.
 
-use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::linear::Matrix;
+use crate::motion::Motion;
 use crate::real::Series;
 use crate::state::State;
 use crate::stepping::Convertible;
@@ -45,7 +45,7 @@ pub(crate) fn power<const S: usize>(h: f64) -> f64 {
 /// D_s has no value.
 pub fn step_density<S, const N: usize, const STAGES: usize>(system: &S, state: &State<N>) -> Result<f64, StepError>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
     const { constant(STAGES) };
     density(system, state, STAGES)
@@ -54,7 +54,7 @@ where
 /// The step density of this many stages. A runtime argument, so that one copy serves all.
 fn density<S, const N: usize>(system: &S, state: &State<N>, stages: usize) -> Result<f64, StepError>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
     let series = system.convert::<Series>();
     let t = Series::variable(state.t);
@@ -92,7 +92,7 @@ fn velocity<S, const N: usize>(
     v: SVector<Series, N>,
 ) -> SVector<Series, N>
 where
-    S: Collocation<N, Series>,
+    S: Motion<N, Series>,
 {
     let point = system.point(t, q, &v);
     v + point.mass.solve_unchecked(&(p - point.momentum))

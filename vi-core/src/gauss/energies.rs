@@ -15,7 +15,7 @@ use super::points::ErasedSystem;
 use super::rounding;
 use super::stages::{Stages, stage};
 use super::tableau::Tableau;
-use crate::collocation::Collocation;
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::{Real, Rounded};
 use crate::stepping::Convertible;
@@ -44,7 +44,7 @@ pub(crate) fn energies<Y, const N: usize, const S: usize>(
     base: f64,
 ) -> Energies
 where
-    Y: Collocation<N> + Convertible<N>,
+    Y: Convertible<N>,
 {
     let interval = Interval::new(&ErasedSystem::of(system), node, h, stages);
     interval.energies(system, base, |number| number, |i| stage(&interval.velocities, i))
@@ -61,7 +61,7 @@ pub(crate) fn bounded_energies<Y, const N: usize, const S: usize>(
     base: f64,
 ) -> Energies<Rounded>
 where
-    Y: Collocation<N> + Convertible<N>,
+    Y: Convertible<N>,
 {
     let rare = ErasedSystem::of(system);
     let interval = Interval::new(&rare, node, h, stages);
@@ -85,7 +85,7 @@ impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
     }
 
     #[inline(always)]
-    fn energies<T: Real, Y: Collocation<N, T>>(
+    fn energies<T: Real, Y: Motion<N, T>>(
         &self,
         system: &Y,
         base: f64,

@@ -55,7 +55,7 @@ pub(crate) mod stages;
 pub(crate) mod tableau;
 pub mod transformed;
 #[cfg(feature = "alloc")]
-mod variation;
+pub(crate) mod variation;
 
 pub use density::step_density;
 pub use polynomial::CollocationPolynomial;

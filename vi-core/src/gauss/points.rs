@@ -4,8 +4,8 @@
 //! use it: slow convergence and once-per-step measurements. They are compiled once per number of coordinates and
 //! stages, for all systems of a program. They make up three fifths of the code of a step.
 
-use crate::collocation::{Collocation, Point, PointDerivatives, Sides};
 use crate::linear::Matrix;
+use crate::motion::{Motion, Point, PointDerivatives, Sides};
 use crate::real::{Real, Rounded};
 use crate::stepping::Convertible;
 use nalgebra::{SMatrix, SVector};
@@ -17,9 +17,9 @@ pub(crate) const MANY: usize = 12;
 /// Form of the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
-    /// Constant mass matrix, and forces of the position alone: [`Collocation::SEPARABLE`].
+    /// Constant mass matrix, and forces of the position alone: [`Motion::SEPARABLE`].
     Separable,
-    /// Constant mass matrix: [`Collocation::CONSTANT_MASS`].
+    /// Constant mass matrix: [`Motion::CONSTANT_MASS`].
     ConstantMass,
     /// Variable mass matrix.
     VaryingMass,
@@ -27,7 +27,7 @@ pub(crate) enum Form {
 
 impl Form {
     /// The form of the equations of a type.
-    const fn of<Y: Collocation<N, T>, const N: usize, T: Real>() -> Self {
+    const fn of<Y: Motion<N, T>, const N: usize, T: Real>() -> Self {
         match (Y::SEPARABLE, Y::CONSTANT_MASS) {
             (true, _) => Self::Separable,
             (false, true) => Self::ConstantMass,
@@ -51,13 +51,13 @@ pub(crate) trait Points<const N: usize, T: Real> {
 
     /// The form of the equations.
     fn form(&self) -> Form;
-    /// [`Collocation::point`].
+    /// [`Motion::point`].
     fn at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
-    /// [`Collocation::sides`].
+    /// [`Motion::sides`].
     fn sides_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T>;
 }
 
-impl<Y: Collocation<N, T>, const N: usize, T: Real> Points<N, T> for Y {
+impl<Y: Motion<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     type Mass = Y::Mass;
 
     const FORM: Option<Form> = Some(Form::of::<Y, N, T>());

@@ -23,7 +23,6 @@ use super::general::equations;
 use super::points::ErasedSystem;
 use super::stages::{Stages, stage, time};
 use super::tableau::Tableau;
-use crate::collocation::Collocation;
 use crate::node::Node;
 use crate::stepping::Convertible;
 use nalgebra::SVector;
@@ -60,7 +59,7 @@ impl<const N: usize> Slots<N> {
     }
 
     /// The slots of the step of length h from a node with these stages.
-    pub(crate) fn of<Y: Collocation<N> + Convertible<N>, const S: usize>(
+    pub(crate) fn of<Y: Convertible<N>, const S: usize>(
         system: &Y,
         node: &Node<N>,
         h: f64,

@@ -12,8 +12,8 @@ use super::points::{ErasedSystem, Form, Points};
 use super::rounding;
 use super::separable::Separable;
 use super::stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
-use crate::collocation::{Collocation, Point};
 use crate::error::StepError;
+use crate::motion::{Motion, Point};
 use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::{Lane, Lanes};
@@ -150,7 +150,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         newton: Option<&Newton<N, S>>,
     ) -> StageSolution<N, S>
     where
-        Y: Collocation<N> + Convertible<N>,
+        Y: Convertible<N>,
     {
         if Y::SIDE_BY_SIDE {
             instructions.run(SideBySide { system, start: self, newton })
@@ -179,7 +179,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         instructions: Instructions,
     ) -> Result<Step<N, S>, StageSolution<N, S>>
     where
-        Y: Collocation<N> + Convertible<N>,
+        Y: Convertible<N>,
     {
         let solved = self.side_by_side(system, instructions, None);
         if solved.is_step(self.node, self.h) {
@@ -200,7 +200,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
-        Y: Collocation<N> + Convertible<N>,
+        Y: Convertible<N>,
     {
         // Steps of other lengths do not end a pause.
         self.by_fixed_point(system, instructions)
@@ -222,7 +222,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
-        Y: Collocation<N> + Convertible<N>,
+        Y: Convertible<N>,
     {
         let rare = &ErasedSystem::of(system);
         let mut after = self.pause;
@@ -279,7 +279,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
-        Y: Collocation<N> + Convertible<N>,
+        Y: Convertible<N>,
     {
         let rare = &ErasedSystem::of(system);
         let mut newton = cache.newton();
@@ -305,7 +305,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         newton: &mut Newton<N, S>,
     ) -> (StageSolution<N, S>, Linearization<N>)
     where
-        Y: Collocation<N> + Convertible<N>,
+        Y: Convertible<N>,
     {
         let rare = &ErasedSystem::of(system);
         newton.linearize(rare, at);
@@ -328,7 +328,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
 ///
 /// # Errors
 /// As [`State::velocity`](crate::State::velocity).
-pub(crate) fn constant<Y: Collocation<N>, const N: usize, const S: usize>(
+pub(crate) fn constant<Y: Motion<N>, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
 ) -> Result<Stages<N, S>, StepError> {
@@ -349,7 +349,7 @@ struct SideBySide<'a, Y, const N: usize, const S: usize> {
     newton: Option<&'a Newton<N, S>>,
 }
 
-impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for SideBySide<'_, Y, N, S> {
+impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for SideBySide<'_, Y, N, S> {
     type Output = StageSolution<N, S>;
 
     #[inline(always)]
@@ -366,7 +366,7 @@ pub(crate) fn iterated<Y, const N: usize, const S: usize, const FUSED: bool, con
     newton: Option<&Newton<N, S>>,
 ) -> StageSolution<N, S>
 where
-    Y: Collocation<N> + Convertible<N>,
+    Y: Convertible<N>,
 {
     if const { N > LOOPED && (FUSED || WIDE) } {
         let lanes = system.convert::<Lanes<S, FUSED>>();
@@ -430,7 +430,7 @@ fn finished<const N: usize, const S: usize>(
 /// or a derivative of L is not finite at the node or half a step from it. The system names the part of L or f. `None`
 /// if evaluation succeeds.
 #[cold]
-pub(crate) fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> Option<StepError> {
+pub(crate) fn lost_force<S: Motion<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> Option<StepError> {
     let v = match node.state().velocity(system) {
         Ok(v) => v,
         Err(failure) => return Some(failure),

@@ -21,20 +21,17 @@ use super::stages::{
     AtStages, LOOPED, Stages, add_products, gathered, maximum, product, scaled, set, stage, sum, times, weights,
 };
 use super::tableau::Tableau;
-use crate::collocation::{Collocation, PointDerivatives};
-use crate::derivatives::{
-    Differentiable, Sought, TOGETHER, Unconstrained, Variation, Varied, check_fallback, not_finite, not_last, singular,
-};
+use crate::derivatives::{Differentiable, Sought, TOGETHER, Variation, Varied, not_finite, singular};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::linear::{Matrix, row_by_row};
-use crate::method::energy_gauss::Lengths;
-use crate::method::gauss::LastStages;
+use crate::method::energy_gauss::{LengthSolver, Solver as Lengths};
+use crate::method::gauss::{Solver, StageSolver};
 use crate::method::{EnergyPreservingGauss, Gauss};
+use crate::motion::{Motion, PointDerivatives};
 use crate::node::Node;
 use crate::real::{Dual, Lane, Lanes, Number};
 use crate::run::Run;
-use crate::state::StepKind;
 use crate::stepping::Convertible;
 use alloc::vec::Vec;
 use nalgebra::SVector;
@@ -42,50 +39,32 @@ use vi_dispatch::{Instructions, Loop};
 
 impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for Gauss<STAGES>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
-    type Kind = Unconstrained;
-
     /// Allocates the joint matrix of all stages.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let Run { system, node, memory, .. } = run;
-        let LastStages { h, stages, before: start, .. } = memory;
-        if !memory.has_step(node) || start != before {
-            return Err(not_last(before.t));
-        }
-        vary(system, (before, *h, &stages.data.0), variations, None)
+        Solver::<S, N, STAGES>::vary(&run.system, (&run.node, &run.memory), before, variations)
     }
 }
 
 impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for EnergyPreservingGauss<STAGES>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
-    type Kind = Unconstrained;
     const KEEPS_ENERGY: bool = true;
 
-    /// As for [`EnergyPreserving`](crate::EnergyPreserving). The shift does not vary.
+    /// As for [`EnergyPreserving`](crate::EnergyPreserving). The shift does not vary. With constraints
+    /// [`StepError::NoDerivative`].
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let Lengths { stages: last, course } = &run.memory;
-        check_fallback(course.control.fallback, before.t)?;
-        // The energy differs if `set_parameters` came between `before` and the step.
-        let is_start =
-            Node { energy: 0.0, energy_low: 0.0, ..last.before } == Node { energy: 0.0, energy_low: 0.0, ..*before };
-        if !last.has_step(&run.node) || !is_start || course.control.kind != StepKind::EnergyPreserving {
-            return Err(not_last(before.t));
-        }
-        vary_length(&run.system, (before, last.h, &last.stages.data.0), course.shift, Sought::Length, variations)
+        Lengths::<S, N, STAGES>::vary(run, before, variations)
     }
 
     fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let stages = run.stages_of(length)?;
-        vary_length(&run.system, (&run.node, length, &stages), run.shift(), Sought::Neither, variations)
+        Lengths::<S, N, STAGES>::vary_step_of(run, length, variations)
     }
 
     fn vary_start(run: &Run<Self, S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let h = run.h();
-        let stages = run.stages_of(h)?;
-        vary_length(&run.system, (&run.node, h, &stages), run.shift(), Sought::Energy, variations)
+        Lengths::<S, N, STAGES>::vary_start(run, variations)
     }
 }
 
@@ -93,7 +72,7 @@ where
 ///
 /// The energy equation and the unknown h border the stage equations. These are solved at fixed h and for the direction
 /// of h; one scalar equation gives δh.
-fn vary_length<S, const N: usize, const STAGES: usize>(
+pub(crate) fn vary_length<S, const N: usize, const STAGES: usize>(
     system: &S,
     step: (&Node<N>, f64, &Stages<N, STAGES>),
     shift: f64,
@@ -101,7 +80,7 @@ fn vary_length<S, const N: usize, const STAGES: usize>(
     variations: &mut [Variation<N>],
 ) -> Result<(), StepError>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
     let (before, h, _) = step;
     let mut all: Vec<_> = variations.iter().map(|variation| Variation { h: 0.0, ..variation.clone() }).collect();
@@ -135,7 +114,7 @@ where
 
 /// Derivatives of the energies of a step.
 #[derive(Clone, Copy, Debug)]
-struct VariedEnergies {
+pub(crate) struct VariedEnergies {
     /// E0.
     start: f64,
     /// `E1 − E0`.
@@ -151,7 +130,7 @@ fn varied_energies<S, const N: usize, const STAGES: usize>(
     velocities: &[Stages<N, STAGES>],
 ) -> Vec<VariedEnergies>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
     let Tableau { b, c, .. } = const { &Tableau::<STAGES>::VALUES };
     let varied = Variation::system::<S, TOGETHER>(variations, system);
@@ -186,14 +165,14 @@ where
 
 /// Maps tangent vectors at a node to those after the Gauss step of length h with these stages, and optionally adds the
 /// derivatives of its energies.
-fn vary<S, const N: usize, const STAGES: usize>(
+pub(crate) fn vary<S, const N: usize, const STAGES: usize>(
     system: &S,
     (before, h, stages): (&Node<N>, f64, &Stages<N, STAGES>),
     variations: &mut [Variation<N>],
     mut energies: Option<&mut Vec<VariedEnergies>>,
 ) -> Result<(), StepError>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
     let instructions = Instructions::detected();
     let rare = ErasedSystem::of(system);
@@ -275,7 +254,7 @@ const SIDE_BY_SIDE: usize = 1 << 16;
 
 /// Bytes of a matrix for all stages.
 const fn bytes<Y: Convertible<N>, const N: usize, const S: usize, const FUSED: bool>() -> usize {
-    size_of::<<Y::In<Lanes<S, FUSED>> as Collocation<N, Lanes<S, FUSED>>>::PointMatrix>()
+    size_of::<<Y::In<Lanes<S, FUSED>> as Motion<N, Lanes<S, FUSED>>>::PointMatrix>()
 }
 
 impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Differentiate<'_, Y, N, S> {
@@ -301,7 +280,7 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Differentiate<'
 
 /// Sets the matrices of all evaluations.
 #[inline(always)]
-fn put_all<const N: usize, const S: usize, T: AtStages<S>, Y: Collocation<N, T>>(
+fn put_all<const N: usize, const S: usize, T: AtStages<S>, Y: Motion<N, T>>(
     derivatives: &mut Derivatives<N, S>,
     system: &Y,
     at: &Solution<N, S>,

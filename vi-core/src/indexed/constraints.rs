@@ -13,8 +13,8 @@
 //!
 //! with `d/dt` along `(1, v, 0)`.
 
-use crate::constrained::Constrained;
 use crate::lagrangian::Lagrangian;
+use crate::motion::Motion;
 use crate::real::dual::{along, slopes};
 use crate::real::{Dual, Real};
 use nalgebra::{SMatrix, SVector};
@@ -60,18 +60,18 @@ fn passing<T: Real>(t: T) -> Dual<T> {
     Dual { value: t, slope: T::one() }
 }
 
-/// g of the constraints on positions, zero for the others, for [`Constrained::constraints`].
+/// g of the constraints on positions, zero for the others, for [`Motion::constraints`].
 #[inline]
 pub fn constraints<const N: usize, const K: usize, T: Real, S>(system: &S, t: T, q: &SVector<T, N>) -> [T; K]
 where
-    S: IndexedConstraints<N, K, T> + Constrained<N, T>,
+    S: IndexedConstraints<N, K, T> + Motion<N, T>,
 {
     let mut values = system.constraint_values(t, q, &SVector::zeros());
     values[S::HOLONOMIC..].fill(T::zero());
     values
 }
 
-/// A and a, for [`Constrained::constraint_gradients`].
+/// A and a, for [`Motion::constraint_gradients`].
 #[inline]
 pub fn constraint_gradients<const N: usize, const K: usize, T: Real, S>(
     system: &S,
@@ -79,7 +79,7 @@ pub fn constraint_gradients<const N: usize, const K: usize, T: Real, S>(
     q: &SVector<T, N>,
 ) -> ([SVector<T, N>; K], [T; K])
 where
-    S: IndexedConstraints<N, K, T> + Constrained<N, T>,
+    S: IndexedConstraints<N, K, T> + Motion<N, T>,
 {
     let (rest, [by_q, by_v]) = (SVector::zeros(), weights());
     let gradients = of_kinds::<K, S, N, T, _>(
@@ -100,7 +100,7 @@ where
     (gradients, rates)
 }
 
-/// `∂(A v + a)/∂q` and `∂(A v + a)/∂t`, for [`Constrained::constraint_rate_derivatives`].
+/// `∂(A v + a)/∂q` and `∂(A v + a)/∂t`, for [`Motion::constraint_rate_derivatives`].
 #[inline]
 pub fn constraint_rate_derivatives<const N: usize, const K: usize, T: Real, S>(
     system: &S,
@@ -109,7 +109,7 @@ pub fn constraint_rate_derivatives<const N: usize, const K: usize, T: Real, S>(
     v: &SVector<T, N>,
 ) -> ([SVector<T, N>; K], [T; K])
 where
-    S: IndexedConstraints<N, K, T> + Constrained<N, T>,
+    S: IndexedConstraints<N, K, T> + Motion<N, T>,
 {
     let ([by_q, _], dual) = (weights(), system.dual());
     let rates_dq = of_kinds::<K, S, N, T, _>(
@@ -134,7 +134,7 @@ where
     (rates_dq, rates_dt)
 }
 
-/// `∂(Aᵀλ)/∂q` by rows, for [`Constrained::reaction_derivatives`].
+/// `∂(Aᵀλ)/∂q` by rows, for [`Motion::reaction_derivatives`].
 #[inline]
 pub fn reaction_derivatives<const N: usize, const K: usize, T: Real, S>(
     system: &S,
@@ -143,7 +143,7 @@ pub fn reaction_derivatives<const N: usize, const K: usize, T: Real, S>(
     multipliers: &[T; K],
 ) -> [SVector<T, N>; N]
 where
-    S: IndexedConstraints<N, K, T> + Constrained<N, T>,
+    S: IndexedConstraints<N, K, T> + Motion<N, T>,
 {
     let (rest, [by_q, by_v]) = (SVector::zeros(), weights());
     let second = |is_of_kind: &dyn Fn(usize) -> bool, rows| {
@@ -163,7 +163,7 @@ where
 /// What belongs to the constraints on positions, followed by what belongs to the others. Evaluates no kind without
 /// constraints.
 #[inline]
-fn of_kinds<const K: usize, S: Constrained<N, T>, const N: usize, T: Real, R: Copy>(
+fn of_kinds<const K: usize, S: Motion<N, T>, const N: usize, T: Real, R: Copy>(
     on_positions: impl FnOnce() -> [R; K],
     on_velocities: impl FnOnce() -> [R; K],
 ) -> [R; K] {

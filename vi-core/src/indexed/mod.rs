@@ -22,10 +22,10 @@ pub use step::{
     momentum_equation, momentum_residual, step_density,
 };
 
-use crate::collocation::{Point, PointDerivatives, ScaledPoint, Sides};
 use crate::error::StepError;
 use crate::lagrangian::{Flow, Lagrangian};
 use crate::legendre;
+use crate::motion::{Point, PointDerivatives, ScaledPoint, Sides};
 use crate::real::dual::{along, slopes};
 use crate::real::{Dual, Real, Rounded};
 use crate::rules::Quadrature;
@@ -197,7 +197,7 @@ pub fn acceleration<const N: usize, T: Real, S: Indexed<N, T>>(
     legendre::acceleration(t, &mass(system, t, q, v), &applied(system, t, q, v))
 }
 
-/// `L_q + f − L_vt − L_vq v`, for [`Constrained::applied`](crate::Constrained::applied).
+/// `L_q + f − L_vt − L_vq v`, for [`Motion::applied`](crate::Motion::applied).
 #[inline]
 pub fn applied<const N: usize, T: Real, S: Indexed<N, T>>(
     system: &S,
@@ -257,7 +257,7 @@ fn flow_of_velocity<const N: usize, T: Real, S: Indexed<N, T>>(
 }
 
 /// The equations of motion at a point with this mass matrix, for
-/// [`Collocation::point`](crate::collocation::Collocation::point).
+/// [`Motion::point`](crate::motion::Motion::point).
 #[inline]
 pub fn point<const N: usize, T: Real, S: Indexed<N, T>, M>(
     system: &S,
@@ -271,7 +271,7 @@ pub fn point<const N: usize, T: Real, S: Indexed<N, T>, M>(
 }
 
 /// The same with the energy, its rate of change and a time scale, for
-/// [`Collocation::scaled_point`](crate::collocation::Collocation::scaled_point). `scale` is g, ∂g/∂q and ∂g/∂t.
+/// [`Motion::scaled_point`](crate::motion::Motion::scaled_point). `scale` is g, ∂g/∂q and ∂g/∂t.
 #[inline]
 pub fn scaled_point<const N: usize, T: Real, S: Indexed<N, T>, M>(
     system: &S,
@@ -290,7 +290,7 @@ pub fn scaled_point<const N: usize, T: Real, S: Indexed<N, T>, M>(
     }
 }
 
-/// The equations without the mass matrix, for [`Collocation::sides`](crate::collocation::Collocation::sides).
+/// The equations without the mass matrix, for [`Motion::sides`](crate::motion::Motion::sides).
 #[inline]
 pub fn sides<const N: usize, T: Real, S: Indexed<N, T>>(
     system: &S,
@@ -303,7 +303,7 @@ pub fn sides<const N: usize, T: Real, S: Indexed<N, T>>(
 }
 
 /// Derivatives of the equations of motion at a point, for
-/// [`Collocation::point_derivatives`](crate::collocation::Collocation::point_derivatives).
+/// [`Motion::point_derivatives`](crate::motion::Motion::point_derivatives).
 #[inline]
 pub fn point_derivatives<const N: usize, T: Real, S: Indexed<N, T>>(
     system: &S,
@@ -323,7 +323,7 @@ pub fn point_derivatives<const N: usize, T: Real, S: Indexed<N, T>>(
 }
 
 /// Rate of change of the energy, `f·v − L_t`, for
-/// [`Collocation::power`](crate::collocation::Collocation::power).
+/// [`Motion::power`](crate::motion::Motion::power).
 #[inline]
 pub fn power<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
     if S::AUTONOMOUS && !S::FORCED {

@@ -14,20 +14,10 @@
 //!
 //! Source: J. W. H. Liu, The multifrontal method for sparse matrix solution, 1992.
 
+use super::Block;
 use crate::real::Real;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
-
-/// Unknowns that are eliminated together, and the later ones that they are coupled to at their elimination.
-///
-/// Unknowns are the coordinates 0 … N − 1, then the multipliers N … N + K − 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Block {
-    /// The unknowns of the block.
-    pub own: &'static [usize],
-    /// The unknowns of the border, in the order of their elimination.
-    pub border: &'static [usize],
-}
 
 /// Largest multiple of a pivot in its column. Beyond, elimination could lose three digits.
 const GROWTH: f64 = 1024.0;

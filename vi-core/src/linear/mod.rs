@@ -37,8 +37,6 @@ pub use blocks::Blocks;
 #[cfg(feature = "alloc")]
 pub(crate) use bordered::{Bordered, Unsolvable, scale};
 #[cfg(feature = "alloc")]
-pub use fronts::Block;
-#[cfg(feature = "alloc")]
 pub(crate) use fronts::{Factored, Fronts, reciprocal_power, reciprocal_root};
 #[cfg(feature = "alloc")]
 pub(crate) use pivoted::Pivoted;
@@ -169,6 +167,17 @@ pub fn determinant_sign<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> i
         }
     }
     sign
+}
+
+/// Unknowns that are eliminated together, and the later ones that they are coupled to at their elimination.
+///
+/// Unknowns are the coordinates 0 … N − 1, then the multipliers N … N + K − 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// The unknowns of the block.
+    pub own: &'static [usize],
+    /// The unknowns of the border, in the order of their elimination.
+    pub border: &'static [usize],
 }
 
 #[cfg(test)]

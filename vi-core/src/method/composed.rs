@@ -1,19 +1,21 @@
-//! Composition of steps with constraints: fixed steps of order 4, 6 and 8 from the midpoint rule [`GaussLobatto<1>`].
+//! Composition of steps with constraints: fixed steps of order 4, 6 and 8 from the midpoint rule [`Gauss<1>`].
 //!
 //! As [`Composition`], of which it takes the weights: one step consists of the steps `γ_1 h, γ_2 h, …`, each of which
 //! satisfies the constraints at its end. It is symmetric, and for holonomic constraints without force symplectic.
-//! [`GaussLobatto`] with more stages has the same orders with positive substeps, and tolerates damping.
+//! [`Gauss`] with more stages has the same orders with positive substeps, and tolerates damping.
 //!
 //! Each substep is extrapolated from the same substep of earlier steps. A step allocates the unknowns of its substeps.
 
-use super::gauss_lobatto::{ConstrainedStep, ConstrainedSteps};
-use super::{Composition, GaussLobatto, Memory, Method, Problem, Report};
+use super::gauss::bound::{ConstrainedStep, ConstrainedSteps};
+use super::{Composition, Gauss, Memory, Method, Problem, Report};
 use crate::constrained::solve::Workspace;
-use crate::constrained::{Constrained, ConvertibleConstrained, start};
+use crate::constrained::start;
 use crate::error::StepError;
+use crate::kind::{Bound, Form, Multipliers};
 use crate::node::Node;
 use crate::run::Hermite;
 use crate::state::State;
+use crate::stepping::Convertible;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
@@ -26,12 +28,12 @@ pub struct Composed<M> {
     pub scheme: Composition,
 }
 
-impl GaussLobatto<1> {
+impl Gauss<1> {
     /// Steps of the order of a composition, each of which consists of steps of this method.
     ///
     /// ```
     /// use vi_core::prelude::*;
-    /// use vi_core::{Composition, GaussLobatto};
+    /// use vi_core::Composition;
     /// # mod pendulum {
     /// # use vi_core::lagrangian;
     /// lagrangian! {
@@ -44,7 +46,7 @@ impl GaussLobatto<1> {
     /// # }
     /// # use pendulum::Pendulum;
     ///
-    /// let method = GaussLobatto::<1>.composed(Composition::KAHAN_LI_6);
+    /// let method = Gauss::<1>.composed(Composition::KAHAN_LI_6);
     /// let mut run = Pendulum::default().at(0.0, [0.6, -0.8], [0.0, 0.0]).integrate(method, 0.05)?;
     /// run.step()?;
     /// # Ok::<(), StepError>(())
@@ -66,14 +68,14 @@ pub struct ComposedSteps<const N: usize> {
 
 impl<const N: usize> Memory for ComposedSteps<N> {}
 
-impl<S, const N: usize> Method<S, N> for Composed<GaussLobatto<1>>
+impl<S, const N: usize, const K: usize, F: Form> Method<S, N> for Composed<Gauss<1>>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N, Kind = Bound<K, F>>,
 {
     type Prepared = ();
     type Memory = ComposedSteps<N>;
     type Cache = Option<Box<Workspace>>;
-    type Step = Vec<ConstrainedStep<N, S::Multipliers>>;
+    type Step = Vec<ConstrainedStep<N, Multipliers<S, N>>>;
     type Left = StepError;
     type DenseOutput = Hermite<N>;
 

@@ -10,13 +10,11 @@
 //! | `composition` | [`Composition`]: fixed steps of order 4, 6, 8 |
 //! | `splitting` | [`Splitting`]: explicit kicks and drifts of systems whose forces depend on the coordinates alone, order 2, 4, 6 |
 //! | `composed` | [`Composed`]: compositions of steps with constraints, order 4, 6, 8 |
-//! | `gauss` | [`Gauss`]: collocation at S Gauss points, order 2S |
-//! | `gauss_lobatto` | [`GaussLobatto`]: Gauss steps of systems with constraints, order 2S |
+//! | `gauss` | [`Gauss`]: collocation at S Gauss points, order 2S, with or without constraints |
 //! | `transformed` | [`InTransformedTime`]: Gauss steps of constant length in transformed time |
 //! | `energy` | [`EnergyPreserving`]: steps of order 2 whose length preserves the discrete energy |
 //! | `energy_gauss` | [`EnergyPreservingGauss`]: the same with Gauss steps, order 2S |
 //! | `bounds` | bounds of a step length, and fixed steps if no energy-preserving step exists |
-//! | `energy_gauss_lobatto` | [`EnergyPreservingGaussLobatto`]: the same for systems with constraints |
 //! | `preserving` | energy-preserving steps among steps of any length |
 //! | `shift` | the shift of the step density |
 //! | `length` | the search for the step length |
@@ -28,12 +26,8 @@ pub mod composed;
 pub mod composition;
 pub mod energy;
 pub mod energy_gauss;
-#[cfg(feature = "alloc")]
-pub mod energy_gauss_lobatto;
 pub mod fixed;
 pub mod gauss;
-#[cfg(feature = "alloc")]
-pub mod gauss_lobatto;
 pub(crate) mod length;
 pub(crate) mod preserving;
 pub mod shift;
@@ -47,19 +41,19 @@ pub use composed::Composed;
 pub use composition::Composition;
 pub use energy::EnergyPreserving;
 pub use energy_gauss::EnergyPreservingGauss;
-#[cfg(feature = "alloc")]
-pub use energy_gauss_lobatto::EnergyPreservingGaussLobatto;
+/// The name of [`EnergyPreservingGauss`] for systems with constraints, until both became one.
+pub use energy_gauss::EnergyPreservingGauss as EnergyPreservingGaussLobatto;
 pub use fixed::{Connected, FixedStep};
 pub use gauss::Gauss;
-#[cfg(feature = "alloc")]
-pub use gauss_lobatto::GaussLobatto;
+/// The name of [`Gauss`] for systems with constraints, until both became one.
+pub use gauss::Gauss as GaussLobatto;
 pub use shift::{Shiftable, StepPower};
 pub use splitting::Splitting;
 pub use transformed::InTransformedTime;
 
 use crate::error::StepError;
 use crate::node::Node;
-use crate::real::Scalar;
+use crate::real::{Scalar, Storable};
 use crate::run::DenseOutput;
 use crate::state::State;
 use core::fmt::Debug;
@@ -86,7 +80,7 @@ impl<S, P, const N: usize, T: Copy> Clone for Problem<'_, S, P, N, T> {
 impl<S, P, const N: usize, T: Copy> Copy for Problem<'_, S, P, N, T> {}
 
 /// Data that a run carries between steps, beside its node.
-pub trait Memory: Clone + Debug + Send + Sync {
+pub trait Memory: Clone + Debug + Send + Sync + Storable {
     /// A copy that shares no memory with this one.
     ///
     /// A small memory passes each number through `black_box`, so that a loop over steps keeps its own numbers in
@@ -116,8 +110,8 @@ pub struct Report {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot integrate `{S}`",
     label = "this method needs something that `{S}` does not have",
-    note = "`FixedStep`, `Composition`, `EnergyPreserving` need the clause `discretize midpoint;`, `Gauss` and `EnergyPreservingGauss` take every system",
-    note = "a system with constraints needs `GaussLobatto` or `EnergyPreservingGaussLobatto`, which take no other system",
+    note = "`Gauss` and `EnergyPreservingGauss` take every system; they keep constraints, which other methods would ignore",
+    note = "`FixedStep`, `Composition`, `EnergyPreserving` need the clause `discretize midpoint;` and a system without constraints",
     note = "`Splitting` needs a constant mass matrix, and forces that depend on time and coordinates alone",
     note = "a method in transformed time needs the clause `time_scale = …;`"
 )]

@@ -21,9 +21,9 @@
 //! Numerical Integration, section V.3.
 
 use super::{Memory, Method, Problem, Report};
-use crate::collocation::{Collocation, Separable};
 use crate::error::StepError;
 use crate::linear::Matrix;
+use crate::motion::{Motion, Separable};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
 use crate::run::Hermite;
@@ -200,7 +200,7 @@ impl<const N: usize, T: Real> Split<N, T> {
 }
 
 /// Kicks and drifts of one step.
-struct Step<'a, S: Collocation<N, T>, const N: usize, T: Real> {
+struct Step<'a, S: Motion<N, T>, const N: usize, T: Real> {
     scheme: &'a Splitting,
     system: &'a S,
     inverse: &'a <S::Mass as Matrix<N, T>>::Inverse,
@@ -210,7 +210,7 @@ struct Step<'a, S: Collocation<N, T>, const N: usize, T: Real> {
     force: &'a SVector<T, N>,
 }
 
-impl<S: Collocation<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
+impl<S: Motion<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
     type Output = Split<N, T>;
 
     #[inline(always)]
@@ -249,7 +249,7 @@ impl<S: Collocation<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
 }
 
 /// Takes a step inside the dispatched function.
-struct Advancing<'a, S: Collocation<N, T>, const N: usize, T: Real> {
+struct Advancing<'a, S: Motion<N, T>, const N: usize, T: Real> {
     scheme: &'a Splitting,
     system: &'a S,
     inverse: &'a <S::Mass as Matrix<N, T>>::Inverse,
@@ -258,7 +258,7 @@ struct Advancing<'a, S: Collocation<N, T>, const N: usize, T: Real> {
     force: &'a mut SVector<T, N>,
 }
 
-impl<S: Collocation<N, T>, const N: usize, T: Scalar> Loop for Advancing<'_, S, N, T> {
+impl<S: Motion<N, T>, const N: usize, T: Scalar> Loop for Advancing<'_, S, N, T> {
     type Output = Result<(), ()>;
 
     #[inline(always)]
@@ -275,7 +275,7 @@ impl<S: Collocation<N, T>, const N: usize, T: Scalar> Loop for Advancing<'_, S, 
 }
 
 /// The force at a node.
-fn force_at<S: Collocation<N, T>, const N: usize, T: Real>(system: &S, node: &Node<N, T>) -> SVector<T, N> {
+fn force_at<S: Motion<N, T>, const N: usize, T: Real>(system: &S, node: &Node<N, T>) -> SVector<T, N> {
     system.point(node.t, &node.q, &SVector::zeros()).force
 }
 
@@ -294,7 +294,7 @@ fn checked<const N: usize, T: Scalar>(force: &SVector<T, N>, t: T) -> Result<(),
 }
 
 /// One step from a node over any numbers.
-pub(crate) fn step<S: Collocation<N, T>, const N: usize, T: Real>(
+pub(crate) fn step<S: Motion<N, T>, const N: usize, T: Real>(
     scheme: &Splitting,
     system: &S,
     (node, h): (&Node<N, T>, T),

@@ -17,12 +17,12 @@
 //! and at the end.
 
 use super::{Gauss, Method, Problem, Report, check_step};
-use crate::collocation::TimeScale;
 use crate::error::{Residuals, StepError};
 use crate::gauss::newton::Buffer;
 use crate::gauss::transformed::{
     After, LastRates, Start, TransformedPolynomial, TransformedStages, check_time_scale, time_scale,
 };
+use crate::motion::TimeScale;
 use crate::node::Node;
 use crate::run::Run;
 use crate::state::State;

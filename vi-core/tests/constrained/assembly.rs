@@ -2,7 +2,8 @@
 
 use super::systems::PENDULUM;
 use vi_core::constrained::Projection;
-use vi_core::{Constrained, GaussLobatto, Lagrangian, SVector, Starts, State, StepError, lagrangian};
+use vi_core::motion::Motion;
+use vi_core::{Gauss, Lagrangian, SVector, Starts, State, StepError, lagrangian};
 
 lagrangian! {
     /// Crank, coupler and rocker between the pivots (0, 0) and (3, 0).
@@ -17,7 +18,7 @@ lagrangian! {
 }
 
 /// The largest g at a state.
-fn off<S: Constrained<N>, const N: usize>(system: &S, state: &State<N>) -> f64 {
+fn off<S: Motion<N>, const N: usize>(system: &S, state: &State<N>) -> f64 {
     system.constraints(state.t, &state.q).as_ref().iter().fold(0.0, |worst, value| value.abs().max(worst))
 }
 
@@ -42,7 +43,7 @@ fn a_four_bar_closes_from_a_right_angle_away() {
             assert!(off(&system, &found.state) < 4e-15, "{turn} {stretch}: {:e}", off(&system, &found.state));
             // An angle of the moved links of a few radians at most.
             assert!(found.moved_q.norm() < 12.0, "{turn} {stretch}: {found:?}");
-            let mut run = system.at_state(found.state).integrate(GaussLobatto::<2>, 0.01).expect("a start");
+            let mut run = system.at_state(found.state).integrate(Gauss::<2>, 0.01).expect("a start");
             run.step().unwrap_or_else(|failure| panic!("{failure}"));
         }
     }
@@ -133,7 +134,7 @@ fn held_coordinates_stay() {
         // A crank of length 1 at the height 0.6.
         assert!((found.state.q[0] - 0.8).abs() < 1e-15 && found.moved_q.norm() > 0.1, "{found:?}");
         assert!(off(&system, &found.state) < 1e-14);
-        system.at_state(found.state).integrate(GaussLobatto::<1>, 0.01).expect("a start");
+        system.at_state(found.state).integrate(Gauss::<1>, 0.01).expect("a start");
     }
     // Three rods leave one coordinate.
     let all = Projection::of(&system).holding(&[0, 1]).expect("indices");
@@ -144,7 +145,7 @@ fn held_coordinates_stay() {
         let found = found.unwrap_or_else(|failure| panic!("{failure}"));
         assert!(found.moved_q.rows(0, 2).amax() <= 0.0 && found.moved_v.rows(0, 2).amax() <= 0.0, "{found:?}");
         assert!(off(&system, &found.state) < 1e-14 && found.moved_q.norm() > 0.01, "{found:?}");
-        system.at_state(found.state).integrate(GaussLobatto::<1>, 0.01).expect("a start");
+        system.at_state(found.state).integrate(Gauss::<1>, 0.01).expect("a start");
     }
     let along = all.projected(0.0, q, [0.6, 0.8, 0.1, 0.2]);
     assert!(

@@ -1,10 +1,11 @@
 //! Elimination by blocks, and in the impulses alone, against dense elimination.
 
-use vi_core::collocation::{Point, PointDerivatives};
 use vi_core::lagrangian::Parameters;
 use vi_core::linear::{Block, Rectangular};
+use vi_core::motion::Motion;
 use vi_core::real::Real;
-use vi_core::{Constrained, ConvertibleConstrained, GaussLobatto, Lagrangian, SVector, Starts, State, lagrangian};
+use vi_core::stepping::Convertible;
+use vi_core::{Gauss, Lagrangian, Starts, State, lagrangian};
 
 lagrangian! {
     /// Six point masses on a chain of rods.
@@ -68,46 +69,17 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>, const DENSE: bool> Lagrangian
     vi_core::forward! { [N T S] self => &self.0; [] lagrangian_constants lagrangian energy momentum force acceleration flow }
 }
 
-impl<const N: usize, T: Real, S: Constrained<N, T>, const DENSE: bool> Constrained<N, T> for Plain<S, DENSE> {
+impl<const N: usize, T: Real, S: Motion<N, T>, const DENSE: bool> Motion<N, T> for Plain<S, DENSE> {
+    type Kind = S::Kind;
     type Mass = S::Mass;
     type PointMatrix = S::PointMatrix;
     const CONSTANT_MASS: bool = S::CONSTANT_MASS;
     const CONSTRAINTS: &'static [&'static str] = S::CONSTRAINTS;
     const HOLONOMIC: usize = S::HOLONOMIC;
-    type Multipliers = S::Multipliers;
-    type Gradients = S::Gradients;
-    type ReactionMatrix = S::ReactionMatrix;
     const BLOCKS: &'static [Block] = if DENSE { &[] } else { S::BLOCKS };
 
-    fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass> {
-        self.0.point(t, q, v)
-    }
-    fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix> {
-        self.0.point_derivatives(t, q, v)
-    }
-    fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
-        self.0.power(t, q, v)
-    }
-    fn applied(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
-        self.0.applied(t, q, v)
-    }
-    fn constraints(&self, t: T, q: &SVector<T, N>) -> Self::Multipliers {
-        self.0.constraints(t, q)
-    }
-    fn constraint_gradients(&self, t: T, q: &SVector<T, N>) -> (Self::Gradients, Self::Multipliers) {
-        self.0.constraint_gradients(t, q)
-    }
-    fn constraint_rate_derivatives(
-        &self,
-        t: T,
-        q: &SVector<T, N>,
-        v: &SVector<T, N>,
-    ) -> (Self::Gradients, Self::Multipliers) {
-        self.0.constraint_rate_derivatives(t, q, v)
-    }
-    fn reaction_derivatives(&self, t: T, q: &SVector<T, N>, multipliers: &Self::Multipliers) -> Self::ReactionMatrix {
-        self.0.reaction_derivatives(t, q, multipliers)
-    }
+    vi_core::forward! { [N T S] self => &self.0; [] point point_derivatives power applied constraints }
+    vi_core::forward! { [N T S] self => &self.0; [] constraint_gradients constraint_rate_derivatives reaction_derivatives }
 }
 
 impl<T: Real, S: Parameters<T>, const DENSE: bool> Parameters<T> for Plain<S, DENSE> {
@@ -116,7 +88,7 @@ impl<T: Real, S: Parameters<T>, const DENSE: bool> Parameters<T> for Plain<S, DE
     }
 }
 
-impl<const N: usize, S: ConvertibleConstrained<N>, const DENSE: bool> ConvertibleConstrained<N> for Plain<S, DENSE> {
+impl<const N: usize, S: Convertible<N>, const DENSE: bool> Convertible<N> for Plain<S, DENSE> {
     type In<T: Real> = Plain<S::In<T>, DENSE>;
 
     fn convert<T: Real>(&self) -> Self::In<T> {
@@ -127,11 +99,11 @@ impl<const N: usize, S: ConvertibleConstrained<N>, const DENSE: bool> Convertibl
 /// The state after steps of length 0.02 from a state near this one.
 fn end<S, const N: usize, const STAGES: usize>(system: S, near: [[f64; N]; 2], count: u32) -> State<N>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let [q, v] = near;
     let start = State::projected(&system, 0.0, q, v).unwrap_or_else(|error| panic!("{error}")).state;
-    let run = system.at_state(start).integrate(GaussLobatto::<STAGES>, 0.02);
+    let run = system.at_state(start).integrate(Gauss::<STAGES>, 0.02);
     let mut run = run.unwrap_or_else(|error| panic!("{error}"));
     for _ in 0..count {
         run.step().unwrap_or_else(|error| panic!("{error}"));
@@ -144,7 +116,7 @@ where
 /// Largest difference between steps by blocks and dense steps, relative to the size of the state.
 fn difference<S, const N: usize, const STAGES: usize>(system: S, near: [[f64; N]; 2]) -> f64
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let dense = end::<_, N, STAGES>(Plain::<_, true>(system), near, 50);
     let size = dense.q.amax().max(dense.p.amax());
@@ -154,7 +126,7 @@ where
 
 fn check<S, const N: usize>(system: S, near: [[f64; N]; 2], bound: f64)
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     assert!(S::BLOCKS.len() > 1, "{:?}", S::BLOCKS);
     let found =
@@ -204,7 +176,7 @@ fn blocks_and_dense_elimination_agree() {
 }
 
 /// The largest constraint over a rounding of its terms.
-fn off<S: Constrained<N>, const N: usize>(system: &S, state: &State<N>) -> f64 {
+fn off<S: Motion<N>, const N: usize>(system: &S, state: &State<N>) -> f64 {
     let values = system.constraints(state.t, &state.q);
     let (gradients, _) = system.constraint_gradients(state.t, &state.q);
     values.as_ref().iter().zip(gradients.rows()).fold(0.0, |worst, (value, row)| {
@@ -216,11 +188,11 @@ fn off<S: Constrained<N>, const N: usize>(system: &S, state: &State<N>) -> f64 {
 /// The largest constraint of 1000 steps, over a rounding of its terms.
 fn worst<S, const N: usize>(system: S, near: [[f64; N]; 2]) -> f64
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let [q, v] = near;
     let start = State::projected(&system, 0.0, q, v).unwrap_or_else(|error| panic!("{error}")).state;
-    let run = system.at_state(start).integrate(GaussLobatto::<1>, 0.01);
+    let run = system.at_state(start).integrate(Gauss::<1>, 0.01);
     let mut run = run.unwrap_or_else(|error| panic!("{error}"));
     (0..1000).fold(0.0, |worst, _| {
         let state = run.step().unwrap_or_else(|error| panic!("{error}"));
@@ -247,13 +219,13 @@ fn parameters_and_states_reach_the_solver_of_impulses() {
     let [q, v] = straight::<12>();
     let begin = |system: Chain| {
         let start = State::projected(&system, 0.0, q, v).unwrap_or_else(|error| panic!("{error}")).state;
-        system.at_state(start).integrate(GaussLobatto::<1>, 0.02).unwrap_or_else(|error| panic!("{error}"))
+        system.at_state(start).integrate(Gauss::<1>, 0.02).unwrap_or_else(|error| panic!("{error}"))
     };
     let mut run = begin(Chain::default());
     run.step().unwrap_or_else(|error| panic!("{error}"));
     run.set_parameters(|system| system.g = 1.62).unwrap_or_else(|error| panic!("{error}"));
     let state = run.state();
-    let mut fresh = Chain { g: 1.62 }.at_state(state).integrate(GaussLobatto::<1>, 0.02).expect("a start");
+    let mut fresh = Chain { g: 1.62 }.at_state(state).integrate(Gauss::<1>, 0.02).expect("a start");
     let [changed, fresh] = [run.step(), fresh.step()].map(|state| state.unwrap_or_else(|error| panic!("{error}")));
     assert!((changed.q - fresh.q).amax() < 1e-14 && (changed.p - fresh.p).amax() < 1e-13);
     let mut other = begin(Chain::default());

@@ -2,12 +2,14 @@
 
 use super::systems::{Auto, PENDULUM, Pendulum};
 use vi_core::check::{
-    CheckFailure, Place, Report, constrained_derivatives, constraints, lobatto_order, lobatto_symplecticity, reaction,
+    CheckFailure, Place, Report, constraints, derivatives, gauss_order, gauss_symplecticity, reaction,
 };
-use vi_core::collocation::{Point, PointDerivatives};
 use vi_core::lagrangian::{Flow, Parameters};
+use vi_core::motion::Motion;
+use vi_core::motion::{Point, PointDerivatives};
 use vi_core::real::Real;
-use vi_core::{Constrained, ConvertibleConstrained, Lagrangian, SVector, StepError, lagrangian, support};
+use vi_core::stepping::Convertible;
+use vi_core::{Lagrangian, SVector, StepError, lagrangian, support};
 
 // Each `check` makes a module of tests.
 lagrangian! {
@@ -110,15 +112,13 @@ impl<T: Real> Lagrangian<2, T> for Spoiled<T> {
     }
 }
 
-impl<T: Real> Constrained<2, T> for Spoiled<T> {
-    type Mass = <Bead<T> as Constrained<2, T>>::Mass;
-    type PointMatrix = <Bead<T> as Constrained<2, T>>::PointMatrix;
+impl<T: Real> Motion<2, T> for Spoiled<T> {
+    type Kind = vi_core::kind::Bound<1>;
+    type Mass = <Bead<T> as Motion<2, T>>::Mass;
+    type PointMatrix = <Bead<T> as Motion<2, T>>::PointMatrix;
     const CONSTANT_MASS: bool = true;
     const CONSTRAINTS: &'static [&'static str] = &["ellipse"];
     const HOLONOMIC: usize = 1;
-    type Multipliers = [T; 1];
-    type Gradients = [SVector<T, 2>; 1];
-    type ReactionMatrix = [SVector<T, 2>; 2];
 
     fn point(&self, t: T, q: &SVector<T, 2>, v: &SVector<T, 2>) -> Point<2, T, Self::Mass> {
         let Point { momentum, force, mass } = self.bead.point(t, q, v);
@@ -165,7 +165,7 @@ impl<T: Real> Parameters<T> for Spoiled<T> {
     }
 }
 
-impl ConvertibleConstrained<2> for Spoiled {
+impl Convertible<2> for Spoiled {
     type In<T: Real> = Spoiled<T>;
 
     fn convert<T: Real>(&self) -> Spoiled<T> {
@@ -177,15 +177,15 @@ impl ConvertibleConstrained<2> for Spoiled {
 fn mistakes_are_found() {
     type Check = fn(&Spoiled, &Place<2>) -> Result<Report, CheckFailure>;
     let cases: [(Check, Mistake); 9] = [
-        (constrained_derivatives, Mistake::Momentum),
-        (constrained_derivatives, Mistake::Force),
-        (constrained_derivatives, Mistake::Mass),
+        (derivatives, Mistake::Momentum),
+        (derivatives, Mistake::Force),
+        (derivatives, Mistake::Mass),
         (constraints, Mistake::Gradient),
         (constraints, Mistake::RateDerivative),
         (constraints, Mistake::ReactionDerivative),
         (reaction, Mistake::Applied),
         (reaction, Mistake::RateDerivative),
-        (lobatto_symplecticity, Mistake::Gradient),
+        (gauss_symplecticity, Mistake::Gradient),
     ];
     for (check, mistake) in cases {
         let bead = Bead::default();
@@ -204,11 +204,11 @@ fn place() -> Place<2> {
 fn reports_have_their_numbers() {
     let bead = Bead::default();
     for report in [
-        constrained_derivatives(&bead, &place()),
+        derivatives(&bead, &place()),
         constraints(&bead, &place()),
         reaction(&bead, &place()),
-        lobatto_order(&bead, &place()),
-        lobatto_symplecticity(&bead, &place()),
+        gauss_order(&bead, &place()),
+        gauss_symplecticity(&bead, &place()),
     ] {
         let report = report.unwrap_or_else(|failure| panic!("{failure}"));
         println!("{report}");
@@ -219,11 +219,11 @@ fn reports_have_their_numbers() {
 #[test]
 fn checks_apply_where_their_property_exists() {
     // `Auto` declares a force, also where it is zero.
-    let refused = lobatto_symplecticity(&PENDULUM, &place());
+    let refused = gauss_symplecticity(&PENDULUM, &place());
     assert!(matches!(refused, Err(CheckFailure::NotApplicable { .. })), "{refused:?}");
     let sleigh = Sleigh::default();
     let at = Place { t: 0.0, q: [0.0, 0.0, 0.4].into(), v: [1.0, 0.4, 1.3].into(), h: 0.01 };
-    let refused = lobatto_symplecticity(&sleigh, &at);
+    let refused = gauss_symplecticity(&sleigh, &at);
     assert!(matches!(refused, Err(CheckFailure::NotApplicable { .. })), "{refused:?}");
     // A rotor without weight at rest.
     let still = Place { v: [0.0, 0.0].into(), ..place() };

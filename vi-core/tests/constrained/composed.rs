@@ -2,17 +2,18 @@
 
 use super::systems::{Auto, Driven, Mixed, Model, PENDULUM, Sleigh};
 use vi_core::derivatives::{Tangent, Variation};
+use vi_core::motion::Motion as _;
 use vi_core::run::Checkpoint;
-use vi_core::{Composed, Composition, Constrained, GaussLobatto, Method, Run, Starts, State, StepError};
+use vi_core::{Composed, Composition, Gauss, Method, Run, Starts, State, StepError};
 
-type ARun<M, const N: usize, const K: usize> = Run<Composed<GaussLobatto<1>>, Auto<M, K>, N>;
+type ARun<M, const N: usize, const K: usize> = Run<Composed<Gauss<1>>, Auto<M, K>, N>;
 
 fn begin<M: Model<N, K>, const N: usize, const K: usize>(
     system: Auto<M, K>,
     state: State<N>,
     (scheme, h): (Composition, f64),
 ) -> ARun<M, N, K> {
-    system.at_state(state).integrate(GaussLobatto::<1>.composed(scheme), h).unwrap_or_else(|error| panic!("{error}"))
+    system.at_state(state).integrate(Gauss::<1>.composed(scheme), h).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn pendulum() -> State<2> {
@@ -25,7 +26,7 @@ fn check_order<M: Model<N, K>, const N: usize, const K: usize>(
     state: State<N>,
     (scheme, counts): (Composition, [u32; 3]),
 ) {
-    let mut exact = system.at_state(state).integrate(GaussLobatto::<6>, 1.0 / 64.0).expect("a start");
+    let mut exact = system.at_state(state).integrate(Gauss::<6>, 1.0 / 64.0).expect("a start");
     let exact = (0..64).map(|_| exact.step().expect("a step")).last().expect("a state");
     let errors = counts.map(|count| {
         let mut run = begin(system, state, (scheme, f64::from(count).recip()));
@@ -36,7 +37,7 @@ fn check_order<M: Model<N, K>, const N: usize, const K: usize>(
     for (errors, counts) in errors.windows(2).zip(counts.windows(2)) {
         let slope = (errors[0] / errors[1]).ln() / (f64::from(counts[1]) / f64::from(counts[0])).ln();
         println!("{} {}: {errors:?} {slope:.3}", M::NAME, scheme.name);
-        let order = Method::<Auto<M, K>, N>::order(&GaussLobatto::<1>.composed(scheme));
+        let order = Method::<Auto<M, K>, N>::order(&Gauss::<1>.composed(scheme));
         assert!((slope - f64::from(order)).abs() < 0.1, "{} {}: {slope}", M::NAME, scheme.name);
     }
 }
@@ -85,13 +86,13 @@ fn stored_runs_resume_and_tangent_vectors_are_symplectic() {
     }
     let text = serde_json::to_string(&run.checkpoint()).expect("a text");
     let stored: Checkpoint<_, 2> = serde_json::from_str(&text).expect("a checkpoint");
-    let method = GaussLobatto::<1>.composed(case.0);
+    let method = Gauss::<1>.composed(case.0);
     let mut resumed = Run::restart(PENDULUM, method, stored).unwrap_or_else(|error| panic!("{error}"));
     for _ in 0..10 {
         assert_eq!(run.step(), resumed.step());
     }
     let stored: Checkpoint<_, 2> = serde_json::from_str(&text).expect("a checkpoint");
-    let other = GaussLobatto::<1>.composed(Composition::KAHAN_LI_6);
+    let other = Gauss::<1>.composed(Composition::KAHAN_LI_6);
     assert!(matches!(Run::restart(PENDULUM, other, stored), Err(StepError::InvalidInput { .. })));
 
     // Two directions on the circle: along the motion, and a change of speed.

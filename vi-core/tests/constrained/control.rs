@@ -2,9 +2,10 @@
 
 use super::systems::{Auto, HeavyTop};
 use vi_core::constrained::Extended;
+use vi_core::motion::Motion as _;
 use vi_core::nalgebra::{DVector, SVector};
 use vi_core::prelude::*;
-use vi_core::{Constrained, Lagrangian, State, StepError, lagrangian};
+use vi_core::{Lagrangian, State, StepError, lagrangian};
 
 lagrangian! {
     /// Two rods, with friction.

@@ -3,10 +3,12 @@
 
 use vi_core::derivatives::{Covector, Lyapunov, Objective, Tangent, Variation, gradient};
 use vi_core::lagrangian::Parameters;
+use vi_core::motion::Motion as _;
 use vi_core::nalgebra::SVector;
 use vi_core::real::{Dual, Number};
 use vi_core::run::Event;
-use vi_core::{Constrained, ConvertibleConstrained, GaussLobatto, Run, Starts, State, StepError, lagrangian};
+use vi_core::stepping::Convertible;
+use vi_core::{Gauss, Run, Starts, State, StepError, lagrangian};
 
 lagrangian! {
     /// Two rods. The pivot moves, and the lower mass is damped.
@@ -43,10 +45,10 @@ lagrangian! {
 }
 
 /// What these tests need of a system.
-trait System<const N: usize>: Constrained<N> + ConvertibleConstrained<N> + Parameters {}
-impl<S: Constrained<N> + ConvertibleConstrained<N> + Parameters, const N: usize> System<N> for S {}
+trait System<const N: usize>: Convertible<N> + Parameters {}
+impl<S: Convertible<N> + Parameters, const N: usize> System<N> for S {}
 
-type ARun<S, const N: usize, const STAGES: usize> = Run<GaussLobatto<STAGES>, S, N>;
+type ARun<S, const N: usize, const STAGES: usize> = Run<Gauss<STAGES>, S, N>;
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +83,7 @@ fn follow<S: System<N>, const N: usize, const STAGES: usize>(run: &mut ARun<S, N
 }
 
 fn follow_tangent<S: System<N>, const N: usize, const STAGES: usize>(
-    tangent: &mut Tangent<GaussLobatto<STAGES>, S, N>,
+    tangent: &mut Tangent<Gauss<STAGES>, S, N>,
     legs: &[Leg],
 ) {
     for leg in legs {
@@ -105,7 +107,7 @@ fn nearest<S: System<N>, const N: usize>(system: &S, state: State<N>) -> State<N
 }
 
 fn begin<S: System<N>, const N: usize, const STAGES: usize>(system: S, state: State<N>, h: f64) -> ARun<S, N, STAGES> {
-    system.at_state(nearest(&system, state)).integrate(GaussLobatto, h).unwrap_or_else(|failure| panic!("{failure}"))
+    system.at_state(nearest(&system, state)).integrate(Gauss, h).unwrap_or_else(|failure| panic!("{failure}"))
 }
 
 /// The run whose start is moved along a direction.
@@ -288,7 +290,7 @@ struct Squares {
     names: &'static [&'static str],
 }
 
-impl<S: System<N>, const N: usize, const STAGES: usize> Objective<GaussLobatto<STAGES>, S, N> for Squares {
+impl<S: System<N>, const N: usize, const STAGES: usize> Objective<Gauss<STAGES>, S, N> for Squares {
     fn parameters(&self) -> &[&str] {
         self.names
     }
@@ -306,8 +308,8 @@ fn adjoint_differs<S: System<N>, const N: usize, const STAGES: usize>(case: (S, 
     let found = gradient(&run, steps, kept, &objective).unwrap_or_else(|failure| panic!("{failure}"));
     let directions = directions(&run);
     let mut tangent = Tangent::new(run.clone(), directions.clone());
-    let slope = |tangent: &Tangent<GaussLobatto<STAGES>, S, N>, step: u64| {
-        let covector = Objective::<GaussLobatto<STAGES>, S, N>::slope(&objective, step, &tangent.run().state());
+    let slope = |tangent: &Tangent<Gauss<STAGES>, S, N>, step: u64| {
+        let covector = Objective::<Gauss<STAGES>, S, N>::slope(&objective, step, &tangent.run().state());
         tangent.variations().iter().map(|variation| covector.of(variation)).collect::<Vec<_>>()
     };
     let mut sums = slope(&tangent, 0);

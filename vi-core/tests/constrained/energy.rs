@@ -7,12 +7,11 @@ use super::systems::{
 use crate::references::{number, reference, vector};
 use serde_json::Value;
 use vi_core::constrained::step_density;
-use vi_core::{
-    Constrained, EnergyPreservingGaussLobatto, GaussLobatto, Method, Run, SVector, Starts, State, StepError,
-};
+use vi_core::motion::Motion as _;
+use vi_core::{EnergyPreservingGauss, Gauss, Method, Run, SVector, Starts, State, StepError};
 
 type EnergyRun<M, const N: usize, const K: usize, const STAGES: usize> =
-    Run<EnergyPreservingGaussLobatto<STAGES>, Auto<M, K>, N>;
+    Run<EnergyPreservingGauss<STAGES>, Auto<M, K>, N>;
 
 /// A number, as text or not.
 fn plain(value: &Value) -> f64 {
@@ -34,7 +33,7 @@ fn shifted<M: Model<N, K>, const N: usize, const K: usize, const STAGES: usize>(
     state: State<N>,
     [h, shift]: [f64; 2],
 ) -> EnergyRun<M, N, K, STAGES> {
-    let run = system.at_state(state).integrate(EnergyPreservingGaussLobatto::<STAGES>, h);
+    let run = system.at_state(state).integrate(EnergyPreservingGauss::<STAGES>, h);
     run.and_then(|run| run.with_shift(shift)).unwrap_or_else(|error| panic!("{} {error}", M::NAME))
 }
 
@@ -175,7 +174,7 @@ fn check_order<M: Model<N, K>, const N: usize, const K: usize, const STAGES: usi
     counts: [u32; 3],
     shift: f64,
 ) {
-    let exact = system.at_state(state).integrate(GaussLobatto::<6>, 1.0 / 64.0).and_then(|mut run| run.until(1.0));
+    let exact = system.at_state(state).integrate(Gauss::<6>, 1.0 / 64.0).and_then(|mut run| run.until(1.0));
     let exact = exact.unwrap_or_else(|error| panic!("{error}"));
     let errors = counts.map(|count| {
         let mut run = shifted::<M, N, K, STAGES>(system, state, [f64::from(count).recip(), shift]);
@@ -185,7 +184,7 @@ fn check_order<M: Model<N, K>, const N: usize, const K: usize, const STAGES: usi
     for (errors, counts) in errors.windows(2).zip(counts.windows(2)) {
         let slope = (errors[0] / errors[1]).ln() / (f64::from(counts[1]) / f64::from(counts[0])).ln();
         println!("{} s = {STAGES}: {errors:?} {slope:.3}", M::NAME);
-        let order = f64::from(Method::<Auto<M, K>, N>::order(&EnergyPreservingGaussLobatto::<STAGES>));
+        let order = f64::from(Method::<Auto<M, K>, N>::order(&EnergyPreservingGauss::<STAGES>));
         assert!((slope - order).abs() < 0.1, "{} s = {STAGES}: {slope}", M::NAME);
     }
 }
@@ -242,7 +241,7 @@ fn orders_are_two_four_and_six() {
 /// The energy of five stretches of these steps stays in every bit; one step in `every` is compared with a fixed step,
 /// and the range of H − E' of a stretch is that of the first one up to `spread`.
 fn energy_stays_in_every_bit(steps: u32, every: u32, spread: f64) {
-    let start = PENDULUM.at_state(pendulum()).integrate(EnergyPreservingGaussLobatto::<1>, 0.02);
+    let start = PENDULUM.at_state(pendulum()).integrate(EnergyPreservingGauss::<1>, 0.02);
     let mut run = start.and_then(|run| run.with_shift_from(2.5)).unwrap_or_else(|error| panic!("{error}"));
     let kept = run.shifted_energy();
     println!("D_* = {}", run.shift());
@@ -262,7 +261,7 @@ fn energy_stays_in_every_bit(steps: u32, every: u32, spread: f64) {
             worst[1] = worst[1].max((2.0 * q.dot(&p)).abs() / (f64::EPSILON * terms));
             if step % every == 0 {
                 // The fixed step of this length, by another method, has this energy.
-                let fixed = PENDULUM.at_state(before.state()).integrate(GaussLobatto::<1>, run.h());
+                let fixed = PENDULUM.at_state(before.state()).integrate(Gauss::<1>, run.h());
                 let mut fixed = fixed.unwrap_or_else(|error| panic!("{error}"));
                 fixed.step().unwrap_or_else(|error| panic!("{error}"));
                 let energy = fixed.discrete_energy().expect("a step") - power::<1>(run.h()) * run.shift();
@@ -365,7 +364,7 @@ fn densities_of_steps_are_those_of_the_motion() {
         for _ in 0..200 {
             let before = run.state();
             let after = run.step().unwrap_or_else(|error| panic!("{error}"));
-            let middle = PENDULUM.at_state(before).integrate(GaussLobatto::<4>, 0.5 * (after.t - before.t));
+            let middle = PENDULUM.at_state(before).integrate(Gauss::<4>, 0.5 * (after.t - before.t));
             let State { q, p, .. } = middle.and_then(|mut run| run.step()).unwrap_or_else(|error| panic!("{error}"));
             let (g, w2) = (9.81, p.norm_squared());
             let density = (g * q[0]).powi(2) + 2.0 * g * w2 * q[1] - w2 * w2;

@@ -2,19 +2,18 @@
 
 use super::systems::{Auto, Driven, Mixed, Model, PENDULUM, Pendulum};
 use vi_core::method::{Fallback, Switches};
+use vi_core::motion::Motion as _;
 use vi_core::prelude::{Event, Moment};
 use vi_core::real::Real;
 use vi_core::run::Checkpoint;
 use vi_core::state::StepKind;
-use vi_core::{
-    Constrained, EnergyPreservingGaussLobatto, GaussLobatto, Run, SVector, Starts, State, StepError, Tolerance,
-};
+use vi_core::{EnergyPreservingGauss, Gauss, Run, SVector, Starts, State, StepError, Tolerance};
 
-type PendulumRun<const STAGES: usize> = Run<EnergyPreservingGaussLobatto<STAGES>, Auto<Pendulum, 1>, 2>;
+type PendulumRun<const STAGES: usize> = Run<EnergyPreservingGauss<STAGES>, Auto<Pendulum, 1>, 2>;
 
 fn pendulum<const STAGES: usize>(h: f64) -> PendulumRun<STAGES> {
     let start = PENDULUM.at(0.0, [0.6, -0.8], [0.8, 0.6]);
-    start.integrate(EnergyPreservingGaussLobatto::<STAGES>, h).unwrap_or_else(|error| panic!("{error}"))
+    start.integrate(EnergyPreservingGauss::<STAGES>, h).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The error that ends a run, and its steps.
@@ -38,7 +37,7 @@ fn a_run_without_a_shift_ends_where_the_density_vanishes() {
         (9.81 * state.q[0]).powi(2) + 2.0 * 9.81 * w2 * state.q[1] - w2 * w2
     };
     let beside = |h: f64| {
-        let beside = PENDULUM.at_state(last).integrate(GaussLobatto::<4>, h).and_then(|mut run| run.step());
+        let beside = PENDULUM.at_state(last).integrate(Gauss::<4>, h).and_then(|mut run| run.step());
         density_at(&beside.unwrap_or_else(|error| panic!("{error}")))
     };
     let [before, after] = [beside(-0.5 * h), beside(0.5 * h)];
@@ -99,7 +98,7 @@ fn bounds_limit_the_lengths() {
 #[test]
 fn starts_and_shifts_that_cannot_be_are_refused() {
     let begin = |q: [f64; 2], v: [f64; 2], h: f64| {
-        PENDULUM.at(0.0, q, v).integrate(EnergyPreservingGaussLobatto::<2>, h).map(|_| ()).expect_err("no start")
+        PENDULUM.at(0.0, q, v).integrate(EnergyPreservingGauss::<2>, h).map(|_| ()).expect_err("no start")
     };
     assert!(matches!(begin([0.6, -0.801], [0.8, 0.6], 0.1), StepError::InconsistentStart { constraint: "rod", .. }));
     for h in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-100] {
@@ -112,7 +111,7 @@ fn starts_and_shifts_that_cannot_be_are_refused() {
     assert!(matches!(pendulum::<2>(0.1).with_shift_from(-1.0), Err(StepError::InvalidInput { .. })));
     let energy = |energy| {
         let state = pendulum::<1>(0.1).state();
-        EnergyPreservingGaussLobatto::<1>::from_energy(PENDULUM, state, energy, 0.02).and_then(|mut run| run.step())
+        EnergyPreservingGauss::<1>::from_energy(PENDULUM, state, energy, 0.02).and_then(|mut run| run.step())
     };
     assert!(matches!(energy(f64::NAN), Err(StepError::NonFinite { .. })));
     // At E = H no length is determined.
@@ -137,9 +136,9 @@ fn starts_give_steps_or_typed_errors(every: usize) {
         let start = PENDULUM.at_state(start.unwrap_or_else(|error| panic!("{error}")).state);
         let shift = [0.0, 300.0, -300.0, 3e4][k % 4];
         let outcomes = [
-            start.integrate(EnergyPreservingGaussLobatto::<1>, h).and_then(|run| run.with_shift(shift)).and_then(last),
-            start.integrate(EnergyPreservingGaussLobatto::<2>, h).and_then(|run| run.with_shift(shift)).and_then(last),
-            start.integrate(EnergyPreservingGaussLobatto::<3>, h).and_then(|run| run.with_shift(shift)).and_then(last),
+            start.integrate(EnergyPreservingGauss::<1>, h).and_then(|run| run.with_shift(shift)).and_then(last),
+            start.integrate(EnergyPreservingGauss::<2>, h).and_then(|run| run.with_shift(shift)).and_then(last),
+            start.integrate(EnergyPreservingGauss::<3>, h).and_then(|run| run.with_shift(shift)).and_then(last),
         ];
         for outcome in outcomes {
             match outcome {
@@ -176,14 +175,14 @@ fn last<const STAGES: usize>(mut run: PendulumRun<STAGES>) -> Result<State<2>, S
 #[test]
 fn a_stored_run_resumes_bit_for_bit() {
     let system = Auto(Driven);
-    let start = system.at(0.0, [0.6, -0.8], [0.8, 1.2]).integrate(EnergyPreservingGaussLobatto::<2>, 0.05);
+    let start = system.at(0.0, [0.6, -0.8], [0.8, 1.2]).integrate(EnergyPreservingGauss::<2>, 0.05);
     let mut run = start.and_then(|run| run.with_shift_from(2.0)).unwrap_or_else(|error| panic!("{error}"));
     for _ in 0..20 {
         run.step().unwrap_or_else(|error| panic!("{error}"));
     }
     let text = serde_json::to_string(&run.checkpoint()).expect("a text");
     let stored: Checkpoint<_, 2> = serde_json::from_str(&text).expect("a checkpoint");
-    let method = EnergyPreservingGaussLobatto::<2>;
+    let method = EnergyPreservingGauss::<2>;
     let mut resumed = Run::restart(system, method, stored).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(resumed.impulses(), run.impulses());
     for _ in 0..50 {
@@ -195,13 +194,13 @@ fn a_stored_run_resumes_bit_for_bit() {
         );
     }
     let other: Checkpoint<_, 2> = serde_json::from_str(&text).expect("a checkpoint");
-    assert!(Run::restart(system, EnergyPreservingGaussLobatto::<3>, other).is_err());
+    assert!(Run::restart(system, EnergyPreservingGauss::<3>, other).is_err());
 }
 
 #[test]
 fn output_events_and_estimates_belong_to_the_run() {
     let shifted = || pendulum::<2>(0.02).with_shift_from(2.1).unwrap_or_else(|error| panic!("{error}"));
-    let mut exact = PENDULUM.at_state(shifted().state()).integrate(GaussLobatto::<6>, 0.02);
+    let mut exact = PENDULUM.at_state(shifted().state()).integrate(Gauss::<6>, 0.02);
     let exact = exact.as_mut().unwrap_or_else(|error| panic!("{error}"));
     let times = [0.013, 0.5, 0.777, 1.234];
     let solution = shifted().at_times(times).unwrap_or_else(|error| panic!("{error}"));
@@ -228,7 +227,7 @@ fn output_events_and_estimates_belong_to_the_run() {
     println!("{error:?}");
     assert!(error.q.amax() > 1e-13 && error.q.amax() < 1e-6, "{error:?}");
     let start = PENDULUM.at(0.0, [0.6, -0.8], [0.8, 0.6]);
-    let run = start.integrate(EnergyPreservingGaussLobatto::<2>, Tolerance(1e-8));
+    let run = start.integrate(EnergyPreservingGauss::<2>, Tolerance(1e-8));
     let run = run.unwrap_or_else(|error| panic!("{error}"));
     println!("{}", run.h());
     assert!(run.h() > 1e-3 && run.h() < 0.2, "{}", run.h());
@@ -286,7 +285,7 @@ fn the_work_of_a_moving_constraint_is_counted() {
     // In the frame of the belt the blade runs in a circle with constant speed: H changes with it.
     let run = |h: f64| {
         let start = Auto(Belt).at(0.0, [0.0; 3], [1.5, 0.0, 2.0]);
-        let run = start.integrate(EnergyPreservingGaussLobatto::<1>, h).and_then(|run| run.with_shift(30.0));
+        let run = start.integrate(EnergyPreservingGauss::<1>, h).and_then(|run| run.with_shift(30.0));
         let mut run = run.unwrap_or_else(|error| panic!("{error}"));
         let mut worst = [0.0_f64; 2];
         while run.t() < 3.0 {
@@ -310,7 +309,7 @@ fn the_work_of_a_moving_constraint_is_counted() {
 #[test]
 fn momenta_are_balanced_by_impulses() {
     let start = Auto(Mixed).at(0.0, [0.0, 0.6, -0.8, 0.0], [1.5, 0.0, 0.0, 0.7]);
-    let run = start.integrate(EnergyPreservingGaussLobatto::<1>, 0.02).and_then(|run| run.with_shift(100.0));
+    let run = start.integrate(EnergyPreservingGauss::<1>, 0.02).and_then(|run| run.with_shift(100.0));
     let mut run = run.unwrap_or_else(|error| panic!("{error}"));
     assert!(run.impulses().is_none());
     for _ in 0..7 {

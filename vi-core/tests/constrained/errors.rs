@@ -1,11 +1,12 @@
 //! Failures of systems with constraints: a typed error with its numbers, and nothing else.
 
 use super::systems::{Auto, DoublePendulum, HeavyTop, Mixed, PENDULUM, Pendulum, Sleigh, Twice};
-use vi_core::{Constrained, GaussLobatto, SVector, Starts, State, StepError, lagrangian};
+use vi_core::motion::Motion as _;
+use vi_core::{Gauss, SVector, Starts, State, StepError, lagrangian};
 
 #[test]
 fn a_start_off_the_constraint_is_inconsistent() {
-    let begin = |q: [f64; 2], v: [f64; 2]| PENDULUM.at(0.0, q, v).integrate(GaussLobatto::<1>, 0.05).err();
+    let begin = |q: [f64; 2], v: [f64; 2]| PENDULUM.at(0.0, q, v).integrate(Gauss::<1>, 0.05).err();
     assert_eq!(begin([0.6, -0.8], [0.8, 0.6]), None);
     let Some(StepError::InconsistentStart { constraint, residual, rate }) = begin([0.6, -0.801], [0.8, 0.6]) else {
         panic!("a start")
@@ -30,12 +31,12 @@ fn a_start_off_the_constraint_is_inconsistent() {
     // Without inertia along the quaternion no velocity has a momentum along it.
     let top = Auto(HeavyTop { j: 0.0 });
     let mut state = State::at(&top, 0.0, [0.8, 0.4, 0.4, 0.2], [-0.4, 1.8, -2.2, 2.4]);
-    assert_eq!(top.at_state(state).integrate(GaussLobatto::<1>, 0.05).err(), None);
+    assert_eq!(top.at_state(state).integrate(Gauss::<1>, 0.05).err(), None);
     state.p += state.q * 1e-6;
-    let failure = top.at_state(state).integrate(GaussLobatto::<1>, 0.05).err();
+    let failure = top.at_state(state).integrate(Gauss::<1>, 0.05).err();
     assert!(matches!(failure, Some(StepError::InconsistentStart { constraint: "R", .. })), "{failure:?}");
     let sleigh = Auto(Sleigh { turns: false });
-    let failure = sleigh.at(0.0, [0.0; 3], [1.0, 0.25, 2.0]).integrate(GaussLobatto::<2>, 0.05).err();
+    let failure = sleigh.at(0.0, [0.0; 3], [1.0, 0.25, 2.0]).integrate(Gauss::<2>, 0.05).err();
     let Some(StepError::InconsistentStart { constraint: "blade", residual: 0.0, rate }) = failure else {
         panic!("{failure:?}")
     };
@@ -51,14 +52,11 @@ fn the_projected_state_is_the_nearest_one() {
     assert!((state.q[0] - 0.6).abs() < 4e-16 && (state.q[1] + 0.8).abs() < 4e-16, "{projected:?}");
     assert!((state.p[0] - 0.88).abs() < 4e-16 && (state.p[1] - 0.66).abs() < 4e-16, "{projected:?}");
     assert!((projected.moved_q.norm() - 0.5).abs() < 1e-15 && (projected.moved_v.norm() - 0.2).abs() < 1e-15);
-    PENDULUM.at_state(state).integrate(GaussLobatto::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
+    PENDULUM.at_state(state).integrate(Gauss::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
     // Several constraints, both kinds, and masses that differ.
     let far = State::projected(&Auto(DoublePendulum), 0.0, [0.7, -0.9, 0.9, -1.9], [1.0, 0.2, -0.3, 0.4]);
     let far = far.unwrap_or_else(|error| panic!("{error}"));
-    Auto(DoublePendulum)
-        .at_state(far.state)
-        .integrate(GaussLobatto::<1>, 0.05)
-        .unwrap_or_else(|error| panic!("{error}"));
+    Auto(DoublePendulum).at_state(far.state).integrate(Gauss::<1>, 0.05).unwrap_or_else(|error| panic!("{error}"));
     // M (q − q0) and M (v − v0) are combinations of the gradients: nothing is left across them.
     let (rows, _) = Auto(DoublePendulum).constraint_gradients(0.0, &far.state.q);
     let masses = vi_core::SVector::from([2.0, 2.0, 1.0, 1.0]);
@@ -74,7 +72,7 @@ fn the_projected_state_is_the_nearest_one() {
     }
     let mixed = State::projected(&Auto(Mixed), 0.0, [0.1, 0.6, -0.9, 0.2], [1.0, 1.0, 1.0, 0.3]);
     let mixed = mixed.unwrap_or_else(|error| panic!("{error}")).state;
-    Auto(Mixed).at_state(mixed).integrate(GaussLobatto::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
+    Auto(Mixed).at_state(mixed).integrate(Gauss::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
     // A state on the constraints does not move.
     let same = State::projected(&PENDULUM, 0.0, [0.6, -0.8], [0.8, 0.6]).unwrap_or_else(|error| panic!("{error}"));
     assert!(same.moved_q.amax() < 2e-16 && same.moved_v.amax() < 2e-16, "{same:?}");
@@ -86,7 +84,7 @@ fn the_projected_state_is_the_nearest_one() {
 
 #[test]
 fn a_repeated_constraint_is_redundant() {
-    let failure = Auto(Twice).at(0.0, [0.6, -0.8], [0.8, 0.6]).integrate(GaussLobatto::<1>, 0.05).err();
+    let failure = Auto(Twice).at(0.0, [0.6, -0.8], [0.8, 0.6]).integrate(Gauss::<1>, 0.05).err();
     assert_eq!(failure, Some(StepError::Redundant { constraint: "again", of: 2, rank: 1 }));
     let text = failure.expect("a failure").to_string();
     assert!(text.contains("`again`") && text.contains("1 of 2"), "{text}");
@@ -99,7 +97,7 @@ fn no_step_turns_a_rod_by_a_right_angle() {
     let rotor = Auto(Pendulum { length: 1.0, g: 0.0 });
     for h in [1.01, 1.2, 1.5, 2.0, 3.0, 10.0, 1e3, 1e9] {
         for h in [h, -h] {
-            let mut run = rotor.at(0.0, [1.0, 0.0], [0.0, 1.0]).integrate(GaussLobatto::<1>, h).expect("a start");
+            let mut run = rotor.at(0.0, [1.0, 0.0], [0.0, 1.0]).integrate(Gauss::<1>, h).expect("a start");
             let failure = run.step().expect_err("no step");
             let StepError::NotConverged { turn, .. } = failure else { panic!("{h}: {failure}") };
             // The angle at the velocity of the start.
@@ -115,9 +113,9 @@ fn no_step_turns_a_rod_by_a_right_angle() {
         let h = 0.02 * f64::from(k);
         let start = PENDULUM.at(0.0, [0.6, -0.8], [0.8, 0.6]);
         for outcome in [
-            start.integrate(GaussLobatto::<1>, h).expect("a start").step(),
-            start.integrate(GaussLobatto::<2>, h).expect("a start").step(),
-            start.integrate(GaussLobatto::<3>, h).expect("a start").step(),
+            start.integrate(Gauss::<1>, h).expect("a start").step(),
+            start.integrate(Gauss::<2>, h).expect("a start").step(),
+            start.integrate(Gauss::<3>, h).expect("a start").step(),
         ] {
             match outcome {
                 // g is far below the rounding of what it was before the step.
@@ -133,10 +131,10 @@ fn no_step_turns_a_rod_by_a_right_angle() {
 fn a_flat_linkage_is_singular() {
     // Both rods hang straight down, and a third point of attachment would be redundant: two rods in line still are not.
     let straight = Auto(DoublePendulum).at(0.0, [0.0, -1.0, 0.0, -2.0], [1.0, 0.0, 2.0, 0.0]);
-    straight.integrate(GaussLobatto::<1>, 0.05).unwrap_or_else(|error| panic!("{error}"));
+    straight.integrate(Gauss::<1>, 0.05).unwrap_or_else(|error| panic!("{error}"));
     // A rod of no length has no gradient.
     let point = Auto(Pendulum { length: 0.0, g: 9.81 });
-    let failure = point.at(0.0, [0.0, 0.0], [0.0, 0.0]).integrate(GaussLobatto::<1>, 0.05).err();
+    let failure = point.at(0.0, [0.0, 0.0], [0.0, 0.0]).integrate(Gauss::<1>, 0.05).err();
     assert_eq!(failure, Some(StepError::Redundant { constraint: "rod", of: 1, rank: 0 }));
     let text = failure.map(|failure| failure.to_string()).unwrap_or_default();
     let expected = "the gradient of the constraint `rod` is zero at the start, as that of a rod without length; correct its lengths, or start elsewhere";
@@ -168,8 +166,7 @@ lagrangian! {
 #[test]
 fn a_motion_into_a_dead_point_is_no_long_step() {
     for h in [0.02, 0.01, 0.005] {
-        let mut run =
-            Parallel::default().at(0.0, [0.0, 1.0, 2.0, 1.0], [1.0, 0.0, 1.0, 0.0]).integrate(GaussLobatto::<2>, h);
+        let mut run = Parallel::default().at(0.0, [0.0, 1.0, 2.0, 1.0], [1.0, 0.0, 1.0, 0.0]).integrate(Gauss::<2>, h);
         let run = run.as_mut().unwrap_or_else(|failure| panic!("{failure}"));
         let failure = (0..1000).find_map(|_| run.step().err()).expect("a dead point");
         assert!(matches!(failure, StepError::Singular { .. }), "{h}: {failure}");

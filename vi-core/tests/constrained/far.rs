@@ -1,14 +1,13 @@
 //! Linkages away from the origin of coordinates and of time, and with very different masses.
 
 use vi_core::constrained::Projection;
-use vi_core::control::ConstrainedDynamics;
+use vi_core::control::Dynamics as _;
 use vi_core::derivatives::{Tangent, Variation};
 use vi_core::linear::Rectangular;
+use vi_core::motion::Motion as _;
 use vi_core::nalgebra::SVector;
-use vi_core::{
-    Constrained, ConvertibleConstrained, EnergyPreservingGaussLobatto, GaussLobatto, Starts, State, StepError,
-    lagrangian,
-};
+use vi_core::stepping::Convertible;
+use vi_core::{EnergyPreservingGauss, Gauss, Starts, State, StepError, lagrangian};
 
 lagrangian! {
     /// A pendulum about the pivot (X, Y), which moves by ζ sin(ω t).
@@ -94,15 +93,15 @@ fn started<S, const N: usize>(
     next: &mut impl FnMut() -> f64,
 ) -> [usize; 3]
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     let mut counts = [0; 3];
     for _ in 0..guesses {
         let (q, v) = (place.map(|entry| entry + 0.2 * next()), place.map(|_| 2.0 * next()));
         let Ok(found) = State::projected(system, t, q, v) else { continue };
         let start = || system.at_state(found.state);
-        let fourth = start().integrate(GaussLobatto::<2>, h).map(|mut run| (0..10).all(|_| run.step().is_ok()));
-        let sixth = start().integrate(GaussLobatto::<3>, h).map(|mut run| (0..10).all(|_| run.step().is_ok()));
+        let fourth = start().integrate(Gauss::<2>, h).map(|mut run| (0..10).all(|_| run.step().is_ok()));
+        let sixth = start().integrate(Gauss::<3>, h).map(|mut run| (0..10).all(|_| run.step().is_ok()));
         for (count, outcome) in counts.iter_mut().zip([Ok(true), fourth, sixth]) {
             *count += usize::from(outcome == Ok(true));
         }
@@ -122,7 +121,7 @@ fn linkages_far_away(guesses: usize) {
         for _ in 0..guesses.div_ceil(5) {
             let (q, v) = ([place + 0.5 + 0.2 * next(), 0.5 - 0.3 * place], [2.0 * next(), next()]);
             let found = State::projected(&system, 1e3, q, v).unwrap_or_else(|failure| panic!("{failure}"));
-            let run = system.at_state(found.state).integrate(EnergyPreservingGaussLobatto::<2>, 0.1);
+            let run = system.at_state(found.state).integrate(EnergyPreservingGauss::<2>, 0.1);
             let mut run = run.and_then(|run| run.with_shift_from(1.0)).unwrap_or_else(|failure| panic!("{failure}"));
             assert!((0..10).all(|_| run.step().is_ok()), "{place} {q:?} {v:?}");
         }
@@ -208,7 +207,7 @@ fn small_coordinates_beside_large_ones_are_exact() {
                     let terms = row.iter().map(|(column, slope)| (slope * found.state.q[column]).abs()).sum::<f64>();
                     worst = worst.max(value.abs() / (f64::EPSILON * terms));
                 }
-                let mut run = system.at_state(found.state).integrate(GaussLobatto::<2>, 0.01 * size.sqrt());
+                let mut run = system.at_state(found.state).integrate(Gauss::<2>, 0.01 * size.sqrt());
                 let run = run.as_mut().unwrap_or_else(|failure| panic!("{failure}"));
                 run.step().unwrap_or_else(|failure| panic!("{failure}"));
             }
@@ -247,7 +246,7 @@ fn equilibria_at_the_origin_are_found() {
     }
     // A state there starts.
     let found = State::projected(&system, 0.0, [1e-12, 0.3], [1.0, 0.0]).expect("near the bottom");
-    system.at_state(found.state).integrate(GaussLobatto::<1>, 0.01).expect("a start");
+    system.at_state(found.state).integrate(Gauss::<1>, 0.01).expect("a start");
 }
 
 #[test]
@@ -260,7 +259,7 @@ fn coordinates_without_mass_follow_a_constraint_on_velocities() {
     assert!((turning - SVector::from([0.6, 0.0, 0.2, 1.2])).amax() < 1e-15, "{turning}");
     assert_eq!(found.moved_q, SVector::from([0.0; 4]));
     assert_eq!(State::assembled(&system, 0.0, q, v), Ok(found));
-    let run = system.at_state(found.state).integrate(GaussLobatto::<2>, 0.01).expect("a start");
+    let run = system.at_state(found.state).integrate(Gauss::<2>, 0.01).expect("a start");
     let mut tangent = Tangent::new(run, vec![Variation::of_coordinate(0).expect("a coordinate")]);
     tangent.project().unwrap_or_else(|failure| panic!("{failure}"));
     tangent.step().unwrap_or_else(|failure| panic!("{failure}"));
@@ -272,7 +271,7 @@ fn coordinates_without_mass_follow_a_constraint_on_velocities() {
 #[test]
 fn a_tangent_goes_on_after_its_projection() {
     let start = FarRod::default().at(0.0, [0.48, -0.64], [0.8, 0.6]);
-    let run = start.integrate(GaussLobatto::<2>, 0.01).unwrap_or_else(|failure| panic!("{failure}"));
+    let run = start.integrate(Gauss::<2>, 0.01).unwrap_or_else(|failure| panic!("{failure}"));
     let mut tangent = Tangent::new(run, vec![Variation::of_coordinate(0).expect("a coordinate")]);
     let failure = tangent.step().expect_err("across the rod");
     assert!(matches!(failure, StepError::InconsistentTangent { .. }), "{failure}");
@@ -286,14 +285,14 @@ fn lengths_change_with_the_state() {
     let start = || system.at(0.0, [0.48, -0.64], [0.8, 0.6]);
     let longer = FarRod { l: 1.0, ..system };
     let at = State::projected(&longer, 0.01, [0.48, -0.64], [0.8, 0.6]).expect("on the longer rod").state;
-    let mut run = start().integrate(GaussLobatto::<2>, 0.01).expect("a start");
+    let mut run = start().integrate(Gauss::<2>, 0.01).expect("a start");
     run.step().expect("a step");
     run.set_parameters(|system| system.l = 1.0).expect_err("not on the longer rod");
     run.set_parameters_and_state(|system| system.l = 1.0, at).unwrap_or_else(|failure| panic!("{failure}"));
-    let begun = longer.at_state(at).integrate(GaussLobatto::<2>, 0.01).and_then(|mut run| run.step());
+    let begun = longer.at_state(at).integrate(Gauss::<2>, 0.01).and_then(|mut run| run.step());
     assert_eq!(run.step(), begun);
     // A run that preserves energy gains that of the change.
-    let mut run = start().integrate(EnergyPreservingGaussLobatto::<2>, 0.01).expect("a start");
+    let mut run = start().integrate(EnergyPreservingGauss::<2>, 0.01).expect("a start");
     run.step().expect("a step");
     let (of_run, before) = (run.discrete_energy().expect("a step"), run.state().energy(&system).expect("an energy"));
     run.set_parameters_and_state(|system| system.l = 1.0, at).unwrap_or_else(|failure| panic!("{failure}"));

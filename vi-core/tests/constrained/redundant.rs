@@ -3,7 +3,8 @@
 use super::systems::{Auto, Twice};
 use vi_core::constrained::{Independent, Projection};
 use vi_core::derivatives::{Tangent, Variation};
-use vi_core::{Constrained, Gauss, GaussLobatto, Starts, State, StepError, lagrangian};
+use vi_core::motion::Motion as _;
+use vi_core::{Gauss, Starts, State, StepError, lagrangian};
 
 lagrangian! {
     /// A coupler on three parallel cranks, two of which would hold it, and a mass on a spring.
@@ -62,15 +63,15 @@ fn place(angle: f64, speed: f64) -> ([f64; 5], [f64; 5]) {
 fn a_third_crank_changes_nothing() {
     let system = Parallelogram::default();
     let (q, v) = place(0.5, 1.0);
-    let refused = system.at(0.0, q, v).integrate(GaussLobatto::<2>, 0.02).err();
+    let refused = system.at(0.0, q, v).integrate(Gauss::<2>, 0.02).err();
     let Some(StepError::Redundant { of: 4, rank: 3, .. }) = refused else { panic!("{refused:?}") };
     assert!(refused.expect("an error").to_string().contains("Independent::at"));
 
     let kept = Independent::at(system, 0.0, q).unwrap_or_else(|failure| panic!("{failure}"));
     let dropped: Vec<usize> = (0..4).filter(|r| kept.is_dropped(*r)).collect();
     assert_eq!(dropped.len(), 1, "{dropped:?}");
-    let mut run = kept.at(0.0, q, v).integrate(GaussLobatto::<3>, 0.02).unwrap_or_else(|failure| panic!("{failure}"));
-    let mut two = TwoCranks::default().at(0.0, q, v).integrate(GaussLobatto::<3>, 0.02).expect("independent");
+    let mut run = kept.at(0.0, q, v).integrate(Gauss::<3>, 0.02).unwrap_or_else(|failure| panic!("{failure}"));
+    let mut two = TwoCranks::default().at(0.0, q, v).integrate(Gauss::<3>, 0.02).expect("independent");
     let mut angle = Angle::default().at(0.0, [0.5], [1.0]).integrate(Gauss::<6>, 0.02).expect("regular");
     let mut worst = [0.0_f64; 4];
     for _ in 0..500 {
@@ -99,11 +100,11 @@ fn as_many_constraints_as_coordinates_may_move() {
     let system = Bars::default();
     let (q, v) = place(0.5, 1.0);
     let [q, v] = [q, v].map(|of| [of[0], of[1], of[2], of[3]]);
-    let refused = system.at(0.0, q, v).integrate(GaussLobatto::<2>, 0.02).err();
+    let refused = system.at(0.0, q, v).integrate(Gauss::<2>, 0.02).err();
     assert_eq!(refused, Some(StepError::Redundant { constraint: "middle", of: 4, rank: 3 }));
     let kept = Independent::at(system, 0.0, q).unwrap_or_else(|failure| panic!("{failure}"));
     assert_eq!(kept.dropped_names().count(), 1);
-    let mut run = kept.at(0.0, q, v).integrate(GaussLobatto::<3>, 0.02).unwrap_or_else(|failure| panic!("{failure}"));
+    let mut run = kept.at(0.0, q, v).integrate(Gauss::<3>, 0.02).unwrap_or_else(|failure| panic!("{failure}"));
     let mut angle = Angle::default().at(0.0, [0.5], [1.0]).integrate(Gauss::<6>, 0.02).expect("regular");
     for _ in 0..200 {
         let state = run.step().unwrap_or_else(|failure| panic!("{failure}"));
@@ -120,7 +121,7 @@ fn dropped_constraints_are_measured() {
     let (q, v) = place(0.5, 1.0);
     let kept = Independent::at(system, 0.0, q).unwrap_or_else(|failure| panic!("{failure}"));
     // A crank of another length contradicts the others.
-    let mut run = kept.at(0.0, q, v).integrate(GaussLobatto::<1>, 0.02).expect("a start");
+    let mut run = kept.at(0.0, q, v).integrate(Gauss::<1>, 0.02).expect("a start");
     let failure = run.set_parameters(|kept| {
         *vi_core::lagrangian::Parameters::parameter_mut(kept, "third").expect("a parameter") = 1.1;
     });
@@ -133,7 +134,7 @@ fn dropped_constraints_are_measured() {
     for speed in [6.0, 6.5, 7.0, 8.0] {
         let (q, v) = place(0.3, speed);
         let kept = Independent::at(system, 0.0, q).expect("a subset");
-        let mut run = kept.at(0.0, q, v).integrate(GaussLobatto::<2>, 0.01).expect("a start");
+        let mut run = kept.at(0.0, q, v).integrate(Gauss::<2>, 0.01).expect("a start");
         for _ in 0..400 {
             match run.step() {
                 Ok(state) => {
@@ -165,7 +166,7 @@ fn runs_with_dropped_constraints_have_the_rest() {
     assert!((projected.state.q[0] - 0.6).abs() < 4e-16, "{projected:?}");
     let held = Projection::of(&kept).holding(&[0]).expect("an index").assembled(0.0, [0.6, -1.2], [0.0, 0.0]);
     assert!((held.unwrap_or_else(|failure| panic!("{failure}")).state.q[1] + 0.8).abs() < 4e-16);
-    let run = kept.at_state(projected.state).integrate(GaussLobatto::<2>, 0.02).expect("a start");
+    let run = kept.at_state(projected.state).integrate(Gauss::<2>, 0.02).expect("a start");
     let mut tangent = Tangent::new(run, Variation::of_state());
     tangent.project().unwrap_or_else(|failure| panic!("{failure}"));
     for _ in 0..5 {

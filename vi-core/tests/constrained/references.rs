@@ -4,7 +4,8 @@
 use super::systems::{Auto, DoublePendulum, Driven, General, HeavyTop, Model, PENDULUM, RollingDisk, Sleigh};
 use crate::references::{number, reference, vector};
 use serde_json::Value;
-use vi_core::{Constrained, ConvertibleConstrained, GaussLobatto, Run, SVector, Starts, State};
+use vi_core::stepping::Convertible;
+use vi_core::{Gauss, Run, SVector, Starts, State};
 
 /// Largest difference of q and p, relative to the size of the state.
 fn difference<const N: usize>(state: &State<N>, expected: &Value) -> f64 {
@@ -12,15 +13,15 @@ fn difference<const N: usize>(state: &State<N>, expected: &Value) -> f64 {
     (state.q - q).amax().max((state.p - p).amax()) / q.amax().max(p.amax())
 }
 
-fn start<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize, const STAGES: usize>(
+fn start<S: Convertible<N>, const N: usize, const STAGES: usize>(
     system: S,
     case: &Value,
     h: f64,
-) -> Run<GaussLobatto<STAGES>, S, N> {
+) -> Run<Gauss<STAGES>, S, N> {
     let start = system.at(number(&case["t0"]), vector::<N>(&case["q0"]), vector::<N>(&case["v0"]));
     let p: SVector<f64, N> = vector(&case["p0"]);
     assert!((start.state.p - p).amax() <= 1e-15 * p.amax(), "{} {p}", start.state.p);
-    start.integrate(GaussLobatto::<STAGES>, h).unwrap_or_else(|error| panic!("{error}"))
+    start.integrate(Gauss::<STAGES>, h).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Differences after steps 1, 10, 100, and of the impulses of the midpoint rule.

@@ -1,18 +1,13 @@
 //! What every run has, for systems with constraints.
 
 use super::systems::{Auto, Driven, Model, PENDULUM, Pendulum};
+use vi_core::motion::Motion as _;
 use vi_core::prelude::{Event, Moment};
 use vi_core::run::{Checkpoint, DenseOutput};
-use vi_core::{
-    Composition, Constrained, EnergyPreservingGaussLobatto, GaussLobatto, Method, Run, SVector, Starts, State,
-    StepError, Tolerance,
-};
+use vi_core::{Composition, EnergyPreservingGauss, Gauss, Method, Run, SVector, Starts, State, StepError, Tolerance};
 
-fn pendulum<const STAGES: usize>(h: f64) -> Run<GaussLobatto<STAGES>, Auto<Pendulum, 1>, 2> {
-    PENDULUM
-        .at(0.0, [0.6, -0.8], [0.8, 0.6])
-        .integrate(GaussLobatto::<STAGES>, h)
-        .unwrap_or_else(|error| panic!("{error}"))
+fn pendulum<const STAGES: usize>(h: f64) -> Run<Gauss<STAGES>, Auto<Pendulum, 1>, 2> {
+    PENDULUM.at(0.0, [0.6, -0.8], [0.8, 0.6]).integrate(Gauss::<STAGES>, h).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// g at a state.
@@ -61,7 +56,7 @@ fn dense_output_is_near_the_constraint_between_nodes() {
 fn a_rod_goes_slack_where_its_reaction_vanishes() {
     // From the bottom with v² = 36: 2Λ = g y − |v|² is zero at y = (36 − 2g)/(3g).
     let start = PENDULUM.at(0.0, [0.0, -1.0], [6.0, 0.0]);
-    let mut run = start.integrate(GaussLobatto::<3>, 0.01).unwrap_or_else(|error| panic!("{error}"));
+    let mut run = start.integrate(Gauss::<3>, 0.01).unwrap_or_else(|error| panic!("{error}"));
     let slack = Event::rising(|moment: &Moment<2>| {
         let state = State::at(&PENDULUM, moment.t, moment.q, moment.v);
         state.reaction(&PENDULUM).map_or(f64::NAN, |[multiplier]| multiplier)
@@ -79,13 +74,13 @@ fn a_rod_goes_slack_where_its_reaction_vanishes() {
 fn a_stored_run_resumes_bit_for_bit() {
     let system = Auto(Driven);
     let start = system.at(0.0, [0.6, -0.8], [0.8, 1.2]);
-    let mut run = start.integrate(GaussLobatto::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
+    let mut run = start.integrate(Gauss::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
     for _ in 0..20 {
         run.step().unwrap_or_else(|error| panic!("{error}"));
     }
     let text = serde_json::to_string(&run.checkpoint()).expect("a text");
     let stored: Checkpoint<_, 2> = serde_json::from_str(&text).expect("a checkpoint");
-    let mut resumed = Run::restart(system, GaussLobatto::<2>, stored).unwrap_or_else(|error| panic!("{error}"));
+    let mut resumed = Run::restart(system, Gauss::<2>, stored).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(resumed.impulses(), run.impulses());
     assert_eq!(resumed.discrete_energy(), run.discrete_energy());
     for _ in 0..20 {
@@ -94,7 +89,7 @@ fn a_stored_run_resumes_bit_for_bit() {
     }
     // Of another number of stages.
     let other: Checkpoint<_, 2> = serde_json::from_str(&text).expect("a checkpoint");
-    assert!(Run::restart(system, GaussLobatto::<3>, other).is_err());
+    assert!(Run::restart(system, Gauss::<3>, other).is_err());
 }
 
 /// Restarts with the stored node as `change` leaves it.
@@ -146,9 +141,9 @@ fn a_stored_node_off_the_constraint_is_refused() {
         };
         assert!(residual.abs() < 1e-14 && (rate - 2e-6).abs() < 1e-12, "{residual:e} {rate:e}");
     }
-    refuses(GaussLobatto::<2>);
-    refuses(EnergyPreservingGaussLobatto::<1>);
-    refuses(GaussLobatto::<1>.composed(Composition::SUZUKI_4));
+    refuses(Gauss::<2>);
+    refuses(EnergyPreservingGauss::<1>);
+    refuses(Gauss::<1>.composed(Composition::SUZUKI_4));
 }
 
 #[test]
@@ -176,7 +171,7 @@ fn parameters_that_break_a_constraint_are_refused() {
 #[test]
 fn a_tolerance_finds_a_step() {
     let start = PENDULUM.at(0.0, [0.6, -0.8], [0.8, 0.6]);
-    let mut run = start.integrate(GaussLobatto::<2>, Tolerance(1e-8)).unwrap_or_else(|error| panic!("{error}"));
+    let mut run = start.integrate(Gauss::<2>, Tolerance(1e-8)).unwrap_or_else(|error| panic!("{error}"));
     println!("{}", run.h());
     assert!(run.h() > 1e-3 && run.h() < 0.2, "{}", run.h());
     run.step().unwrap_or_else(|error| panic!("{error}"));
@@ -186,7 +181,7 @@ fn a_tolerance_finds_a_step() {
 fn a_reference_to_a_system_is_integrated() {
     let mut by_value = pendulum::<2>(0.05);
     let start = (&PENDULUM).at(0.0, [0.6, -0.8], [0.8, 0.6]);
-    let mut by_reference = start.integrate(GaussLobatto::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
+    let mut by_reference = start.integrate(Gauss::<2>, 0.05).unwrap_or_else(|error| panic!("{error}"));
     for _ in 0..5 {
         assert_eq!(by_value.step(), by_reference.step());
     }

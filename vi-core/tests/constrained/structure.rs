@@ -1,16 +1,17 @@
 //! What constrained steps preserve, and their order.
 
 use super::systems::{Auto, DoublePendulum, Driven, General, HeavyTop, Mixed, Model, PENDULUM, Pendulum, Sleigh};
-use vi_core::{Constrained, GaussLobatto, Lagrangian, Method, Run, SVector, Starts, State};
+use vi_core::motion::Motion as _;
+use vi_core::{Gauss, Lagrangian, Method, Run, SVector, Starts, State};
 
-type AutoRun<M, const N: usize, const K: usize, const STAGES: usize> = Run<GaussLobatto<STAGES>, Auto<M, K>, N>;
+type AutoRun<M, const N: usize, const K: usize, const STAGES: usize> = Run<Gauss<STAGES>, Auto<M, K>, N>;
 
 fn run<M: Model<N, K>, const N: usize, const K: usize, const STAGES: usize>(
     system: Auto<M, K>,
     state: State<N>,
     h: f64,
 ) -> AutoRun<M, N, K, STAGES> {
-    system.at_state(state).integrate(GaussLobatto::<STAGES>, h).unwrap_or_else(|error| panic!("{error}"))
+    system.at_state(state).integrate(Gauss::<STAGES>, h).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn steps<M: Model<N, K>, const N: usize, const K: usize, const STAGES: usize>(
@@ -69,7 +70,7 @@ fn check_order<M: Model<N, K>, const N: usize, const K: usize, const STAGES: usi
         let (errors, counts) = ladder;
         let slope = (errors[0] / errors[1]).ln() / (f64::from(counts[1]) / f64::from(counts[0])).ln();
         println!("{} s = {STAGES}: {errors:?} {slope:.3}", M::NAME);
-        let order = f64::from(Method::<Auto<M, K>, N>::order(&GaussLobatto::<STAGES>));
+        let order = f64::from(Method::<Auto<M, K>, N>::order(&Gauss::<STAGES>));
         assert!((slope - order).abs() < 0.1, "{} s = {STAGES}: {slope}", M::NAME);
     }
 }

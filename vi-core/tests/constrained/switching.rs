@@ -1,7 +1,7 @@
 //! Lift-off at a reaction of zero, free flight, and a plastic impact onto another constraint.
 
 use vi_core::prelude::{Event, Moment};
-use vi_core::{Gauss, GaussLobatto, Starts, State, lagrangian};
+use vi_core::{Gauss, Starts, State, lagrangian};
 
 lagrangian! {
     /// A particle on a sphere.
@@ -39,8 +39,7 @@ fn a_particle_leaves_a_sphere_flies_and_is_caught() {
     let (sine, cosine) = 0.01_f64.sin_cos();
     let start = [0.8 * 2.0 * sine, 0.6 * 2.0 * sine, 2.0 * cosine];
     let start = State::projected(&sphere, 0.0, start, [0.0; 3]).unwrap_or_else(|failure| panic!("{failure}")).state;
-    let mut run =
-        sphere.at_state(start).integrate(GaussLobatto::<4>, 0.02).unwrap_or_else(|failure| panic!("{failure}"));
+    let mut run = sphere.at_state(start).integrate(Gauss::<4>, 0.02).unwrap_or_else(|failure| panic!("{failure}"));
     // The sphere pushes outwards; the reaction is along the gradient q.
     let off = Event::falling(move |at: &Moment<3>| {
         let state = State::at(&sphere, at.t, at.q, at.v);
@@ -70,7 +69,7 @@ fn a_particle_leaves_a_sphere_flies_and_is_caught() {
     assert!(lost > 30.0 && (caught.energy_lost - lost).abs() < 3e-14, "{caught:?}");
     // The speed along the table stays.
     assert!((caught.state.p.xy() - met.state.p.xy()).amax() < 1e-14 && caught.state.p[2].abs() < 1e-14);
-    let mut slide = table.at_state(caught.state).integrate(GaussLobatto::<1>, 0.02).expect("on the table");
+    let mut slide = table.at_state(caught.state).integrate(Gauss::<1>, 0.02).expect("on the table");
     let state = slide.step().unwrap_or_else(|failure| panic!("{failure}"));
     let [push] = state.reaction(&table).expect("regular");
     assert!((push - 1.3 * 9.81).abs() < 1e-13 && (state.q[2] + 3.0).abs() < 1e-14, "{push} {state:?}");

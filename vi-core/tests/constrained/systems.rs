@@ -3,11 +3,13 @@
 
 #![allow(clippy::needless_range_loop)] // one index addresses several arrays
 
-use vi_core::collocation::{Point, PointDerivatives};
+use vi_core::kind::Bound;
 use vi_core::lagrangian::{Flow, Parameters};
+use vi_core::motion::{Motion, Point, PointDerivatives};
 use vi_core::nalgebra::SMatrix;
 use vi_core::real::{Dual, Real};
-use vi_core::{Constrained, ConvertibleConstrained, Lagrangian, SVector, StepError, support};
+use vi_core::stepping::Convertible;
+use vi_core::{Lagrangian, SVector, StepError, support};
 
 /// A system of N coordinates with K constraints.
 pub(crate) trait Model<const N: usize, const K: usize>: Copy + Send + Sync {
@@ -120,15 +122,13 @@ impl<M: Model<N, K>, const N: usize, const K: usize, T: Real> Lagrangian<N, T> f
     }
 }
 
-impl<M: Model<N, K>, const N: usize, const K: usize, T: Real> Constrained<N, T> for Auto<M, K> {
+impl<M: Model<N, K>, const N: usize, const K: usize, T: Real> Motion<N, T> for Auto<M, K> {
+    type Kind = Bound<K>;
     type Mass = SMatrix<T, N, N>;
     type PointMatrix = SMatrix<T, N, N>;
     const CONSTANT_MASS: bool = M::CONSTANT_MASS;
     const CONSTRAINTS: &'static [&'static str] = M::CONSTRAINTS;
     const HOLONOMIC: usize = M::HOLONOMIC;
-    type Multipliers = [T; K];
-    type Gradients = [SVector<T, N>; K];
-    type ReactionMatrix = [SVector<T, N>; N];
 
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass> {
         let (momentum, force) = (self.momentum_of(t, q, v), self.force_of(t, q, v));
@@ -201,7 +201,7 @@ impl<M, const K: usize, T: Real> Parameters<T> for Auto<M, K> {
     }
 }
 
-impl<M: Model<N, K>, const N: usize, const K: usize> ConvertibleConstrained<N> for Auto<M, K> {
+impl<M: Model<N, K>, const N: usize, const K: usize> Convertible<N> for Auto<M, K> {
     type In<T: Real> = Self;
 
     fn convert<T: Real>(&self) -> Self {

@@ -1,10 +1,10 @@
 //! A system that implements [`Indexed`], and every other trait by one call of [`vi_core::indexed`] each.
 
 use core::ops::Add;
-use vi_core::collocation::{Collocation, Point, PointDerivatives};
 use vi_core::error::StepError;
 use vi_core::indexed::{self, FirstDerivatives, Indexed};
 use vi_core::lagrangian::{Flow, Lagrangian, Parameters};
+use vi_core::motion::{Motion, Point, PointDerivatives};
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::real::{Dual, Real, Rounded};
@@ -179,7 +179,8 @@ impl<T: Real, const OPEN: bool> Lagrangian<6, T> for Handwritten<T, OPEN> {
     }
 }
 
-impl<T: Real, const OPEN: bool> Collocation<6, T> for Handwritten<T, OPEN> {
+impl<T: Real, const OPEN: bool> Motion<6, T> for Handwritten<T, OPEN> {
+    type Kind = vi_core::kind::Free;
     type Mass = Square<T>;
     type PointMatrix = Square<T>;
     const CONSTANT_MASS: bool = false;

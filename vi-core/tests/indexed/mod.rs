@@ -3,11 +3,11 @@
 mod handwritten;
 
 use handwritten::{Handwritten, Vector};
-use vi_core::collocation::Collocation;
 use vi_core::error::StepError;
 use vi_core::indexed;
 use vi_core::lagrangian::{Flow, Lagrangian, Parameters};
 use vi_core::linear::Matrix;
+use vi_core::motion::Motion;
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::real::Rounded;
@@ -85,8 +85,8 @@ const POINTS: [(f64, [f64; 6], [f64; 6]); 3] = [
 ];
 
 /// A system with all functions of steps.
-trait Complete: Collocation<6> + EnergyStepping<6> + DiscreteLagrangian<6> {}
-impl<S: Collocation<6> + EnergyStepping<6> + DiscreteLagrangian<6>> Complete for S {}
+trait Complete: Motion<6> + EnergyStepping<6> + DiscreteLagrangian<6> {}
+impl<S: Motion<6> + EnergyStepping<6> + DiscreteLagrangian<6>> Complete for S {}
 
 /// Compares the continuous functions.
 fn compare_continuous(worst: &mut Deviation, ours: &impl Complete, theirs: &impl Complete) {

@@ -1,9 +1,9 @@
 //! A correct system with one wrong function, as a faulty generator would print it, in every numeric type. Each file
 //! uses its part of the faults.
 
-use vi_core::collocation::{Collocation, Point, PointDerivatives};
 use vi_core::lagrangian::Parameters;
 use vi_core::linear::Matrix;
+use vi_core::motion::{Motion, Point, PointDerivatives};
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::real::Real;
@@ -139,7 +139,8 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<
     }
 }
 
-impl<const N: usize, T: Real, S: Collocation<N, T>> Collocation<N, T> for Spoiled<S> {
+impl<const N: usize, T: Real, S: Motion<N, T>> Motion<N, T> for Spoiled<S> {
+    type Kind = S::Kind;
     type Mass = S::Mass;
     type PointMatrix = SMatrix<T, N, N>;
     const CONSTANT_MASS: bool = S::CONSTANT_MASS;

@@ -3,12 +3,10 @@
 //! In: the type of a system, and its start. Out: an [`Entry`], the type erased: there the compiler meets all that is generic over systems.
 
 use crate::system::{self, StartOf, System};
+use vi_core::kind::Free;
 use vi_core::lagrangian::Described;
-use vi_core::method::Controlled;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreservingGaussLobatto, GaussLobatto};
-use vi_erased::plan::{ENERGY_LOBATTO_STAGES, LOBATTO_STAGES};
-use vi_erased::simulation::{Erasable, Runnable, RunnableWithConstraints};
+use vi_erased::simulation::Runnable;
 
 /// A system with a place to start from.
 pub struct Entry {
@@ -29,7 +27,7 @@ impl Entry {
     #[must_use]
     pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
-        S: EnergyStepping<N> + Runnable<N> + Described + Default,
+        S: EnergyStepping<N> + Runnable<N, Kind = Free> + Described + Default,
     {
         Self { system: system::by_rule::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
     }
@@ -38,7 +36,7 @@ impl Entry {
     #[must_use]
     pub fn with_gauss_only<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
-        S: Runnable<N> + Described + Default,
+        S: Runnable<N, Kind = Free> + Described + Default,
     {
         Self { system: system::gauss_only::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
     }
@@ -47,11 +45,7 @@ impl Entry {
     #[must_use]
     pub fn with_constraints<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
-        S: RunnableWithConstraints<N> + Described + Default,
-        GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
-        GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
-        GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
-        EnergyPreservingGaussLobatto<ENERGY_LOBATTO_STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
+        S: Runnable<N> + Described + Default,
     {
         Self { system: system::with_constraints::<S, N>(None), about, q: q.to_vec(), v: v.to_vec(), h }
     }
@@ -60,11 +54,7 @@ impl Entry {
     #[must_use]
     pub fn placed<S, const N: usize>(about: &'static str, start: StartOf<S, N>, h: f64) -> Self
     where
-        S: RunnableWithConstraints<N> + Described + Default,
-        GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
-        GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
-        GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
-        EnergyPreservingGaussLobatto<ENERGY_LOBATTO_STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
+        S: Runnable<N> + Described + Default,
     {
         let (q, v) = start(&S::default());
         Self { system: system::with_constraints::<S, N>(Some(start)), about, q: q.to_vec(), v: v.to_vec(), h }

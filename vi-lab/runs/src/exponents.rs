@@ -3,7 +3,6 @@
 //! In: a system with its parameters, a [`Plan`], the number of exponents. Out: [`Exponents`], which are updated along
 //! the run.
 
-use vi_core::collocation::Collocation;
 use vi_core::derivatives::Lyapunov;
 use vi_core::stepping::Convertible;
 use vi_core::{Gauss, Starts, StepError};
@@ -30,7 +29,7 @@ pub trait Exponents {
 
 impl<S, const N: usize> Exponents for Lyapunov<Gauss<STAGES>, S, N>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
     fn advance(&mut self, steps: u64) -> Result<(), StepError> {
         self.advance(steps)
@@ -55,7 +54,7 @@ where
 /// The error of the integrator for the initial state.
 pub fn begin<'a, S, const N: usize>(system: S, plan: &Plan, count: usize) -> Result<Box<dyn Exponents + 'a>, StepError>
 where
-    S: Collocation<N> + Convertible<N> + 'a,
+    S: Convertible<N> + 'a,
 {
     let q = vector(&plan.q, "number of coordinates")?;
     let v = vector(&plan.v, "number of velocities")?;

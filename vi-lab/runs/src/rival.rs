@@ -16,7 +16,7 @@ use differential_equations::ode::{ODE, solve_ode};
 use differential_equations::solout::Solout;
 use differential_equations::solution::Solution;
 use differential_equations::traits::State;
-use vi_core::check::Motion;
+use vi_core::check::Trajectory;
 use vi_core::{Lagrangian, SVector, StepError};
 
 /// The reason why a run did not reach its end.
@@ -54,13 +54,13 @@ impl From<StepError> for Ended {
 struct Phase<const N: usize>([[f64; N]; 2]);
 
 impl<const N: usize> Phase<N> {
-    fn of(motion: &Motion<N>) -> Self {
+    fn of(motion: &Trajectory<N>) -> Self {
         Self([motion.q.into(), motion.v.into()])
     }
 
-    fn at(&self, t: f64) -> Motion<N> {
+    fn at(&self, t: f64) -> Trajectory<N> {
         let [q, v] = self.0;
-        Motion { t, q: q.into(), v: v.into() }
+        Trajectory { t, q: q.into(), v: v.into() }
     }
 }
 
@@ -120,8 +120,8 @@ impl<S: Lagrangian<N>, const N: usize> ODE<f64, Phase<N>> for Equations<'_, S> {
 
 /// Passes on every accepted step, and stores the last.
 struct StepObserver<'a, const N: usize> {
-    last: Motion<N>,
-    show: &'a mut dyn FnMut(&Motion<N>),
+    last: Trajectory<N>,
+    show: &'a mut dyn FnMut(&Trajectory<N>),
 }
 
 impl<const N: usize> Solout<f64, Phase<N>> for StepObserver<'_, N> {
@@ -147,12 +147,12 @@ impl<const N: usize> Solout<f64, Phase<N>> for StepObserver<'_, N> {
 /// The reason why the run did not reach `end`.
 pub fn motion<S: Lagrangian<N>, const N: usize>(
     system: S,
-    start: &Motion<N>,
+    start: &Trajectory<N>,
     end: f64,
     tolerance: f64,
     evaluations: &Cell<u64>,
-    show: &mut dyn FnMut(&Motion<N>),
-) -> Result<Motion<N>, Ended> {
+    show: &mut dyn FnMut(&Trajectory<N>),
+) -> Result<Trajectory<N>, Ended> {
     let equations = Equations { system, evaluations, failure: Cell::new(None) };
     let mut solver = ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance).max_steps(usize::MAX);
     let mut watch = StepObserver { last: *start, show };

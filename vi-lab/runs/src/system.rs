@@ -8,17 +8,16 @@ use crate::exponents::{self, Exponents};
 use crate::rival::{self, Ended};
 use core::cell::Cell;
 use core::ops::{Deref, DerefMut};
-use vi_core::check::Motion;
+use vi_core::check::Trajectory;
 use vi_core::constrained::Extended;
 use vi_core::gauss::step_density;
+use vi_core::kind::{Free, Kind};
 use vi_core::lagrangian::Described;
-use vi_core::method::Controlled;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{Called, EnergyPreservingGaussLobatto, GaussLobatto, Lagrangian, SVector, State, StepError};
+use vi_core::{Called, Lagrangian, SVector, State, StepError};
 use vi_erased::integrator::{self, Integrator};
-use vi_erased::mechanics::WithConstraints;
-use vi_erased::plan::{ENERGY_LOBATTO_STAGES, ENERGY_STAGES, LOBATTO_STAGES, STAGES};
-use vi_erased::simulation::{Erasable, Runnable, RunnableWithConstraints, vector};
+use vi_erased::plan::{BOUND_ENERGY_STAGES, BOUND_STAGES, ENERGY_STAGES, STAGES};
+use vi_erased::simulation::{Runnable, vector};
 use vi_erased::{Method, PhasePoint, Plan, Typed};
 
 /// A system with its parameters.
@@ -37,7 +36,7 @@ pub trait System: Send + Sync {
     fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()];
     /// g of the time scale at a point; `None` for a system without a time scale.
     fn time_scale(&self, at: &PhasePoint) -> Option<f64>;
-    /// The point of the same motion at the time `end`, by [`Motion::at`].
+    /// The point of the same motion at the time `end`, by [`Trajectory::at`].
     ///
     /// # Errors
     /// The motion cannot be computed; [`StepError::InvalidInput`] for a point with another number of coordinates.
@@ -88,9 +87,8 @@ impl dyn System + '_ {
     #[must_use]
     pub fn usual_method(&self) -> Method {
         match (self.has_constraints(), self.has_rule()) {
-            (true, _) => Method::GaussLobatto,
             (false, true) => Method::Fixed,
-            (false, false) => Method::Gauss,
+            _ => Method::Gauss,
         }
     }
 
@@ -104,33 +102,53 @@ impl dyn System + '_ {
 /// The step density of a rule at t = 0.
 type Density<S, const N: usize> = fn(&S, &SVector<f64, N>, &SVector<f64, N>) -> Option<f64>;
 
+/// Initial coordinates and velocities of a system with its parameters.
+pub type StartOf<S, const N: usize> = fn(&S) -> ([f64; N], [f64; N]);
+
 /// A system of a known type; without a rule it has no density.
 struct Studied<S, const N: usize> {
     typed: Typed<S, N>,
     density: Option<Density<S, N>>,
+    start: Option<StartOf<S, N>>,
 }
 
 /// The system `S` with its default parameters, and every integrator.
 #[must_use]
 pub fn by_rule<S, const N: usize>() -> Box<dyn System>
 where
-    S: EnergyStepping<N> + Runnable<N> + Described + Default,
+    S: EnergyStepping<N> + Runnable<N, Kind = Free> + Described + Default,
 {
     let density = |system: &S, q: &SVector<f64, N>, v: &SVector<f64, N>| {
         system.step_density(0.0, q, v).ok().filter(|density| density.is_finite())
     };
     let with_rule = [integrator::by_rule(), vec![integrator::energy()], without_rule()];
-    Box::new(Studied { typed: Typed::new(integrator::all(with_rule)), density: Some(density) })
+    Box::new(Studied { typed: Typed::new(integrator::all(with_rule)), density: Some(density), start: None })
 }
 
 /// The same of a system without a rule.
 #[must_use]
-pub fn gauss_only<S: Runnable<N> + Described + Default, const N: usize>() -> Box<dyn System> {
-    Box::new(Studied { typed: Typed::<S, N>::new(without_rule()), density: None })
+pub fn gauss_only<S: Runnable<N, Kind = Free> + Described + Default, const N: usize>() -> Box<dyn System> {
+    Box::new(Studied { typed: Typed::<S, N>::new(without_rule()), density: None, start: None })
+}
+
+/// The system `S` with its default parameters and its constraints, and every integrator that keeps them; its initial
+/// state, if it follows from the parameters.
+#[must_use]
+pub fn with_constraints<S, const N: usize>(start: Option<StartOf<S, N>>) -> Box<dyn System>
+where
+    S: Runnable<N> + Described + Default,
+{
+    let integrators = vec![
+        integrator::gauss::<S, N, { BOUND_STAGES[0] }>(),
+        integrator::gauss::<S, N, { BOUND_STAGES[1] }>(),
+        integrator::gauss::<S, N, { BOUND_STAGES[2] }>(),
+        integrator::energy_gauss::<S, N, BOUND_ENERGY_STAGES>(),
+    ];
+    Box::new(Studied { typed: Typed::new(integrators), density: None, start })
 }
 
 /// Every integrator that needs no rule.
-fn without_rule<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>> {
+fn without_rule<S: Runnable<N, Kind = Free>, const N: usize>() -> Vec<Integrator<S, N>> {
     let gauss = vec![
         integrator::gauss::<S, N, { STAGES[0] }>(),
         integrator::gauss::<S, N, { STAGES[1] }>(),
@@ -153,11 +171,14 @@ impl<S: Runnable<N> + Described, const N: usize> System for Studied<S, N> {
     }
 
     fn copy(&self) -> Box<dyn System> {
-        Box::new(Self { typed: self.typed.clone(), density: self.density })
+        Box::new(Self { typed: self.typed.clone(), ..*self })
     }
 
     fn start(&self) -> Option<[Vec<f64>; 2]> {
-        None
+        self.start.map(|start| {
+            let (q, v) = start(&self.typed.system);
+            [q.to_vec(), v.to_vec()]
+        })
     }
 
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64> {
@@ -168,6 +189,9 @@ impl<S: Runnable<N> + Described, const N: usize> System for Studied<S, N> {
     }
 
     fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()] {
+        if const { S::Kind::COUNT > 0 } {
+            return [None; ENERGY_STAGES.len()];
+        }
         let state =
             vector(q, "number of coordinates").and_then(|q| Ok(State { t, q, p: vector(p, "number of momenta")? }));
         let Ok(state) = state else { return [None; ENERGY_STAGES.len()] };
@@ -180,97 +204,20 @@ impl<S: Runnable<N> + Described, const N: usize> System for Studied<S, N> {
     }
 
     fn time_scale(&self, at: &PhasePoint) -> Option<f64> {
-        let Motion { t, q, v } = sized(at).ok()?;
+        let Trajectory { t, q, v } = sized(at).ok()?;
         S::SCALES_TIME.then(|| self.typed.system.scaled_point(t, &q, &v).g)
-    }
-
-    fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {
-        sized(from)?.at(&self.typed.system, end).map(erased_point)
-    }
-
-    fn lyapunov(&self, plan: &Plan, count: usize) -> Result<Box<dyn Exponents>, StepError> {
-        exponents::begin(self.typed.system, plan, count)
-    }
-
-    fn rival(
-        &self,
-        from: &PhasePoint,
-        end: f64,
-        tolerance: f64,
-        evaluations: &Cell<u64>,
-        watch: Option<&mut dyn FnMut(f64, f64)>,
-    ) -> Result<PhasePoint, Ended> {
-        by_rival(self.typed.system, (from, end), tolerance, evaluations, watch)
-    }
-}
-
-/// Initial coordinates and velocities of a system with its parameters.
-pub type StartOf<S, const N: usize> = fn(&S) -> ([f64; N], [f64; N]);
-
-/// A system of a known type with constraints.
-struct StudiedWithConstraints<S, const N: usize> {
-    typed: Typed<S, N, WithConstraints>,
-    start: Option<StartOf<S, N>>,
-}
-
-/// The system `S` with its default parameters and its constraints, and every integrator that keeps them; its initial
-/// state, if it follows from the parameters.
-#[must_use]
-pub fn with_constraints<S, const N: usize>(start: Option<StartOf<S, N>>) -> Box<dyn System>
-where
-    S: RunnableWithConstraints<N> + Described + Default,
-    GaussLobatto<{ LOBATTO_STAGES[0] }>: Erasable<S, N>,
-    GaussLobatto<{ LOBATTO_STAGES[1] }>: Erasable<S, N>,
-    GaussLobatto<{ LOBATTO_STAGES[2] }>: Erasable<S, N>,
-    EnergyPreservingGaussLobatto<ENERGY_LOBATTO_STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
-{
-    let integrators = vec![
-        integrator::gauss_lobatto::<S, N, { LOBATTO_STAGES[0] }>(),
-        integrator::gauss_lobatto::<S, N, { LOBATTO_STAGES[1] }>(),
-        integrator::gauss_lobatto::<S, N, { LOBATTO_STAGES[2] }>(),
-        integrator::energy_lobatto::<S, N, ENERGY_LOBATTO_STAGES>(),
-    ];
-    Box::new(StudiedWithConstraints { typed: Typed::new(integrators), start })
-}
-
-impl<S: RunnableWithConstraints<N> + Described, const N: usize> System for StudiedWithConstraints<S, N> {
-    fn erased(&self) -> &(dyn vi_erased::System + 'static) {
-        &self.typed
-    }
-
-    fn erased_mut(&mut self) -> &mut (dyn vi_erased::System + 'static) {
-        &mut self.typed
-    }
-
-    fn copy(&self) -> Box<dyn System> {
-        Box::new(Self { typed: self.typed.clone(), start: self.start })
-    }
-
-    fn start(&self) -> Option<[Vec<f64>; 2]> {
-        self.start.map(|start| {
-            let (q, v) = start(&self.typed.system);
-            [q.to_vec(), v.to_vec()]
-        })
-    }
-
-    fn step_density(&self, _q: &[f64], _v: &[f64]) -> Option<f64> {
-        None
-    }
-
-    fn step_densities(&self, _t: f64, _q: &[f64], _p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()] {
-        [None; ENERGY_STAGES.len()]
-    }
-
-    fn time_scale(&self, _at: &PhasePoint) -> Option<f64> {
-        None
     }
 
     fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {
         sized(from)?.at(&Extended(self.typed.system), end).map(erased_point)
     }
 
-    fn lyapunov(&self, plan: &Plan, _count: usize) -> Result<Box<dyn Exponents>, StepError> {
-        Err(StepError::NoDerivative { t: plan.t, because: "exponents of motions with constraints are not supported" })
+    fn lyapunov(&self, plan: &Plan, count: usize) -> Result<Box<dyn Exponents>, StepError> {
+        if const { S::Kind::COUNT > 0 } {
+            let because = "exponents of motions with constraints are not supported";
+            return Err(StepError::NoDerivative { t: plan.t, because });
+        }
+        exponents::begin(self.typed.system, plan, count)
     }
 
     fn rival(
@@ -293,7 +240,7 @@ fn by_rival<S: Lagrangian<N> + Copy, const N: usize>(
     evaluations: &Cell<u64>,
     mut watch: Option<&mut dyn FnMut(f64, f64)>,
 ) -> Result<PhasePoint, Ended> {
-    let mut show = |motion: &Motion<N>| {
+    let mut show = |motion: &Trajectory<N>| {
         if let Some(watch) = &mut watch {
             watch(motion.t, system.energy(motion.t, &motion.q, &motion.v));
         }
@@ -302,13 +249,13 @@ fn by_rival<S: Lagrangian<N> + Copy, const N: usize>(
 }
 
 /// A point with the system's number of coordinates.
-fn sized<const N: usize>(point: &PhasePoint) -> Result<Motion<N>, StepError> {
+fn sized<const N: usize>(point: &PhasePoint) -> Result<Trajectory<N>, StepError> {
     let q = vector(&point.q, "number of coordinates")?;
     let v = vector(&point.v, "number of velocities")?;
-    Ok(Motion { t: point.t, q, v })
+    Ok(Trajectory { t: point.t, q, v })
 }
 
 /// A type-erased point.
-fn erased_point<const N: usize>(motion: Motion<N>) -> PhasePoint {
+fn erased_point<const N: usize>(motion: Trajectory<N>) -> PhasePoint {
     PhasePoint { t: motion.t, q: motion.q.as_slice().to_vec(), v: motion.v.as_slice().to_vec() }
 }

@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 use vi_core::StepError;
-use vi_core::check::Motion;
+use vi_core::check::Trajectory;
 use vi_runs::rival::{Ended, motion};
 use vi_systems::{DampedOscillator, Kepler};
 
@@ -10,7 +10,7 @@ use vi_systems::{DampedOscillator, Kepler};
 fn the_damped_oscillator_is_met() {
     let system = DampedOscillator::default();
     let t = 40.0;
-    let start = Motion { t: 0.0, q: [1.0].into(), v: [0.0].into() };
+    let start = Trajectory { t: 0.0, q: [1.0].into(), v: [0.0].into() };
     let evaluations = Cell::new(0);
     let end = motion(system, &start, t, 1e-14, &evaluations, &mut |_| ()).expect("the motion");
     let decay = 0.02_f64;
@@ -25,7 +25,7 @@ fn the_damped_oscillator_is_met() {
 #[test]
 fn every_step_is_shown_and_a_run_into_the_centre_ends() {
     let system = Kepler::default();
-    let start = Motion { t: 0.0, q: [1.0, 0.0].into(), v: [0.0, 0.0].into() };
+    let start = Trajectory { t: 0.0, q: [1.0, 0.0].into(), v: [0.0, 0.0].into() };
     let mut times = Vec::new();
     let ended = motion(system, &start, 2.0, 1e-9, &Cell::new(0), &mut |motion| times.push(motion.t));
     // Free fall from r = 1 with μ = 1 ends at t = π/√8.

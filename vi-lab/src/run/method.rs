@@ -7,7 +7,7 @@ use vi_report::numbers::short;
 /// The integrator of a plan and its start, in the terms of the command line.
 pub(crate) fn in_words(plan: &Plan) -> String {
     let start = |name: &str| format!("start {name}");
-    let of_the_method = match (plan.method, plan.energy_stages().or(plan.gauss_stages()), plan.start) {
+    let of_the_method = match (plan.method, plan.energy_stages().or(plan.stages), plan.start) {
         (_, Some(1), _) => Some("1 stage".to_owned()),
         (_, Some(stages), _) => Some(format!("{stages} stages")),
         (Method::Energy, None, Start::Midpoint) => Some(start("midpoint")),

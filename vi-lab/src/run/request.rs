@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 use vi_core::StepError;
 use vi_erased::plan::Named as _;
 use vi_erased::plan::{
-    ENERGY_LOBATTO_STAGES, ENERGY_STAGES, LOBATTO_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Start,
+    BOUND_ENERGY_STAGES, BOUND_STAGES, DEFAULT_BOUND_STAGES, DEFAULT_STAGES, ENERGY_STAGES, Method, PhasePoint, Plan,
+    STAGES, Shift, Start,
 };
 use vi_erased::simulation::{Row, Steps};
 use vi_report::catalogue::{Catalogue, kebab};
@@ -296,11 +297,6 @@ fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<
             methods(system)
         )));
     }
-    if method == Method::GaussLobatto && !system.has_constraints() {
-        return Err(Failure::Input(format!(
-            "{name} has no constraints, and --method gauss-lobatto is for systems with some: use --method gauss"
-        )));
-    }
     let needs_none = match method {
         Method::Gauss => true,
         Method::Energy => options.stages.is_some() || options.shift.is_some(),
@@ -367,7 +363,7 @@ impl Options {
                 format!("{energy} --shift; add --method energy, or remove it")
             }
             () if fallback && !is_energy => format!("{energy} --fallback; add --method energy, or remove it"),
-            () if stages.is_some() && !is_energy && !is_gauss && method != Method::GaussLobatto => {
+            () if stages.is_some() && !is_energy && !is_gauss => {
                 "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it"
                     .to_owned()
             }
@@ -383,31 +379,36 @@ impl Options {
     }
 }
 
-/// A number of stages that is built into the command; `None` for the default of the method.
+/// A number of stages that is built into the command, by default that of the method; `None` for steps without stages.
 fn stages(system: &dyn System, method: Method, wanted: Option<u64>) -> Result<Option<usize>, Failure> {
-    let of_constraints = method == Method::Energy && system.has_constraints();
+    let is_energy = method == Method::Energy;
     let Some(wanted) = wanted else {
-        return Ok(of_constraints.then_some(ENERGY_LOBATTO_STAGES));
+        return Ok(match (method, system.has_constraints()) {
+            (Method::Gauss, true) => Some(DEFAULT_BOUND_STAGES),
+            (Method::Gauss, false) => Some(DEFAULT_STAGES),
+            (Method::Energy, true) => Some(BOUND_ENERGY_STAGES),
+            _ => None,
+        });
     };
-    let built: &[usize] = match method {
-        Method::Energy if of_constraints => &[ENERGY_LOBATTO_STAGES],
-        Method::Energy => &ENERGY_STAGES,
-        Method::GaussLobatto => &LOBATTO_STAGES,
-        _ => &STAGES,
+    let built: &[usize] = match (is_energy, system.has_constraints()) {
+        (true, true) => &[BOUND_ENERGY_STAGES],
+        (true, false) => &ENERGY_STAGES,
+        (false, true) => &BOUND_STAGES,
+        (false, false) => &STAGES,
     };
     let found = built.iter().copied().find(|built| *built as u64 == wanted);
     found.map(Some).ok_or_else(|| {
-        Failure::Input(match method {
-            Method::Energy if of_constraints => format!(
-                "energy-preserving steps with constraints have {ENERGY_LOBATTO_STAGES} stages in the command, not {wanted}"
+        Failure::Input(match (is_energy, system.has_constraints()) {
+            (true, true) => format!(
+                "energy-preserving steps with constraints have {BOUND_ENERGY_STAGES} stages in the command, not {wanted}"
             ),
-            Method::Energy => format!(
+            (true, false) => format!(
                 "energy-preserving steps have 1, 2 or 3 stages, not {wanted}: with more, rounding hides the length"
             ),
-            Method::GaussLobatto => {
-                format!("steps with constraints have 1, 2 or 3 stages in the command, not {wanted}")
+            (false, true) => format!("steps with constraints have 1, 2 or 3 stages in the command, not {wanted}"),
+            (false, false) => {
+                format!("Gauss steps of {wanted} stages are not built into the command; --stages may be 4 or 8")
             }
-            _ => format!("Gauss steps of {wanted} stages are not built into the command; --stages may be 4 or 8"),
         })
     })
 }

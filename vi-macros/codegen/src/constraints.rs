@@ -146,10 +146,10 @@ impl ConstraintMistake {
             Self::TorqueIndex { name } => format!("write `torque {name}[i in 0..8] = [a, b, c];` or `torque {name}[0] = [a, b, c];`"),
             Self::SecondTorque { .. } => "add them up in one line".to_owned(),
             Self::Clause { clause: "discretize" } => {
-                "remove it: `GaussLobatto::<1>` is the midpoint rule with constraints, `GaussLobatto::<3>` has order 6"
+                "remove it: `Gauss::<1>` is the midpoint rule with constraints, `Gauss::<3>` has order 6"
                     .to_owned()
             }
-            Self::Clause { .. } => "remove it; `GaussLobatto` takes steps in t".to_owned(),
+            Self::Clause { .. } => "remove it; `Gauss` takes steps in t".to_owned(),
         }
     }
 }

@@ -391,10 +391,10 @@ fn in_arrays(names: &[(String, usize)]) -> String {
     arrays.map(text).collect::<Vec<_>>().join(", ")
 }
 
-/// The order of `GaussLobatto` steps across a point where L has only so many continuous derivatives.
+/// The order of Gauss steps with constraints across a point where L has only so many continuous derivatives.
 pub(crate) fn constrained_smoothness_in_words(smoothness: &Smoothness) -> String {
     let order = smoothness.derivatives + 1;
-    format!("{}: `GaussLobatto` has order {order} across it", derivatives_in_words(smoothness))
+    format!("{}: `Gauss` has order {order} across it", derivatives_in_words(smoothness))
 }
 
 /// The names of coordinates, separated by commas.

@@ -33,7 +33,7 @@ const OF_SPLITTING: (&str, &[FunctionId]) = ("Splitting, for each force", &[Func
 
 /// The methods of systems with constraints, and the functions that it calls.
 const OF_CONSTRAINTS: (&str, &[FunctionId]) = (
-    "GaussLobatto, EnergyPreservingGaussLobatto",
+    "Gauss, EnergyPreservingGauss",
     &[
         FunctionId::Point,
         FunctionId::PointDerivatives,

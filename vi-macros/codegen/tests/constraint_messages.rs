@@ -215,12 +215,8 @@ fn uses_of_constraints() {
     clause("constraint rod = x^2 + y^2 - l^2; force x = -«reaction»(rod) * dot(x);", reaction);
     case("coord x, y; constraint rod = x - y^2; L = dot(x)^2 + dot(y)^2 - «reaction»(rod);", reaction);
     let clauses = [
-        (
-            "«discretize» midpoint;",
-            "discretize",
-            "remove it: `GaussLobatto::<1>` is the midpoint rule with constraints",
-        ),
-        ("time_scale = x^2;", "time_scale", "remove it; `GaussLobatto` takes steps in t"),
+        ("«discretize» midpoint;", "discretize", "remove it: `Gauss::<1>` is the midpoint rule with constraints"),
+        ("time_scale = x^2;", "time_scale", "remove it; `Gauss` takes steps in t"),
     ];
     for (written, word, help) in clauses {
         let marked = match word {

@@ -197,7 +197,7 @@ fn checks_are_emitted() {
         ["derivatives", "slots", "steps", "energy_equations", "order", "momenta", "symplecticity", "reversibility"];
     assert_eq!(checks(&free)[..8], all);
     assert_eq!(checks(&free)[8..], ["energy", "step_law"]);
-    assert_eq!(checks(CLOSED), ["constrained_derivatives", "constraints", "reaction", "lobatto_order"]);
+    assert_eq!(checks(CLOSED), ["derivatives", "constraints", "reaction", "gauss_order"]);
     // Two loops or straight lines: the same tests.
     assert_eq!(checks(&free), checks(&free.replace("#[vi_limit(0)] ", "")));
     assert!(!expand(tokens(WELLS)).to_string().contains("cfg (test)"), "no clause, no tests");

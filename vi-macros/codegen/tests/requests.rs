@@ -21,8 +21,7 @@ fn emitted(discretize: &str) -> String {
 #[test]
 fn without_a_rule_the_functions_of_gauss_steps_are_emitted() {
     let gauss = emitted("");
-    for what in ["Lagrangian", "Collocation", "TimeScale", "Convertible", "Parameters", "gauss_order", "gauss_momenta"]
-    {
+    for what in ["Lagrangian", "Motion", "TimeScale", "Convertible", "Parameters", "gauss_order", "gauss_momenta"] {
         assert!(gauss.contains(what), "{what}");
     }
     for what in ["FixedStepping", "EnergyStepping", "DiscreteLagrangian", "Discretized", "Batch", "step_density", "ld"]

@@ -14,10 +14,10 @@ lagrangian! {
 fn main() -> Result<(), StepError> {
     let pendulum = Pendulum { l: 2.0 };
     let start = State::projected(&pendulum, 0.0, [1.0, -1.0], [0.0, 0.0])?;
-    let mut run = pendulum.at_state(start.state).integrate(GaussLobatto::<2>, 0.01)?;
+    let mut run = pendulum.at_state(start.state).integrate(Gauss::<2>, 0.01)?;
     run.until(1.0)?;
     let [tension] = run.state().reaction(&pendulum)?;
     println!("{tension}");
-    pendulum.at(0.0, [1.0, 0.0], [0.0, 0.0]).integrate(EnergyPreservingGaussLobatto::<1>, 0.01)?.step()?;
+    pendulum.at(0.0, [1.0, 0.0], [0.0, 0.0]).integrate(EnergyPreservingGauss::<1>, 0.01)?.step()?;
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! What the binaries share: rods by their angles, and runs by the clock.
 
 use std::time::Instant;
-use vi_core::collocation::Collocation;
+use vi_core::motion::Motion;
 use vi_core::prelude::*;
 use vi_core::stepping::{Convertible, FixedStepping};
 use vi_core::{Method, SVector};
@@ -39,7 +39,7 @@ pub fn run<M, Y, const N: usize>(
 ) -> Result<(SVector<f64, N>, f64), StepError>
 where
     M: Method<Y, N> + Copy,
-    Y: FixedStepping<N> + Collocation<N> + Convertible<N>,
+    Y: FixedStepping<N> + Motion<N> + Convertible<N>,
 {
     let (mut least, mut last) = (f64::INFINITY, start);
     for _ in 0..REPETITIONS {

@@ -2,9 +2,10 @@
 //!
 //! In: nothing. Out: a table with the columns of `links.py`. The error is against steps of order 8 with h = 1/400.
 
+use vi_core::stepping::Convertible;
 use std::time::Instant;
 use vi_core::prelude::*;
-use vi_core::{Constrained, ConvertibleConstrained, SVector};
+use vi_core::{SVector};
 
 const ANGLE: f64 = 0.5;
 const REPETITIONS: u32 = 7;
@@ -32,14 +33,14 @@ chain!(hundred, Hundred, 100);
 /// The last mass after steps of length 1/count to t = 1, and the least time of a step in microseconds.
 fn run<const S: usize, Y, const N: usize>(system: Y, count: u32) -> Result<([f64; 2], f64), StepError>
 where
-    Y: Constrained<N> + ConvertibleConstrained<N>,
+    Y: Convertible<N>,
 {
     let number = |i: usize| f64::from(u32::try_from(i / 2 + 1).unwrap_or(0));
     let along = SVector::<f64, N>::from_fn(|i, _| number(i) * if i % 2 == 0 { -ANGLE.sin() } else { -ANGLE.cos() });
     let start = State::projected(&system, 0.0, along, SVector::<f64, N>::zeros())?.state;
     let (mut least, mut last) = (f64::INFINITY, [0.0; 2]);
     for _ in 0..REPETITIONS {
-        let mut run = system.at_state(start).integrate(GaussLobatto::<S>, 1.0 / f64::from(count))?;
+        let mut run = system.at_state(start).integrate(Gauss::<S>, 1.0 / f64::from(count))?;
         let begin = Instant::now();
         for _ in 0..count {
             run.step()?;
@@ -52,15 +53,15 @@ where
 
 fn rows<Y, const N: usize>(system: Y) -> Result<(), StepError>
 where
-    Y: Constrained<N> + ConvertibleConstrained<N>,
+    Y: Convertible<N>,
 {
     let (exact, _) = run::<4, Y, N>(system, 400)?;
     let show = |order: u32, count: u32, found: Result<([f64; 2], f64), StepError>| match found {
         Ok((last, time)) => {
             let error = (last[0] - exact[0]).abs().max((last[1] - exact[1]).abs());
-            println!("{},GaussLobatto order {order},{},{time:.3},{error:.2e}", N / 2, 1.0 / f64::from(count));
+            println!("{},Gauss order {order},{},{time:.3},{error:.2e}", N / 2, 1.0 / f64::from(count));
         }
-        Err(failure) => println!("{},GaussLobatto order {order},{},,{failure}", N / 2, 1.0 / f64::from(count)),
+        Err(failure) => println!("{},Gauss order {order},{},,{failure}", N / 2, 1.0 / f64::from(count)),
     };
     for count in [100, 1000, 10_000] {
         show(2, count, run::<1, Y, N>(system, count));

@@ -18,8 +18,8 @@ use super::super::stages::{
     Roundings, Stages, add_products, change, constant_mass, growth, product, roundings, scaled, set, stage, weights,
 };
 use super::super::tableau::Tableau;
-use crate::collocation::Collocation;
 use crate::linear::Matrix;
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::{Lane, Real};
 use nalgebra::{SMatrix, SVector};
@@ -42,7 +42,7 @@ pub(crate) struct Clock<const S: usize> {
 }
 
 /// The equations of a step; see the [module](self).
-pub(crate) struct Scaled<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
+pub(crate) struct Scaled<'a, T, Y: Motion<N, T>, const N: usize, const S: usize, const FUSED: bool>
 where
     T: Real,
 {
@@ -80,7 +80,7 @@ pub(crate) struct AllRoundings<const N: usize> {
 impl<'a, T, Y, const N: usize, const S: usize, const FUSED: bool> Scaled<'a, T, Y, N, S, FUSED>
 where
     T: Real,
-    Y: Collocation<N, T>,
+    Y: Motion<N, T>,
 {
     /// The equations of the step of length Δτ from `node`, with a guess of the rates at its stages.
     #[inline(always)]
@@ -292,7 +292,7 @@ where
 impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for Scaled<'_, T, Y, N, S, FUSED>
 where
     T: Real,
-    Y: Collocation<N, T>,
+    Y: Motion<N, T>,
 {
     #[inline(always)]
     fn has_another_way(&self) -> bool {

@@ -22,8 +22,8 @@ use super::newton::{Buffer, Newton};
 use super::points::ErasedSystem;
 use super::solve::lost_force;
 use super::stages::{Stages, stage};
-use crate::collocation::{Collocation, TimeScale};
 use crate::error::StepError;
+use crate::motion::{Motion, TimeScale};
 use crate::node::Node;
 use crate::real::{Lane, Real, Rounded};
 use crate::stepping::Convertible;
@@ -198,7 +198,7 @@ fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(
 ) -> TransformedStages<N, S>
 where
     T: Real,
-    Y: Collocation<N, T>,
+    Y: Motion<N, T>,
 {
     let rates = last.guess::<FUSED>(dtau);
     let mut equations = Scaled::<T, Y, N, S, FUSED>::new(system, node, dtau, rates, newton);

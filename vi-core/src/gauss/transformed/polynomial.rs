@@ -14,7 +14,7 @@ use super::super::polynomial::{coefficients, integrals, polynomials, sum};
 use super::super::stages::{Stages, scaled};
 use super::LastRates;
 use super::equations::Scaled;
-use crate::collocation::Collocation;
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::run::DenseOutput;
 use crate::state::State;
@@ -37,7 +37,7 @@ const ITERATIONS: u32 = 60;
 
 impl<const N: usize, const S: usize> TransformedPolynomial<N, S> {
     /// Dense output of the last step, from `start` to a node with this energy.
-    pub(crate) fn of<Y: Collocation<N>>(system: &Y, energy: f64, last: &LastRates<N, S>, start: State<N>) -> Self {
+    pub(crate) fn of<Y: Motion<N>>(system: &Y, energy: f64, last: &LastRates<N, S>, start: State<N>) -> Self {
         let rates = last.rates();
         // The energy at the start of the step, from that of the node.
         let mut node = Node::new(start, energy);

@@ -5,7 +5,6 @@
 
 use super::equations::Rates;
 use super::{TransformedStages, check_time_scale};
-use crate::collocation::{ScaledPoint, TimeScale};
 use crate::compensated;
 use crate::error::StepError;
 use crate::gauss::fixed_point::{Convergence, Pause};
@@ -13,6 +12,7 @@ use crate::gauss::polynomial::{coefficients, polynomials, sum};
 use crate::gauss::stages::{extrapolated, set};
 use crate::gauss::tableau::{DEGREE, Tableau};
 use crate::method::Memory;
+use crate::motion::{ScaledPoint, TimeScale};
 use crate::node::Node;
 use crate::state::State;
 use nalgebra::{ArrayStorage, SMatrix, SVector};

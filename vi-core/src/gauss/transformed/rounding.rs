@@ -14,7 +14,7 @@
 use super::super::rounding::{nearest, worse_row};
 use super::super::tableau::Tableau;
 use super::TransformedStages;
-use crate::collocation::{Collocation, ScaledPoint};
+use crate::motion::{Motion, ScaledPoint};
 use crate::node::Node;
 use crate::real::Rounded;
 use nalgebra::SVector;
@@ -34,7 +34,7 @@ pub(crate) fn residual<Y, const N: usize, const S: usize>(
     solved: &TransformedStages<N, S>,
 ) -> f64
 where
-    Y: Collocation<N, Rounded>,
+    Y: Motion<N, Rounded>,
 {
     let Tableau { b, first, .. } = const { &Tableau::<S>::VALUES };
     let TransformedStages { iteration, velocity, clock, .. } = solved;

@@ -20,15 +20,14 @@ use super::super::tableau::Tableau;
 use super::equations::Scaled;
 use super::rates::LastRates;
 use crate::angles;
-use crate::collocation::{Collocation, ScaledPoint, TimeScale};
 use crate::derivatives::{
-    Differentiable, TOGETHER, Unconstrained, Variation, Varied, changes_of_energy, more_parameters, not_finite,
-    not_last, singular,
+    Differentiable, TOGETHER, Variation, Varied, changes_of_energy, more_parameters, not_finite, not_last, singular,
 };
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::linear::Pivoted;
 use crate::method::{Gauss, InTransformedTime};
+use crate::motion::{Motion, ScaledPoint, TimeScale};
 use crate::node::Node;
 use crate::real::Dual;
 use crate::run::Run;
@@ -40,7 +39,6 @@ impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for InTransfor
 where
     S: TimeScale<N> + Convertible<N>,
 {
-    type Kind = Unconstrained;
     const KEEPS_ENERGY: bool = true;
     /// Steps also depend on the time through g.
     const DEPENDS_ON_TIME: bool = true;
@@ -70,7 +68,7 @@ where
     }
 
     fn vary_start(run: &Run<Self, S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let energies = changes_of_energy::<_, Unconstrained, _>(&run.system, &run.node.state(), variations)?;
+        let energies = changes_of_energy::<_, _>(&run.system, &run.node.state(), variations)?;
         for (variation, energy) in variations.iter_mut().zip(energies) {
             variation.energy = energy;
         }
@@ -348,7 +346,7 @@ fn functions<Y, const N: usize>(
     (t, q, v, energy): (Varied, SVector<Varied, N>, SVector<Varied, N>, Varied),
 ) -> Vec<Varied>
 where
-    Y: Collocation<N, Varied>,
+    Y: Motion<N, Varied>,
 {
     let ScaledPoint { point, energy: hamiltonian, power, g, g_dq, g_dt } = system.scaled_point(t, &q, &v);
     let excess = hamiltonian - energy;

@@ -60,8 +60,7 @@ struct Counts {
 impl Counts {
     /// Runs from one start by every method with every step.
     fn check(&mut self, entry: &Entry, start: &PhasePoint) {
-        let constrained = entry.system.has_constraints();
-        let accurate = if constrained { Method::GaussLobatto } else { Method::Gauss };
+        let accurate = Method::Gauss;
         let plan = |method: Method, h: f64| Plan::new(method, h, start.clone());
         let truth = |parts: u32| nodes(entry, &plan(accurate, entry.h / f64::from(parts)), DURATION * parts);
         let (Some(truth), Some(check)) = (truth(2), truth(1)) else { return };

@@ -3,7 +3,7 @@
 mod lost_motions;
 
 use vi_core::StepError;
-use vi_erased::plan::{ENERGY_LOBATTO_STAGES, Method, PhasePoint, Plan, Shift};
+use vi_erased::plan::{BOUND_ENERGY_STAGES, Method, PhasePoint, Plan, Shift};
 
 #[test]
 fn every_entry_starts_and_keeps_its_parameters() {
@@ -12,7 +12,7 @@ fn every_entry_starts_and_keeps_its_parameters() {
         let name = entry.system.name();
         assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
         let methods: &[Method] = if entry.system.has_constraints() {
-            &[Method::GaussLobatto, Method::Energy]
+            &[Method::Gauss, Method::Energy]
         } else {
             &[Method::Fixed, Method::KahanLi6, Method::Gauss, Method::Energy]
         };
@@ -21,7 +21,7 @@ fn every_entry_starts_and_keeps_its_parameters() {
             let mut plan = Plan::new(method, entry.h, start);
             if method == Method::Energy && entry.system.has_constraints() {
                 let shift = Some(Shift::Over(20.0 * entry.h));
-                plan = Plan { stages: Some(ENERGY_LOBATTO_STAGES), shift, ..plan };
+                plan = Plan { stages: Some(BOUND_ENERGY_STAGES), shift, ..plan };
             }
             let begun = entry.system.begin(&plan);
             let mut run = begun.unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -46,7 +46,7 @@ fn starts_with_constraints_follow_the_parameters() {
     let [q, v] = system.start().expect("a start");
     assert!((q[0].hypot(q[1]) - 0.5).abs() < 1e-15, "{q:?}");
     // The start of the default parameters is off the constraint by g = 1 − 1/4.
-    let plan = |q: &[f64]| Plan::new(Method::GaussLobatto, 0.01, PhasePoint { t: 0.0, q: q.to_vec(), v: v.clone() });
+    let plan = |q: &[f64]| Plan::new(Method::Gauss, 0.01, PhasePoint { t: 0.0, q: q.to_vec(), v: v.clone() });
     assert!(system.begin(&plan(&q)).is_ok());
     let refused = system.begin(&plan(&entry.q)).err();
     let is_off = matches!(refused, Some(StepError::InconsistentStart { constraint: "rod", residual, rate: 0.0 })

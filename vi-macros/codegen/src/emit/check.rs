@@ -2,8 +2,7 @@
 //!
 //! The table of rules, the forces and the cyclic coordinates decide which checks apply. A rule outside the table is
 //! expected to have order 1 and no other property. A system with several rules has the tests once per rule. A system
-//! without a rule has the tests of its motion and of its Gauss steps; one with constraints those of its Gauss–Lobatto
-//! steps.
+//! without a rule has the tests of its motion, of its constraints and of its Gauss steps.
 
 use super::formula::number;
 use super::lagrangian::monotone_table;
@@ -31,10 +30,7 @@ pub(super) fn tests(
     let model = source.model;
     let applying = match steps {
         Some(steps) => of_steps(&Properties::of(steps)),
-        None if model.constraints.is_empty() => {
-            of_motion(source.system.continuous.cyclic.contains(&true), model.forced)
-        }
-        None => of_constraints(model),
+        None => of_motion(model, source.system.continuous.cyclic.contains(&true)),
     };
     let by_further = further.iter().map(|steps| Further {
         rule: format_ident!("{}", steps.rule.title()),
@@ -53,9 +49,7 @@ pub(super) fn tests_of_loops(of: &Indexed, conditions: &[&Attribute]) -> Option<
         of_steps(&Properties { rule: Some(rule), has_energy_steps, is_monotone, is_cyclic, forced })
     };
     let Some((own, further)) = of.rules.split_first() else {
-        let is_constrained = !of.model.constraints.is_empty();
-        let applying = if is_constrained { of_constraints(&of.model) } else { of_motion(is_cyclic, forced) };
-        return module(&of.model, &applying, &[], conditions);
+        return module(&of.model, &of_motion(&of.model, is_cyclic), &[], conditions);
     };
     let further = further.iter().map(|rule| Further {
         rule: format_ident!("{}", rule.name),
@@ -154,22 +148,17 @@ fn tests_of(checks: &[Check], system: &TokenStream, place: &TokenStream) -> Vec<
     checks.iter().map(test).collect()
 }
 
-/// The checks that apply to the motion of a system and to its Gauss steps.
-fn of_motion(is_cyclic: bool, forced: bool) -> Vec<Check> {
-    let each =
-        [("derivatives", true), ("gauss_order", true), ("gauss_momenta", is_cyclic), ("gauss_symplecticity", !forced)];
-    each.into_iter().filter(|(_, applies)| *applies).map(|(check, _)| (check, TokenStream::new())).collect()
-}
-
-/// The checks that apply to a system with constraints and to its Gauss–Lobatto steps.
-fn of_constraints(model: &Model) -> Vec<Check> {
+/// The checks that apply to the motion of a system, to its constraints, and to its Gauss steps.
+fn of_motion(model: &Model, is_cyclic: bool) -> Vec<Check> {
+    let is_constrained = !model.constraints.is_empty();
     let are_holonomic = model.constraints.iter().all(|constraint| constraint.is_holonomic);
     let each = [
-        ("constrained_derivatives", true),
-        ("constraints", true),
-        ("reaction", true),
-        ("lobatto_order", true),
-        ("lobatto_symplecticity", are_holonomic && !model.forced),
+        ("derivatives", true),
+        ("constraints", is_constrained),
+        ("reaction", is_constrained),
+        ("gauss_order", true),
+        ("gauss_momenta", is_cyclic && !is_constrained),
+        ("gauss_symplecticity", are_holonomic && !model.forced),
     ];
     each.into_iter().filter(|(_, applies)| *applies).map(|(check, _)| (check, TokenStream::new())).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::Source;
 use super::body::{Body, VelocityFrom, body, state_parts};
-use super::constrained;
+use super::constraints;
 use super::entries::{self, ResultEntry};
 use super::functions;
 use super::matrix::matrix;
@@ -20,7 +20,7 @@ const CHARACTERS: usize = 400;
 pub(super) fn item(source: &Source) -> TokenStream {
     let of = &source.system.continuous;
     let [acceleration, flow] = match source.system.constraints {
-        Some(_) => constrained::motion(&source.dimension()),
+        Some(_) => constraints::motion(&source.dimension()),
         None => [acceleration(source), flow(source)],
     };
     let functions = [
@@ -256,7 +256,7 @@ pub(super) fn step_density(source: &Source) -> TokenStream {
 /// otherwise Newton iteration.
 fn flow(source: &Source) -> TokenStream {
     let dimension = source.dimension();
-    let point = quote!(::vi_core::collocation::Collocation::point);
+    let point = quote!(::vi_core::motion::Motion::point);
     let velocity = if source.system.continuous.quadratic {
         quote! {
             let at_rest = #point(self, t, q, &::vi_core::SVector::zeros());
@@ -279,7 +279,7 @@ fn flow(source: &Source) -> TokenStream {
         ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
             #velocity
             let force = #point(self, t, q, &velocity).force;
-            let power = ::vi_core::collocation::Collocation::power(self, t, q, &velocity);
+            let power = ::vi_core::motion::Motion::power(self, t, q, &velocity);
             ::core::result::Result::Ok(::vi_core::lagrangian::Flow { v: velocity, force, power })
         }
     }

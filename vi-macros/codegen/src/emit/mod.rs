@@ -7,8 +7,7 @@
 mod angles;
 mod body;
 mod check;
-mod collocation;
-mod constrained;
+mod constraints;
 mod discrete;
 mod entries;
 mod folds;
@@ -18,6 +17,7 @@ mod indexed;
 mod lagrangian;
 mod loops;
 mod matrix;
+mod motion;
 mod names;
 mod pieces;
 mod scope;
@@ -94,16 +94,12 @@ pub fn items(derivations: &Derivations) -> TokenStream {
     let structure = structure::structure(&source, &further);
     let (functions, parameters) = (functions::items(source.model), structure::parameters(source.model));
     let lagrangian = lagrangian::item(&source);
-    let motion = if let Some(of) = &source.system.constraints {
-        constrained::item(&source, of)
-    } else {
-        let (collocation, convertible) = (collocation::item(&source), structure::convertible(source.model, true));
-        quote!(#collocation #convertible)
-    };
+    let (motion, convertible) = (motion::item(&source), structure::convertible(source.model, true));
     let batch = own.as_ref().map(|_| structure::batch(source.model));
     let by_own = own.as_ref().map(by_rule);
     let by_further = further.iter().map(by_rule);
-    let implementations = quote!(#functions #parameters #lagrangian #motion #by_own #batch #(#by_further)*);
+    let implementations =
+        quote!(#functions #parameters #lagrangian #motion #convertible #by_own #batch #(#by_further)*);
     let conditions: Vec<_> = conditions(&source.model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests(&source, own.as_ref(), &further, &conditions);

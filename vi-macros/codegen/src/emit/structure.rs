@@ -1,7 +1,8 @@
 //! The struct of a system: its parameters as public fields, their defaults, their names.
 
 use super::formula::number;
-use super::{Source, Steps, conditions, constrained, limit};
+use super::motion::Members;
+use super::{Source, Steps, conditions, constraints, limit};
 use crate::limits::{COORDINATES, PARAMETERS};
 use crate::model::{COMPONENTS, Model, Parameter};
 use crate::rules::{GAUSS, NamedRule, RULES};
@@ -243,8 +244,7 @@ pub(super) fn found(model: &Model, findings: Vec<String>) -> TokenStream {
     let rule = match &model.rule {
         Some(rule) => format!(" Discretized by the rule `{}`. Properties found by the generator:", rule.title()),
         None if !model.constraints.is_empty() => {
-            " Integrated by `GaussLobatto` and `EnergyPreservingGaussLobatto`. Properties found by the generator:"
-                .to_owned()
+            " Integrated by `Gauss` and `EnergyPreservingGauss`. Properties found by the generator:".to_owned()
         }
         None => " Integrated by Gauss methods only. Properties found by the generator:".to_owned(),
     };
@@ -315,10 +315,10 @@ fn stub(system: &System) -> TokenStream {
     let size = Size::of(system);
     let (parameters, lagrangian) = (stub_parameters(name), stub_lagrangian(name, &size));
     let motion = if system.is_constrained {
-        constrained::stub(name, &size.n, size.generic.as_ref())
+        stub_motion(name, &size, &constraints::stub(&size.n))
     } else {
         let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &size, rule.as_ref()));
-        let (motion, batch) = (stub_motion(name, &size), stub_batch(name, &size));
+        let (motion, batch) = (stub_motion(name, &size, &Members::free()), stub_batch(name, &size));
         quote!(#motion #batch #(#by_rules)*)
     };
     let traits = quote!(#parameters #lagrangian #motion);
@@ -435,8 +435,8 @@ fn stub_parameters(name: &Ident) -> TokenStream {
 fn stub_batch(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
     let none = quote!({ loop {} });
     quote! {
-        impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<#n, T> for #name<T> {}
-        impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::Separable<#n, T> for #name<T> {}
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::motion::TimeScale<#n, T> for #name<T> {}
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::motion::Separable<#n, T> for #name<T> {}
         impl<#generic> ::vi_core::stepping::Batch<#n> for #name<f64> {
             type Rows<const W: ::core::primitive::usize> = Self;
             fn rows<const W: ::core::primitive::usize>(_: &[Self; W]) -> Self #none
@@ -469,19 +469,20 @@ fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
     }
 }
 
-/// The stub of the equations of motion of a system without constraints.
-fn stub_motion(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
+/// The stub of the equations of motion.
+fn stub_motion(name: &Ident, Size { generic, n }: &Size, Members { kind, functions, .. }: &Members) -> TokenStream {
     let none = quote!({ loop {} });
     let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
     quote! {
-        impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#n, T> for #name<T> {
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::motion::Motion<#n, T> for #name<T> {
+            type Kind = #kind;
             type Mass = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_MASS: bool = false;
-            const SEPARABLE: bool = false;
-            fn point(#at) -> ::vi_core::collocation::Point<#n, T, Self::Mass> #none
-            fn point_derivatives(#at) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> #none
+            fn point(#at) -> ::vi_core::motion::Point<#n, T, Self::Mass> #none
+            fn point_derivatives(#at) -> ::vi_core::motion::PointDerivatives<Self::PointMatrix> #none
             fn power(#at) -> T #none
+            #functions
         }
         impl<#generic> ::vi_core::stepping::Convertible<#n> for #name<f64> {
             type In<T: ::vi_core::real::Real> = #name<T>;

@@ -81,7 +81,7 @@ pub(super) fn constrained() -> Section {
         Line::words("At the end of the step, μ follows from A v + a = 0:"),
         projected,
     ];
-    Section { title: "Equations of a GaussLobatto step", lines }
+    Section { title: "Equations of a Gauss step", lines }
 }
 
 /// The equation for the length of an energy-preserving step (`docs/theory.md`); `None` beyond three stages, where

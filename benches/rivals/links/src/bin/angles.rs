@@ -4,7 +4,7 @@
 
 use links::{rods, run};
 use vi_core::SVector;
-use vi_core::collocation::Collocation;
+use vi_core::motion::Motion;
 use vi_core::prelude::*;
 use vi_core::stepping::{Convertible, FixedStepping};
 
@@ -22,7 +22,7 @@ fn last<const N: usize>(q: &SVector<f64, N>) -> [f64; 2] {
 
 fn rows<Y, const N: usize>(system: Y) -> Result<(), StepError>
 where
-    Y: FixedStepping<N> + Collocation<N> + Convertible<N>,
+    Y: FixedStepping<N> + Motion<N> + Convertible<N>,
 {
     let start = SVector::repeat(ANGLE);
     let (exact, _) = run(system, start, Gauss::<8>, 200)?;

@@ -5,7 +5,7 @@
 
 use links::{rods, run};
 use vi_core::SVector;
-use vi_core::collocation::Collocation;
+use vi_core::motion::Motion;
 use vi_core::prelude::*;
 use vi_core::stepping::{Convertible, FixedStepping};
 
@@ -40,7 +40,7 @@ fn grid<const N: usize>() -> SVector<f64, N> {
 
 fn rows<Y, const N: usize>(name: &str, system: Y, start: SVector<f64, N>) -> Result<(), StepError>
 where
-    Y: FixedStepping<N> + Collocation<N> + Convertible<N>,
+    Y: FixedStepping<N> + Motion<N> + Convertible<N>,
 {
     let (exact, _) = run(system, start, Gauss::<8>, 100)?;
     let moved = (exact - start).amax();

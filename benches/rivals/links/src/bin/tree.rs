@@ -2,9 +2,10 @@
 //!
 //! In: nothing. Out: a table. Body i hangs at body (i − 1)/2; all bodies start upright and spin.
 
+use vi_core::stepping::Convertible;
 use std::time::Instant;
 use vi_core::prelude::*;
-use vi_core::{Constrained, ConvertibleConstrained, SVector};
+use vi_core::{SVector};
 
 const H: f64 = 0.002;
 const STEPS: u32 = 50;
@@ -59,13 +60,13 @@ fn start<const N: usize>() -> [SVector<f64, N>; 2] {
 
 fn row<const S: usize, Y, const N: usize>(system: Y) -> Result<(), StepError>
 where
-    Y: Constrained<N> + ConvertibleConstrained<N>,
+    Y: Convertible<N>,
 {
     let [q, v] = start::<N>();
     let start = State::projected(&system, 0.0, q, v)?.state;
     let (mut least, mut iterations) = (f64::INFINITY, 0);
     for _ in 0..REPETITIONS {
-        let mut run = system.at_state(start).integrate(GaussLobatto::<S>, H)?;
+        let mut run = system.at_state(start).integrate(Gauss::<S>, H)?;
         iterations = 0;
         let begin = Instant::now();
         for _ in 0..STEPS {

@@ -10,7 +10,7 @@
 //! L_q and L_v follow by one reverse sweep: recursions forward, terms of L, recursions backward. Second derivatives carry
 //! a tangent of every coordinate along: rows of N numbers, contiguous, for each entry of a recursion.
 
-mod constrained;
+mod constraints;
 mod first;
 mod scale;
 mod second;
@@ -42,15 +42,11 @@ pub fn items(loops: &Loops) -> TokenStream {
     let printer = Printer { of, model };
     let (functions, parameters) = (functions::items(model), structure::parameters(model));
     let (bodies, lagrangian, primitives) = (printer.bodies(pool), printer.lagrangian(), printer.primitives());
-    let motion = if model.constraints.is_empty() {
-        let (collocation, convertible) = (printer.collocation(), structure::convertible(model, of.separable));
-        quote!(#collocation #convertible)
-    } else {
-        printer.constrained()
-    };
+    let (motion, convertible) = (printer.motion(), structure::convertible(model, of.separable));
     let steps = of.rules.iter().enumerate().map(|(place, rule)| printer.steps(rule, place == 0));
     let batch = (!of.rules.is_empty()).then(|| structure::batch(model));
-    let implementations = quote!(#functions #parameters #bodies #lagrangian #primitives #motion #(#steps)* #batch);
+    let implementations =
+        quote!(#functions #parameters #bodies #lagrangian #primitives #motion #convertible #(#steps)* #batch);
     let conditions: Vec<_> = conditions(&model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests_of_loops(of, &conditions);

@@ -7,18 +7,18 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 impl Printer<'_> {
-    /// What `Collocation` has in a system with a time scale, and the trait that says so.
+    /// What `Motion` has in a system with a time scale, and the trait that says so.
     pub(super) fn time_scale(&self) -> [TokenStream; 2] {
         let Some(scale) = &self.of.scale else { return [TokenStream::new(), TokenStream::new()] };
         let (name, dimension) = (&self.model.name, self.dimension());
-        let result = quote!(::vi_core::collocation::ScaledPoint<#dimension, T, Self::Mass>);
+        let result = quote!(::vi_core::motion::ScaledPoint<#dimension, T, Self::Mass>);
         let point = self.of_state("scaled_point", &result, &self.scaled_point(scale));
         [
             quote! {
                 const SCALES_TIME: bool = true;
                 #point
             },
-            quote!(impl<T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<#dimension, T> for #name<T> {}),
+            quote!(impl<T: ::vi_core::real::Real> ::vi_core::motion::TimeScale<#dimension, T> for #name<T> {}),
         ]
     }
 

@@ -1,8 +1,9 @@
 //! The traits of a system, each function by one of `vi_core::indexed`.
 
 use super::super::check::monotone_table_of;
-use super::super::constrained;
+use super::super::constraints;
 use super::super::lagrangian::{Properties, implementation};
+use super::super::motion::Members;
 use super::super::{by_marker, structure};
 use super::first::Sweep;
 use super::{Printer, reads_entries};
@@ -60,7 +61,7 @@ impl Printer<'_> {
             }
         };
         let [acceleration, flow] =
-            if model.constraints.is_empty() { [acceleration, flow] } else { constrained::motion(&dimension) };
+            if model.constraints.is_empty() { [acceleration, flow] } else { constraints::motion(&dimension) };
         // A constant mass matrix needs no gradient.
         let momentum = if self.of.separable {
             quote!(::vi_core::linear::Matrix::multiply(&self.mass_diagonal(t, q, v), v))
@@ -161,53 +162,50 @@ impl Printer<'_> {
         }
     }
 
-    /// The mass matrix, and what the traits of systems with and without constraints have in common.
-    pub(super) fn points(&self) -> [TokenStream; 2] {
-        let (dimension, is_constant) = (self.dimension(), self.of.separable);
-        let [items, form, mass] = self.mass();
+    /// The implementation of `Motion`.
+    pub(super) fn motion(&self) -> TokenStream {
+        let (name, dimension, is_constant) = (&self.model.name, self.dimension(), self.of.separable);
+        let is_free = self.model.constraints.is_empty();
+        let Members { kind, items, functions } = if is_free { Members::free() } else { self.constraints() };
+        let [mass_items, form, mass] = self.mass();
         let point = self.of_state(
             "point",
-            &quote!(::vi_core::collocation::Point<#dimension, T, Self::Mass>),
+            &quote!(::vi_core::motion::Point<#dimension, T, Self::Mass>),
             &quote!(::vi_core::indexed::point(self, t, q, v, #mass)),
+        );
+        let sides = self.of_state(
+            "sides",
+            &quote!(::vi_core::motion::Sides<#dimension, T>),
+            &quote!(::vi_core::indexed::sides(self, t, q, v)),
         );
         let derivatives = self.of_state(
             "point_derivatives",
-            &quote!(::vi_core::collocation::PointDerivatives<Self::PointMatrix>),
+            &quote!(::vi_core::motion::PointDerivatives<Self::PointMatrix>),
             &quote!(::vi_core::indexed::point_derivatives(self, t, q, v)),
         );
         let power = self.of_state("power", &quote!(T), &quote!(::vi_core::indexed::power(self, t, q, v)));
-        let common = quote! {
-            type Mass = #form;
-            type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
-            const CONSTANT_MASS: bool = #is_constant;
-            #point
-            #derivatives
-            #power
-        };
-        [items, common]
-    }
-
-    pub(super) fn collocation(&self) -> TokenStream {
-        let (name, dimension, separable) = (&self.model.name, self.dimension(), self.of.separable);
-        let [items, common] = self.points();
-        let sides = self.of_state(
-            "sides",
-            &quote!(::vi_core::collocation::Sides<#dimension, T>),
-            &quote!(::vi_core::indexed::sides(self, t, q, v)),
-        );
         let [scaled, has_time_scale] = self.time_scale();
+        let separable = is_constant && is_free;
         let splits = separable.then(
-            || quote!(impl<T: ::vi_core::real::Real> ::vi_core::collocation::Separable<#dimension, T> for #name<T> {}),
+            || quote!(impl<T: ::vi_core::real::Real> ::vi_core::motion::Separable<#dimension, T> for #name<T> {}),
         );
         quote! {
+            #mass_items
             #items
             #splits
             #has_time_scale
-            impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
-                #common
+            impl<T: ::vi_core::real::Real> ::vi_core::motion::Motion<#dimension, T> for #name<T> {
+                type Kind = #kind;
+                type Mass = #form;
+                type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #dimension, #dimension>;
+                const CONSTANT_MASS: bool = #is_constant;
                 const SEPARABLE: bool = #separable;
+                #point
                 #sides
+                #derivatives
+                #power
                 #scaled
+                #functions
             }
         }
     }

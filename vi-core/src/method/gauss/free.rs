@@ -1,4 +1,4 @@
-//! Fixed steps of order 2S: Galerkin variational integrators at the S Gauss points.
+//! Gauss steps of systems without constraints.
 //!
 //! With the tableau a, b, c of Gauss collocation and the stages `T_i = t0 + c_i h`, a step solves
 //!
@@ -7,15 +7,14 @@
 //! q1  = q0 + h Σ b_i V_i         p1 = p0 + h Σ b_i (L_q + f)_i        E1 = Σ b_i En_i − h Σ b_i c_i (L_t − f·v)_i
 //! ```
 //!
-//! with En_i the energy at a stage. It is the variational integrator of the discrete Lagrangian `L_d = h Σ b_i L_i`:
-//! symplectic without force and time-symmetric. It preserves momenta of cyclic coordinates bit for bit. S = 1 is the
-//! midpoint rule (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.3 and VI.6.2). [`crate::gauss`]
-//! solves the stage equations.
+//! with En_i the energy at a stage. The step preserves momenta of cyclic coordinates bit for bit. [`crate::gauss`] solves
+//! the stage equations.
 //!
 //! The stages of every accepted step satisfy their equations to rounding.
 
-use super::{Memory, Method, Problem, Report};
-use crate::collocation::Collocation;
+use super::{Gauss, StageSolver};
+#[cfg(feature = "alloc")]
+use crate::derivatives::{Variation, not_last};
 use crate::error::StepError;
 use crate::gauss::energies::energies;
 use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
@@ -24,7 +23,12 @@ use crate::gauss::newton::Buffer;
 use crate::gauss::points::ErasedSystem;
 use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
 use crate::gauss::stages::LOOPED;
+#[cfg(feature = "alloc")]
+use crate::gauss::variation::vary;
 use crate::gauss::{CollocationPolynomial, Slots};
+use crate::kind::Free;
+use crate::method::{Memory, Method, Problem, Report};
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::run::{DenseOutput, Hermite, Run};
 use crate::state::State;
@@ -32,9 +36,9 @@ use crate::stepping::Convertible;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 use vi_dispatch::{Instructions, Loop};
 
-/// Fixed steps of order 2 STAGES, with 1 to 16 stages: `Gauss::<8>`. See the [module](self).
+/// The solver of [`Gauss`] steps without constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Gauss<const STAGES: usize>;
+pub struct FreeGauss<const STAGES: usize>;
 
 /// The stages of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +66,7 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
     ///
     /// # Errors
     /// As [`State::velocity`].
-    pub(crate) fn constant<Y: Collocation<N>>(system: &Y, node: &Node<N>, h: f64) -> Result<Self, StepError> {
+    pub(crate) fn constant<Y: Motion<N>>(system: &Y, node: &Node<N>, h: f64) -> Result<Self, StepError> {
         let stages = SMatrix::from_array_storage(ArrayStorage(constant(system, node)?));
         let (convergence, pause) = (Convergence::NONE, Pause::NONE);
         Ok(Self { stages, before: *node, h, convergence, pause, linearization: None })
@@ -83,9 +87,15 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
     /// Advances to the end of a step.
     #[inline(always)]
     pub(crate) fn take(&mut self, node: &mut Node<N>, step: &Step<N, S>) {
-        self.h = step.h;
-        self.before = *node;
+        self.keep(node, step);
         node.advance(step.h, &step.increment.velocity, &step.increment.momentum);
+    }
+
+    /// Keeps a step from the node `before`.
+    #[inline(always)]
+    pub(crate) fn keep(&mut self, before: &Node<N>, step: &Step<N, S>) {
+        self.h = step.h;
+        self.before = *before;
         self.stages = SMatrix::from_array_storage(ArrayStorage(step.stages));
         self.convergence = step.convergence;
         self.pause = step.pause;
@@ -105,13 +115,13 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
     }
 
     /// Discrete energy of the last step, if its stages are stored and it is finite.
-    fn discrete_energy<Y: Collocation<N> + Convertible<N>>(&self, system: &Y, node: &Node<N>) -> Option<f64> {
+    fn discrete_energy<Y: Convertible<N>>(&self, system: &Y, node: &Node<N>) -> Option<f64> {
         let energy = energies(system, &self.before, self.h, self.stages.data.0, 0.0).end;
         (self.has_step(node) && energy.is_finite()).then_some(energy)
     }
 
     /// Dense output of the last step, or of a step of the length h without stored stages.
-    pub(crate) fn dense_output<Y: Collocation<N> + Convertible<N>>(
+    pub(crate) fn dense_output<Y: Convertible<N>>(
         &self,
         system: &Y,
         before: &State<N>,
@@ -156,7 +166,7 @@ struct Advancing<'a, Y, const N: usize, const S: usize> {
     memory: &'a mut LastStages<N, S>,
 }
 
-impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Advancing<'_, Y, N, S> {
+impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Advancing<'_, Y, N, S> {
     type Output = Result<(), Option<StageSolution<N, S>>>;
 
     #[inline(always)]
@@ -171,9 +181,9 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
     }
 }
 
-impl<S, const N: usize, const STAGES: usize> Method<S, N> for Gauss<STAGES>
+impl<S, const N: usize, const STAGES: usize> Method<S, N> for FreeGauss<STAGES>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N>,
 {
     type Prepared = Instructions;
     type Memory = LastStages<N, STAGES>;
@@ -303,9 +313,28 @@ where
     }
 }
 
+impl<S, const N: usize, const STAGES: usize> StageSolver<S, N, STAGES> for FreeGauss<STAGES>
+where
+    S: Convertible<N>,
+{
+    #[cfg(feature = "alloc")]
+    fn vary(
+        system: &S,
+        (node, memory): (&Node<N>, &LastStages<N, STAGES>),
+        before: &Node<N>,
+        variations: &mut [Variation<N>],
+    ) -> Result<(), StepError> {
+        let LastStages { h, stages, before: start, .. } = memory;
+        if !memory.has_step(node) || start != before {
+            return Err(not_last(before.t));
+        }
+        vary(system, (before, *h, &stages.data.0), variations, None)
+    }
+}
+
 impl<S, const N: usize, const STAGES: usize> Run<Gauss<STAGES>, S, N>
 where
-    S: Collocation<N> + Convertible<N>,
+    S: Convertible<N, Kind = Free>,
 {
     /// The discrete Lagrangian of the last step with its derivatives, discrete forces and powers, for checks: `−D2 L_d − f_d⁻ = p0`,
     /// `D4 L_d + f_d⁺ = p1`. `None` before the first step, after [`Run::set_parameters`] or [`Run::step_of`], and if one of them is not finite.

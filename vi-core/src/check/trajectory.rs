@@ -24,7 +24,7 @@ const SHORTEST: f64 = 1e-7;
 
 /// A point of a trajectory: time, coordinates, velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion<const N: usize> {
+pub struct Trajectory<const N: usize> {
     /// Time.
     pub t: f64,
     /// Coordinates.
@@ -36,7 +36,7 @@ pub struct Motion<const N: usize> {
 /// Change of coordinates and velocities.
 type Change<const N: usize> = (SVector<f64, N>, SVector<f64, N>);
 
-impl<const N: usize> Motion<N> {
+impl<const N: usize> Trajectory<N> {
     /// The trajectory at the time `end`, later or earlier. With constraints it takes the system as
     /// [`Extended`](crate::constrained::Extended).
     ///

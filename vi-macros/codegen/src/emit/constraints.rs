@@ -1,85 +1,67 @@
-//! `impl Constrained` and `ConvertibleConstrained`: the equations of motion at one point, and the constraints.
-//!
-//! A system with constraints implements these in place of `Collocation`, `FixedStepping` and the traits of rules, so
-//! that no method that ignores constraints takes it.
+//! What constraints add to `impl Motion`: their values, gradients, rate derivatives and reaction derivatives.
 
 use super::Source;
 use super::body::{Body, VelocityFrom, state_parts};
-use super::collocation::{point, point_derivatives};
 use super::entries::{self, ResultEntry};
 use super::formula::zero;
-use super::lagrangian::{number, vector};
-use super::matrix::{all_columns, literals, sparse, sparse_type};
+use super::lagrangian::vector;
+use super::matrix::{all_columns, literals, sparse};
+use super::motion::Members;
 use crate::discrete::Constraints;
 use crate::findings::{Block, Elimination};
-use crate::model::Constraint;
+use crate::model::{Constraint, Model};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::quote;
+use quote::{ToTokens, format_ident, quote};
 use vi_expr::Expr;
 
-/// The implementations for a system with constraints.
-pub(super) fn item(source: &Source, of: &Constraints) -> TokenStream {
-    let (name, dimension) = (&source.model.name, source.dimension());
-    let (constant_mass, point_masses) = (source.findings.constant_mass, source.findings.point_masses);
-    let (form, point) = point(source);
-    let (derivatives_form, point_derivatives) = point_derivatives(source);
-    let continuous = &source.system.continuous;
-    let power = number(source, FunctionId::Power, &source.formula("dE/dt", continuous.power));
-    let formula = source.formulas("(M a − Aᵀ Λ)", &continuous.mass_times_acceleration);
+/// The members of a system with constraints.
+pub(super) fn members(source: &Source, of: &Constraints) -> Members {
+    let Some(elimination) = &source.findings.elimination else { return Members::free() };
+    let formula = source.formulas("(M a − Aᵀ Λ)", &source.system.continuous.mass_times_acceleration);
     let applied = vector(source, FunctionId::Applied, &formula);
-    let names = source.model.constraints.iter().map(Constraint::text);
-    let holonomic = source.model.constraints.iter().filter(|constraint| constraint.is_holonomic).count();
-    let (count, size) = (source.model.constraints.len(), source.model.dimension());
-    let Some(elimination) = &source.findings.elimination else { return TokenStream::new() };
-    let gradients_form = sparse_type(count, elimination.width());
-    let reaction_form = sparse_type(size, width(&elimination.reaction_dq));
-    let blocks = blocks(&elimination.blocks);
-    let [count, holonomic] = [source.model.constraints.len(), holonomic].map(Literal::usize_unsuffixed);
+    let point_masses = source.findings.point_masses;
+    let (names, blocks) = (names(source.model), blocks(&elimination.blocks));
+    let [count, width, reaction] =
+        [source.model.constraints.len(), elimination.width(), width(&elimination.reaction_dq)]
+            .map(Literal::usize_unsuffixed);
     let functions = [
         values(source, of),
         gradients(source, of, elimination),
         rate_derivatives(source, elimination),
         reaction_derivatives(source, elimination),
     ];
-    let (columns, convertible) = (columns(source, elimination), convertible(name, &dimension));
-    quote! {
-        #columns
-
-        impl<T: ::vi_core::real::Real> ::vi_core::Constrained<#dimension, T> for #name<T> {
-            type Mass = #form;
-            type PointMatrix = #derivatives_form;
-            const CONSTANT_MASS: bool = #constant_mass;
+    Members {
+        kind: quote!(::vi_core::kind::Bound<#count, ::vi_core::kind::Nonzeros<#width, #reaction>>),
+        items: columns(source, elimination),
+        functions: quote! {
             const POINT_MASSES: bool = #point_masses;
-            const CONSTRAINTS: &'static [&'static str] = &[#(#names),*];
-            const HOLONOMIC: usize = #holonomic;
-            type Multipliers = [T; #count];
-            type Gradients = #gradients_form;
-            type ReactionMatrix = #reaction_form;
+            #names
             #blocks
-            #point
-            #point_derivatives
-            #power
             #applied
             #(#functions)*
-        }
-
-        #convertible
+        },
     }
 }
 
-/// The conversion to other numbers.
-pub(super) fn convertible(name: &Ident, dimension: &Literal) -> TokenStream {
-    quote! {
-        impl ::vi_core::ConvertibleConstrained<#dimension> for #name<f64> {
-            type In<T: ::vi_core::real::Real> = #name<T>;
+/// The types of multipliers, gradients and derivatives of the reaction of `Self`.
+pub(super) fn types(dimension: &impl ToTokens) -> [TokenStream; 3] {
+    let of = |name: &str| {
+        let name = format_ident!("{name}");
+        quote!(::vi_core::kind::#name<Self, #dimension, T>)
+    };
+    ["Multipliers", "Gradients", "ReactionMatrix"].map(of)
+}
 
-            #[inline(always)]
-            fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> {
-                self.convert()
-            }
-        }
+/// The constants with the names of the constraints, and with the number of holonomic ones.
+pub(super) fn names(model: &Model) -> TokenStream {
+    let names = model.constraints.iter().map(Constraint::text);
+    let holonomic = model.constraints.iter().filter(|constraint| constraint.is_holonomic).count();
+    let holonomic = Literal::usize_unsuffixed(holonomic);
+    quote! {
+        const CONSTRAINTS: &'static [&'static str] = &[#(#names),*];
+        const HOLONOMIC: usize = #holonomic;
     }
 }
 
@@ -161,6 +143,7 @@ fn formulas(source: &Source, exprs: &[Expr], letter: &str) -> String {
 
 fn values(source: &Source, of: &Constraints) -> TokenStream {
     let dimension = source.dimension();
+    let [multipliers, ..] = types(&dimension);
     let formula = format!("g of the constraints on positions, 0 for others.\n\n{}", formulas(source, &of.values, "g"));
     let Some((body, documentation)) = source.documented(FunctionId::Constraints, &formula, VelocityFrom::Argument)
     else {
@@ -171,7 +154,7 @@ fn values(source: &Source, of: &Constraints) -> TokenStream {
     quote! {
         #documentation
         #[inline]
-        fn constraints(&self, t: T, q: &::vi_core::SVector<T, #dimension>) -> Self::Multipliers {
+        fn constraints(&self, t: T, q: &::vi_core::SVector<T, #dimension>) -> #multipliers {
             #inputs #statements #result
         }
     }
@@ -179,6 +162,7 @@ fn values(source: &Source, of: &Constraints) -> TokenStream {
 
 fn gradients(source: &Source, of: &Constraints, elimination: &Elimination) -> TokenStream {
     let dimension = source.dimension();
+    let [multipliers, gradients_type, _] = types(&dimension);
     let formula = format!("A and a of the constraints.\n\n{}", formulas(source, &of.rates, "a"));
     let id = FunctionId::ConstraintGradients;
     let Some((body, documentation)) = source.documented(id, &formula, VelocityFrom::Argument) else {
@@ -196,7 +180,7 @@ fn gradients(source: &Source, of: &Constraints, elimination: &Elimination) -> To
             &self,
             t: T,
             q: &::vi_core::SVector<T, #dimension>,
-        ) -> (Self::Gradients, Self::Multipliers) {
+        ) -> (#gradients_type, #multipliers) {
             #inputs #statements
             (#gradients, #rates)
         }
@@ -205,6 +189,7 @@ fn gradients(source: &Source, of: &Constraints, elimination: &Elimination) -> To
 
 fn rate_derivatives(source: &Source, elimination: &Elimination) -> TokenStream {
     let dimension = source.dimension();
+    let [multipliers, gradients_type, _] = types(&dimension);
     let id = FunctionId::ConstraintRateDerivatives;
     let formula = "∂(A v + a)/∂q and ∂(A v + a)/∂t.";
     let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
@@ -223,7 +208,7 @@ fn rate_derivatives(source: &Source, elimination: &Elimination) -> TokenStream {
             t: T,
             q: &::vi_core::SVector<T, #dimension>,
             v: &::vi_core::SVector<T, #dimension>,
-        ) -> (Self::Gradients, Self::Multipliers) {
+        ) -> (#gradients_type, #multipliers) {
             #inputs #statements
             (#rates_dq, #rates_dt)
         }
@@ -232,6 +217,7 @@ fn rate_derivatives(source: &Source, elimination: &Elimination) -> TokenStream {
 
 fn reaction_derivatives(source: &Source, elimination: &Elimination) -> TokenStream {
     let dimension = source.dimension();
+    let [multipliers_type, _, reaction_type] = types(&dimension);
     let id = FunctionId::ReactionDerivatives;
     let formula = "∂(Aᵀλ)/∂q for the multipliers λ.";
     let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
@@ -249,8 +235,8 @@ fn reaction_derivatives(source: &Source, elimination: &Elimination) -> TokenStre
             &self,
             t: T,
             q: &::vi_core::SVector<T, #dimension>,
-            multipliers: &Self::Multipliers,
-        ) -> Self::ReactionMatrix {
+            multipliers: &#multipliers_type,
+        ) -> #reaction_type {
             #multipliers #inputs #statements
             #matrix
         }
@@ -280,34 +266,20 @@ fn numbers(results: &[ResultEntry]) -> TokenStream {
     entries::of(results.iter().map(|entry| Some(entry).into()))
 }
 
-/// The traits of a system with errors and constraints.
-pub(super) fn stub(name: &Ident, n: &TokenStream, generic: Option<&TokenStream>) -> TokenStream {
+/// The members of a system with errors and a constraint.
+pub(super) fn stub(n: &TokenStream) -> Members {
     let none = quote!({ loop {} });
     let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
     let here = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>);
-    let both = quote!((Self::Gradients, Self::Multipliers));
-    quote! {
-        impl<#generic T: ::vi_core::real::Real> ::vi_core::Constrained<#n, T> for #name<T> {
-            type Mass = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
-            type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
-            const CONSTANT_MASS: bool = false;
-            const CONSTRAINTS: &'static [&'static str] = &[""];
-            const HOLONOMIC: ::core::primitive::usize = 1;
-            type Multipliers = [T; 1];
-            type Gradients = [::vi_core::SVector<T, #n>; 1];
-            type ReactionMatrix = [::vi_core::SVector<T, #n>; #n];
-            fn point(#at) -> ::vi_core::collocation::Point<#n, T, Self::Mass> #none
-            fn point_derivatives(#at) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> #none
-            fn power(#at) -> T #none
-            fn applied(#at) -> ::vi_core::SVector<T, #n> #none
-            fn constraints(#here) -> Self::Multipliers #none
-            fn constraint_gradients(#here) -> #both #none
-            fn constraint_rate_derivatives(#at) -> #both #none
-            fn reaction_derivatives(#here, _: &Self::Multipliers) -> Self::ReactionMatrix #none
-        }
-        impl<#generic> ::vi_core::ConvertibleConstrained<#n> for #name<f64> {
-            type In<T: ::vi_core::real::Real> = #name<T>;
-            fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> #none
-        }
-    }
+    let [multipliers, gradients, reaction] = types(n);
+    let functions = quote! {
+        const CONSTRAINTS: &'static [&'static str] = &[""];
+        const HOLONOMIC: ::core::primitive::usize = 1;
+        fn applied(#at) -> ::vi_core::SVector<T, #n> #none
+        fn constraints(#here) -> #multipliers #none
+        fn constraint_gradients(#here) -> (#gradients, #multipliers) #none
+        fn constraint_rate_derivatives(#at) -> (#gradients, #multipliers) #none
+        fn reaction_derivatives(#here, _: &#multipliers) -> #reaction #none
+    };
+    Members { kind: quote!(::vi_core::kind::Bound<1>), items: TokenStream::new(), functions }
 }

@@ -1,61 +1,43 @@
 //! The constraints of a large system: their primitives in loops, and the traits of a system with constraints.
 
-use super::super::constrained;
+use super::super::constraints;
+use super::super::motion::Members;
 use super::second::Column;
 use super::{Printer, WEIGHTS, name, reads_entries};
-use crate::model::Constraint;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 impl Printer<'_> {
-    pub(super) fn constrained(&self) -> TokenStream {
-        let (system, dimension) = (&self.model.name, self.dimension());
-        let constraints = &self.model.constraints;
-        let holonomic = constraints.iter().filter(|constraint| constraint.is_holonomic).count();
-        let [count, holonomic] = [constraints.len(), holonomic].map(Literal::usize_unsuffixed);
-        let names = constraints.iter().map(Constraint::text);
-        let ([items, common], primitives) = (self.points(), self.constraint_primitives(&count));
+    /// What the constraints add to `Motion`.
+    pub(super) fn constraints(&self) -> Members {
+        let dimension = self.dimension();
+        let count = Literal::usize_unsuffixed(self.model.constraints.len());
+        let names = constraints::names(self.model);
         let vector = quote!(::vi_core::SVector<T, #dimension>);
-        let rows = quote!((Self::Gradients, Self::Multipliers));
+        let [multipliers, gradients, reaction] = constraints::types(&dimension);
+        let rows = quote!((#gradients, #multipliers));
         let applied = self.of_state("applied", &vector, &quote!(::vi_core::indexed::applied(self, t, q, v)));
         let rates = quote!(::vi_core::indexed::constraint_rate_derivatives(self, t, q, v));
         let rates = self.of_state("constraint_rate_derivatives", &rows, &rates);
-        let convertible = constrained::convertible(system, &dimension);
-        quote! {
-            #items
-            #primitives
+        let functions = quote! {
+            #names
+            #applied
 
-            impl<T: ::vi_core::real::Real> ::vi_core::Constrained<#dimension, T> for #system<T> {
-                #common
-                const CONSTRAINTS: &'static [&'static str] = &[#(#names),*];
-                const HOLONOMIC: usize = #holonomic;
-                type Multipliers = [T; #count];
-                type Gradients = [#vector; #count];
-                type ReactionMatrix = [#vector; #dimension];
-                #applied
-
-                fn constraints(&self, t: T, q: &#vector) -> Self::Multipliers {
-                    ::vi_core::indexed::constraints(self, t, q)
-                }
-
-                fn constraint_gradients(&self, t: T, q: &#vector) -> #rows {
-                    ::vi_core::indexed::constraint_gradients(self, t, q)
-                }
-
-                #rates
-
-                fn reaction_derivatives(
-                    &self,
-                    t: T,
-                    q: &#vector,
-                    multipliers: &Self::Multipliers,
-                ) -> Self::ReactionMatrix {
-                    ::vi_core::indexed::reaction_derivatives(self, t, q, multipliers)
-                }
+            fn constraints(&self, t: T, q: &#vector) -> #multipliers {
+                ::vi_core::indexed::constraints(self, t, q)
             }
 
-            #convertible
-        }
+            fn constraint_gradients(&self, t: T, q: &#vector) -> #rows {
+                ::vi_core::indexed::constraint_gradients(self, t, q)
+            }
+
+            #rates
+
+            fn reaction_derivatives(&self, t: T, q: &#vector, multipliers: &#multipliers) -> #reaction {
+                ::vi_core::indexed::reaction_derivatives(self, t, q, multipliers)
+            }
+        };
+        Members { kind: quote!(::vi_core::kind::Bound<#count>), items: self.constraint_primitives(&count), functions }
     }
 
     /// The implementation of `IndexedConstraints`.

@@ -1,159 +1,48 @@
-//! Linearization and equilibria of systems with constraints.
-//!
-//! At rest the reactions balance the forces, and small motions y about an equilibrium lie along a basis Z of the
-//! directions with `A x = 0`:
-//!
-//! ```text
-//! L_q + f − L_vt + AᵀΛ = 0       g(t, q) = 0
-//! Zᵀ M Z y'' + Zᵀ C Z y' + Zᵀ (K − ∂(AᵀΛ)/∂q) Z y = 0
-//! ```
+//! The search for an equilibrium on constraints.
 //!
 //! Along a symmetry, as the spin of a top, the forces do not change: Newton's iteration then moves across it only. At
 //! least one direction needs a stiffness, and the place of the root has to be known: the stiffness may not change over
 //! its rounding errors, as it does where forces underflow.
 
-use super::equilibrium::oscillations;
-use super::{Linearization, linearized, no_eigenvalues, spectrum};
-use crate::collocation::Point;
-use crate::constrained::{
-    Constrained, ConvertibleConstrained, Projection, accelerations, border, bordered, is_reduced, is_shortened,
-    reaction_of,
-};
-use crate::derivatives::WithConstraints;
+use super::Equilibrium;
+use crate::constrained::{Projection, accelerations, border, bordered, is_reduced, is_shortened, reaction_of};
 use crate::error::StepError;
+use crate::kind::{Gradients, Multipliers};
 use crate::linear::{Bordered, Matrix, Rectangular, Row};
+use crate::motion::Motion;
+use crate::motion::Point;
 use crate::newton::{FLOOR, roundings};
 use crate::real::{Dual, Rounded};
-use crate::state::Numbers;
+use crate::stepping::Convertible;
 use crate::vector::weights;
 use crate::vector::worse;
 use alloc::vec::Vec;
-use nalgebra::{Complex, DMatrix, DVector, SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
 const ITERATIONS: u32 = 100;
 const HALVINGS: i32 = 20;
-/// Largest difference of a matrix from its transpose, relative to its entries: roundings of products.
-const SYMMETRIC: f64 = 32.0 * f64::EPSILON;
 
 /// Largest stiffness of a free motion, over the largest one, at equal kinetic energies.
 const FREE: f64 = 1e-11;
-/// Smallest part of a coordinate in a free motion of length 1.
-const MOVES: f64 = 1e-6;
 /// Largest relative change of the stiffness over the rounding errors of a root.
 const CHANGE: f64 = 0.5;
 
-/// Linearization and equilibria of a system with constraints, for every generated one.
-pub trait ConstrainedDynamics<const N: usize>: Constrained<N> + ConvertibleConstrained<N> {
-    /// The linearization of x = (q, v) at a point (t, q, v) on the constraints: `x' = value + A δx + B δu` with the
-    /// constrained acceleration, exact to rounding. A has 2N rows and columns, B one column for each input.
-    ///
-    /// Changes δx that satisfy the derivatives of the constraints keep to them. A has the eigenvalue zero twice for each
-    /// holonomic constraint, and once for each other.
-    ///
-    /// # Errors
-    /// [`StepError::InconsistentStart`] if (t, q, v) does not satisfy a constraint, [`StepError::Singular`] if the
-    /// constraints are redundant at q, [`StepError::NonFinite`] if L, f or a derivative is not finite.
-    fn linearization(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Linearization, StepError> {
-        linearized::<Self, WithConstraints, N>(self, t, q.vector(), v.vector())
+/// The equilibrium near a guess; see [`Dynamics::equilibrium`](super::Dynamics::equilibrium).
+pub(super) fn find<S: Convertible<N>, const N: usize>(
+    system: &S,
+    t: f64,
+    guess: SVector<f64, N>,
+) -> Result<Equilibrium<N>, StepError> {
+    let place = Projection::of(system).assembled(t, guess, [0.0; N])?;
+    let (_, rates) = system.constraint_gradients(t, &place.state.q);
+    let moving = rates.as_ref().iter().zip(S::CONSTRAINTS).find(|(rate, _)| **rate != 0.0);
+    if let Some((rate, constraint)) = moving {
+        return Err(StepError::InconsistentStart { constraint, residual: 0.0, rate: *rate });
     }
-
-    /// The equilibrium near a guess of the coordinates, at the time t: a state of rest on the constraints without
-    /// acceleration. The guess may be off the constraints; [`State::assembled`](crate::State::assembled) moves it first.
-    /// With constraints on velocities the equilibria form families: the result is reached from the guess along
-    /// directions that these constraints allow. So they do with a symmetry: the result then has
-    /// [`ConstrainedEquilibrium::free_motions`].
-    ///
-    /// # Errors
-    /// Those of [`State::assembled`](crate::State::assembled); [`StepError::InconsistentStart`] if a constraint moves;
-    /// [`StepError::NoEquilibrium`] if there is none near the guess; [`StepError::Singular`] if the forces do not change
-    /// along any direction, or the constraints are redundant; [`StepError::NonFinite`].
-    fn equilibrium(&self, t: f64, guess: impl Numbers<N>) -> Result<ConstrainedEquilibrium<N>, StepError> {
-        let place = Projection::of(self).assembled(t, guess, [0.0; N])?;
-        let (_, rates) = self.constraint_gradients(t, &place.state.q);
-        let moving = rates.as_ref().iter().zip(Self::CONSTRAINTS).find(|(rate, _)| **rate != 0.0);
-        if let Some((rate, constraint)) = moving {
-            return Err(StepError::InconsistentStart { constraint, residual: 0.0, rate: *rate });
-        }
-        let largest = (place.state.q - place.moved_q).amax();
-        Rest::<Self, N> { system: self, t, largest }.equilibrium(place.state.q)
-    }
-}
-
-impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> ConstrainedDynamics<N> for S {}
-
-/// A state of rest without acceleration on constraints.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ConstrainedEquilibrium<const N: usize> {
-    /// Time.
-    pub t: f64,
-    /// Coordinates.
-    pub q: SVector<f64, N>,
-    /// The multipliers Λ, in the order of [`Constrained::CONSTRAINTS`]: the reaction is AᵀΛ.
-    pub multipliers: Vec<f64>,
-    /// The basis Z of the directions that the constraints allow, orthonormal columns: `x = Z y`.
-    pub directions: DMatrix<f64>,
-    /// `Zᵀ M Z`.
-    pub mass: DMatrix<f64>,
-    /// `Zᵀ C Z`, with `C = −∂F/∂v`: damping and gyroscopic terms.
-    pub damping: DMatrix<f64>,
-    /// `Zᵀ (K − ∂(AᵀΛ)/∂q) Z`, with `K = −∂F/∂q`.
-    pub stiffness: DMatrix<f64>,
-    /// The free motions, along which the forces do not change: one column of length 1 for each, a change of the
-    /// coordinates. None if the equilibrium is isolated.
-    pub free_motions: DMatrix<f64>,
-    /// Largest unbalanced force and largest constraint, in units of their rounding-error bounds.
-    pub residual: f64,
-}
-
-impl<const N: usize> ConstrainedEquilibrium<N> {
-    /// For each coordinate, whether it changes along a free motion.
-    #[must_use]
-    pub fn free(&self) -> [bool; N] {
-        core::array::from_fn(|k| self.free_motions.row(k).iter().any(|part| part.abs() > MOVES))
-    }
-
-    /// The rates λ of small motions e^(λt) along the constraints, two for each direction, in radians per unit of time,
-    /// ascending by the size of their imaginary part, then by their real part. The equilibrium is unstable if a real
-    /// part is positive. Without damping and gyroscopic terms, real parts of oscillations are exactly zero, and so are
-    /// both rates of a free motion.
-    ///
-    /// # Errors
-    /// [`StepError::Singular`] if the mass matrix is singular along the constraints, [`StepError::NonFinite`] if the QR
-    /// iteration does not converge.
-    pub fn rates(&self) -> Result<Vec<Complex<f64>>, StepError> {
-        let Self { t, mass, damping, stiffness, .. } = self;
-        let count = mass.nrows();
-        let is_symmetric = (stiffness - stiffness.transpose()).amax() <= SYMMETRIC * stiffness.amax();
-        if damping.iter().all(|entry| *entry == 0.0)
-            && is_symmetric
-            && let Some(mut squares) = spectrum::squared_frequencies(stiffness, mass)
-        {
-            squares.sort_by(|one, other| one.abs().total_cmp(&other.abs()));
-            squares.iter_mut().take(self.free_motions.ncols()).for_each(|square| *square = 0.0);
-            return Ok(oscillations(&squares));
-        }
-        let factors = mass.clone().lu();
-        let singular = StepError::Singular { t: *t, matrix: "mass matrix along the constraints" };
-        let solved = |forces: &DMatrix<f64>| factors.solve(forces).ok_or(singular);
-        let (by_q, by_v) = (solved(stiffness)?, solved(damping)?);
-        let a = DMatrix::from_fn(2 * count, 2 * count, |i, j| match (i < count, j < count) {
-            (true, _) => f64::from(u8::from(j == count + i)),
-            (false, true) => -by_q[(i - count, j)],
-            (false, false) => -by_v[(i - count, j - count)],
-        });
-        spectrum::eigenvalues(&a).ok_or(no_eigenvalues(*t))
-    }
-
-    /// The frequencies of the oscillations about it, ascending, in radians per unit of time: the positive imaginary
-    /// parts of [`ConstrainedEquilibrium::rates`].
-    ///
-    /// # Errors
-    /// As [`ConstrainedEquilibrium::rates`].
-    pub fn frequencies(&self) -> Result<Vec<f64>, StepError> {
-        Ok(self.rates()?.into_iter().map(|rate| rate.im).filter(|frequency| *frequency > 0.0).collect())
-    }
+    let largest = (place.state.q - place.moved_q).amax();
+    Rest::<S, N> { system, t, largest }.equilibrium(place.state.q)
 }
 
 /// A system at rest.
@@ -165,12 +54,12 @@ struct Rest<'a, S, const N: usize> {
 }
 
 /// −F − AᵀΛ and g at a place, with their derivatives.
-struct Balance<S: Constrained<N>, const N: usize> {
+struct Balance<S: Motion<N>, const N: usize> {
     q: SVector<f64, N>,
-    multipliers: S::Multipliers,
+    multipliers: Multipliers<S, N>,
     force: SVector<f64, N>,
-    values: S::Multipliers,
-    gradients: S::Gradients,
+    values: Multipliers<S, N>,
+    gradients: Gradients<S, N>,
     mass: SMatrix<f64, N, N>,
     damping: SMatrix<f64, N, N>,
     stiffness: SMatrix<f64, N, N>,
@@ -183,8 +72,8 @@ struct Balance<S: Constrained<N>, const N: usize> {
     residual: f64,
 }
 
-impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, N> {
-    fn at(&self, q: SVector<f64, N>, multipliers: S::Multipliers) -> Balance<S, N> {
+impl<S: Convertible<N>, const N: usize> Rest<'_, S, N> {
+    fn at(&self, q: SVector<f64, N>, multipliers: Multipliers<S, N>) -> Balance<S, N> {
         let Self { system, t, largest: of_guess } = *self;
         let dual = system.convert::<Dual<f64>>();
         let (time, place, still) = (Dual::variable(t), q.map(Dual::fixed), SVector::zeros());
@@ -239,7 +128,7 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
     }
 
     /// Damped Newton iteration from a place on the constraints, with the multipliers of the motion from rest there.
-    fn equilibrium(&self, q: SVector<f64, N>) -> Result<ConstrainedEquilibrium<N>, StepError> {
+    fn equilibrium(&self, q: SVector<f64, N>) -> Result<Equilibrium<N>, StepError> {
         let Self { system, t, .. } = *self;
         let (_, multipliers) = accelerations(system, (t, &q, &SVector::zeros()), &mut bordered::<S, N, f64>())?;
         let bordered = &mut Bordered::new(N, S::CONSTRAINTS.len(), &[]);
@@ -253,7 +142,7 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
                 let held = Along::of(&found).ok_or(singular)?.held(&found);
                 border(bordered, system, &held, &found.gradients).map_err(|_| singular)?;
             }
-            let mut correct = |mut force: SVector<f64, N>, mut values: S::Multipliers| {
+            let mut correct = |mut force: SVector<f64, N>, mut values: Multipliers<S, N>| {
                 bordered.solve(&mut force, values.as_mut());
                 (force, values)
             };
@@ -302,13 +191,13 @@ impl<S: Constrained<N> + ConvertibleConstrained<N>, const N: usize> Rest<'_, S, 
     }
 
     /// The equilibrium with its matrices along the constraints.
-    fn reduced(&self, found: &Balance<S, N>, of: &Along) -> ConstrainedEquilibrium<N> {
+    fn reduced(&self, found: &Balance<S, N>, of: &Along) -> Equilibrium<N> {
         let directions = directions(found.gradients.rows().map(Row::dense::<N>));
         let along = |matrix: &SMatrix<f64, N, N>| {
             let matrix = DMatrix::from_fn(N, N, |i, j| matrix[(i, j)]);
             directions.transpose() * matrix * &directions
         };
-        ConstrainedEquilibrium {
+        Equilibrium {
             t: self.t,
             q: found.q,
             multipliers: found.multipliers.as_ref().to_vec(),
@@ -341,7 +230,7 @@ struct Along {
 
 impl Along {
     /// `None` if no direction has a stiffness.
-    fn of<S: Constrained<N>, const N: usize>(found: &Balance<S, N>) -> Option<Self> {
+    fn of<S: Motion<N>, const N: usize>(found: &Balance<S, N>) -> Option<Self> {
         let weights = &found.weights;
         let basis = directions(found.gradients.rows().map(|row| row.dense::<N>().component_div(weights)));
         let stiffness = basis.transpose() * weighted(&found.stiffness, weights) * &basis;
@@ -364,7 +253,7 @@ impl Along {
     }
 
     /// The stiffness matrix with the largest stiffness along free motions.
-    fn held<S: Constrained<N>, const N: usize>(&self, found: &Balance<S, N>) -> SMatrix<f64, N, N> {
+    fn held<S: Motion<N>, const N: usize>(&self, found: &Balance<S, N>) -> SMatrix<f64, N, N> {
         let mut held = found.stiffness;
         for [direction, force] in &self.free {
             let [direction, force] = [direction, force].map(|vector| &self.basis * vector);

@@ -1,4 +1,4 @@
-//! Fixed steps of order 2S of systems with constraints.
+//! Gauss steps of systems with constraints.
 //!
 //! Velocities are at the S Gauss points, multipliers Λ at the S + 1 Lobatto nodes of a step. S = 1 is the midpoint rule
 //! with an impulse λ at the start and an impulse μ at the end:
@@ -20,40 +20,43 @@
 //! of a constraint turns by about a radian in it: [`StepError::NotConverged`]. A step that does not continue short ones is
 //! [`StepError::TooLong`].
 
-use super::{Memory, Method, Problem, Report};
+use super::{Gauss, StageSolver};
 use crate::constrained::connected;
 use crate::constrained::guess::{Extrapolation, from_node};
 use crate::constrained::solve::{Solved, Workspace};
-use crate::constrained::{Constrained, ConvertibleConstrained, bordered, discrete_energy, impulses, start, unknowns};
+use crate::constrained::variation::vary;
+use crate::constrained::{bordered, discrete_energy, impulses, start, unknowns};
+use crate::derivatives::{Variation, not_last};
 use crate::error::StepError;
+use crate::kind::{Bound, Form, Multipliers};
 use crate::linear::Bordered;
+use crate::method::{Memory, Method, Problem, Report};
+use crate::motion::Motion;
 use crate::node::Node;
 use crate::run::{Hermite, Run};
 use crate::state::State;
+use crate::stepping::Convertible;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use nalgebra::SVector;
 
-/// Fixed steps of order 2 STAGES of a system with constraints, with 1 to 16 stages: `GaussLobatto::<2>`. See the
-/// [module](self).
-///
-/// Dense output is a cubic: between nodes it leaves the constraints by O(h⁴).
+/// The solver of [`Gauss`] steps with constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GaussLobatto<const STAGES: usize>;
+pub struct BoundGauss<const STAGES: usize>;
 
 /// Memory of steps with constraints: the velocities and impulses of the last steps.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ConstrainedSteps<const N: usize> {
-    pub(super) unknowns: Extrapolation,
+    pub(crate) unknowns: Extrapolation,
     /// The impulse of the last projection.
-    pub(super) mu: Vec<f64>,
+    pub(crate) mu: Vec<f64>,
     /// The start node of the last step; the current node before the first step.
-    pub(super) before: Node<N>,
-    pub(super) h: f64,
+    pub(crate) before: Node<N>,
+    pub(crate) h: f64,
     /// Sign of the determinant of the bordered mass matrix.
-    pub(super) sign: i8,
-    pub(super) residual: f64,
+    pub(crate) sign: i8,
+    pub(crate) residual: f64,
     iterations: u32,
 }
 
@@ -62,7 +65,7 @@ impl<const N: usize> Memory for ConstrainedSteps<N> {}
 /// A solved step.
 #[derive(Clone, Debug)]
 pub struct ConstrainedStep<const N: usize, M> {
-    pub(super) end: Node<N>,
+    pub(crate) end: Node<N>,
     unknowns: Vec<f64>,
     mu: M,
     residual: f64,
@@ -83,7 +86,7 @@ impl<const N: usize> ConstrainedSteps<N> {
     ///
     /// # Errors
     /// [`StepError::Singular`] and [`StepError::NonFinite`].
-    fn from_node<S: Constrained<N>, const STAGES: usize>(
+    fn from_node<S: Motion<N>, const STAGES: usize>(
         system: &S,
         (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
         bordered: &mut Bordered,
@@ -94,24 +97,24 @@ impl<const N: usize> ConstrainedSteps<N> {
 
     /// Before the first step of the length h from a node, with a guess of its unknowns and the sign of the determinant
     /// of the bordered mass matrix.
-    pub(super) fn new<S: Constrained<N>>((node, h): (&Node<N>, f64), guess: &[f64], sign: i8) -> Self {
+    pub(crate) fn new<S: Motion<N>>((node, h): (&Node<N>, f64), guess: &[f64], sign: i8) -> Self {
         let mu = vec![0.0; S::CONSTRAINTS.len()];
         Self { unknowns: Extrapolation::new(guess), mu, before: *node, h, sign, residual: 0.0, iterations: 0 }
     }
 
     /// Adds a step of the length h from `before`.
-    pub(super) fn take(&mut self, (before, h): (&Node<N>, f64), unknowns: &[f64], mu: &[f64], residual: f64) {
+    pub(crate) fn take(&mut self, (before, h): (&Node<N>, f64), unknowns: &[f64], mu: &[f64], residual: f64) {
         (self.before, self.h, self.residual) = (*before, h, residual);
         self.unknowns.push(unknowns);
         self.mu.copy_from_slice(mu);
     }
 
     /// The impulses of the step that led to the node.
-    pub(super) fn impulses<S: Constrained<N>, const STAGES: usize>(
+    pub(crate) fn impulses<S: Motion<N>, const STAGES: usize>(
         &self,
         system: &S,
         node: &Node<N>,
-    ) -> Option<Impulses<S::Multipliers, STAGES>> {
+    ) -> Option<Impulses<Multipliers<S, N>, STAGES>> {
         let constraints = S::CONSTRAINTS.len();
         let of = |slice: &[f64]| {
             let mut multipliers = system.constraints(node.t, &node.q);
@@ -129,7 +132,7 @@ impl<const N: usize> ConstrainedSteps<N> {
     ///
     /// # Errors
     /// [`StepError::NonFinite`].
-    pub(super) fn check(&self, [unknowns, constraints]: [usize; 2], t: f64) -> Result<(), StepError> {
+    pub(crate) fn check(&self, [unknowns, constraints]: [usize; 2], t: f64) -> Result<(), StepError> {
         self.before.check_finite(t)?;
         let count = self.unknowns.count();
         if count != unknowns || self.mu.len() != constraints {
@@ -161,18 +164,16 @@ impl<const N: usize> ConstrainedSteps<N> {
     }
 }
 
-impl<S, const N: usize, const STAGES: usize> Method<S, N> for GaussLobatto<STAGES>
+impl<S, const N: usize, const STAGES: usize> Method<S, N> for BoundGauss<STAGES>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
 {
     type Prepared = ();
     type Memory = ConstrainedSteps<N>;
     type Cache = Option<Box<Workspace>>;
-    type Step = ConstrainedStep<N, S::Multipliers>;
+    type Step = ConstrainedStep<N, Multipliers<S, N>>;
     type Left = StepError;
     type DenseOutput = Hermite<N>;
-
-    const HAS_REACTIONS: bool = true;
 
     #[allow(clippy::cast_possible_truncation)] // 16 stages at most
     fn order(&self) -> u32 {
@@ -297,9 +298,28 @@ where
     }
 }
 
-impl<S, const N: usize, const STAGES: usize> Run<GaussLobatto<STAGES>, S, N>
+impl<S, const N: usize, const STAGES: usize> StageSolver<S, N, STAGES> for BoundGauss<STAGES>
 where
-    S: Constrained<N> + ConvertibleConstrained<N>,
+    S: Convertible<N>,
+{
+    /// Allocates the matrix of the step.
+    fn vary(
+        system: &S,
+        (node, memory): (&Node<N>, &ConstrainedSteps<N>),
+        before: &Node<N>,
+        variations: &mut [Variation<N>],
+    ) -> Result<(), StepError> {
+        let (start, h, u, mu) = memory.last(node).ok_or_else(|| not_last(before.t))?;
+        if start != before {
+            return Err(not_last(before.t));
+        }
+        vary::<S, N, STAGES>(system, (before, h), (u, mu), variations)
+    }
+}
+
+impl<S, const N: usize, const K: usize, F: Form, const STAGES: usize> Run<Gauss<STAGES>, S, N>
+where
+    S: Convertible<N, Kind = Bound<K, F>>,
 {
     /// The impulses λ and μ of the constraints in the last step, which balance the momenta: `p1 − p0 = h Σ b_i (L_q +
     /// f)_i + Σ A_jᵀ λ_j + A_Sᵀ μ`. `None` before the first step, and after [`Run::set_parameters`], [`Run::set_state`]
@@ -307,7 +327,7 @@ where
     ///
     /// An impulse alone is not a mean of the multipliers: for S = 1, `2λ/h` differs from Λ by O(h). The impulses on both
     /// sides of a node are: `(μ_k + λ_{k+1})/h = Λ(t_k) + O(h²)`. [`State::reaction`] returns Λ itself.
-    pub fn impulses(&self) -> Option<Impulses<S::Multipliers, STAGES>> {
+    pub fn impulses(&self) -> Option<Impulses<Multipliers<S, N>, STAGES>> {
         self.memory.impulses(&self.system, &self.node)
     }
 }

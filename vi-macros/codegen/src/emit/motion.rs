@@ -1,7 +1,8 @@
-//! `impl Collocation`: the first-order equations of motion at one point.
+//! `impl Motion`: the first-order equations of motion at one point.
 
 use super::Source;
 use super::body::{Body, VelocityFrom, state_parts};
+use super::constraints;
 use super::lagrangian::{number, vector_of};
 use super::matrix::matrix;
 use crate::discrete::TimeScale;
@@ -9,11 +10,13 @@ use crate::program::{FunctionId, Output};
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// The implementation of `Collocation`.
+/// The implementation of `Motion`.
 pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
+    let Members { kind, items, functions } =
+        source.system.constraints.as_ref().map_or_else(Members::free, |of| constraints::members(source, of));
     let constant_mass = source.findings.constant_mass;
-    let separable = source.findings.force_of_position;
+    let separable = source.findings.force_of_position && source.system.constraints.is_none();
     let (form, point) = point(source);
     let (derivatives_form, point_derivatives) = point_derivatives(source);
     let scaled_point = source.system.continuous.time_scale.as_ref().map(|scale| scaled_point(source, scale));
@@ -24,17 +27,19 @@ pub(super) fn item(source: &Source) -> TokenStream {
     });
     let has_time_scale = scaled_point.is_some().then(|| {
         quote! {
-            impl<T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<#dimension, T> for #name<T> {}
+            impl<T: ::vi_core::real::Real> ::vi_core::motion::TimeScale<#dimension, T> for #name<T> {}
         }
     });
     let is_separable = separable.then(|| {
         quote! {
-            impl<T: ::vi_core::real::Real> ::vi_core::collocation::Separable<#dimension, T> for #name<T> {}
+            impl<T: ::vi_core::real::Real> ::vi_core::motion::Separable<#dimension, T> for #name<T> {}
         }
     });
     let power = number(source, FunctionId::Power, &source.formula("dE/dt", source.system.continuous.power));
     quote! {
-        impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
+        #items
+        impl<T: ::vi_core::real::Real> ::vi_core::motion::Motion<#dimension, T> for #name<T> {
+            type Kind = #kind;
             type Mass = #form;
             type PointMatrix = #derivatives_form;
             const CONSTANT_MASS: bool = #constant_mass;
@@ -44,14 +49,32 @@ pub(super) fn item(source: &Source) -> TokenStream {
             #point_derivatives
             #power
             #scaled_point
+            #functions
         }
         #has_time_scale
         #is_separable
     }
 }
 
+/// The kind of a system, and what its constraints add to `Motion`.
+pub(super) struct Members {
+    pub(super) kind: TokenStream,
+    /// Items beside the implementation.
+    pub(super) items: TokenStream,
+    /// Constants and functions of the implementation.
+    pub(super) functions: TokenStream,
+}
+
+impl Members {
+    /// Those of a system without constraints.
+    pub(super) fn free() -> Self {
+        let kind = quote!(::vi_core::kind::Free);
+        Self { kind, items: TokenStream::new(), functions: TokenStream::new() }
+    }
+}
+
 /// The form of the mass matrix, and the function that computes L_v, L_q + f and M.
-pub(super) fn point(source: &Source) -> (TokenStream, TokenStream) {
+fn point(source: &Source) -> (TokenStream, TokenStream) {
     let dimension = source.dimension();
     let of = &source.system.continuous;
     let formula = format!("L_v, M, and\n\n{}", source.formulas("L_q + f", &of.applied_force));
@@ -69,7 +92,7 @@ pub(super) fn point(source: &Source) -> (TokenStream, TokenStream) {
             t: T,
             q: &::vi_core::SVector<T, #dimension>,
             v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::collocation::Point<#dimension, T, Self::Mass> {
+        ) -> ::vi_core::motion::Point<#dimension, T, Self::Mass> {
             #inputs #statements
             #value
         }
@@ -78,7 +101,7 @@ pub(super) fn point(source: &Source) -> (TokenStream, TokenStream) {
 }
 
 /// The form of the matrices, and the function that computes M and the derivatives of L_v and L_q + f.
-pub(super) fn point_derivatives(source: &Source) -> (TokenStream, TokenStream) {
+fn point_derivatives(source: &Source) -> (TokenStream, TokenStream) {
     let dimension = source.dimension();
     let formula = "M = ∂L_v/∂v, ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.";
     let Some((body, documentation)) = source.documented(FunctionId::PointDerivatives, formula, VelocityFrom::Argument)
@@ -99,9 +122,9 @@ pub(super) fn point_derivatives(source: &Source) -> (TokenStream, TokenStream) {
             t: T,
             q: &::vi_core::SVector<T, #dimension>,
             v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
+        ) -> ::vi_core::motion::PointDerivatives<Self::PointMatrix> {
             #inputs #statements
-            ::vi_core::collocation::PointDerivatives {
+            ::vi_core::motion::PointDerivatives {
                 momentum_dq: #momentum_dq, mass: #mass, force_dq: #force_dq, force_dv: #force_dv
             }
         }
@@ -114,7 +137,7 @@ fn point_of(source: &Source, body: &Body) -> (TokenStream, TokenStream) {
     let (form, mass) = matrix(&source.findings.mass, true, body.results.matrix(Output::Mass));
     let momentum = vector_of(body.results.vector(Output::Momentum));
     let force = vector_of(body.results.vector(Output::AppliedForce));
-    (form, quote!(::vi_core::collocation::Point { momentum: #momentum, force: #force, mass: #mass }))
+    (form, quote!(::vi_core::motion::Point { momentum: #momentum, force: #force, mass: #mass }))
 }
 
 /// The function of everything that a step in transformed time evaluates at a point.
@@ -141,9 +164,9 @@ fn scaled_point(source: &Source, scale: &TimeScale) -> TokenStream {
             t: T,
             q: &::vi_core::SVector<T, #dimension>,
             v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::collocation::ScaledPoint<#dimension, T, Self::Mass> {
+        ) -> ::vi_core::motion::ScaledPoint<#dimension, T, Self::Mass> {
             #inputs #statements
-            ::vi_core::collocation::ScaledPoint {
+            ::vi_core::motion::ScaledPoint {
                 point: #point, energy: #energy, power: #power, g: #g, g_dq: #g_dq, g_dt: #g_dt
             }
         }
