@@ -7,14 +7,14 @@
 //! | module | product |
 //! |---|---|
 //! | `new` | `vi-lab new`: a project with this command for your own systems |
-//! | `run` | `vi-lab run`: rows as CSV or NPY |
+//! | `run` | `vi-lab run`: rows as CSV |
 //! | `vi_paper` | `vi-lab paper`: figures, tables and the page |
 //! | `vi_stability` | `vi-lab stability`: where methods fail, as maps |
 //! | `work_precision` | `vi-lab work-precision`: error against time, for every method |
 //! | `sweep` | `vi-lab sweep`, `vi-lab merge`: many runs of one scene, on all cores and many machines |
 //! | `lyapunov` | `vi-lab lyapunov`: Lyapunov exponents |
 //! | `expand`, `explain` | the products of the compiler; the mathematics of a system |
-//! | `npy`, `place`, `entries` | the header of an array file; checks of files to read and write; entries of scenes |
+//! | `place`, `entries` | checks of files to read and write; entries of scenes |
 //! | `vi_report` | output shared by all subcommands; the systems by name |
 //! | `vi_ready` | the predefined systems |
 
@@ -25,7 +25,6 @@ mod expand;
 mod explain;
 mod lyapunov;
 mod new;
-mod npy;
 mod place;
 mod run;
 mod sweep;

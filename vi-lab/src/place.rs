@@ -102,6 +102,19 @@ pub(crate) fn sync_folder(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
+/// Checks that a CSV file can be created at a path, as [`check`] does.
+///
+/// # Errors
+/// [`Failure::Input`] if its name does not end in .csv, or no file can be created.
+pub(crate) fn check_csv(path: &Path) -> Result<(), Failure> {
+    if path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("csv")) {
+        let shown = path.display();
+        let remedy = "pandas reads it with `read_csv(FILE, comment=\"#\")`";
+        return Err(Failure::Input(format!("the output `{shown}` must end in .csv; {remedy}")));
+    }
+    check("output", path)
+}
+
 /// Checks that a file can be created at a path, except for permissions: its folder exists and the path is not a folder.
 /// `what` names the file.
 ///

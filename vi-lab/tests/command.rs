@@ -59,22 +59,6 @@ fn rows(csv: &str) -> Vec<Vec<f64>> {
     lines.map(|line| line.split(',').map(number).collect()).collect()
 }
 
-/// The rows of an NPY file with this number of columns.
-fn array(bytes: &[u8], columns: usize) -> Vec<Vec<f64>> {
-    assert_eq!(bytes.get(..8), Some(b"\x93NUMPY\x01\x00".as_slice()));
-    let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
-    let head = String::from_utf8_lossy(&bytes[10..10 + length]);
-    let shape = head.strip_prefix("{'descr': '<f8', 'fortran_order': False, 'shape': (").expect("the head");
-    let count: usize = shape.split(',').next().and_then(|rows| rows.parse().ok()).expect("the number of rows");
-    assert!(shape.starts_with(&format!("{count}, {columns}), }}")), "{head}");
-    let numbers: Vec<f64> = bytes[10 + length..]
-        .chunks_exact(8)
-        .map(|chunk| f64::from_le_bytes(chunk.try_into().expect("eight bytes")))
-        .collect();
-    assert_eq!(numbers.len(), count * columns, "the file holds what its head says");
-    numbers.chunks(columns).map(<[f64]>::to_vec).collect()
-}
-
 /// Numbers as bits, so that NaN equals NaN.
 fn bits(rows: &[Vec<f64>]) -> Vec<Vec<u64>> {
     rows.iter().map(|row| row.iter().map(|number| number.to_bits()).collect()).collect()
@@ -410,7 +394,10 @@ fn wrong_input_is_one_line_and_status_2() {
             &["run", "double-well", "--steps", "1", "--q", "1,2"],
             "double-well has the coordinates q: give as many coordinates (--q), not 2",
         ),
-        (&["run", "double-well", "--steps", "1", "-o", "x.txt"], "the output `x.txt` must end in .csv or .npy"),
+        (
+            &["run", "double-well", "--steps", "1", "-o", "x.npy"],
+            "the output `x.npy` must end in .csv; pandas reads it with `read_csv(FILE, comment=\"#\")`",
+        ),
         (&["run", "double-well", "--steps", "1", "--plot", "x.png"], "the plot `x.png` must end in .svg"),
         (
             &["run", "double-well", "--steps", "1", "--plot", "no-such-folder/x.svg"],
@@ -472,15 +459,15 @@ fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
             "the first step of h = 1e-100 changes neither q = [0.4, 0.0] nor p = [0.0, 2.0] in double precision, although \
              v = [0.0, 2.0]; use a larger --h, or a start and parameters with a regular mass matrix",
         ),
-        // Gigabytes without permission: 1e9 rows of 6 numbers of 19 bytes, 1e7 rows of 36 numbers of 8 bytes.
+        // Gigabytes without permission: 1e9 rows of 6 numbers of 19 bytes, 1e7 rows of 36 numbers.
         (
             &["run", "pendulum", "--until", "1e7"],
             "the output would have about 1000000000 rows, 114 GB; write fewer rows with --every 114, or allow more than 1 GB \
              with --large-output",
         ),
         (
-            &["run", "fpu-chain", "--steps", "1e7", "-o", "x.npy"],
-            "the output would have about 10000000 rows, 2.88 GB; write fewer rows with --every 3, or allow more than 1 GB with \
+            &["run", "fpu-chain", "--steps", "1e7", "-o", "x.csv"],
+            "the output would have about 10000000 rows, 6.84 GB; write fewer rows with --every 7, or allow more than 1 GB with \
              --large-output",
         ),
         (
@@ -718,29 +705,25 @@ fn a_singular_mass_matrix_is_status_1_with_the_initial_state() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_leaves_whole_rows() {
-    let csv = temporary("interrupted.csv");
-    let npy = temporary("interrupted.npy");
+    let file = temporary("interrupted.csv");
     // Longer than any test.
     let run = ["run", "kepler", "--steps", "1e10", "--every", "100", "--large-output"];
     for (signal, name, status) in [("-INT", "SIGINT", 130), ("-TERM", "SIGTERM", 143)] {
-        for file in [&csv, &npy] {
-            let child = start(&[run.as_slice(), &["-o", path(file)]].concat());
-            while fs::metadata(file).map_or(0, |file| file.len()) < 150_000 {
-                std::thread::sleep(std::time::Duration::from_millis(10));
-            }
-            send(signal, &child);
-            let Output { status: ended, stderr, .. } = child.wait_with_output().expect("the command ends");
-            let errors = String::from_utf8(stderr).expect("text");
-            assert_eq!(ended.code(), Some(status), "{errors}");
-            let diagnostic = errors.lines().last().expect("a line that says how far the run came");
-            assert!(diagnostic.starts_with(&format!("error: interrupted by {name} after ")), "{errors}");
-            let bytes = fs::read(file).expect("the output");
-            let rows = if file == &npy { array(&bytes, 8) } else { rows(&String::from_utf8(bytes).expect("text")) };
-            assert!(rows.len() > 900 && rows.iter().all(|row| row.len() == 8));
-            let last = rows.last().expect("rows")[0];
-            assert!(diagnostic.contains(&format!(" steps at t = {last}; ")), "{diagnostic} {last}");
-            fs::remove_file(file).expect("the file can be removed");
+        let child = start(&[run.as_slice(), &["-o", path(&file)]].concat());
+        while fs::metadata(&file).map_or(0, |file| file.len()) < 150_000 {
+            std::thread::sleep(std::time::Duration::from_millis(10));
         }
+        send(signal, &child);
+        let Output { status: ended, stderr, .. } = child.wait_with_output().expect("the command ends");
+        let errors = String::from_utf8(stderr).expect("text");
+        assert_eq!(ended.code(), Some(status), "{errors}");
+        let diagnostic = errors.lines().last().expect("a line that says how far the run came");
+        assert!(diagnostic.starts_with(&format!("error: interrupted by {name} after ")), "{errors}");
+        let written = rows(&fs::read_to_string(&file).expect("the output"));
+        assert!(written.len() > 900 && written.iter().all(|row| row.len() == 8));
+        let last = written.last().expect("rows")[0];
+        assert!(diagnostic.contains(&format!(" steps at t = {last}; ")), "{diagnostic} {last}");
+        fs::remove_file(&file).expect("the file can be removed");
         let mut child = start(&run);
         let mut output = BufReader::new(child.stdout.take().expect("the output"));
         let mut text = String::new();
@@ -752,29 +735,23 @@ fn an_interrupted_run_leaves_whole_rows() {
         assert_eq!(child.wait().expect("the command ends").code(), Some(status));
         assert!(text.ends_with('\n') && rows(&text).iter().all(|row| row.len() == 8));
     }
-    fs::remove_file(format!("{}.json", npy.display())).expect("the file can be removed");
 }
 
 #[cfg(unix)]
 #[test]
 fn a_disk_that_is_full_leaves_whole_rows() {
-    let csv = temporary("full.csv");
-    let npy = temporary("full.npy");
-    for file in [&csv, &npy] {
-        // A file is limited to 200 blocks of 512 bytes; writing more fails.
-        let limited = "trap '' XFSZ; ulimit -f 200; exec \"$0\" \"$@\"";
-        let lab = env!("CARGO_BIN_EXE_vi-lab");
-        let run = ["-c", limited, lab, "run", "kepler", "--steps", "1e5", "-o", path(file)];
-        let Output { status, stderr, .. } = Command::new("sh").args(run).output().expect("the shell runs");
-        let errors = String::from_utf8(stderr).expect("text");
-        assert_eq!((status.code(), errors.lines().count()), (Some(1), 1), "{errors}");
-        assert!(errors.starts_with(&format!("error: {}: ", path(file))), "{errors}");
-        let bytes = fs::read(file).expect("the output");
-        let rows = if file == &npy { array(&bytes, 8) } else { rows(&String::from_utf8(bytes).expect("text")) };
-        assert!(rows.len() > 300 && rows.iter().all(|row| row.len() == 8), "{} rows", rows.len());
-        fs::remove_file(file).expect("the file can be removed");
-    }
-    fs::remove_file(format!("{}.json", npy.display())).expect("the file can be removed");
+    let file = temporary("full.csv");
+    // A file is limited to 200 blocks of 512 bytes; writing more fails.
+    let limited = "trap '' XFSZ; ulimit -f 200; exec \"$0\" \"$@\"";
+    let lab = env!("CARGO_BIN_EXE_vi-lab");
+    let run = ["-c", limited, lab, "run", "kepler", "--steps", "1e5", "-o", path(&file)];
+    let Output { status, stderr, .. } = Command::new("sh").args(run).output().expect("the shell runs");
+    let errors = String::from_utf8(stderr).expect("text");
+    assert_eq!((status.code(), errors.lines().count()), (Some(1), 1), "{errors}");
+    assert!(errors.starts_with(&format!("error: {}: ", path(&file))), "{errors}");
+    let rows = rows(&fs::read_to_string(&file).expect("the output"));
+    assert!(rows.len() > 300 && rows.iter().all(|row| row.len() == 8), "{} rows", rows.len());
+    fs::remove_file(file).expect("the file can be removed");
 }
 
 #[cfg(target_os = "linux")]
@@ -802,25 +779,14 @@ fn an_output_that_fails_costs_the_other_nothing() {
 
 #[cfg(unix)]
 #[test]
-fn an_npy_file_cannot_be_a_pipe_and_a_csv_file_can() {
-    let csv = temporary("pipe.csv");
-    let npy = temporary("pipe.npy");
-    for pipe in [&csv, &npy] {
-        assert!(Command::new("mkfifo").arg(pipe).status().expect("mkfifo runs").success());
-    }
-    let (status, _, errors) = lab(&["run", "kepler", "--steps", "5", "-o", path(&npy)]);
-    assert_eq!((status, errors.lines().count()), (Some(2), 1));
-    assert!(
-        errors.contains("is a pipe or a device, but the header of an NPY file is written last; write CSV"),
-        "{errors}"
-    );
-    let child = start(&["run", "kepler", "--steps", "5", "-o", path(&csv)]);
-    let text = fs::read_to_string(&csv).expect("what the command writes");
+fn a_csv_file_can_be_a_pipe() {
+    let pipe = temporary("pipe.csv");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo runs").success());
+    let child = start(&["run", "kepler", "--steps", "5", "-o", path(&pipe)]);
+    let text = fs::read_to_string(&pipe).expect("what the command writes");
     let Output { status, .. } = child.wait_with_output().expect("the command ends");
     assert_eq!((status.code(), rows(&text).len()), (Some(0), 6));
-    for pipe in [csv, npy] {
-        fs::remove_file(pipe).expect("the pipe can be removed");
-    }
+    fs::remove_file(pipe).expect("the pipe can be removed");
 }
 
 #[test]
@@ -850,27 +816,6 @@ fn a_run_of_days_is_announced() {
     );
     let rows = rows(&String::from_utf8(stdout).expect("text"));
     assert_eq!((status.code(), rows.len()), (Some(130), 2), "the first node and the last");
-}
-
-#[test]
-fn npy_holds_the_numbers_of_csv() {
-    let csv = temporary("same.csv");
-    let npy = temporary("same.npy");
-    for file in [&csv, &npy] {
-        let (status, _, errors) = lab(&["run", "kepler", "--steps", "20", "-o", path(file)]);
-        assert_eq!((status, errors.as_str()), (Some(0), ""));
-    }
-    let numbers = array(&fs::read(&npy).expect("the array"), 8);
-    let text = fs::read_to_string(&csv).expect("the table");
-    assert_eq!((numbers.len(), bits(&numbers)), (21, bits(&rows(&text))), "CSV reads back to the same bits");
-    let beside = PathBuf::from(format!("{}.json", npy.display()));
-    let description: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(&beside).expect("the description")).expect("JSON");
-    assert_eq!(description["columns"], serde_json::json!(["t", "x", "y", "p_x", "p_y", "H", "E", "h"]));
-    assert_eq!(description["parameters"], serde_json::json!({"mu": 1.0}));
-    for file in [csv, npy, beside] {
-        fs::remove_file(file).expect("the file can be removed");
-    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `vi-lab run`: simulates one system and writes its nodes as CSV or NPY, or draws them.
+//! `vi-lab run`: simulates one system and writes its nodes as CSV, or draws them.
 //!
 //! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`. H is
 //! the energy at the node, E the discrete energy of the interval that ends there; steps with a shift add E' before h,
@@ -13,12 +13,11 @@
 //! | [`shift`] | the notation of a shift |
 //! | [`resolution`], [`extent`] | rejected runs: steps below rounding, outputs of gigabytes |
 //! | [`ways_out`] | alternatives if an energy-preserving step does not exist |
-//! | [`csv`], [`npy`], [`plot`] | destinations of rows |
+//! | [`csv`], [`plot`] | destinations of rows |
 
 mod csv;
 mod extent;
 pub(crate) mod method;
-mod npy;
 mod placement;
 mod plot;
 mod request;
@@ -90,7 +89,7 @@ Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, fr
 discrete energy of the interval that ends at the node, which --method energy keeps: it changes only by the work of forces and constraints, \
 and with an explicit time. Its error is bounded: O(h²) with fixed steps, \
 O(h^2S) with Gauss steps of S stages. With --method energy or fixed, H and E differ by h²D/8 to leading order, with the step density D. \
-With --shift D* a column E' precedes h: E' = E − C h^2S D*, C = 1/8, 1/864, 1/288000 for S = 1, 2, 3. --method energy then keeps E', and E and H oscillate. E is empty (NaN in .npy) \
+With --shift D* a column E' precedes h: E' = E − C h^2S D*, C = 1/8, 1/864, 1/288000 for S = 1, 2, 3. --method energy then keeps E', and E and H oscillate. E is empty \
 in the first row of a run of fixed or Gauss steps, and for compositions, whose step is not one interval. The last step to --until T may be shorter; then it has no E. H is empty if the momenta have no velocity; \
 standard error reports the number of such rows. h is the length of the step before the node. \
 With constraints, columns Λ_… and residual follow the momenta: the multiplier of each constraint at the node, \
@@ -168,7 +167,7 @@ pub(crate) struct Arguments {
     /// Write every Nth node and the last [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) every: Option<u64>,
-    /// Output file, .csv or .npy, overwritten if it exists; without it and without --plot CSV goes to standard output
+    /// CSV file, overwritten if it exists; without it and without --plot CSV goes to standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Draw energies, coordinates and phase portraits of the rows into an SVG file, overwritten if it exists
@@ -272,7 +271,6 @@ fn sinks(request: &Request) -> Result<Vec<Box<dyn Sink>>, Failure> {
     match &request.output {
         Output::Standard => sinks.push(Box::new(csv::Csv::standard_output(request))),
         Output::Csv(path) => sinks.push(Box::new(csv::Csv::create(path, request)?)),
-        Output::Npy(path) => sinks.push(Box::new(npy::Npy::create(path, request)?)),
         Output::None => {}
     }
     if let Some(path) = &request.plot {

@@ -8,7 +8,6 @@ use crate::place;
 use crate::sweep::items::Items;
 use crate::sweep::scene::Sweep;
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 use vi_core::StepError;
 use vi_erased::plan::Named as _;
@@ -123,36 +122,15 @@ pub(super) enum Output {
     Standard,
     /// To a CSV file.
     Csv(PathBuf),
-    /// To an NPY file.
-    Npy(PathBuf),
     /// Only to a plot.
     None,
 }
 
 impl Output {
-    /// The output for a path.
-    fn at(path: &Path) -> Result<Self, Failure> {
-        let shown = path.display();
-        let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
-        let output = match extension.as_deref() {
-            Some("csv") => Self::Csv(path.to_owned()),
-            Some("npy") => Self::Npy(path.to_owned()),
-            _ => return Err(Failure::Input(format!("the output `{shown}` must end in .csv or .npy"))),
-        };
-        place::check("output", path)?;
-        match fs::metadata(path) {
-            Ok(found) if !found.is_file() && matches!(output, Self::Npy(_)) => Err(Failure::Input(format!(
-                "the output `{shown}` is a pipe or a device, but the header of an NPY file is written last; write CSV instead"
-            ))),
-            _ => Ok(output),
-        }
-    }
-
     /// Bytes of a number in a row: measured for CSV, whose numbers vary in length.
     pub(super) fn bytes_per_number(&self) -> f64 {
         match self {
             Self::Standard | Self::Csv(_) => 19.0,
-            Self::Npy(_) => 8.0,
             Self::None => 0.0,
         }
     }
@@ -262,7 +240,10 @@ impl Request {
             return Err(Failure::Input("--every must be at least 1: 1 writes every node, 10 every tenth".to_owned()));
         }
         let output = match &arguments.output {
-            Some(path) => Output::at(path)?,
+            Some(path) => {
+                place::check_csv(path)?;
+                Output::Csv(path.clone())
+            }
             None if arguments.plot.is_some() => Output::None,
             None => Output::Standard,
         };
@@ -636,7 +617,10 @@ mod tests {
                 with(|a| (a.method, a.stages) = (Some(Method::Gauss), Some(5))),
                 "Gauss steps of 5 stages are not built into the command; --stages may be 4 or 8",
             ),
-            (with(|a| a.output = Some(".npy".into())), "the output `.npy` must end in .csv or .npy"),
+            (
+                with(|a| a.output = Some("orbit.npy".into())),
+                "the output `orbit.npy` must end in .csv; pandas reads it with `read_csv(FILE, comment=\"#\")`",
+            ),
             (with(|a| a.set = vec!["m".into()]), "`--set m` must have the form NAME=VALUE"),
             (
                 with(|a| a.set = vec!["m=one".into()]),

@@ -4,7 +4,7 @@
 
 use super::chunks::{Chunks, Description};
 use super::keep::STEP_ERROR;
-use super::sink::{Format, Target};
+use super::sink::{self, Target};
 use crate::run::POOR;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
     /// Folders of chunks written by `vi-lab sweep --shard`
     #[arg(value_name = "FILE.part", required = true)]
     folders: Vec<PathBuf>,
-    /// Output file, .csv, .npy or .parquet; tables of series and sections are written beside it
+    /// CSV file; tables of series and sections are written beside it
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
 /// [`Failure::Input`] if they do not contain all runs of one sweep, [`Failure::File`] if a file cannot be read or
 /// written.
 pub(crate) fn merge(arguments: &Arguments) -> Result<String, Failure> {
-    Format::of(&arguments.output)?;
+    sink::check(&arguments.output)?;
     let folders = arguments.folders.iter().map(|folder| Chunks::open(folder)).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = folders.first() else { return Ok(String::new()) };
     for other in &folders {

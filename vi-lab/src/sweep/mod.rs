@@ -34,7 +34,6 @@ use chunks::Chunks;
 use clap::Args;
 use merge::Tally;
 use shard::Shard;
-use sink::Format;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::{env, fs, slice};
@@ -62,7 +61,7 @@ pub(crate) struct Arguments {
     /// Scene file with a table [sweep]
     #[arg(value_name = "SCENE.toml")]
     scene: String,
-    /// Output file, .csv, .npy or .parquet
+    /// CSV file
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Compute only the chunks of share I of N equal shares, I from 0; with only N, I is the index of the array task
@@ -79,7 +78,7 @@ pub(crate) fn sweep(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     let Arguments { scene, output, shard } = arguments;
     let shard = Shard::of(shard.as_deref(), |name| env::var(name).ok())?;
     let study = Study::read(scene, catalogue)?;
-    Format::of(output)?;
+    sink::check(output)?;
     let folder = with_extension(output, "part");
     let chunks = Arc::new(Chunks::resume(&folder, study.description(), shard.is_none())?);
     let numbers = shard.unwrap_or(Shard::WHOLE).chunks(chunks.description.chunks());

@@ -106,7 +106,7 @@ impl ColumnKind {
 
 /// The word of a number in a column of words.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an index of a short list
-pub(super) fn word(words: &[String], number: f64) -> &str {
+fn word(words: &[String], number: f64) -> &str {
     words.get(number as usize).map_or("", String::as_str)
 }
 

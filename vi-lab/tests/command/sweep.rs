@@ -1,6 +1,6 @@
 //! Sweeps: shards against the whole, interrupted processes, results of a run, wrong input, a scheduler.
 
-use super::{array, bits, lab, path, rows, send, temporary};
+use super::{bits, lab, path, rows, send, temporary};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -74,7 +74,7 @@ impl Folder {
 
     /// Whether the tables of a sweep of `MIXED` equal those of an undivided one.
     fn is_whole(&self, name: &str, what: &str) {
-        for file in ["csv", "section.csv", "series.csv", "npy", "section.npy", "series.npy", "npy.json"] {
+        for file in ["csv", "section.csv", "series.csv"] {
             assert!(self.read(&format!("{name}.{file}")) == self.read(&format!("whole.{file}")), "{file} of {what}");
         }
     }
@@ -154,7 +154,6 @@ fn shards_are_the_whole_byte_for_byte() {
     let folder = Folder::new("shards", MIXED);
     let diagnostic = folder.sweep("whole.csv", &[]);
     assert!(diagnostic.contains("whole.csv: 48 runs, 10 did not reach their end"), "{diagnostic}");
-    folder.sweep("whole.npy", &[]);
     assert!(!folder.0.join("whole.csv.part").exists(), "its rows stand in tables");
     for count in [1, 2, 7, 100] {
         let part = format!("{count}.csv.part");
@@ -162,9 +161,7 @@ fn shards_are_the_whole_byte_for_byte() {
         for index in (0..count).rev().chain([0]) {
             folder.sweep(&format!("{count}.csv"), &["--shard", &format!("{index}/{count}")]);
         }
-        for output in ["merged.csv", "merged.npy"] {
-            assert_eq!(folder.merge(&[&part], output), (Some(0), String::new()));
-        }
+        assert_eq!(folder.merge(&[&part], "merged.csv"), (Some(0), String::new()));
         folder.is_whole("merged", &format!("{count} shards"));
     }
     // Machines without a common file system have their own folders. The number of shards may change.
@@ -175,28 +172,12 @@ fn shards_are_the_whole_byte_for_byte() {
     let expected = (Some(2), format!("error: {missing}\n"));
     assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], "c.csv"), expected);
     folder.sweep("a.csv", &["--shard", "0/2"]);
-    for output in ["c.csv", "c.npy"] {
-        assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], output), (Some(0), String::new()));
-    }
+    assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], "c.csv"), (Some(0), String::new()));
     folder.is_whole("c", "two folders");
     // Without --shard the sweep computes the missing chunks, merges and removes the folder.
-    for output in ["b.csv", "b.npy"] {
-        folder.sweep(output, &[]);
-    }
+    folder.sweep("b.csv", &[]);
     folder.is_whole("b", "a sweep that goes on from shards");
     assert!(!folder.0.join("b.csv.part").exists());
-    let description: serde_json::Value = serde_json::from_slice(&folder.read("whole.npy.json")).expect("JSON");
-    let words = description["words"]["ending"].as_array().expect("words");
-    for table in ["", ".section", ".series"] {
-        let csv = folder.text(&format!("whole{table}.csv"));
-        let columns = csv.lines().find(|line| !line.starts_with('#')).expect("columns").split(',').count();
-        let numbers = array(&folder.read(&format!("whole{table}.npy")), columns);
-        let mut places = csv;
-        for (place, word) in words.iter().enumerate() {
-            places = places.replace(word.as_str().expect("a word"), &place.to_string());
-        }
-        assert_eq!(bits(&numbers), bits(&rows(&places)), "{table}");
-    }
 }
 
 #[test]
@@ -537,8 +518,12 @@ fn chunks_that_do_not_belong_together_are_refused() {
     let expected = "error: none.part contains no chunks of a sweep: none.part/sweep.json: ";
     assert!(status == Some(2) && errors.starts_with(expected), "{errors}");
     assert_eq!(
-        folder.merge(&[first], "merged.xls"),
-        (Some(2), "error: the output `merged.xls` must end in .csv, .npy or .parquet\n".to_owned())
+        folder.merge(&[first], "merged.parquet"),
+        (
+            Some(2),
+            "error: the output `merged.parquet` must end in .csv; pandas reads it with `read_csv(FILE, comment=\"#\")`\n"
+                .to_owned()
+        )
     );
     // Chunks of another sweep with valid names.
     for number in 0..5 {
@@ -668,39 +653,6 @@ fn hyperqueue_makes_the_same_bytes() {
     assert_eq!(folder.merge(&["7.csv.part"], "merged.csv"), (Some(0), String::new()));
     assert!(folder.read("merged.csv") == folder.read("whole.csv"));
     println!("tested with HyperQueue: seven tasks");
-}
-
-#[cfg(feature = "parquet")]
-#[test]
-fn parquet_holds_the_rows_of_csv() {
-    use parquet::file::reader::{FileReader as _, SerializedFileReader};
-    use parquet::record::Field;
-    let folder = Folder::new("parquet", MIXED);
-    folder.sweep("a.csv", &[]);
-    folder.sweep("a.parquet", &[]);
-    for table in ["", ".section", ".series"] {
-        let file = fs::File::open(folder.at(&format!("a{table}.parquet"))).expect("the file");
-        let reader = SerializedFileReader::new(file).expect("Parquet");
-        let facts = reader.metadata().file_metadata().key_value_metadata().expect("facts");
-        assert!(facts.iter().any(|fact| fact.key == "system" && fact.value.as_deref() == Some("DoubleWell")));
-        let entry = |field: &Field| match field {
-            Field::Double(number) if number.is_nan() => String::new(),
-            Field::Double(number) => format!("{number:?}"),
-            Field::Long(count) => count.to_string(),
-            Field::Str(word) => word.clone(),
-            other => panic!("{other}"),
-        };
-        let mut lines = Vec::new();
-        for row in reader.get_row_iter(None).expect("rows") {
-            let row = row.expect("a row");
-            if lines.is_empty() {
-                lines.push(row.get_column_iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().join(","));
-            }
-            lines.push(row.get_column_iter().map(|(_, field)| entry(field)).collect::<Vec<_>>().join(","));
-        }
-        let csv = folder.text(&format!("a{table}.csv"));
-        assert_eq!(lines, csv.lines().filter(|line| !line.starts_with('#')).collect::<Vec<_>>(), "{table}");
-    }
 }
 
 /// Steps that are too long reach the end of their run all the same: the summary says so.
