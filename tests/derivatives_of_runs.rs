@@ -400,7 +400,7 @@ fn the_time_of_an_autonomous_run_is_carried_back() {
     fn worst<M, S>(run: &Run<M, S, 1>, steps: u64) -> (f64, f64)
     where
         M: Differentiable<S, 1>,
-        S: Convertible<1> + vi_core::motion::Motion<1>,
+        S: Convertible<1>,
     {
         let start = gradient(run, steps, 3, &Squares).expect("solvable").start;
         let mut varied = Variation::of_state();
@@ -419,7 +419,8 @@ fn the_time_of_an_autonomous_run_is_carried_back() {
             }
         }
         let size = forward.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()));
-        let backward = [start.q[0], start.p[0], start.t, if M::KEEPS_ENERGY { start.energy } else { forward[3] }];
+        let backward =
+            [start.q[0], start.p[0], start.t, if run.method().keeps_energy() { start.energy } else { forward[3] }];
         let off = forward.iter().zip(backward).map(|(one, other)| (one - other).abs() / size).fold(0.0, f64::max);
         (off, start.t)
     }

@@ -168,20 +168,8 @@ pub trait Real: Number {
     fn to_f64(self) -> f64;
 }
 
-/// Data that a checkpoint can store: with the feature `serde`, data that serde writes and reads.
-#[cfg(feature = "serde")]
-pub trait Storable: serde::Serialize + serde::de::DeserializeOwned {}
-#[cfg(feature = "serde")]
-impl<Y: serde::Serialize + serde::de::DeserializeOwned> Storable for Y {}
-
-/// Data that a checkpoint can store: with the feature `serde`, data that serde writes and reads.
-#[cfg(not(feature = "serde"))]
-pub trait Storable {}
-#[cfg(not(feature = "serde"))]
-impl<Y> Storable for Y {}
-
 /// A single number, with the order that the control flow of a stepper needs.
-pub trait Scalar: Real + PartialOrd + Storable {}
+pub trait Scalar: Real + PartialOrd {}
 
 /// Sine and cosine, in this order, with one branch for all that typical angles do not take: the compiler vectorizes the
 /// code between branches.

@@ -156,7 +156,7 @@ where
             let mut run = moved(case, along, by);
             follow(&mut run, legs);
             let node = run.node();
-            let energy = if M::KEEPS_ENERGY { node.energy } else { 0.0 };
+            let energy = if case.method.keeps_energy() { node.energy } else { 0.0 };
             SVector::from([node.t, energy, node.q[0], node.q[1], node.p[0], node.p[1]])
         };
         let found = SVector::from([found.t, found.energy, found.q[0], found.q[1], found.p[0], found.p[1]]);

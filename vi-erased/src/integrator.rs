@@ -4,13 +4,17 @@
 //! and drifts are optimised for the system; the others take [`Called`] systems, which build
 //! in a third of the time and differ by rounding.
 
+use crate::method::AnyMethod;
 use crate::plan::{Built, Method, Plan, Shift, Start};
-use crate::simulation::{Erasable, Runnable, ShiftedEnergy, Simulation, Supported, erased, erased_with};
+use crate::simulation::{Derived, Erasable, Runnable, ShiftedEnergy, Simulation, erased};
 use crate::start;
 use core::convert::identity;
+#[cfg(feature = "checkpoints")]
+use serde_json::value::RawValue;
 use vi_core::kind::{Free, Kind};
-use vi_core::method::{Controlled, Shiftable};
-use vi_core::run::Length as _;
+use vi_core::method::{Controlled, Shiftable, Storable};
+#[cfg(feature = "checkpoints")]
+use vi_core::run::Checkpoint;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{
     Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
@@ -40,35 +44,37 @@ pub fn all<S, const N: usize, const K: usize>(of: [Vec<Integrator<S, N>>; K]) ->
     of.into_iter().flatten().collect()
 }
 
-/// Reads a stored run of the method M.
+/// Reads a stored run of a method.
 #[cfg(feature = "checkpoints")]
-fn restarted<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
+fn restarted<S: Runnable<N>, const N: usize>(
     system: S,
-    method: M,
+    method: AnyMethod<S, N>,
     stored: &str,
 ) -> Result<Box<dyn Simulation>, String> {
-    let stored = serde_json::from_str(stored).map_err(|error| error.to_string())?;
+    let stored: Checkpoint<Box<RawValue>, N> = serde_json::from_str(stored).map_err(|error| error.to_string())?;
+    let stored = stored.try_map(|memory| method.memory(memory.get()))?;
     let run = Run::restart(system, method, stored).map_err(|error| error.to_string())?;
-    Ok(erased(run))
+    Ok(erased(run, false))
 }
 
 /// An integrator: which one, the system that it takes, its method for a restart, and how a run begins.
 macro_rules! integrator {
-    ($built:expr, $system:expr, $method:expr, $begin:expr) => {
+    ($built:expr, $wrapped:expr, $method:expr, $begin:expr) => {
         Integrator {
             built: $built,
             begin: $begin,
             #[cfg(feature = "checkpoints")]
-            restart: |system, stored| restarted($system(system), $method, stored),
+            restart: |system, stored| restarted(system, AnyMethod::of($method, $wrapped), stored),
         }
     };
 }
 
 /// An integrator whose runs begin with a plan's step length.
 macro_rules! by_length {
-    ($kind:expr, $stages:expr, $system:expr, $method:expr) => {
-        integrator!(($kind, $stages, false), $system, $method, |system: S, plan: &Plan, state: State<N>, _| {
-            Ok(erased($system(system).at_state(state).integrate($method, plan.length())?))
+    ($kind:expr, $stages:expr, $wrapped:expr, $method:expr) => {
+        integrator!(($kind, $stages, false), $wrapped, $method, |system: S, plan: &Plan, state: State<N>, _| {
+            let method = AnyMethod::of($method, $wrapped);
+            Ok(erased(system.at_state(state).integrate(method, plan.length())?, false))
         })
     };
 }
@@ -138,8 +144,8 @@ where
             if !S::SCALES_TIME {
                 return Err(StepError::NoTimeScale { system: S::NAME });
             }
-            let dtau = plan.dtau.unwrap_or(plan.h);
-            Ok(erased(Called(system).at_state(state).integrate(Gauss::<STAGES>.in_transformed_time(), dtau)?))
+            let method = AnyMethod::of(Gauss::<STAGES>.in_transformed_time(), Called);
+            Ok(erased(system.at_state(state).integrate(method, plan.dtau.unwrap_or(plan.h))?, false))
         }
     )
 }
@@ -155,7 +161,8 @@ where
         identity,
         EnergyPreserving,
         |system: S, plan: &Plan, state: State<N>, _| {
-            let h = plan.length().length(&system.at_state(state), &EnergyPreserving)?;
+            let method = AnyMethod::of(EnergyPreserving, identity);
+            let h = system.at_state(state).length(&method, plan.length())?;
             let State { t, q, .. } = state;
             let v = || state.velocity(&system);
             let run = match plan.start {
@@ -165,21 +172,24 @@ where
                     EnergyPreserving::from_points(system, (t, q), start::second_point(&system, t, q, v()?, h)?)?
                 }
             };
-            Ok(erased(run.with_fallback(fallback(plan))))
+            Ok(erased(AnyMethod::erased(system, run.with_fallback(fallback(plan))), false))
         }
     )
 }
 
 /// An integrator of energy-preserving Gauss steps.
 macro_rules! energy_gauss {
-    ($system:expr) => {
+    ($wrapped:expr) => {
         integrator!(
             (Method::Energy, Some(STAGES), false),
-            $system,
+            $wrapped,
             EnergyPreservingGauss::<STAGES>,
             |system: S, plan: &Plan, state: State<N>, goes_on| {
-                let run = $system(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.length())?;
-                shifted(run, plan, goes_on)
+                let method = AnyMethod::of(EnergyPreservingGauss::<STAGES>, $wrapped);
+                let h = system.at_state(state).length(&method, plan.length())?;
+                let run = $wrapped(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, h)?;
+                let run = AnyMethod::erased(system, shifted(run, plan, goes_on)?);
+                Ok(erased(run, plan.shift.is_some()))
             }
         )
     };
@@ -205,9 +215,9 @@ fn shifted<M, S, const N: usize>(
     run: Run<M, S, N>,
     plan: &Plan,
     goes_on: &mut dyn FnMut() -> bool,
-) -> Result<Box<dyn Simulation>, StepError>
+) -> Result<Run<M, S, N>, StepError>
 where
-    M: Shiftable<S, N> + Erasable<S, N, Memory: Controlled<f64>>,
+    M: Shiftable<S, N, Memory: Controlled<f64>>,
     S: Runnable<N>,
 {
     let run = match plan.shift {
@@ -215,7 +225,7 @@ where
         Some(Shift::Of(shift)) => run.with_shift(shift)?,
         Some(Shift::Over(time)) => run.with_shift_from_while(time, goes_on)?,
     };
-    Ok(erased_with(run.with_fallback(fallback(plan)), plan.shift.is_some()))
+    Ok(run.with_fallback(fallback(plan)))
 }
 
 /// The action if there is no energy-preserving step.
@@ -233,37 +243,37 @@ fn by_corrections(iterations: u32, steps: usize) -> u64 {
 
 impl<S: Runnable<N>, const N: usize> Erasable<S, N> for FixedStep
 where
-    FixedStep: Supported<S, N>,
+    FixedStep: Derived<S, N, Memory: Storable>,
 {
-    fn evaluations(run: &Run<Self, S, N>) -> u64 {
-        by_corrections(run.iterations(), 1)
+    fn evaluations(&self, iterations: u32) -> u64 {
+        by_corrections(iterations, 1)
     }
 }
 
 impl<S: Runnable<N>, const N: usize> Erasable<S, N> for Composition
 where
-    Composition: Supported<S, N>,
+    Composition: Derived<S, N, Memory: Storable>,
 {
-    fn evaluations(run: &Run<Self, S, N>) -> u64 {
-        by_corrections(run.iterations(), run.method().weights.len())
+    fn evaluations(&self, iterations: u32) -> u64 {
+        by_corrections(iterations, self.weights.len())
     }
 }
 
 impl<S: Runnable<N>, const N: usize> Erasable<S, N> for Splitting
 where
-    Splitting: Supported<S, N>,
+    Splitting: Derived<S, N, Memory: Storable>,
 {
-    fn evaluations(run: &Run<Self, S, N>) -> u64 {
-        run.method().forces() as u64
+    fn evaluations(&self, _iterations: u32) -> u64 {
+        self.forces() as u64
     }
 }
 
 impl<S: EnergyStepping<N> + Runnable<N>, const N: usize> Erasable<S, N> for EnergyPreserving
 where
-    EnergyPreserving: Supported<S, N>,
+    EnergyPreserving: Derived<S, N, Memory: Storable>,
 {
-    fn evaluations(run: &Run<Self, S, N>) -> u64 {
-        by_corrections(run.iterations(), 1)
+    fn evaluations(&self, iterations: u32) -> u64 {
+        by_corrections(iterations, 1)
     }
 
     fn sampled_energy(run: &Run<Self, S, N>) -> Result<(f64, f64), StepError> {
@@ -275,28 +285,28 @@ where
 
 impl<S: Runnable<N>, const N: usize, const STAGES: usize> Erasable<S, N> for Gauss<STAGES>
 where
-    Gauss<STAGES>: Supported<S, N>,
+    Gauss<STAGES>: Derived<S, N, Memory: Storable>,
 {
-    fn evaluations(run: &Run<Self, S, N>) -> u64 {
-        u64::from(run.iterations()) * STAGES as u64
+    fn evaluations(&self, iterations: u32) -> u64 {
+        u64::from(iterations) * STAGES as u64
     }
 }
 
 impl<S: Runnable<N>, const N: usize, const STAGES: usize> Erasable<S, N> for InTransformedTime<Gauss<STAGES>>
 where
-    InTransformedTime<Gauss<STAGES>>: Supported<S, N>,
+    InTransformedTime<Gauss<STAGES>>: Derived<S, N, Memory: Storable>,
 {
-    fn evaluations(run: &Run<Self, S, N>) -> u64 {
-        u64::from(run.iterations()) * STAGES as u64
+    fn evaluations(&self, iterations: u32) -> u64 {
+        u64::from(iterations) * STAGES as u64
     }
 }
 
 impl<S: Runnable<N>, const N: usize, const STAGES: usize> Erasable<S, N> for EnergyPreservingGauss<STAGES>
 where
-    EnergyPreservingGauss<STAGES>: Supported<S, N>,
+    EnergyPreservingGauss<STAGES>: Derived<S, N, Memory: Storable>,
 {
-    fn evaluations(run: &Run<Self, S, N>) -> u64 {
-        u64::from(run.iterations()) * STAGES as u64
+    fn evaluations(&self, iterations: u32) -> u64 {
+        u64::from(iterations) * STAGES as u64
     }
 
     fn shifted_energy(run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {

@@ -9,6 +9,7 @@
 //! |---|---|
 //! | [`plan`] | the description of a run |
 //! | [`integrator`] | an integrator that is built for a system |
+//! | [`method`] | a method behind a pointer: runs are compiled once for each system |
 //! | [`system`] | a system with its parameters |
 //! | [`simulation`] | a started run |
 //! | `session` | a run in the hands of a program; feature `sessions` |
@@ -22,6 +23,7 @@ pub mod control;
 #[cfg(feature = "derivatives")]
 pub mod derivatives;
 pub mod integrator;
+pub mod method;
 pub mod plan;
 pub mod section;
 #[cfg(feature = "sessions")]

@@ -8,8 +8,13 @@
 use crate::control::Linear;
 #[cfg(feature = "derivatives")]
 use crate::derivatives;
+#[cfg(feature = "checkpoints")]
+use crate::method::AnyMemory;
+use crate::method::{AnyMethod, Progress};
 use crate::section::Section;
-use crate::simulation::{Erasable, Met, Runnable, Simulated, Simulation, met, vector};
+use crate::simulation::{Met, Runnable, Simulated, Simulation, met, vector};
+#[cfg(feature = "checkpoints")]
+use serde_json::value::RawValue;
 #[cfg(feature = "derivatives")]
 use vi_core::derivatives::Covector;
 #[cfg(feature = "checkpoints")]
@@ -174,7 +179,7 @@ pub trait Session {
     ) -> Result<Option<Vec<f64>>, StepError>;
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
+impl<S: Runnable<N>, const N: usize> Simulated<S, N> {
     /// Takes one step toward the time `end`; returns whether the run is there.
     #[inline(never)]
     fn approach(&mut self, end: f64) -> Result<bool, StepError> {
@@ -185,7 +190,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     }
 
     /// Continues as a run with other parameters or at another state.
-    fn continue_as(&mut self, run: Run<M, S, N>) {
+    fn continue_as(&mut self, run: Run<AnyMethod<S, N>, S, N>) {
         // An unfinished window of measurement belongs to the system and the steps of before.
         self.resume();
         self.run = run;
@@ -198,7 +203,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
     }
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M, S, N> {
+impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
     fn velocity(&self) -> Result<Vec<f64>, StepError> {
         Ok(self.run.velocity()?.as_slice().to_vec())
     }
@@ -244,17 +249,13 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
             self.run.check_ahead(end)?;
         }
         let until = taken.saturating_add(most);
-        let is_far = |run: &Run<M, S, N>| {
+        let is_far = |run: &dyn Progress<N>| {
             end.is_none_or(|end| (run.time_to(end) - 2.0 * run.longest()) * run.h().signum() > 0.0)
         };
         let mut is_first = true;
-        let mut monitor = self.monitor.take();
-        let mut goes_on = |run: &Run<M, S, N>| {
+        let mut goes_on = |run: &dyn Progress<N>| {
             if !is_first {
                 *taken += 1;
-                if let Some(monitor) = &mut monitor {
-                    monitor.watch(run);
-                }
                 if taken.is_multiple_of(every) {
                     rows.push_state(&run.state());
                 }
@@ -263,7 +264,6 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
             *taken < until && is_far(run)
         };
         let mut outcome = self.advance_while(&mut goes_on).map(|()| false);
-        self.monitor = monitor;
         // The last steps are shortened, or lengthened by a rounding, to end there.
         while outcome == Ok(false)
             && *taken < until
@@ -279,15 +279,14 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
     }
 
     fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError> {
-        let mut states = self.run.states_at(times.iter().copied());
-        let outcome = states.try_for_each(|state| state.map(|state| rows.push_state(&state)));
+        let outcome = AnyMethod::states_at(&mut self.run, times, &mut |state| rows.push_state(&state));
         self.resume();
         outcome
     }
 
     fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError> {
         let events: Vec<_> = sections.iter().map(Section::event).collect();
-        let crossing = self.run.next_event(events, end);
+        let crossing = AnyMethod::next_event(&mut self.run, &events, end);
         self.resume();
         Ok(crossing?.map(|crossing| met(self.run.system(), &crossing)))
     }
@@ -303,12 +302,15 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
 
     #[cfg(feature = "checkpoints")]
     fn checkpoint(&self) -> Result<String, String> {
-        let text = serde_json::to_string(&self.run.checkpoint()).map_err(|error| error.to_string())?;
+        let lost = || format!("a number of the run is not finite at t = {}: it cannot be stored", self.run.t());
+        let raw = |memory: AnyMemory<S, N>| {
+            memory.text().and_then(|text| RawValue::from_string(text).map_err(|error| error.to_string()))
+        };
+        let checkpoint = self.run.checkpoint().try_map(raw).map_err(|_| lost())?;
+        let text = serde_json::to_string(&checkpoint).map_err(|error| error.to_string())?;
         // JSON has no infinite number: it writes null.
-        match serde_json::from_str::<Checkpoint<M::Memory, N>>(&text) {
-            Ok(_) => Ok(text),
-            Err(_) => Err(format!("a number of the run is not finite at t = {}: it cannot be stored", self.run.t())),
-        }
+        serde_json::from_str::<Checkpoint<Box<RawValue>, N>>(&text).map_err(|_| lost())?;
+        Ok(text)
     }
 
     #[cfg(feature = "derivatives")]
@@ -354,7 +356,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Session for Simulated<M,
 }
 
 #[cfg(feature = "derivatives")]
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
+impl<S: Runnable<N>, const N: usize> Simulated<S, N> {
     /// Whether the run is where it began.
     fn begins(&self) -> bool {
         self.start.as_ref() == Some(self.run.node())

@@ -4,15 +4,18 @@
 //! node. The numbers are those of the generic integrators, to the last bit, and loops over steps are inside, without
 //! virtual calls.
 
+use crate::method::{AnyMethod, GoesOn, Progress};
 use crate::section::Section;
 #[cfg(feature = "sessions")]
 use crate::session::Session;
 use std::borrow::Cow;
 #[cfg(feature = "derivatives")]
-use vi_core::derivatives::Differentiable as Derived;
+/// A method, with derivatives if the feature asks for them.
+pub use vi_core::derivatives::Differentiable as Derived;
 use vi_core::kind::Kind;
 use vi_core::lagrangian::Parameters;
 use vi_core::linear::Rectangular as _;
+use vi_core::method::Storable;
 #[cfg(feature = "derivatives")]
 use vi_core::node::Node;
 use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor};
@@ -215,9 +218,9 @@ pub(crate) fn wrong_size(values: &[f64], input: &'static str) -> StepError {
 }
 
 /// A method whose runs are erased: what its rows and its evaluations are.
-pub trait Erasable<S: Runnable<N>, const N: usize>: Supported<S, N> {
-    /// Evaluations of the equations in the last step of a run.
-    fn evaluations(run: &Run<Self, S, N>) -> u64;
+pub trait Erasable<S: Runnable<N>, const N: usize>: Derived<S, N, Memory: Storable> + 'static {
+    /// Evaluations of the equations in a step with these iterations.
+    fn evaluations(&self, iterations: u32) -> u64;
 
     /// Time and H at which H is most accurate.
     ///
@@ -232,6 +235,10 @@ pub trait Erasable<S: Runnable<N>, const N: usize>: Supported<S, N> {
         None
     }
 }
+
+/// A method, with derivatives if the feature asks for them.
+#[cfg(not(feature = "derivatives"))]
+pub use vi_core::Method as Derived;
 
 /// The constraints at a state; `None` for systems without.
 fn at_constraints<S: Runnable<N>, const N: usize>(system: &S, state: &State<N>) -> Option<AtConstraints> {
@@ -270,17 +277,10 @@ fn largest(values: &[f64]) -> f64 {
 pub trait Runnable<const N: usize>: Convertible<N> + Parameters + Send + Sync + 'static {}
 impl<S: Convertible<N> + Parameters + Send + Sync + 'static, const N: usize> Runnable<N> for S {}
 
-#[cfg(not(feature = "derivatives"))]
-use Method as Derived;
-
-/// A method with all that the features ask of it.
-pub trait Supported<S: Runnable<N>, const N: usize>: Derived<S, N> + 'static {}
-impl<M: Derived<S, N> + 'static, S: Runnable<N>, const N: usize> Supported<S, N> for M {}
-
 /// A run with a method, and the data for its rows.
 #[derive(Clone)]
-pub(crate) struct Simulated<M: Method<S, N>, S, const N: usize> {
-    pub(crate) run: Run<M, S, N>,
+pub(crate) struct Simulated<S: Runnable<N>, const N: usize> {
+    pub(crate) run: Run<AnyMethod<S, N>, S, N>,
     evaluations: u64,
     /// The node where the run began, until its state or its parameters change: the energy that it keeps follows from it.
     #[cfg(feature = "derivatives")]
@@ -289,20 +289,15 @@ pub(crate) struct Simulated<M: Method<S, N>, S, const N: usize> {
     is_shifted: bool,
     /// Length of the last step, if it was shortened.
     pub(crate) shortened: Option<f64>,
-    pub(crate) monitor: Option<Box<ErrorMonitor<M, S, N>>>,
+    pub(crate) monitor: Option<Box<ErrorMonitor<AnyMethod<S, N>, S, N>>>,
 }
 
 /// Relative deviation below which a length counts as the step of the run.
 const ROUNDED: f64 = 1e-9;
 
-/// The same run, type-erased.
-pub fn erased<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(run: Run<M, S, N>) -> Box<dyn Simulation> {
-    erased_with(run, false)
-}
-
-/// The same, with E' in its rows if `is_shifted`.
-pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
-    run: Run<M, S, N>,
+/// The same run, type-erased, with E' in its rows if `is_shifted`.
+pub(crate) fn erased<S: Runnable<N>, const N: usize>(
+    run: Run<AnyMethod<S, N>, S, N>,
     is_shifted: bool,
 ) -> Box<dyn Simulation> {
     Box::new(Simulated {
@@ -316,30 +311,26 @@ pub(crate) fn erased_with<M: Erasable<S, N>, S: Runnable<N>, const N: usize>(
     })
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulated<M, S, N> {
+impl<S: Runnable<N>, const N: usize> Simulated<S, N> {
     /// Takes notice of the last step.
     pub(crate) fn count(&mut self) {
-        self.evaluations += M::evaluations(&self.run);
+        self.evaluations += self.run.method().evaluations(self.run.iterations());
         if let Some(monitor) = &mut self.monitor {
             monitor.watch(&self.run);
         }
     }
 
-    /// Takes steps while `goes_on`, which gets the run before each step. The only loop over steps: each further one would
-    /// be a copy of the step.
-    pub(crate) fn advance_while(&mut self, goes_on: &mut dyn FnMut(&Run<M, S, N>) -> bool) -> Result<(), StepError> {
-        // A local copy of the run: behind a pointer its numbers would go through memory in every step.
-        let mut run = self.run.clone();
-        let mut outcome = Ok(());
-        while outcome.is_ok() && goes_on(&run) {
-            outcome = run.step().map(drop);
-            if outcome.is_ok() {
-                self.evaluations += M::evaluations(&run);
-            }
-        }
-        self.run = run;
+    /// Takes steps while `goes_on`, which gets the run before each step. The loop is compiled for each method.
+    pub(crate) fn advance_while(&mut self, goes_on: GoesOn<'_, N>) -> Result<(), StepError> {
         self.shortened = None;
-        outcome
+        if self.monitor.is_some() {
+            while goes_on(&self.run) {
+                self.run.single_step()?;
+                self.count();
+            }
+            return Ok(());
+        }
+        AnyMethod::advance_while(&mut self.run, &mut self.evaluations, goes_on)
     }
 
     /// Forgets a jump of the run.
@@ -367,7 +358,7 @@ pub(crate) fn met<S: Runnable<N>, const N: usize>(system: &S, crossing: &Crossin
     Met { row, events: events.iter().map(|met| (met.event, met.is_rising)).collect() }
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S, N> {
+impl<S: Runnable<N>, const N: usize> Steps for Simulated<S, N> {
     fn t(&self) -> f64 {
         self.run.t()
     }
@@ -399,7 +390,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S
     }
 
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
-        M::shifted_energy(&self.run).filter(|of| self.is_shifted || of.shift != 0.0)
+        AnyMethod::shifted_energy(&self.run).filter(|of| self.is_shifted || of.shift != 0.0)
     }
 
     fn constraints(&self) -> Option<AtConstraints> {
@@ -419,7 +410,7 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S
         let is_beyond = |left: f64| left * h.signum() < -rounding;
         if is_beyond(left - self.run.longest()) {
             // Steps that solve for their length must be taken to know it.
-            let ahead = if M::FINDS_LENGTH { Some(self.run.after_a_step()?) } else { None };
+            let ahead = if self.run.method().finds_length() { Some(self.run.after_a_step()?) } else { None };
             let Some(ahead) = ahead.filter(|ahead| !is_beyond(ahead.time_to(end))) else {
                 self.run.end_at(end)?;
                 self.shortened = Some(left);
@@ -448,14 +439,14 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Steps for Simulated<M, S
     }
 }
 
-impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated<M, S, N> {
+impl<S: Runnable<N>, const N: usize> Simulation for Simulated<S, N> {
     fn evaluations(&self) -> u64 {
         self.evaluations
     }
 
     fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
         let mut taken = 0;
-        let mut goes_on = |run: &Run<M, S, N>| {
+        let mut goes_on = |run: &dyn Progress<N>| {
             let goes_on = taken < most && run.t() < end;
             taken += u64::from(goes_on);
             goes_on
@@ -468,18 +459,20 @@ impl<M: Erasable<S, N>, S: Runnable<N>, const N: usize> Simulation for Simulated
         let system = *self.run.system();
         let events: Vec<_> = sections.iter().map(Section::event).collect();
         let mut outcome = Ok(());
-        for crossing in self.run.events(events, end) {
-            match crossing {
-                Ok(crossing) if take(met(&system, &crossing)) => {}
-                Ok(_) => break,
-                Err(error) => outcome = Err(error),
+        AnyMethod::events(&mut self.run, &events, end, &mut |crossings| {
+            for crossing in crossings {
+                match crossing {
+                    Ok(crossing) if take(met(&system, &crossing)) => {}
+                    Ok(_) => break,
+                    Err(error) => outcome = Err(error),
+                }
             }
-        }
+        });
         self.resume();
         outcome
     }
 
     fn sampled_energy(&self) -> Result<(f64, f64), StepError> {
-        M::sampled_energy(&self.run)
+        AnyMethod::sampled_energy(&self.run)
     }
 }

@@ -116,10 +116,11 @@ where
     }
     let mut slope = finite(objective.slope(steps, &ahead.state()), ahead.t())?;
     let mut directions = Variation::of_state();
-    if M::KEEPS_ENERGY {
+    let keeps_energy = run.method().keeps_energy();
+    if keeps_energy {
         directions.push(Variation { energy: 1.0, ..Variation::zero() });
     }
-    let is_autonomous = !M::DEPENDS_ON_TIME;
+    let is_autonomous = !run.method().depends_on_time();
     if !is_autonomous {
         directions.push(Variation { t: 1.0, ..Variation::zero() });
     }
@@ -145,7 +146,7 @@ where
             after.vary(before.node(), &mut variations)?;
             changes.clear();
             changes.extend(variations.iter().map(|variation| slope.of(variation)));
-            if M::KEEPS_ENERGY && (are_varied || !have_equal_parameters(before.system(), after.system())) {
+            if keeps_energy && (are_varied || !have_equal_parameters(before.system(), after.system())) {
                 let state = before.node().state();
                 let gained = changes_of_energy(after.system(), &state, &directions)?;
                 let lost = changes_of_energy(before.system(), &state, &directions)?;
@@ -158,7 +159,7 @@ where
                     *change += of_energy * gained[index] - lost;
                 }
             }
-            let (mut back, of_parameters) = sorted::<M, S, N>(&changes);
+            let (mut back, of_parameters) = sorted(&changes, keeps_energy, !is_autonomous);
             if is_autonomous {
                 // A later start does not change an autonomous trajectory.
                 back.t = slope.t;
@@ -226,12 +227,12 @@ fn have_equal_parameters<S: Lagrangian<N>, const N: usize>(one: &S, other: &S) -
 
 /// Splits the derivatives in all directions: the covector at the start of a step, and the derivatives with respect to
 /// the parameters of the step.
-fn sorted<M: Differentiable<S, N>, S: Convertible<N>, const N: usize>(changes: &[f64]) -> (Covector<N>, Vec<f64>) {
+fn sorted<const N: usize>(changes: &[f64], keeps_energy: bool, depends_on_time: bool) -> (Covector<N>, Vec<f64>) {
     let mut changes = changes.iter().copied();
     let mut next = || changes.next().unwrap_or(0.0);
     let q = SVector::from_fn(|_, _| next());
     let p = SVector::from_fn(|_, _| next());
-    let energy = if M::KEEPS_ENERGY { next() } else { 0.0 };
-    let t = if M::DEPENDS_ON_TIME { next() } else { 0.0 };
+    let energy = if keeps_energy { next() } else { 0.0 };
+    let t = if depends_on_time { next() } else { 0.0 };
     (Covector { t, q, p, energy }, changes.collect())
 }

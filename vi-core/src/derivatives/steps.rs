@@ -22,9 +22,13 @@ use nalgebra::{SMatrix, SVector};
 /// A method whose steps have derivatives.
 pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
     /// Whether the preserved energy is a variable beside coordinates and momenta.
-    const KEEPS_ENERGY: bool = false;
+    fn keeps_energy(&self) -> bool {
+        false
+    }
     /// Whether a step depends on its start time.
-    const DEPENDS_ON_TIME: bool = !S::AUTONOMOUS;
+    fn depends_on_time(&self) -> bool {
+        !S::AUTONOMOUS
+    }
 
     /// [`Run::vary`].
     ///
@@ -354,7 +358,9 @@ where
     S: EnergyStepping<N> + Discretized<N>,
     S::Steps<Varied>: EnergyStepping<N, Varied>,
 {
-    const KEEPS_ENERGY: bool = true;
+    fn keeps_energy(&self) -> bool {
+        true
+    }
 
     /// The preserved energy is a variable beside q and p, and the step length varies. With [`Fallback::FixedSteps`] the
     /// energy may jump, so that the run has no derivative: [`StepError::NoDerivative`].

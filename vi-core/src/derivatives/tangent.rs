@@ -214,7 +214,7 @@ where
     /// # Errors
     /// As [`State::velocity`].
     pub fn from_change(run: Run<M, S, N>, mut variations: Vec<Variation<N>>) -> Result<Self, StepError> {
-        if M::KEEPS_ENERGY {
+        if run.method().keeps_energy() {
             let changes = changes_of_energy(run.system(), &run.node().state(), &variations)?;
             variations.iter_mut().zip(changes).for_each(|(variation, change)| variation.energy = change);
         }
@@ -312,7 +312,7 @@ where
     /// Adds the change of the derivatives of H to those of the preserved energy, after a change of the vectors.
     fn gain_energy(&mut self, before: &[f64], after: &[f64]) -> Result<(), StepError> {
         self.are_admissible = false;
-        if M::KEEPS_ENERGY {
+        if self.run.method().keeps_energy() {
             for (variation, (before, after)) in self.variations.iter_mut().zip(before.iter().zip(after)) {
                 variation.energy += after - before;
             }

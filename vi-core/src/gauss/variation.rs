@@ -51,7 +51,9 @@ impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for EnergyPres
 where
     S: Convertible<N>,
 {
-    const KEEPS_ENERGY: bool = true;
+    fn keeps_energy(&self) -> bool {
+        true
+    }
 
     /// As for [`EnergyPreserving`](crate::EnergyPreserving). The shift does not vary. With constraints
     /// [`StepError::NoDerivative`].

@@ -79,7 +79,9 @@ where
     type Left = StepError;
     type DenseOutput = Hermite<N>;
 
-    const HAS_REACTIONS: bool = true;
+    fn has_reactions(&self) -> bool {
+        true
+    }
 
     fn order(&self) -> u32 {
         self.scheme.order

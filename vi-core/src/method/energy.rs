@@ -55,7 +55,9 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
-    const FINDS_LENGTH: bool = true;
+    fn finds_length(&self) -> bool {
+        true
+    }
 
     fn order(&self) -> u32 {
         2

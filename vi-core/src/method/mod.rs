@@ -53,7 +53,7 @@ pub use transformed::InTransformedTime;
 
 use crate::error::StepError;
 use crate::node::Node;
-use crate::real::{Scalar, Storable};
+use crate::real::Scalar;
 use crate::run::DenseOutput;
 use crate::state::State;
 use core::fmt::Debug;
@@ -79,8 +79,20 @@ impl<S, P, const N: usize, T: Copy> Clone for Problem<'_, S, P, N, T> {
 
 impl<S, P, const N: usize, T: Copy> Copy for Problem<'_, S, P, N, T> {}
 
+/// Data that a checkpoint can store: with the feature `serde`, data that serde writes and reads.
+#[cfg(feature = "serde")]
+pub trait Storable: serde::Serialize + serde::de::DeserializeOwned {}
+#[cfg(feature = "serde")]
+impl<Y: serde::Serialize + serde::de::DeserializeOwned> Storable for Y {}
+
+/// Data that a checkpoint can store: with the feature `serde`, data that serde writes and reads.
+#[cfg(not(feature = "serde"))]
+pub trait Storable {}
+#[cfg(not(feature = "serde"))]
+impl<Y> Storable for Y {}
+
 /// Data that a run carries between steps, beside its node.
-pub trait Memory: Clone + Debug + Send + Sync + Storable {
+pub trait Memory: Clone + Debug + Send + Sync {
     /// A copy that shares no memory with this one.
     ///
     /// A small memory passes each number through `black_box`, so that a loop over steps keeps its own numbers in
@@ -130,10 +142,14 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
     type DenseOutput: DenseOutput<N, T> + Send + Sync + 'static;
 
     /// Whether [`Method::solve`] finds the step length itself.
-    const FINDS_LENGTH: bool = false;
+    fn finds_length(&self) -> bool {
+        false
+    }
 
     /// Whether the method takes systems with constraints, whose reactions may do work.
-    const HAS_REACTIONS: bool = false;
+    fn has_reactions(&self) -> bool {
+        false
+    }
 
     /// Name of the rule, unless it is the first rule of the system. A checkpoint stores it.
     fn rule(&self) -> Option<&'static str> {

@@ -60,7 +60,9 @@ where
     type DenseOutput = TransformedPolynomial<N, STAGES>;
 
     // No bound of the change of g from step to step is known.
-    const FINDS_LENGTH: bool = true;
+    fn finds_length(&self) -> bool {
+        true
+    }
 
     #[allow(clippy::cast_possible_truncation)] // 16 stages at most
     fn order(&self) -> u32 {

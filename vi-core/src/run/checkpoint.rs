@@ -86,6 +86,16 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 }
 
 impl<Y, const N: usize, T: Scalar> Checkpoint<Y, N, T> {
+    /// The same with the memory that `of` makes of this one.
+    ///
+    /// # Errors
+    /// Those of `of`.
+    #[doc(hidden)]
+    pub fn try_map<Z, E>(self, of: impl FnOnce(Y) -> Result<Z, E>) -> Result<Checkpoint<Z, N, T>, E> {
+        let Self { system, rule, parameters, run: Stored { node, turns, h, memory } } = self;
+        Ok(Checkpoint { system, rule, parameters, run: Stored { node, turns, h, memory: of(memory)? } })
+    }
+
     /// Returns the stored data, if system, rule and parameters agree.
     fn run_of<S: Lagrangian<N, T>>(self, system: &S, rule: Option<&'static str>) -> Result<Stored<Y, N, T>, StepError> {
         let other = |parameter, stored, given| StepError::OtherSystem { system: S::NAME, parameter, stored, given };

@@ -155,7 +155,7 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let hv = v.map(|entry| length * entry.to_f64());
     let action = v.zip_map(&after.p, |v, p| (v.to_f64() * p.to_f64()).abs());
     let stiffness = stiffness(system, after, &hv);
-    let energy = energy_error::<M, S, N, T>(system, [start, (after.state(), v)], action.sum());
+    let energy = energy_error(method, system, [start, (after.state(), v)], action.sum());
     let error = q.zip_map(&error_of_hv, f64::max).zip_map(&unresolved, f64::max);
     Ok(Measurement { error, of: LocalError { q, hv: error_of_hv }, hv, action, stiffness, energy })
 }
@@ -186,11 +186,12 @@ fn unresolved<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T:
 /// A step into a wall that its points of evaluation do not see ends at the right place of a motion without the wall, and
 /// so may its halves.
 fn energy_error<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
+    method: &M,
     system: &S,
     ends: [(State<N, T>, SVector<T, N>); 2],
     action: f64,
 ) -> f64 {
-    if !S::AUTONOMOUS || S::FORCED || M::HAS_REACTIONS {
+    if !S::AUTONOMOUS || S::FORCED || method.has_reactions() {
         return 0.0;
     }
     let [before, after] = ends.map(|(State { t, q, .. }, v)| system.energy(t, &q, &v).to_f64());
@@ -375,7 +376,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
         // The change of the mean force, as a displacement. The steps of a damped motion grow: their errors increase
         // while its momenta decay.
-        let unit = if M::FINDS_LENGTH { h * h * h * h } else { h * h };
+        let unit = if run.method.finds_length() { h * h * h * h } else { h * h };
         let mut indicator = T::zero();
         for i in 0..N {
             let excursion = (node.q[i] - self.start.q[i]).abs();

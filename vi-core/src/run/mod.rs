@@ -92,10 +92,20 @@ impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Start<S, N, T> {
         angles::check::<S, N, T>(&state.q, &Turns::zeros())?;
         let mut node = Node::new(state, T::zero());
         let explained = |failure: StepError| failure.explained_at(&system, &Node::new(state, T::zero()), T::zero());
-        let h = h.length(&self, &method).map_err(explained)?;
+        let h = self.length(&method, h)?;
         method.check_length(h)?;
         let memory = method.begin(&system, &mut node, h).map_err(explained)?;
         Ok(Run::resumed(method, system, (node, h, memory)))
+    }
+
+    /// The length of the steps of a method from here.
+    ///
+    /// # Errors
+    /// Those of [`Start::integrate`] for this length.
+    #[doc(hidden)]
+    pub fn length<M: Method<S, N, T>>(&self, method: &M, h: impl Length<T>) -> Result<T, StepError> {
+        let node = Node::new(self.state, T::zero());
+        h.length(self, method).map_err(|failure| failure.explained_at(&self.system, &node, T::zero()))
     }
 }
 
@@ -339,6 +349,53 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     #[inline(never)]
     pub fn single_step(&mut self) -> Result<State<N, T>, StepError> {
         self.step()
+    }
+}
+
+/// What a run carries from step to step beside its method and its system, for runs behind a pointer.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct Parts<Y, const N: usize> {
+    node: Node<N>,
+    turns: Turns<N>,
+    h: f64,
+    memory: Y,
+    failure: Option<StepError>,
+}
+
+impl<Y, const N: usize> Parts<Y, N> {
+    /// The same with another memory.
+    pub fn with<Z>(self, memory: Z) -> Parts<Z, N> {
+        let Self { node, turns, h, failure, .. } = self;
+        Parts { node, turns, h, memory, failure }
+    }
+}
+
+impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
+    /// The parts of the run without the memory.
+    #[doc(hidden)]
+    pub fn parts(&self) -> Parts<(), N> {
+        let Self { node, turns, h, failure, .. } = self;
+        Parts { node: *node, turns: *turns, h: *h, memory: (), failure: *failure }
+    }
+
+    /// The memory of the method, of a run that ends.
+    #[doc(hidden)]
+    pub fn into_memory(self) -> M::Memory {
+        self.memory
+    }
+
+    /// The run of these parts.
+    #[doc(hidden)]
+    pub fn from_parts(method: M, system: S, parts: Parts<M::Memory, N>) -> Self {
+        let Parts { node, turns, h, memory, failure } = parts;
+        Self { turns, failure, ..Self::resumed(method, system, (node, h, memory)) }
+    }
+
+    /// The memory of the method.
+    #[doc(hidden)]
+    pub fn memory(&self) -> &M::Memory {
+        &self.memory
     }
 }
 

@@ -104,7 +104,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
         if beyond < 0.0 {
             return step(self).map(|_| false);
         }
-        if M::FINDS_LENGTH {
+        if self.method.finds_length() {
             let ahead = self.after_a_step()?;
             if ahead.time_to(t) * direction >= 0.0 {
                 *self = ahead;
@@ -133,7 +133,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
             return Ok(());
         }
         // A remainder of exactly one step is the next step.
-        let is_next = !M::FINDS_LENGTH && left.to_bits() == self.h().to_bits();
+        let is_next = !self.method.finds_length() && left.to_bits() == self.h().to_bits();
         let outcome = if is_next { self.single_step() } else { self.step_of(left) };
         outcome.map(|_| self.set_time(t))
     }

@@ -39,9 +39,14 @@ impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for InTransfor
 where
     S: TimeScale<N> + Convertible<N>,
 {
-    const KEEPS_ENERGY: bool = true;
+    fn keeps_energy(&self) -> bool {
+        true
+    }
+
     /// Steps also depend on the time through g.
-    const DEPENDS_ON_TIME: bool = true;
+    fn depends_on_time(&self) -> bool {
+        true
+    }
 
     /// Allocates the joint matrix of all stages.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {

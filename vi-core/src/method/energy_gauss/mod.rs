@@ -56,7 +56,7 @@ use super::bounds::{Control, Controlled, FORWARD, Phase, check_forward};
 use super::gauss::Gauss;
 use super::preserving::{PreservingStep, StepsOfAnyLength, check_power, failed, measured, order};
 use super::shift::{Shiftable, StepPower};
-use super::{Memory, Method, Problem, Report};
+use super::{Memory, Method, Problem, Report, Storable};
 #[cfg(feature = "alloc")]
 use crate::derivatives::Variation;
 use crate::energy_preserving::start::check_density;
@@ -68,7 +68,6 @@ use crate::lagrangian::Lagrangian;
 use crate::method::length::Trial;
 use crate::motion::Motion;
 use crate::node::Node;
-use crate::real::Storable;
 use crate::run::{DenseOutput, Run};
 use crate::state::State;
 use crate::stepping::Convertible;
@@ -244,9 +243,9 @@ pub struct Lengths<Steps> {
     pub(crate) course: StepHistory,
 }
 
-impl<Steps: Clone + Debug + Send + Sync + Storable> Memory for Lengths<Steps> {}
+impl<Steps: Clone + Debug + Send + Sync> Memory for Lengths<Steps> {}
 
-impl<Steps: Clone + Debug + Send + Sync + Storable> Controlled<f64> for Lengths<Steps> {
+impl<Steps: Clone + Debug + Send + Sync> Controlled<f64> for Lengths<Steps> {
     fn control(&self) -> &Control {
         &self.course.control
     }
@@ -294,8 +293,13 @@ where
     type Left = StepError;
     type DenseOutput = <Solver<S, N, STAGES> as LengthSolver<S, N, STAGES>>::DenseOutput;
 
-    const FINDS_LENGTH: bool = true;
-    const HAS_REACTIONS: bool = S::Kind::COUNT > 0;
+    fn finds_length(&self) -> bool {
+        true
+    }
+
+    fn has_reactions(&self) -> bool {
+        S::Kind::COUNT > 0
+    }
 
     #[allow(clippy::cast_possible_truncation)] // 3 stages at most
     fn order(&self) -> u32 {

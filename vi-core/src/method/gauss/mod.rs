@@ -12,7 +12,7 @@
 pub mod bound;
 pub mod free;
 
-use super::{Method, Problem, Report};
+use super::{Method, Problem, Report, Storable};
 #[cfg(feature = "alloc")]
 use crate::derivatives::Variation;
 use crate::error::StepError;
@@ -32,7 +32,7 @@ pub use free::FreeGauss;
 pub struct Gauss<const STAGES: usize>;
 
 /// A solver of Gauss steps.
-pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N> + Default {
+pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memory: Storable> + Default {
     /// Maps tangent vectors at `before`, the start of the step that led to the node, to those at its end.
     ///
     /// # Errors
@@ -67,7 +67,9 @@ where
     type Left = <Solver<S, N, STAGES> as Method<S, N>>::Left;
     type DenseOutput = <Solver<S, N, STAGES> as Method<S, N>>::DenseOutput;
 
-    const HAS_REACTIONS: bool = S::Kind::COUNT > 0;
+    fn has_reactions(&self) -> bool {
+        S::Kind::COUNT > 0
+    }
 
     #[allow(clippy::cast_possible_truncation)] // 16 stages at most
     fn order(&self) -> u32 {
