@@ -4,7 +4,7 @@
 //! satisfies the constraints at its end. It is symmetric, and for holonomic constraints without force symplectic.
 //! [`Gauss`] with more stages has the same orders with positive substeps, and tolerates damping.
 //!
-//! Each substep is extrapolated from the same substep of earlier steps. A step allocates the unknowns of its substeps.
+//! Each substep is extrapolated from the same substep of earlier steps.
 
 use super::gauss::bound::{ConstrainedStep, ConstrainedSteps};
 use super::{Composition, Gauss, Memory, Method, Problem, Report};
@@ -68,13 +68,29 @@ pub struct ComposedSteps<const N: usize> {
 
 impl<const N: usize> Memory for ComposedSteps<N> {}
 
+/// Buffers of a composition.
+#[derive(Clone, Debug)]
+pub struct Substeps<const N: usize, M> {
+    workspace: Option<Box<Workspace>>,
+    /// Empty between steps.
+    steps: Vec<ConstrainedStep<N, M>>,
+    /// One for each substep of the next step.
+    unknowns: Vec<Vec<f64>>,
+}
+
+impl<const N: usize, M> Default for Substeps<N, M> {
+    fn default() -> Self {
+        Self { workspace: None, steps: Vec::new(), unknowns: Vec::new() }
+    }
+}
+
 impl<S, const N: usize, const K: usize, F: Form> Method<S, N> for Composed<Gauss<1>>
 where
     S: Convertible<N, Kind = Bound<K, F>>,
 {
     type Prepared = ();
     type Memory = ComposedSteps<N>;
-    type Cache = Option<Box<Workspace>>;
+    type Cache = Substeps<N, Multipliers<S, N>>;
     type Step = Vec<ConstrainedStep<N, Multipliers<S, N>>>;
     type Left = StepError;
     type DenseOutput = Hermite<N>;
@@ -102,15 +118,19 @@ where
     ) -> Result<Self::Step, StepError> {
         let Problem { system, node, h, .. } = at;
         let mut after = *node;
-        let mut steps = Vec::with_capacity(memory.all.len());
+        let Substeps { workspace, steps, unknowns } = cache;
+        let mut steps = core::mem::take(steps);
         for (own, h) in memory.all.iter().zip(self.scheme.lengths(h)) {
             let problem = Problem { system, prepared: &(), node: &after, h };
+            if let (Some(workspace), Some(unknowns)) = (workspace.as_mut(), unknowns.pop()) {
+                workspace.unknowns = unknowns;
+            }
             let step = if memory.is_new {
                 // Before the first step, a substep is guessed from its own start.
                 let own = self.method.with_length(system, own, &after, h);
-                own.and_then(|own| self.method.solve(problem, &own, cache))
+                own.and_then(|own| self.method.solve(problem, &own, workspace))
             } else {
-                self.method.solve(problem, own, cache)
+                self.method.solve(problem, own, workspace)
             };
             let step = step.map_err(|failure| failure.explained_at(system, &after, h))?;
             after = step.end;
@@ -134,11 +154,15 @@ where
         h: f64,
         (node, memory): (&mut Node<N>, &mut Self::Memory),
         cache: &mut Self::Cache,
-        steps: Self::Step,
+        mut steps: Self::Step,
     ) {
-        for ((memory, step), h) in memory.all.iter_mut().zip(steps).zip(self.scheme.lengths(h)) {
-            Method::<S, N>::take(&self.method, h, (node, memory), cache, step);
+        for ((memory, step), h) in memory.all.iter_mut().zip(steps.drain(..)).zip(self.scheme.lengths(h)) {
+            Method::<S, N>::take(&self.method, h, (node, memory), &mut cache.workspace, step);
+            if let Some(workspace) = &mut cache.workspace {
+                cache.unknowns.push(core::mem::take(&mut workspace.unknowns));
+            }
         }
+        cache.steps = steps;
         memory.is_new = false;
     }
 
