@@ -2,7 +2,7 @@
 //!
 //! In: the names and numbers found. Out: a message with the error and its correction.
 
-use crate::messages::did_you_mean;
+use crate::habits::did_you_mean;
 
 /// A mistake with functions, tables and conditions. The fields of a variant are the words that its text names.
 #[allow(missing_docs)]

@@ -546,3 +546,8 @@ pub(crate) fn name(name: &str) -> Option<String> {
 fn find(table: &[(&[&str], &str)], word: &str) -> Option<String> {
     table.iter().find(|(words, _)| words.contains(&word)).map(|(_, help)| (*help).to_owned())
 }
+
+/// Help for an unknown word: the declared one that is near, or else another hint.
+pub(crate) fn did_you_mean(near: Option<&String>, otherwise: &str) -> String {
+    near.map_or_else(|| otherwise.to_owned(), |name| format!("did you mean `{name}`?"))
+}

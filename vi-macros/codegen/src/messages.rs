@@ -6,7 +6,7 @@
 use crate::arrays::ArrayMistake;
 use crate::constraints::{self, ConstraintMistake};
 use crate::functions::{self, FunctionMistake};
-use crate::habits::{self, Habit};
+use crate::habits::{self, Habit, did_you_mean};
 use crate::rules;
 use proc_macro2::Span;
 use std::collections::BTreeSet;
@@ -275,10 +275,6 @@ pub enum Message {
     Function(FunctionMistake),
     /// A bug of this compiler, found by checking its own output.
     Internal { what: &'static str },
-}
-
-pub(crate) fn did_you_mean(near: Option<&String>, otherwise: &str) -> String {
-    near.map_or_else(|| otherwise.to_owned(), |name| format!("did you mean `{name}`?"))
 }
 
 /// Help for a reserved name.

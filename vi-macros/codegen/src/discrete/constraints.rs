@@ -10,7 +10,8 @@
 
 use crate::limits::bounded;
 use crate::model::Model;
-use crate::model::constraint::{Rate, slope};
+use crate::model::constraint::Rate;
+use crate::model::slope;
 use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Pool, TooLarge};
 

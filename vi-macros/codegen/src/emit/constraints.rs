@@ -4,9 +4,8 @@ use super::Source;
 use super::body::{Body, VelocityFrom, state_parts};
 use super::entries::{self, ResultEntry};
 use super::formula::zero;
-use super::lagrangian::vector;
 use super::matrix::{all_columns, literals, sparse};
-use super::motion::Members;
+use super::state_function::vector;
 use crate::discrete::Constraints;
 use crate::findings::{Block, Elimination};
 use crate::model::{Constraint, Model};
@@ -15,6 +14,23 @@ use crate::symbol::Symbol;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use vi_expr::Expr;
+
+/// The kind of a system, and what its constraints add to `Motion`.
+pub(super) struct Members {
+    pub(super) kind: TokenStream,
+    /// Items beside the implementation.
+    pub(super) items: TokenStream,
+    /// Constants and functions of the implementation.
+    pub(super) functions: TokenStream,
+}
+
+impl Members {
+    /// Those of a system without constraints.
+    pub(super) fn free() -> Self {
+        let kind = quote!(::vi_core::kind::Free);
+        Self { kind, items: TokenStream::new(), functions: TokenStream::new() }
+    }
+}
 
 /// The members of a system with constraints.
 pub(super) fn members(source: &Source, of: &Constraints) -> Members {

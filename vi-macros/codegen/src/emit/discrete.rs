@@ -1,7 +1,7 @@
 //! `impl DiscreteLagrangian`: L_d, its slot derivatives, discrete forces and powers.
 
 use super::body::{Body, VelocityFrom, part, parts};
-use super::lagrangian::vector_of;
+use super::state_function::vector_of;
 use super::{Source, Steps};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;

@@ -2,11 +2,11 @@
 //!
 //! In: an operation and its printed operands. Out: tokens with the parentheses that precedence requires.
 
-use super::functions;
 use crate::model::Parameter;
 use crate::program::{Operation, OperationId};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
+use vi_expr::Opaque;
 
 /// Maximum number of operations in one line.
 pub(super) const LINE: usize = 10;
@@ -97,7 +97,7 @@ impl Formula {
             }
             Operation::Opaque(function, arguments) => {
                 let arguments: Vec<Self> = arguments.iter().map(|argument| operand(*argument)).collect();
-                functions::derivative(function, &arguments)
+                derivative(function, &arguments)
             }
             Operation::Select(a, b, c) => {
                 let (a, b, c) = (operand(*a), operand(*b), operand(*c));
@@ -152,4 +152,42 @@ pub(super) fn index(counter: Option<&Ident>, place: usize) -> TokenStream {
 /// The number zero.
 pub(super) fn zero() -> TokenStream {
     quote!(T::real(0.0))
+}
+
+/// A call with derivatives up to an order; further arguments are the values of a table of parameters.
+pub(super) fn jet(function: &Opaque, order: usize, arguments: &[Formula]) -> TokenStream {
+    let (own, values) = arguments.split_at(function.arity);
+    let (name, jet) = (item_name(&function.name), format_ident!("jet_{order}"));
+    let own = own.iter().map(Formula::tokens);
+    let of = if values.is_empty() {
+        quote!(#name)
+    } else {
+        let values = values.iter().map(Formula::tokens);
+        quote!(#name.of(&[#(#values),*]))
+    };
+    quote!(::vi_core::function::Jets::#jet(&#of, [#(#own),*]))
+}
+
+/// One derivative as an expression: `jet_1(…).1[0]`.
+fn derivative(function: &Opaque, arguments: &[Formula]) -> Formula {
+    let order = function.order();
+    let call = jet(function, order, arguments);
+    let operations = 1 + arguments.iter().map(|argument| argument.operations).sum::<usize>();
+    if order == 0 {
+        return Formula::atom(call, operations);
+    }
+    let part = Literal::usize_unsuffixed(order);
+    let indices = slots(function).into_iter().map(Literal::usize_unsuffixed);
+    Formula::atom(quote!(#call.#part #([#indices])*), operations)
+}
+
+/// The arguments of differentiation in ascending order: 0, 0, 1 for a mixed third derivative.
+pub(super) fn slots(function: &Opaque) -> Vec<usize> {
+    let each = function.orders.iter().enumerate();
+    each.flat_map(|(slot, order)| core::iter::repeat_n(slot, usize::from(*order))).collect()
+}
+
+/// The item of a function.
+pub(super) fn item_name(name: &str) -> Ident {
+    format_ident!("{name}_function")
 }

@@ -7,7 +7,7 @@
 //! let (s1, [s2]) = ::vi_core::function::Jets::jet_1(&drag_function, [x_dot_mid]);
 //! ```
 
-use super::formula::{Formula, number};
+use super::formula::{Formula, item_name, jet, number, slots};
 use crate::model::{self, FunctionKind, Model, Table, TableKind, Values};
 use crate::program::{Function, Operation, OperationId};
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -15,11 +15,6 @@ use quote::{format_ident, quote, quote_spanned};
 use std::collections::BTreeMap;
 use syn::spanned::Spanned;
 use vi_expr::Opaque;
-
-/// The item of a function.
-pub(super) fn item_name(name: &str) -> Ident {
-    format_ident!("{name}_function")
-}
 
 /// The items of all functions of a system.
 pub(super) fn items(model: &Model) -> TokenStream {
@@ -110,39 +105,6 @@ fn table_value(table: &Table) -> (TokenStream, TokenStream) {
         }
     };
     (quote!(::vi_core::table::#item<#counts>), quote!(::vi_core::table::#item::#kind(#values)#outside))
-}
-
-/// A call with derivatives up to an order; further arguments are the values of a table of parameters.
-fn jet(function: &Opaque, order: usize, arguments: &[Formula]) -> TokenStream {
-    let (own, values) = arguments.split_at(function.arity);
-    let (name, jet) = (item_name(&function.name), format_ident!("jet_{order}"));
-    let own = own.iter().map(Formula::tokens);
-    let of = if values.is_empty() {
-        quote!(#name)
-    } else {
-        let values = values.iter().map(Formula::tokens);
-        quote!(#name.of(&[#(#values),*]))
-    };
-    quote!(::vi_core::function::Jets::#jet(&#of, [#(#own),*]))
-}
-
-/// One derivative as an expression: `jet_1(…).1[0]`.
-pub(super) fn derivative(function: &Opaque, arguments: &[Formula]) -> Formula {
-    let order = function.order();
-    let call = jet(function, order, arguments);
-    let operations = 1 + arguments.iter().map(|argument| argument.operations).sum::<usize>();
-    if order == 0 {
-        return Formula::atom(call, operations);
-    }
-    let part = Literal::usize_unsuffixed(order);
-    let indices = slots(function).into_iter().map(Literal::usize_unsuffixed);
-    Formula::atom(quote!(#call.#part #([#indices])*), operations)
-}
-
-/// The arguments of differentiation in ascending order: 0, 0, 1 for a mixed third derivative.
-fn slots(function: &Opaque) -> Vec<usize> {
-    let each = function.orders.iter().enumerate();
-    each.flat_map(|(slot, order)| core::iter::repeat_n(slot, usize::from(*order))).collect()
 }
 
 /// The calls of one function at the same arguments.

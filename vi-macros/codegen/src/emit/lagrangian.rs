@@ -3,14 +3,14 @@
 use super::Source;
 use super::body::{Body, VelocityFrom, body, state_parts};
 use super::constraints;
-use super::entries::{self, ResultEntry};
-use super::functions;
+use super::formula::item_name;
 use super::matrix::matrix;
+use super::state_function::{number, vector, vector_of};
 use crate::model::{Coordinate, Function, Model, Parameter};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 use vi_expr::{Expr, Node};
 
 /// Characters of a formula shown in documentation.
@@ -148,56 +148,6 @@ impl Source<'_> {
     }
 }
 
-/// The vector of one group of results; inference supplies its type.
-pub(super) fn vector_of(entries: &[ResultEntry]) -> TokenStream {
-    let entries = entries::of(entries.iter().map(|entry| Some(entry).into()));
-    quote!(::vi_core::SVector::from(#entries))
-}
-
-/// A scalar function of (t, q, v).
-pub(super) fn number(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
-    let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
-        return TokenStream::new();
-    };
-    let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
-    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let result = body.results.number(Output::Value);
-    quote! {
-        #documentation
-        #[inline]
-        fn #name(
-            &self,
-            t: T,
-            q: &::vi_core::SVector<T, #dimension>,
-            v: &::vi_core::SVector<T, #dimension>,
-        ) -> T {
-            #inputs #statements #result
-        }
-    }
-}
-
-/// A vector function of (t, q, v).
-pub(super) fn vector(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
-    let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
-        return TokenStream::new();
-    };
-    let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
-    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let result = vector_of(body.results.vector(Output::Value));
-    quote! {
-        #documentation
-        #[inline]
-        fn #name(
-            &self,
-            t: T,
-            q: &::vi_core::SVector<T, #dimension>,
-            v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::SVector<T, #dimension> {
-            #inputs #statements #result
-        }
-    }
-}
-
 fn acceleration(source: &Source) -> TokenStream {
     let dimension = source.dimension();
     let formula = "Solves `M a = L_q + f − L_vt − L_vq v`.";
@@ -296,7 +246,7 @@ fn undefined(source: &Source) -> TokenStream {
     let mut arguments = body.results.vector(Output::Value).iter();
     let calls = source.system.continuous.calls.iter().map(|(call, of)| {
         let Node::Opaque(function, _) = source.pool.node(*call) else { return TokenStream::new() };
-        let (item, text) = (functions::item_name(&function.name), source.spelt(*call));
+        let (item, text) = (item_name(&function.name), source.spelt(*call));
         let arguments = arguments.by_ref().take(of.len());
         quote!(#item.undefined(#text, [#(#arguments),*]))
     });

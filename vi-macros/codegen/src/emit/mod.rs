@@ -21,6 +21,7 @@ mod motion;
 mod names;
 mod pieces;
 mod scope;
+mod state_function;
 mod stepping;
 pub(crate) mod structure;
 

@@ -2,9 +2,9 @@
 
 use super::Source;
 use super::body::{Body, VelocityFrom, state_parts};
-use super::constraints;
-use super::lagrangian::{number, vector_of};
+use super::constraints::{self, Members};
 use super::matrix::matrix;
+use super::state_function::{number, vector_of};
 use crate::discrete::TimeScale;
 use crate::program::{FunctionId, Output};
 use proc_macro2::TokenStream;
@@ -53,23 +53,6 @@ pub(super) fn item(source: &Source) -> TokenStream {
         }
         #has_time_scale
         #is_separable
-    }
-}
-
-/// The kind of a system, and what its constraints add to `Motion`.
-pub(super) struct Members {
-    pub(super) kind: TokenStream,
-    /// Items beside the implementation.
-    pub(super) items: TokenStream,
-    /// Constants and functions of the implementation.
-    pub(super) functions: TokenStream,
-}
-
-impl Members {
-    /// Those of a system without constraints.
-    pub(super) fn free() -> Self {
-        let kind = quote!(::vi_core::kind::Free);
-        Self { kind, items: TokenStream::new(), functions: TokenStream::new() }
     }
 }
 

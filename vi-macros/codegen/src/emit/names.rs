@@ -3,7 +3,7 @@
 //! In: the symbols that a function reads. Out: identifiers made of the user's names: `x`, `x_dot`, `x0`, `x1`, `p0_x`,
 //! `x_mid`. A trailing underscore resolves a clash, so user names cannot collide.
 
-use super::functions::item_name;
+use super::formula::item_name;
 use crate::model::Model;
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Ident;

@@ -3,8 +3,9 @@
 use super::Steps;
 use super::body::{Body, VelocityFrom, part, parts};
 use super::entries::ResultEntry;
-use super::lagrangian::{step_density, vector_of};
+use super::lagrangian::step_density;
 use super::matrix::matrix;
+use super::state_function::vector_of;
 use crate::model::Model;
 use crate::program::{Function, FunctionId, Output, Results};
 use crate::symbol::Symbol;

@@ -1,7 +1,7 @@
 //! The struct of a system: its parameters as public fields, their defaults, their names.
 
+use super::constraints::Members;
 use super::formula::number;
-use super::motion::Members;
 use super::{Source, Steps, conditions, constraints, limit};
 use crate::limits::{COORDINATES, PARAMETERS};
 use crate::model::{COMPONENTS, Model, Parameter};

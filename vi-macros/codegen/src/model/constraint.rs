@@ -15,40 +15,24 @@
 use super::context::Context;
 use super::force::{over, path};
 use super::lets::Closed;
-use super::mass::{self, MARGIN, POINTS};
+use super::mass::{self, slope, vanish};
 use super::rotation;
 use super::scope::{Meaning, Scope};
 use super::smoothness::{jump, with_conditions};
 use super::value::Value;
-use super::{Coordinate, FunctionKind, Model, Parameter, TableKind, indices, mobility};
+use super::{Constraint, Coordinate, FunctionKind, Model, Parameter, TableKind, indices, mobility};
 use crate::arrays::bracketed;
 use crate::constraints::ConstraintMistake;
 use crate::limits::bounded;
 use crate::messages::{Errors, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Expression, Kind, Operator, System};
-use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 use syn::Result;
 use vi_expr::{Expr, Function, Node, Pool, Rational};
 
 /// Characters of an expression shown in a message.
 const CHARACTERS: usize = 100;
-
-/// A constraint, or one entry of an array of them.
-#[derive(Clone)]
-pub struct Constraint {
-    /// Its name as declared.
-    pub name: Ident,
-    /// Its indices in an array; none outside.
-    pub indices: Vec<i64>,
-    /// g(t, q), or A v + a, by coordinates.
-    pub value: Expr,
-    /// The same with entries of arrays of `let`s, if these stay symbols.
-    pub written: Expr,
-    /// Whether it constrains positions.
-    pub is_holonomic: bool,
-}
 
 /// A v + a.
 pub(crate) struct Rate {
@@ -100,12 +84,6 @@ impl Constraint {
             pool.substitute(self.value, &mut |pool, symbol| is_velocity(symbol).then(|| pool.zero()))
         }
     }
-}
-
-/// The partial derivative with respect to a variable.
-pub(crate) fn slope(pool: &mut Pool<Symbol>, expr: Expr, by: Variable) -> Expr {
-    let by = Symbol::Continuous(by);
-    pool.derivative(expr, &mut |pool, symbol| if *symbol == by { pool.one() } else { pool.zero() })
 }
 
 /// The coefficient of a velocity in an expression that is linear in velocities, free of velocities after expansion.
@@ -349,22 +327,6 @@ fn is_derivative(pool: &mut Pool<Symbol>, Rate { row, rest }: &Rate, parameters:
         }
     }
     vanish(pool, &differences, parameters)
-}
-
-/// Whether expressions are zero to rounding at every point with values, and at one such point at least.
-pub(super) fn vanish(pool: &Pool<Symbol>, exprs: &[Expr], parameters: &[Parameter]) -> bool {
-    let mut is_known = exprs.is_empty();
-    for point in 0..POINTS {
-        let values = mass::values(pool, exprs, point, parameters);
-        if values.iter().any(|value| value.value.is_nan()) {
-            continue;
-        }
-        if values.iter().any(|value| value.value.abs() > MARGIN * value.error) {
-            return false;
-        }
-        is_known = true;
-    }
-    is_known
 }
 
 /// A function with these derivatives, if it is a sum of powers, sines, cosines and exponentials.

@@ -258,3 +258,25 @@ fn scales(entries: &[Rounded], dimension: usize) -> Vec<f64> {
     }
     scales
 }
+
+/// The partial derivative with respect to a variable.
+pub(crate) fn slope(pool: &mut Pool<Symbol>, expr: Expr, by: Variable) -> Expr {
+    let by = Symbol::Continuous(by);
+    pool.derivative(expr, &mut |pool, symbol| if *symbol == by { pool.one() } else { pool.zero() })
+}
+
+/// Whether expressions are zero to rounding at every point with values, and at one such point at least.
+pub(super) fn vanish(pool: &Pool<Symbol>, exprs: &[Expr], parameters: &[Parameter]) -> bool {
+    let mut is_known = exprs.is_empty();
+    for point in 0..POINTS {
+        let values = values(pool, exprs, point, parameters);
+        if values.iter().any(|value| value.value.is_nan()) {
+            continue;
+        }
+        if values.iter().any(|value| value.value.abs() > MARGIN * value.error) {
+            return false;
+        }
+        is_known = true;
+    }
+    is_known
+}

@@ -11,9 +11,8 @@
 //!
 //! The mechanism moves if the rank of A is below the number of coordinates at one of these places.
 
-use super::constraint::Constraint;
 use super::mass::MARGIN;
-use super::{Parameter, probe};
+use super::{Constraint, Parameter, probe};
 use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Pool};
 

@@ -32,10 +32,10 @@ mod value;
 mod vector;
 
 pub use check_state::CheckState;
-pub use constraint::Constraint;
 pub use function::{Function, FunctionKind};
 pub use lets::LetArray;
 pub(crate) use lets::rate;
+pub(crate) use mass::slope;
 pub use point::Point;
 pub(crate) use rotation::COMPONENTS;
 pub use rule::{DiscreteForces, Rule};
@@ -46,6 +46,21 @@ use crate::arrays::bracketed;
 use crate::symbol::{LetEntry, Symbol};
 use proc_macro2::{Ident, Span};
 use vi_expr::Expr;
+
+/// A constraint, or one entry of an array of them.
+#[derive(Clone)]
+pub struct Constraint {
+    /// Its name as declared.
+    pub name: Ident,
+    /// Its indices in an array; none outside.
+    pub indices: Vec<i64>,
+    /// g(t, q), or A v + a, by coordinates.
+    pub value: Expr,
+    /// The same with entries of arrays of `let`s, if these stay symbols.
+    pub written: Expr,
+    /// Whether it constrains positions.
+    pub is_holonomic: bool,
+}
 
 /// Maximum characters of a number written without a power of ten.
 const CHARACTERS: usize = 20;

@@ -15,13 +15,13 @@
 //! J is the mean of the principal moments of inertia, from the trace of M at R = (1, 0, 0, 0). It changes no motion.
 
 use super::array::part;
-use super::constraint::{Constraint, slope, vanish};
 use super::context::Context;
 use super::force::{over, path};
 use super::lets::{Closed, LetArray};
+use super::mass::{slope, vanish};
 use super::scope::{Meaning, Scope};
 use super::value::Value;
-use super::{Coordinate, Parameter};
+use super::{Constraint, Coordinate, Parameter};
 use crate::arrays::ArrayMistake;
 use crate::constraints::ConstraintMistake;
 use crate::messages::{Message, error};

@@ -17,7 +17,7 @@
 //!
 //! A list may end with a comma. A power `a^1/2` is rejected: it means `(a^1)/2`, which is never intended.
 
-use super::parse::has_bracket;
+use super::tokens::{DEPTH, has_bracket};
 use super::{INSIDE_BRACKETS, INSIDE_LIST, unexpected};
 use crate::functions::FunctionMistake;
 use crate::habits::Habit;
@@ -29,8 +29,6 @@ use syn::parse::ParseStream;
 use syn::{Result, Token};
 use vi_expr::Rational;
 
-/// Maximum nesting depth of an expression.
-pub(crate) const DEPTH: usize = 100;
 /// Maximum absolute exponent of a literal; `f64` ends at 308.
 const EXPONENT: i64 = 400;
 /// Maximum number of characters of a literal.

@@ -9,7 +9,7 @@
 //! ```
 
 use super::expression::Expression;
-use super::parse::{check_rust, name};
+use super::tokens::{check_rust, name};
 use super::{INSIDE_LIST, unexpected};
 use crate::functions::FunctionMistake;
 use crate::messages::{Message, error};

@@ -7,6 +7,7 @@ pub mod alone;
 mod expression;
 mod function;
 pub mod parse;
+mod tokens;
 mod unexpected;
 
 use crate::rules::{self, GAUSS, NamedRule};

@@ -3,14 +3,13 @@
 //! In: the tokens of a `lagrangian!`. Out: a [`System`]. An unreadable clause is reported and skipped up to its `;`, or
 //! up to the next clause if the `;` is missing, so that later clauses are read too.
 
-use super::expression::DEPTH;
 use super::function;
+use super::tokens::{DEPTH, check_rust, has_bracket, name};
 use super::unexpected;
 use super::{
-    BRACKETS, CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression,
-    INSIDE_BRACKETS, Indices, Kind, Parameter, Rule, System, clause_of,
+    CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression, INSIDE_BRACKETS, Indices,
+    Kind, Parameter, Rule, System, clause_of,
 };
-use crate::arrays::ArrayMistake;
 use crate::constraints::ConstraintMistake;
 use crate::habits::{self, Habit};
 use crate::messages::{Errors, Message, bounded, error, nearest};
@@ -109,26 +108,6 @@ fn attributes(input: ParseStream) -> Result<Vec<Attribute>> {
         here = behind;
     }
     input.call(Attribute::parse_outer)
-}
-
-/// Rejects tokens of Rust that may be nested deeper than any that is written, since parsing them recurses: besides
-/// delimiters, these signs open a level of an expression or of a type.
-pub(super) fn check_rust(tokens: TokenStream) -> Result<()> {
-    let (mut open, mut signs) = (vec![tokens.into_iter()], 0);
-    while let Some(innermost) = open.last_mut() {
-        match innermost.next() {
-            None => drop(open.pop()),
-            Some(TokenTree::Group(group)) => open.push(group.stream().into_iter()),
-            Some(TokenTree::Punct(sign)) if "<!-&*".contains(sign.as_char()) => {
-                signs += 1;
-                if signs > DEPTH {
-                    return Err(error(sign.span(), &Message::TooDeep { limit: DEPTH }));
-                }
-            }
-            Some(_) => {}
-        }
-    }
-    Ok(())
 }
 
 /// A macro wraps its `$a:expr` in invisible delimiters as one operand: inside clauses they become parentheses.
@@ -480,15 +459,6 @@ fn inequality(input: ParseStream) -> Option<Span> {
     None
 }
 
-/// Whether a further index or length follows `before` others.
-pub(super) fn has_bracket(input: ParseStream, before: usize) -> Result<bool> {
-    let is_here = input.peek(syn::token::Bracket);
-    if is_here && before == BRACKETS {
-        return Err(error(input.span(), &Message::Array(ArrayMistake::Brackets { limit: BRACKETS })));
-    }
-    Ok(is_here)
-}
-
 /// Pairs of brackets: `[i in 0..8]` or `[0]` each
 fn indices(input: ParseStream) -> Result<Vec<Indices>> {
     let mut indices = Vec::new();
@@ -560,21 +530,6 @@ fn lengths(input: ParseStream) -> Result<Vec<Expression>> {
         lengths.push(Expression::alone(&inner, 0, INSIDE_BRACKETS)?);
     }
     Ok(lengths)
-}
-
-pub(super) fn name(input: ParseStream) -> Result<Ident> {
-    let span = input.span();
-    let name = input.call(Ident::parse_any).map_err(|_| error(span, &Message::Expected { what: "a name" }))?;
-    let text = name.to_string();
-    if text == "mut" {
-        return Err(error(span, &Message::Habit(Habit::Mutable)));
-    }
-    let is_keyword = syn::parse_str::<Ident>(&text).is_err();
-    // `gen` is reserved since edition 2024, and tokens do not reveal their edition.
-    if is_keyword || text.starts_with("r#") || text == "gen" {
-        return Err(error(span, &Message::Reserved { name: text }));
-    }
-    Ok(name)
 }
 
 /// The end of a clause of expressions that starts at `start`.

@@ -1,7 +1,7 @@
 //! The constraints of a large system: their primitives in loops, and the traits of a system with constraints.
 
 use super::super::constraints;
-use super::super::motion::Members;
+use super::super::constraints::Members;
 use super::second::Column;
 use super::{Printer, WEIGHTS, name, reads_entries};
 use proc_macro2::{Literal, TokenStream};

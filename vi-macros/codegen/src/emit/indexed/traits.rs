@@ -2,8 +2,8 @@
 
 use super::super::check::monotone_table_of;
 use super::super::constraints;
+use super::super::constraints::Members;
 use super::super::lagrangian::{Properties, implementation};
-use super::super::motion::Members;
 use super::super::{by_marker, structure};
 use super::first::Sweep;
 use super::{Printer, reads_entries};
