@@ -1,11 +1,8 @@
 //! What a controller asks of a system and of a run, type-erased. Matrices are flat, row by row.
 
-use crate::simulation::{Runnable, vector};
-use crate::system::Typed;
-use vi_core::control::{Dynamics as _, Equilibrium, Linearization};
-use vi_core::lagrangian::Described;
+use vi_core::StepError;
+use vi_core::control::{Equilibrium, Linearization};
 use vi_core::nalgebra::{Complex, DMatrix};
-use vi_core::{SVector, StepError};
 
 /// A linearization: `value + A δx + B δu`.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,37 +88,4 @@ pub trait Control {
     /// # Errors
     /// As [`vi_core::control::Dynamics::equilibrium`].
     fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError>;
-}
-
-impl<S: Runnable<N> + Described, const N: usize> Control for Typed<S, N> {
-    fn inputs(&self) -> &'static [usize] {
-        S::INPUTS
-    }
-
-    fn mass_matrix(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
-        for (t, q, v) in each::<N>(points) {
-            out.extend_from_slice(self.system.mass_matrix(t, q, v).transpose().as_slice());
-        }
-    }
-
-    fn bias(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
-        for (t, q, v) in each::<N>(points) {
-            out.extend_from_slice(self.system.bias(t, q, v).as_slice());
-        }
-    }
-
-    fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError> {
-        let (q, v) = (vector::<N>(q, "number of coordinates")?, vector::<N>(v, "number of velocities")?);
-        self.system.linearization(t, q, v).map(Linear::from)
-    }
-
-    fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError> {
-        Rest::of(&self.system.equilibrium(t, vector::<N>(guess, "number of coordinates")?)?)
-    }
-}
-
-/// The points (t, q, v) of flat columns.
-fn each<const N: usize>([t, q, v]: [&[f64]; 3]) -> impl Iterator<Item = (f64, SVector<f64, N>, SVector<f64, N>)> {
-    let of = SVector::<f64, N>::from_column_slice;
-    t.iter().zip(q.chunks_exact(N)).zip(v.chunks_exact(N)).map(move |((t, q), v)| (*t, of(q), of(v)))
 }

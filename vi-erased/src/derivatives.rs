@@ -3,7 +3,7 @@
 //! In: a run of known types. Out: its linearization, tangent vectors and gradients as plain numbers, and the run at
 //! their end. With constraints, the change of one coordinate alone is no motion: runs have a linearization only.
 
-use crate::simulation::Runnable;
+use crate::erasable::Runnable;
 use vi_core::derivatives::{self, Covector, Differentiable, Objective, Tangent, Variation};
 use vi_core::kind::Kind;
 use vi_core::{Method, Run, State, StepError};

@@ -4,9 +4,11 @@
 //! and drifts are optimised for the system; the others take [`Called`] systems, which build
 //! in a third of the time and differ by rounding.
 
+use crate::erasable::{Derived, Erasable, Runnable};
 use crate::method::AnyMethod;
 use crate::plan::{Built, Method, Plan, Shift, Start};
-use crate::simulation::{Derived, Erasable, Runnable, ShiftedEnergy, Simulation, erased};
+use crate::run::erased;
+use crate::simulation::{ShiftedEnergy, Simulation};
 use crate::start;
 use core::convert::identity;
 #[cfg(feature = "checkpoints")]

@@ -8,35 +8,41 @@
 //! | module | product |
 //! |---|---|
 //! | [`plan`] | the description of a run |
-//! | [`integrator`] | an integrator that is built for a system |
-//! | [`method`] | a method behind a pointer: runs are compiled once for each system |
-//! | [`system`] | a system with its parameters |
-//! | [`simulation`] | a started run |
-//! | `session` | a run in the hands of a program; feature `sessions` |
-//! | `control` | mass matrix, linearizations, equilibria; feature `derivatives` |
-//! | `derivatives` | tangent vectors and gradients of runs; feature `derivatives` |
 //! | [`start`] | an accurate second node |
 //! | [`section`] | events of a run, type-erased |
+//! | `control` | what a controller asks: mass matrix, linearizations, equilibria; feature `derivatives` |
+//! | [`simulation`] | a started run: its rows, and what it is asked |
+//! | [`erasable`] | what a system and a method must have |
+//! | [`method`] | a method behind a pointer: runs are compiled once for each system |
+//! | `run` | a run of such a method |
+//! | `derivatives` | tangent vectors and gradients of runs; feature `derivatives` |
+//! | `session` | a run in the hands of a program; feature `sessions` |
+//! | [`integrator`] | an integrator that is built for a system |
+//! | [`system`] | a system with its parameters |
+//!
+//! No module imports one below it in this table.
 
 #[cfg(feature = "derivatives")]
 pub mod control;
 #[cfg(feature = "derivatives")]
-pub mod derivatives;
+mod derivatives;
+pub mod erasable;
 pub mod integrator;
 pub mod method;
 pub mod plan;
+mod run;
 pub mod section;
 #[cfg(feature = "sessions")]
-pub mod session;
+mod session;
 pub mod simulation;
 pub mod start;
 pub mod system;
 
 pub use integrator::Integrator;
 pub use plan::{Built, Method, PhasePoint, Plan};
-#[cfg(feature = "sessions")]
-pub use session::{Rows, Session};
 pub use simulation::{Row, Simulation, Steps};
+#[cfg(feature = "sessions")]
+pub use simulation::{Rows, Session};
 pub use system::{System, Typed};
 
 /// A system with its default parameters, and the integrators that are built for it:

@@ -4,7 +4,8 @@
 //! bit. Everything that a run can do is generic over its method: with this one it is compiled once for each system. Only
 //! a step and the loop over steps are compiled for each method.
 
-use crate::simulation::{Erasable, Runnable, ShiftedEnergy};
+use crate::erasable::{Erasable, Runnable};
+use crate::simulation::ShiftedEnergy;
 use core::fmt::Debug;
 use core::marker::PhantomData;
 use std::sync::Arc;

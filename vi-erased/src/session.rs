@@ -1,18 +1,16 @@
-//! A run in the hands of a program: its parameters and its state change, its nodes are recorded, its derivatives are
-//! asked for.
-//!
-//! In: a run of known types. Out: the functions of a [`Session`], which the command does not need: they are a fifth of
-//! the machine code of a run, and stand behind the feature `sessions`.
+//! A run in the hands of a program: the functions of a [`Session`].
 
 #[cfg(feature = "derivatives")]
 use crate::control::Linear;
 #[cfg(feature = "derivatives")]
 use crate::derivatives;
+use crate::erasable::Runnable;
 #[cfg(feature = "checkpoints")]
 use crate::method::AnyMemory;
 use crate::method::{AnyMethod, Progress};
+use crate::run::{Simulated, met};
 use crate::section::Section;
-use crate::simulation::{Met, Runnable, Simulated, Simulation, met, vector};
+use crate::simulation::{Met, Rows, Session, StepOutput, vector};
 #[cfg(feature = "checkpoints")]
 use serde_json::value::RawValue;
 #[cfg(feature = "derivatives")]
@@ -21,36 +19,6 @@ use vi_core::derivatives::Covector;
 use vi_core::run::Checkpoint;
 use vi_core::run::DenseOutput;
 use vi_core::{Run, State, StepError};
-
-/// Nodes of a run, in flat columns.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rows {
-    /// Times.
-    pub t: Vec<f64>,
-    /// Coordinates, node after node.
-    pub q: Vec<f64>,
-    /// Momenta, node after node.
-    pub p: Vec<f64>,
-}
-
-impl Rows {
-    /// Adds a node: its time, coordinates and momenta.
-    pub fn push(&mut self, t: f64, q: &[f64], p: &[f64]) {
-        self.t.push(t);
-        self.q.extend_from_slice(q);
-        self.p.extend_from_slice(p);
-    }
-
-    fn push_state<const N: usize>(&mut self, state: &State<N>) {
-        self.push(state.t, state.q.as_slice(), state.p.as_slice());
-    }
-}
-
-/// The motion within one step.
-pub trait StepOutput: Send + Sync {
-    /// Coordinates, momenta and velocities at the time `t`, one after the other.
-    fn at(&self, t: f64) -> [Vec<f64>; 3];
-}
 
 /// Dense output, type-erased.
 struct Output<D, const N: usize>(D);
@@ -77,106 +45,6 @@ fn assign<S: Runnable<N>, const N: usize>(system: &mut S, change: &[(usize, f64)
 /// As [`vector`].
 fn state<const N: usize>(t: f64, q: &[f64], p: &[f64]) -> Result<State<N>, StepError> {
     Ok(State { t, q: vector(q, "number of coordinates")?, p: vector(p, "number of momenta")? })
-}
-
-/// What a program asks of a run.
-pub trait Session {
-    /// Velocities of the last node.
-    ///
-    /// # Errors
-    /// The momenta have no velocity.
-    fn velocity(&self) -> Result<Vec<f64>, StepError>;
-    /// Values of the parameters, in the order of their declaration.
-    fn parameters(&self) -> Vec<f64>;
-    /// The same run, once more.
-    fn copy(&self) -> Box<dyn Simulation>;
-    /// Sets parameters by their indices.
-    ///
-    /// # Errors
-    /// As [`Run::set_parameters`].
-    fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError>;
-    /// Continues from another state, of time, coordinates and momenta, with changed parameters.
-    ///
-    /// # Errors
-    /// As [`Run::set_parameters_and_state`]; [`StepError::InvalidInput`] for another number of coordinates or momenta.
-    fn set_state(&mut self, change: &[(usize, f64)], at: (f64, &[f64], &[f64])) -> Result<(), StepError>;
-    /// Takes one step of the length h in time.
-    ///
-    /// # Errors
-    /// As [`Run::step_of`].
-    fn advance_of(&mut self, h: f64) -> Result<(), StepError>;
-    /// Takes steps toward the time `end`, where the last of them ends, if one is given; at most `most`. Adds each
-    /// `every`th node before `end` to `rows`, as `taken` counts. Returns whether the run is at `end`.
-    ///
-    /// # Errors
-    /// The error of the failed step; [`StepError::InvalidInput`] for an end that is not ahead.
-    fn record(
-        &mut self,
-        end: Option<f64>,
-        most: u64,
-        every: u64,
-        taken: &mut u64,
-        rows: &mut Rows,
-    ) -> Result<bool, StepError>;
-    /// Adds states at the given times to `rows`, as [`Run::states_at`].
-    ///
-    /// # Errors
-    /// As [`Run::states_at`].
-    fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError>;
-    /// Advances to the first crossing of a section, or to the time `end`.
-    ///
-    /// # Errors
-    /// As [`Run::next_event`].
-    fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError>;
-    /// Dense output of the last step, which began at this time with these coordinates and momenta.
-    ///
-    /// # Errors
-    /// As [`Run::dense_output`].
-    fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError>;
-    /// The error of the next step: of q and of h·v, one after the other.
-    ///
-    /// # Errors
-    /// As [`Run::local_error`].
-    fn local_error(&self) -> Result<[Vec<f64>; 2], StepError>;
-    /// Everything that the run carries, as text for [`System::restart`](crate::System::restart).
-    ///
-    /// # Errors
-    /// What cannot be written.
-    #[cfg(feature = "checkpoints")]
-    fn checkpoint(&self) -> Result<String, String>;
-    /// The linearization of the next step. The run does not change.
-    ///
-    /// # Errors
-    /// As [`Run::linearization`]; here and below [`StepError::NoDerivative`] for a system with constraints.
-    #[cfg(feature = "derivatives")]
-    fn linearization(&self) -> Result<Linear, StepError>;
-    /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
-    /// parameters of these indices at the start: one vector of (q, p) for each. The energy that a run keeps follows from
-    /// the start where the run began; later it changes as by [`Session::set_state`] and [`Session::set_parameters`].
-    /// `goes_on` is called for each step; if it is false the result is `None`, and the run stays where it was.
-    ///
-    /// # Errors
-    /// As [`Tangent::step`](vi_core::derivatives::Tangent::step).
-    #[cfg(feature = "derivatives")]
-    fn tangent(
-        &mut self,
-        steps: u64,
-        parameters: &[usize],
-        goes_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Vec<Vec<f64>>>, StepError>;
-    /// Takes steps, and returns the gradient of `slope·(q, p)` at their end by q, p, and the parameters of these
-    /// indices, by one backward pass.
-    ///
-    /// # Errors
-    /// As [`gradient`](vi_core::derivatives::gradient).
-    #[cfg(feature = "derivatives")]
-    fn gradient(
-        &mut self,
-        steps: u64,
-        slope: &[f64],
-        parameters: &[usize],
-        goes_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Vec<f64>>, StepError>;
 }
 
 impl<S: Runnable<N>, const N: usize> Simulated<S, N> {
@@ -210,10 +78,6 @@ impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
 
     fn parameters(&self) -> Vec<f64> {
         (0..S::PARAMETERS.len()).map(|index| self.run.system().parameter(index)).collect()
-    }
-
-    fn copy(&self) -> Box<dyn Simulation> {
-        Box::new(self.clone())
     }
 
     fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {

@@ -1,27 +1,17 @@
-//! One type-erased run of any system.
+//! A started run, type-erased.
 //!
-//! In: a run of known types. Out: a [`Simulation`], whose rows are the nodes of the integrator, starting with its first
-//! node. The numbers are those of the generic integrators, to the last bit, and loops over steps are inside, without
-//! virtual calls.
+//! Its rows are the nodes of the integrator, starting with its first node: [`Steps`]. With the feature `sessions` its
+//! parameters and its state change, its nodes are recorded, its derivatives are asked for: [`Session`], which the
+//! command does not need, and which is a fifth of the machine code of a run.
 
-use crate::method::{AnyMethod, GoesOn, Progress};
+#[cfg(feature = "derivatives")]
+use crate::control::Linear;
 use crate::section::Section;
-#[cfg(feature = "sessions")]
-use crate::session::Session;
 use std::borrow::Cow;
-#[cfg(feature = "derivatives")]
-/// A method, with derivatives if the feature asks for them.
-pub use vi_core::derivatives::Differentiable as Derived;
-use vi_core::kind::Kind;
-use vi_core::lagrangian::Parameters;
-use vi_core::linear::Rectangular as _;
-use vi_core::method::Storable;
-#[cfg(feature = "derivatives")]
-use vi_core::node::Node;
-use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor};
-use vi_core::stepping::Convertible;
-use vi_core::support::has_angles;
-use vi_core::{Method, Run, SVector, State, StepError};
+#[cfg(feature = "sessions")]
+use vi_core::State;
+use vi_core::run::ErrorEstimate;
+use vi_core::{SVector, StepError};
 
 /// A node, its energies, and the length of the step that led to it.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,6 +120,138 @@ pub trait Steps {
     }
 }
 
+/// Nodes of a run, in flat columns.
+#[cfg(feature = "sessions")]
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    /// Times.
+    pub t: Vec<f64>,
+    /// Coordinates, node after node.
+    pub q: Vec<f64>,
+    /// Momenta, node after node.
+    pub p: Vec<f64>,
+}
+
+#[cfg(feature = "sessions")]
+impl Rows {
+    /// Adds a node: its time, coordinates and momenta.
+    pub fn push(&mut self, t: f64, q: &[f64], p: &[f64]) {
+        self.t.push(t);
+        self.q.extend_from_slice(q);
+        self.p.extend_from_slice(p);
+    }
+
+    pub(crate) fn push_state<const N: usize>(&mut self, state: &State<N>) {
+        self.push(state.t, state.q.as_slice(), state.p.as_slice());
+    }
+}
+
+/// The motion within one step.
+#[cfg(feature = "sessions")]
+pub trait StepOutput: Send + Sync {
+    /// Coordinates, momenta and velocities at the time `t`, one after the other.
+    fn at(&self, t: f64) -> [Vec<f64>; 3];
+}
+
+/// What a program asks of a run.
+#[cfg(feature = "sessions")]
+pub trait Session {
+    /// Velocities of the last node.
+    ///
+    /// # Errors
+    /// The momenta have no velocity.
+    fn velocity(&self) -> Result<Vec<f64>, StepError>;
+    /// Values of the parameters, in the order of their declaration.
+    fn parameters(&self) -> Vec<f64>;
+    /// Sets parameters by their indices.
+    ///
+    /// # Errors
+    /// As [`Run::set_parameters`].
+    fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError>;
+    /// Continues from another state, of time, coordinates and momenta, with changed parameters.
+    ///
+    /// # Errors
+    /// As [`Run::set_parameters_and_state`]; [`StepError::InvalidInput`] for another number of coordinates or momenta.
+    fn set_state(&mut self, change: &[(usize, f64)], at: (f64, &[f64], &[f64])) -> Result<(), StepError>;
+    /// Takes one step of the length h in time.
+    ///
+    /// # Errors
+    /// As [`Run::step_of`].
+    fn advance_of(&mut self, h: f64) -> Result<(), StepError>;
+    /// Takes steps toward the time `end`, where the last of them ends, if one is given; at most `most`. Adds each
+    /// `every`th node before `end` to `rows`, as `taken` counts. Returns whether the run is at `end`.
+    ///
+    /// # Errors
+    /// The error of the failed step; [`StepError::InvalidInput`] for an end that is not ahead.
+    fn record(
+        &mut self,
+        end: Option<f64>,
+        most: u64,
+        every: u64,
+        taken: &mut u64,
+        rows: &mut Rows,
+    ) -> Result<bool, StepError>;
+    /// Adds states at the given times to `rows`, as [`Run::states_at`].
+    ///
+    /// # Errors
+    /// As [`Run::states_at`].
+    fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError>;
+    /// Advances to the first crossing of a section, or to the time `end`.
+    ///
+    /// # Errors
+    /// As [`Run::next_event`].
+    fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError>;
+    /// Dense output of the last step, which began at this time with these coordinates and momenta.
+    ///
+    /// # Errors
+    /// As [`Run::dense_output`].
+    fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError>;
+    /// The error of the next step: of q and of h·v, one after the other.
+    ///
+    /// # Errors
+    /// As [`Run::local_error`].
+    fn local_error(&self) -> Result<[Vec<f64>; 2], StepError>;
+    /// Everything that the run carries, as text for [`System::restart`](crate::System::restart).
+    ///
+    /// # Errors
+    /// What cannot be written.
+    #[cfg(feature = "checkpoints")]
+    fn checkpoint(&self) -> Result<String, String>;
+    /// The linearization of the next step. The run does not change.
+    ///
+    /// # Errors
+    /// As [`Run::linearization`]; here and below [`StepError::NoDerivative`] for a system with constraints.
+    #[cfg(feature = "derivatives")]
+    fn linearization(&self) -> Result<Linear, StepError>;
+    /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
+    /// parameters of these indices at the start: one vector of (q, p) for each. The energy that a run keeps follows from
+    /// the start where the run began; later it changes as by [`Session::set_state`] and [`Session::set_parameters`].
+    /// `goes_on` is called for each step; if it is false the result is `None`, and the run stays where it was.
+    ///
+    /// # Errors
+    /// As [`Tangent::step`](vi_core::derivatives::Tangent::step).
+    #[cfg(feature = "derivatives")]
+    fn tangent(
+        &mut self,
+        steps: u64,
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<f64>>>, StepError>;
+    /// Takes steps, and returns the gradient of `slope·(q, p)` at their end by q, p, and the parameters of these
+    /// indices, by one backward pass.
+    ///
+    /// # Errors
+    /// As [`gradient`](vi_core::derivatives::gradient).
+    #[cfg(feature = "derivatives")]
+    fn gradient(
+        &mut self,
+        steps: u64,
+        slope: &[f64],
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError>;
+}
+
 /// A run is nothing more without the feature.
 #[cfg(not(feature = "sessions"))]
 pub trait Session {}
@@ -138,6 +260,9 @@ impl<T> Session for T {}
 
 /// A started run.
 pub trait Simulation: Steps + Session + Send + Sync {
+    /// The same run, once more.
+    #[cfg(feature = "sessions")]
+    fn copy(&self) -> Box<dyn Simulation>;
     /// Evaluations of the equations by the steps so far, from their iterations.
     fn evaluations(&self) -> u64;
     /// Takes steps until a node at `end` or later, at most `most`; returns their number.
@@ -215,264 +340,4 @@ pub(crate) fn wrong_size(values: &[f64], input: &'static str) -> StepError {
     #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
     let value = values.len() as f64;
     StepError::InvalidInput { input, allowed: "that of the system", value }
-}
-
-/// A method whose runs are erased: what its rows and its evaluations are.
-pub trait Erasable<S: Runnable<N>, const N: usize>: Derived<S, N, Memory: Storable> + 'static {
-    /// Evaluations of the equations in a step with these iterations.
-    fn evaluations(&self, iterations: u32) -> u64;
-
-    /// Time and H at which H is most accurate.
-    ///
-    /// # Errors
-    /// The momenta have no velocity.
-    fn sampled_energy(run: &Run<Self, S, N>) -> Result<(f64, f64), StepError> {
-        Ok((run.t(), run.energy()?))
-    }
-
-    /// The conserved quantity of steps with a shift.
-    fn shifted_energy(_run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
-        None
-    }
-}
-
-/// A method, with derivatives if the feature asks for them.
-#[cfg(not(feature = "derivatives"))]
-pub use vi_core::Method as Derived;
-
-/// The constraints at a state; `None` for systems without.
-fn at_constraints<S: Runnable<N>, const N: usize>(system: &S, state: &State<N>) -> Option<AtConstraints> {
-    if const { S::Kind::COUNT == 0 } {
-        return None;
-    }
-    let reactions = match state.reaction(system) {
-        Ok(reactions) => reactions.as_ref().iter().copied().map(Some).collect(),
-        Err(_) => vec![None; S::CONSTRAINTS.len()],
-    };
-    let residual = state.velocity(system).ok().map(|v| {
-        let mut residuals = Vec::new();
-        constraint_residuals(system, (state.t, &state.q, &v), &mut residuals);
-        largest(&residuals)
-    });
-    Some(AtConstraints { reactions, residual })
-}
-
-/// Appends g of each constraint at a point, zero for nonholonomic ones; then `A v + a` of each.
-pub(crate) fn constraint_residuals<S: Runnable<N>, const N: usize>(
-    system: &S,
-    (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>),
-    out: &mut Vec<f64>,
-) {
-    out.extend_from_slice(system.constraints(t, q).as_ref());
-    let (gradients, offsets) = system.constraint_gradients(t, q);
-    out.extend(gradients.rows().zip(offsets.as_ref()).map(|(gradient, offset)| gradient.dot(v) + offset));
-}
-
-/// The largest of the absolute values; NaN if one is NaN.
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most: f64, value| if value.is_nan() || value.abs() > most { value.abs() } else { most })
-}
-
-/// A system whose runs are erased: every generated one.
-pub trait Runnable<const N: usize>: Convertible<N> + Parameters + Send + Sync + 'static {}
-impl<S: Convertible<N> + Parameters + Send + Sync + 'static, const N: usize> Runnable<N> for S {}
-
-/// A run with a method, and the data for its rows.
-#[derive(Clone)]
-pub(crate) struct Simulated<S: Runnable<N>, const N: usize> {
-    pub(crate) run: Run<AnyMethod<S, N>, S, N>,
-    evaluations: u64,
-    /// The node where the run began, until its state or its parameters change: the energy that it keeps follows from it.
-    #[cfg(feature = "derivatives")]
-    pub(crate) start: Option<Node<N>>,
-    /// Whether rows have E', even for a shift of zero.
-    is_shifted: bool,
-    /// Length of the last step, if it was shortened.
-    pub(crate) shortened: Option<f64>,
-    pub(crate) monitor: Option<Box<ErrorMonitor<AnyMethod<S, N>, S, N>>>,
-}
-
-/// Relative deviation below which a length counts as the step of the run.
-const ROUNDED: f64 = 1e-9;
-
-/// The same run, type-erased, with E' in its rows if `is_shifted`.
-pub(crate) fn erased<S: Runnable<N>, const N: usize>(
-    run: Run<AnyMethod<S, N>, S, N>,
-    is_shifted: bool,
-) -> Box<dyn Simulation> {
-    Box::new(Simulated {
-        #[cfg(feature = "derivatives")]
-        start: (run.iterations() == 0).then(|| *run.node()),
-        run,
-        evaluations: 0,
-        is_shifted,
-        shortened: None,
-        monitor: None,
-    })
-}
-
-impl<S: Runnable<N>, const N: usize> Simulated<S, N> {
-    /// Takes notice of the last step.
-    pub(crate) fn count(&mut self) {
-        self.evaluations += self.run.method().evaluations(self.run.iterations());
-        if let Some(monitor) = &mut self.monitor {
-            monitor.watch(&self.run);
-        }
-    }
-
-    /// Takes steps while `goes_on`, which gets the run before each step. The loop is compiled for each method.
-    pub(crate) fn advance_while(&mut self, goes_on: GoesOn<'_, N>) -> Result<(), StepError> {
-        self.shortened = None;
-        if self.monitor.is_some() {
-            while goes_on(&self.run) {
-                self.run.single_step()?;
-                self.count();
-            }
-            return Ok(());
-        }
-        AnyMethod::advance_while(&mut self.run, &mut self.evaluations, goes_on)
-    }
-
-    /// Forgets a jump of the run.
-    pub(crate) fn resume(&mut self) {
-        self.shortened = None;
-        if let Some(monitor) = &mut self.monitor {
-            monitor.resume(&self.run);
-        }
-    }
-}
-
-/// A crossing of a run of the system, type-erased.
-pub(crate) fn met<S: Runnable<N>, const N: usize>(system: &S, crossing: &Crossing<N>) -> Met {
-    let Crossing { events, state, length, .. } = crossing;
-    let row = Row {
-        t: state.t,
-        q: state.q.as_slice().to_vec(),
-        p: state.p.as_slice().to_vec(),
-        energy: state.energy(system).ok(),
-        discrete_energy: None,
-        shifted_energy: None,
-        constraints: at_constraints(system, state),
-        h: *length,
-    };
-    Met { row, events: events.iter().map(|met| (met.event, met.is_rising)).collect() }
-}
-
-impl<S: Runnable<N>, const N: usize> Steps for Simulated<S, N> {
-    fn t(&self) -> f64 {
-        self.run.t()
-    }
-
-    fn q(&self) -> Cow<'_, [f64]> {
-        // Only angles differ from their node.
-        if const { has_angles::<S, N, f64>() } {
-            self.run.state().q.as_slice().to_vec().into()
-        } else {
-            self.run.node().q.as_slice().into()
-        }
-    }
-
-    fn p(&self) -> &[f64] {
-        self.run.node().p.as_slice()
-    }
-
-    fn h(&self) -> f64 {
-        self.shortened.unwrap_or_else(|| self.run.h())
-    }
-
-    fn energy(&self) -> Result<f64, StepError> {
-        self.run.energy()
-    }
-
-    fn discrete_energy(&self) -> Option<f64> {
-        // A step of another length does not conserve the energy.
-        if self.shortened.is_some() { None } else { self.run.discrete_energy() }
-    }
-
-    fn shifted_energy(&self) -> Option<ShiftedEnergy> {
-        AnyMethod::shifted_energy(&self.run).filter(|of| self.is_shifted || of.shift != 0.0)
-    }
-
-    fn constraints(&self) -> Option<AtConstraints> {
-        at_constraints(self.run.system(), &self.run.node().state())
-    }
-
-    fn advance(&mut self) -> Result<(), StepError> {
-        self.run.single_step()?;
-        self.shortened = None;
-        self.count();
-        Ok(())
-    }
-
-    fn advance_to(&mut self, end: f64) -> Result<(), StepError> {
-        let (left, h) = (self.run.time_to(end), self.run.h());
-        let rounding = (f64::EPSILON * end.abs()).min(ROUNDED * h.abs());
-        let is_beyond = |left: f64| left * h.signum() < -rounding;
-        if is_beyond(left - self.run.longest()) {
-            // Steps that solve for their length must be taken to know it.
-            let ahead = if self.run.method().finds_length() { Some(self.run.after_a_step()?) } else { None };
-            let Some(ahead) = ahead.filter(|ahead| !is_beyond(ahead.time_to(end))) else {
-                self.run.end_at(end)?;
-                self.shortened = Some(left);
-                self.count();
-                return Ok(());
-            };
-            self.run = ahead;
-            self.count();
-        } else {
-            self.advance()?;
-        }
-        if self.run.time_to(end).abs() <= rounding {
-            self.run.set_time(end);
-        }
-        Ok(())
-    }
-
-    fn monitor(&mut self) {
-        self.monitor = Some(Box::new(ErrorMonitor::new(&self.run)));
-    }
-
-    fn largest_error(&self) -> Option<ErrorEstimate> {
-        let monitor = self.monitor.as_ref()?;
-        let found = monitor.largest(&self.run);
-        (found.estimate > 0.0 || monitor.measurements() > 0).then_some(found)
-    }
-}
-
-impl<S: Runnable<N>, const N: usize> Simulation for Simulated<S, N> {
-    fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
-        let mut taken = 0;
-        let mut goes_on = |run: &dyn Progress<N>| {
-            let goes_on = taken < most && run.t() < end;
-            taken += u64::from(goes_on);
-            goes_on
-        };
-        self.advance_while(&mut goes_on)?;
-        Ok(taken)
-    }
-
-    fn cross(&mut self, sections: &[Section], end: f64, take: &mut dyn FnMut(Met) -> bool) -> Result<(), StepError> {
-        let system = *self.run.system();
-        let events: Vec<_> = sections.iter().map(Section::event).collect();
-        let mut outcome = Ok(());
-        AnyMethod::events(&mut self.run, &events, end, &mut |crossings| {
-            for crossing in crossings {
-                match crossing {
-                    Ok(crossing) if take(met(&system, &crossing)) => {}
-                    Ok(_) => break,
-                    Err(error) => outcome = Err(error),
-                }
-            }
-        });
-        self.resume();
-        outcome
-    }
-
-    fn sampled_energy(&self) -> Result<(f64, f64), StepError> {
-        AnyMethod::sampled_energy(&self.run)
-    }
 }

@@ -3,12 +3,16 @@
 //! In: the type of a system, and its integrators. Out: a [`System`], whose functions and runs take slices.
 
 #[cfg(feature = "derivatives")]
-use crate::control::Control;
+use crate::control::{Control, Linear, Rest};
+use crate::erasable::Runnable;
 use crate::integrator::Integrator;
 use crate::plan::{Built, Method, PhasePoint, Plan};
-use crate::simulation::{Runnable, Simulation, constraint_residuals, vector, wrong_size};
+use crate::run::constraint_residuals;
+use crate::simulation::{Simulation, vector, wrong_size};
 use std::sync::Arc;
 use vi_core::constrained::{Extended, Projected};
+#[cfg(feature = "derivatives")]
+use vi_core::control::Dynamics as _;
 use vi_core::lagrangian::Described;
 use vi_core::{Lagrangian as _, SVector, State, StepError};
 
@@ -330,4 +334,39 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
         let integrator = self.integrator(built).map_err(|error| error.to_string())?;
         (integrator.restart)(self.system, stored)
     }
+}
+
+#[cfg(feature = "derivatives")]
+impl<S: Runnable<N> + Described, const N: usize> Control for Typed<S, N> {
+    fn inputs(&self) -> &'static [usize] {
+        S::INPUTS
+    }
+
+    fn mass_matrix(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
+        for (t, q, v) in each::<N>(points) {
+            out.extend_from_slice(self.system.mass_matrix(t, q, v).transpose().as_slice());
+        }
+    }
+
+    fn bias(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {
+        for (t, q, v) in each::<N>(points) {
+            out.extend_from_slice(self.system.bias(t, q, v).as_slice());
+        }
+    }
+
+    fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError> {
+        let (q, v) = (vector::<N>(q, "number of coordinates")?, vector::<N>(v, "number of velocities")?);
+        self.system.linearization(t, q, v).map(Linear::from)
+    }
+
+    fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError> {
+        Rest::of(&self.system.equilibrium(t, vector::<N>(guess, "number of coordinates")?)?)
+    }
+}
+
+/// The points (t, q, v) of flat columns.
+#[cfg(feature = "derivatives")]
+fn each<const N: usize>([t, q, v]: [&[f64]; 3]) -> impl Iterator<Item = (f64, SVector<f64, N>, SVector<f64, N>)> {
+    let of = SVector::<f64, N>::from_column_slice;
+    t.iter().zip(q.chunks_exact(N)).zip(v.chunks_exact(N)).map(move |((t, q), v)| (*t, of(q), of(v)))
 }

@@ -9,7 +9,7 @@ use core::marker::PhantomData;
 use vi_core::kind::{Bound, Form, Free};
 use vi_core::lagrangian::Described;
 use vi_core::stepping::EnergyStepping;
-use vi_erased::simulation::Runnable;
+use vi_erased::erasable::Runnable;
 
 /// A system declared by a program.
 #[derive(Debug)]

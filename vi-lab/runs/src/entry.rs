@@ -6,7 +6,7 @@ use crate::system::{self, StartOf, System};
 use vi_core::kind::Free;
 use vi_core::lagrangian::Described;
 use vi_core::stepping::EnergyStepping;
-use vi_erased::simulation::Runnable;
+use vi_erased::erasable::Runnable;
 
 /// A system with a place to start from.
 pub struct Entry {

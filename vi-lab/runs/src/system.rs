@@ -15,9 +15,10 @@ use vi_core::kind::{Free, Kind};
 use vi_core::lagrangian::Described;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{Called, Lagrangian, SVector, State, StepError};
+use vi_erased::erasable::Runnable;
 use vi_erased::integrator::{self, Integrator};
 use vi_erased::plan::{BOUND_ENERGY_STAGES, BOUND_STAGES, ENERGY_STAGES, STAGES};
-use vi_erased::simulation::{Runnable, vector};
+use vi_erased::simulation::vector;
 use vi_erased::{Method, PhasePoint, Plan, Typed};
 
 /// A system with its parameters.
