@@ -1,9 +1,10 @@
 """heyoka, the Taylor integrator of F. Biscani and D. Izzo, on the systems of `vi-lab work-precision`.
 
-In: names of systems. Out: for each a file NAME.csv with the columns of the command's table of runs, to be shown by
-`vi-lab work-precision NAME --rival NAME.csv`. A run is timed REPETITIONS times, in rounds over all tolerances. Its code was
-compiled before. The error is the command's: the largest difference of a coordinate or a momentum from the reference at the end,
-relative to the largest coordinate, or momentum, on the way. The reference is heyoka itself in extended precision.
+In: names of systems. Out: for each a file NAME.csv with the columns of the command's `runs.csv`, and the least time for
+each error, to be compared with the table of `vi-lab work-precision NAME`. A run is timed REPETITIONS times, in rounds over
+all tolerances. Its code was compiled before. The error is the command's: the largest difference of a coordinate or a momentum
+from the reference at the end, relative to the largest coordinate, or momentum, on the way. The reference is heyoka itself in
+extended precision.
 """
 
 import sys
@@ -14,6 +15,7 @@ import heyoka as hy
 import numpy as np
 
 REPETITIONS = 15
+ERRORS = [1e-3, 1e-6, 1e-9, 1e-12]  # of the command's table
 TOLERANCES = [10.0 ** (-0.5 * k) for k in range(6, 33)]
 STEPS = 4000  # usual steps of the command, up to the end of a run
 PARTS = 256  # of the time, at whose ends the largest numbers are looked for
@@ -147,12 +149,15 @@ def run(name):
                 integrator.propagate_until(problem.end)
                 if seen:
                     seconds.append(time.perf_counter() - begin)
+    prices = dict.fromkeys(ERRORS, np.inf)
     with open(f"{name}.csv", "w") as out:
         out.write('method,setting,error,evaluations,"seconds, least","seconds, median",ended\n')
         for tolerance, integrator, _, seconds in runs:
             error = reference.error(problem.split(integrator.state))
             out.write(f"heyoka,{tolerance:.0e},{error:e},,{min(seconds):.4e},{median(seconds):.4e},\n")
-    print(f"{name}.csv: q = {problem.q}, t = {problem.end}")
+            prices.update({bound: min(prices[bound], *seconds) for bound in ERRORS if error <= bound})
+    times = ", ".join(f"{1e6 * least:.3g} µs for {bound:.0e}" for bound, least in prices.items())
+    print(f"{name}.csv: q = {problem.q}, t = {problem.end}: {times}")
 
 
 if __name__ == "__main__":

@@ -336,7 +336,7 @@ fn a_plot_shows_the_rows_however_the_run_ends() {
 
 #[test]
 fn wrong_input_is_one_line_and_status_2() {
-    let cases: [(&[&str], &str); 32] = [
+    let cases: [(&[&str], &str); 31] = [
         (&["explain"], "name a system of `vi-lab list`"),
         (&["work-precision"], "name a system of `vi-lab list`"),
         (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
@@ -382,10 +382,6 @@ fn wrong_input_is_one_line_and_status_2() {
             "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it",
         ),
         (&["work-precision", "kepler", "--q", "1"], "give 2 finite coordinates (--q), not [1.0]"),
-        (
-            &["work-precision", "kepler", "--rival", "runs/pendulum.csv"],
-            "the runs of kepler must be in the file kepler.csv, not in runs/pendulum.csv",
-        ),
         (
             &["run", "double-well", "--steps", "1", "--start", "points"],
             "only energy-preserving steps have a --start; add --method energy, or remove it",

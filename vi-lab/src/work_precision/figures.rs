@@ -2,7 +2,6 @@
 //!
 //! In: [`Findings`]. Out: charts and tables. Runs with an error over [`LOST`] appear only in the table.
 
-use super::clock;
 use super::drift::Drift;
 use super::method::Method;
 use super::study::{Findings, Point, fitted_order};
@@ -21,8 +20,8 @@ impl Findings {
         self.work(
             "work-precision",
             format!("{system}: error against time"),
-            format!("seconds of {} for the whole run", clock::NAME),
-            |point| Some(point.seconds),
+            "wall-clock seconds of the whole run".to_owned(),
+            |point| point.seconds,
             |point| Some(point.median),
         )
     }
@@ -30,7 +29,7 @@ impl Findings {
     /// Error against evaluations.
     pub(super) fn evaluations(&self, system: &str) -> Chart {
         #[allow(clippy::cast_precision_loss)] // far below 2⁵³
-        let count = |point: &Point| point.evaluations.map(|count| count as f64);
+        let count = |point: &Point| point.evaluations as f64;
         self.work(
             "evaluations",
             format!("{system}: error against evaluations"),
@@ -46,13 +45,13 @@ impl Findings {
         name: &'static str,
         title: String,
         label: String,
-        work: impl Fn(&Point) -> Option<f64>,
+        work: impl Fn(&Point) -> f64,
         whisker: impl Fn(&Point) -> Option<f64>,
     ) -> Chart {
         let mut series = Vec::new();
         for method in self.methods() {
             let shown: Vec<Point> = self.shown(method).map(|(_, point)| point).collect();
-            let points: Vec<(f64, f64)> = shown.iter().filter_map(|point| Some((point.error, work(point)?))).collect();
+            let points: Vec<(f64, f64)> = shown.iter().map(|point| (point.error, work(point))).collect();
             if points.is_empty() {
                 continue;
             }
@@ -68,7 +67,7 @@ impl Findings {
 
     /// Error against the step, for the methods with a given step.
     pub(super) fn orders(&self, system: &str) -> Chart {
-        let stepping = self.methods().filter(|method| !matches!(method, Method::Rival | Method::Heyoka));
+        let stepping = self.methods().filter(|method| *method != Method::Rival);
         let series = stepping.map(|method| {
             let order = fitted_order(self.points(method), self.agreement.floor());
             let label = order.map_or_else(
@@ -94,7 +93,7 @@ impl Findings {
             let (label, look) = match drift.method {
                 Method::Rival if drift.setting > 1e-8 => (rival(drift), line),
                 Method::Rival if drift.setting > 1e-11 => (rival(drift), drift.method.look().dashed()),
-                Method::Rival | Method::Heyoka => (rival(drift), drift.method.look().dotted()),
+                Method::Rival => (rival(drift), drift.method.look().dotted()),
                 Method::Own(_) | Method::Gauss(_) => (drift.method.name().to_owned(), line),
             };
             Series::curve(label, look, drift.worst.clone())
@@ -204,7 +203,7 @@ impl Findings {
                     name,
                     setting,
                     format!("{:e}", point.error),
-                    point.evaluations.map_or_else(String::new, |count| count.to_string()),
+                    point.evaluations.to_string(),
                     format!("{:.4e}", point.seconds),
                     format!("{:.4e}", point.median),
                     String::new(),
@@ -284,7 +283,7 @@ mod tests {
 
     /// Two runs of the energy-preserving integrator, off by 1e-12 and 1e-14, and one that ended.
     fn findings() -> Findings {
-        let point = |error, seconds| Point { error, evaluations: Some(100), seconds, median: 2.0 * seconds };
+        let point = |error, seconds| Point { error, evaluations: 100, seconds, median: 2.0 * seconds };
         let error = StepError::NoForwardStep { t: 1.0, h: 0.1, excess: 0.0, density: -1.0 };
         let run = |setting, outcome| TimedRun { method: Method::ENERGY, setting, outcome };
         Findings {

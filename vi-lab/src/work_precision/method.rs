@@ -21,8 +21,6 @@ pub(super) enum Method {
     Gauss(usize),
     /// The Runge–Kutta method of order 8 with adaptive steps.
     Rival,
-    /// The Taylor integrator heyoka, whose runs come from a file: it has no [`Task`].
-    Heyoka,
 }
 
 impl Method {
@@ -33,7 +31,7 @@ impl Method {
     /// The integrator that solves for its own step.
     pub(super) const ENERGY: Self = Self::Own(plan::Method::Energy);
 
-    /// All methods that run here, in the order of the legends.
+    /// All methods, in the order of the legends.
     pub(super) const ALL: [Self; 9] = [
         Self::FIXED,
         Self::Own(plan::Method::Suzuki4),
@@ -56,7 +54,6 @@ impl Method {
             Self::Gauss(4) => "Gauss, 4 stages",
             Self::Gauss(_) => "Gauss, 8 stages",
             Self::Rival => "DOP853",
-            Self::Heyoka => "heyoka",
         }
     }
 
@@ -74,7 +71,6 @@ impl Method {
             Self::Gauss(_) | Self::Own(plan::Method::Gauss) => many,
             Self::Own(plan::Method::Energy) => Look::ENERGY,
             Self::Rival => Look::RIVAL,
-            Self::Heyoka => Look::ELSEWHERE,
         }
     }
 
@@ -87,7 +83,7 @@ impl Method {
     pub(super) fn suits(self, system: &dyn System) -> bool {
         match self {
             Self::Own(method) => method.splitting().is_none() || system.has(method),
-            Self::Gauss(_) | Self::Rival | Self::Heyoka => true,
+            Self::Gauss(_) | Self::Rival => true,
         }
     }
 
@@ -100,14 +96,14 @@ impl Method {
                 substeps.or(method.splitting().map(|scheme| scheme.forces())).unwrap_or(1)
             }
             Self::Gauss(stages) => 4 * stages,
-            Self::Rival | Self::Heyoka => 1,
+            Self::Rival => 1,
         }
     }
 
     /// Its setting in words.
     pub(super) fn setting(self, setting: f64) -> String {
         match self {
-            Self::Rival | Self::Heyoka => format!("tolerance {setting:.0e}"),
+            Self::Rival => format!("tolerance {setting:.0e}"),
             Self::Own(plan::Method::Energy) => format!("h₀ = {setting:.4}"),
             Self::Own(_) | Self::Gauss(_) => format!("h = {setting:.4}"),
         }
@@ -151,7 +147,7 @@ impl Task<'_> {
         let (method, stages) = match self.method {
             Method::Own(method) => (method, None),
             Method::Gauss(stages) => (plan::Method::Gauss, Some(stages)),
-            Method::Rival | Method::Heyoka => return None,
+            Method::Rival => return None,
         };
         // The start whose midpoints lie on the energy of the motion.
         let start = plan::Start::Midpoint;

@@ -2,8 +2,8 @@
 //!
 //! In: a predefined system and a folder. Out: in the folder a page `index.html` with four figures (error against time,
 //! against evaluations, against the step; energy over a long time), each as SVG and CSV, and tables of all runs. The
-//! methods are the fixed step, its compositions of order 4, 6 and 8, Gauss methods, the energy-preserving integrator,
-//! DOP853 of another library in the same run, and heyoka from a file of its runs.
+//! methods are the fixed step, its compositions of order 4, 6 and 8, Gauss methods, the energy-preserving integrator, and
+//! DOP853 of another library.
 //!
 //! | module | product |
 //! |---|---|
@@ -11,20 +11,15 @@
 //! | [`method`] | one run of one method |
 //! | [`mod@reference`] | the reference solution, and its accuracy |
 //! | [`drift`] | the energy over a long time |
-//! | [`clock`] | seconds |
-//! | [`elsewhere`] | the runs of heyoka, from a file |
 //! | [`figures`] | charts, tables, and the runs that charts omit |
 
-mod clock;
 mod drift;
-mod elsewhere;
 mod figures;
 mod method;
 mod reference;
 mod study;
 
 use clap::Args;
-use method::Method;
 use std::path::PathBuf;
 use study::Findings;
 use vi_report::catalogue::{Catalogue, kebab, with_rule};
@@ -51,9 +46,6 @@ pub(crate) struct Arguments {
     /// Initial velocities, separated by commas [default: those of the system]
     #[arg(long, value_name = "V,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
     v: Option<Vec<f64>>,
-    /// Runs of heyoka to show as well: SYSTEM.csv, as benches/rivals/heyoka_runs.py writes it
-    #[arg(long, value_name = "FILE")]
-    rival: Option<PathBuf>,
     /// Fewer and shorter runs, each timed once: for a preview, not for numbers
     #[arg(long)]
     quick: bool,
@@ -68,14 +60,12 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     let machine = Machine::here();
     let entry = with_rule(entry(arguments, catalogue)?, "work-precision")?;
     let name = kebab(entry.system.name());
-    let external = arguments.rival.as_deref().map(|file| elsewhere::runs(file, &name)).transpose()?;
     let page = Page::new(&format!("Error against work: {name}"), entry.about);
     let mut report = Report::new(&arguments.out, page)?;
     let mut progress = Progress::new(study::length(&entry, arguments.quick));
-    let mut found = study::findings(&entry, arguments.quick, &mut progress)
+    let found = study::findings(&entry, arguments.quick, &mut progress)
         .map_err(|ended| Failure::Input(format!("the motion of {name} cannot be computed: {ended}")))?;
     drop(progress);
-    found.runs.extend(external.into_iter().flatten());
     introduction(&mut report, &entry, &found);
     work(&mut report, &name, &found)?;
     order(&mut report, &name, &found)?;
@@ -145,11 +135,6 @@ fn introduction(report: &mut Report, entry: &Entry, found: &Findings) {
 
 fn work(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure> {
     report.section("Error against work");
-    if found.methods().any(|method| method == Method::Heyoka) {
-        report.prose(
-            "The runs of heyoka come from a file. Their system, start, time and machine are not checked; they are timed by wall clock.",
-        );
-    }
     report.figure(
         &found.time(name).figure(),
         "The lower left is best. Each marker is the fastest repetition of a run; its whisker ends at the median. \

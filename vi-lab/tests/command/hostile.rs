@@ -46,16 +46,15 @@ fn what_is_read_must_be_a_file() {
         assert!(made.success());
         file
     };
-    let [scene, source, rival, part] = ["a.toml", "a.rs", "kepler.csv", "a.csv.part"].map(pipe);
+    let [scene, source, part] = ["a.toml", "a.rs", "a.csv.part"].map(pipe);
     let output = folder.at("a.csv");
     // Each would wait forever for a writer.
-    let cases: [(&[&str], &str); 6] = [
+    let cases: [(&[&str], &str); 5] = [
         (&["run", &scene], &scene),
         (&["sweep", &scene, "-o", &output], &scene),
         (&["lyapunov", &scene], &scene),
         (&["expand", &source], &source),
         (&["explain", &source], &source),
-        (&["work-precision", "kepler", "--rival", &rival], &rival),
     ];
     for (arguments, file) in cases {
         let (status, output, errors) = lab(arguments);

@@ -40,8 +40,6 @@ impl Look {
     ];
     /// A method of another library.
     pub const RIVAL: Self = Self::of("#000000", MarkerShape::Cross);
-    /// An external program.
-    pub const ELSEWHERE: Self = Self { stroke: Stroke::Dashed, ..Self::of("#000000", MarkerShape::Square) };
     /// The exact solution, or a theoretical law.
     pub const EXACT: Self = Self { colour: "#333333", width: 1.4, stroke: Stroke::Dashed, marker: None };
     /// Outline of [`Look::EXACT`] on a coloured background.
