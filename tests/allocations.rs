@@ -2,7 +2,8 @@
 
 use allocation_counter::measure;
 use vi_core::prelude::*;
-use vi_core::{Composition, Convertible, EnergyPreservingGauss, Gauss, Method, Run, Splitting};
+use vi_core::stepping::Convertible;
+use vi_core::{Composition, EnergyPreservingGauss, Gauss, Method, Run, Splitting};
 use vi_systems::{DoublePendulum, Kepler, RodPendulum};
 
 /// Fails if one of 40 steps after the third allocates. Returns how often the first three do.
