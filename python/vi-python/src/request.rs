@@ -3,9 +3,7 @@
 use crate::failure::wrong;
 use pyo3::prelude::*;
 use vi_erased::System;
-use vi_erased::plan::{
-    BOUND_ENERGY_STAGES, Built, Method, Named as _, PhasePoint, Plan, Shift, Start,
-};
+use vi_erased::plan::{BOUND_ENERGY_STAGES, Built, Method, Named as _, PhasePoint, Plan, Shift, Start};
 
 /// Method and options of a run. Python has checked their names.
 #[derive(Clone, Debug, FromPyObject)]
