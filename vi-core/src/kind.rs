@@ -1,6 +1,6 @@
 //! The kind of a system: free, or bound by K constraints.
 //!
-//! [`Motion::Kind`](crate::motion::Motion::Kind) is [`Free`] or [`Bound<K>`](Bound). A free system is one with zero
+//! [`Motion::Kind`] is [`Free`] or [`Bound<K>`](Bound). A free system is one with zero
 //! constraints: the arrays of its multipliers and gradients are empty. So one trait describes the motion of both kinds,
 //! and a method asks the kind where its solver differs.
 

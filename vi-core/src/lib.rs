@@ -30,7 +30,8 @@
 //! | [`mod@lagrangian`] | the continuous system: L, f, energy, momentum, flow |
 //! | [`discrete`] | the discrete Lagrangian of a rule, with its derivatives |
 //! | [`stepping`] | the momentum and energy equations of one step, and their derivatives |
-//! | [`collocation`] | the equations of motion at one point, for Gauss steps |
+//! | [`kind`] | free systems, and systems with constraints |
+//! | [`motion`] | the equations of motion at one point, for Gauss steps |
 //! | [`constrained`] | systems with constraints, for Gauss–Lobatto steps |
 //! | [`indexed`] | large systems: all their functions from first and second derivatives by loops |
 //! | [`rules`] | markers of the quadrature rules that `discretize` can name |

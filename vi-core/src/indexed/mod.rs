@@ -197,7 +197,7 @@ pub fn acceleration<const N: usize, T: Real, S: Indexed<N, T>>(
     legendre::acceleration(t, &mass(system, t, q, v), &applied(system, t, q, v))
 }
 
-/// `L_q + f − L_vt − L_vq v`, for [`Motion::applied`](crate::Motion::applied).
+/// `L_q + f − L_vt − L_vq v`, for [`Motion::applied`](crate::motion::Motion::applied).
 #[inline]
 pub fn applied<const N: usize, T: Real, S: Indexed<N, T>>(
     system: &S,
