@@ -22,7 +22,7 @@ use nalgebra::SVector;
 /// the previous step.
 ///
 /// # Errors
-/// As [`FixedStep::step`](crate::Run::step).
+/// As [`Run::step`](crate::Run::step).
 #[cold]
 pub fn step_alone<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
