@@ -178,7 +178,7 @@ pub enum Shift {
     Over(f64),
 }
 
-/// Method, stages, and whether in transformed time: what tells the integrators of a system apart.
+/// What distinguishes the integrators of a system: method, stages, and whether in transformed time.
 pub type Built = (Method, Option<usize>, bool);
 
 /// The description of a run.

@@ -252,7 +252,7 @@ pub trait Session {
     ) -> Result<Option<Vec<f64>>, StepError>;
 }
 
-/// A run is nothing more without the feature.
+/// Without the feature `sessions` a run has no further functions.
 #[cfg(not(feature = "sessions"))]
 pub trait Session {}
 #[cfg(not(feature = "sessions"))]

@@ -129,8 +129,8 @@ pub(crate) fn diagonal<const N: usize, T: Real>(matrix: &impl Matrix<N, T>) -> S
     diagonal
 }
 
-/// The mass matrix with 1 for coordinates without mass that no holonomic constraint moves: it does not say where they are
-/// nearest, and they stay. `None` if there are none.
+/// The mass matrix with a mass of 1 for each coordinate without mass that no holonomic constraint moves: a projection
+/// leaves these where they are. `None` if there are none.
 pub(crate) fn with_idle<const N: usize>(
     mass: &impl Matrix<N, f64>,
     gradients: &impl Rectangular<N, f64>,
@@ -152,8 +152,8 @@ pub(crate) fn with_idle<const N: usize>(
     })
 }
 
-/// Whether a part of a correction of this length brought the place of convergence nearer: `behind` is the length of the
-/// next correction with the same factors. Deuflhard's natural monotonicity test.
+/// Whether `part` of a correction of this length passes Deuflhard's natural monotonicity test: `behind` is the length of
+/// the next correction with the same factors.
 pub(crate) fn is_shortened(behind: f64, length: f64, part: f64) -> bool {
     behind < (1.0 - 0.25 * part) * length
 }
@@ -177,7 +177,7 @@ pub(crate) fn spread<const N: usize, T: Real>(
     [roots.map(|root| root * size), roots.map(|root| over(size, root))]
 }
 
-/// Whether a correction reduced a residual in roundings. That of a row without terms is infinite and measures nothing.
+/// Whether a correction reduced a residual, in roundings. An infinite residual, of a row without terms, counts as reduced.
 pub(crate) fn is_reduced(next: f64, residual: f64) -> bool {
     next < residual || residual.is_infinite() && !next.is_nan()
 }

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! S couples constraints that share a coordinate: three diagonals for a chain. Its pivots are positive for short steps,
-//! in any order of elimination; the fewest couplings come first. Whatever is unusual is left to the general solver: a
-//! pivot that is not positive, a residual above the floor, rows that fill S.
+//! in any order of elimination; the fewest couplings come first. The general solver takes steps with
+//! a pivot that is not positive, a residual above the floor, or rows that fill S.
 
 use super::diagonal;
 use super::equations::Place;

@@ -117,7 +117,7 @@ where
             if residual > FLOOR {
                 residual = bounded::<S, N, STAGES>(system, node, h, u);
             }
-            // Roundings of one row hide what corrections bring to another.
+            // A row at its rounding level hides that corrections reduce the residual of another.
             for _ in 0..WHOLE {
                 if residual <= FLOOR || is_last {
                     break;

@@ -90,7 +90,7 @@ pub struct Gradient<const N: usize> {
 /// checkpoints are taken twice; with `kept = steps` none is.
 ///
 /// # Errors
-/// Those of a failed step, of its derivative, or of its inputs; [`StepError::UnknownParameter`] for a name that no
+/// The error of a failed step, of its derivative, or of an input; [`StepError::UnknownParameter`] for a name that no
 /// parameter has; [`StepError::NonFinite`] if the gradient is out of range, or a derivative of the objective is NaN.
 pub fn gradient<M, S, const N: usize>(
     run: &Run<M, S, N>,

@@ -207,7 +207,7 @@ fn vary<S, const N: usize>(
 where
     S: Discretized<N>,
 {
-    // Borrowed, because those of long systems are large.
+    // Borrowed: the matrices of systems with many coordinates are large.
     let derivatives = system.momentum_derivatives(node, h, v);
     let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = &derivatives;
     let inverse = residual_dv.inverse();

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! This needs half of the products of the general equations, and fixed-point iteration contracts twice as fast. If that does
-//! not contract, Newton iteration corrects the positions. What it corrects at the end are rounding errors of the forces,
-//! which enter the next node: they are bounded too.
+//! not contract, Newton iteration corrects the positions. Its last corrections are rounding errors of the
+//! forces, which enter the next node: they are bounded too.
 
 use super::fixed_point::{Convergence, Equations, StageIncrement};
 use super::newton::Newton;

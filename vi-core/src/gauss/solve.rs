@@ -237,7 +237,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             if solved.iteration.convergence.is_at_floor()
                 && let Some(step) = near.accepted(rare, &solved, Some(newton))
             {
-                // The iterations from here do not tell when a new linearization pays off.
+                // These iterations began near the solution: their number does not tell when a new linearization pays off.
                 let linearization = Some(Linearization { iterations: None, ..at });
                 return Ok(Step { pause: self.pause.after_newton(), linearization, ..step });
             }

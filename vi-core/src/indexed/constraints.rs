@@ -160,8 +160,8 @@ where
     core::array::from_fn(|i| reaction.row(i).transpose())
 }
 
-/// What belongs to the constraints on positions, followed by what belongs to the others. Evaluates no kind without
-/// constraints.
+/// A quantity of each constraint, in their order: of constraints on positions by the first function, of those on
+/// velocities by the second. A function without constraints is not called.
 #[inline]
 fn of_kinds<const K: usize, S: Motion<N, T>, const N: usize, T: Real, R: Copy>(
     on_positions: impl FnOnce() -> [R; K],

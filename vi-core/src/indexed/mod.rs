@@ -86,7 +86,7 @@ pub trait Indexed<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
 }
 
 impl<const N: usize, T: Real> FirstDerivatives<N, T> {
-    /// All of them times a weight. Those of a single point stay as they are.
+    /// These derivatives times a weight. A weight of 1, that of a rule of one point, changes no bit.
     #[inline]
     fn weighted(self, weight: f64) -> Self {
         if weight - 1.0 == 0.0 {
@@ -132,7 +132,7 @@ fn sum<R: Quadrature, V: Add<Output = V>>(mut of: impl FnMut([f64; 2]) -> V) -> 
     sum
 }
 
-/// A part of a vector. Where an end does not count, the vector may have no value.
+/// A vector times `part`. With a part of zero the vector may be NaN.
 #[inline]
 fn share<const N: usize, T: Real>(part: f64, of: &SVector<T, N>) -> SVector<T, N> {
     if part == 0.0 { SVector::zeros() } else { of * T::real(part) }

@@ -74,7 +74,7 @@ impl<const N: usize, T: Real> Sums<N, T> {
     }
 }
 
-/// Those of the midpoint of a step.
+/// The sums at the midpoint of a step.
 #[inline]
 fn of_midpoint<const N: usize, T: Real, S: Indexed<N, T>>(first: &FirstDerivatives<N, T>) -> Sums<N, T> {
     Sums::of::<S>(0.5, first)

@@ -12,7 +12,7 @@ use vi_erased::erasable::Runnable;
 pub struct Entry {
     /// The system, with the default parameters.
     pub system: Box<dyn System>,
-    /// What it is.
+    /// Its description.
     pub about: &'static str,
     /// Default initial coordinates.
     pub q: Vec<f64>,

@@ -1,7 +1,7 @@
 //! Stiff springs: a mass on a spring under gravity, over the frequency of the spring and the step.
 //!
 //! The slow motion is a pendulum of frequency 1, the fast one the spring with ω = √k. The trapezoidal rule must resolve
-//! the fast one, `h ω < 2`, though nothing of it is to be seen.
+//! the fast one, `h ω < 2`, although it is too small to be seen.
 
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};

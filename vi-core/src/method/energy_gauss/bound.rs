@@ -23,7 +23,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 use vi_dispatch::Instructions;
 
-/// The steps of any length after those of a run.
+/// Steps of any length from the last node of a run.
 fn lengths<'a, S: Motion<N>, const N: usize, const STAGES: usize>(
     system: &'a S,
     steps: &'a ConstrainedSteps<N>,

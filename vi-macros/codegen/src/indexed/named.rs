@@ -13,7 +13,7 @@ const CHARACTERS: usize = 160;
 pub(crate) const PART: &str = "time_scale_part";
 pub(crate) const SCALE: &str = "time_scale";
 
-/// What the values of a body are.
+/// What a body computes.
 #[derive(Clone, Copy)]
 pub(crate) enum Quantity<'a> {
     /// Entries of these arrays of `let`s, or their rates.

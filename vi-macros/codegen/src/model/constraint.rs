@@ -346,7 +346,7 @@ fn potential(pool: &mut Pool<Symbol>, Rate { row, rest }: &Rate) -> Option<Expr>
     is_right.then_some(function)
 }
 
-/// What a function lacks of a slope, expanded.
+/// The wanted derivative less that of a function, expanded.
 fn left_over(pool: &mut Pool<Symbol>, function: Expr, (variable, wanted): (Variable, Expr)) -> Option<Expr> {
     let slope = slope(pool, function, variable);
     let left = pool.sub(wanted, slope);

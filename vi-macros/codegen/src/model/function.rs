@@ -30,7 +30,7 @@ pub struct Function {
     pub name: Ident,
     /// The names of its arguments.
     pub arguments: Vec<String>,
-    /// What it is.
+    /// Its kind.
     pub kind: FunctionKind,
 }
 

@@ -527,7 +527,7 @@ pub(super) fn power(pool: &mut Pool<Symbol>, base: Expr, exponent: Expr) -> Expr
     pool.call(Function::Pow, &[base, exponent])
 }
 
-/// Where brackets take the place of parentheses in a chain.
+/// The place of brackets that stand for parentheses in a chain.
 fn brackets_of(first: &Expression, rest: &[(Operator, Expression)]) -> Option<Span> {
     [first].into_iter().chain(rest.iter().map(|(_, operand)| operand)).find_map(brackets)
 }

@@ -229,7 +229,7 @@ pub(super) fn not_a_number(written: &Expression, shape: &[usize]) -> syn::Error 
     error(written.span, &Message::Array(mistake))
 }
 
-/// Where brackets take the place of parentheses: a list of one number among the operands.
+/// The place of brackets that stand for parentheses: a list of one number among the operands.
 pub(super) fn brackets(written: &Expression) -> Option<Span> {
     match &written.kind {
         Kind::List(entries) if matches!(&entries[..], [only] if !matches!(only.kind, Kind::List(_))) => {

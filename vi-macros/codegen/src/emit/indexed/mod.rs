@@ -58,7 +58,7 @@ struct Printer<'a> {
     model: &'a Model,
 }
 
-/// What a statement has: its body and its name, and the place of a column of its loop.
+/// A statement of a loop: its body, its name, and the index of a column.
 struct Printed<'a> {
     body: &'a Body,
     name: Ident,
@@ -90,7 +90,7 @@ struct Defined<'a> {
     entry: TokenStream,
 }
 
-/// Where a derivative with respect to a number of the state goes.
+/// To what a derivative with respect to a number of the state is added.
 enum Target {
     /// A coordinate or a velocity: the number of the weight.
     Own(usize),

@@ -297,7 +297,7 @@ fn where_not_zero(weights: &[Option<&Ident>], statements: &TokenStream) -> Token
 
 /// The columns of a row that a slope changes.
 pub(super) enum Column<'a> {
-    /// That of a coordinate or a velocity, with its weight.
+    /// The column of a coordinate or a velocity, with the weight of its derivative.
     Own(TokenStream, &'a Ident),
     /// All, by this row of derivatives of an entry.
     All(TokenStream),
