@@ -90,6 +90,7 @@ pub mod constrained;
 #[cfg(feature = "alloc")]
 pub mod control;
 mod delegate;
+mod dense_output;
 #[cfg(feature = "alloc")]
 pub mod derivatives;
 pub mod discrete;

@@ -6,7 +6,8 @@
 use super::equations::{Rows, stage_velocity};
 use super::guess::from_node;
 use super::reduced;
-use super::solve::{self, Solution, Solved, Workspace};
+use super::solve::{self, Solution, Workspace};
+use super::solved::Solved;
 use super::{bordered, diagonal};
 use crate::error::StepError;
 use crate::gauss::branch::{self, EQUAL, FAST, NEAR, Shorter, StepsFromNode, distance, is_resolved};

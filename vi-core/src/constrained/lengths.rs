@@ -5,7 +5,8 @@
 use super::energies::{energies, power_of};
 use super::equations::{Rows, impulses, stage_velocity, unknowns};
 use super::guess::{Extrapolation, from_node};
-use super::solve::{Solution, Solved, Workspace, projected};
+use super::solve::{Solution, Workspace, projected};
+use super::solved::Solved;
 use super::{bordered, connected, density};
 use crate::error::StepError;
 use crate::gauss::density::power;

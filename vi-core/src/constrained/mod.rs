@@ -48,6 +48,7 @@ mod motion;
 mod projection;
 mod reduced;
 pub(crate) mod solve;
+pub(crate) mod solved;
 pub(crate) mod start;
 pub(crate) mod variation;
 

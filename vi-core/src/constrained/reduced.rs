@@ -13,7 +13,7 @@
 
 use super::diagonal;
 use super::equations::Place;
-use super::solve::{Solved, contracted};
+use super::solved::{Solved, contracted};
 use crate::kind::Multipliers;
 use crate::linear::{Rectangular, Row};
 use crate::motion::Motion;

@@ -11,6 +11,7 @@
 use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
 use super::reduced::Reduced;
+use super::solved::{Solved, contracted};
 use super::{bordered, diagonal, is_reduced, is_shortened, reaction_of};
 use crate::error::{Residuals, StepError};
 use crate::kind::Multipliers;
@@ -33,8 +34,6 @@ const HALVINGS: u32 = 12;
 const FALLEN: f64 = 0.1;
 /// Corrections without a halving after the last one that reduced the residual.
 const WHOLE: u32 = 3;
-/// Residuals up to this are noise of rounding, of linkages far from the origin too, and their guess was close.
-const NOISE: f64 = 1e4;
 /// A solution after more iterations has its determinant evaluated anew.
 const FEW: u32 = 8;
 
@@ -57,15 +56,6 @@ pub struct Workspace {
     bordered: Bordered,
     /// The buffer of the unknowns of a step.
     pub(crate) unknowns: Vec<f64>,
-}
-
-/// A solved step; its unknowns are in the list of the caller.
-pub(crate) struct Solved<const N: usize, M> {
-    pub(crate) end: Node<N>,
-    /// The impulse of the projection.
-    pub(crate) mu: M,
-    pub(crate) residual: f64,
-    pub(crate) iterations: u32,
 }
 
 /// The equations of a step at its solution.
@@ -352,12 +342,6 @@ where
     let u: Vec<Rounded> = u.iter().map(|entry| Rounded::nearest(*entry)).collect();
     let node = node.map(Rounded::exact);
     Rows::<_, N, STAGES, Rounded>::at(&system.convert::<Rounded>(), &node, Rounded::exact(h), &u).bounded_residual()
-}
-
-/// The largest contraction so far after two residuals in turn.
-#[inline(always)]
-pub(crate) fn contracted(contraction: f64, [before, after]: [f64; 2]) -> f64 {
-    if after > NOISE { contraction.max(after / before) } else { contraction }
 }
 
 /// The part of a step over which the turn of a gradient is measured.

@@ -16,19 +16,14 @@ use super::equations::{Rows, stage_velocity};
 use super::motion::{Velocity, from_rest, unsolvable, velocity};
 use super::solve::Workspace;
 use super::{border, bordered, reaction_of, with_idle};
-use crate::derivatives::{
-    Differentiable, TOGETHER, Variation, Varied, more_parameters, not_finite, not_last, singular,
-};
+use crate::derivatives::{TOGETHER, Variation, Varied, more_parameters, not_finite, singular};
 use crate::error::StepError;
-use crate::kind::{Bound, Form, Kind};
+use crate::kind::Kind;
 use crate::lagrangian::Lagrangian;
 use crate::linear::{Bordered, Matrix, Rectangular};
-use crate::method::gauss::bound::ConstrainedSteps;
-use crate::method::{Composed, Gauss};
 use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::Dual;
-use crate::run::Run;
 use crate::state::State;
 use crate::stepping::Convertible;
 use alloc::vec::Vec;
@@ -36,32 +31,6 @@ use nalgebra::SVector;
 
 /// Largest part of a tangent vector across the constraints. Central differences have about nine digits.
 const ADMISSIBLE: f64 = 1e-8;
-
-impl<S, const N: usize, const K: usize, F: Form> Differentiable<S, N> for Composed<Gauss<1>>
-where
-    S: Convertible<N, Kind = Bound<K, F>>,
-{
-    /// Allocates the matrix of a substep.
-    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let Run { system, node, memory, h, .. } = run;
-        let substeps = &memory.all;
-        let ends = substeps.iter().skip(1).map(ConstrainedSteps::start).chain([node]);
-        let last: Option<Vec<_>> = substeps.iter().zip(ends).map(|(substep, end)| substep.last(end)).collect();
-        let last = last.filter(|all| all.first().is_some_and(|(start, ..)| *start == before));
-        let last = last.ok_or_else(|| not_last(before.t))?;
-        let lengths: Vec<f64> = variations.iter().map(|variation| variation.h).collect();
-        for (start, length, u, mu) in last {
-            for (variation, of_length) in variations.iter_mut().zip(&lengths) {
-                variation.h = of_length * (length / h);
-            }
-            vary::<S, N, 1>(system, (start, length), (u, mu), variations)?;
-        }
-        for (variation, of_length) in variations.iter_mut().zip(lengths) {
-            variation.h = of_length;
-        }
-        Ok(())
-    }
-}
 
 /// The system with parameters that vary in each direction.
 fn varied<S: Convertible<N> + Lagrangian<N>, const N: usize>(system: &S, variations: &[Variation<N>]) -> S::In<Varied> {

@@ -10,10 +10,12 @@ use super::gauss::bound::{ConstrainedStep, ConstrainedSteps};
 use super::{Composition, Gauss, Memory, Method, Problem, Report};
 use crate::constrained::solve::Workspace;
 use crate::constrained::start;
+use crate::constrained::variation::vary;
+use crate::derivatives::{Differentiable, Variation, not_last};
 use crate::error::StepError;
 use crate::kind::{Bound, Form, Multipliers};
 use crate::node::Node;
-use crate::run::Hermite;
+use crate::run::{Hermite, Run};
 use crate::state::State;
 use crate::stepping::Convertible;
 use alloc::boxed::Box;
@@ -220,5 +222,31 @@ where
 
     fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
         start::check_stored(system, node)
+    }
+}
+
+impl<S, const N: usize, const K: usize, F: Form> Differentiable<S, N> for Composed<Gauss<1>>
+where
+    S: Convertible<N, Kind = Bound<K, F>>,
+{
+    /// Allocates the matrix of a substep.
+    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let Run { system, node, memory, h, .. } = run;
+        let substeps = &memory.all;
+        let ends = substeps.iter().skip(1).map(ConstrainedSteps::start).chain([node]);
+        let last: Option<Vec<_>> = substeps.iter().zip(ends).map(|(substep, end)| substep.last(end)).collect();
+        let last = last.filter(|all| all.first().is_some_and(|(start, ..)| *start == before));
+        let last = last.ok_or_else(|| not_last(before.t))?;
+        let lengths: Vec<f64> = variations.iter().map(|variation| variation.h).collect();
+        for (start, length, u, mu) in last {
+            for (variation, of_length) in variations.iter_mut().zip(&lengths) {
+                variation.h = of_length * (length / h);
+            }
+            vary::<S, N, 1>(system, (start, length), (u, mu), variations)?;
+        }
+        for (variation, of_length) in variations.iter_mut().zip(lengths) {
+            variation.h = of_length;
+        }
+        Ok(())
     }
 }

@@ -51,10 +51,10 @@ pub use shift::{Shiftable, StepPower};
 pub use splitting::Splitting;
 pub use transformed::InTransformedTime;
 
+use crate::dense_output::DenseOutput;
 use crate::error::StepError;
 use crate::node::Node;
 use crate::real::Scalar;
-use crate::run::DenseOutput;
 use crate::state::State;
 use core::fmt::Debug;
 

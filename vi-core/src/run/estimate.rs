@@ -39,7 +39,9 @@
 //! without a monitor has no extra cost.
 
 #[cfg(feature = "alloc")]
-use super::events::{Crossing, Crossings, Events};
+use super::event::{Crossing, Events};
+#[cfg(feature = "alloc")]
+use super::events::Crossings;
 use super::{DenseOutput as _, Run};
 use crate::angles::{self, Turns};
 use crate::error::StepError;

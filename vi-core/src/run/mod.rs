@@ -21,10 +21,14 @@
 
 #[cfg(feature = "alloc")]
 mod checkpoint;
-mod dense_output;
+
 mod estimate;
 #[cfg(feature = "alloc")]
+mod event;
+#[cfg(feature = "alloc")]
 mod events;
+#[cfg(feature = "alloc")]
+mod reached;
 #[cfg(feature = "alloc")]
 mod search;
 #[cfg(feature = "alloc")]
@@ -34,12 +38,14 @@ mod solution;
 mod times;
 mod tolerance;
 
+pub use crate::dense_output::{DenseOutput, Hermite};
 #[cfg(feature = "alloc")]
 pub use checkpoint::{Checkpoint, Stored};
-pub use dense_output::{DenseOutput, Hermite};
 pub use estimate::{ErrorEstimate, ErrorMonitor, LocalError, Monitored};
 #[cfg(feature = "alloc")]
-pub use events::{Crossing, Crossings, Event, Events, Met, Moment};
+pub use event::{Crossing, Event, Events, Met, Moment};
+#[cfg(feature = "alloc")]
+pub use events::Crossings;
 #[cfg(feature = "alloc")]
 pub use solution::Solution;
 pub use times::Grid;

@@ -8,67 +8,22 @@
 //! instant    the side of every function at the first such length
 //! ```
 
-use super::events::{Crossing, Event, Met, Moment};
+use super::event::{Crossing, Event, Met, Moment};
+use super::reached::{ErasedRun, StepEnd, moved};
 use super::side::{Node, Side, resolution};
 use super::{DenseOutput, Run};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::solve::bracket::{Point, narrowed};
-use crate::state::State;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::convert::Infallible;
-use nalgebra::SVector;
 
 /// Parts into which a step is divided.
 const SAMPLES: u32 = 8;
 /// Iterations of the search for an extremum of the dense output.
 const ITERATIONS: u32 = 60;
-
-/// A type-erased run from one node on. The search is then compiled once, not once per method and system.
-pub(super) trait ErasedRun<const N: usize> {
-    /// Length of a step.
-    fn step_length(&self) -> f64;
-    /// The end of a step of this length.
-    fn reached(&self, length: f64) -> Result<StepEnd<N>, StepError>;
-    /// The run after a step of this length.
-    fn run_after(&self, length: f64) -> Result<Box<dyn ErasedRun<N> + '_>, StepError>;
-}
-
-/// The end of a step.
-pub(super) struct StepEnd<const N: usize> {
-    pub(super) state: State<N>,
-    pub(super) v: SVector<f64, N>,
-}
-
-/// The run after a step of this length; a subnormal length is no step.
-fn moved<M, S, const N: usize>(run: &Run<M, S, N>, length: f64) -> Result<Run<M, S, N>, StepError>
-where
-    M: Method<S, N>,
-    S: Lagrangian<N> + Copy,
-{
-    let mut aside = run.clone();
-    if length.is_normal() {
-        aside.step_of(length)?;
-    }
-    Ok(aside)
-}
-
-impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> ErasedRun<N> for Run<M, S, N> {
-    fn step_length(&self) -> f64 {
-        self.h()
-    }
-
-    fn reached(&self, length: f64) -> Result<StepEnd<N>, StepError> {
-        let end = moved(self, length)?;
-        Ok(StepEnd { state: end.state(), v: end.velocity()? })
-    }
-
-    fn run_after(&self, length: f64) -> Result<Box<dyn ErasedRun<N> + '_>, StepError> {
-        Ok(Box::new(moved(self, length)?))
-    }
-}
 
 /// A run that is searched, type-erased.
 pub(super) trait Searched<const N: usize> {

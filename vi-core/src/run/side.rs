@@ -11,16 +11,14 @@
 //!
 //! The side depends on the node alone, so that two searches that meet at a node agree on it.
 
-use super::events::{Event, Moment};
-use super::search::ErasedRun;
+use super::event::{Event, Moment, ROUNDING};
+use super::reached::ErasedRun;
 use super::times::LONGER;
 use crate::error::StepError;
 use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-/// Relative rounding error of the end of a step: a few roundings.
-pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Fraction of a step up to which the search for a side extends.
 const LAST: f64 = 0.125;
 

@@ -23,7 +23,8 @@
 use super::{Gauss, StageSolver};
 use crate::constrained::connected;
 use crate::constrained::guess::{Extrapolation, from_node};
-use crate::constrained::solve::{Solved, Workspace};
+use crate::constrained::solve::Workspace;
+use crate::constrained::solved::Solved;
 use crate::constrained::variation::vary;
 use crate::constrained::{bordered, discrete_energy, impulses, start, unknowns};
 use crate::derivatives::{Variation, not_last};
