@@ -5,9 +5,8 @@
 //! p. For the energy-preserving integrator it is taken at the midpoints of its steps, at which its rule preserves it.
 //! If the energy is not conserved, the error is the difference from the reference at the same time.
 
-use super::method::{Method, TOO_MANY, Task};
+use super::method::{Method, TOO_MANY, Task, methods};
 use super::reference::Reference;
-use super::study::methods;
 use core::cell::Cell;
 use vi_erased::plan::{PhasePoint, Plan};
 use vi_report::numbers::order;

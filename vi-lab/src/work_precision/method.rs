@@ -198,3 +198,8 @@ impl Task<'_> {
 
 /// An energy-preserving run is stopped at this multiple of the steps of its initial length.
 pub(super) const TOO_MANY: u64 = 10;
+
+/// The methods that run here and integrate the system.
+pub(super) fn methods(system: &dyn System) -> impl Iterator<Item = Method> + '_ {
+    Method::ALL.into_iter().filter(move |method| method.suits(system))
+}

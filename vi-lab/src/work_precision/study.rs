@@ -3,7 +3,7 @@
 //! In: a system, its initial state, its default step. Out: [`Findings`]. Everything except the seconds is reproducible.
 
 use super::drift::{self, Drift};
-use super::method::{Method, Task};
+use super::method::{Method, Task, methods};
 use super::reference::{Agreement, Reference};
 use std::time::Instant;
 use vi_erased::plan::PhasePoint;
@@ -147,11 +147,6 @@ pub(super) fn length(entry: &Entry, quick: bool) -> u64 {
     let settings: usize = methods().map(|method| settings(method, STEPS * entry.h, finest).len()).sum();
     let rounds = if quick { 1 } else { u64::from(ROUNDS) };
     (1 + rounds) * settings as u64 + methods().count() as u64 + 2
-}
-
-/// The methods that run here and integrate the system.
-pub(super) fn methods(system: &dyn System) -> impl Iterator<Item = Method> + '_ {
-    Method::ALL.into_iter().filter(move |method| method.suits(system))
 }
 
 /// Error and evaluations of one run, without its times.
