@@ -61,7 +61,7 @@
 //! Without them nothing allocates, and functions are those of `libm` (`docs/microcontrollers.md`).
 //!
 //! Nothing here panics or prints. Stepping does not allocate, except for buffers at the first stiff Gauss step, at the first
-//! step of a composition and at the first step with constraints.
+//! step of a composition and at the first steps with constraints.
 
 #![no_std]
 // Some functions serve only modules that need `alloc`.
