@@ -3,7 +3,7 @@
 use crate::rows::vector;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use vi_erased::session::StepOutput;
+use vi_erased::simulation::StepOutput;
 
 /// The motion over the steps of a run, as polynomials.
 #[pyclass(frozen, module = "variational._core")]
