@@ -1,12 +1,13 @@
 //! Derivatives of runs.
 //!
-//! In: a run of known types. Out: its linearization, tangent vectors and gradients as plain numbers, and the run at
+//! In: a run. Out: its linearization, tangent vectors and gradients as plain numbers, and the run at
 //! their end. With constraints, the change of one coordinate alone is no motion: runs have a linearization only.
 
 use crate::erasable::Runnable;
-use vi_core::derivatives::{self, Covector, Differentiable, Objective, Tangent, Variation};
+use crate::method::{AnyMethod, AnyRun};
+use vi_core::derivatives::{self, Covector, Objective, Tangent, Variation};
 use vi_core::kind::Kind;
-use vi_core::{Method, Run, State, StepError};
+use vi_core::{State, StepError};
 
 /// Checks that a change of one coordinate alone is a motion.
 ///
@@ -18,20 +19,20 @@ fn check_free<S: Runnable<N>, const N: usize>(t: f64) -> Result<(), StepError> {
 }
 
 /// A value at the end of some steps, and the run there; `None` if it was interrupted.
-type AtEnd<M, S, Y, const N: usize> = Result<Option<(Run<M, S, N>, Y)>, StepError>;
+type AtEnd<S, Y, const N: usize> = Result<Option<(AnyRun<S, N>, Y)>, StepError>;
 
 /// Derivatives of the node after steps by the start, as [`Session::tangent`](crate::Session::tangent); `begins` if the run
 /// is where it began.
 ///
 /// # Errors
 /// As there.
-pub(crate) fn tangent<M: Differentiable<S, N>, S: Runnable<N>, const N: usize>(
-    run: &Run<M, S, N>,
+pub(crate) fn tangent<S: Runnable<N>, const N: usize>(
+    run: &AnyRun<S, N>,
     begins: bool,
     steps: u64,
     parameters: &[usize],
     goes_on: &mut dyn FnMut() -> bool,
-) -> AtEnd<M, S, Vec<Vec<f64>>, N> {
+) -> AtEnd<S, Vec<Vec<f64>>, N> {
     check_free::<S, N>(run.t())?;
     let mut tangent = varied(run, begins, parameters)?;
     for _ in 0..steps {
@@ -53,13 +54,13 @@ const STRETCH: u64 = 2048;
 ///
 /// # Errors
 /// As there.
-pub(crate) fn gradient<M: Differentiable<S, N>, S: Runnable<N>, const N: usize>(
-    run: &Run<M, S, N>,
+pub(crate) fn gradient<S: Runnable<N>, const N: usize>(
+    run: &AnyRun<S, N>,
     begins: bool,
     (steps, mut slope): (u64, Covector<N>),
     parameters: &[usize],
     goes_on: &mut dyn FnMut() -> bool,
-) -> AtEnd<M, S, Vec<f64>, N> {
+) -> AtEnd<S, Vec<f64>, N> {
     check_free::<S, N>(run.t())?;
     let names: Vec<&'static str> = parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
     // The run at the start of each stretch; the pass goes back from the last one.
@@ -106,7 +107,7 @@ struct AtTheEnd<'a, const N: usize> {
     parameters: &'a [&'static str],
 }
 
-impl<M: Method<S, N>, S: Runnable<N>, const N: usize> Objective<M, S, N> for AtTheEnd<'_, N> {
+impl<S: Runnable<N>, const N: usize> Objective<AnyMethod<S, N>, S, N> for AtTheEnd<'_, N> {
     fn parameters(&self) -> &[&str] {
         self.parameters
     }
@@ -131,11 +132,11 @@ fn directions<const N: usize>(parameters: &[usize]) -> Vec<Variation<N>> {
 ///
 /// # Errors
 /// As [`Tangent::from_start`] and [`Tangent::from_change`].
-fn varied<M: Differentiable<S, N>, S: Runnable<N>, const N: usize>(
-    run: &Run<M, S, N>,
+fn varied<S: Runnable<N>, const N: usize>(
+    run: &AnyRun<S, N>,
     begins: bool,
     parameters: &[usize],
-) -> Result<Tangent<M, S, N>, StepError> {
+) -> Result<Tangent<AnyMethod<S, N>, S, N>, StepError> {
     let of = if begins { Tangent::from_start } else { Tangent::from_change };
     of(run.clone(), directions(parameters))
 }

@@ -2,12 +2,18 @@
 //!
 //! In: a method of a known type. Out: [`AnyMethod`], a method of the same system whose runs take the same steps, bit for
 //! bit. Everything that a run can do is generic over its method: with this one it is compiled once for each system. Only
-//! a step and the loop over steps are compiled for each method.
+//! a step and the loop over steps are compiled for each method (`method/known.rs`).
+
+mod known;
+mod output;
 
 use crate::erasable::{Erasable, Runnable};
 use crate::simulation::ShiftedEnergy;
 use core::fmt::Debug;
-use core::marker::PhantomData;
+pub use known::Wraps;
+use known::{ErasedMemory, ErasedMethod, Known, Remembered};
+pub(crate) use known::{GoesOn, Progress};
+pub use output::AnyOutput;
 use std::sync::Arc;
 #[cfg(feature = "derivatives")]
 use vi_core::derivatives::{Differentiable, Variation};
@@ -15,8 +21,8 @@ use vi_core::method::{Memory, Problem, Report};
 use vi_core::node::Node;
 #[cfg(feature = "sessions")]
 use vi_core::run::Crossing;
-use vi_core::run::{Crossings, DenseOutput, Event, Parts};
-use vi_core::{Called, Method, Presumed, Run, SVector, State, StepError};
+use vi_core::run::{Crossings, Event, Parts};
+use vi_core::{Method, Run, State, StepError};
 
 /// A method of any type that takes the system S.
 #[derive(Clone)]
@@ -25,457 +31,8 @@ pub struct AnyMethod<S, const N: usize>(Arc<dyn ErasedMethod<S, N>>);
 /// The memory of such a method.
 pub struct AnyMemory<S, const N: usize>(Box<dyn ErasedMemory<S, N>>);
 
-/// Dense output of such a method.
-pub struct AnyOutput<const N: usize>(Box<dyn ErasedOutput<N>>);
-
-/// A run as the loop over its steps shows it.
-pub(crate) trait Progress<const N: usize> {
-    /// [`Run::t`].
-    fn t(&self) -> f64;
-    /// [`Run::state`].
-    #[cfg(feature = "sessions")]
-    fn state(&self) -> State<N>;
-    /// [`Run::time_to`].
-    #[cfg(feature = "sessions")]
-    fn time_to(&self, t: f64) -> f64;
-    /// [`Run::longest`].
-    #[cfg(feature = "sessions")]
-    fn longest(&self) -> f64;
-    /// [`Run::h`].
-    #[cfg(feature = "sessions")]
-    fn h(&self) -> f64;
-}
-
-impl<M: Method<S, N>, S: Runnable<N>, const N: usize> Progress<N> for Run<M, S, N> {
-    fn t(&self) -> f64 {
-        self.t()
-    }
-
-    #[cfg(feature = "sessions")]
-    fn state(&self) -> State<N> {
-        self.state()
-    }
-
-    #[cfg(feature = "sessions")]
-    fn time_to(&self, t: f64) -> f64 {
-        self.time_to(t)
-    }
-
-    #[cfg(feature = "sessions")]
-    fn longest(&self) -> f64 {
-        self.longest()
-    }
-
-    #[cfg(feature = "sessions")]
-    fn h(&self) -> f64 {
-        self.h()
-    }
-}
-
-/// Whether a loop takes a further step.
-pub(crate) type GoesOn<'a, const N: usize> = &'a mut dyn FnMut(&dyn Progress<N>) -> bool;
-
-/// The functions of a method that need no memory.
-trait ErasedMethod<S, const N: usize>: Debug + Send + Sync {
-    fn rule(&self) -> Option<&'static str>;
-    fn order(&self) -> u32;
-    fn finds_length(&self) -> bool;
-    fn has_reactions(&self) -> bool;
-    fn check_length(&self, h: f64) -> Result<(), StepError>;
-    fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError>;
-    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError>;
-    fn evaluations(&self, iterations: u32) -> u64;
-    #[cfg(feature = "derivatives")]
-    fn keeps_energy(&self) -> bool;
-    #[cfg(feature = "derivatives")]
-    fn depends_on_time(&self) -> bool;
-    #[cfg(feature = "checkpoints")]
-    fn memory(&self, text: &str) -> Result<AnyMemory<S, N>, String>;
-}
-
-/// The functions of a method with its memory.
-trait ErasedMemory<S, const N: usize>: Debug + Send + Sync {
-    fn copy(&self) -> AnyMemory<S, N>;
-    fn stored(&self) -> AnyMemory<S, N>;
-    /// [`Method::advance`], then [`Method::recover`] if that fails.
-    fn advance(&mut self, system: &S, h: f64, node: &mut Node<N>) -> Result<(), StepError>;
-    /// Takes steps while `goes_on`, and adds their evaluations.
-    fn advance_while(
-        &mut self,
-        system: &S,
-        parts: Parts<(), N>,
-        evaluations: &mut u64,
-        goes_on: GoesOn<'_, N>,
-    ) -> (Parts<(), N>, Result<(), StepError>);
-    /// [`Run::states_at`]. This and the two searches for events take single steps: behind a pointer each would allocate.
-    #[cfg(feature = "sessions")]
-    fn states_at(
-        &mut self,
-        system: &S,
-        parts: Parts<(), N>,
-        times: &[f64],
-        push: &mut dyn FnMut(State<N>),
-    ) -> (Parts<(), N>, Result<(), StepError>);
-    /// [`Run::events`].
-    fn events(
-        &mut self,
-        system: &S,
-        parts: Parts<(), N>,
-        events: (&[Event<N>], f64),
-        search: &mut dyn FnMut(Crossings<'_, N>),
-    ) -> Parts<(), N>;
-    /// [`Run::next_event`].
-    #[cfg(feature = "sessions")]
-    fn next_event(
-        &mut self,
-        system: &S,
-        parts: Parts<(), N>,
-        events: (&[Event<N>], f64),
-    ) -> (Parts<(), N>, Result<Option<Crossing<N>>, StepError>);
-    fn step_of(&self, system: &S, node: &Node<N>, lengths: [f64; 2]) -> Result<(Node<N>, AnyMemory<S, N>), StepError>;
-    fn with_length(&self, system: &S, node: &Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError>;
-    fn with_system(&self, systems: [&S; 2], node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError>;
-    fn with_state(
-        &self,
-        systems: [&S; 2],
-        node: &mut Node<N>,
-        h: f64,
-        state: State<N>,
-    ) -> Result<AnyMemory<S, N>, StepError>;
-    fn dense_output(&self, system: &S, before: &State<N>, node: &Node<N>, h: f64) -> Result<AnyOutput<N>, StepError>;
-    fn length(&self, h: f64) -> f64;
-    fn longest(&self, h: f64) -> f64;
-    fn report(&self) -> Report;
-    fn discrete_energy(&self, system: &S, node: &Node<N>, h: f64) -> Option<f64>;
-    fn check(&self, h: f64, t: f64) -> Result<(), StepError>;
-    fn sampled_energy(&self, system: &S, parts: Parts<(), N>) -> Result<(f64, f64), StepError>;
-    fn shifted_energy(&self, system: &S, parts: Parts<(), N>) -> Option<ShiftedEnergy>;
-    #[cfg(feature = "checkpoints")]
-    fn text(&self) -> Result<String, String>;
-    #[cfg(feature = "derivatives")]
-    fn vary(
-        &self,
-        system: &S,
-        parts: Parts<(), N>,
-        before: &Node<N>,
-        variations: &mut [Variation<N>],
-    ) -> Result<(), StepError>;
-    #[cfg(feature = "derivatives")]
-    fn vary_step_of(
-        &self,
-        system: &S,
-        parts: Parts<(), N>,
-        length: f64,
-        variations: &mut [Variation<N>],
-    ) -> Result<(), StepError>;
-    #[cfg(feature = "derivatives")]
-    fn vary_start(&self, system: &S, parts: Parts<(), N>, variations: &mut [Variation<N>]) -> Result<(), StepError>;
-}
-
-/// A system S as a method takes it: itself, or in a wrapper.
-pub trait Wraps<S> {
-    /// The system in the wrapper.
-    fn wrapped(system: S) -> Self;
-}
-
-impl<S> Wraps<S> for S {
-    fn wrapped(system: S) -> S {
-        system
-    }
-}
-
-impl<S> Wraps<S> for Called<S> {
-    fn wrapped(system: S) -> Self {
-        Called(system)
-    }
-}
-
-impl<S> Wraps<S> for Presumed<S> {
-    fn wrapped(system: S) -> Self {
-        Presumed(system)
-    }
-}
-
-/// A method M that takes the system as W.
-struct Known<M, W> {
-    method: M,
-    system: PhantomData<fn() -> W>,
-}
-
-impl<M: Debug, W> Debug for Known<M, W> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        self.method.fmt(f)
-    }
-}
-
-impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usize> ErasedMethod<S, N> for Known<M, W> {
-    fn rule(&self) -> Option<&'static str> {
-        Method::<W, N>::rule(&self.method)
-    }
-
-    fn order(&self) -> u32 {
-        Method::<W, N>::order(&self.method)
-    }
-
-    fn finds_length(&self) -> bool {
-        Method::<W, N>::finds_length(&self.method)
-    }
-
-    fn has_reactions(&self) -> bool {
-        Method::<W, N>::has_reactions(&self.method)
-    }
-
-    fn check_length(&self, h: f64) -> Result<(), StepError> {
-        Method::<W, N>::check_length(&self.method, h)
-    }
-
-    fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError> {
-        let memory = self.method.begin(&W::wrapped(*system), node, h)?;
-        Ok(Remembered::<M, W, N>::of(&self.method, memory))
-    }
-
-    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
-        self.method.check_node(&W::wrapped(*system), node)
-    }
-
-    fn evaluations(&self, iterations: u32) -> u64 {
-        Erasable::<W, N>::evaluations(&self.method, iterations)
-    }
-
-    #[cfg(feature = "derivatives")]
-    fn keeps_energy(&self) -> bool {
-        Differentiable::<W, N>::keeps_energy(&self.method)
-    }
-
-    #[cfg(feature = "derivatives")]
-    fn depends_on_time(&self) -> bool {
-        Differentiable::<W, N>::depends_on_time(&self.method)
-    }
-
-    #[cfg(feature = "checkpoints")]
-    fn memory(&self, text: &str) -> Result<AnyMemory<S, N>, String> {
-        let memory = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        Ok(Remembered::<M, W, N>::of(&self.method, memory))
-    }
-}
-
-/// A method with its memory.
-struct Remembered<M: Method<W, N>, W, const N: usize> {
-    method: M,
-    memory: M::Memory,
-    /// Computed at the first step.
-    prepared: Option<M::Prepared>,
-    cache: M::Cache,
-}
-
-impl<M: Method<W, N>, W, const N: usize> Debug for Remembered<M, W, N> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        self.memory.fmt(f)
-    }
-}
-
-impl<M: Erasable<W, N>, W: Runnable<N>, const N: usize> Remembered<M, W, N> {
-    /// The memory behind a pointer.
-    fn of<S: Runnable<N>>(method: &M, memory: M::Memory) -> AnyMemory<S, N>
-    where
-        W: Wraps<S>,
-    {
-        AnyMemory(Box::new(Self { method: method.clone(), memory, prepared: None, cache: M::Cache::default() }))
-    }
-
-    /// The run of the known type.
-    fn run<S: Runnable<N>>(&self, system: &S, parts: Parts<(), N>) -> Run<M, W, N>
-    where
-        W: Wraps<S>,
-    {
-        Run::from_parts(self.method.clone(), W::wrapped(*system), parts.with(self.memory.clone()))
-    }
-
-    /// Keeps the memory of a run that ends, and returns its parts.
-    fn kept(&mut self, run: Run<M, W, N>) -> Parts<(), N> {
-        let parts = run.parts();
-        self.memory = run.into_memory();
-        parts
-    }
-}
-
-impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usize> ErasedMemory<S, N>
-    for Remembered<M, W, N>
-{
-    fn copy(&self) -> AnyMemory<S, N> {
-        Self::of(&self.method, self.memory.clone())
-    }
-
-    fn stored(&self) -> AnyMemory<S, N> {
-        Self::of(&self.method, self.memory.stored())
-    }
-
-    fn advance(&mut self, system: &S, h: f64, node: &mut Node<N>) -> Result<(), StepError> {
-        let Self { method, memory, prepared, cache } = self;
-        let system = &W::wrapped(*system);
-        let prepared = prepared.get_or_insert_with(|| method.prepare(system, h));
-        if let Err(left) = method.advance(system, prepared, h, (node, memory), cache) {
-            let at = Problem { system, prepared, node, h };
-            let step = method.recover(at, memory, cache, left)?;
-            Method::<W, N>::take(method, h, (node, memory), cache, step);
-        }
-        Ok(())
-    }
-
-    fn advance_while(
-        &mut self,
-        system: &S,
-        parts: Parts<(), N>,
-        evaluations: &mut u64,
-        goes_on: GoesOn<'_, N>,
-    ) -> (Parts<(), N>, Result<(), StepError>) {
-        // A local run: behind a pointer its numbers would go through memory in every step.
-        let mut run = self.run(system, parts);
-        let mut outcome = Ok(());
-        while outcome.is_ok() && goes_on(&run) {
-            outcome = run.step().map(drop);
-            if outcome.is_ok() {
-                *evaluations += Erasable::<W, N>::evaluations(&self.method, run.iterations());
-            }
-        }
-        (self.kept(run), outcome)
-    }
-
-    #[cfg(feature = "sessions")]
-    fn states_at(
-        &mut self,
-        system: &S,
-        parts: Parts<(), N>,
-        times: &[f64],
-        push: &mut dyn FnMut(State<N>),
-    ) -> (Parts<(), N>, Result<(), StepError>) {
-        let mut run = self.run(system, parts);
-        let outcome = run.states_at(times.iter().copied()).try_for_each(|state| state.map(&mut *push));
-        (self.kept(run), outcome)
-    }
-
-    fn events(
-        &mut self,
-        system: &S,
-        parts: Parts<(), N>,
-        (events, until): (&[Event<N>], f64),
-        search: &mut dyn FnMut(Crossings<'_, N>),
-    ) -> Parts<(), N> {
-        let mut run = self.run(system, parts);
-        search(run.events(events, until));
-        self.kept(run)
-    }
-
-    #[cfg(feature = "sessions")]
-    fn next_event(
-        &mut self,
-        system: &S,
-        parts: Parts<(), N>,
-        (events, until): (&[Event<N>], f64),
-    ) -> (Parts<(), N>, Result<Option<Crossing<N>>, StepError>) {
-        let mut run = self.run(system, parts);
-        let outcome = run.next_event(events, until);
-        (self.kept(run), outcome)
-    }
-
-    fn step_of(&self, system: &S, node: &Node<N>, lengths: [f64; 2]) -> Result<(Node<N>, AnyMemory<S, N>), StepError> {
-        let Self { method, memory, .. } = self;
-        let (node, memory) = method.step_of(&W::wrapped(*system), (node, memory), lengths)?;
-        Ok((node, Self::of(method, memory)))
-    }
-
-    fn with_length(&self, system: &S, node: &Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError> {
-        let Self { method, memory, .. } = self;
-        Ok(Self::of(method, method.with_length(&W::wrapped(*system), memory, node, h)?))
-    }
-
-    fn with_system(&self, systems: [&S; 2], node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError> {
-        let Self { method, memory, .. } = self;
-        let [before, after] = systems.map(|system| W::wrapped(*system));
-        Ok(Self::of(method, method.with_system([&before, &after], node, h, memory)?))
-    }
-
-    fn with_state(
-        &self,
-        systems: [&S; 2],
-        node: &mut Node<N>,
-        h: f64,
-        state: State<N>,
-    ) -> Result<AnyMemory<S, N>, StepError> {
-        let Self { method, memory, .. } = self;
-        let [before, after] = systems.map(|system| W::wrapped(*system));
-        Ok(Self::of(method, method.with_state([&before, &after], node, h, memory, state)?))
-    }
-
-    fn dense_output(&self, system: &S, before: &State<N>, node: &Node<N>, h: f64) -> Result<AnyOutput<N>, StepError> {
-        let Self { method, memory, .. } = self;
-        let output = method.dense_output(&W::wrapped(*system), before, node, h, memory)?;
-        Ok(AnyOutput(Box::new(output)))
-    }
-
-    fn length(&self, h: f64) -> f64 {
-        Method::<W, N>::length(&self.method, h, &self.memory)
-    }
-
-    fn longest(&self, h: f64) -> f64 {
-        Method::<W, N>::longest(&self.method, h, &self.memory)
-    }
-
-    fn report(&self) -> Report {
-        Method::<W, N>::report(&self.method, &self.memory)
-    }
-
-    fn discrete_energy(&self, system: &S, node: &Node<N>, h: f64) -> Option<f64> {
-        self.method.discrete_energy(&W::wrapped(*system), node, h, &self.memory)
-    }
-
-    fn check(&self, h: f64, t: f64) -> Result<(), StepError> {
-        Method::<W, N>::check(&self.method, &self.memory, h, t)
-    }
-
-    fn sampled_energy(&self, system: &S, parts: Parts<(), N>) -> Result<(f64, f64), StepError> {
-        M::sampled_energy(&self.run(system, parts))
-    }
-
-    fn shifted_energy(&self, system: &S, parts: Parts<(), N>) -> Option<ShiftedEnergy> {
-        M::shifted_energy(&self.run(system, parts))
-    }
-
-    #[cfg(feature = "checkpoints")]
-    fn text(&self) -> Result<String, String> {
-        let text = serde_json::to_string(&self.memory).map_err(|error| error.to_string())?;
-        // JSON has no infinite number: it writes null.
-        serde_json::from_str::<M::Memory>(&text).map_err(|error| error.to_string())?;
-        Ok(text)
-    }
-
-    #[cfg(feature = "derivatives")]
-    fn vary(
-        &self,
-        system: &S,
-        parts: Parts<(), N>,
-        before: &Node<N>,
-        variations: &mut [Variation<N>],
-    ) -> Result<(), StepError> {
-        M::vary(&self.run(system, parts), before, variations)
-    }
-
-    #[cfg(feature = "derivatives")]
-    fn vary_step_of(
-        &self,
-        system: &S,
-        parts: Parts<(), N>,
-        length: f64,
-        variations: &mut [Variation<N>],
-    ) -> Result<(), StepError> {
-        M::vary_step_of(&self.run(system, parts), length, variations)
-    }
-
-    #[cfg(feature = "derivatives")]
-    fn vary_start(&self, system: &S, parts: Parts<(), N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        M::vary_start(&self.run(system, parts), variations)
-    }
-}
+/// A run of such a method.
+pub(crate) type AnyRun<S, const N: usize> = Run<AnyMethod<S, N>, S, N>;
 
 impl<S, const N: usize> Debug for AnyMethod<S, N> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
@@ -515,17 +72,14 @@ impl<S, const N: usize> AnyMemory<S, N> {
 impl<S: Runnable<N>, const N: usize> AnyMethod<S, N> {
     /// A method that takes the system as W.
     pub(crate) fn of<M: Erasable<W, N>, W: Runnable<N> + Wraps<S>>(method: M, _: fn(S) -> W) -> Self {
-        Self(Arc::new(Known { method, system: PhantomData::<fn() -> W> }))
+        Self(Arc::new(Known::<M, W>::of(method)))
     }
 
     /// The run of a method of a known type.
-    pub(crate) fn erased<M: Erasable<W, N>, W: Runnable<N> + Wraps<S>>(
-        system: S,
-        run: Run<M, W, N>,
-    ) -> Run<Self, S, N> {
+    pub(crate) fn erased<M: Erasable<W, N>, W: Runnable<N> + Wraps<S>>(system: S, run: Run<M, W, N>) -> AnyRun<S, N> {
         let (method, parts) = (run.method().clone(), run.parts());
         let memory = Remembered::<M, W, N>::of(&method, run.into_memory());
-        Run::from_parts(Self(Arc::new(Known { method, system: PhantomData::<fn() -> W> })), system, parts.with(memory))
+        Run::from_parts(Self::of(method, W::wrapped), system, parts.with(memory))
     }
 
     /// Evaluations of the equations in a step with these iterations.
@@ -547,7 +101,7 @@ impl<S: Runnable<N>, const N: usize> AnyMethod<S, N> {
     /// # Errors
     /// The error of the failed step.
     pub(crate) fn advance_while(
-        run: &mut Run<Self, S, N>,
+        run: &mut AnyRun<S, N>,
         evaluations: &mut u64,
         goes_on: GoesOn<'_, N>,
     ) -> Result<(), StepError> {
@@ -560,7 +114,7 @@ impl<S: Runnable<N>, const N: usize> AnyMethod<S, N> {
     /// As there.
     #[cfg(feature = "sessions")]
     pub(crate) fn states_at(
-        run: &mut Run<Self, S, N>,
+        run: &mut AnyRun<S, N>,
         times: &[f64],
         push: &mut dyn FnMut(State<N>),
     ) -> Result<(), StepError> {
@@ -569,7 +123,7 @@ impl<S: Runnable<N>, const N: usize> AnyMethod<S, N> {
 
     /// [`Run::events`], which `search` gets.
     pub(crate) fn events(
-        run: &mut Run<Self, S, N>,
+        run: &mut AnyRun<S, N>,
         events: &[Event<N>],
         until: f64,
         search: &mut dyn FnMut(Crossings<'_, N>),
@@ -583,7 +137,7 @@ impl<S: Runnable<N>, const N: usize> AnyMethod<S, N> {
     /// As there.
     #[cfg(feature = "sessions")]
     pub(crate) fn next_event(
-        run: &mut Run<Self, S, N>,
+        run: &mut AnyRun<S, N>,
         events: &[Event<N>],
         until: f64,
     ) -> Result<Option<Crossing<N>>, StepError> {
@@ -592,7 +146,7 @@ impl<S: Runnable<N>, const N: usize> AnyMethod<S, N> {
 
     /// Advances a run inside a function of its memory.
     fn within<R>(
-        run: &mut Run<Self, S, N>,
+        run: &mut AnyRun<S, N>,
         advance: impl FnOnce(&mut dyn ErasedMemory<S, N>, &S, Parts<(), N>) -> (Parts<(), N>, R),
     ) -> R {
         let (method, system, mut memory) = (run.method().clone(), *run.system(), run.memory().clone());
@@ -605,12 +159,12 @@ impl<S: Runnable<N>, const N: usize> AnyMethod<S, N> {
     ///
     /// # Errors
     /// The momenta have no velocity.
-    pub(crate) fn sampled_energy(run: &Run<Self, S, N>) -> Result<(f64, f64), StepError> {
+    pub(crate) fn sampled_energy(run: &AnyRun<S, N>) -> Result<(f64, f64), StepError> {
         run.memory().0.sampled_energy(run.system(), run.parts())
     }
 
     /// The conserved quantity of steps with a shift.
-    pub(crate) fn shifted_energy(run: &Run<Self, S, N>) -> Option<ShiftedEnergy> {
+    pub(crate) fn shifted_energy(run: &AnyRun<S, N>) -> Option<ShiftedEnergy> {
         run.memory().0.shifted_energy(run.system(), run.parts())
     }
 }
@@ -771,59 +325,15 @@ impl<S: Runnable<N>, const N: usize> Differentiable<S, N> for AnyMethod<S, N> {
         self.0.depends_on_time()
     }
 
-    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+    fn vary(run: &AnyRun<S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         run.memory().0.vary(run.system(), run.parts(), before, variations)
     }
 
-    fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+    fn vary_step_of(run: &AnyRun<S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         run.memory().0.vary_step_of(run.system(), run.parts(), length, variations)
     }
 
-    fn vary_start(run: &Run<Self, S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+    fn vary_start(run: &AnyRun<S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         run.memory().0.vary_start(run.system(), run.parts(), variations)
-    }
-}
-
-/// Dense output behind a pointer.
-trait ErasedOutput<const N: usize>: Send + Sync {
-    fn state(&self, t: f64) -> State<N>;
-    fn velocity(&self, t: f64) -> SVector<f64, N>;
-    fn since_start(self: Box<Self>) -> AnyOutput<N>;
-    fn moved(self: Box<Self>, by: &SVector<f64, N>) -> AnyOutput<N>;
-}
-
-impl<D: DenseOutput<N> + Send + Sync + 'static, const N: usize> ErasedOutput<N> for D {
-    fn state(&self, t: f64) -> State<N> {
-        self.state(t)
-    }
-
-    fn velocity(&self, t: f64) -> SVector<f64, N> {
-        self.velocity(t)
-    }
-
-    fn since_start(self: Box<Self>) -> AnyOutput<N> {
-        AnyOutput(Box::new(DenseOutput::since_start(*self)))
-    }
-
-    fn moved(self: Box<Self>, by: &SVector<f64, N>) -> AnyOutput<N> {
-        AnyOutput(Box::new(DenseOutput::moved(*self, by)))
-    }
-}
-
-impl<const N: usize> DenseOutput<N> for AnyOutput<N> {
-    fn state(&self, t: f64) -> State<N> {
-        self.0.state(t)
-    }
-
-    fn velocity(&self, t: f64) -> SVector<f64, N> {
-        self.0.velocity(t)
-    }
-
-    fn since_start(self) -> Self {
-        self.0.since_start()
-    }
-
-    fn moved(self, by: &SVector<f64, N>) -> Self {
-        self.0.moved(by)
     }
 }

@@ -4,7 +4,7 @@
 //! calls.
 
 use crate::erasable::Runnable;
-use crate::method::{AnyMethod, GoesOn, Progress};
+use crate::method::{AnyMethod, AnyRun, GoesOn, Progress};
 use crate::section::Section;
 use crate::simulation::{AtConstraints, Met, Row, ShiftedEnergy, Simulation, Steps};
 use std::borrow::Cow;
@@ -14,12 +14,12 @@ use vi_core::linear::Rectangular as _;
 use vi_core::node::Node;
 use vi_core::run::{Crossing, ErrorEstimate, ErrorMonitor};
 use vi_core::support::has_angles;
-use vi_core::{Method as _, Run, SVector, State, StepError};
+use vi_core::{Method as _, SVector, State, StepError};
 
 /// A run with a method, and the data for its rows.
 #[derive(Clone)]
 pub(crate) struct Simulated<S: Runnable<N>, const N: usize> {
-    pub(crate) run: Run<AnyMethod<S, N>, S, N>,
+    pub(crate) run: AnyRun<S, N>,
     evaluations: u64,
     /// The node where the run began, until its state or its parameters change: the energy that it keeps follows from it.
     #[cfg(feature = "derivatives")]
@@ -35,10 +35,7 @@ pub(crate) struct Simulated<S: Runnable<N>, const N: usize> {
 const ROUNDED: f64 = 1e-9;
 
 /// The same run, type-erased, with E' in its rows if `is_shifted`.
-pub(crate) fn erased<S: Runnable<N>, const N: usize>(
-    run: Run<AnyMethod<S, N>, S, N>,
-    is_shifted: bool,
-) -> Box<dyn Simulation> {
+pub(crate) fn erased<S: Runnable<N>, const N: usize>(run: AnyRun<S, N>, is_shifted: bool) -> Box<dyn Simulation> {
     Box::new(Simulated {
         #[cfg(feature = "derivatives")]
         start: (run.iterations() == 0).then(|| *run.node()),

@@ -7,7 +7,7 @@ use crate::derivatives;
 use crate::erasable::Runnable;
 #[cfg(feature = "checkpoints")]
 use crate::method::AnyMemory;
-use crate::method::{AnyMethod, Progress};
+use crate::method::{AnyMethod, AnyOutput, AnyRun, Progress};
 use crate::run::{Simulated, met};
 use crate::section::Section;
 use crate::simulation::{Met, Rows, Session, StepOutput, vector};
@@ -17,16 +17,13 @@ use serde_json::value::RawValue;
 use vi_core::derivatives::Covector;
 #[cfg(feature = "checkpoints")]
 use vi_core::run::Checkpoint;
-use vi_core::run::DenseOutput;
-use vi_core::{Run, State, StepError};
+use vi_core::run::DenseOutput as _;
+use vi_core::{State, StepError};
 
-/// Dense output, type-erased.
-struct Output<D, const N: usize>(D);
-
-impl<D: DenseOutput<N> + Send + Sync, const N: usize> StepOutput for Output<D, N> {
+impl<const N: usize> StepOutput for AnyOutput<N> {
     fn at(&self, t: f64) -> [Vec<f64>; 3] {
-        let State { q, p, .. } = self.0.state(t);
-        [q, p, self.0.velocity(t)].map(|of| of.as_slice().to_vec())
+        let State { q, p, .. } = self.state(t);
+        [q, p, self.velocity(t)].map(|of| of.as_slice().to_vec())
     }
 }
 
@@ -58,7 +55,7 @@ impl<S: Runnable<N>, const N: usize> Simulated<S, N> {
     }
 
     /// Continues as a run with other parameters or at another state.
-    fn continue_as(&mut self, run: Run<AnyMethod<S, N>, S, N>) {
+    fn continue_as(&mut self, run: AnyRun<S, N>) {
         // An unfinished window of measurement belongs to the system and the steps of before.
         self.resume();
         self.run = run;
@@ -156,7 +153,7 @@ impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
     }
 
     fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError> {
-        Ok(Box::new(Output(self.run.dense_output(&state(t, q, p)?)?)))
+        Ok(Box::new(self.run.dense_output(&state(t, q, p)?)?))
     }
 
     fn local_error(&self) -> Result<[Vec<f64>; 2], StepError> {

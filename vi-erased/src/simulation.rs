@@ -166,17 +166,18 @@ pub trait Session {
     /// Sets parameters by their indices.
     ///
     /// # Errors
-    /// As [`Run::set_parameters`].
+    /// As [`Run::set_parameters`](vi_core::Run::set_parameters).
     fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError>;
     /// Continues from another state, of time, coordinates and momenta, with changed parameters.
     ///
     /// # Errors
-    /// As [`Run::set_parameters_and_state`]; [`StepError::InvalidInput`] for another number of coordinates or momenta.
+    /// As [`Run::set_parameters_and_state`](vi_core::Run::set_parameters_and_state); [`StepError::InvalidInput`] for
+    /// another number of coordinates or momenta.
     fn set_state(&mut self, change: &[(usize, f64)], at: (f64, &[f64], &[f64])) -> Result<(), StepError>;
     /// Takes one step of the length h in time.
     ///
     /// # Errors
-    /// As [`Run::step_of`].
+    /// As [`Run::step_of`](vi_core::Run::step_of).
     fn advance_of(&mut self, h: f64) -> Result<(), StepError>;
     /// Takes steps toward the time `end`, where the last of them ends, if one is given; at most `most`. Adds each
     /// `every`th node before `end` to `rows`, as `taken` counts. Returns whether the run is at `end`.
@@ -191,25 +192,25 @@ pub trait Session {
         taken: &mut u64,
         rows: &mut Rows,
     ) -> Result<bool, StepError>;
-    /// Adds states at the given times to `rows`, as [`Run::states_at`].
+    /// Adds states at the given times to `rows`, as [`Run::states_at`](vi_core::Run::states_at).
     ///
     /// # Errors
-    /// As [`Run::states_at`].
+    /// As [`Run::states_at`](vi_core::Run::states_at).
     fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError>;
     /// Advances to the first crossing of a section, or to the time `end`.
     ///
     /// # Errors
-    /// As [`Run::next_event`].
+    /// As [`Run::next_event`](vi_core::Run::next_event).
     fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError>;
     /// Dense output of the last step, which began at this time with these coordinates and momenta.
     ///
     /// # Errors
-    /// As [`Run::dense_output`].
+    /// As [`Run::dense_output`](vi_core::Run::dense_output).
     fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError>;
     /// The error of the next step: of q and of h·v, one after the other.
     ///
     /// # Errors
-    /// As [`Run::local_error`].
+    /// As [`Run::local_error`](vi_core::Run::local_error).
     fn local_error(&self) -> Result<[Vec<f64>; 2], StepError>;
     /// Everything that the run carries, as text for [`System::restart`](crate::System::restart).
     ///
@@ -220,7 +221,8 @@ pub trait Session {
     /// The linearization of the next step. The run does not change.
     ///
     /// # Errors
-    /// As [`Run::linearization`]; here and below [`StepError::NoDerivative`] for a system with constraints.
+    /// As [`Run::linearization`](vi_core::Run::linearization); here and below [`StepError::NoDerivative`] for a system
+    /// with constraints.
     #[cfg(feature = "derivatives")]
     fn linearization(&self) -> Result<Linear, StepError>;
     /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
