@@ -9,13 +9,11 @@ use crate::constrained::{Projection, accelerations, border, bordered, is_reduced
 use crate::error::StepError;
 use crate::kind::{Gradients, Multipliers};
 use crate::linear::{Bordered, Matrix, Rectangular, Row};
-use crate::motion::Motion;
-use crate::motion::Point;
+use crate::motion::{Motion, Point};
 use crate::newton::{FLOOR, roundings};
 use crate::real::{Dual, Rounded};
 use crate::stepping::Convertible;
-use crate::vector::weights;
-use crate::vector::worse;
+use crate::vector::{weights, worse};
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 #[cfg(not(feature = "std"))]
