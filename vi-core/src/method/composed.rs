@@ -72,7 +72,7 @@ impl<const N: usize> Memory for ComposedSteps<N> {}
 
 /// Buffers of a composition.
 #[derive(Clone, Debug)]
-pub struct Substeps<const N: usize, M> {
+pub struct SubstepBuffers<const N: usize, M> {
     workspace: Option<Box<Workspace>>,
     /// Empty between steps.
     steps: Vec<ConstrainedStep<N, M>>,
@@ -80,7 +80,7 @@ pub struct Substeps<const N: usize, M> {
     unknowns: Vec<Vec<f64>>,
 }
 
-impl<const N: usize, M> Default for Substeps<N, M> {
+impl<const N: usize, M> Default for SubstepBuffers<N, M> {
     fn default() -> Self {
         Self { workspace: None, steps: Vec::new(), unknowns: Vec::new() }
     }
@@ -92,7 +92,7 @@ where
 {
     type Prepared = ();
     type Memory = ComposedSteps<N>;
-    type Cache = Substeps<N, Multipliers<S, N>>;
+    type Cache = SubstepBuffers<N, Multipliers<S, N>>;
     type Step = Vec<ConstrainedStep<N, Multipliers<S, N>>>;
     type Left = StepError;
     type DenseOutput = Hermite<N>;
@@ -120,7 +120,7 @@ where
     ) -> Result<Self::Step, StepError> {
         let Problem { system, node, h, .. } = at;
         let mut after = *node;
-        let Substeps { workspace, steps, unknowns } = cache;
+        let SubstepBuffers { workspace, steps, unknowns } = cache;
         let mut steps = core::mem::take(steps);
         for (own, h) in memory.all.iter().zip(self.scheme.lengths(h)) {
             let problem = Problem { system, prepared: &(), node: &after, h };
@@ -178,16 +178,6 @@ where
         let substeps = memory.all.iter().zip(self.scheme.lengths(h));
         let all = substeps.map(|(memory, h)| self.method.with_length(system, memory, node, h));
         Ok(ComposedSteps { all: all.collect::<Result<_, _>>()?, is_new: true })
-    }
-
-    fn with_system(
-        &self,
-        [_, after]: [&S; 2],
-        node: &mut Node<N>,
-        h: f64,
-        _memory: &Self::Memory,
-    ) -> Result<Self::Memory, StepError> {
-        self.begin(after, node, h)
     }
 
     fn dense_output(

@@ -269,18 +269,20 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
         h: T,
     ) -> Result<Self::Memory, StepError>;
 
-    /// The memory after a change of the system from the first to the second; h is the step of the run. A method that
-    /// preserves an energy adds the change of H to it.
+    /// The memory after a change of the system from the first to the second; h is the step of the run. By default that of
+    /// a new run from the node. A method that preserves an energy adds the change of H to it.
     ///
     /// # Errors
     /// The reason why the run cannot continue with the new system.
     fn with_system(
         &self,
-        systems: [&S; 2],
+        [_, system]: [&S; 2],
         node: &mut Node<N, T>,
         h: T,
-        memory: &Self::Memory,
-    ) -> Result<Self::Memory, StepError>;
+        _memory: &Self::Memory,
+    ) -> Result<Self::Memory, StepError> {
+        self.begin(system, node, h)
+    }
 
     /// The memory for a run that continues from another state with the second system; moves the node there. A method that
     /// preserves an energy adds the change of H to it.

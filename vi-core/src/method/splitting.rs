@@ -413,16 +413,6 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
         Ok(*memory)
     }
 
-    fn with_system(
-        &self,
-        [_, after]: [&S; 2],
-        node: &mut Node<N, T>,
-        h: T,
-        _memory: &Kicked<N, T>,
-    ) -> Result<Kicked<N, T>, StepError> {
-        self.begin(after, node, h)
-    }
-
     fn dense_output(
         &self,
         system: &S,

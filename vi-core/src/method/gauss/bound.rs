@@ -254,16 +254,6 @@ where
         ConstrainedSteps::from_node::<S, STAGES>(system, (node, h, &v), bordered)
     }
 
-    fn with_system(
-        &self,
-        [_, after]: [&S; 2],
-        node: &mut Node<N>,
-        h: f64,
-        _memory: &Self::Memory,
-    ) -> Result<Self::Memory, StepError> {
-        self.begin(after, node, h)
-    }
-
     fn dense_output(
         &self,
         system: &S,
