@@ -391,7 +391,7 @@ fn in_arrays(names: &[(String, usize)]) -> String {
     arrays.map(text).collect::<Vec<_>>().join(", ")
 }
 
-/// The order of Gauss steps with constraints across a point where L has only so many continuous derivatives.
+/// The order of Gauss steps of a system with constraints across a point where a derivative of L jumps.
 pub(crate) fn constrained_smoothness_in_words(smoothness: &Smoothness) -> String {
     let order = smoothness.derivatives + 1;
     format!("{}: `Gauss` has order {order} across it", derivatives_in_words(smoothness))

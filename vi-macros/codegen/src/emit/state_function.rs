@@ -1,11 +1,11 @@
 //! Functions of (t, q, v) with one result.
 
 use super::Source;
-use super::body::{VelocityFrom, state_parts};
+use super::body::{Body, VelocityFrom, state_parts};
 use super::entries::{self, ResultEntry};
 use crate::program::{FunctionId, Output};
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{ToTokens as _, format_ident, quote};
 
 /// The vector of one group of results; inference supplies its type.
 pub(super) fn vector_of(entries: &[ResultEntry]) -> TokenStream {
@@ -15,34 +15,28 @@ pub(super) fn vector_of(entries: &[ResultEntry]) -> TokenStream {
 
 /// A scalar function of (t, q, v).
 pub(super) fn number(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
-    let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
-        return TokenStream::new();
-    };
-    let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
-    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let result = body.results.number(Output::Value);
-    quote! {
-        #documentation
-        #[inline]
-        fn #name(
-            &self,
-            t: T,
-            q: &::vi_core::SVector<T, #dimension>,
-            v: &::vi_core::SVector<T, #dimension>,
-        ) -> T {
-            #inputs #statements #result
-        }
-    }
+    function(source, id, formula, (&quote!(T), |body| body.results.number(Output::Value).into_token_stream()))
 }
 
 /// A vector function of (t, q, v).
 pub(super) fn vector(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
+    let dimension = source.dimension();
+    let of = &quote!(::vi_core::SVector<T, #dimension>);
+    function(source, id, formula, (of, |body| vector_of(body.results.vector(Output::Value))))
+}
+
+/// A function of (t, q, v) with a result of this type.
+fn function(
+    source: &Source,
+    id: FunctionId,
+    formula: &str,
+    (of, result): (&TokenStream, fn(&Body) -> TokenStream),
+) -> TokenStream {
     let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
         return TokenStream::new();
     };
     let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
-    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let result = vector_of(body.results.vector(Output::Value));
+    let (inputs, statements, result) = (state_parts(&body, source.model), &body.statements, result(&body));
     quote! {
         #documentation
         #[inline]
@@ -51,7 +45,7 @@ pub(super) fn vector(source: &Source, id: FunctionId, formula: &str) -> TokenStr
             t: T,
             q: &::vi_core::SVector<T, #dimension>,
             v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::SVector<T, #dimension> {
+        ) -> #of {
             #inputs #statements #result
         }
     }
