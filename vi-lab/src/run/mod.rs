@@ -18,7 +18,7 @@
 mod csv;
 mod extent;
 pub(crate) mod method;
-mod placement;
+pub(crate) mod placement;
 mod plot;
 mod request;
 mod resolution;
@@ -29,7 +29,6 @@ mod ways_out;
 use crate::entries::named;
 use clap::Args;
 use extent::Extent;
-pub(crate) use placement::Placement;
 use request::Output;
 pub(crate) use request::{Length, Request};
 use shift::Wanted;

@@ -8,7 +8,7 @@ use super::axis::Axis;
 use super::random::bits;
 use super::scene::Sweep;
 use super::schema::MOST;
-use crate::run::Placement;
+use crate::run::placement::Placement;
 use vi_erased::plan::Plan;
 use vi_report::failure::Failure;
 use vi_runs::system::System;
