@@ -49,10 +49,10 @@ pub const fn has_angles<S: Lagrangian<N, T>, const N: usize, T: Scalar>() -> boo
 
 /// Whether an angle has to be reduced before the next step.
 #[inline(always)]
-pub fn are_far<S: Lagrangian<N, T>, const N: usize, T: Scalar>(q: &SVector<T, N>) -> bool {
-    let mut are_far = false;
+pub fn are_far<S: Lagrangian<N, T>, const N: usize, T: Scalar>(system: &S, q: &SVector<T, N>) -> bool {
+    let (mut are_far, angles) = (false, system.angles());
     for i in 0..N {
-        are_far |= S::ANGLES[i] && q[i].abs() > T::real(FAR);
+        are_far |= angles[i] && q[i].abs() > T::real(FAR);
     }
     are_far
 }
@@ -67,9 +67,10 @@ pub type Reduced<const N: usize, T> = (SVector<T, N>, SVector<T, N>, Turns<N>);
 #[cold]
 #[inline(never)]
 pub fn reduced<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
+    system: &S,
     (mut q, mut q_low, mut turns): Reduced<N, T>,
 ) -> Result<Reduced<N, T>, StepError> {
-    for i in (0..N).filter(|i| S::ANGLES[*i]) {
+    for i in (0..N).filter(|i| system.angles()[*i]) {
         if q[i].abs() <= T::real(FAR) {
             continue;
         }
@@ -86,11 +87,14 @@ pub fn reduced<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
 
 /// The node with reduced angles, as a step from it begins. It is unchanged if an angle has more than 2^53 turns.
 #[inline]
-pub(crate) fn reduced_node<S: Lagrangian<N, T>, const N: usize, T: Scalar>(node: &Node<N, T>) -> Node<N, T> {
-    if !are_far::<S, N, T>(&node.q) {
+pub(crate) fn reduced_node<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
+    system: &S,
+    node: &Node<N, T>,
+) -> Node<N, T> {
+    if !are_far(system, &node.q) {
         return *node;
     }
-    let reduced = reduced::<S, N, T>((node.q, node.q_low, Turns::zeros()));
+    let reduced = reduced(system, (node.q, node.q_low, Turns::zeros()));
     reduced.map_or(*node, |(q, q_low, _)| Node { q, q_low, ..*node })
 }
 
@@ -128,11 +132,12 @@ pub(crate) fn without_turns<const N: usize, T: Scalar>(state: &State<N, T>, turn
 
 /// The turns nearest to a reduced angle and its low part are added to the others: the result is in `[-π, π]`.
 pub(crate) fn normalized<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
+    system: &S,
     node: &Node<N, T>,
     turns: &Turns<N>,
 ) -> (SVector<T, N>, Turns<N>) {
     let (mut q, mut turns) = (node.q, *turns);
-    for i in (0..N).filter(|i| S::ANGLES[*i]) {
+    for i in (0..N).filter(|i| system.angles()[*i]) {
         if let Some((k, [high, _])) = nearest(q[i].to_f64(), node.q_low[i].to_f64()) {
             (q[i], turns[i]) = (T::real(high), turns[i] + k);
         }
@@ -145,11 +150,12 @@ pub(crate) fn normalized<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
 /// # Errors
 /// [`StepError::InvalidInput`] for an angle of more than 2^53 turns, and for turns of a coordinate that is no angle.
 pub(crate) fn check<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
+    system: &S,
     q: &SVector<T, N>,
     turns: &Turns<N>,
 ) -> Result<(), StepError> {
     for i in 0..N {
-        if !S::ANGLES[i] && turns[i] != 0 {
+        if !system.angles()[i] && turns[i] != 0 {
             return Err(StepError::InvalidInput {
                 input: "the turns of a coordinate that is no angle",
                 allowed: "zero",
@@ -161,7 +167,7 @@ pub(crate) fn check<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
         }
         let angle = q[i].to_f64();
         // The method reports an angle that is not finite.
-        if S::ANGLES[i] && angle.is_finite() && nearest(angle, 0.0).is_none() {
+        if system.angles()[i] && angle.is_finite() && nearest(angle, 0.0).is_none() {
             return Err(too_far(angle));
         }
     }

@@ -109,7 +109,7 @@ fn linearized<S: Convertible<N>, const N: usize>(
     let explained = |failure: StepError| failure.explained(system, &node, 0.0, &v);
     let acceleration = system.acceleration(t, &q, &v).map_err(explained)?;
     let value = DVector::from_iterator(2 * N, v.iter().chain(&acceleration).copied());
-    let columns: Vec<usize> = (0..2 * N + S::INPUTS.len()).collect();
+    let columns: Vec<usize> = (0..2 * N + system.inputs().len()).collect();
     // The derivative of q' = v is known, that of v' comes from dual numbers.
     let mut derivatives = DMatrix::zeros(2 * N, columns.len());
     derivatives.view_mut((0, N), (N, N)).fill_with_identity();
@@ -120,7 +120,7 @@ fn linearized<S: Convertible<N>, const N: usize>(
             let varied = match *column {
                 column if column < N => q.get_mut(column),
                 column if column < 2 * N => v.get_mut(column - N),
-                column => varying.parameter_mut(S::PARAMETERS[S::INPUTS[column - 2 * N]]),
+                column => varying.parameter_mut(system.parameters()[system.inputs()[column - 2 * N]]),
             };
             if let Some(number) = varied {
                 number.slope.0[direction] = 1.0;
@@ -197,8 +197,8 @@ where
     /// Those of a step and of [`Run::vary`].
     pub fn linearization(&self) -> Result<Linearization, StepError> {
         let mut variations = Variation::of_state();
-        for input in S::INPUTS {
-            variations.push(Variation::of_parameter::<S>(S::PARAMETERS[*input])?);
+        for input in self.system().inputs() {
+            variations.push(Variation::of_index(*input));
         }
         let mut tangent = Tangent::from_change(self.clone(), variations)?;
         tangent.project()?;

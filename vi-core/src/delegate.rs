@@ -20,7 +20,7 @@ macro_rules! motion {
         }
 
         impl<const N: usize, T: Real, S: Motion<N, T>$(, $rule: Rule)?> Motion<N, T> for $wrapper {
-            forward! { [N T S] self => self; $attribute motion_types point sides point_derivatives scaled_point }
+            forward! { [N T S] self => self; $attribute motion_types point sides applied_force point_derivatives scaled_point }
             forward! { [N T S] self => self; [#[inline]] power applied constraints constraint_gradients }
             forward! { [N T S] self => self; [#[inline]] constraint_rate_derivatives reaction_derivatives dropped_constraints }
         }

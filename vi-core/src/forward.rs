@@ -37,6 +37,14 @@ macro_rules! forward {
         }
     };
 
+    // Facts about the system.
+    (@facts ($this:ident) ($to:expr) $trait:path, $s:tt, $($name:ident -> $out:ty),*) => {
+        $(#[inline(always)]
+        fn $name(&$this) -> $out {
+            <$s as $trait>::$name($to)
+        })*
+    };
+
     // The continuous system.
     (@lagrangian_constants [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
         const NAME: &'static str = <$s as $crate::Lagrangian<$n, $t>>::NAME;
@@ -48,6 +56,12 @@ macro_rules! forward {
         const PARAMETERS: &'static [&'static str] = <$s as $crate::Lagrangian<$n, $t>>::PARAMETERS;
         const INPUTS: &'static [usize] = <$s as $crate::Lagrangian<$n, $t>>::INPUTS;
         const MONOTONE_TABLE: Option<&'static str> = <$s as $crate::Lagrangian<$n, $t>>::MONOTONE_TABLE;
+        const INTERPRETED: bool = <$s as $crate::Lagrangian<$n, $t>>::INTERPRETED;
+
+        $crate::forward! { @facts ($this) ($to) $crate::Lagrangian<$n, $t>, $s,
+            name -> &'static str, coordinates -> [&'static str; $n], is_autonomous -> bool, is_forced -> bool,
+            cyclic -> [bool; $n], angles -> [bool; $n], parameters -> &'static [&'static str],
+            inputs -> &'static [usize], monotone_table -> Option<&'static str> }
 
         fn parameter(&$this, index: usize) -> $t {
             <$s as $crate::Lagrangian<$n, $t>>::parameter($to, index)
@@ -91,12 +105,21 @@ macro_rules! forward {
         const CONSTRAINTS: &'static [&'static str] = <$s as $crate::motion::Motion<$n, $t>>::CONSTRAINTS;
         const HOLONOMIC: usize = <$s as $crate::motion::Motion<$n, $t>>::HOLONOMIC;
         const BLOCKS: &'static [$crate::linear::Block] = <$s as $crate::motion::Motion<$n, $t>>::BLOCKS;
+
+        $crate::forward! { @motion_facts [$n $t $s $r] $($rest)* }
+    };
+    (@motion_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
+        $crate::forward! { @facts ($this) ($to) $crate::motion::Motion<$n, $t>, $s,
+            has_constant_mass -> bool, is_separable -> bool, scales_time -> bool }
     };
     (@point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
         $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, point -> $crate::motion::Point<$n, $t, Self::Mass>, $($rest)* }
     };
     (@sides [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
         $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, sides -> $crate::motion::Sides<$n, $t>, $($rest)* }
+    };
+    (@applied_force [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, applied_force -> $crate::SVector<$t, $n>, $($rest)* }
     };
     (@point_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
         $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, point_derivatives -> $crate::motion::PointDerivatives<Self::PointMatrix>, $($rest)* }
@@ -173,6 +196,12 @@ macro_rules! forward {
         const CONSTANT_JACOBIAN: bool = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::CONSTANT_JACOBIAN;
         const CLOSED_FORM: bool = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::CLOSED_FORM;
         const INLINED: bool = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::INLINED;
+
+        $crate::forward! { @stepping_facts [$n $t $s $r] $($rest)* }
+    };
+    (@stepping_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
+        $crate::forward! { @facts ($this) ($to) $crate::stepping::FixedStepping<$n, $t, $r>, $s,
+            has_constant_jacobian -> bool, has_closed_form -> bool, is_inlined -> bool }
     };
     (@momentum_equation [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
         $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, momentum_equation -> $crate::stepping::MomentumEquation<$n, $t, Self::Jacobian>, $($rest)* }

@@ -27,6 +27,56 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     /// The name of a `monotone` table in L, if there is one: the step density jumps at its places, and no
     /// energy-preserving step is taken.
     const MONOTONE_TABLE: Option<&'static str> = None;
+    /// Whether an interpreter evaluates the system. The functions below then say what its constants cannot, which claim
+    /// less than holds; and Gauss steps evaluate all stages by one call, since a call costs more than an operation.
+    const INTERPRETED: bool = false;
+
+    /// [`Lagrangian::NAME`]. This function and those below return their constants, except those of a system that is
+    /// known at run time only.
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+    /// [`Lagrangian::COORDINATES`].
+    fn coordinates(&self) -> [&'static str; N] {
+        Self::COORDINATES
+    }
+    /// [`Lagrangian::AUTONOMOUS`].
+    #[inline(always)]
+    fn is_autonomous(&self) -> bool {
+        Self::AUTONOMOUS
+    }
+    /// [`Lagrangian::FORCED`].
+    #[inline(always)]
+    fn is_forced(&self) -> bool {
+        Self::FORCED
+    }
+    /// Whether the energy is constant along a motion: neither L depends on time, nor is there a force.
+    #[inline(always)]
+    fn conserves_energy(&self) -> bool {
+        self.is_autonomous() && !self.is_forced()
+    }
+    /// [`Lagrangian::CYCLIC`].
+    fn cyclic(&self) -> [bool; N] {
+        Self::CYCLIC
+    }
+    /// [`Lagrangian::ANGLES`].
+    #[inline(always)]
+    fn angles(&self) -> [bool; N] {
+        Self::ANGLES
+    }
+    /// [`Lagrangian::PARAMETERS`].
+    #[inline(always)]
+    fn parameters(&self) -> &'static [&'static str] {
+        Self::PARAMETERS
+    }
+    /// [`Lagrangian::INPUTS`].
+    fn inputs(&self) -> &'static [usize] {
+        Self::INPUTS
+    }
+    /// [`Lagrangian::MONOTONE_TABLE`].
+    fn monotone_table(&self) -> Option<&'static str> {
+        Self::MONOTONE_TABLE
+    }
 
     /// The value of the parameter of this index in [`Lagrangian::PARAMETERS`].
     fn parameter(&self, _index: usize) -> T {
@@ -100,6 +150,20 @@ pub trait Described {
     const PARAMETERS_ABOUT: &'static [&'static str];
     /// The body of its `lagrangian!`, as tokens.
     const DEFINITION: &'static str;
+
+    /// [`Described::ABOUT`]; this function and the next two return their constants, except those of a system that is
+    /// known at run time only.
+    fn about(&self) -> &'static str {
+        Self::ABOUT
+    }
+    /// [`Described::PARAMETERS_ABOUT`].
+    fn parameters_about(&self) -> &'static [&'static str] {
+        Self::PARAMETERS_ABOUT
+    }
+    /// [`Described::DEFINITION`].
+    fn definition(&self) -> &'static str {
+        Self::DEFINITION
+    }
 }
 
 /// The parameters of a system, by name; [`Lagrangian::PARAMETERS`] lists them.

@@ -60,12 +60,33 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// without blocks, dense elimination. Multiplier r is unknown N + r.
     const BLOCKS: &'static [Block] = &[];
 
+    /// [`Motion::CONSTANT_MASS`]. This function and the next two return their constants, except those of a system that
+    /// is known at run time only.
+    #[inline(always)]
+    fn has_constant_mass(&self) -> bool {
+        Self::CONSTANT_MASS
+    }
+    /// [`Motion::SEPARABLE`].
+    #[inline(always)]
+    fn is_separable(&self) -> bool {
+        Self::SEPARABLE
+    }
+    /// [`Motion::SCALES_TIME`].
+    #[inline(always)]
+    fn scales_time(&self) -> bool {
+        Self::SCALES_TIME
+    }
     /// Evaluates `L_v`, `L_q + f` and M at a point.
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
     /// The same without M.
     #[inline(always)]
     fn sides(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T> {
         self.point(t, q, v).sides()
+    }
+    /// `L_q + f` alone.
+    #[inline(always)]
+    fn applied_force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        self.sides(t, q, v).force
     }
     /// Evaluates their derivatives at a point.
     fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix>;

@@ -40,6 +40,23 @@ pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T
     /// request, so that a loop over trajectories vectorizes.
     const INLINED: bool = false;
 
+    /// [`FixedStepping::CONSTANT_JACOBIAN`]. This function and the next two return their constants, except those of a
+    /// system that is known at run time only.
+    #[inline(always)]
+    fn has_constant_jacobian(&self) -> bool {
+        Self::CONSTANT_JACOBIAN
+    }
+    /// [`FixedStepping::CLOSED_FORM`].
+    #[inline(always)]
+    fn has_closed_form(&self) -> bool {
+        Self::CLOSED_FORM
+    }
+    /// [`FixedStepping::INLINED`].
+    #[inline(always)]
+    fn is_inlined(&self) -> bool {
+        Self::INLINED
+    }
+
     /// Evaluates the momentum equation at the trial velocity `v` for the step length `h`.
     ///
     /// At `h = 0` its root is the velocity of the momenta `p`.
@@ -317,16 +334,17 @@ pub struct Increment<const N: usize, T = f64> {
 
 impl<const N: usize, T: Real> Node<N, T> {
     /// The node at the end of the step `(v, h)` of a system.
-    #[inline]
-    pub(crate) fn advanced<S: Lagrangian<N, T>>(
+    #[inline(always)]
+    pub(crate) fn advanced(
         mut self,
+        system: &impl Lagrangian<N, T>,
         h: T,
         v: &SVector<T, N>,
         increment: &Increment<N, T>,
     ) -> Self {
         self.advance(h, v, &increment.momentum);
         // Otherwise the increment is the constant zero, which the compiler may not drop from a sum.
-        if !S::AUTONOMOUS || S::FORCED {
+        if !system.conserves_energy() {
             self.add_energy(increment.energy);
         }
         self

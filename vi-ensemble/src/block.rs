@@ -149,11 +149,11 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
     fn reduce(&mut self) {
         for number in 0..WIDTH {
             let lane = LaneIndex::of(number);
-            if self.verdict.running.get(lane) == 0 || !are_far::<S, N, f64>(&self.nodes[0].q(lane)) {
+            if self.verdict.running.get(lane) == 0 || !are_far(&self.system(lane), &self.nodes[0].q(lane)) {
                 continue;
             }
             let node = self.node(number);
-            match reduced_angles::<S, N, f64>((node.q, node.q_low, self.turns[number])) {
+            match reduced_angles(&self.system(lane), (node.q, node.q_low, self.turns[number])) {
                 Ok((q, q_low, turns)) => {
                     self.nodes[0].set(lane, &Node { q, q_low, ..node });
                     self.turns[number] = turns;
@@ -161,6 +161,10 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
                 Err(error) => self.end(number, self.state(number), error),
             }
         }
+    }
+
+    fn system(&self, lane: LaneIndex) -> S {
+        S::from_rows(&self.fixed.systems[lane.half], lane.index)
     }
 
     fn step(&mut self) {
@@ -191,7 +195,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
             if self.verdict.refused.get(lane) & self.verdict.running.get(lane) == 0 {
                 continue;
             }
-            let (system, node) = (S::from_rows(&self.fixed.systems[lane.half], lane.index), self.node(number));
+            let (system, node) = (self.system(lane), self.node(number));
             let last: SVector<f64, N> = self.velocities[0].get(lane);
             match step_alone(&system, &node, self.fixed.h, last) {
                 Ok((next, v)) => {

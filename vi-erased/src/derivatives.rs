@@ -62,7 +62,8 @@ pub(crate) fn gradient<S: Runnable<N>, const N: usize>(
     goes_on: &mut dyn FnMut() -> bool,
 ) -> AtEnd<S, Vec<f64>, N> {
     check_free::<S, N>(run.t())?;
-    let names: Vec<&'static str> = parameters.iter().filter_map(|index| S::PARAMETERS.get(*index).copied()).collect();
+    let names: Vec<&'static str> =
+        parameters.iter().filter_map(|index| run.system().parameters().get(*index).copied()).collect();
     // The run at the start of each stretch; the pass goes back from the last one.
     let (mut ahead, mut stretches, mut left) = (run.clone(), Vec::new(), steps);
     while left > 0 {

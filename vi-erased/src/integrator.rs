@@ -112,7 +112,7 @@ where
     Presumed<S>: Runnable<N>,
     Splitting: Erasable<Presumed<S>, N>,
 {
-    if const { !S::SEPARABLE } {
+    if const { !S::SEPARABLE && !S::INTERPRETED } {
         return Vec::new();
     }
     vec![
@@ -143,8 +143,8 @@ where
         Gauss::<STAGES>.in_transformed_time(),
         |system: S, plan: &Plan, state: State<N>, _| {
             // Otherwise they would be built for every system.
-            if !S::SCALES_TIME {
-                return Err(StepError::NoTimeScale { system: S::NAME });
+            if !system.scales_time() {
+                return Err(StepError::NoTimeScale { system: system.name() });
             }
             let method = AnyMethod::of(Gauss::<STAGES>.in_transformed_time(), Called);
             Ok(erased(system.at_state(state).integrate(method, plan.dtau.unwrap_or(plan.h))?, false))

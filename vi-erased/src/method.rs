@@ -193,8 +193,8 @@ impl<S: Runnable<N>, const N: usize> Method<S, N> for AnyMethod<S, N> {
         self.0.order()
     }
 
-    fn check_length(&self, h: f64) -> Result<(), StepError> {
-        self.0.check_length(h)
+    fn check_length(&self, system: &S, h: f64) -> Result<(), StepError> {
+        self.0.check_length(system, h)
     }
 
     fn prepare(&self, _system: &S, _h: f64) {}
@@ -235,7 +235,14 @@ impl<S: Runnable<N>, const N: usize> Method<S, N> for AnyMethod<S, N> {
         Err(left)
     }
 
-    fn take(&self, _h: f64, (node, memory): (&mut Node<N>, &mut Self::Memory), (): &mut (), step: Self::Step) {
+    fn take(
+        &self,
+        _system: &S,
+        _h: f64,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        (): &mut (),
+        step: Self::Step,
+    ) {
         (*node, *memory) = step;
     }
 
@@ -321,8 +328,8 @@ impl<S: Runnable<N>, const N: usize> Differentiable<S, N> for AnyMethod<S, N> {
         self.0.keeps_energy()
     }
 
-    fn depends_on_time(&self) -> bool {
-        self.0.depends_on_time()
+    fn depends_on_time(&self, system: &S) -> bool {
+        self.0.depends_on_time(system)
     }
 
     fn vary(run: &AnyRun<S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {

@@ -30,7 +30,7 @@ impl<const N: usize> StepOutput for AnyOutput<N> {
 /// Sets parameters by their indices.
 fn assign<S: Runnable<N>, const N: usize>(system: &mut S, change: &[(usize, f64)]) {
     for (index, value) in change {
-        if let Some(place) = S::PARAMETERS.get(*index).and_then(|name| system.parameter_mut(name)) {
+        if let Some(place) = system.parameters().get(*index).and_then(|name| system.parameter_mut(name)) {
             *place = *value;
         }
     }
@@ -74,7 +74,8 @@ impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
     }
 
     fn parameters(&self) -> Vec<f64> {
-        (0..S::PARAMETERS.len()).map(|index| self.run.system().parameter(index)).collect()
+        let system = self.run.system();
+        (0..system.parameters().len()).map(|index| system.parameter(index)).collect()
     }
 
     fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {

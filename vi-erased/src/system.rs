@@ -197,9 +197,9 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
         found.ok_or(match wanted {
             // Methods that keep constraints have stages.
             (_, stages, _) if !S::CONSTRAINTS.is_empty() && (!has_method || stages.is_none()) => {
-                StepError::HasConstraints { system: S::NAME }
+                StepError::HasConstraints { system: self.system.name() }
             }
-            (method, ..) if method.splitting().is_some() => StepError::NotSeparable { system: S::NAME },
+            (method, ..) if method.splitting().is_some() => StepError::NotSeparable { system: self.system.name() },
             #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
             (_, Some(stages), _) => StepError::InvalidInput {
                 input: "number of stages",
@@ -207,7 +207,7 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
                 value: stages as f64,
             },
             // Every system has Gauss steps of some stages; methods without stages need a rule.
-            (_, None, _) => StepError::NoRule { system: S::NAME },
+            (_, None, _) => StepError::NoRule { system: self.system.name() },
         })
     }
 }
@@ -229,19 +229,19 @@ impl<S: Runnable<N>, const N: usize> Typed<S, N> {
 
 impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
     fn name(&self) -> &'static str {
-        S::NAME
+        self.system.name()
     }
 
     fn about(&self) -> &'static str {
-        S::ABOUT
+        self.system.about()
     }
 
     fn definition(&self) -> &'static str {
-        S::DEFINITION
+        self.system.definition()
     }
 
     fn coordinates(&self) -> Vec<&'static str> {
-        S::COORDINATES.to_vec()
+        self.system.coordinates().to_vec()
     }
 
     fn constraints(&self) -> &'static [&'static str] {
@@ -249,11 +249,12 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
     }
 
     fn parameters(&self) -> Vec<(&'static str, f64)> {
-        S::PARAMETERS.iter().enumerate().map(|(index, name)| (*name, self.system.parameter(index))).collect()
+        let system = &self.system;
+        system.parameters().iter().enumerate().map(|(index, name)| (*name, system.parameter(index))).collect()
     }
 
     fn parameters_about(&self) -> &'static [&'static str] {
-        S::PARAMETERS_ABOUT
+        self.system.parameters_about()
     }
 
     fn set(&mut self, name: &str, value: f64) -> bool {
@@ -269,7 +270,7 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
     }
 
     fn conserves_energy(&self) -> bool {
-        S::AUTONOMOUS && !S::FORCED
+        self.system.conserves_energy()
     }
 
     fn evaluate(&self, of: Quantity, [t, q, v]: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError> {
@@ -339,7 +340,7 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
 #[cfg(feature = "derivatives")]
 impl<S: Runnable<N> + Described, const N: usize> Control for Typed<S, N> {
     fn inputs(&self) -> &'static [usize] {
-        S::INPUTS
+        self.system.inputs()
     }
 
     fn mass_matrix(&self, points: [&[f64]; 3], out: &mut Vec<f64>) {

@@ -39,7 +39,7 @@ const HOLDS: f64 = 16.0;
 /// The first number that differs; a constraint that does not hold; [`CheckFailure::Vacuous`] if all gradients are zero;
 /// a failed step.
 pub fn constraints<const N: usize, S: MotionChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "constraints");
+    let mut check = Comparison::new(system.name(), "constraints");
     let place = &placed(system, place, &check)?;
     for sample in samples(system, place, &check)? {
         gradients(&sample, &mut check)?;
@@ -137,7 +137,7 @@ fn dense<const N: usize, T: Real>(rows: &impl Rectangular<N, T>) -> SMatrix<T, N
 /// The first number that differs; [`CheckFailure::Vacuous`] if no reaction acts; [`CheckFailure::Step`] without an
 /// acceleration.
 pub fn reaction<const N: usize, S: MotionChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "reaction");
+    let mut check = Comparison::new(system.name(), "reaction");
     let place = &placed(system, place, &check)?;
     for Sample { system, t, q, v, .. } in samples(system, place, &check)? {
         let (bounded, dual, second) =

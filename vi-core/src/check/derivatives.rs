@@ -33,7 +33,7 @@ pub(super) type Second = Dual<First>;
 /// # Errors
 /// The first number that differs; [`CheckFailure::Vacuous`] if momentum, energy or the mass matrix is zero throughout.
 pub fn derivatives<const N: usize, S: MotionChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "derivatives");
+    let mut check = Comparison::new(system.name(), "derivatives");
     let place = &placed(system, place, &check)?;
     for sample in samples(system, place, &check)? {
         continuous(&sample, &mut check)?;

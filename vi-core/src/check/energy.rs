@@ -35,7 +35,7 @@ use num_traits::Float as _;
 /// step lengths; [`CheckFailure::Vacuous`] if every energy is zero or no momentum changes, so that there is nothing to
 /// preserve.
 pub fn energy<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let check = Comparison::new(S::NAME, "energy");
+    let check = Comparison::new(system.name(), "energy");
     let longest = SampledMotion::from(system, place, &check)?.h;
     let (mut h, mut met) = (place.h, String::new());
     loop {
@@ -62,7 +62,7 @@ pub fn energy<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>)
 }
 
 fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "energy");
+    let mut check = Comparison::new(system.name(), "energy");
     let Place { t, q, v, h } = *place;
     let bounded = system.steps::<Bounded>();
     let mut run = EnergyPreserving::from_midpoint(system, t, q, v, h).map_err(|error| check.step(error))?;
@@ -81,7 +81,7 @@ fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) 
         check.number("energy at the midpoint", found, mean)?;
         let slots = SlotValues::between(system, &before, &State { t: step.t, q: step.q, p: step.p });
         check.number("E1", Bounded { value: step.energy, error: left }, slots.energy_after)?;
-        if S::AUTONOMOUS && !S::FORCED {
+        if system.conserves_energy() {
             check.number("E1 - E0", Bounded::exact(step.energy - carried), Bounded::exact(0.0))?;
         }
         moved = moved.max((step.p - first.p).amax());

@@ -32,7 +32,7 @@ pub fn energy_equations<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     place: &Place<N>,
 ) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "energy equations");
+    let mut check = Comparison::new(system.name(), "energy equations");
     for sample in step_samples(system, place, &check)? {
         rows(&sample, &mut check)?;
         derivatives(&sample, &mut check)?;

@@ -44,7 +44,7 @@ const ORDER: u32 = 4;
 /// # Errors
 /// As [`order`](super::order()).
 pub fn gauss_order<const N: usize, S: MotionChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let check = Comparison::new(S::NAME, "gauss order");
+    let check = Comparison::new(system.name(), "gauss order");
     let place = placed(system, place, &check)?;
     order::judged(&check, &Extended(*system), &place, ORDER, |start, h| {
         let start = if const { S::Kind::COUNT == 0 } {
@@ -66,14 +66,14 @@ pub fn gauss_momenta<const N: usize, S: MotionChecked<N>>(
     system: &S,
     place: &Place<N>,
 ) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "gauss momenta");
+    let mut check = Comparison::new(system.name(), "gauss momenta");
     symmetries::kept(&mut check, system, place, |start, h| {
         Called(*system).at_state(start).integrate(Gauss::<STAGES>, h)
     })?;
     for sample in samples(system, place, &check)? {
         let force = sample.system.point(sample.t, &sample.q, &sample.v).force;
-        for index in (0..N).filter(|index| S::CYCLIC[*index]) {
-            check.number(S::COORDINATES[index], Bounded::exact(force[index]), Bounded::exact(0.0))?;
+        for index in (0..N).filter(|index| system.cyclic()[*index]) {
+            check.number(system.coordinates()[index], Bounded::exact(force[index]), Bounded::exact(0.0))?;
         }
     }
     check.finish(&[])
@@ -88,8 +88,8 @@ pub fn gauss_symplecticity<const N: usize, S: MotionChecked<N>>(
     system: &S,
     place: &Place<N>,
 ) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "gauss symplecticity");
-    if S::FORCED {
+    let mut check = Comparison::new(system.name(), "gauss symplecticity");
+    if system.is_forced() {
         return Err(check.not_applicable("a system with a force does not preserve the symplectic form"));
     }
     if S::HOLONOMIC < S::CONSTRAINTS.len() {

@@ -40,7 +40,7 @@ const BOUND: f64 = 4.0;
 /// A smaller slope; [`CheckFailure::StepTooSmall`] for fewer than three errors above rounding;
 /// [`CheckFailure::Vacuous`] if nothing accelerates; a failed step.
 pub fn order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, order: u32) -> Result<Report, CheckFailure> {
-    let check = Comparison::new(S::NAME, "order");
+    let check = Comparison::new(system.name(), "order");
     judged(&check, system, place, order, |start, h| system.at_state(start).integrate(FixedStep, h))
 }
 
@@ -69,7 +69,7 @@ pub(super) fn judged<const N: usize, S: Lagrangian<N>, M: Method<Y, N>, Y: Lagra
         let [errors, again] = errors.map(|errors| errors.map_err(|error| check.step(error)));
         Ok(measured(&path.size(), &errors?, &again?))
     };
-    let quantities = S::COORDINATES.map(|name| format!("the error of `{name}`")).to_vec();
+    let quantities = system.coordinates().map(|name| format!("the error of `{name}`")).to_vec();
     let law = Law { name: "the order", quantities, slope: f64::from(order), every: false };
     law.judge(check, [place.h, course.h], paths, measure)
 }

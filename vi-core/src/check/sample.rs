@@ -230,7 +230,7 @@ fn beside<const N: usize, S: Lagrangian<N> + Parameters + Copy>(
     let mut beside = |entry: f64, extent: f64| entry + BESIDE * part * extent * draw.next();
     let (q, v) = (state.q.zip_map(extent_q, &mut beside), state.v.zip_map(extent_v, &mut beside));
     let mut varied = *system;
-    for name in S::PARAMETERS {
+    for name in system.parameters() {
         if let Some(parameter) = varied.parameter_mut(name) {
             *parameter *= 1.0 + VARIATION * part * draw.next();
         }

@@ -36,12 +36,12 @@ const FALL: f64 = 0.3;
 /// The first number that differs; [`CheckFailure::Vacuous`] if L_d, D2 or D4, or f_d of a forced system, is zero
 /// throughout.
 pub fn slots<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "slots");
+    let mut check = Comparison::new(system.name(), "slots");
     for sample in step_samples(system, place, &check)? {
         by_slot(&sample, &mut check)?;
         limits(&sample, &mut check)?;
     }
-    check.finish(if S::FORCED { &["L_d", "D2", "D4", "f_d"] } else { &["L_d", "D2", "D4"] })
+    check.finish(if system.is_forced() { &["L_d", "D2", "D4", "f_d"] } else { &["L_d", "D2", "D4"] })
 }
 
 /// Converts an interval to other numbers.

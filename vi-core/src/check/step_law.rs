@@ -42,8 +42,8 @@ const EVEN: f64 = 8.0;
 /// A deviation that does not decrease with h²; [`CheckFailure::NotApplicable`] for a system with a force;
 /// [`CheckFailure::StepTooSmall`] for fewer than three deviations above rounding; a step that does not exist.
 pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let check = Comparison::new(S::NAME, "step law");
-    if S::FORCED {
+    let check = Comparison::new(system.name(), "step law");
+    if system.is_forced() {
         return Err(check.not_applicable("the law requires a system without a force"));
     }
     let course = SampledMotion::from(system, place, &check)?;

@@ -37,7 +37,7 @@ pub(super) const SOLVED: f64 = 16.0;
 /// # Errors
 /// The first number that differs; a failed step; [`CheckFailure::Vacuous`] if momenta or energies are zero throughout.
 pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "steps");
+    let mut check = Comparison::new(system.name(), "steps");
     for sample in step_samples(system, place, &check)? {
         equations(&sample, &mut check)?;
         derivatives(&sample, &mut check)?;

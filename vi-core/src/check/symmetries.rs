@@ -35,13 +35,13 @@ use nalgebra::SVector;
 /// A momentum that changes; [`CheckFailure::NotApplicable`] for a system without a cyclic coordinate;
 /// [`CheckFailure::Vacuous`] if such a momentum is zero or its coordinate does not change.
 pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "momenta");
+    let mut check = Comparison::new(system.name(), "momenta");
     kept(&mut check, system, place, |start, h| system.at_state(start).integrate(FixedStep, h))?;
     // A momentum of moderate size would round away a small increment.
     for Sample { system, t, q, v, h } in step_samples(system, place, &check)? {
         let gain = system.momentum_residual(&Node::new(State::at(&system, t, q, v), 0.0), h, &v).increment;
-        for index in (0..N).filter(|index| S::CYCLIC[*index]) {
-            check.number(S::COORDINATES[index], Bounded::exact(gain[index]), Bounded::exact(0.0))?;
+        for index in (0..N).filter(|index| system.cyclic()[*index]) {
+            check.number(system.coordinates()[index], Bounded::exact(gain[index]), Bounded::exact(0.0))?;
         }
     }
     check.finish(&[])
@@ -58,24 +58,24 @@ pub(super) fn kept<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: Lagr
     place: &Place<N>,
     begin: impl Fn(State<N>, f64) -> Result<Run<M, Y, N>, StepError>,
 ) -> Result<(), CheckFailure> {
-    if !S::CYCLIC.contains(&true) {
+    if !system.cyclic().contains(&true) {
         return Err(check.not_applicable("no coordinate is cyclic"));
     }
-    let cyclic = || (0..N).filter(|index| S::CYCLIC[*index]);
+    let cyclic = || (0..N).filter(|index| system.cyclic()[*index]);
     let start = State::at(system, place.t, place.q, place.v);
     let mut run = begin(start, place.h).map_err(|error| check.step(error))?;
     for _ in 0..STEPS {
         let state = run.step().map_err(|error| check.step(error))?;
         for index in cyclic() {
             let [found, wanted] = [state.p[index], start.p[index]].map(Bounded::exact);
-            check.number(S::COORDINATES[index], found, wanted)?;
+            check.number(system.coordinates()[index], found, wanted)?;
         }
     }
     let end = run.state();
     for index in cyclic() {
         let stands_still = place.v[index] == 0.0 && end.q[index] - start.q[index] == 0.0;
         if start.p[index] == 0.0 || stands_still {
-            let name = S::COORDINATES[index];
+            let name = system.coordinates()[index];
             let why = format!("`{name}` does not change or its momentum is zero; choose a velocity `dot({name})`");
             return Err(check.vacuous(why));
         }
@@ -89,7 +89,7 @@ pub(super) fn kept<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: Lagr
 /// # Errors
 /// A number that differs; [`CheckFailure::Vacuous`] if nothing moves, or no momentum changes.
 pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "reversibility");
+    let mut check = Comparison::new(system.name(), "reversibility");
     for sample in step_samples(system, place, &check)? {
         let system = sample.system.steps::<Bounded>();
         let (h, v) = (Bounded::exact(sample.h), exact(&sample.v));
@@ -110,8 +110,8 @@ pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>
 /// An entry that differs; [`CheckFailure::NotApplicable`] for a system with a force; [`CheckFailure::Vacuous`] if
 /// nothing moves.
 pub fn symplecticity<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "symplecticity");
-    if S::FORCED {
+    let mut check = Comparison::new(system.name(), "symplecticity");
+    if system.is_forced() {
         return Err(check.not_applicable("a system with a force does not preserve the symplectic form"));
     }
     for sample in step_samples(system, place, &check)? {

@@ -36,7 +36,7 @@ pub(crate) fn energies<S: Motion<N, T>, const N: usize, const STAGES: usize, T: 
         let energy = system.energy(*t, q, &v);
         mean += T::real(b[i]) * (energy - base);
         size += T::real(b[i]) * (v.dot(&system.momentum(*t, q, &v)).abs() + energy.abs());
-        if !S::AUTONOMOUS || S::FORCED {
+        if !system.conserves_energy() {
             let work = h * T::real(b[i]) * system.power(*t, q, &v);
             done += work * T::real(c[i]);
             left += work * T::real(1.0 - c[i]);

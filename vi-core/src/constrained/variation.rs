@@ -34,7 +34,7 @@ const ADMISSIBLE: f64 = 1e-8;
 
 /// The system with parameters that vary in each direction.
 fn varied<S: Convertible<N> + Lagrangian<N>, const N: usize>(system: &S, variations: &[Variation<N>]) -> S::In<Varied> {
-    Variation::vary_parameters(variations, S::PARAMETERS, system.convert::<Varied>())
+    Variation::vary_parameters(variations, system.parameters(), system.convert::<Varied>())
 }
 
 /// The derivative of each entry in one direction.
@@ -144,7 +144,7 @@ where
     S: Convertible<N>,
 {
     let Node { t, q, p, .. } = *node;
-    if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
+    if variations.iter().any(|variation| variation.parameters.len() > system.parameters().len()) {
         return Err(more_parameters(t));
     }
     let [full, holonomic] = &mut [S::CONSTRAINTS.len(), S::HOLONOMIC].map(|count| Bordered::new(N, count, S::BLOCKS));

@@ -170,7 +170,7 @@ impl<S: Convertible<N>, const N: usize> Rest<'_, S, N> {
             return Ok(self.reduced(&found, &along));
         }
         let worst = found.roundings.iamax();
-        Err(StepError::NoEquilibrium { t, coordinate: S::COORDINATES[worst], force: -found.force[worst] })
+        Err(StepError::NoEquilibrium { t, coordinate: system.coordinates()[worst], force: -found.force[worst] })
     }
 
     /// Whether the rounding errors of a root are small: the stiffness changes by less than half over them.

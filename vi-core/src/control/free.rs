@@ -46,7 +46,7 @@ pub(super) fn find<S: Convertible<N>, const N: usize>(
     guess: SVector<f64, N>,
 ) -> Result<Equilibrium<N>, StepError> {
     let (dual, rounded) = (system.convert::<Dual<f64>>(), system.convert::<Dual<Rounded>>());
-    let mut rest = Rest { dual, rounded, t, free: [false; N], names: S::COORDINATES };
+    let mut rest = Rest { dual, rounded, t, free: [false; N], names: system.coordinates() };
     let finite = |of: Balance<N>, q: SVector<f64, N>| {
         let node = Node::new(State { t, q, p: SVector::zeros() }, 0.0);
         let lost = StepError::NonFinite { t, quantity: "generalized force", expression: None };
@@ -60,7 +60,7 @@ pub(super) fn find<S: Convertible<N>, const N: usize>(
         return Err(rest.unbalanced(&guess));
     }
     if let Some(k) = (0..N).find(|k| rest.free[*k] && rest.underflows(&guess, *k)) {
-        return Err(StepError::FreeMotion { t, coordinate: S::COORDINATES[k] });
+        return Err(StepError::FreeMotion { t, coordinate: system.coordinates()[k] });
     }
     let near = rest.approached(guess, start)?;
     let root = newton::solve(&rest, near).map_err(|failure| match failure {

@@ -102,7 +102,7 @@ where
     M: Differentiable<S, N>,
     S: Convertible<N>,
 {
-    let named = objective.parameters().iter().map(|name| Variation::of_parameter::<S>(name));
+    let named = objective.parameters().iter().map(|name| Variation::of_parameter_of(run.system(), name));
     let of_parameters: Vec<_> = named.collect::<Result<_, _>>()?;
     let stride = stride(steps, kept);
     let mut stations = vec![run.clone()];
@@ -120,7 +120,7 @@ where
     if keeps_energy {
         directions.push(Variation { energy: 1.0, ..Variation::zero() });
     }
-    let is_autonomous = !run.method().depends_on_time();
+    let is_autonomous = !run.method().depends_on_time(run.system());
     if !is_autonomous {
         directions.push(Variation { t: 1.0, ..Variation::zero() });
     }
@@ -222,7 +222,7 @@ fn between<M: Differentiable<S, N>, S: Convertible<N>, const N: usize>(
 
 /// Whether two systems have the same parameters. A change between them then keeps the energy of a run.
 fn have_equal_parameters<S: Lagrangian<N>, const N: usize>(one: &S, other: &S) -> bool {
-    (0..S::PARAMETERS.len()).all(|index| one.parameter(index).to_bits() == other.parameter(index).to_bits())
+    (0..one.parameters().len()).all(|index| one.parameter(index).to_bits() == other.parameter(index).to_bits())
 }
 
 /// Splits the derivatives in all directions: the covector at the start of a step, and the derivatives with respect to

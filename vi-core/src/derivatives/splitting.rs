@@ -27,11 +27,11 @@ where
         if !is_last {
             return Err(not_last(before.t));
         }
-        if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
+        if variations.iter().any(|variation| variation.parameters.len() > system.parameters().len()) {
             return Err(more_parameters(before.t));
         }
         for variations in variations.chunks_mut(TOGETHER) {
-            let system = Variation::vary_parameters(variations, S::PARAMETERS, system.convert::<Varied>());
+            let system = Variation::vary_parameters(variations, system.parameters(), system.convert::<Varied>());
             let length = Variation::number(variations, *h, |variation| variation.h);
             let end = step(method, &system, (&Variation::node(variations, before), length));
             for (direction, variation) in variations.iter_mut().enumerate() {

@@ -26,8 +26,8 @@ pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
         false
     }
     /// Whether a step depends on its start time.
-    fn depends_on_time(&self) -> bool {
-        !S::AUTONOMOUS
+    fn depends_on_time(&self, system: &S) -> bool {
+        !system.is_autonomous()
     }
 
     /// [`Run::vary`].
@@ -92,7 +92,7 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Run<M, S, N> {
     /// parameters than the system.
     pub fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         // The step began at reduced angles.
-        M::vary(self, &angles::reduced_node::<S, N, f64>(before), variations)
+        M::vary(self, &angles::reduced_node(self.system(), before), variations)
     }
 }
 
@@ -282,7 +282,7 @@ where
         other: &Variation<N>,
     ) -> Result<(SVector<f64, N>, SVector<f64, N>), StepError> {
         let (h, v) = (self.h, self.memory.steps.v());
-        let before = &angles::reduced_node::<S, N, f64>(before);
+        let before = &angles::reduced_node(self.system(), before);
         check_last(before, (h, &v), &self.node, self.memory.steps.has_parameters_of_last())?;
         // With a regular matrix, the tangent vectors themselves are out of range.
         let unsolved = || {
@@ -291,11 +291,11 @@ where
                 .map_or_else(|| unsolved(&equation.jacobian, &v, before.t), |_| not_finite(before.t))
         };
         let directions = [one, other];
-        if directions.iter().any(|of| of.parameters.len() > S::PARAMETERS.len()) {
+        if directions.iter().any(|of| of.parameters.len() > self.system.parameters().len()) {
             return Err(more_parameters(before.t));
         }
         let mut system = self.system().steps::<Along<Varied<1>, 1>>();
-        for (index, name) in S::PARAMETERS.iter().enumerate() {
+        for (index, name) in self.system.parameters().iter().enumerate() {
             if let Some(parameter) = crate::lagrangian::Parameters::parameter_mut(&mut system, name) {
                 parameter.slope.0[0].value = one.parameters.get(index).copied().unwrap_or(0.0);
                 parameter.value.slope.0[0] = other.parameters.get(index).copied().unwrap_or(0.0);
@@ -434,7 +434,7 @@ where
             variation.t += of_h;
             variation.q += of_v * h + v * of_h;
             variation.p += momentum_gain + increment_dv.multiply(&of_v) + increment_dh * of_h;
-            if !S::AUTONOMOUS || S::FORCED {
+            if !system.conserves_energy() {
                 variation.energy +=
                     energy_gain + derivatives.energy_increment_dv.dot(&of_v) + derivatives.energy_increment_dh * of_h;
             }

@@ -254,14 +254,14 @@ where
             let numbers = |variation: &Variation<N>, run: &Run<M, S, N>| {
                 let mut system = along_parameters(run.system(), variation);
                 change(&mut system);
-                let named = S::PARAMETERS.iter().map(|name| system.parameter_mut(name).copied());
+                let named = run.system().parameters().iter().map(|name| system.parameter_mut(name).copied());
                 named.map(|number| number.unwrap_or(Dual::fixed(0.0))).collect::<Vec<_>>()
             };
             let values = numbers(&plain, &tangent.run);
             let slopes: Vec<Vec<_>> =
                 tangent.variations.iter().map(|variation| numbers(variation, &tangent.run)).collect();
             tangent.run.set_parameters(|system| {
-                for (name, value) in S::PARAMETERS.iter().zip(&values) {
+                for (name, value) in system.parameters().iter().zip(&values) {
                     if let Some(parameter) = system.parameter_mut(name) {
                         *parameter = value.value;
                     }

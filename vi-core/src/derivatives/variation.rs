@@ -121,11 +121,27 @@ impl<const N: usize> Variation<N> {
     /// # Errors
     /// [`StepError::UnknownParameter`] for a name that no parameter of S has.
     pub fn of_parameter<S: Lagrangian<N>>(name: &str) -> Result<Self, StepError> {
-        let parameters: Vec<f64> = S::PARAMETERS.iter().map(|known| if *known == name { 1.0 } else { 0.0 }).collect();
-        if parameters.iter().all(|slope| *slope == 0.0) {
-            return Err(StepError::UnknownParameter { system: S::NAME, parameters: S::PARAMETERS });
-        }
-        Ok(Self { parameters, ..Self::zero() })
+        Self::of_name(name, S::NAME, S::PARAMETERS)
+    }
+
+    /// The direction of a parameter of a system, by its name; see [`Variation::of_parameter`].
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn of_parameter_of(system: &impl Lagrangian<N>, name: &str) -> Result<Self, StepError> {
+        Self::of_name(name, system.name(), system.parameters())
+    }
+
+    fn of_name(name: &str, system: &'static str, parameters: &'static [&'static str]) -> Result<Self, StepError> {
+        let index = parameters.iter().position(|known| *known == name);
+        index.map(Self::of_index).ok_or(StepError::UnknownParameter { system, parameters })
+    }
+
+    /// The direction of the parameter of this index in [`Lagrangian::PARAMETERS`].
+    pub(crate) fn of_index(index: usize) -> Self {
+        let mut parameters = alloc::vec![0.0; index + 1];
+        parameters[index] = 1.0;
+        Self { parameters, ..Self::zero() }
     }
 
     /// Rejects values that are not finite. A finite force may have an infinite derivative, and tangent vectors of a
@@ -155,7 +171,7 @@ impl<const N: usize> Variation<N> {
         system: &S,
         t: f64,
     ) -> Result<Option<S::In<Varied>>, StepError> {
-        Ok(Self::are_explicit::<S>(variations, t)?.then(|| Self::system(variations, system)))
+        Ok(Self::are_explicit(variations, system, t)?.then(|| Self::system(variations, system)))
     }
 
     /// The same system with its steps.
@@ -167,15 +183,15 @@ impl<const N: usize> Variation<N> {
         system: &S,
         t: f64,
     ) -> Result<Option<S::Steps<Varied>>, StepError> {
-        Ok(Self::are_explicit::<S>(variations, t)?.then(|| Self::steps(variations, system)))
+        Ok(Self::are_explicit(variations, system, t)?.then(|| Self::steps(variations, system)))
     }
 
     /// Whether a parameter, the step length, or the time of a nonautonomous system varies in any direction.
-    fn are_explicit<S: Lagrangian<N>>(variations: &[Self], t: f64) -> Result<bool, StepError> {
-        if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
+    fn are_explicit(variations: &[Self], system: &impl Lagrangian<N>, t: f64) -> Result<bool, StepError> {
+        if variations.iter().any(|variation| variation.parameters.len() > system.parameters().len()) {
             return Err(more_parameters(t));
         }
-        let is_in_time = |of: &Self| !S::AUTONOMOUS && of.t != 0.0 || of.h != 0.0;
+        let is_in_time = |of: &Self| !system.is_autonomous() && of.t != 0.0 || of.h != 0.0;
         let is_explicit = |of: &Self| is_in_time(of) || of.parameters.iter().any(|slope| *slope != 0.0);
         Ok(variations.iter().any(is_explicit))
     }
@@ -185,12 +201,12 @@ impl<const N: usize> Variation<N> {
         variations: &[Self],
         system: &S,
     ) -> S::In<Varied<W>> {
-        Self::vary_parameters(variations, S::PARAMETERS, system.convert())
+        Self::vary_parameters(variations, system.parameters(), system.convert())
     }
 
     /// The system with its steps, with parameters that vary in each direction.
     pub(super) fn steps<S: Discretized<N>, const W: usize>(variations: &[Self], system: &S) -> S::Steps<Varied<W>> {
-        Self::vary_parameters(variations, S::PARAMETERS, system.steps())
+        Self::vary_parameters(variations, system.parameters(), system.steps())
     }
 
     /// A system whose parameters of these names vary in each direction.
@@ -244,7 +260,7 @@ where
     let mut changes = Vec::with_capacity(directions.len());
     for directions in directions.chunks(TOGETHER) {
         let node = Variation::node::<TOGETHER>(directions, &node);
-        let varied = Variation::vary_parameters(directions, S::PARAMETERS, system.convert::<Varied>());
+        let varied = Variation::vary_parameters(directions, system.parameters(), system.convert::<Varied>());
         let varied = varied.lagrangian(node.t, &node.q, &v.map(Dual::fixed));
         let of_lagrangian = varied.slope.0.into_iter();
         changes.extend(directions.iter().zip(of_lagrangian).map(|(direction, slope)| v.dot(&direction.p) - slope));
@@ -289,7 +305,7 @@ pub(super) fn along_parameters<S: Convertible<N>, const N: usize>(
     variation: &Variation<N>,
 ) -> S::In<Dual<f64>> {
     let mut varied = system.convert::<Dual<f64>>();
-    for (name, slope) in S::PARAMETERS.iter().zip(&variation.parameters) {
+    for (name, slope) in system.parameters().iter().zip(&variation.parameters) {
         if let Some(parameter) = varied.parameter_mut(name) {
             parameter.slope = *slope;
         }

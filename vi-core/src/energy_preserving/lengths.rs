@@ -158,7 +158,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Sear
         let has_guess = lengths.control.phase.is_none() && !lengths.is_common();
         if has_guess && let Some(predicted) = lengths.predicted(system, &node, lengths.prediction.guess()) {
             let mut after = After { node, lengths: *lengths };
-            after.node = node.advanced::<S>(predicted.step.h, &predicted.step.v, &predicted.increment);
+            after.node = node.advanced(system, predicted.step.h, &predicted.step.v, &predicted.increment);
             after.node.check_finite(node.t)?;
             after.lengths.last = lengths.last.followed(&predicted.step);
             after.lengths.prediction.push(&predicted);
@@ -218,7 +218,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Search<'_, S, N, T> {
     /// The run after a step from `start`.
     fn after(&self, start: &Node<N, T>, step: &EnergyStep<N, T>) -> Result<After<N, T>, StepError> {
         let increment: Increment<N, T> = self.system.extended_residual(start, step.h, &step.v).increment;
-        let node = start.advanced::<S>(step.h, &step.v, &increment);
+        let node = start.advanced(self.system, step.h, &step.v, &increment);
         node.check_finite(start.t)?;
         Ok(After { node, lengths: Lengths { last: self.lengths.last.followed(step), ..*self.lengths } })
     }

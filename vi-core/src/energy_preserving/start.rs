@@ -25,7 +25,7 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     node: &mut Node<N, T>,
     h: T,
 ) -> Result<Lengths<N, T>, StepError> {
-    check_density::<N, T, S>()?;
+    check_density(system)?;
     let state = node.state();
     let rest = state.velocity(system)?;
     let called = &Called(*system);
@@ -79,7 +79,7 @@ pub(crate) fn first_interval<const N: usize, T: Scalar, S: EnergyStepping<N, T>>
     let t = if start.t.to_f64().is_finite() { start.t } else { T::zero() };
     start.check_finite(t)?;
     let start = start.leaving(system, h, &v);
-    let node = start.advanced::<S>(h, &v, &system.extended_residual(&start, h, &v).increment);
+    let node = start.advanced(system, h, &v, &system.extended_residual(&start, h, &v).increment);
     node.check_finite(t)?;
     let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
     let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density", expression: None };
@@ -95,6 +95,6 @@ pub(crate) fn first_interval<const N: usize, T: Scalar, S: EnergyStepping<N, T>>
 ///
 /// # Errors
 /// [`StepError::NoStepDensity`].
-pub(crate) fn check_density<const N: usize, T: Real, S: Lagrangian<N, T>>() -> Result<(), StepError> {
-    S::MONOTONE_TABLE.map_or(Ok(()), |table| Err(StepError::NoStepDensity { table }))
+pub(crate) fn check_density<const N: usize, T: Real>(system: &impl Lagrangian<N, T>) -> Result<(), StepError> {
+    system.monotone_table().map_or(Ok(()), |table| Err(StepError::NoStepDensity { table }))
 }

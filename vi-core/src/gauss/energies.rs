@@ -104,7 +104,7 @@ impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
             let energy = system.energy(t, &q, &v);
             mean += T::real(b[i]) * (energy - T::real(base));
             size += T::real(b[i]) * (v.dot(&system.momentum(t, &q, &v)).abs() + energy.abs());
-            if !Y::AUTONOMOUS || Y::FORCED {
+            if !system.conserves_energy() {
                 let work = T::real(self.h * b[i]) * system.power(t, &q, &v);
                 done += work * T::real(c[i]);
                 left += work * T::real(1.0 - c[i]);

@@ -26,9 +26,19 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// The form of the equations of a type.
-    const fn of<Y: Motion<N, T>, const N: usize, T: Real>() -> Self {
-        match (Y::SEPARABLE, Y::CONSTANT_MASS) {
+    /// The form of the equations of a type; `None` for a type of systems that differ.
+    const fn known<Y: Motion<N, T>, const N: usize, T: Real>() -> Option<Self> {
+        if Y::INTERPRETED { None } else { Some(Self::from(Y::SEPARABLE, Y::CONSTANT_MASS)) }
+    }
+
+    /// The form of the equations of a system.
+    #[inline(always)]
+    fn of<const N: usize, T: Real>(system: &impl Motion<N, T>) -> Self {
+        Self::from(system.is_separable(), system.has_constant_mass())
+    }
+
+    const fn from(is_separable: bool, has_constant_mass: bool) -> Self {
+        match (is_separable, has_constant_mass) {
             (true, _) => Self::Separable,
             (false, true) => Self::ConstantMass,
             (false, false) => Self::VaryingMass,
@@ -55,16 +65,21 @@ pub(crate) trait Points<const N: usize, T: Real> {
     fn at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
     /// [`Motion::sides`].
     fn sides_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T>;
+    /// [`Motion::applied_force`].
+    #[inline(always)]
+    fn force_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        self.sides_at(t, q, v).force
+    }
 }
 
 impl<Y: Motion<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     type Mass = Y::Mass;
 
-    const FORM: Option<Form> = Some(Form::of::<Y, N, T>());
+    const FORM: Option<Form> = Form::known::<Y, N, T>();
 
     #[inline(always)]
     fn form(&self) -> Form {
-        const { Form::of::<Y, N, T>() }
+        Form::of(self)
     }
 
     #[inline(always)]
@@ -75,6 +90,11 @@ impl<Y: Motion<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     #[inline(always)]
     fn sides_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T> {
         self.sides(t, q, v)
+    }
+
+    #[inline(always)]
+    fn force_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        self.applied_force(t, q, v)
     }
 }
 
@@ -95,7 +115,7 @@ trait Erased<const N: usize> {
 
 impl<S: Convertible<N>, const N: usize> Erased<N> for S {
     fn form(&self) -> Form {
-        const { Form::of::<S::In<f64>, N, f64>() }
+        Form::of(self)
     }
 
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64> {

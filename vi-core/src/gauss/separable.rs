@@ -143,8 +143,8 @@ where
         let rest = SVector::zeros();
         let times = times::<N, S, FUSED>(self.node, self.h);
         for i in 0..T::EVALUATIONS {
-            let point = self.system.at(T::of(&times, i), &gathered(x, i), &rest);
-            scatter(&mut self.force, i, &point.force);
+            let force = self.system.force_at(T::of(&times, i), &gathered(x, i), &rest);
+            scatter(&mut self.force, i, &force);
         }
         self.set_positions(y, const { &Tableau::<S>::VALUES.second });
         if CORRECTED && let Some(newton) = self.newton {

@@ -312,7 +312,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let mut by_velocity = at.by_velocity;
         if !by_velocity {
             let solved = self.side_by_side(system, instructions, Some(newton));
-            let has_positions = Y::SEPARABLE && Y::SIDE_BY_SIDE;
+            let has_positions = system.is_separable() && Y::SIDE_BY_SIDE;
             if solved.iteration.convergence.is_at_floor() || !has_positions {
                 return (solved, at);
             }
@@ -333,7 +333,7 @@ pub(crate) fn constant<Y: Motion<N>, const N: usize, const S: usize>(
     node: &Node<N>,
 ) -> Result<Stages<N, S>, StepError> {
     let flow = node.state().raw_flow(system)?;
-    let start = if Y::SEPARABLE { flow.force } else { flow.v };
+    let start = if system.is_separable() { flow.force } else { flow.v };
     Ok(start.data.0[0].map(|entry| [entry; S]))
 }
 
@@ -368,7 +368,7 @@ pub(crate) fn iterated<Y, const N: usize, const S: usize, const FUSED: bool, con
 where
     Y: Convertible<N>,
 {
-    if const { N > LOOPED && (FUSED || WIDE) } {
+    if const { Y::INTERPRETED || N > LOOPED && (FUSED || WIDE) } {
         let lanes = system.convert::<Lanes<S, FUSED>>();
         solved::<Lanes<S, FUSED>, _, _, N, S, FUSED, CORRECTED>(&lanes, system, start, newton)
     } else {

@@ -107,7 +107,7 @@ where
         }
         (own.t, own.q, own.p) = (varied.t, varied.q, varied.p);
         own.add(&along_h, of_h);
-        if !S::AUTONOMOUS || S::FORCED {
+        if !system.conserves_energy() {
             own.energy += energy.work + energy_along_h.work * of_h;
         }
     }
@@ -155,7 +155,7 @@ where
         }
         let energy = varied.energy(t, &q, &v);
         start += Dual::real(b[i]) * Dual { value: 0.0, ..energy };
-        if !S::AUTONOMOUS || S::FORCED {
+        if !system.conserves_energy() {
             let gain = Varied::real(b[i]) * of_h * varied.power(t, &q, &v);
             start -= gain * Dual::real(1.0 - c[i]);
             work += gain;

@@ -153,13 +153,14 @@ where
 
     fn take(
         &self,
+        system: &S,
         h: f64,
         (node, memory): (&mut Node<N>, &mut Self::Memory),
         cache: &mut Self::Cache,
         mut steps: Self::Step,
     ) {
         for ((memory, step), h) in memory.all.iter_mut().zip(steps.drain(..)).zip(self.scheme.lengths(h)) {
-            Method::<S, N>::take(&self.method, h, (node, memory), &mut cache.workspace, step);
+            Method::<S, N>::take(&self.method, system, h, (node, memory), &mut cache.workspace, step);
             if let Some(workspace) = &mut cache.workspace {
                 cache.unknowns.push(core::mem::take(&mut workspace.unknowns));
             }

@@ -214,6 +214,7 @@ where
 
     fn take(
         &self,
+        _system: &S,
         _h: T,
         (node, memory): (&mut Node<N, T>, &mut Substeps<N, T>),
         cache: &mut Self::Cache,

@@ -67,7 +67,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         S::RULE
     }
 
-    fn check_length(&self, h: T) -> Result<(), StepError> {
+    fn check_length(&self, _system: &S, h: T) -> Result<(), StepError> {
         check_forward(FORWARD, h)
     }
 
@@ -87,7 +87,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         let Problem { system, node, .. } = at;
         if memory.is_common()
             && let Some(predicted) = memory.predicted(system, node, memory.prediction.guess_highest())
-            && node.advanced::<S>(predicted.step.h, &predicted.step.v, &predicted.increment).is_finite()
+            && node.advanced(system, predicted.step.h, &predicted.step.v, &predicted.increment).is_finite()
         {
             return Ok(EnergySolution::Predicted(predicted));
         }
@@ -117,6 +117,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     #[inline(always)]
     fn take(
         &self,
+        system: &S,
         _h: T,
         (node, memory): (&mut Node<N, T>, &mut Lengths<N, T>),
         (): &mut (),
@@ -125,7 +126,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         match &step {
             EnergySolution::Predicted(predicted) => {
                 let step = &predicted.step;
-                *node = node.advanced::<S>(step.h, &step.v, &predicted.increment);
+                *node = node.advanced(system, step.h, &step.v, &predicted.increment);
                 memory.last = memory.last.followed(step);
                 memory.prediction.push_common(predicted);
             }
@@ -334,7 +335,7 @@ fn after<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
     h: T,
     v: SVector<T, N>,
 ) -> Result<Run<EnergyPreserving, S, N, T>, StepError> {
-    start::check_density::<N, T, S>()?;
+    start::check_density(&system)?;
     match start::first_interval(&Called(system), start, h, v) {
         Ok(After { node, lengths }) => Ok(Run::resumed(EnergyPreserving, system, (node, h, lengths))),
         Err(failure) => Err(failure.explained(&system, &start, h, &v)),

@@ -114,7 +114,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
         (): &mut (),
     ) -> Result<FixedSolution<N, T>, ()> {
         let Problem { system, prepared, node, h } = at;
-        if memory.steps.is_common::<S>()
+        if memory.steps.is_common(system)
             && let Some(solved) = memory.steps.common(system, node, prepared)
             && node.stays_finite(h, &solved.v, &solved.increment)
         {
@@ -133,7 +133,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
         let Problem { system, prepared, node, .. } = at;
         let steps = &memory.steps;
         // A common step above the floor has already had all corrections that pay off.
-        let is_corrected = steps.is_common::<S>() && !S::CLOSED_FORM;
+        let is_corrected = steps.is_common(system) && !system.has_closed_form();
         let corrected =
             if is_corrected { None } else { steps.corrected(&Called(*system), node, prepared, steps.guess()) };
         found(at, memory, corrected, Branch::Nearest)
@@ -142,6 +142,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     #[inline(always)]
     fn take(
         &self,
+        _system: &S,
         h: T,
         (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>),
         (): &mut (),
@@ -240,6 +241,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
 
     fn take(
         &self,
+        _system: &S,
         h: T,
         (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>),
         (): &mut (),

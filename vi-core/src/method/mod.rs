@@ -163,7 +163,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] for one that is zero, subnormal or not finite.
-    fn check_length(&self, h: T) -> Result<(), StepError> {
+    fn check_length(&self, _system: &S, h: T) -> Result<(), StepError> {
         check_step(h)
     }
 
@@ -229,12 +229,19 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
         cache: &mut Self::Cache,
     ) -> Result<(), Self::Left> {
         let step = self.attempt(Problem { system, prepared, node, h }, memory, cache)?;
-        self.take(h, (node, memory), cache, step);
+        self.take(system, h, (node, memory), cache, step);
         Ok(())
     }
 
     /// Advances to the end of a step. Cannot fail: [`Method::solve`] has checked every condition.
-    fn take(&self, h: T, run: (&mut Node<N, T>, &mut Self::Memory), cache: &mut Self::Cache, step: Self::Step);
+    fn take(
+        &self,
+        system: &S,
+        h: T,
+        run: (&mut Node<N, T>, &mut Self::Memory),
+        cache: &mut Self::Cache,
+        step: Self::Step,
+    );
 
     /// The node and the memory after one step of the length h in time. Later steps have the length `next` of the run.
     ///
@@ -252,7 +259,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
         let at = Problem { system, prepared: &prepared, node: &node, h };
         let cache = &mut Self::Cache::default();
         let step = self.solve(at, &memory, cache)?;
-        self.take(h, (&mut node, &mut memory), cache, step);
+        self.take(system, h, (&mut node, &mut memory), cache, step);
         let memory = self.with_length(system, &memory, &node, next)?;
         Ok((node, memory))
     }

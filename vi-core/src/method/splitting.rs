@@ -320,9 +320,9 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
         self.order.clamp(1, HIGHEST)
     }
 
-    fn check_length(&self, h: T) -> Result<(), StepError> {
-        if !S::SEPARABLE {
-            return Err(StepError::NotSeparable { system: S::NAME });
+    fn check_length(&self, system: &S, h: T) -> Result<(), StepError> {
+        if !system.is_separable() {
+            return Err(StepError::NotSeparable { system: system.name() });
         }
         let Self { kicks, drifts, .. } = self;
         if kicks.len().abs_diff(drifts.len()) != 1 {
@@ -398,7 +398,14 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
     }
 
     #[inline(always)]
-    fn take(&self, _h: T, (node, memory): (&mut Node<N, T>, &mut Kicked<N, T>), (): &mut (), step: Split<N, T>) {
+    fn take(
+        &self,
+        _system: &S,
+        _h: T,
+        (node, memory): (&mut Node<N, T>, &mut Kicked<N, T>),
+        (): &mut (),
+        step: Split<N, T>,
+    ) {
         *node = step.after;
         memory.force = step.force;
     }

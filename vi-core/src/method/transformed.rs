@@ -69,9 +69,9 @@ where
         2 * STAGES as u32
     }
 
-    fn check_length(&self, dtau: f64) -> Result<(), StepError> {
-        if !S::SCALES_TIME {
-            return Err(StepError::NoTimeScale { system: S::NAME });
+    fn check_length(&self, system: &S, dtau: f64) -> Result<(), StepError> {
+        if !system.scales_time() {
+            return Err(StepError::NoTimeScale { system: system.name() });
         }
         if dtau.is_normal() {
             return Ok(());
@@ -117,6 +117,7 @@ where
     #[inline(always)]
     fn take(
         &self,
+        _system: &S,
         _dtau: f64,
         (node, memory): (&mut Node<N>, &mut Self::Memory),
         _cache: &mut Self::Cache,

@@ -129,7 +129,7 @@ pub(crate) fn check_linear<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     node: &Node<N, T>,
     h: T,
 ) -> Result<(), StepError> {
-    if !S::CONSTANT_JACOBIAN {
+    if !system.has_constant_jacobian() {
         return Ok(());
     }
     let jacobian =
@@ -165,7 +165,7 @@ pub(crate) fn connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     h: T,
     v: &SVector<T, N>,
 ) -> Result<Option<BranchPoint<N, T>>, StepError> {
-    if S::CONSTANT_JACOBIAN || is_connected(system, node, h, v) {
+    if system.has_constant_jacobian() || is_connected(system, node, h, v) {
         return Ok(None);
     }
     match solve(system, node, h, *v, Pace::CLOSE) {

@@ -53,11 +53,11 @@ pub enum Corrector<J: Matrix<N, T>, const N: usize, T: Real> {
 impl<J: Matrix<N, T>, const N: usize, T: Scalar> Corrector<J, N, T> {
     /// The corrector of steps of length h.
     pub(crate) fn of<S: FixedStepping<N, T, Jacobian = J>>(system: &S, h: T) -> Self {
-        if !S::CONSTANT_JACOBIAN {
+        if !system.has_constant_jacobian() {
             return Self::Newton;
         }
         let inverse = system.momentum_equation(&Node::zeros(), h, &SVector::zeros()).jacobian.inverse();
-        if S::CLOSED_FORM {
+        if system.has_closed_form() {
             Self::ClosedForm(ClosedForm::of(system, h, &inverse), inverse)
         } else {
             Self::Inverse(inverse)
@@ -203,8 +203,8 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
 
     /// Whether the next step is common: by one matrix product, or from a guess of the highest order.
     #[inline(always)]
-    pub(crate) fn is_common<S: FixedStepping<N, T>>(&self) -> bool {
-        S::CLOSED_FORM || self.predictor.is_highest()
+    pub(crate) fn is_common<S: FixedStepping<N, T>>(&self, system: &S) -> bool {
+        system.has_closed_form() || self.predictor.is_highest()
     }
 
     /// The common step from `node`: by one matrix product, or by corrections of a guess of the highest order. `None` if
@@ -217,7 +217,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         corrector: &Corrector<S::Jacobian, N, T>,
     ) -> Option<MomentumStep<N, T>> {
         match corrector {
-            Corrector::ClosedForm(form, _) if S::CLOSED_FORM => self.by_matrix(system, node, form),
+            Corrector::ClosedForm(form, _) if system.has_closed_form() => self.by_matrix(system, node, form),
             _ => self.corrected(system, node, corrector, self.predictor.guess_highest()),
         }
     }
@@ -237,19 +237,19 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         mut v: SVector<T, N>,
     ) -> Option<MomentumStep<N, T>> {
         // A known variant, for the optimizer.
-        let corrector = if S::CONSTANT_JACOBIAN { corrector } else { &Corrector::Newton };
+        let corrector = if system.has_constant_jacobian() { corrector } else { &Corrector::Newton };
         let mut equation = self.equation(system, node, &v);
-        let carried = if S::INLINED { self.remainder - node.p_low } else { self.remainder };
+        let carried = if system.is_inlined() { self.remainder - node.p_low } else { self.remainder };
         let mut left = equation.residual + carried;
         for iterations in 1..=CORRECTIONS {
             v -= corrector.correction(&equation.jacobian, &left);
             let at = system.momentum_residual(node, self.h, &v);
-            let solved = self.accepted::<S>(node, &v, &at, iterations);
+            let solved = self.accepted(system, node, &v, &at, iterations);
             if solved.is_some() {
                 return solved;
             }
             left = at.residual + self.remainder;
-            if iterations == WITH_FIRST && !S::CONSTANT_JACOBIAN {
+            if iterations == WITH_FIRST && !system.has_constant_jacobian() {
                 equation = self.equation(system, node, &v);
             }
         }
@@ -265,7 +265,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         node: &Node<N, T>,
         v: &SVector<T, N>,
     ) -> MomentumEquation<N, T, S::Jacobian> {
-        if !S::INLINED {
+        if !system.is_inlined() {
             return system.momentum_equation(node, self.h, v);
         }
         // The equation waits for the node, whose low parts are known last. The low part of q is missing in the guess
@@ -279,6 +279,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     #[inline(always)]
     fn accepted<S: FixedStepping<N, T>>(
         &self,
+        system: &S,
         node: &Node<N, T>,
         v: &SVector<T, N>,
         at: &MomentumResidual<N, T>,
@@ -287,11 +288,11 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         let MomentumResidual { residual, scale, increment } = *at;
         // Long functions have computed the scales of their terms. Short ones are inlined and compute them on request,
         // if momenta vanish but their terms do not.
-        let first = if S::INLINED { momentum_scale(node, &increment) } else { scale };
+        let first = if system.is_inlined() { momentum_scale(node, &increment) } else { scale };
         let mut measured = StepResidual { residual, scale: first };
         if !measured.is_at_floor(&self.remainder) {
             measured.scale = scale;
-            if !(S::INLINED && measured.is_at_floor(&self.remainder)) {
+            if !(system.is_inlined() && measured.is_at_floor(&self.remainder)) {
                 return None;
             }
         }

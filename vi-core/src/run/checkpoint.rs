@@ -58,11 +58,12 @@ pub struct Stored<Y, const N: usize, T = f64> {
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Run<M, S, N, T> {
     /// Stores the data of the run, and the name and parameters of its system. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<M::Memory, N, T> {
-        let named = S::PARAMETERS.iter().enumerate();
+        let system = &self.system;
+        let named = system.parameters().iter().enumerate();
         Checkpoint {
-            system: S::NAME.to_owned(),
+            system: system.name().to_owned(),
             rule: self.method.rule().map(str::to_owned),
-            parameters: named.map(|(index, name)| ((*name).to_owned(), self.system.parameter(index))).collect(),
+            parameters: named.map(|(index, name)| ((*name).to_owned(), system.parameter(index))).collect(),
             run: Stored { node: self.node, turns: self.turns, h: self.h, memory: self.memory.stored() },
         }
     }
@@ -75,10 +76,10 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// [`StepError::InconsistentStart`] and [`StepError::DroppedConstraint`] for a node off the constraints.
     pub fn restart(system: S, method: M, checkpoint: Checkpoint<M::Memory, N, T>) -> Result<Self, StepError> {
         let Stored { node, turns, h, memory } = checkpoint.run_of(&system, method.rule())?;
-        method.check_length(h)?;
+        method.check_length(&system, h)?;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
-        angles::check::<S, N, T>(&node.q, &turns)?;
+        angles::check(&system, &node.q, &turns)?;
         method.check(&memory, h, t)?;
         method.check_node(&system, &node)?;
         Ok(Self { turns, ..Self::resumed(method, system, (node, h, memory)) })
@@ -98,12 +99,16 @@ impl<Y, const N: usize, T: Scalar> Checkpoint<Y, N, T> {
 
     /// Returns the stored data, if system, rule and parameters agree.
     fn run_of<S: Lagrangian<N, T>>(self, system: &S, rule: Option<&'static str>) -> Result<Stored<Y, N, T>, StepError> {
-        let other = |parameter, stored, given| StepError::OtherSystem { system: S::NAME, parameter, stored, given };
+        let other =
+            |parameter, stored, given| StepError::OtherSystem { system: system.name(), parameter, stored, given };
         let names = self.parameters.iter().map(|(name, _)| name.as_str());
-        if self.system != S::NAME || self.rule.as_deref() != rule || !names.eq(S::PARAMETERS.iter().copied()) {
+        if self.system != system.name()
+            || self.rule.as_deref() != rule
+            || !names.eq(system.parameters().iter().copied())
+        {
             return Err(other(None, f64::NAN, f64::NAN));
         }
-        for (index, (name, (_, stored))) in S::PARAMETERS.iter().zip(&self.parameters).enumerate() {
+        for (index, (name, (_, stored))) in system.parameters().iter().zip(&self.parameters).enumerate() {
             let given = system.parameter(index);
             if *stored != given {
                 return Err(other(Some(name), stored.to_f64(), given.to_f64()));

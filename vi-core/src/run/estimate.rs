@@ -193,7 +193,7 @@ fn energy_error<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
     ends: [(State<N, T>, SVector<T, N>); 2],
     action: f64,
 ) -> f64 {
-    if !S::AUTONOMOUS || S::FORCED || method.has_reactions() {
+    if !system.conserves_energy() || method.has_reactions() {
         return 0.0;
     }
     let [before, after] = ends.map(|(State { t, q, .. }, v)| system.energy(t, &q, &v).to_f64());
@@ -242,7 +242,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     pub fn local_error(&self) -> Result<LocalError<N>, StepError> {
         let mut ahead = self.clone();
         ahead.single_step()?;
-        let before = angles::reduced_node::<S, N, T>(&self.node);
+        let before = angles::reduced_node(&self.system, &self.node);
         Ok(measured(self, &self.memory, [&before, &ahead.node]).of)
     }
 
@@ -424,7 +424,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     #[inline]
     fn turn(&mut self, run: &Run<M, S, N, T>) {
         if const { angles::has_angles::<S, N, T>() } && self.turns != run.turns {
-            self.last = angles::reduced_node::<S, N, T>(&self.last);
+            self.last = angles::reduced_node(&run.system, &self.last);
             self.start = angles::without_turns(&self.start, &(run.turns - self.turns));
             self.turns = run.turns;
         }
@@ -466,7 +466,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         let mut monitor = self.clone();
         // The excursions include this step.
         monitor.watch(&ahead);
-        let before = angles::reduced_node::<S, N, T>(&run.node);
+        let before = angles::reduced_node(&run.system, &run.node);
         let found = measured(run, &run.memory, [&before, &ahead.node]);
         monitor.add(&found);
         Ok(monitor.relative(&found.error, &SVector::zeros()).estimate.max(found.energy))

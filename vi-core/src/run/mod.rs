@@ -95,11 +95,11 @@ impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Start<S, N, T> {
     /// [`StepError::Tolerance`] if no step has the tolerance; errors of the method.
     pub fn integrate<M: Method<S, N, T>>(self, method: M, h: impl Length<T>) -> Result<Run<M, S, N, T>, StepError> {
         let Self { system, state } = self;
-        angles::check::<S, N, T>(&state.q, &Turns::zeros())?;
+        angles::check(&system, &state.q, &Turns::zeros())?;
         let mut node = Node::new(state, T::zero());
         let explained = |failure: StepError| failure.explained_at(&system, &Node::new(state, T::zero()), T::zero());
         let h = self.length(&method, h)?;
-        method.check_length(h)?;
+        method.check_length(&system, h)?;
         let memory = method.begin(&system, &mut node, h).map_err(explained)?;
         Ok(Run::resumed(method, system, (node, h, memory)))
     }
@@ -147,9 +147,9 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     #[inline(always)]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
         let mut kept = None;
-        if angles::are_far::<S, N, T>(&self.node.q) {
-            let far = (self.node.q, self.node.q_low, self.turns);
-            (self.node.q, self.node.q_low, self.turns) = angles::reduced::<S, N, T>(far)?;
+        if angles::are_far(&self.system, &self.node.q) {
+            let (system, far) = (self.system, (self.node.q, self.node.q_low, self.turns));
+            (self.node.q, self.node.q_low, self.turns) = angles::reduced(&system, far)?;
             kept = Some(far);
         }
         let Self { method, system, prepared, node, h, memory, cache, .. } = self;
@@ -181,8 +181,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// not finite, or that is negative although the method only steps forward.
     pub fn step_of(&mut self, h: T) -> Result<State<N, T>, StepError> {
         let (mut node, mut turns) = (self.node, self.turns);
-        if angles::are_far::<S, N, T>(&node.q) {
-            (node.q, node.q_low, turns) = angles::reduced::<S, N, T>((node.q, node.q_low, turns))?;
+        if angles::are_far(&self.system, &node.q) {
+            (node.q, node.q_low, turns) = angles::reduced(&self.system, (node.q, node.q_low, turns))?;
         }
         let after = self.method.step_of(&self.system, (&node, &self.memory), [h, self.h]);
         (self.node, self.memory) = after.map_err(|failure| failure.explained_at(&self.system, &self.node, h))?;
@@ -200,12 +200,12 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// Whole turns of each coordinate that is declared as an `angle`, zero for the others: `state().q` is
     /// [`Run::reduced`] plus 2π times these.
     pub fn turns(&self) -> [i64; N] {
-        angles::normalized::<S, N, T>(&self.node, &self.turns).1.into()
+        angles::normalized(&self.system, &self.node, &self.turns).1.into()
     }
 
     /// The coordinates of the last state, with angles in [-π, π].
     pub fn reduced(&self) -> SVector<T, N> {
-        angles::normalized::<S, N, T>(&self.node, &self.turns).0
+        angles::normalized(&self.system, &self.node, &self.turns).0
     }
 
     /// Sets the whole turns of the angles. The motion does not change: later states, events and dense output include
@@ -215,8 +215,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// [`StepError::InvalidInput`] for turns of a coordinate that is no angle, or beyond 2^53.
     pub fn set_turns(&mut self, turns: [i64; N]) -> Result<(), StepError> {
         let turns = Turns::from(turns);
-        angles::check::<S, N, T>(&self.node.q, &turns)?;
-        let (_, nearest) = angles::normalized::<S, N, T>(&self.node, &Turns::zeros());
+        angles::check(&self.system, &self.node.q, &turns)?;
+        let (_, nearest) = angles::normalized(&self.system, &self.node, &Turns::zeros());
         self.turns = turns - nearest;
         Ok(())
     }
@@ -340,7 +340,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         change: impl FnOnce(&mut S),
         state: State<N, T>,
     ) -> Result<(), StepError> {
-        angles::check::<S, N, T>(&state.q, &Turns::zeros())?;
+        angles::check(&self.system, &state.q, &Turns::zeros())?;
         let system = changed(&self.system, change)?;
         let mut node = self.node;
         self.memory = self.method.with_state([&self.system, &system], &mut node, self.h, &self.memory, state)?;
@@ -420,7 +420,7 @@ fn cold_step<M: Method<S, N, T>, S: Lagrangian<N, T>, const N: usize, T: Scalar>
     let at = Problem { system: &system, prepared: &prepared, node: &node, h };
     match method.recover(at, &memory, &mut cache, left) {
         Ok(step) => {
-            method.take(h, (&mut node, &mut memory), &mut cache, step);
+            method.take(&system, h, (&mut node, &mut memory), &mut cache, step);
             (node, memory, cache, None)
         }
         Err(failure) => {
@@ -450,7 +450,7 @@ fn changed<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
 ) -> Result<S, StepError> {
     let mut system = *system;
     change(&mut system);
-    let values = (0..S::PARAMETERS.len()).map(|index| system.parameter(index));
+    let values = (0..system.parameters().len()).map(|index| system.parameter(index));
     match values.into_iter().find(|value| !value.is_finite()) {
         Some(value) => Err(StepError::InvalidInput { input: "a parameter", allowed: "finite", value: value.to_f64() }),
         None => Ok(system),

@@ -39,14 +39,14 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
             states.push(state);
             energies.push(node.state().energy(&system)?);
         }
-        Ok(Solution::of::<S>(states, energies))
+        Ok(Solution::of(&system, states, energies))
     }
 }
 
 impl<const N: usize> Solution<N> {
-    pub(super) fn of<S: Lagrangian<N>>(states: Vec<State<N>>, energies: Vec<f64>) -> Self {
+    pub(super) fn of<S: Lagrangian<N>>(system: &S, states: Vec<State<N>>, energies: Vec<f64>) -> Self {
         let times = states.iter().map(|state| state.t).collect();
-        Self { times, states, energies, names: S::COORDINATES }
+        Self { times, states, energies, names: system.coordinates() }
     }
 }
 

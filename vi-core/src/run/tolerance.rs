@@ -197,7 +197,7 @@ fn guess<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Start<S,
     for i in 0..N {
         let [q, v, a] = [state.q[i], v[i], a[i]].map(|entry| entry.to_f64().abs());
         // The turns of an angle are no length of its motion.
-        let q = if S::ANGLES[i] { q.min(PI) } else { q };
+        let q = if system.angles()[i] { q.min(PI) } else { q };
         let scales = [q / v, v / a, (q / a).sqrt()];
         let scale = scales.into_iter().filter(|scale| scale.is_normal()).fold(0.0, f64::max);
         if scale > 0.0 {

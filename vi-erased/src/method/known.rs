@@ -67,14 +67,14 @@ pub(super) trait ErasedMethod<S, const N: usize>: Debug + Send + Sync {
     fn order(&self) -> u32;
     fn finds_length(&self) -> bool;
     fn has_reactions(&self) -> bool;
-    fn check_length(&self, h: f64) -> Result<(), StepError>;
+    fn check_length(&self, system: &S, h: f64) -> Result<(), StepError>;
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError>;
     fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError>;
     fn evaluations(&self, iterations: u32) -> u64;
     #[cfg(feature = "derivatives")]
     fn keeps_energy(&self) -> bool;
     #[cfg(feature = "derivatives")]
-    fn depends_on_time(&self) -> bool;
+    fn depends_on_time(&self, system: &S) -> bool;
     #[cfg(feature = "checkpoints")]
     fn memory(&self, text: &str) -> Result<AnyMemory<S, N>, String>;
 }
@@ -218,8 +218,8 @@ impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usiz
         Method::<W, N>::has_reactions(&self.method)
     }
 
-    fn check_length(&self, h: f64) -> Result<(), StepError> {
-        Method::<W, N>::check_length(&self.method, h)
+    fn check_length(&self, system: &S, h: f64) -> Result<(), StepError> {
+        Method::check_length(&self.method, &W::wrapped(*system), h)
     }
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError> {
@@ -241,8 +241,8 @@ impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usiz
     }
 
     #[cfg(feature = "derivatives")]
-    fn depends_on_time(&self) -> bool {
-        Differentiable::<W, N>::depends_on_time(&self.method)
+    fn depends_on_time(&self, system: &S) -> bool {
+        Differentiable::depends_on_time(&self.method, &W::wrapped(*system))
     }
 
     #[cfg(feature = "checkpoints")]
@@ -310,7 +310,7 @@ impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usiz
         if let Err(left) = method.advance(system, prepared, h, (node, memory), cache) {
             let at = Problem { system, prepared, node, h };
             let step = method.recover(at, memory, cache, left)?;
-            Method::<W, N>::take(method, h, (node, memory), cache, step);
+            Method::<W, N>::take(method, system, h, (node, memory), cache, step);
         }
         Ok(())
     }

@@ -308,7 +308,7 @@ where
     fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, _before: &Convergence) {
         let correction = match self.newton {
             Some(newton) => newton.correction(&self.evaluate(x, |_, _| {})),
-            None if Y::CONSTANT_MASS => self.by_constant_mass(x),
+            None if self.system.has_constant_mass() => self.by_constant_mass(x),
             None => self.by_varying_mass(x),
         };
         *y = self.moved(&correction);

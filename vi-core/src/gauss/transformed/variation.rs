@@ -44,7 +44,7 @@ where
     }
 
     /// Steps also depend on the time through g.
-    fn depends_on_time(&self) -> bool {
+    fn depends_on_time(&self, _system: &S) -> bool {
         true
     }
 
@@ -62,7 +62,7 @@ where
         after.step_of(length)?;
         let mut all: Vec<_> = variations.iter().map(|variation| Variation { h: 0.0, ..variation.clone() }).collect();
         all.push(Variation::of_length());
-        vary(&after, &angles::reduced_node::<S, N, f64>(&run.node), &mut all)?;
+        vary(&after, &angles::reduced_node(&run.system, &run.node), &mut all)?;
         let Some(along_dtau) = all.pop() else { return Ok(()) };
         for (own, varied) in variations.iter_mut().zip(&all) {
             let missing = own.h + own.t - varied.t;
@@ -92,7 +92,7 @@ where
 {
     let Run { system, node, memory, .. } = run;
     let t = before.t;
-    if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
+    if variations.iter().any(|variation| variation.parameters.len() > system.parameters().len()) {
         return Err(more_parameters(t));
     }
     let stages = Linearized::of(system, before, node, memory).ok_or_else(|| not_last(t))?;

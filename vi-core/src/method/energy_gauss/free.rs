@@ -139,7 +139,7 @@ where
         let step = trial.step;
         let mut after = *node;
         after.advance(step.h, &step.increment.velocity, &step.increment.momentum);
-        let gain = if !S::AUTONOMOUS || S::FORCED { trial.work } else { 0.0 };
+        let gain = if self.system.conserves_energy() { 0.0 } else { trial.work };
         after.add_energy(gain);
         after.check_finite(node.t)?;
         Ok(Ended { taken: step, gain, measured: measured(self.system, &after)? })

@@ -306,7 +306,7 @@ where
         2 * STAGES as u32
     }
 
-    fn check_length(&self, h: f64) -> Result<(), StepError> {
+    fn check_length(&self, _system: &S, h: f64) -> Result<(), StepError> {
         check_forward(FORWARD, h)?;
         check_power::<STAGES>(h)
     }
@@ -316,7 +316,7 @@ where
     }
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
-        check_density::<N, f64, S>()?;
+        check_density(system)?;
         node.energy = 0.0;
         let mut memory = begun(system, node, h)?;
         // The start has already solved the stages of the first step.
@@ -348,6 +348,7 @@ where
 
     fn take(
         &self,
+        _system: &S,
         _h: f64,
         (node, memory): (&mut Node<N>, &mut Self::Memory),
         cache: &mut Self::Cache,
@@ -479,8 +480,8 @@ impl<const STAGES: usize> EnergyPreservingGauss<STAGES> {
     where
         S: Convertible<N>,
     {
-        Method::<S, N>::check_length(&Self, h)?;
-        check_density::<N, f64, S>()?;
+        Method::<S, N>::check_length(&Self, &system, h)?;
+        check_density(&system)?;
         let node = Node::new(state, energy);
         let memory = begun(&system, &node, h)?;
         Ok(Run::resumed(Self, system, (node, h, memory)))

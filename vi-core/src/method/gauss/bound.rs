@@ -227,6 +227,7 @@ where
 
     fn take(
         &self,
+        _system: &S,
         h: f64,
         (node, memory): (&mut Node<N>, &mut Self::Memory),
         cache: &mut Self::Cache,

@@ -256,6 +256,7 @@ where
 
     fn take(
         &self,
+        _system: &S,
         _h: f64,
         (node, memory): (&mut Node<N>, &mut Self::Memory),
         _cache: &mut Self::Cache,

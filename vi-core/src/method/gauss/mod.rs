@@ -117,8 +117,15 @@ where
     }
 
     #[inline(always)]
-    fn take(&self, h: f64, run: (&mut Node<N>, &mut Self::Memory), cache: &mut Self::Cache, step: Self::Step) {
-        Method::<S, N>::take(&solver::<S, N, STAGES>(), h, run, cache, step);
+    fn take(
+        &self,
+        system: &S,
+        h: f64,
+        run: (&mut Node<N>, &mut Self::Memory),
+        cache: &mut Self::Cache,
+        step: Self::Step,
+    ) {
+        Method::<S, N>::take(&solver::<S, N, STAGES>(), system, h, run, cache, step);
     }
 
     fn with_length(
