@@ -70,11 +70,6 @@ impl Instructions {
     #[inline]
     #[allow(unsafe_code)]
     pub fn run<L: Loop>(self, of: L) -> L::Output {
-        #[cfg(all(feature = "std", target_arch = "x86_64"))]
-        #[target_feature(enable = "avx2,fma")]
-        fn avx2<L: Loop>(of: L) -> L::Output {
-            of.run::<true>()
-        }
         #[cfg(all(feature = "std", target_arch = "x86_64", not(debug_assertions)))]
         #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
         fn avx512<L: Loop>(of: L) -> L::Output {
@@ -90,4 +85,29 @@ impl Instructions {
             Set::Avx512 => unsafe { avx512(of) },
         }
     }
+
+    /// Runs a loop that is not worth several copies: with vectors of four numbers. Gives it back on x86-64 without them.
+    ///
+    /// # Errors
+    /// The loop.
+    #[inline]
+    #[allow(unsafe_code)]
+    pub fn run_once<L: Loop>(self, of: L) -> Result<L::Output, L> {
+        match self.0 {
+            Set::Baseline if cfg!(all(feature = "std", target_arch = "x86_64", not(target_feature = "avx2"))) => {
+                Err(of)
+            }
+            Set::Baseline => Ok(by_baseline(of)),
+            // SAFETY: `Instructions::detected` checked that the processor has these instructions.
+            #[cfg(all(feature = "std", target_arch = "x86_64"))]
+            _ => Ok(unsafe { avx2(of) }),
+        }
+    }
+}
+
+/// A loop with vectors of four numbers.
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+#[target_feature(enable = "avx2,fma")]
+fn avx2<L: Loop>(of: L) -> L::Output {
+    of.run::<true>()
 }

@@ -206,7 +206,8 @@ where
     EnergyPreservingGauss<STAGES>: Erasable<Called<S>, N, Memory: Controlled<f64>>,
 {
     // With constraints most of a step is elimination, which calls no function of the system.
-    if const { S::Kind::COUNT == 0 } { energy_gauss!(Called) } else { energy_gauss!(identity) }
+    // Calls of an interpreter are calls already.
+    if const { S::Kind::COUNT == 0 && !S::INTERPRETED } { energy_gauss!(Called) } else { energy_gauss!(identity) }
 }
 
 /// A run of energy-preserving steps with the shift and the fallback of a plan.

@@ -19,9 +19,11 @@
 //! | `session` | a run in the hands of a program; feature `sessions` |
 //! | [`integrator`] | an integrator that is built for a system |
 //! | [`system`] | a system with its parameters |
+//! | [`at_rest`] | a system without its coordinates at rest |
 //!
 //! No module imports one below it in this table.
 
+pub mod at_rest;
 #[cfg(feature = "derivatives")]
 pub mod control;
 #[cfg(feature = "derivatives")]

@@ -30,6 +30,12 @@ impl Watch {
     pub fn new(g: impl Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync + 'static) -> Self {
         Self(Arc::new(g))
     }
+
+    /// Its value.
+    #[must_use]
+    pub fn value(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        (self.0)(t, q, v)
+    }
 }
 
 impl PartialEq for Watch {
@@ -89,7 +95,7 @@ impl Section {
                 let is_odd = if passed.round() % 2.0 == 0.0 { 1.0 } else { -1.0 };
                 is_odd * (core::f64::consts::PI * (passed - passed.round())).sin()
             }
-            Self::Function(g, _) => (g.0)(t, q, v),
+            Self::Function(g, _) => g.value(t, q, v),
         }
     }
 

@@ -173,7 +173,15 @@ impl<S: Runnable<N> + Described + Default, const N: usize> Typed<S, N> {
     /// The system with its default parameters.
     #[must_use]
     pub fn new(integrators: Vec<Integrator<S, N>>) -> Self {
-        Self { system: S::default(), integrators: integrators.into() }
+        Self::of(S::default(), integrators)
+    }
+}
+
+impl<S: Runnable<N>, const N: usize> Typed<S, N> {
+    /// A system with its parameters.
+    #[must_use]
+    pub fn of(system: S, integrators: Vec<Integrator<S, N>>) -> Self {
+        Self { system, integrators: integrators.into() }
     }
 }
 

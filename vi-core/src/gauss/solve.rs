@@ -152,10 +152,15 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     where
         Y: Convertible<N>,
     {
-        if Y::SIDE_BY_SIDE {
-            instructions.run(SideBySide { system, start: self, newton })
+        let in_scalars = || self.in_scalars(&ErasedSystem::of(system), newton);
+        if !Y::SIDE_BY_SIDE {
+            return in_scalars();
+        }
+        let stages = SideBySide { system, start: self, newton };
+        if Y::INTERPRETED {
+            instructions.run_once(stages).unwrap_or_else(|_| in_scalars())
         } else {
-            self.in_scalars(&ErasedSystem::of(system), newton)
+            instructions.run(stages)
         }
     }
 

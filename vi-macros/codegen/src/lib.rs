@@ -190,9 +190,17 @@ pub fn compile(tokens: TokenStream) -> Result<Derivations, TokenStream> {
 /// # Errors
 /// All errors of the first stage that fails.
 pub fn derive(system: &System) -> syn::Result<Derivations> {
-    let own = derive_by(system, 0)?;
+    let own = derive_own(system)?;
     let further = (1..system.rules()).map(|place| derive_by(system, place)).collect::<syn::Result<_>>()?;
     Ok(Derivations { own, further })
+}
+
+/// Runs the stages from the parsed system to its program in straight lines, for the default rule alone.
+///
+/// # Errors
+/// All errors of the first stage that fails.
+pub fn derive_own(system: &System) -> syn::Result<Derived> {
+    derive_by(system, 0)
 }
 
 /// Runs the stages for the rule at this position of the list.

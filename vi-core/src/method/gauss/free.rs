@@ -222,10 +222,15 @@ where
         &self,
         system: &S,
         prepared: &Instructions,
-        _h: f64,
+        h: f64,
         (node, memory): (&mut Node<N>, &mut Self::Memory),
-        _cache: &mut Self::Cache,
+        cache: &mut Self::Cache,
     ) -> Result<(), Self::Left> {
+        if S::INTERPRETED {
+            let step = self.attempt(Problem { system, prepared, node, h }, memory, cache)?;
+            self.take(system, h, (node, memory), cache, step);
+            return Ok(());
+        }
         if !memory.pause.is_over() {
             return Err(None);
         }

@@ -12,9 +12,6 @@ use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::{ToTokens, format_ident, quote};
 
-/// Maximum number of operations of functions that count as short: `FixedStepping::INLINED`.
-const INLINED: usize = 250;
-
 /// The implementations of `FixedStepping` and `EnergyStepping` for the rule.
 pub(super) fn item(source: &Steps) -> TokenStream {
     let fixed = fixed(source);
@@ -35,9 +32,7 @@ fn fixed(source: &Steps) -> TokenStream {
             const CLOSED_FORM: bool = true;
         )
     });
-    let short = |id: FunctionId| operations(source, id) <= INLINED;
-    let is_inlined = short(FunctionId::MomentumEquation) && short(FunctionId::MomentumResidual);
-    let inlined = is_inlined.then(|| {
+    let inlined = source.program.has_short_steps().then(|| {
         quote!(
             const INLINED: bool = true;
         )

@@ -11,7 +11,6 @@ use num_traits::ToPrimitive;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
-use syn::Attribute;
 
 /// The struct, with the properties under each rule in its documentation.
 pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
@@ -144,8 +143,8 @@ pub(super) fn parameters(model: &Model) -> TokenStream {
 pub(crate) fn described(model: &Model, definition: &str) -> TokenStream {
     let name = &model.name;
     let conditions = conditions(&model.attributes);
-    let about = words(&model.attributes);
-    let parameters = model.parameters.iter().map(|parameter| words(&parameter.attributes));
+    let about = model.about();
+    let parameters = model.parameters.iter().map(Parameter::about);
     quote! {
         #(#conditions)*
         #[allow(deprecated)]
@@ -155,20 +154,6 @@ pub(crate) fn described(model: &Model, definition: &str) -> TokenStream {
             const DEFINITION: &'static ::core::primitive::str = #definition;
         }
     }
-}
-
-/// The text of doc comments.
-fn words(attributes: &[Attribute]) -> String {
-    let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
-        syn::Meta::NameValue(syn::MetaNameValue {
-            path,
-            value: syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }),
-            ..
-        }) if path.is_ident("doc") => Some(text.value()),
-        _ => None,
-    });
-    let lines: Vec<String> = lines.map(|line| line.strip_prefix(' ').unwrap_or(&line).to_owned()).collect();
-    lines.join("\n")
 }
 
 /// The implementation of `Convertible`: the system in another numeric type.
@@ -274,7 +259,7 @@ fn pause(attributes: &[syn::Attribute]) -> Option<TokenStream> {
 
 /// A system with errors.
 pub struct Broken {
-    conditions: Vec<Attribute>,
+    conditions: Vec<syn::Attribute>,
     stub: TokenStream,
 }
 

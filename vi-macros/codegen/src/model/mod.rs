@@ -162,7 +162,27 @@ pub struct Parameter {
     pub is_input: bool,
 }
 
+/// The text of doc comments.
+fn words(attributes: &[syn::Attribute]) -> String {
+    let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
+        syn::Meta::NameValue(syn::MetaNameValue {
+            path,
+            value: syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }),
+            ..
+        }) if path.is_ident("doc") => Some(text.value()),
+        _ => None,
+    });
+    let lines: Vec<String> = lines.map(|line| line.strip_prefix(' ').unwrap_or(&line).to_owned()).collect();
+    lines.join("\n")
+}
+
 impl Parameter {
+    /// Its doc comments.
+    #[must_use]
+    pub fn about(&self) -> String {
+        words(&self.attributes)
+    }
+
     /// Its symbol, if `before` parameters precede it. Loops run over arrays of numbers, not over arrays of arrays.
     #[must_use]
     pub fn symbol(&self, before: usize) -> Symbol {
@@ -191,6 +211,12 @@ impl Parameter {
 }
 
 impl Model {
+    /// The doc comments of the struct.
+    #[must_use]
+    pub fn about(&self) -> String {
+        words(&self.attributes)
+    }
+
     /// The parameters grouped by field of the struct: a scalar parameter, or the entries of an array row by row.
     pub fn fields(&self) -> impl Iterator<Item = &[Parameter]> {
         self.parameters.chunk_by(|left, right| left.name == right.name)

@@ -26,6 +26,9 @@ pub use results::{FunctionId, Output, Results};
 
 use vi_expr::Table;
 
+/// Maximum number of operations of a function that counts as short.
+const SHORT: usize = 250;
+
 /// A function of the emitted code.
 pub struct Function {
     /// Which function it is.
@@ -69,6 +72,13 @@ impl Program {
     #[must_use]
     pub fn function(&self, id: FunctionId) -> Option<&Function> {
         self.functions().find(|function| function.id == id)
+    }
+
+    /// Whether the functions of a momentum step are short: `FixedStepping::INLINED`.
+    #[must_use]
+    pub fn has_short_steps(&self) -> bool {
+        let is_short = |id| self.function(id).is_none_or(|function| function.operation_count() <= SHORT);
+        is_short(FunctionId::MomentumEquation) && is_short(FunctionId::MomentumResidual)
     }
 
     /// All functions in the order of emission.

@@ -1,0 +1,453 @@
+//! A system without its last coordinates, which are at rest.
+//!
+//! In: a type-erased system of more coordinates than were declared; the others are free, have the mass 1, and no force.
+//! Out: a [`System`] of the declared ones. Given vectors get zeros at their end, and found ones lose them. So few numbers
+//! of coordinates have to be compiled.
+
+#[cfg(feature = "derivatives")]
+use crate::control::{Control, Linear, Rest};
+use crate::plan::{Built, PhasePoint, Plan};
+use crate::section::{Section, Watch};
+use crate::simulation::{AtConstraints, Met, ShiftedEnergy, Simulation, Steps, wrong_size};
+#[cfg(feature = "sessions")]
+use crate::simulation::{Rows, Session, StepOutput};
+use crate::system::{OnConstraints, Quantity, System};
+use std::borrow::Cow;
+use vi_core::StepError;
+use vi_core::run::ErrorEstimate;
+
+/// A system without its coordinates from `size` on.
+#[must_use]
+pub fn without_rest(system: Box<dyn System>, size: usize) -> Box<dyn System> {
+    Box::new(Declared { of: system, size })
+}
+
+/// A system or a run of which the first coordinates are declared.
+struct Declared<Y: ?Sized> {
+    of: Box<Y>,
+    size: usize,
+}
+
+/// The vector with as many entries as all coordinates.
+///
+/// # Errors
+/// [`StepError::InvalidInput`] unless it has `size` entries.
+fn with_rest(values: &[f64], size: usize, all: usize, input: &'static str) -> Result<Vec<f64>, StepError> {
+    if values.len() == size { Ok(extended(values, all)) } else { Err(wrong_size(values, input)) }
+}
+
+/// The numbers with zeros at their end.
+fn extended(values: &[f64], all: usize) -> Vec<f64> {
+    let mut values = values.to_vec();
+    values.resize(all, 0.0);
+    values
+}
+
+/// Keeps the first `size` of each `all` numbers.
+fn cut(values: &[f64], all: usize, size: usize) -> Vec<f64> {
+    values.chunks_exact(all).flat_map(|of| &of[..size]).copied().collect()
+}
+
+impl Declared<dyn System> {
+    fn all(&self) -> usize {
+        self.of.coordinates().len()
+    }
+
+    fn point(&self, at: &PhasePoint) -> Result<PhasePoint, StepError> {
+        let [q, v] = [(&at.q, "number of coordinates"), (&at.v, "number of velocities")];
+        let full = |(values, input): (&Vec<f64>, _)| with_rest(values, self.size, self.all(), input);
+        Ok(PhasePoint { t: at.t, q: full(q)?, v: full(v)? })
+    }
+
+    fn cut(&self, mut of: OnConstraints) -> OnConstraints {
+        for vector in [&mut of.point.q, &mut of.point.v, &mut of.moved_q, &mut of.moved_v] {
+            vector.truncate(self.size);
+        }
+        of
+    }
+
+    /// The points with zeros at the end of each.
+    fn points(&self, [q, v]: [&[f64]; 2]) -> [Vec<f64>; 2] {
+        let all = self.all();
+        [q, v].map(|of| of.chunks_exact(self.size).flat_map(|of| extended(of, all)).collect())
+    }
+}
+
+impl System for Declared<dyn System> {
+    fn name(&self) -> &'static str {
+        self.of.name()
+    }
+
+    fn about(&self) -> &'static str {
+        self.of.about()
+    }
+
+    fn definition(&self) -> &'static str {
+        self.of.definition()
+    }
+
+    fn coordinates(&self) -> Vec<&'static str> {
+        let mut names = self.of.coordinates();
+        names.truncate(self.size);
+        names
+    }
+
+    fn constraints(&self) -> &'static [&'static str] {
+        self.of.constraints()
+    }
+
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        self.of.parameters()
+    }
+
+    fn parameters_about(&self) -> &'static [&'static str] {
+        self.of.parameters_about()
+    }
+
+    fn set(&mut self, name: &str, value: f64) -> bool {
+        self.of.set(name, value)
+    }
+
+    fn copy(&self) -> Box<dyn System> {
+        without_rest(self.of.copy(), self.size)
+    }
+
+    fn integrators(&self) -> Vec<Built> {
+        self.of.integrators()
+    }
+
+    fn conserves_energy(&self) -> bool {
+        self.of.conserves_energy()
+    }
+
+    fn evaluate(&self, of: Quantity, [t, q, v]: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError> {
+        let [q, v] = self.points([q, v]);
+        if matches!(of, Quantity::Lagrangian | Quantity::Energy | Quantity::Hamiltonian) {
+            return self.of.evaluate(of, [t, &q, &v], out);
+        }
+        let mut found = Vec::new();
+        let outcome = self.of.evaluate(of, [t, &q, &v], &mut found);
+        out.extend(cut(&found, self.all(), self.size));
+        outcome
+    }
+
+    fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError> {
+        Ok(self.cut(self.of.project(&self.point(at)?)?))
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError> {
+        Ok(self.cut(self.of.assemble(&self.point(at)?)?))
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn control(&self) -> &dyn Control {
+        self
+    }
+
+    fn begin_while(&self, plan: &Plan, goes_on: &mut dyn FnMut() -> bool) -> Result<Box<dyn Simulation>, StepError> {
+        let full = |values: &[f64], input| with_rest(values, self.size, self.all(), input);
+        let q = full(&plan.q, "number of coordinates")?;
+        let plan = match &plan.p {
+            Some(p) => Plan { q, p: Some(full(p, "number of momenta")?), ..plan.clone() },
+            None => Plan { q, v: full(&plan.v, "number of velocities")?, ..plan.clone() },
+        };
+        Ok(Box::new(Declared { of: self.of.begin_while(&plan, goes_on)?, size: self.size }))
+    }
+
+    #[cfg(feature = "checkpoints")]
+    fn restart(&self, built: Built, stored: &str) -> Result<Box<dyn Simulation>, String> {
+        Ok(Box::new(Declared { of: self.of.restart(built, stored)?, size: self.size }))
+    }
+}
+
+#[cfg(feature = "derivatives")]
+impl Control for Declared<dyn System> {
+    fn inputs(&self) -> &'static [usize] {
+        self.of.control().inputs()
+    }
+
+    fn mass_matrix(&self, [t, q, v]: [&[f64]; 3], out: &mut Vec<f64>) {
+        let ([q, v], all, mut found) = (self.points([q, v]), self.all(), Vec::new());
+        self.of.control().mass_matrix([t, &q, &v], &mut found);
+        for matrix in found.chunks_exact(all * all) {
+            out.extend(cut(&matrix[..self.size * all], all, self.size));
+        }
+    }
+
+    fn bias(&self, [t, q, v]: [&[f64]; 3], out: &mut Vec<f64>) {
+        let ([q, v], mut found) = (self.points([q, v]), Vec::new());
+        self.of.control().bias([t, &q, &v], &mut found);
+        out.extend(cut(&found, self.all(), self.size));
+    }
+
+    fn linearization(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Linear, StepError> {
+        let PhasePoint { q, v, .. } = self.point(&PhasePoint { t, q: q.to_vec(), v: v.to_vec() })?;
+        Ok(cut_linear(&self.of.control().linearization(t, &q, &v)?, self.all(), self.size))
+    }
+
+    fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError> {
+        let (all, size) = (self.all(), self.size);
+        let mut rest = self.of.control().equilibrium(t, &with_rest(guess, size, all, "number of coordinates")?)?;
+        // Without constraints the directions are the coordinates, and each at rest has two rates of zero.
+        let square = |of: &[f64]| cut(&of[..size * all], all, size);
+        rest.q.truncate(size);
+        rest.free.truncate(size);
+        rest.freedom = size;
+        rest.directions = square(&rest.directions);
+        rest.matrices = rest.matrices.map(|of| square(&of));
+        for _ in 0..2 * (all - size) {
+            if let Some(at) = rest.rates.iter().rposition(|rate| *rate == [0.0, 0.0]) {
+                rest.rates.remove(at);
+            }
+        }
+        Ok(rest)
+    }
+}
+
+/// A linearization without the rows and columns of the coordinates at rest.
+#[cfg(feature = "derivatives")]
+fn cut_linear(of: &Linear, all: usize, size: usize) -> Linear {
+    // Coordinates, then velocities or momenta.
+    let halves = |of: &[f64]| cut(of, all, size);
+    let inputs = of.b.len() / (2 * all);
+    Linear {
+        t: of.t,
+        value: halves(&of.value),
+        a: cut(&of.a, 2 * all * all, 2 * all * size).chunks_exact(all).flat_map(|of| &of[..size]).copied().collect(),
+        b: cut(&of.b, all * inputs, size * inputs),
+    }
+}
+
+impl Declared<dyn Simulation> {
+    /// Sections whose functions take the declared coordinates.
+    fn sections(&self, sections: &[Section]) -> Vec<Section> {
+        let size = self.size;
+        let of_all = |section: &Section| match section.clone() {
+            Section::Function(watch, direction) => {
+                let of_declared = Watch::new(move |t, q, v| watch.value(t, &q[..size], &v[..size]));
+                Section::Function(of_declared, direction)
+            }
+            other => other,
+        };
+        sections.iter().map(of_all).collect()
+    }
+}
+
+/// A crossing of the declared coordinates.
+fn cut_met(mut met: Met, size: usize) -> Met {
+    met.row.q.truncate(size);
+    met.row.p.truncate(size);
+    met
+}
+
+impl Steps for Declared<dyn Simulation> {
+    fn t(&self) -> f64 {
+        self.of.t()
+    }
+
+    fn q(&self) -> Cow<'_, [f64]> {
+        match self.of.q() {
+            Cow::Borrowed(q) => Cow::Borrowed(&q[..self.size]),
+            Cow::Owned(mut q) => {
+                q.truncate(self.size);
+                Cow::Owned(q)
+            }
+        }
+    }
+
+    fn p(&self) -> &[f64] {
+        &self.of.p()[..self.size]
+    }
+
+    fn h(&self) -> f64 {
+        self.of.h()
+    }
+
+    fn energy(&self) -> Result<f64, StepError> {
+        self.of.energy()
+    }
+
+    fn discrete_energy(&self) -> Option<f64> {
+        self.of.discrete_energy()
+    }
+
+    fn shifted_energy(&self) -> Option<ShiftedEnergy> {
+        self.of.shifted_energy()
+    }
+
+    fn constraints(&self) -> Option<AtConstraints> {
+        self.of.constraints()
+    }
+
+    fn advance(&mut self) -> Result<(), StepError> {
+        self.of.advance()
+    }
+
+    fn advance_to(&mut self, end: f64) -> Result<(), StepError> {
+        self.of.advance_to(end)
+    }
+
+    fn monitor(&mut self) {
+        self.of.monitor();
+    }
+
+    fn largest_error(&self) -> Option<ErrorEstimate> {
+        self.of.largest_error()
+    }
+}
+
+impl Simulation for Declared<dyn Simulation> {
+    #[cfg(feature = "sessions")]
+    fn copy(&self) -> Box<dyn Simulation> {
+        Box::new(Declared { of: self.of.copy(), size: self.size })
+    }
+
+    fn evaluations(&self) -> u64 {
+        self.of.evaluations()
+    }
+
+    fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
+        self.of.advance_until(end, most)
+    }
+
+    fn cross(&mut self, sections: &[Section], end: f64, take: &mut dyn FnMut(Met) -> bool) -> Result<(), StepError> {
+        let (sections, size) = (self.sections(sections), self.size);
+        self.of.cross(&sections, end, &mut |met| take(cut_met(met, size)))
+    }
+
+    fn sampled_energy(&self) -> Result<(f64, f64), StepError> {
+        self.of.sampled_energy()
+    }
+}
+
+#[cfg(feature = "sessions")]
+impl Declared<dyn Simulation> {
+    fn all(&self) -> usize {
+        self.of.p().len()
+    }
+
+    /// Adds what a function records, without the coordinates at rest.
+    fn recorded<Y>(&mut self, rows: &mut Rows, record: impl FnOnce(&mut dyn Simulation, &mut Rows) -> Y) -> Y {
+        let (all, mut found) = (self.all(), Rows::default());
+        let outcome = record(&mut *self.of, &mut found);
+        rows.t.extend(found.t);
+        rows.q.extend(cut(&found.q, all, self.size));
+        rows.p.extend(cut(&found.p, all, self.size));
+        outcome
+    }
+}
+
+/// Dense output of the declared coordinates.
+#[cfg(feature = "sessions")]
+impl StepOutput for Declared<dyn StepOutput> {
+    fn at(&self, t: f64) -> [Vec<f64>; 3] {
+        self.of.at(t).map(|mut of| {
+            of.truncate(self.size);
+            of
+        })
+    }
+}
+
+#[cfg(feature = "sessions")]
+impl Session for Declared<dyn Simulation> {
+    fn velocity(&self) -> Result<Vec<f64>, StepError> {
+        let mut velocity = self.of.velocity()?;
+        velocity.truncate(self.size);
+        Ok(velocity)
+    }
+
+    fn parameters(&self) -> Vec<f64> {
+        self.of.parameters()
+    }
+
+    fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {
+        self.of.set_parameters(change)
+    }
+
+    fn set_state(&mut self, change: &[(usize, f64)], (t, q, p): (f64, &[f64], &[f64])) -> Result<(), StepError> {
+        let q = with_rest(q, self.size, self.all(), "number of coordinates")?;
+        let p = with_rest(p, self.size, self.all(), "number of momenta")?;
+        self.of.set_state(change, (t, &q, &p))
+    }
+
+    fn advance_of(&mut self, h: f64) -> Result<(), StepError> {
+        self.of.advance_of(h)
+    }
+
+    fn record(
+        &mut self,
+        end: Option<f64>,
+        most: u64,
+        every: u64,
+        taken: &mut u64,
+        rows: &mut Rows,
+    ) -> Result<bool, StepError> {
+        self.recorded(rows, |run, rows| run.record(end, most, every, taken, rows))
+    }
+
+    fn record_at(&mut self, times: &[f64], rows: &mut Rows) -> Result<(), StepError> {
+        self.recorded(rows, |run, rows| run.record_at(times, rows))
+    }
+
+    fn next_crossing(&mut self, sections: &[Section], end: f64) -> Result<Option<Met>, StepError> {
+        let sections = self.sections(sections);
+        let met = self.of.next_crossing(&sections, end)?;
+        Ok(met.map(|met| cut_met(met, self.size)))
+    }
+
+    fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError> {
+        let [q, p] = [q, p].map(|of| extended(of, self.all()));
+        Ok(Box::new(Declared { of: self.of.step_output(t, &q, &p)?, size: self.size }))
+    }
+
+    fn local_error(&self) -> Result<[Vec<f64>; 2], StepError> {
+        Ok(self.of.local_error()?.map(|of| of[..self.size].to_vec()))
+    }
+
+    #[cfg(feature = "checkpoints")]
+    fn checkpoint(&self) -> Result<String, String> {
+        self.of.checkpoint()
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn linearization(&self) -> Result<Linear, StepError> {
+        Ok(cut_linear(&self.of.linearization()?, self.all(), self.size))
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn tangent(
+        &mut self,
+        steps: u64,
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<f64>>>, StepError> {
+        let (all, size) = (self.all(), self.size);
+        let found = self.of.tangent(steps, parameters, goes_on)?;
+        let is_declared = |at: usize| at >= 2 * all || at % all < size;
+        Ok(found.map(|rows| {
+            let rows = rows.iter().enumerate().filter(|(at, _)| is_declared(*at));
+            rows.map(|(_, row)| cut(row, all, size)).collect()
+        }))
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn gradient(
+        &mut self,
+        steps: u64,
+        slope: &[f64],
+        parameters: &[usize],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError> {
+        let (all, size) = (self.all(), self.size);
+        if slope.len() != 2 * size {
+            return Err(wrong_size(slope, "number of coordinates and momenta"));
+        }
+        let slope: Vec<f64> = slope.chunks_exact(size).flat_map(|of| extended(of, all)).collect();
+        let found = self.of.gradient(steps, &slope, parameters, goes_on)?;
+        Ok(found.map(|of| {
+            let (state, parameters) = of.split_at(2 * all);
+            cut(state, all, size).into_iter().chain(parameters.iter().copied()).collect()
+        }))
+    }
+}

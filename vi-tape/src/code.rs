@@ -1,0 +1,92 @@
+//! What the traits of a system ask for: facts and functions.
+
+use crate::lines::Lines;
+use vi_dispatch::Instructions;
+
+/// The form of a matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    Diagonal,
+    Tridiagonal,
+    Symmetric,
+    Dense,
+}
+
+macro_rules! functions {
+    ($($name:ident),*) => {
+        /// The functions of a system, by the names of the traits. Those that a system does not have are empty.
+        #[derive(Clone, Debug, Default)]
+        pub(crate) struct Functions { $(pub(crate) $name: Lines),* }
+    };
+}
+
+functions!(
+    lagrangian,
+    energy,
+    momentum,
+    force,
+    acceleration,
+    point,
+    sides,
+    applied_force,
+    point_derivatives,
+    power,
+    scaled_point,
+    non_finite,
+    ld,
+    d1_ld,
+    d2_ld,
+    d3_ld,
+    d4_ld,
+    fd_minus,
+    fd_plus,
+    gd_minus,
+    gd_plus,
+    momentum_equation,
+    momentum_residual,
+    momentum_derivatives,
+    discrete_energy,
+    step_density,
+    extended_system,
+    extended_residual,
+    extended_derivatives
+);
+
+/// A system.
+#[derive(Clone, Debug)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
+pub(crate) struct Code {
+    pub(crate) name: &'static str,
+    /// The number of declared coordinates; the others are at rest.
+    pub(crate) declared: usize,
+    pub(crate) about: &'static str,
+    pub(crate) definition: &'static str,
+    pub(crate) coordinates: Box<[&'static str]>,
+    pub(crate) parameters: &'static [&'static str],
+    pub(crate) parameters_about: &'static [&'static str],
+    /// The values of the parameters by default.
+    pub(crate) defaults: Box<[f64]>,
+    pub(crate) inputs: &'static [usize],
+    pub(crate) angles: Box<[bool]>,
+    pub(crate) cyclic: Box<[bool]>,
+    /// The expressions whose values `non_finite` computes.
+    pub(crate) watched: Box<[&'static str]>,
+    pub(crate) is_autonomous: bool,
+    pub(crate) is_forced: bool,
+    pub(crate) is_separable: bool,
+    pub(crate) is_quadratic: bool,
+    pub(crate) has_constant_mass: bool,
+    pub(crate) scales_time: bool,
+    /// Whether there are fixed steps.
+    pub(crate) has_rule: bool,
+    /// Whether there are energy-preserving steps of order 2.
+    pub(crate) has_step_density: bool,
+    pub(crate) has_constant_jacobian: bool,
+    pub(crate) has_closed_form: bool,
+    pub(crate) is_inlined: bool,
+    pub(crate) mass: Form,
+    pub(crate) point_matrix: Form,
+    pub(crate) jacobian: Form,
+    pub(crate) functions: Functions,
+    pub(crate) instructions: Instructions,
+}

@@ -1,0 +1,84 @@
+//! The numbers of coordinates that are built.
+//!
+//! In: a code. Out: its system with every method, type-erased. The compiler instantiates all that is generic over the
+//! number of coordinates here.
+
+use crate::code::Code;
+use crate::mistakes::Mistakes;
+use crate::tape::{PARAMETERS, Tape};
+use vi_erased::at_rest::without_rest;
+use vi_erased::plan::{Built, Method};
+use vi_erased::{System, Typed, integrator, integrators};
+
+macro_rules! sizes {
+    ($($size:literal),*) => {
+        /// The numbers of coordinates that are built, in ascending order. Further coordinates are at rest.
+        const SIZES: &[usize] = &[$($size),*];
+
+        /// The system of a code, which has a number of coordinates that is built.
+        fn built(code: &'static Code) -> Option<Box<dyn System>> {
+            match code.coordinates.len() {
+                $($size => Some(sized::<$size>(code)),)*
+                _ => None,
+            }
+        }
+    };
+}
+
+sizes!(1, 2, 3, 4, 6, 12);
+
+/// The smallest number of coordinates that is built and is at least this one.
+pub(crate) fn size(declared: usize) -> Option<usize> {
+    SIZES.iter().copied().find(|size| *size >= declared)
+}
+
+/// The system of a code.
+///
+/// # Errors
+/// More coordinates or parameters than are built.
+pub(crate) fn system(code: &'static Code) -> Result<Box<dyn System>, Mistakes> {
+    check(code)?;
+    let Some(system) = built(code) else {
+        let most = SIZES.last().copied().unwrap_or_default();
+        return Err(Mistakes(format!(
+            "error: `{}` has {} coordinates\n = help: systems of a text have {most} at most; `lagrangian!` compiles more",
+            code.name, code.declared
+        )));
+    };
+    Ok(if code.declared < code.coordinates.len() { without_rest(system, code.declared) } else { system })
+}
+
+fn check(code: &Code) -> Result<(), Mistakes> {
+    let count = code.defaults.len();
+    if count <= PARAMETERS {
+        return Ok(());
+    }
+    Err(Mistakes(format!(
+        "error: `{}` has {count} parameters\n = help: systems of a text have {PARAMETERS} at most; write numbers that do not change as `const`",
+        code.name
+    )))
+}
+
+/// The system of N coordinates, with the methods that it has.
+fn sized<const N: usize>(code: &'static Code) -> Box<dyn System> {
+    let mut all = integrator::all([
+        integrators!(fixed),
+        integrators!(splitting),
+        integrators!(gauss 4, 8),
+        integrators!(transformed 4, 8),
+        integrators!(energy),
+        integrators!(energy 1, 2, 3),
+    ]);
+    all.retain(|of| has(code, of.built));
+    Box::new(Typed::of(Tape::<N>::new(code), all))
+}
+
+/// Whether a system has this method.
+fn has(code: &Code, (method, stages, _): Built) -> bool {
+    match (method, stages) {
+        (Method::Energy, None) => code.has_step_density,
+        (Method::Splitting4 | Method::Splitting6, _) => code.is_separable,
+        (_, None) => code.has_rule,
+        (_, Some(_)) => true,
+    }
+}

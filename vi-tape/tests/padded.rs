@@ -1,0 +1,89 @@
+//! Numbers of coordinates between those that are built: the others are at rest.
+
+use vi_erased::plan::{Method, PhasePoint, Plan};
+use vi_erased::section::{Direction, Section, Watch};
+use vi_erased::system::Quantity;
+use vi_tape::System;
+
+/// A chain of this many masses on springs, each with a quartic term, the last one with friction.
+fn chain(size: usize) -> String {
+    let last = size - 1;
+    format!(
+        "struct Chain {{ param k = 1.3; input u = 0.2; coord q[{size}];
+            L = sum(i in 0..{size}, dot(q[i])^2) / 2 - k * (q[0]^2 + sum(i in 1..{size}, (q[i] - q[i - 1])^2)) / 2
+                - sum(i in 0..{size}, q[i]^4) / 4 + sum(i in 1..{size}, dot(q[i]) * dot(q[i - 1]) * cos(q[i])) / 10;
+            force q[{last}] = u - 0.01 * dot(q[{last}]); discretize midpoint; }}"
+    )
+}
+
+/// The same with further masses that neither move nor act.
+fn wide(size: usize, all: usize) -> String {
+    let more = all - size;
+    chain(size)
+        .replace(&format!("coord q[{size}]"), &format!("coord q[{size}], z[{more}]"))
+        .replace("L = ", &format!("L = sum(i in 0..{more}, dot(z[i])^2) / 2 + "))
+}
+
+#[test]
+fn further_coordinates_are_at_rest() {
+    let mut met = 0;
+    for (size, all) in [(5, 6), (7, 12), (10, 12)] {
+        let (narrow, wide) = (System::parse(&chain(size)), System::parse(&wide(size, all)));
+        let (narrow, wide) = (narrow.expect("a chain"), wide.expect("a chain"));
+        assert_eq!(narrow.coordinates(), wide.coordinates()[..size]);
+        assert_eq!(narrow.coordinates().len(), size);
+        #[allow(clippy::cast_precision_loss)] // few
+        let q: Vec<f64> = (0..size).map(|i| 0.3 - 0.05 * i as f64).collect();
+        let v: Vec<f64> = q.iter().map(|q| 0.4 - q).collect();
+        let full = |of: &[f64]| [of, &vec![0.0; all - size]].concat();
+        for (method, stages) in [
+            (Method::Fixed, None),
+            (Method::KahanLi6, None),
+            (Method::Energy, None),
+            (Method::Gauss, Some(4)),
+            (Method::Energy, Some(2)),
+        ] {
+            let plan = |q: &[f64], v: &[f64]| Plan {
+                stages,
+                ..Plan::new(method, 0.02, PhasePoint { t: 0.0, q: q.to_vec(), v: v.to_vec() })
+            };
+            let mut run = narrow.begin(&plan(&q, &v)).expect("a start");
+            let mut other = wide.begin(&plan(&full(&q), &full(&v))).expect("a start");
+            run.advance_by(30).expect("steps");
+            other.advance_by(30).expect("steps");
+            let [row, of_all] = [run.row(), other.row()];
+            assert_eq!(
+                (row.t, row.energy, row.discrete_energy, row.h),
+                (of_all.t, of_all.energy, of_all.discrete_energy, of_all.h)
+            );
+            assert_eq!((&row.q[..], &row.p[..]), (&of_all.q[..size], &of_all.p[..size]), "{method:?}");
+            assert!(of_all.q[size..].iter().chain(&of_all.p[size..]).all(|entry| *entry == 0.0), "they are at rest");
+            // Functions of events take the declared coordinates.
+            let g = move |_: f64, q: &[f64], v: &[f64]| {
+                assert_eq!((q.len(), v.len()), (size, size));
+                q[0] - 0.2
+            };
+            let sections = [Section::Function(Watch::new(g), Direction::Both)];
+            run.cross(&sections, 4.0, &mut |found| {
+                assert_eq!((found.row.q.len(), found.row.p.len()), (size, size));
+                assert!((found.row.q[0] - 0.2).abs() < 1e-12);
+                met += 1;
+                true
+            })
+            .expect("a motion");
+        }
+        let (mut of_few, mut of_all) = (Vec::new(), Vec::new());
+        for quantity in [Quantity::Energy, Quantity::Momentum, Quantity::Force, Quantity::Acceleration] {
+            of_few.clear();
+            of_all.clear();
+            narrow.evaluate(quantity, [&[0.0], &q, &v], &mut of_few).expect("a value");
+            wide.evaluate(quantity, [&[0.0], &full(&q), &full(&v)], &mut of_all).expect("a value");
+            assert_eq!(of_few, of_all[..of_few.len()], "{quantity:?}");
+            assert_eq!(of_few.len(), if quantity == Quantity::Energy { 1 } else { size });
+        }
+        assert!(
+            narrow.begin(&Plan::new(Method::Gauss, 0.1, PhasePoint { t: 0.0, q: full(&q), v: v.clone() })).is_err()
+        );
+    }
+    assert!(met > 10, "{met}");
+}
