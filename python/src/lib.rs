@@ -1,13 +1,13 @@
-//! The module `variational._core`: the ready systems, the mathematics of any system as text, and the sources for
+//! The module `variational._core`: the ready systems, those of a text, the mathematics of any text, and the sources for
 //! `variational.compile`.
 
 #![forbid(unsafe_code)]
 
 use proc_macro2::{LexError, TokenStream};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyNotImplementedError, PyValueError};
 use pyo3::prelude::*;
 use vi_codegen::inspect::{self, Line, report};
-use vi_python::pyo3;
+use vi_python::{Kind, pyo3};
 
 /// The sources of the crates that a compiled system needs, and a number that changes with them.
 mod embedded {
@@ -59,6 +59,20 @@ fn properties(definition: &str) -> PyResult<(bool, bool)> {
     Ok((found.is_separable, found.has_step_density))
 }
 
+/// The type of the system that a text declares, with every method.
+///
+/// Raises ValueError for a mistake, with its line; NotImplementedError for a system that has to be compiled.
+#[pyfunction]
+#[pyo3(crate = "vi_python::pyo3")]
+fn of_text(py: Python<'_>, definition: &str) -> PyResult<Kind> {
+    let system = py.detach(|| vi_tape::System::parse(definition));
+    let raised = |mistakes: vi_tape::Mistakes| {
+        let words = mistakes.to_string();
+        if mistakes.needs_compiler() { PyNotImplementedError::new_err(words) } else { PyValueError::new_err(words) }
+    };
+    system.map(|system| Kind::new(system.into_inner())).map_err(raised)
+}
+
 /// Path and text of each source file that a compiled system needs.
 #[pyfunction]
 #[pyo3(crate = "vi_python::pyo3")]
@@ -71,7 +85,9 @@ fn sources() -> &'static [(&'static str, &'static str)] {
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(pyo3::wrap_pyfunction!(explain, module)?)?;
     module.add_function(pyo3::wrap_pyfunction!(properties, module)?)?;
+    module.add_function(pyo3::wrap_pyfunction!(of_text, module)?)?;
     module.add_function(pyo3::wrap_pyfunction!(sources, module)?)?;
     module.add("sources_digest", embedded::DIGEST)?;
+    module.add("texts", vi_python_ready::texts())?;
     vi_python::populate(module, vi_python_ready::systems())
 }

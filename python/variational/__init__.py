@@ -33,11 +33,22 @@ from ._run import LocalError, Run
 from ._solution import Events, Solution
 from ._stubs import stubs
 from ._system import System
+from ._text import of_text
 
 __version__ = "0.1.0"
 
-systems: list[str] = _bind(_core, globals(), __name__)
+_texts = dict(_core.texts)
+systems: list[str] = sorted([*_bind(_core, globals(), __name__), *_texts])
 """Names of the ready systems."""
+
+
+def __getattr__(name: str) -> type[System]:
+    """A ready system that is a text: its class is made when it is asked for."""
+    if name not in _texts:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = of_text(_texts[name], module=__name__)
+    return globals()[name]
+
 
 __all__ = [
     "CompileError", "Ensemble", "Equilibrium", "Event", "Events", "Explanation", "Linearization", "LocalError",

@@ -55,7 +55,9 @@ def stubs(module: Any = None) -> str:
     parts = [_MODULE]
     if module is package:
         parts = [_PACKAGE, *(_exception(name) for name in FIELDS)]
-    classes = [of for of in vars(module).values() if isinstance(of, type) and issubclass(of, System)]
+    names = [*vars(module), *package.systems] if module is package else vars(module)
+    found = {name: getattr(module, name) for name in names}
+    classes = {of for of in found.values() if isinstance(of, type) and issubclass(of, System)}
     parts += [_system(cls) for cls in sorted(classes, key=lambda cls: cls.__name__) if cls is not System]
     return "\n".join(parts)
 

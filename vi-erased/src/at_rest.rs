@@ -5,7 +5,7 @@
 //! of coordinates have to be compiled.
 
 #[cfg(feature = "derivatives")]
-use crate::control::{Control, Linear, Rest};
+use crate::control::{Control, Linear, Rest, pairs};
 use crate::plan::{Built, PhasePoint, Plan};
 use crate::section::{Section, Watch};
 use crate::simulation::{AtConstraints, Met, ShiftedEnergy, Simulation, Steps, wrong_size};
@@ -14,6 +14,10 @@ use crate::simulation::{Rows, Session, StepOutput};
 use crate::system::{OnConstraints, Quantity, System};
 use std::borrow::Cow;
 use vi_core::StepError;
+#[cfg(feature = "derivatives")]
+use vi_core::control::Equilibrium;
+#[cfg(feature = "derivatives")]
+use vi_core::nalgebra::{DMatrix, SVector};
 use vi_core::run::ErrorEstimate;
 
 /// A system without its coordinates from `size` on.
@@ -45,7 +49,7 @@ fn extended(values: &[f64], all: usize) -> Vec<f64> {
 
 /// Keeps the first `size` of each `all` numbers.
 fn cut(values: &[f64], all: usize, size: usize) -> Vec<f64> {
-    values.chunks_exact(all).flat_map(|of| &of[..size]).copied().collect()
+    values.chunks_exact(all.max(1)).flat_map(|of| &of[..size]).copied().collect()
 }
 
 impl Declared<dyn System> {
@@ -189,18 +193,28 @@ impl Control for Declared<dyn System> {
     fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError> {
         let (all, size) = (self.all(), self.size);
         let mut rest = self.of.control().equilibrium(t, &with_rest(guess, size, all, "number of coordinates")?)?;
-        // Without constraints the directions are the coordinates, and each at rest has two rates of zero.
+        // Without constraints the directions are the coordinates.
         let square = |of: &[f64]| cut(&of[..size * all], all, size);
         rest.q.truncate(size);
         rest.free.truncate(size);
         rest.freedom = size;
         rest.directions = square(&rest.directions);
         rest.matrices = rest.matrices.map(|of| square(&of));
-        for _ in 0..2 * (all - size) {
-            if let Some(at) = rest.rates.iter().rposition(|rate| *rate == [0.0, 0.0]) {
-                rest.rates.remove(at);
-            }
-        }
+        let free = rest.free.iter().filter(|is_free| **is_free).count();
+        let [mass, damping, stiffness] = [0, 1, 2].map(|of| DMatrix::from_row_slice(size, size, &rest.matrices[of]));
+        // Its rates follow from the matrices alone.
+        let declared = Equilibrium::<1> {
+            t,
+            q: SVector::zeros(),
+            multipliers: Vec::new(),
+            directions: DMatrix::identity(size, size),
+            mass,
+            damping,
+            stiffness,
+            free_motions: DMatrix::zeros(size, free),
+            residual: rest.residual,
+        };
+        rest.rates = pairs(declared.rates()?);
         Ok(rest)
     }
 }

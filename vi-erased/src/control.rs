@@ -65,7 +65,7 @@ impl Rest {
 }
 
 /// Real and imaginary part of each number.
-fn pairs(of: Vec<Complex<f64>>) -> Vec<[f64; 2]> {
+pub(crate) fn pairs(of: Vec<Complex<f64>>) -> Vec<[f64; 2]> {
     of.into_iter().map(|number| [number.re, number.im]).collect()
 }
 

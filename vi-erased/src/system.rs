@@ -207,6 +207,7 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
             (_, stages, _) if !S::CONSTRAINTS.is_empty() && (!has_method || stages.is_none()) => {
                 StepError::HasConstraints { system: self.system.name() }
             }
+            (.., true) if !self.system.scales_time() => StepError::NoTimeScale { system: self.system.name() },
             (method, ..) if method.splitting().is_some() => StepError::NotSeparable { system: self.system.name() },
             #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
             (_, Some(stages), _) => StepError::InvalidInput {

@@ -3,12 +3,12 @@
 //! In: a Rust file. Out: the product of one stage for each `lagrangian!` in it. Mistakes are printed with their source
 //! lines; later systems are still expanded.
 
-use crate::place;
 use clap::{Args, ValueEnum};
-use proc_macro2::TokenStream;
+use proc_macro2::{LexError, TokenStream};
 use std::path::{Path, PathBuf};
 use vi_codegen::inspect::{self, report, source};
 use vi_report::failure::Failure;
+use vi_report::input;
 
 /// The command line of `vi-lab expand`.
 #[derive(Debug, Args)]
@@ -56,9 +56,13 @@ pub(crate) fn expand(arguments: &Arguments) -> Result<String, Failure> {
 /// Produces a text for every system in a file.
 pub(super) fn each(file: &Path, mut show: impl FnMut(TokenStream) -> syn::Result<String>) -> Result<String, Failure> {
     let name = file.display().to_string();
-    let text = place::text(file)?;
-    let declarations = source::declarations(&text)
-        .map_err(|error| Failure::System { shown: String::new(), wrong: report::unreadable(&name, &text, &error) })?;
+    let text = input::text(file)?;
+    let unreadable =
+        |error: syn::Error| Failure::System { shown: String::new(), wrong: report::unreadable(&name, &text, &error) };
+    let mut declarations = source::declarations(&text).map_err(unreadable)?;
+    if declarations.is_empty() && file.extension().is_some_and(|kind| kind == "vi") {
+        declarations.push(text.parse().map_err(|error: LexError| unreadable(error.into()))?);
+    }
     if declarations.is_empty() {
         return Err(Failure::Input(format!("{name} declares no system with `lagrangian!`")));
     }

@@ -15,8 +15,8 @@ use vi_report::failure::Failure;
 /// The command line of `vi-lab explain`.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A system of `vi-lab list`, or a Rust file [default: the first system of this program]
-    #[arg(value_name = "SYSTEM|FILE.rs")]
+    /// A system of `vi-lab list`, or a file with systems: Rust, or a bare `struct` in a file that ends in .vi [default: the first system of this program]
+    #[arg(value_name = "SYSTEM|FILE")]
     system: Option<String>,
     /// Write a LaTeX document
     #[arg(long)]
@@ -54,7 +54,8 @@ pub(crate) fn explain(arguments: &Arguments, catalogue: &Catalogue) -> Result<St
     let Arguments { system, latex, .. } = arguments;
     let show = |explanation: inspect::Explanation| if *latex { explanation.latex() } else { explanation.text() };
     let explained = |tokens| arguments.explained(tokens);
-    let file = system.as_ref().map(Path::new).filter(|path| path.extension().is_some_and(|kind| kind == "rs"));
+    let file =
+        system.as_ref().map(Path::new).filter(|path| path.extension().is_some_and(|kind| kind == "rs" || kind == "vi"));
     if let Some(file) = file {
         return expand::each(file, |tokens| explained(tokens).map(show));
     }

@@ -7,7 +7,7 @@
 use crate::run;
 use clap::Args;
 use vi_erased::plan::Method;
-use vi_report::catalogue::{Catalogue, kebab};
+use vi_report::catalogue::{Catalogue, compiled, kebab};
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::numbers::short;
@@ -54,7 +54,8 @@ const LONGER: f64 = 5.0;
 /// Wrong input; a failed step, after printing the estimates so far.
 pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let Arguments { target, count, h, steps, set, q, v } = arguments;
-    if let Ok(entry) = catalogue.named(target.as_deref())
+    let named = catalogue.named(target.as_deref()).ok().map(|entry| compiled(entry, "lyapunov")).transpose()?;
+    if let Some(entry) = named
         && entry.system.has_constraints()
     {
         let name = kebab(entry.system.name());

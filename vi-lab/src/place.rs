@@ -1,7 +1,6 @@
-//! Checks of files to read and to write.
+//! Checks of files to write.
 //!
-//! In: a path. Out: its text, a file to write, or [`Failure::Input`]. Only regular files are read: a pipe may never
-//! end. Output goes to a new temporary file, which replaces the target when it is complete; existing files and links
+//! In: a path. Out: a file to write, or [`Failure::Input`]. Output goes to a new temporary file, which replaces the target when it is complete; existing files and links
 //! keep their content until then.
 
 use std::fs::{self, File};
@@ -9,30 +8,6 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process;
 use vi_report::failure::Failure;
-
-/// The text of a file.
-///
-/// # Errors
-/// [`Failure::Input`] if it cannot be read, or is not a regular file.
-pub(crate) fn text(path: &Path) -> Result<String, Failure> {
-    check_regular(path)?;
-    fs::read_to_string(path).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
-}
-
-/// Checks that a path is a regular file.
-///
-/// # Errors
-/// [`Failure::Input`] if it is not.
-pub(crate) fn check_regular(path: &Path) -> Result<(), Failure> {
-    let shown = path.display();
-    match fs::metadata(path) {
-        Err(error) => Err(Failure::Input(format!("{shown}: {error}"))),
-        Ok(found) if !found.is_file() => {
-            Err(Failure::Input(format!("{shown} is not a regular file; name a regular file")))
-        }
-        Ok(_) => Ok(()),
-    }
-}
 
 /// A path with an appended extension.
 pub(crate) fn with_extension(path: &Path, ending: &str) -> PathBuf {

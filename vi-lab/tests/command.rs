@@ -7,6 +7,8 @@ mod ends;
 mod hostile;
 #[path = "command/sweep.rs"]
 mod sweep;
+#[path = "command/texts.rs"]
+mod texts;
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _};
@@ -405,7 +407,10 @@ fn wrong_input_is_one_line_and_status_2() {
         ),
         (&["run", "none.toml", "--steps", "1"], "none.toml: No such file or directory (os error 2)"),
         (&[], "no command given; `vi-lab help` lists the commands"),
-        (&["run", "a/none.yml"], "there is no system `a/none.yml`; a scene file ends in .toml, a declaration in .rs"),
+        (
+            &["run", "a/none.yml"],
+            "there is no system `a/none.yml`; a scene file ends in .toml, a declaration in .rs or .vi",
+        ),
         (&["fly"], "unrecognized subcommand 'fly'; `vi-lab help` lists the commands"),
         (&["run", "kepler", "--stepz", "1"], "unexpected argument '--stepz' found; did you mean `--steps`?"),
         (

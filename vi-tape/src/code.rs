@@ -32,6 +32,7 @@ functions!(
     point_derivatives,
     power,
     scaled_point,
+    time_scale,
     non_finite,
     ld,
     d1_ld,
@@ -52,6 +53,21 @@ functions!(
     extended_derivatives
 );
 
+/// A place to start from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Time.
+    pub t: f64,
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+    /// Step, positive.
+    pub h: f64,
+    /// Values of parameters that differ from the defaults, by their names.
+    pub parameters: Vec<(&'static str, f64)>,
+}
+
 /// A system.
 #[derive(Clone, Debug)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
@@ -69,6 +85,8 @@ pub(crate) struct Code {
     pub(crate) inputs: &'static [usize],
     pub(crate) angles: Box<[bool]>,
     pub(crate) cyclic: Box<[bool]>,
+    /// The state of its checks.
+    pub(crate) start: Option<Start>,
     /// The expressions whose values `non_finite` computes.
     pub(crate) watched: Box<[&'static str]>,
     pub(crate) is_autonomous: bool,
@@ -89,4 +107,12 @@ pub(crate) struct Code {
     pub(crate) jacobian: Form,
     pub(crate) functions: Functions,
     pub(crate) instructions: Instructions,
+}
+
+impl Code {
+    /// g of the time scale at a state. Coordinates at rest are not part of it.
+    pub(crate) fn time_scale(&self, state: &[&[f64]]) -> f64 {
+        let lines = &self.functions.time_scale;
+        lines.evaluated(self.instructions, state, |registers| lines.number(0, registers))
+    }
 }

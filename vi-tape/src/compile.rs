@@ -8,7 +8,7 @@ mod instructions;
 mod order;
 mod registers;
 
-use crate::code::{Code, Form, Functions};
+use crate::code::{Code, Form, Functions, Start};
 use crate::lines::{Entry, Input, Kind, Lines, Source};
 use crate::mistakes::Mistakes;
 use crate::sizes::size;
@@ -19,7 +19,7 @@ use registers::{Placed, placed};
 use std::collections::HashMap;
 use vi_codegen::findings::{CLOSED, Pattern, StepFindings};
 use vi_codegen::inspect::{report, source};
-use vi_codegen::model::{Coordinate, Model, Parameter};
+use vi_codegen::model::{CheckState, Coordinate, Model, Parameter};
 use vi_codegen::program::{Function, FunctionId, Operation, OperationId, Output};
 use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::{Derived, derive_own, syntax};
@@ -36,11 +36,11 @@ const CHARACTERS: usize = 400;
 /// # Errors
 /// The mistakes of the text, or what only the macro compiles.
 pub(crate) fn code(text: &str) -> Result<Code, Mistakes> {
-    let unreadable = |error: syn::Error| Mistakes(report::unreadable(FILE, text, &error));
+    let unreadable = |error: syn::Error| Mistakes::of(report::unreadable(FILE, text, &error));
     let tokens = declaration(text).map_err(unreadable)?;
-    let tokens = tokens.ok_or_else(|| Mistakes(ONE.to_owned()))?;
+    let tokens = tokens.ok_or_else(|| Mistakes::of(ONE.to_owned()))?;
     let definition = tokens.to_string();
-    let wrong = |error: syn::Error| Mistakes(report::report(FILE, text, &error));
+    let wrong = |error: syn::Error| Mistakes::of(report::report(FILE, text, &error));
     syntax::alone::check(&tokens).map_err(wrong)?;
     let system = syntax::parse::system(tokens.clone()).map_err(wrong)?;
     let derived = derive_own(&system).map_err(wrong)?;
@@ -72,13 +72,12 @@ fn declaration(text: &str) -> syn::Result<Option<TokenStream>> {
 
 fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code, Mistakes> {
     let Derived { pool, model, system, program, findings } = of;
-    let refused =
-        |what: &str| Err(Mistakes(format!("error: `{}` has {what}, which only `lagrangian!` compiles", model.name)));
+    let compiled = |what: &str| Mistakes::compiled(&model.name.to_string(), what);
     if !model.constraints.is_empty() {
-        return refused("constraints");
+        return Err(compiled("constraints"));
     }
     if !model.functions.is_empty() {
-        return refused("tables");
+        return Err(compiled("tables"));
     }
     let size = model.dimension();
     let (steps, continuous) = (findings.steps.as_ref(), &system.continuous);
@@ -98,6 +97,7 @@ fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code,
         inputs: inputs.map(|(index, _)| index).collect::<Vec<_>>().leak(),
         angles: model.coordinates.iter().map(|of| of.is_angle).collect(),
         cyclic: continuous.cyclic.clone().into(),
+        start: model.check_state.as_ref().map(|state| start(model, state, declared)),
         watched: watched.map(|expr| &*pool.render_within(CHARACTERS, *expr, &name).leak()).collect(),
         is_autonomous: findings.autonomous,
         is_forced: findings.forced,
@@ -113,10 +113,16 @@ fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code,
         mass: form(&findings.mass, true, size),
         point_matrix: form(&findings.point_derivatives, false, size),
         jacobian,
-        functions: functions(of)
-            .map_err(|too_many| Mistakes(format!("error: `{}` has too many {too_many}", model.name)))?,
+        functions: functions(of).map_err(|too_many| compiled(&format!("too many {too_many}")))?,
         instructions: Instructions::detected(),
     })
+}
+
+/// The state of the checks of a system with this number of declared coordinates.
+fn start(model: &Model, state: &CheckState, declared: usize) -> Start {
+    let [q, v] = [&state.q, &state.v].map(|of| of[..declared].to_vec());
+    let set = state.parameters.iter().map(|(index, value)| (&*model.parameters[*index].text().leak(), *value));
+    Start { t: state.t, q, v, h: state.h, parameters: set.collect() }
 }
 
 /// A text of each parameter.
@@ -185,6 +191,7 @@ fn functions(of: &Derived) -> Result<Functions, TooMany> {
         point_derivatives: lines(F::PointDerivatives, &[O::MomentumDq, O::Mass, O::ForceDq, O::ForceDv])?,
         power: value(F::Power)?,
         scaled_point: lines(F::ScaledPoint, &SCALED)?,
+        time_scale: lines(F::ScaledPoint, &[O::TimeScale])?,
         non_finite: value(F::NonFinite)?,
         ld: value(F::Ld)?,
         d1_ld: value(F::D1Ld)?,

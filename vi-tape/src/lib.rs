@@ -23,6 +23,7 @@ mod mistakes;
 mod sizes;
 mod tape;
 
+pub use code::Start;
 pub use mistakes::Mistakes;
 
 use code::Code;
@@ -30,24 +31,49 @@ use core::ops::{Deref, DerefMut};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// A system of a text, with its default parameters and every method.
-pub struct System(Box<dyn vi_erased::System>);
+/// A system of a text, with every method. Its functions and runs are those of [`vi_erased::System`].
+pub struct System {
+    of: Box<dyn vi_erased::System>,
+    code: &'static Code,
+}
 
 impl System {
-    /// Compiles the text of a system: `struct … { … }`, or the same in a `lagrangian!`. Equal texts share their code,
-    /// which stays until the program ends.
+    /// Compiles the text of a system: `struct … { … }`, or the same in a `lagrangian!`. The parameters are the defaults.
+    /// Equal texts share their code, which stays until the program ends.
     ///
     /// # Errors
-    /// The mistakes of the text with their places; what only the macro compiles: Rust functions, tables, constraints;
-    /// more coordinates or parameters than are built.
+    /// The mistakes of the text with their places; what has to be compiled: constraints, tables, more coordinates or
+    /// parameters than are built.
     pub fn parse(text: &str) -> Result<Self, Mistakes> {
-        sizes::system(code(text)?).map(Self)
+        let code = code(text)?;
+        Ok(Self { of: sizes::system(code)?, code })
     }
 
     /// The type-erased system.
     #[must_use]
     pub fn into_inner(self) -> Box<dyn vi_erased::System> {
-        self.0
+        self.of
+    }
+
+    /// The state of the clause `check { … }`, if the text has one: a place to start from.
+    #[must_use]
+    pub fn start(&self) -> Option<&Start> {
+        self.code.start.as_ref()
+    }
+
+    /// g of the time scale `dt = g dτ` at (t, q, v); `None` without the clause `time_scale`, and for a point with
+    /// another number of coordinates.
+    #[must_use]
+    pub fn time_scale(&self, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
+        let parameters: Vec<f64> = self.parameters().into_iter().map(|(_, value)| value).collect();
+        let is_sized = q.len() == self.code.declared && v.len() == self.code.declared;
+        (self.code.scales_time && is_sized).then(|| self.code.time_scale(&[&[t], q, v, &parameters]))
+    }
+}
+
+impl Clone for System {
+    fn clone(&self) -> Self {
+        Self { of: self.of.copy(), code: self.code }
     }
 }
 
@@ -55,13 +81,13 @@ impl Deref for System {
     type Target = dyn vi_erased::System;
 
     fn deref(&self) -> &Self::Target {
-        &*self.0
+        &*self.of
     }
 }
 
 impl DerefMut for System {
     fn deref_mut(&mut self) -> &mut Self::Target {
-        &mut *self.0
+        &mut *self.of
     }
 }
 

@@ -25,7 +25,10 @@ macro_rules! sizes {
     };
 }
 
-sizes!(1, 2, 3, 4, 6, 12);
+#[cfg(not(feature = "wide"))]
+sizes!(2, 4, 8);
+#[cfg(feature = "wide")]
+sizes!(2, 4, 8, 16);
 
 /// The smallest number of coordinates that is built and is at least this one.
 pub(crate) fn size(declared: usize) -> Option<usize> {
@@ -40,10 +43,8 @@ pub(crate) fn system(code: &'static Code) -> Result<Box<dyn System>, Mistakes> {
     check(code)?;
     let Some(system) = built(code) else {
         let most = SIZES.last().copied().unwrap_or_default();
-        return Err(Mistakes(format!(
-            "error: `{}` has {} coordinates\n = help: systems of a text have {most} at most; `lagrangian!` compiles more",
-            code.name, code.declared
-        )));
+        let what = format!("{} coordinates, more than the {most} that are built here", code.declared);
+        return Err(Mistakes::compiled(code.name, &what));
     };
     Ok(if code.declared < code.coordinates.len() { without_rest(system, code.declared) } else { system })
 }
@@ -53,10 +54,8 @@ fn check(code: &Code) -> Result<(), Mistakes> {
     if count <= PARAMETERS {
         return Ok(());
     }
-    Err(Mistakes(format!(
-        "error: `{}` has {count} parameters\n = help: systems of a text have {PARAMETERS} at most; write numbers that do not change as `const`",
-        code.name
-    )))
+    let what = format!("{count} parameters, more than the {PARAMETERS} that are built here");
+    Err(Mistakes::compiled(code.name, &what))
 }
 
 /// The system of N coordinates, with the methods that it has.
@@ -74,8 +73,9 @@ fn sized<const N: usize>(code: &'static Code) -> Box<dyn System> {
 }
 
 /// Whether a system has this method.
-fn has(code: &Code, (method, stages, _): Built) -> bool {
+fn has(code: &Code, (method, stages, is_transformed): Built) -> bool {
     match (method, stages) {
+        _ if is_transformed => code.scales_time,
         (Method::Energy, None) => code.has_step_density,
         (Method::Splitting4 | Method::Splitting6, _) => code.is_separable,
         (_, None) => code.has_rule,

@@ -1,7 +1,8 @@
 //! Every ready system without constraints, by every method: the same steps as the compiled system.
 //!
 //! Bits are equal where the compiled system rounds every product and sum. With up to three coordinates its Gauss steps
-//! fuse them, and steps of unknown length evaluate one stage after another; these differ by roundings.
+//! fuse them, and steps of unknown length evaluate one stage after another; these differ by roundings. So do systems
+//! of one, three or six coordinates, which have others at rest: their matrices are solved in another way.
 
 use vi_erased::plan::{Method, PhasePoint, Plan};
 use vi_erased::{System, kind};
@@ -110,21 +111,20 @@ fn every_method_takes_the_steps_of_the_compiled_system() {
             let off = numbers.map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
             let has_equal_bits = match (method, stages) {
                 (Method::Energy, Some(_)) => false,
-                (Method::Gauss, _) => q.len() > 3,
-                _ => true,
+                (Method::Gauss, _) => q.len() == 4,
+                _ => [2, 4].contains(&q.len()),
             };
             if has_equal_bits {
                 assert!(off == 0.0, "{of}: {off:e}");
                 equal += 1;
             }
             compared += 1;
-            // Steps that solve for their length divide roundings of the energy by h² D/8: at most 4.1e-8 here. The others
-            // differ by 2.8e-17 at most, by 5e-16 where the compiled Gauss steps fuse.
-            let allowed = if method == Method::Energy { 1e-7 } else { 1e-14 };
+            // Steps that solve for their length divide roundings of the energy by h² D/8.
+            let allowed = if method == Method::Energy { 1e-7 } else { 1e-14 }; // 4.1e-8, 2.8e-17 (optimized: 8.9e-16)
             assert!(off <= allowed, "{of}: {off:e}");
         }
     }
-    assert!(equal > 60 && compared > 130 && refused > 5, "{equal} {compared} {refused}");
+    assert!(equal > 25 && compared > 130 && refused > 5, "{equal} {compared} {refused}");
 }
 
 #[test]

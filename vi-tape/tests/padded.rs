@@ -27,7 +27,7 @@ fn wide(size: usize, all: usize) -> String {
 #[test]
 fn further_coordinates_are_at_rest() {
     let mut met = 0;
-    for (size, all) in [(5, 6), (7, 12), (10, 12)] {
+    for (size, all) in [(1, 2), (3, 4), (5, 8), (7, 8)] {
         let (narrow, wide) = (System::parse(&chain(size)), System::parse(&wide(size, all)));
         let (narrow, wide) = (narrow.expect("a chain"), wide.expect("a chain"));
         assert_eq!(narrow.coordinates(), wide.coordinates()[..size]);

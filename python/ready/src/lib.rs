@@ -1,5 +1,7 @@
-//! The ready systems of the Python package, with every integrator.
+//! The ready systems of the Python package: those whose speed the documentation shows with every integrator, compiled;
+//! the others as texts.
 
+use vi_core::lagrangian::Described;
 use vi_erased::{System, kind};
 use vi_systems::{
     AndrewsSqueezer, ChaplyginSleigh, ChargedParticle, DampedOscillator, DoublePendulum, DoubleRodPendulum, DoubleWell,
@@ -20,25 +22,18 @@ macro_rules! with_constraints {
     };
 }
 
-/// The systems with their default parameters: those with constraints are after the others, Kepler is last.
+/// The compiled systems with their default parameters: those with constraints are after the others, Kepler is last.
 #[must_use]
 pub fn systems() -> Vec<Box<dyn System>> {
     let mut systems = systems!(
-        ChargedParticle,
         DampedOscillator,
         DoublePendulum,
         DoubleWell,
-        DoubleWellDuffing,
         FpuChain,
         HardDuffing,
-        HarmonicOscillator,
         HenonHeiles,
-        NPendulum,
         OuterSolarSystem,
-        ParametricPendulum,
         Pendulum,
-        RotatingHoop,
-        SphericalPendulum,
         ThreeBody,
     );
     systems.extend(with_constraints!(
@@ -56,4 +51,21 @@ pub fn systems() -> Vec<Box<dyn System>> {
     // Steps in transformed time are built only for the system that declares a time scale.
     systems.push(kind!(Kepler, { fixed; splitting; gauss 4, 8; transformed 4, 8; energy; energy 1, 2, 3 }));
     systems
+}
+
+/// Name and declaration of the others.
+#[must_use]
+pub fn texts() -> Vec<(&'static str, &'static str)> {
+    macro_rules! texts {
+        ($($system:ident),*) => { vec![$((stringify!($system), <$system as Described>::DEFINITION)),*] };
+    }
+    texts!(
+        ChargedParticle,
+        DoubleWellDuffing,
+        HarmonicOscillator,
+        NPendulum,
+        ParametricPendulum,
+        RotatingHoop,
+        SphericalPendulum
+    )
 }

@@ -22,7 +22,8 @@ pub struct Kind {
 
 impl Kind {
     /// The type of a system; its parameters are the defaults.
-    pub(crate) fn new(of: Box<dyn System>) -> Self {
+    #[must_use]
+    pub fn new(of: Box<dyn System>) -> Self {
         Self { n: of.coordinates().len(), parameters: of.parameters(), of }
     }
 

@@ -4,6 +4,7 @@
 //! In: lists of systems; a name, in any spelling of case and hyphens. Out: an [`Entry`], or an error with the nearest name.
 
 use crate::failure::Failure;
+use crate::input;
 use crate::machine::program;
 use crate::table::Table;
 use std::path::Path;
@@ -77,11 +78,19 @@ impl Catalogue {
         name.map_or_else(|| self.first_own(), |name| self.find(name))
     }
 
-    /// The entry with this name.
+    /// The entry with this name, or the system of a file that ends in `.rs` or `.vi`.
     ///
     /// # Errors
-    /// [`Failure::Input`] with the nearest name if there is none.
+    /// [`Failure::Input`] with the nearest name if there is none, or for a file that cannot be read; [`Failure::System`]
+    /// for the mistakes of a file.
     pub fn find(&self, name: &str) -> Result<Entry, Failure> {
+        if Path::new(name).extension().is_some_and(|kind| kind == "rs" || kind == "vi") {
+            let text = input::text(Path::new(name))?;
+            return Entry::of_text(&text).map_err(|mistakes| Failure::System {
+                shown: String::new(),
+                wrong: mistakes.to_string().replace("definition:", &format!("{name}:")),
+            });
+        }
         let wanted = plain(name);
         let mut entries = self.entries();
         if let Some(index) = entries.iter().position(|entry| plain(entry.system.name()) == wanted) {
@@ -92,11 +101,11 @@ impl Catalogue {
             .map(|entry| (strsim::jaro_winkler(&plain(entry.system.name()), &wanted), entry))
             .filter(|(likeness, _)| *likeness > 0.75)
             .max_by(|(one, _), (other, _)| one.total_cmp(other));
-        let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
         let hint = match near {
             Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
-            None if extension == Some("rs") => "use `explain` or `expand` for a Rust file".to_owned(),
-            None if name.contains(['/', '\\', '.']) => "a scene file ends in .toml, a declaration in .rs".to_owned(),
+            None if name.contains(['/', '\\', '.']) => {
+                "a scene file ends in .toml, a declaration in .rs or .vi".to_owned()
+            }
             None => format!("`{} list` shows all systems", program()),
         };
         Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
@@ -115,6 +124,21 @@ impl Catalogue {
         }
         table
     }
+}
+
+/// Rejects the system of a text for a command that needs more than runs.
+///
+/// # Errors
+/// [`Failure::Input`] for a system that is not compiled.
+pub fn compiled(entry: Entry, command: &str) -> Result<Entry, Failure> {
+    if entry.system.is_compiled() {
+        return Ok(entry);
+    }
+    let name = entry.system.name();
+    Err(Failure::Input(format!(
+        "{command} needs a compiled system, and {name} is a text: make a project of it by `{} new`",
+        program()
+    )))
 }
 
 /// Rejects an entry without a rule for a page that compares steps by a rule.
@@ -197,7 +221,7 @@ mod tests {
         );
         assert_eq!(
             message("folder/xyz.yml").as_deref(),
-            Some("there is no system `folder/xyz.yml`; a scene file ends in .toml, a declaration in .rs")
+            Some("there is no system `folder/xyz.yml`; a scene file ends in .toml, a declaration in .rs or .vi")
         );
         let listed = format!("there is no system `xyz`; `{} list` shows all systems", program());
         assert_eq!(message("xyz"), Some(listed));

@@ -1,6 +1,10 @@
-//! Numbers on the command line.
+//! Numbers on the command line, and the files that it names.
 //!
 //! In: text. Out: the number, or one line with the allowed values.
+
+use crate::failure::Failure;
+use std::fs;
+use std::path::Path;
 
 /// A number of steps or rows: `1000`, or `1e6` if it is a whole number.
 ///
@@ -31,6 +35,30 @@ pub fn number(text: &str) -> Result<f64, String> {
         let hint = if text.contains('\u{2212}') { "; write the minus sign as a hyphen `-`" } else { "" };
         format!("write a number such as 0.5 or 1e-3{hint}")
     })
+}
+
+/// The text of a file. Only regular files are read: a pipe may never end.
+///
+/// # Errors
+/// [`Failure::Input`] if it cannot be read, or is not a regular file.
+pub fn text(path: &Path) -> Result<String, Failure> {
+    check_regular(path)?;
+    fs::read_to_string(path).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
+}
+
+/// Checks that a path is a regular file.
+///
+/// # Errors
+/// [`Failure::Input`] if it is not.
+pub fn check_regular(path: &Path) -> Result<(), Failure> {
+    let shown = path.display();
+    match fs::metadata(path) {
+        Err(error) => Err(Failure::Input(format!("{shown}: {error}"))),
+        Ok(found) if !found.is_file() => {
+            Err(Failure::Input(format!("{shown} is not a regular file; name a regular file")))
+        }
+        Ok(_) => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -27,6 +27,10 @@ pub trait System: Send + Sync {
     fn erased(&self) -> &(dyn vi_erased::System + 'static);
     /// The same, mutably.
     fn erased_mut(&mut self) -> &mut (dyn vi_erased::System + 'static);
+    /// Whether it is compiled. A system of a text has runs, and nothing of what follows but the time scale.
+    fn is_compiled(&self) -> bool {
+        true
+    }
     /// A system of the same type with the same parameters.
     fn copy(&self) -> Box<dyn System>;
     /// The default initial coordinates and velocities, if they follow from the parameters.

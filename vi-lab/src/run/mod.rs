@@ -109,9 +109,9 @@ Exit status: 0 success; 1 a step or a file failed; 2 the input is wrong; 130 and
 (SIGINT, SIGTERM); 141 standard output was closed, as after `| head`. After any end the written rows are complete, \
 and --plot draws them; a second signal ends the command at once.")]
 pub(crate) struct Arguments {
-    /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of
-    /// this program]
-    #[arg(value_name = "SYSTEM|SCENE.toml")]
+    /// Name of a system (see `vi-lab list`), a file with one, .rs or .vi, or a scene file, .toml [default: the first
+    /// system of this program]
+    #[arg(value_name = "SYSTEM|FILE|SCENE.toml")]
     pub(crate) target: Option<String>,
     /// One run of a scene with [sweep], by number
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]

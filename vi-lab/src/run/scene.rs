@@ -22,13 +22,13 @@
 
 use super::shift::{self, Wanted};
 use crate::entries::{choice, count};
-use crate::place;
 use crate::sweep::scene::Sweep;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use vi_erased::plan::{Method, Start};
 use vi_report::failure::Failure;
+use vi_report::input;
 
 /// The entries of a scene file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -89,7 +89,7 @@ impl Scene {
     /// # Errors
     /// [`Failure::Input`] if it cannot be read, or is not a scene.
     pub(super) fn read(path: &str) -> Result<Self, Failure> {
-        let text = place::text(Path::new(path))?;
+        let text = input::text(Path::new(path))?;
         Self::parse(&text).map_err(|message| Failure::Input(format!("{path}: {message}")))
     }
 

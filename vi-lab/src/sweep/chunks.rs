@@ -13,6 +13,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead as _, BufReader, BufWriter, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use vi_report::failure::Failure;
+use vi_report::input;
 
 const DESCRIPTION: &str = "sweep.json";
 const LOCK: &str = "lock";
@@ -54,7 +55,7 @@ impl Description {
     /// [`Failure::Input`] if there is none, or it is invalid.
     fn read(folder: &Path) -> Result<Self, Failure> {
         let shown = folder.display();
-        let text = place::text(&folder.join(DESCRIPTION));
+        let text = input::text(&folder.join(DESCRIPTION));
         let text =
             text.map_err(|failure| Failure::Input(format!("{shown} contains no chunks of a sweep: {failure}")))?;
         serde_json::from_str(&text).ok().filter(Self::is_possible).ok_or_else(|| {
@@ -119,7 +120,7 @@ impl Chunks {
         }
         let lock = folder.join(LOCK);
         if lock.exists() {
-            place::check_regular(&lock)?;
+            input::check_regular(&lock)?;
         }
         let lock = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(lock).map_err(failed)?;
         match if is_alone { lock.try_lock() } else { lock.try_lock_shared() } {
@@ -233,7 +234,7 @@ impl Chunks {
     pub(super) fn read(&self, number: u64, take: &mut Take) -> Result<u64, Failure> {
         let schemas = &self.description.schemas;
         let path = self.path(number);
-        place::check_regular(&path)?;
+        input::check_regular(&path)?;
         let failed = |error| Failure::file(&path, error);
         let longest = LONGEST_ENTRY * schemas.iter().map(|schema| schema.columns.len() + 1).max().unwrap_or(1);
         let mut file = BufReader::with_capacity(1 << 16, File::open(&path).map_err(failed)?);

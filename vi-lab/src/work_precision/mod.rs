@@ -22,7 +22,7 @@ mod study;
 use clap::Args;
 use std::path::PathBuf;
 use study::Findings;
-use vi_report::catalogue::{Catalogue, kebab, with_rule};
+use vi_report::catalogue::{Catalogue, compiled, kebab, with_rule};
 use vi_report::failure::Failure;
 use vi_report::html::escape;
 use vi_report::input::number;
@@ -90,7 +90,7 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
 
 /// The entry of the system, with the requested initial state.
 fn entry(arguments: &Arguments, catalogue: &Catalogue) -> Result<Entry, Failure> {
-    let entry = catalogue.named(arguments.system.as_deref())?;
+    let entry = compiled(catalogue.named(arguments.system.as_deref())?, "work-precision")?;
     let q = arguments.q.clone().unwrap_or(entry.q);
     let v = arguments.v.clone().unwrap_or(entry.v);
     for (what, values) in [("coordinates (--q)", &q), ("velocities (--v)", &v)] {

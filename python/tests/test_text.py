@@ -1,0 +1,159 @@
+"""Systems from text, without a compiler of Rust."""
+
+import copy
+import pickle
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import variational as vi
+
+SPRING = """
+struct Spring {
+    /// Stiffness.
+    param k = 4.0;
+    coord x;
+    L = dot(x)^2 / 2 - k * x^2 / 2;
+    discretize midpoint;
+}
+"""
+
+# Five masses in a row, of which three more are at rest in the second text.
+CHAIN = """
+struct Chain {
+    param k = 1.3;
+    input u = 0.2;
+    coord q[5]MORE;
+    L = sum(i in 0..5, dot(q[i])^2) / 2 REST - k * (q[0]^2 + sum(i in 1..5, (q[i] - q[i - 1])^2)) / 2
+        - sum(i in 0..5, q[i]^4) / 4 + sum(i in 1..5, dot(q[i]) * dot(q[i - 1]) * cos(q[i])) / 10;
+    force q[4] = u - 0.1 * dot(q[4]);
+    discretize midpoint;
+}
+"""
+NARROW = CHAIN.replace("MORE", "").replace("REST", "")
+WIDE = CHAIN.replace("MORE", ", z[3]").replace("REST", "+ sum(i in 0..3, dot(z[i])^2) / 2")
+
+
+def test_a_text_is_a_class_at_once():
+    Spring = vi.System(SPRING)
+    assert isinstance(Spring, type) and issubclass(Spring, vi.System)
+    assert Spring is vi.System(SPRING)
+    assert "Stiffness." in Spring.__doc__ and Spring().k == 4.0
+    sol = Spring(k=9.0).integrate([1.0], h=0.05).until(2.0)
+    assert sol.q[-1, 0] == pytest.approx(np.cos(6.0), abs=1e-13)  # 1.2e-15
+    assert Spring.explain(Spring()).title == "Spring"
+
+
+def test_every_method_agrees():
+    Spring = vi.System(SPRING)
+    assert {"fixed", "kahan-li-8", "splitting-6", "gauss", "energy"} <= {method for method, *_ in Spring.integrators}
+    ends = {
+        method: Spring().integrate([1.0], h=0.01, method=method).at([3.0]).q[0, 0]
+        for method in ("gauss", "kahan-li-6", "kahan-li-8", "splitting-4", "splitting-6")
+    }
+    assert all(end == pytest.approx(np.cos(6.0), abs=1e-9) for end in ends.values()), ends  # 2.2e-10
+    assert Spring().integrate([1.0], h=0.01, method="energy", stages=2).at([3.0]).q[0, 0] == pytest.approx(
+        np.cos(6.0), abs=1e-9
+    )
+
+
+def test_a_ready_system_as_a_text_takes_the_same_steps():
+    Own = vi.System(vi.DoublePendulum.definition)
+    for method in ("fixed", "energy", "gauss"):
+        runs = [cls().integrate([1.0, 0.5], h=0.01, method=method) for cls in (Own, vi.DoublePendulum)]
+        one, other = [run.steps(200) for run in runs]
+        assert np.abs(one.q - other.q).max() < 1e-13, method  # 0, 0, 3.6e-15
+
+
+def test_the_seven_ready_texts():
+    for name in ("ChargedParticle", "HarmonicOscillator", "NPendulum", "SphericalPendulum"):
+        cls = getattr(vi, name)
+        assert cls.__module__ == "variational" and name in vi.systems
+        assert pickle.loads(pickle.dumps(cls())) == cls()
+    with pytest.raises(AttributeError, match="no attribute 'NoSuchSystem'"):
+        vi.NoSuchSystem
+
+
+def test_pickles_hold_the_text():
+    Spring = vi.System(SPRING)
+    system = Spring(k=2.0)
+    assert pickle.loads(pickle.dumps(Spring)) is Spring
+    assert pickle.loads(pickle.dumps(system)) == system == copy.deepcopy(system)
+    run = system.integrate([1.0], h=0.1)
+    run.steps(7)
+    again = pickle.loads(pickle.dumps(run))
+    assert np.array_equal(again.steps(5).q, run.steps(5).q)
+    # Another process knows the class by its text.
+    code = "import pickle, sys; system = pickle.load(sys.stdin.buffer); print(repr(system))"
+    found = subprocess.run([sys.executable, "-c", code], input=pickle.dumps(system), capture_output=True, check=True)
+    assert found.stdout.decode().strip() == "Spring(k=2)"
+
+
+def test_mistakes_have_their_line():
+    with pytest.raises(vi.CompileError, match=r"unknown name `c`(.|\n)*definition:6:\d+"):
+        vi.System(SPRING.replace("k * x^2", "c * x^2"))
+    with pytest.raises(vi.CompileError, match="has constraints"):
+        vi.System("struct Rod { coord x, y; L = (dot(x)^2 + dot(y)^2) / 2 - y; constraint rod = x^2 + y^2 - 1; }")
+    with pytest.raises(TypeError, match="the text of a system"):
+        vi.System()
+    with pytest.raises(TypeError, match="must be a text, not int"):
+        vi.System(3)
+
+
+def test_coordinates_between_the_built_sizes():
+    narrow, wide = vi.System(NARROW)(), vi.System(WIDE)()
+    q, v = np.array([0.3, 0.2, 0.1, 0.0, -0.1]), np.array([0.0, 0.1, 0.2, 0.3, 0.4])
+    full = lambda of: np.concatenate([of, np.zeros(3)])
+    assert narrow.coordinates == wide.coordinates[:5]
+    for method, options in (("gauss", {}), ("fixed", {}), ("energy", {"stages": 2})):
+        run = narrow.integrate(q, v, h=0.05, method=method, **options)
+        other = wide.integrate(full(q), full(v), h=0.05, method=method, **options)
+        one, of_all = run.until(2.0, dense=True), other.until(2.0, dense=True)
+        assert np.array_equal(one.t, of_all.t) and np.array_equal(one.q, of_all.q[:, :5])
+        assert np.array_equal(one.p, of_all.p[:, :5]) and np.array_equal(one.energy, of_all.energy)
+        keep = [0, 1, 2, 3, 4, 8, 9, 10, 11, 12]
+        assert np.array_equal(one(1.03), of_all(1.03)[keep])
+        assert np.array_equal(run.linearization().A, other.linearization().A[np.ix_(keep, keep)])
+        assert np.array_equal(run.linearization().B, other.linearization().B[keep])
+        gradient, of_wide = run.gradient(3, q=q, wrt=["k"]), other.gradient(3, q=full(q), wrt=["k"])
+        for name, value in gradient.items():
+            assert np.array_equal(np.ravel(value), np.ravel(of_wide[name])[: np.size(value)]), name
+    for function in ("momentum", "force", "acceleration", "bias"):
+        found, of_wide = (getattr(s, function)(0.0, x, w) for s, x, w in ((narrow, q, v), (wide, full(q), full(v))))
+        assert np.array_equal(found, of_wide[:5]), function
+    assert np.array_equal(narrow.mass_matrix(0.0, q, v), wide.mass_matrix(0.0, full(q), full(v))[:5, :5])
+    assert narrow.energy(0.0, q, v) == wide.energy(0.0, full(q), full(v))
+    rest = narrow.equilibrium(0.1 * np.ones(5))
+    assert np.abs(narrow.acceleration(0.0, rest.q, np.zeros(5))).max() < 1e-14
+    assert rest.q.shape == (5,) and rest.mass.shape == (5, 5) and len(rest.rates) == 10
+    assert np.all(np.abs(rest.rates) > 0.1) and not any(rest.free)
+    run = narrow.integrate(q, v, h=0.05)
+    run.set(u=0.5)
+    run.set_state(q=q, v=2 * v)
+    assert np.allclose(run.v, 2 * v, rtol=1e-14) and run.local_error().q.shape == (5,)
+    times = run.events(lambda t, q, v: float(len(q) == len(v) == 5) * q[0], until=20.0).t
+    assert len(times) > 3
+    ends = narrow.ensemble(np.stack([q, 2 * q]), v, h=0.05, until=1.0).q
+    assert ends.shape == (2, 5) and not np.isnan(ends).any()
+    assert pickle.loads(pickle.dumps(run)).steps(3).q.shape == (4, 5)
+
+
+def test_a_control_loop():
+    Cart = vi.System("struct Cart { input u = 0.0; coord x; L = dot(x)^2 / 2; force x = u; }")
+    run = Cart().integrate([0.0], h=0.1)
+    for _ in range(10):
+        run.set(u=1.0)
+        run.steps(1)
+    assert run.q[0] == pytest.approx(0.5, abs=1e-14)
+
+
+@pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo")
+def test_native_is_the_same_system(warm_cache):
+    Spring = vi.System(SPRING)
+    Native = Spring.native()
+    assert Native is not Spring and Native.coordinates == Spring.coordinates
+    one, other = (cls().integrate([1.0], h=0.1).steps(100) for cls in (Spring, Native))
+    assert np.abs(one.q - other.q).max() < 1e-13  # 2.2e-16

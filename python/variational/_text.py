@@ -1,0 +1,50 @@
+"""Systems from text without a compiler of Rust."""
+
+from __future__ import annotations
+
+import copyreg
+import inspect
+from typing import Any
+
+from . import _core
+from ._binding import class_of
+from ._compile import CompileError, compile
+from ._system import System, SystemType
+
+
+class _OfText(SystemType):
+    """The type of these classes. A pickle of one holds its text."""
+
+
+def of_text(definition: str, or_compiled: bool = False, module: str = "variational.of_text") -> type[System]:
+    """The class of the system that a text declares. Equal texts have one class. With `or_compiled` a system that has
+    to be compiled is compiled.
+
+    Raises CompileError.
+    """
+    if not isinstance(definition, str):
+        raise TypeError(f"the definition must be a text, not {type(definition).__name__}")
+    if definition not in _known:
+        try:
+            kind = _core.of_text(definition)
+        except ValueError as mistake:
+            raise CompileError(str(mistake)) from None
+        except NotImplementedError as reason:
+            if or_compiled:
+                return compile(definition)
+            raise CompileError(str(reason)) from None
+        cls: Any = class_of(kind, module, _OfText)
+        cls.definition = inspect.cleandoc(definition)
+        cls._text = definition
+        _known[definition] = cls
+    return _known[definition]
+
+
+_known: dict[str, type[System]] = {}
+
+
+def _pickled(cls: Any) -> Any:
+    return (of_text, (cls._text,))
+
+
+copyreg.pickle(_OfText, _pickled)

@@ -1,0 +1,65 @@
+//! Systems of a file, without a crate.
+
+use super::lab;
+use super::sweep::Folder;
+
+const OWN: &str = "
+/// A pendulum on a cart.
+struct Own {
+    param m = 0.4, l = 0.6;
+    coord x, a;
+    L = dot(x)^2 / 2 + m * ((dot(x) + l * cos(a) * dot(a))^2 + (l * sin(a) * dot(a))^2) / 2 + 9.81 * m * l * cos(a);
+    discretize midpoint;
+    check { x = 0, a = 1, m = 0.5; h = 0.01; }
+}
+";
+
+#[test]
+fn a_system_of_a_file_runs() {
+    let folder = Folder::new("own", "");
+    let bare = folder.file("own.vi", OWN);
+    let of_rust = folder.file("own.rs", &format!("use vi_core::lagrangian;\nlagrangian! {{ {OWN} }}\n"));
+    let options = ["--method", "gauss", "--until", "2", "--every", "50"];
+    let rows = |file: &str| {
+        let (status, output, errors) = lab(&[&["run", file], &options[..]].concat());
+        assert_eq!(status, Some(0), "{errors}");
+        assert!(output.contains("# parameters: m = 0.5, l = 0.6\n"), "those of its check: {output}");
+        output.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let found = rows(&bare);
+    assert_eq!(found, rows(&of_rust));
+    assert_eq!(found[0], "t,x,a,p_x,p_a,H,E,h");
+    assert!(found[1].starts_with("0.0,0.0,1.0,0.0,0.0,") && found.len() == 6, "{found:?}");
+    let energies = found[1..].iter().map(|row| row.split(',').nth(5).expect("H").parse::<f64>().expect("a number"));
+    let energies: Vec<f64> = energies.collect();
+    assert!(energies.iter().all(|energy| (energy - energies[0]).abs() < 1e-13), "{energies:?}");
+    let (status, output, errors) = lab(&["explain", &bare]);
+    assert!(status == Some(0) && output.starts_with("Own\n"), "{errors}");
+}
+
+#[test]
+fn a_text_is_swept() {
+    let folder = Folder::new("swept", "");
+    let own = folder.file("own.vi", OWN);
+    let scene = format!("system = {own:?}\nsteps = 20\n[sweep]\nover = [{{ name = \"a\", values = [0.5, 1.0] }}]\n");
+    let (status, output, errors) = lab(&["sweep", &folder.file("scene.toml", &scene), "-o", &folder.at("out.csv")]);
+    assert!(status == Some(0) && output.contains("2 runs, all reached their end"), "{output} {errors}");
+}
+
+#[test]
+fn a_wrong_file_says_where() {
+    let folder = Folder::new("wrong", "");
+    let wrong = folder.file("wrong.vi", &OWN.replace("m * l * cos(a)", "m * r * cos(a)"));
+    let (status, output, errors) = lab(&["run", &wrong]);
+    assert!(status == Some(1) && output.is_empty(), "{errors}");
+    assert!(errors.contains("unknown name `r`") && errors.contains("wrong.vi:6:"), "{errors}");
+    let bound = folder.file("bound.vi", &OWN.replace("discretize midpoint;", "constraint wall = x - 1;"));
+    let (status, _, errors) = lab(&["run", &bound]);
+    assert!(status == Some(1) && errors.contains("`Own` has constraints"), "{errors}");
+    for command in ["lyapunov", "work-precision", "stability"] {
+        let (status, _, errors) = lab(&[command, &folder.file("own.vi", OWN)]);
+        assert!(status == Some(2) && errors.contains("needs a compiled system"), "{command}: {errors}");
+    }
+    let (status, _, errors) = lab(&["run", &folder.at("none.vi")]);
+    assert!(status == Some(2) && errors.contains("none.vi"), "{errors}");
+}
