@@ -25,6 +25,9 @@ import stat
 import subprocess
 import sys
 import sysconfig
+import threading
+import time
+from collections.abc import Iterator
 from importlib.machinery import ExtensionFileLoader
 from pathlib import Path
 from typing import Any
@@ -382,7 +385,11 @@ def _build(definition: str, name: str, built: Path, methods: str, tables: str, v
                 library = built.name.removesuffix(_SUFFIX)
                 text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=words)
                 (workspace / "compiled" / "src" / "lib.rs").write_text(text, encoding="utf-8")
+                shared = "" if (folder / "target" / "release").exists() else ", and once what all systems share: a minute"
+                print(f"variational: cargo builds {name}{shared} …", file=sys.stderr, flush=True)
+                began = time.monotonic()
                 _cargo(cargo, workspace, folder / "target", verbose)
+                print(f"variational: {name} took {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
                 if _located(definition)[1] != tables:
                     raise CompileError("a file of a table changed during the build: compile again")
                 part = built.with_suffix(".part")
@@ -426,24 +433,46 @@ def _cargo(cargo: str, workspace: Path, target: Path, verbose: bool) -> None:
     }
     environment |= {"CARGO_TERM_COLOR": "never", "PYO3_NO_PYTHON": "1", "PYO3_BUILD_EXTENSION_MODULE": "1"}
     command = [cargo, "build", "--release", "--package", "compiled", "--target-dir", str(target)]
-    with subprocess.Popen(
-        command if verbose else [*command, "--quiet"],
-        cwd=workspace,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        stderr=None if verbose else subprocess.PIPE,
-        encoding="utf-8",
-        errors="replace",
-        # A group of its own: an interrupted build ends with all compilers that cargo has started.
-        start_new_session=True,
-    ) as process:
-        try:
+    process = None
+    try:
+        # A Ctrl-C during the start waits: otherwise nobody knows what to end.
+        with _uninterrupted():
+            process = subprocess.Popen(
+                command if verbose else [*command, "--quiet"],
+                cwd=workspace,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stderr=None if verbose else subprocess.PIPE,
+                encoding="utf-8",
+                errors="replace",
+                # A group of its own: an interrupted build ends with all compilers that cargo has started.
+                start_new_session=True,
+            )
+        with process:
             _, messages = process.communicate()
-        except BaseException:
+    except BaseException:
+        if process is not None:
             _kill(process)
-            raise
+        raise
     if process.returncode != 0:
         raise CompileError(_reason(messages or "cargo failed; its messages are above"))
+
+
+@contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Delays a Ctrl-C to the end of a block."""
+    if threading.current_thread() is not threading.main_thread():
+        # Only the main thread is interrupted.
+        yield
+        return
+    came: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_DFL if before is None else before)
+        if came and before is not signal.SIG_IGN:
+            raise KeyboardInterrupt
 
 
 def _kill(process: subprocess.Popen[str]) -> None:

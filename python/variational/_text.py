@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copyreg
 import inspect
+import weakref
 from typing import Any
 
 from . import _core
@@ -24,7 +25,8 @@ def of_text(definition: str, or_compiled: bool = False, module: str = "variation
     """
     if not isinstance(definition, str):
         raise TypeError(f"the definition must be a text, not {type(definition).__name__}")
-    if definition not in _known:
+    cls: Any = _known.get(definition)
+    if cls is None:
         try:
             kind = _core.of_text(definition)
         except ValueError as mistake:
@@ -33,14 +35,15 @@ def of_text(definition: str, or_compiled: bool = False, module: str = "variation
             if or_compiled:
                 return compile(definition)
             raise CompileError(str(reason)) from None
-        cls: Any = class_of(kind, module, _OfText)
+        cls = class_of(kind, module, _OfText)
         cls.definition = inspect.cleandoc(definition)
         cls._text = definition
         _known[definition] = cls
-    return _known[definition]
+    return cls
 
 
-_known: dict[str, type[System]] = {}
+# A class that nobody uses any more is dropped.
+_known: weakref.WeakValueDictionary[str, type[System]] = weakref.WeakValueDictionary()
 
 
 def _pickled(cls: Any) -> Any:
