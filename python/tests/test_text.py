@@ -5,6 +5,7 @@ import pickle
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -68,7 +69,7 @@ def test_a_ready_system_as_a_text_takes_the_same_steps():
         assert np.abs(one.q - other.q).max() < 1e-13, method  # 0, 0, 3.6e-15
 
 
-def test_the_seven_ready_texts():
+def test_ready_texts():
     for name in ("ChargedParticle", "HarmonicOscillator", "NPendulum", "SphericalPendulum"):
         cls = getattr(vi, name)
         assert cls.__module__ == "variational" and name in vi.systems
@@ -90,6 +91,62 @@ def test_pickles_hold_the_text():
     code = "import pickle, sys; system = pickle.load(sys.stdin.buffer); print(repr(system))"
     found = subprocess.run([sys.executable, "-c", code], input=pickle.dumps(system), capture_output=True, check=True)
     assert found.stdout.decode().strip() == "Spring(k=2)"
+
+
+class Named(vi.System(SPRING)):
+    """A subclass is pickled by its name."""
+
+    def stiffness(self):
+        return self.k
+
+
+def test_subclasses_are_pickled_by_name():
+    assert pickle.loads(pickle.dumps(Named)) is Named
+    assert pickle.loads(pickle.dumps(Named(k=2.0))).stiffness() == 2.0
+
+
+def test_names_of_the_class_itself():
+    for name in ("cls", "self", "_text", "_source", "_defaults", "_values"):
+        S = vi.System(f"struct S {{ param {name}_ = 1.5; coord x; L = dot(x)^2 / 2 - {name}_ * x^2 / 2; }}")
+        assert S.parameters == (f"{name}_",)
+    for name in ("cls", "_text", "_source", "_defaults"):
+        S = vi.System(f"struct S {{ param {name} = 1.5; coord x; L = dot(x)^2 / 2 - {name} * x^2 / 2; }}")
+        (found,) = S.parameters
+        assert pickle.loads(pickle.dumps(S(**{found: 2.0}))) == S(**{found: 2.0})
+    P = vi.System("struct P { coord ϕ, φ; L = dot(ϕ)^2 / 2 + dot(φ)^2 / 2 - φ^2; }")
+    assert len(set(P.coordinates)) == 2
+    assert P().integrate([1.0, 2.0], h=0.1).steps(1)[P.coordinates[1]][0] == 2.0
+
+
+def test_threads_get_one_class():
+    texts = [SPRING.replace("Spring", f"Spring{i}") for i in range(20)]
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(8) as pool:
+            for text in texts:
+                assert len(set(pool.map(vi.System, [text] * 8))) == 1
+    finally:
+        sys.setswitchinterval(interval)
+
+
+def test_a_missing_clause_is_named():
+    text = "struct S { coord x; L = dot(x)^2 / 2 - x^4; }"
+    for options, words in (
+        ({"method": "fixed", "h": 0.1}, "fixed needs the clause `discretize midpoint;`"),
+        ({"method": "energy", "h": 0.1}, "Write the clause `discretize midpoint;`, or give stages=1"),
+        ({"dtau": 0.1}, "Write the clause `time_scale"),
+        ({"stages": 5, "h": 0.1}, "The argument methods of compile"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            vi.System(text)().integrate([1.0], **options)
+    with pytest.raises(TypeError, match="argument of vi.compile"):
+        vi.System(text, methods="fixed")
+
+
+def test_deep_nesting_is_a_mistake():
+    with pytest.raises(vi.CompileError, match="nested deeper than 100 levels"):
+        vi.System("struct S { coord x; L = dot(x)^2 / 2 - " + "(" * 20000 + "x" + ")" * 20000 + "; }")
 
 
 def test_mistakes_have_their_line():

@@ -45,7 +45,7 @@ def class_of(kind: Any, module: str, metaclass: type = type) -> type[System]:
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=field.default, annotation=_type(field))
         for name, field in fields.items()
     ]
-    coordinates = tuple(spelled(name) for name in kind.coordinates)
+    coordinates = _distinct(kind.coordinates)
     members = {
         "__slots__": (),
         "__doc__": _documentation(kind, coordinates, fields),
@@ -65,6 +65,10 @@ def class_of(kind: Any, module: str, metaclass: type = type) -> type[System]:
     return metaclass(kind.name, (System,), members)
 
 
+_RESERVED = {"self", "_defaults", "_kind", "_source", "_text", "_values"}
+"""Names that a class has for itself."""
+
+
 def _parameters(kind: Any) -> dict[str, Parameter]:
     """The parameters by their names in Python. `m[0]`, `m[1]`, … are one array."""
     groups: dict[str, list[tuple[int, float, str, str]]] = {}
@@ -78,10 +82,20 @@ def _parameters(kind: Any) -> dict[str, Parameter]:
         shape = tuple(int(index) + 1 for index in entries[-1][3].rstrip("]").split("][") if index)
         defaults = tuple(default for _, default, _, _ in entries)
         field = spelled(name)
-        while hasattr(System, field) or field in fields:
+        while hasattr(System, field) or field in fields or field in _RESERVED:
             field += "_"
         fields[field] = Parameter(field, start, shape, defaults if is_array else default, about.strip())
     return fields
+
+
+def _distinct(names: list[str]) -> tuple[str, ...]:
+    """Names as Python spells them. Two that it spells alike differ by a `_`."""
+    found: list[str] = []
+    for name in map(spelled, names):
+        while name in found:
+            name += "_"
+        found.append(name)
+    return tuple(found)
 
 
 def _documentation(kind: Any, coordinates: tuple[str, ...], fields: dict[str, Parameter]) -> str:

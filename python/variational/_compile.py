@@ -99,7 +99,8 @@ class _Compiled(SystemType):
 
 
 def _pickled(cls: Any) -> Any:
-    return (_unpickled, cls._source)
+    # A subclass is known by its name.
+    return (_unpickled, cls._source) if "_source" in vars(cls) else cls.__qualname__
 
 
 def _unpickled(definition: str, methods: str, tables: str) -> type[System]:
@@ -365,7 +366,8 @@ def _build(definition: str, name: str, built: Path, methods: str, tables: str, v
     cargo = shutil.which("cargo") or shutil.which("cargo", path=str(Path.home() / ".cargo" / "bin"))
     if cargo is None:
         raise CompileError(
-            "cargo was not found: install Rust from https://rustup.rs, or use a ready system of variational.systems"
+            "cargo was not found: install Rust from https://rustup.rs. Without it, vi.System takes a text without constraints "
+            "and tables, and vi.systems has ready systems"
         )
     folder = _folder()
     try:

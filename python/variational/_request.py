@@ -19,6 +19,10 @@ _MOST = 1e6
 """Steps of h over which a shift is measured; the measurement may halve them."""
 
 
+_BY_RULE = ("fixed", "suzuki-4", "kahan-li-6", "kahan-li-8")
+"""Methods that need a rule."""
+
+
 @dataclass(slots=True)
 class Request:
     """Method and options of a run, as `_core` reads them."""
@@ -60,6 +64,8 @@ def checked(
         why = ", and has constraints, which other methods do not keep" if cls.constraints else ""
         if method in ("splitting-4", "splitting-6") and not cls.constraints:
             why = "; a splitting needs a constant mass matrix and forces without velocities"
+        elif method in _BY_RULE and not cls.constraints and "discretize" not in cls.definition:
+            why = f"; {method} needs the clause `discretize midpoint;` in the text"
         raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}{why}{more}")
     if method != "energy" and (shift is not None or shift_from is not None or fallback):
         raise ValueError('shift, shift_from and fallback are options of method="energy"')

@@ -64,13 +64,15 @@ class Parameter:
 class SystemType(type):
     """The type of the classes of systems. Their parameters belong to systems, not to the class."""
 
-    def __call__(cls, *arguments: Any, **parameters: Any) -> Any:
+    def __call__(cls, /, *arguments: Any, **parameters: Any) -> Any:
         if cls is not System:
-            return super().__call__(*arguments, **parameters)
+            return type.__call__(cls, *arguments, **parameters)
         from ._text import of_text
 
+        if "methods" in parameters:
+            raise TypeError("System has every method; methods=… is an argument of vi.compile")
         if len(arguments) != 1 or parameters:
-            raise TypeError("System takes the text of a system, System('struct Spring { coord x; L = …; }'); ready ones are in vi.systems")
+            raise TypeError("System takes the text of a system alone, System('struct Spring { coord x; L = …; }'); ready ones are in vi.systems")
         return of_text(arguments[0])
 
     def __setattr__(cls, name: str, value: Any) -> None:
@@ -131,7 +133,10 @@ class System(metaclass=SystemType):
 
     @classmethod
     def native(cls, *, methods: str | None = None, verbose: bool = False) -> type[System]:
-        """The same system, compiled by `compile`: its steps are two to five times faster."""
+        """The same system, compiled by `compile`: its steps are two to five times faster. A compiled class returns
+        itself, without `methods`."""
+        if "_text" not in vars(cls) and methods is None:
+            return cls
         from ._compile import compile
 
         return compile(cls.definition, methods=methods, verbose=verbose)
@@ -145,7 +150,7 @@ class System(metaclass=SystemType):
                 raise TypeError(f"{name!r} is one entry of an array: give all of them, {whole}=[…]")
             known = ", ".join(cls.parameters) or "none"
             raise TypeError(f"{cls.__name__} has no parameter {name!r}{meant(name, cls.parameters)}; it has {known}")
-        return cls.__dict__[name]
+        return getattr(cls, name)
 
     def __repr__(self) -> str:
         values = (f"{name}={_shown(getattr(self, name))}" for name in self.parameters)
@@ -169,7 +174,7 @@ class System(metaclass=SystemType):
     def __reduce__(self) -> Any:
         cls = type(self)
         # A system of a text is known by it. A compiled one is compiled again if it is not in the cache.
-        source = getattr(cls, "_source", getattr(cls, "_text", None))
+        source = vars(cls).get("_source", vars(cls).get("_text"))
         return (_unpickled, (cls.__module__, cls.__qualname__, cls.definition, source, self._values.tolist()))
 
     def _fixed(self) -> System:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copyreg
 import inspect
+import threading
 import weakref
 from typing import Any
 
@@ -38,16 +39,20 @@ def of_text(definition: str, or_compiled: bool = False, module: str = "variation
         cls = class_of(kind, module, _OfText)
         cls.definition = inspect.cleandoc(definition)
         cls._text = definition
-        _known[definition] = cls
+        # Another thread may have made it meanwhile.
+        with _lock:
+            cls = _known.setdefault(definition, cls)
     return cls
 
 
+_lock = threading.Lock()
 # A class that nobody uses any more is dropped.
 _known: weakref.WeakValueDictionary[str, type[System]] = weakref.WeakValueDictionary()
 
 
 def _pickled(cls: Any) -> Any:
-    return (of_text, (cls._text,))
+    # A subclass is known by its name.
+    return (of_text, (cls._text,)) if "_text" in vars(cls) else cls.__qualname__
 
 
 copyreg.pickle(_OfText, _pickled)

@@ -39,10 +39,11 @@ pub(crate) fn code(text: &str) -> Result<Code, Mistakes> {
     let unreadable = |error: syn::Error| Mistakes::of(report::unreadable(FILE, text, &error));
     let tokens = declaration(text).map_err(unreadable)?;
     let tokens = tokens.ok_or_else(|| Mistakes::of(ONE.to_owned()))?;
-    let definition = tokens.to_string();
     let wrong = |error: syn::Error| Mistakes::of(report::report(FILE, text, &error));
     syntax::alone::check(&tokens).map_err(wrong)?;
     let system = syntax::parse::system(tokens.clone()).map_err(wrong)?;
+    // Parsing bounds the nesting; this recurses.
+    let definition = tokens.to_string();
     let derived = derive_own(&system).map_err(wrong)?;
     let declared = derived.model.dimension();
     let Some(rest) = size(declared).and_then(|size| size.checked_sub(declared)).filter(|rest| *rest > 0) else {
@@ -74,7 +75,8 @@ fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code,
     let Derived { pool, model, system, program, findings } = of;
     let compiled = |what: &str| Mistakes::compiled(&model.name.to_string(), what);
     if !model.constraints.is_empty() {
-        return Err(compiled("constraints"));
+        let has_rotation = model.coordinates.iter().any(|coordinate| coordinate.is_rotation);
+        return Err(compiled(if has_rotation { "a rotation" } else { "constraints" }));
     }
     if !model.functions.is_empty() {
         return Err(compiled("tables"));

@@ -100,7 +100,7 @@ fn code(text: &str) -> Result<&'static Code, Mistakes> {
     if let Some(code) = known().get(text) {
         return Ok(code);
     }
-    let code: &'static Code = Box::leak(Box::new(compile::code(text)?));
-    known().insert(text.into(), code);
-    Ok(code)
+    let code = compile::code(text)?;
+    // Another thread may have compiled it meanwhile.
+    Ok(known().entry(text.into()).or_insert_with(|| Box::leak(Box::new(code))))
 }

@@ -18,7 +18,7 @@ impl Mistakes {
     /// A system that has to be compiled, because it has this.
     pub(crate) fn compiled(name: &str, what: &str) -> Self {
         let text = format!(
-            "error: `{name}` has {what}\n = help: compile it, by `lagrangian!` in Rust or `compile` in Python, or write it without"
+            "error: `{name}` has {what}\n = help: compile it, by `lagrangian!` in Rust or `vi.compile(text)` in Python, which need Rust; or write it without"
         );
         Self { text, needs_compiler: true }
     }

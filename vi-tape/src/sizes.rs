@@ -43,7 +43,7 @@ pub(crate) fn system(code: &'static Code) -> Result<Box<dyn System>, Mistakes> {
     check(code)?;
     let Some(system) = built(code) else {
         let most = SIZES.last().copied().unwrap_or_default();
-        let what = format!("{} coordinates, more than the {most} that are built here", code.declared);
+        let what = format!("{} coordinates; a text has {most} at most", code.declared);
         return Err(Mistakes::compiled(code.name, &what));
     };
     Ok(if code.declared < code.coordinates.len() { without_rest(system, code.declared) } else { system })
@@ -54,7 +54,7 @@ fn check(code: &Code) -> Result<(), Mistakes> {
     if count <= PARAMETERS {
         return Ok(());
     }
-    let what = format!("{count} parameters, more than the {PARAMETERS} that are built here");
+    let what = format!("{count} parameters; a text has {PARAMETERS} at most");
     Err(Mistakes::compiled(code.name, &what))
 }
 

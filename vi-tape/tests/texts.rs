@@ -69,6 +69,17 @@ fn mistakes_have_their_place() {
 }
 
 #[test]
+fn nesting_is_bounded() {
+    let deep = |open: &str, close: &str| {
+        let (open, close) = (open.repeat(20_000), close.repeat(20_000));
+        mistakes(&format!("struct S {{ coord x; L = dot(x)^2 / 2 - {open}x{close}; }}"))
+    };
+    for found in [deep("(", ")"), deep("sin(", ")"), deep("[", "]")] {
+        assert!(found.contains("nested deeper than 100 levels"), "{found}");
+    }
+}
+
+#[test]
 fn what_only_the_macro_compiles_is_refused() {
     let with = |clauses: &str| format!("struct S {{ coord x, y; L = (dot(x)^2 + dot(y)^2) / 2 - y {clauses} }}");
     let found = mistakes(&with("; constraint rod = x^2 + y^2 - 1;"));
@@ -80,9 +91,9 @@ fn what_only_the_macro_compiles_is_refused() {
     let found = mistakes(&with("- f(x); fn f(a) = crate::f;"));
     assert!(found.contains("crate::f") || found.contains("`f`"), "{found}");
     let found = mistakes("struct Row { coord q[9]; L = sum(i in 0..9, dot(q[i])^2 - q[i]^4) / 2; }");
-    assert!(found.contains("`Row` has 9 coordinates") && found.contains("the 8 that"), "{found}");
+    assert!(found.contains("`Row` has 9 coordinates") && found.contains("8 at most"), "{found}");
     let found = mistakes("struct Row { param k[33] = 1.0; coord x; L = dot(x)^2 / 2 - x^4 * sum(i in 0..33, k[i]); }");
-    assert!(found.contains("`Row` has 33 parameters") && found.contains("the 32 that"), "{found}");
+    assert!(found.contains("`Row` has 33 parameters") && found.contains("32 at most"), "{found}");
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! The ready systems of the Python package: those whose speed the documentation shows with every integrator, compiled;
-//! the others as texts.
+//! The ready systems of the Python package: a few and those with constraints compiled, with every integrator; the others
+//! as texts.
 
 use vi_core::lagrangian::Described;
 use vi_erased::{System, kind};
@@ -25,17 +25,7 @@ macro_rules! with_constraints {
 /// The compiled systems with their default parameters: those with constraints are after the others, Kepler is last.
 #[must_use]
 pub fn systems() -> Vec<Box<dyn System>> {
-    let mut systems = systems!(
-        DampedOscillator,
-        DoublePendulum,
-        DoubleWell,
-        FpuChain,
-        HardDuffing,
-        HenonHeiles,
-        OuterSolarSystem,
-        Pendulum,
-        ThreeBody,
-    );
+    let mut systems = systems!(DoublePendulum, FpuChain, OuterSolarSystem, Pendulum);
     systems.extend(with_constraints!(
         AndrewsSqueezer,
         ChaplyginSleigh,
@@ -61,11 +51,16 @@ pub fn texts() -> Vec<(&'static str, &'static str)> {
     }
     texts!(
         ChargedParticle,
+        DampedOscillator,
+        DoubleWell,
         DoubleWellDuffing,
+        HardDuffing,
         HarmonicOscillator,
+        HenonHeiles,
         NPendulum,
         ParametricPendulum,
         RotatingHoop,
-        SphericalPendulum
+        SphericalPendulum,
+        ThreeBody
     )
 }

@@ -43,12 +43,15 @@ impl Request {
             return Ok(plan);
         }
         let names: Vec<_> = built.into_iter().filter(|of| of.0 == method).map(name).collect();
-        Err(wrong(format!(
-            "{} has no integrator {}; it has {}. The argument methods of compile builds others",
-            system.name(),
-            name(wanted),
-            names.join(", ")
-        )))
+        let lacks = |clause: &str| !system.definition().contains(clause);
+        let hint = if wanted.2 && lacks("time_scale") {
+            "Write the clause `time_scale = …;` for steps in transformed time"
+        } else if wanted == (Method::Energy, None, false) && system.constraints().is_empty() && lacks("discretize") {
+            "Write the clause `discretize midpoint;`, or give stages=1"
+        } else {
+            "The argument methods of compile and of native builds others, of 1 to 16 stages"
+        };
+        Err(wrong(format!("{} has no integrator {}; it has {}. {hint}", system.name(), name(wanted), names.join(", "))))
     }
 }
 
