@@ -22,7 +22,7 @@ use vi_codegen::inspect::{report, source};
 use vi_codegen::model::{CheckState, Coordinate, Model, Parameter};
 use vi_codegen::program::{Function, FunctionId, Operation, OperationId, Output};
 use vi_codegen::symbol::{Symbol, Variable};
-use vi_codegen::{Derived, derive_own, syntax};
+use vi_codegen::{Derived, derive_own, dimension, syntax};
 use vi_dispatch::Instructions;
 
 /// How a text is named in messages.
@@ -44,17 +44,19 @@ pub(crate) fn code(text: &str) -> Result<Code, Mistakes> {
     let system = syntax::parse::system(tokens.clone()).map_err(wrong)?;
     // Parsing bounds the nesting; this recurses.
     let definition = tokens.to_string();
-    let derived = derive_own(&system).map_err(wrong)?;
-    let declared = derived.model.dimension();
-    let Some(rest) = size(declared).and_then(|size| size.checked_sub(declared)).filter(|rest| *rest > 0) else {
-        return of_derived(&derived, definition, declared);
-    };
+    let declared = dimension(&system).map_err(wrong)?;
+    let rest = size(&system.name.to_string(), declared)? - declared;
+    let system = if rest == 0 { system } else { system.with_rest(&unused(&definition), rest).map_err(wrong)? };
+    of_derived(&derive_own(&system).map_err(wrong)?, definition, declared)
+}
+
+/// A name that a definition does not contain.
+fn unused(definition: &str) -> String {
     let mut name = "rest".to_owned();
     while definition.contains(&name) {
         name.push('_');
     }
-    let system = syntax::parse::system(tokens).and_then(|system| system.with_rest(&name, rest)).map_err(wrong)?;
-    of_derived(&derive_own(&system).map_err(wrong)?, definition, declared)
+    name
 }
 
 /// What to do about several declarations.

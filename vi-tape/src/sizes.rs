@@ -30,9 +30,14 @@ sizes!(2, 4, 8);
 #[cfg(feature = "wide")]
 sizes!(2, 4, 8, 16);
 
-/// The smallest number of coordinates that is built and is at least this one.
-pub(crate) fn size(declared: usize) -> Option<usize> {
-    SIZES.iter().copied().find(|size| *size >= declared)
+/// The smallest number of coordinates that is built and is at least that of a system of this name.
+///
+/// # Errors
+/// More coordinates than are built.
+pub(crate) fn size(name: &str, declared: usize) -> Result<usize, Mistakes> {
+    let most = SIZES.last().copied().unwrap_or_default();
+    let what = || format!("{declared} coordinates; a text has {most} at most");
+    SIZES.iter().copied().find(|size| *size >= declared).ok_or_else(|| Mistakes::compiled(name, &what()))
 }
 
 /// The system of a code.
@@ -41,11 +46,8 @@ pub(crate) fn size(declared: usize) -> Option<usize> {
 /// More coordinates or parameters than are built.
 pub(crate) fn system(code: &'static Code) -> Result<Box<dyn System>, Mistakes> {
     check(code)?;
-    let Some(system) = built(code) else {
-        let most = SIZES.last().copied().unwrap_or_default();
-        let what = format!("{} coordinates; a text has {most} at most", code.declared);
-        return Err(Mistakes::compiled(code.name, &what));
-    };
+    let system =
+        built(code).ok_or_else(|| Mistakes::compiled(code.name, "a number of coordinates that is not built"))?;
     Ok(if code.declared < code.coordinates.len() { without_rest(system, code.declared) } else { system })
 }
 

@@ -195,6 +195,19 @@ pub fn derive(system: &System) -> syn::Result<Derivations> {
     Ok(Derivations { own, further })
 }
 
+/// The number of coordinates of a system, with the entries of arrays.
+///
+/// # Errors
+/// All errors of the check, if the number depends on it.
+pub fn dimension(system: &System) -> syn::Result<usize> {
+    let is_one = |of: &syntax::Coordinate| of.lengths.is_empty() && !of.is_rotation;
+    if system.coordinates.iter().all(is_one) {
+        return Ok(system.coordinates.len());
+    }
+    let mut pool = Pool::bounded(limits::WORK);
+    check::model(&mut pool, system, 0).map(|model| model.dimension()).map_err(messages::bounded)
+}
+
 /// Runs the stages from the parsed system to its program in straight lines, for the default rule alone.
 ///
 /// # Errors
