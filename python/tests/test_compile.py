@@ -161,7 +161,14 @@ def test_an_interrupt_ends_the_compiler_too(tmp_path):
     path = f"{tmp_path}:{os.environ['PATH']}"
     environment = {**os.environ, "PATH": path, "VARIATIONAL_CACHE": str(tmp_path / "cache")}
     code = f"import variational as vi; vi.compile({SPRING.format(8.25)!r}, methods='fixed')"
-    process = subprocess.Popen([sys.executable, "-c", code], env=environment, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", code],
+        env=environment,
+        stderr=subprocess.PIPE,
+        text=True,
+        # A shell's background jobs ignore it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     while not (tmp_path / "child").exists() or not (tmp_path / "child").read_text().strip():
         assert process.poll() is None
         time.sleep(0.02)

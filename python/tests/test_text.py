@@ -175,6 +175,7 @@ def test_coordinates_between_the_built_sizes():
         assert np.array_equal(one(1.03), of_all(1.03)[keep])
         assert np.array_equal(run.linearization().A, other.linearization().A[np.ix_(keep, keep)])
         assert np.array_equal(run.linearization().B, other.linearization().B[keep])
+        assert np.array_equal(run.local_error().q, other.local_error().q[:5])
         gradient, of_wide = run.gradient(3, q=q, wrt=["k"]), other.gradient(3, q=full(q), wrt=["k"])
         for name, value in gradient.items():
             assert np.array_equal(np.ravel(value), np.ravel(of_wide[name])[: np.size(value)]), name
