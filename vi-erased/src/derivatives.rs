@@ -120,12 +120,7 @@ impl<S: Runnable<N>, const N: usize> Objective<AnyMethod<S, N>, S, N> for AtTheE
 
 /// The directions of the coordinates, the momenta, and the parameters of these indices.
 fn directions<const N: usize>(parameters: &[usize]) -> Vec<Variation<N>> {
-    let of_parameter = |index: &usize| {
-        let mut parameters = vec![0.0; index + 1];
-        parameters[*index] = 1.0;
-        Variation { parameters, ..Variation::zero() }
-    };
-    Variation::of_state().into_iter().chain(parameters.iter().map(of_parameter)).collect()
+    Variation::of_state().into_iter().chain(parameters.iter().copied().map(Variation::of_index)).collect()
 }
 
 /// The run with its directions. Where it began, the energy that it keeps follows from its start; later it changes as H

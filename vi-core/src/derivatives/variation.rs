@@ -138,7 +138,8 @@ impl<const N: usize> Variation<N> {
     }
 
     /// The direction of the parameter of this index in [`Lagrangian::PARAMETERS`].
-    pub(crate) fn of_index(index: usize) -> Self {
+    #[must_use]
+    pub fn of_index(index: usize) -> Self {
         let mut parameters = alloc::vec![0.0; index + 1];
         parameters[index] = 1.0;
         Self { parameters, ..Self::zero() }
