@@ -126,7 +126,7 @@ impl System for Declared<dyn System> {
 
     fn evaluate(&self, of: Quantity, [t, q, v]: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError> {
         let [q, v] = self.points([q, v]);
-        if matches!(of, Quantity::Lagrangian | Quantity::Energy | Quantity::Hamiltonian) {
+        if matches!(of, Quantity::Lagrangian | Quantity::Energy | Quantity::Hamiltonian | Quantity::TimeScale) {
             return self.of.evaluate(of, [t, &q, &v], out);
         }
         let mut found = Vec::new();
@@ -411,7 +411,8 @@ impl Session for Declared<dyn Simulation> {
     }
 
     fn step_output(&self, t: f64, q: &[f64], p: &[f64]) -> Result<Box<dyn StepOutput>, StepError> {
-        let [q, p] = [q, p].map(|of| extended(of, self.all()));
+        let q = with_rest(q, self.size, self.all(), "number of coordinates")?;
+        let p = with_rest(p, self.size, self.all(), "number of momenta")?;
         Ok(Box::new(Declared { of: self.of.step_output(t, &q, &p)?, size: self.size }))
     }
 

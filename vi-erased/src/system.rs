@@ -25,6 +25,8 @@ pub enum Quantity {
     Energy,
     /// The same at (t, q, p).
     Hamiltonian,
+    /// g of the time scale at (t, q, v); no number without the clause `time_scale`.
+    TimeScale,
     /// `∂L/∂v` at (t, q, v).
     Momentum,
     /// The generalized force at (t, q, v).
@@ -137,6 +139,12 @@ impl dyn System + '_ {
     /// [`StepError::InvalidInput`] for a point with another number of coordinates, here and below.
     pub fn energy(&self, at: &PhasePoint) -> Result<f64, StepError> {
         Ok(self.values(Quantity::Energy, at)?[0])
+    }
+
+    /// g of the time scale at a point; `None` without a time scale, or for another number of coordinates.
+    #[must_use]
+    pub fn time_scale(&self, at: &PhasePoint) -> Option<f64> {
+        self.values(Quantity::TimeScale, at).ok()?.first().copied()
     }
 
     /// Momenta ∂L/∂v at a point.
@@ -290,6 +298,8 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
                 Quantity::Lagrangian => system.lagrangian(t, &q, &v),
                 Quantity::Energy => system.energy(t, &q, &v),
                 Quantity::Hamiltonian => State { t, q, p: v }.energy(system)?,
+                Quantity::TimeScale if system.scales_time() => system.scaled_point(t, &q, &v).g,
+                Quantity::TimeScale => continue,
                 Quantity::Reaction => {
                     out.extend_from_slice(State { t, q, p: v }.reaction(system)?.as_ref());
                     continue;

@@ -108,6 +108,7 @@ macro_rules! main {
 /// The predefined systems, without those of a program.
 pub(crate) fn ready() -> Catalogue {
     Catalogue::new(Systems { sources: &vi_systems::SOURCES, entries: vi_ready::systems })
+        .with_texts(vi_ready::text::entry)
 }
 
 /// Runs the command line of this process, including the systems of the program.

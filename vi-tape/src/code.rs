@@ -32,7 +32,6 @@ functions!(
     point_derivatives,
     power,
     scaled_point,
-    time_scale,
     non_finite,
     ld,
     d1_ld,
@@ -107,12 +106,4 @@ pub(crate) struct Code {
     pub(crate) jacobian: Form,
     pub(crate) functions: Functions,
     pub(crate) instructions: Instructions,
-}
-
-impl Code {
-    /// g of the time scale at a state. Coordinates at rest are not part of it.
-    pub(crate) fn time_scale(&self, state: &[&[f64]]) -> f64 {
-        let lines = &self.functions.time_scale;
-        lines.evaluated(self.instructions, state, |registers| lines.number(0, registers))
-    }
 }

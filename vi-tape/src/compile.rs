@@ -25,21 +25,18 @@ use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::{Derived, derive_own, dimension, syntax};
 use vi_dispatch::Instructions;
 
-/// How a text is named in messages.
-const FILE: &str = "definition";
-
 /// Characters of an expression in a message.
 const CHARACTERS: usize = 400;
 
-/// Compiles the text of a system: `struct … { … }`, or the same in a `lagrangian!`.
+/// Compiles the text of a file: `struct … { … }`, or the same in a `lagrangian!`.
 ///
 /// # Errors
 /// The mistakes of the text, or what only the macro compiles.
-pub(crate) fn code(text: &str) -> Result<Code, Mistakes> {
-    let unreadable = |error: syn::Error| Mistakes::of(report::unreadable(FILE, text, &error));
+pub(crate) fn code(file: &str, text: &str) -> Result<Code, Mistakes> {
+    let unreadable = |error: syn::Error| Mistakes::of(report::unreadable(file, text, &error));
     let tokens = declaration(text).map_err(unreadable)?;
     let tokens = tokens.ok_or_else(|| Mistakes::of(ONE.to_owned()))?;
-    let wrong = |error: syn::Error| Mistakes::of(report::report(FILE, text, &error));
+    let wrong = |error: syn::Error| Mistakes::of(report::report(file, text, &error));
     syntax::alone::check(&tokens).map_err(wrong)?;
     let system = syntax::parse::system(tokens.clone()).map_err(wrong)?;
     // Parsing bounds the nesting; this recurses.
@@ -89,19 +86,20 @@ fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code,
     let name = |symbol: &Symbol| system.spell(model, symbol);
     let watched = continuous.watched.iter();
     let inputs = (0..).zip(&model.parameters).filter(|(_, parameter)| parameter.is_input);
+    let parameters = names(model, Parameter::text);
     Ok(Code {
         name: model.name.to_string().leak(),
         declared,
         about: model.about().leak(),
         definition: definition.leak(),
         coordinates: model.coordinates.iter().map(|of| &*Coordinate::text(of).leak()).collect(),
-        parameters: names(model, Parameter::text),
+        parameters,
         parameters_about: names(model, Parameter::about),
         defaults: model.parameters.iter().map(|of| of.default).collect(),
         inputs: inputs.map(|(index, _)| index).collect::<Vec<_>>().leak(),
         angles: model.coordinates.iter().map(|of| of.is_angle).collect(),
         cyclic: continuous.cyclic.clone().into(),
-        start: model.check_state.as_ref().map(|state| start(model, state, declared)),
+        start: model.check_state.as_ref().map(|state| start(state, parameters, declared)),
         watched: watched.map(|expr| &*pool.render_within(CHARACTERS, *expr, &name).leak()).collect(),
         is_autonomous: findings.autonomous,
         is_forced: findings.forced,
@@ -122,10 +120,10 @@ fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code,
     })
 }
 
-/// The state of the checks of a system with this number of declared coordinates.
-fn start(model: &Model, state: &CheckState, declared: usize) -> Start {
+/// The state of the checks, for these parameters and this number of declared coordinates.
+fn start(state: &CheckState, parameters: &[&'static str], declared: usize) -> Start {
     let [q, v] = [&state.q, &state.v].map(|of| of[..declared].to_vec());
-    let set = state.parameters.iter().map(|(index, value)| (&*model.parameters[*index].text().leak(), *value));
+    let set = state.parameters.iter().map(|(index, value)| (parameters[*index], *value));
     Start { t: state.t, q, v, h: state.h, parameters: set.collect() }
 }
 
@@ -195,7 +193,6 @@ fn functions(of: &Derived) -> Result<Functions, TooMany> {
         point_derivatives: lines(F::PointDerivatives, &[O::MomentumDq, O::Mass, O::ForceDq, O::ForceDv])?,
         power: value(F::Power)?,
         scaled_point: lines(F::ScaledPoint, &SCALED)?,
-        time_scale: lines(F::ScaledPoint, &[O::TimeScale])?,
         non_finite: value(F::NonFinite)?,
         ld: value(F::Ld)?,
         d1_ld: value(F::D1Ld)?,
@@ -217,7 +214,7 @@ fn functions(of: &Derived) -> Result<Functions, TooMany> {
     })
 }
 
-/// Where an input is: the argument and the entry, as the macros of `tape` pass them.
+/// Where an input is: the argument and the entry, as the functions of `tape` pass them.
 fn place(symbol: &Symbol, of: FunctionId) -> Option<(u8, usize)> {
     let is_of_interval = (FunctionId::Ld..=FunctionId::GdPlus).contains(&of);
     Some(match symbol {

@@ -6,6 +6,7 @@
 //!
 //! | module | product |
 //! |---|---|
+//! | `mistakes` | why a text is no system |
 //! | `lines` | a function as instructions over registers, and the interpreter |
 //! | `code` | the facts and functions of a system |
 //! | `compile` | the code of a text |
@@ -45,7 +46,15 @@ impl System {
     /// The mistakes of the text with their places; what has to be compiled: constraints, tables, more coordinates or
     /// parameters than are built.
     pub fn parse(text: &str) -> Result<Self, Mistakes> {
-        let code = code(text)?;
+        Self::of_file("definition", text)
+    }
+
+    /// The same of the text of a file, whose name is in the mistakes.
+    ///
+    /// # Errors
+    /// As [`System::parse`].
+    pub fn of_file(file: &str, text: &str) -> Result<Self, Mistakes> {
+        let code = code(file, text)?;
         Ok(Self { of: sizes::system(code)?, code })
     }
 
@@ -59,21 +68,6 @@ impl System {
     #[must_use]
     pub fn start(&self) -> Option<&Start> {
         self.code.start.as_ref()
-    }
-
-    /// g of the time scale `dt = g dτ` at (t, q, v); `None` without the clause `time_scale`, and for a point with
-    /// another number of coordinates.
-    #[must_use]
-    pub fn time_scale(&self, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
-        let parameters: Vec<f64> = self.parameters().into_iter().map(|(_, value)| value).collect();
-        let is_sized = q.len() == self.code.declared && v.len() == self.code.declared;
-        (self.code.scales_time && is_sized).then(|| self.code.time_scale(&[&[t], q, v, &parameters]))
-    }
-}
-
-impl Clone for System {
-    fn clone(&self) -> Self {
-        Self { of: self.of.copy(), code: self.code }
     }
 }
 
@@ -95,12 +89,12 @@ impl DerefMut for System {
 static CODES: Mutex<BTreeMap<Box<str>, &'static Code>> = Mutex::new(BTreeMap::new());
 
 /// The code of a text. Systems are `Copy` and refer to it, so that it stays.
-fn code(text: &str) -> Result<&'static Code, Mistakes> {
+fn code(file: &str, text: &str) -> Result<&'static Code, Mistakes> {
     let known = || CODES.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(code) = known().get(text) {
         return Ok(code);
     }
-    let code = compile::code(text)?;
+    let code = compile::code(file, text)?;
     // Another thread may have compiled it meanwhile.
     Ok(known().entry(text.into()).or_insert_with(|| Box::leak(Box::new(code))))
 }

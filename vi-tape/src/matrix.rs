@@ -35,8 +35,8 @@ impl<const N: usize, T: Real> AnyMatrix<N, T> {
         match form {
             Form::Diagonal => Self::Diagonal(Banded { rows: [[T::zero()]; N] }),
             Form::Tridiagonal => Self::Tridiagonal(Tridiagonal { lower: zeros, diagonal: zeros, upper: zeros }),
-            Form::Symmetric if N > 3 => Self::Symmetric(Symmetric(SMatrix::zeros())),
-            _ => Self::Dense(SMatrix::zeros()),
+            Form::Symmetric => Self::Symmetric(Symmetric(SMatrix::zeros())),
+            Form::Dense => Self::Dense(SMatrix::zeros()),
         }
     }
 

@@ -1,7 +1,9 @@
-//! The predefined systems, each with an initial state.
+//! The predefined systems, each with an initial state, and those of a text ([`text`]).
 //!
 //! In: the systems of `vi_systems`. Out: a list of type-erased [`Entry`] values. The compiler instantiates every integrator for
 //! each of them here, which takes longer than the rest of the command: only `vi-lab` depends on this crate.
+
+pub mod text;
 
 use vi_runs::entry::Entry;
 use vi_systems::{

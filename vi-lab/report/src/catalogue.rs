@@ -24,19 +24,29 @@ pub struct Systems {
 pub struct Catalogue {
     own: Option<Systems>,
     ready: Systems,
+    of_text: Option<OfText>,
 }
+
+/// The system of a file, by its name and its text; or the mistakes of the text, at their places in the file.
+pub type OfText = fn(&str, &str) -> Result<Entry, String>;
 
 impl Catalogue {
     /// The catalogue of a program without systems of its own.
     #[must_use]
     pub fn new(ready: Systems) -> Self {
-        Self { own: None, ready }
+        Self { own: None, ready, of_text: None }
     }
 
     /// The same, with systems of one's own.
     #[must_use]
     pub fn with_own(self, own: Systems) -> Self {
         Self { own: Some(own), ..self }
+    }
+
+    /// The same, with systems of files.
+    #[must_use]
+    pub fn with_texts(self, of_text: OfText) -> Self {
+        Self { of_text: Some(of_text), ..self }
     }
 
     /// The text of the files that declare the systems.
@@ -84,12 +94,10 @@ impl Catalogue {
     /// [`Failure::Input`] with the nearest name if there is none, or for a file that cannot be read; [`Failure::System`]
     /// for the mistakes of a file.
     pub fn find(&self, name: &str) -> Result<Entry, Failure> {
-        if Path::new(name).extension().is_some_and(|kind| kind == "rs" || kind == "vi") {
+        let is_file = Path::new(name).extension().is_some_and(|kind| kind == "rs" || kind == "vi");
+        if let Some(of_text) = self.of_text.filter(|_| is_file) {
             let text = input::text(Path::new(name))?;
-            return Entry::of_text(&text).map_err(|mistakes| Failure::System {
-                shown: String::new(),
-                wrong: mistakes.to_string().replace("definition:", &format!("{name}:")),
-            });
+            return of_text(name, &text).map_err(|wrong| Failure::System { shown: String::new(), wrong });
         }
         let wanted = plain(name);
         let mut entries = self.entries();

@@ -32,22 +32,6 @@ impl Entry {
         Self { system: system::by_rule::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
     }
 
-    /// A system of a text, which starts at the state of its clause `check`, with the parameters of that clause. Without
-    /// the clause it starts at zero, with a step of 0.01.
-    ///
-    /// # Errors
-    /// The mistakes of the text.
-    pub fn of_text(text: &str) -> Result<Self, vi_tape::Mistakes> {
-        let mut system = vi_tape::System::parse(text)?;
-        let zeros = vec![0.0; system.coordinates().len()];
-        let start = system.start().cloned();
-        for (name, value) in start.iter().flat_map(|start| &start.parameters) {
-            system.set(name, *value);
-        }
-        let (q, v, h) = start.map_or_else(|| (zeros.clone(), zeros, 0.01), |start| (start.q, start.v, start.h));
-        Ok(Self { about: system.about(), system: Box::new(system), q, v, h })
-    }
-
     /// The same of a system without a rule, which has Gauss steps alone.
     #[must_use]
     pub fn with_gauss_only<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self

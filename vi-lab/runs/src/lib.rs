@@ -8,7 +8,6 @@
 //! |---|---|
 //! | [`entry`] | a system with an initial state |
 //! | [`system`] | a type-erased system |
-//! | [`text`] | a system of a text |
 //! | [`rival`] | the motion by DOP853 |
 //! | [`raw`] | the paper's equations solved as they are written |
 //! | [`exponents`] | Lyapunov exponents along a run |
@@ -18,6 +17,5 @@ pub mod exponents;
 pub mod raw;
 pub mod rival;
 pub mod system;
-pub mod text;
 
 pub use system::System;

@@ -27,7 +27,7 @@ pub trait System: Send + Sync {
     fn erased(&self) -> &(dyn vi_erased::System + 'static);
     /// The same, mutably.
     fn erased_mut(&mut self) -> &mut (dyn vi_erased::System + 'static);
-    /// Whether it is compiled. A system of a text has runs, and nothing of what follows but the time scale.
+    /// Whether it is compiled. A system of a text has runs, and nothing of what follows.
     fn is_compiled(&self) -> bool {
         true
     }
@@ -39,8 +39,6 @@ pub trait System: Send + Sync {
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
     /// Step densities of 1, 2 and 3 stages at a node with its time, coordinates and momenta; `None` without a value.
     fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()];
-    /// g of the time scale at a point; `None` for a system without a time scale.
-    fn time_scale(&self, at: &PhasePoint) -> Option<f64>;
     /// The point of the same motion at the time `end`, by [`Trajectory::at`].
     ///
     /// # Errors
@@ -206,11 +204,6 @@ impl<S: Runnable<N> + Described, const N: usize> System for Studied<S, N> {
             step_density::<_, N, { ENERGY_STAGES[1] }>(&system, &state).ok(),
             step_density::<_, N, { ENERGY_STAGES[2] }>(&system, &state).ok(),
         ]
-    }
-
-    fn time_scale(&self, at: &PhasePoint) -> Option<f64> {
-        let Trajectory { t, q, v } = sized(at).ok()?;
-        S::SCALES_TIME.then(|| self.typed.system.scaled_point(t, &q, &v).g)
     }
 
     fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {

@@ -1,22 +1,42 @@
 //! A system of a text, which is not compiled.
 //!
-//! In: the text of a file. Out: a [`System`] that runs by every method. What the command asks beside runs and is compiled
-//! for each type, exponents, the rival and step densities, it does not have.
+//! In: the text of a file. Out: an [`Entry`] whose system runs by every method. What the command asks beside runs and is
+//! compiled for each type, exponents, the rival and step densities, it does not have.
 
-use crate::exponents::Exponents;
-use crate::rival::Ended;
-use crate::system::System;
 use core::cell::Cell;
 use vi_core::StepError;
 use vi_erased::plan::{ENERGY_STAGES, PhasePoint, Plan};
+use vi_runs::entry::Entry;
+use vi_runs::exponents::Exponents;
+use vi_runs::rival::Ended;
+use vi_runs::system::System;
 
-impl System for vi_tape::System {
+/// The system of a text, which starts at the state of its clause `check`, with the parameters of that clause. Without the
+/// clause it starts at zero, with a step of 0.01.
+///
+/// # Errors
+/// The mistakes of the text, at their places in the file of this name.
+pub fn entry(file: &str, text: &str) -> Result<Entry, String> {
+    let mut system = vi_tape::System::of_file(file, text).map_err(|mistakes| mistakes.to_string())?;
+    let zeros = vec![0.0; system.coordinates().len()];
+    let start = system.start().cloned();
+    for (name, value) in start.iter().flat_map(|start| &start.parameters) {
+        system.set(name, *value);
+    }
+    let (q, v, h) = start.map_or_else(|| (zeros.clone(), zeros, 0.01), |start| (start.q, start.v, start.h));
+    Ok(Entry { about: system.about(), system: Box::new(Text(system.into_inner())), q, v, h })
+}
+
+/// Such a system.
+struct Text(Box<dyn vi_erased::System>);
+
+impl System for Text {
     fn erased(&self) -> &(dyn vi_erased::System + 'static) {
-        &**self
+        &*self.0
     }
 
     fn erased_mut(&mut self) -> &mut (dyn vi_erased::System + 'static) {
-        &mut **self
+        &mut *self.0
     }
 
     fn is_compiled(&self) -> bool {
@@ -24,7 +44,7 @@ impl System for vi_tape::System {
     }
 
     fn copy(&self) -> Box<dyn System> {
-        Box::new(self.clone())
+        Box::new(Self(self.0.copy()))
     }
 
     fn start(&self) -> Option<[Vec<f64>; 2]> {
@@ -37,10 +57,6 @@ impl System for vi_tape::System {
 
     fn step_densities(&self, _t: f64, _q: &[f64], _p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()] {
         [None; ENERGY_STAGES.len()]
-    }
-
-    fn time_scale(&self, at: &PhasePoint) -> Option<f64> {
-        vi_tape::System::time_scale(self, at.t, &at.q, &at.v)
     }
 
     fn follow(&self, from: &PhasePoint, _end: f64) -> Result<PhasePoint, StepError> {
