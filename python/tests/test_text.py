@@ -213,5 +213,6 @@ def test_native_is_the_same_system(warm_cache):
     Spring = vi.System(SPRING)
     Native = Spring.native()
     assert Native is not Spring and Native.coordinates == Spring.coordinates
+    assert Native.native() is Native and Named.native() is Native
     one, other = (cls().integrate([1.0], h=0.1).steps(100) for cls in (Spring, Native))
     assert np.abs(one.q - other.q).max() < 1e-13  # 2.2e-16

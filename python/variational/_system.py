@@ -135,7 +135,7 @@ class System(metaclass=SystemType):
     def native(cls, *, methods: str | None = None, verbose: bool = False) -> type[System]:
         """The same system, compiled by `compile`: its steps are two to five times faster. A compiled class returns
         itself, without `methods`."""
-        if "_text" not in vars(cls) and methods is None:
+        if not hasattr(cls, "_text") and methods is None:
             return cls
         from ._compile import compile
 

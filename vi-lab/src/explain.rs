@@ -11,6 +11,7 @@ use std::path::Path;
 use vi_codegen::inspect::{self, source};
 use vi_report::catalogue::Catalogue;
 use vi_report::failure::Failure;
+use vi_report::input;
 
 /// The command line of `vi-lab explain`.
 #[derive(Debug, Args)]
@@ -54,8 +55,7 @@ pub(crate) fn explain(arguments: &Arguments, catalogue: &Catalogue) -> Result<St
     let Arguments { system, latex, .. } = arguments;
     let show = |explanation: inspect::Explanation| if *latex { explanation.latex() } else { explanation.text() };
     let explained = |tokens| arguments.explained(tokens);
-    let file =
-        system.as_ref().map(Path::new).filter(|path| path.extension().is_some_and(|kind| kind == "rs" || kind == "vi"));
+    let file = system.as_ref().map(Path::new).filter(|path| input::has_systems(path));
     if let Some(file) = file {
         return expand::each(file, |tokens| explained(tokens).map(show));
     }

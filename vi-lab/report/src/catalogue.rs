@@ -94,9 +94,9 @@ impl Catalogue {
     /// [`Failure::Input`] with the nearest name if there is none, or for a file that cannot be read; [`Failure::System`]
     /// for the mistakes of a file.
     pub fn find(&self, name: &str) -> Result<Entry, Failure> {
-        let is_file = Path::new(name).extension().is_some_and(|kind| kind == "rs" || kind == "vi");
-        if let Some(of_text) = self.of_text.filter(|_| is_file) {
-            let text = input::text(Path::new(name))?;
+        let file = Path::new(name);
+        if let Some(of_text) = self.of_text.filter(|_| input::has_systems(file)) {
+            let text = input::text(file)?;
             return of_text(name, &text).map_err(|wrong| Failure::System { shown: String::new(), wrong });
         }
         let wanted = plain(name);

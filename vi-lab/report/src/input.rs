@@ -37,6 +37,12 @@ pub fn number(text: &str) -> Result<f64, String> {
     })
 }
 
+/// Whether a file has systems, by its name: Rust, or a bare `struct` in a file that ends in `.vi`.
+#[must_use]
+pub fn has_systems(path: &Path) -> bool {
+    path.extension().is_some_and(|kind| kind == "rs" || kind == "vi")
+}
+
 /// The text of a file. Only regular files are read: a pipe may never end.
 ///
 /// # Errors
