@@ -1,5 +1,7 @@
 //! The knots of an argument, and the piece to which a value of it belongs.
 
+#[cfg(feature = "alloc")]
+use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -16,10 +18,10 @@ pub enum Outside {
     Periodic,
 }
 
-/// Ascending knots.
+/// Ascending knots: an array, or a list of any length.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axis<const N: usize> {
-    pub(super) knots: [f64; N],
+pub(super) struct Axis<X> {
+    pub(super) knots: X,
     /// Both ends of the range.
     pub(super) range: [f64; 2],
     /// Inverse distance of the knots if all are near equal distances, otherwise 0.
@@ -40,9 +42,17 @@ pub(super) struct Place {
     pub(super) kept: usize,
 }
 
-impl<const N: usize> Axis<N> {
+impl<const N: usize> Axis<[f64; N]> {
     /// The axis of these knots, up to `to`.
     pub(super) const fn new(knots: [f64; N], to: f64, outside: Outside) -> Self {
+        let Axis { range, inverse, period, .. } = Axis::measured(&knots, to, outside);
+        Self { knots, range, inverse, outside, period }
+    }
+}
+
+impl<'a> Axis<&'a [f64]> {
+    /// The same of a list.
+    pub(super) const fn measured(knots: &'a [f64], to: f64, outside: Outside) -> Self {
         let from = knots[0];
         let length = to - from;
         // The rounding error of a difference (Knuth).
@@ -51,9 +61,20 @@ impl<const N: usize> Axis<N> {
         // The upper half of the digits (Veltkamp), times a whole number below 2²⁷ is exact.
         let wide = length * 134_217_729.0;
         let high = wide - (wide - length);
-        Self { knots, range: [from, to], inverse: inverse(&knots), outside, period: [high, length - high, low] }
+        Self { knots, range: [from, to], inverse: inverse(knots), outside, period: [high, length - high, low] }
     }
+}
 
+#[cfg(feature = "alloc")]
+impl Axis<&[f64]> {
+    /// The axis with a copy of its knots.
+    pub(super) fn owned(&self) -> Axis<Vec<f64>> {
+        let Self { range, inverse, outside, period, .. } = *self;
+        Axis { knots: self.knots.to_vec(), range, inverse, outside, period }
+    }
+}
+
+impl<X: Copy> Axis<X> {
     /// Whether the argument is periodic.
     pub(super) const fn is_periodic(&self) -> bool {
         matches!(self.outside, Outside::Periodic)
@@ -66,7 +87,9 @@ impl<const N: usize> Axis<N> {
         }
         self
     }
+}
 
+impl<X: AsRef<[f64]>> Axis<X> {
     /// Whether a function is defined at x.
     pub(super) fn covers(&self, x: f64) -> bool {
         let [from, to] = self.range;
@@ -77,12 +100,13 @@ impl<const N: usize> Axis<N> {
     #[inline]
     pub(super) fn place(&self, x: f64) -> Place {
         let [from, to] = self.range;
-        if self.is_periodic() {
+        let knots = self.knots.as_ref();
+        if self.outside == Outside::Periodic {
             let [high, middle, low] = self.period;
             let turns = ((x - from) / (to - from)).floor();
             let (whole, rest) = (turns * high, turns * low);
             let index = self.index(x - whole - (turns * middle + rest));
-            return Place { index, base: [whole, turns * middle + (rest + self.knots[index])], kept: usize::MAX };
+            return Place { index, base: [whole, turns * middle + (rest + knots[index])], kept: usize::MAX };
         }
         let index = self.index(x);
         // NaN belongs to the first piece, which is NaN there.
@@ -92,21 +116,22 @@ impl<const N: usize> Axis<N> {
             Outside::Extend => 2,
             Outside::Undefined | Outside::Periodic => 0,
         };
-        Place { index, base: [0.0, self.knots[index]], kept }
+        Place { index, base: [0.0, knots[index]], kept }
     }
 
     /// Index of the last knot that is not above x; 0 below all of them and for NaN.
     #[inline]
     fn index(&self, x: f64) -> usize {
+        let knots = self.knots.as_ref();
         if self.inverse == 0.0 {
-            return self.knots.partition_point(|knot| *knot <= x).saturating_sub(1);
+            return knots.partition_point(|knot| *knot <= x).saturating_sub(1);
         }
         // Near equal distances this index is off by at most one. The cast is 0 below the range and for NaN.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let guess = (((x - self.knots[0]) * self.inverse) as usize).min(N - 1);
-        if x < self.knots[guess] {
+        let guess = (((x - knots[0]) * self.inverse) as usize).min(knots.len() - 1);
+        if x < knots[guess] {
             guess.saturating_sub(1)
-        } else if guess + 1 < N && self.knots[guess + 1] <= x {
+        } else if guess + 1 < knots.len() && knots[guess + 1] <= x {
             guess + 1
         } else {
             guess
@@ -131,13 +156,14 @@ impl Place {
 }
 
 /// Inverse mean distance of knots that are within a sixteenth of it of equal distances, otherwise 0.
-const fn inverse<const N: usize>(knots: &[f64; N]) -> f64 {
-    if N < 2 {
+const fn inverse(knots: &[f64]) -> f64 {
+    let last = knots.len() - 1;
+    if last == 0 {
         return 0.0;
     }
-    let distance = (knots[N - 1] - knots[0]) / number(N - 1);
+    let distance = (knots[last] - knots[0]) / number(last);
     let mut i = 0;
-    while i < N {
+    while i <= last {
         let off = knots[i] - (knots[0] + number(i) * distance);
         if !(-distance <= 16.0 * off && 16.0 * off <= distance) {
             return 0.0;

@@ -22,8 +22,8 @@ use crate::real::{Number, Real};
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Grid<const M: usize, const N: usize> {
-    x: Axis<M>,
-    y: Axis<N>,
+    x: Axis<[f64; M]>,
+    y: Axis<[f64; N]>,
     /// Value, slope along x, slope along y and mixed second derivative at each knot.
     nodes: [[[f64; 4]; N]; M],
     is_linear: bool,
@@ -85,39 +85,19 @@ impl<const M: usize, const N: usize> Grid<M, N> {
     const fn joined(x: [f64; M], y: [f64; N], values: &[[f64; N]; M], outside: [Outside; 2]) -> Self {
         const { assert!(M >= 2 && N >= 2, "a grid needs two points on each axis") };
         let mut nodes = [[[0.0; 4]; N]; M];
-        let mut j = 0;
-        while j < N {
-            let mut column = [0.0; M];
-            let mut i = 0;
-            while i < M {
-                column[i] = values[i][j];
-                i += 1;
-            }
-            let along_x = slopes::spline(&x, &column, outside[0]);
-            i = 0;
-            while i < M {
-                nodes[i][j] = [column[i], along_x[i], 0.0, 0.0];
-                i += 1;
-            }
-            j += 1;
-        }
-        let mut i = 0;
-        while i < M {
-            let mut row = [0.0; N];
-            j = 0;
-            while j < N {
-                row[j] = nodes[i][j][1];
-                j += 1;
-            }
-            let (along_y, mixed) = (slopes::spline(&y, &values[i], outside[1]), slopes::spline(&y, &row, outside[1]));
-            j = 0;
-            while j < N {
-                let [value, along_x, ..] = nodes[i][j];
-                nodes[i][j] = [value, along_x, along_y[j], mixed[j]];
-                j += 1;
-            }
-            i += 1;
-        }
+        let mut along_x = Buffers {
+            values: &mut [0.0; M],
+            slopes: &mut [0.0; M],
+            rows: &mut [[0.0; 4]; M],
+            others: &mut [[0.0; 2]; M],
+        };
+        let mut along_y = Buffers {
+            values: &mut [0.0; N],
+            slopes: &mut [0.0; N],
+            rows: &mut [[0.0; 4]; N],
+            others: &mut [[0.0; 2]; N],
+        };
+        joined(&x, &y, values.as_flattened(), outside, nodes.as_flattened_mut(), &mut along_x, &mut along_y);
         if !(ascend(&x) && ascend(&y)) {
             nodes = [[[f64::NAN; 4]; N]; M];
         }
@@ -143,52 +123,135 @@ impl<const M: usize, const N: usize> Grid<M, N> {
     }
 
     #[inline(always)]
-    fn piece<T: Number>(&self, [x, y]: [T; 2]) -> Piece<T> {
-        let [x0, x1, y0, y1, coefficients @ ..]: [T; 20] = T::lookup([x, y], |arguments| self.constants(arguments));
+    fn piece<T: Number>(&self, arguments: [T; 2]) -> Piece<T> {
+        Piece::at((&self.x, &self.y), self.nodes.as_flattened(), self.is_linear, arguments)
+    }
+}
+
+/// Buffers of a spline along one axis.
+pub(super) struct Buffers<'a> {
+    pub(super) values: &'a mut [f64],
+    pub(super) slopes: &'a mut [f64],
+    pub(super) rows: &'a mut [[f64; 4]],
+    pub(super) others: &'a mut [[f64; 2]],
+}
+
+impl Buffers<'_> {
+    /// The slopes of the spline through the values.
+    pub(super) const fn spline(&mut self, knots: &[f64], outside: Outside) {
+        slopes::spline_of(knots, self.values, outside, self.slopes, (self.rows, self.others));
+    }
+}
+
+/// Value, slope along x, slope along y and mixed second derivative at each knot, row by row.
+pub(super) const fn joined(
+    x: &[f64],
+    y: &[f64],
+    values: &[f64],
+    outside: [Outside; 2],
+    nodes: &mut [[f64; 4]],
+    along_x: &mut Buffers,
+    along_y: &mut Buffers,
+) {
+    let (m, n) = (x.len(), y.len());
+    let mut j = 0;
+    while j < n {
+        let mut i = 0;
+        while i < m {
+            along_x.values[i] = values[i * n + j];
+            i += 1;
+        }
+        along_x.spline(x, outside[0]);
+        i = 0;
+        while i < m {
+            nodes[i * n + j] = [along_x.values[i], along_x.slopes[i], 0.0, 0.0];
+            i += 1;
+        }
+        j += 1;
+    }
+    // Along y: of the values, then of the slopes along x.
+    let mut of = 0;
+    while of < 2 {
+        let mut i = 0;
+        while i < m {
+            j = 0;
+            while j < n {
+                along_y.values[j] = nodes[i * n + j][of];
+                j += 1;
+            }
+            along_y.spline(y, outside[1]);
+            j = 0;
+            while j < n {
+                nodes[i * n + j][2 + of] = along_y.slopes[j];
+                j += 1;
+            }
+            i += 1;
+        }
+        of += 1;
+    }
+}
+
+impl<T: Number> Piece<T> {
+    /// The piece at (x, y) of a grid with these nodes.
+    #[inline(always)]
+    pub(super) fn at(
+        axes: (&Axis<impl AsRef<[f64]>>, &Axis<impl AsRef<[f64]>>),
+        nodes: &[[f64; 4]],
+        is_linear: bool,
+        [x, y]: [T; 2],
+    ) -> Self {
+        let [x0, x1, y0, y1, coefficients @ ..]: [T; 20] =
+            T::lookup([x, y], |arguments| constants(axes, nodes, is_linear, arguments));
         let row = |a: usize| core::array::from_fn(|b| coefficients[4 * a + b]);
-        Piece {
-            u: distance(&self.x, x, [x0, x1]),
-            w: distance(&self.y, y, [y0, y1]),
+        Self {
+            u: distance(axes.0, x, [x0, x1]),
+            w: distance(axes.1, y, [y0, y1]),
             coefficients: core::array::from_fn(row),
         }
     }
+}
 
-    /// The bases of the piece at (x, y), and its coefficients of `u^a w^b` in the order of a, then b.
-    #[inline]
-    fn constants(&self, [x, y]: [f64; 2]) -> [f64; 20] {
-        let (at_x, at_y) = (self.x.place(x), self.y.place(y));
-        let ([i, i_other], hx) = piece(&self.x.knots, at_x.index);
-        let ([j, j_other], hy) = piece(&self.y.knots, at_y.index);
-        let join = |h: f64, [y0, s0]: [f64; 2], [y1, s1]: [f64; 2]| {
-            if self.is_linear { [y0, (y1 - y0) / h, 0.0, 0.0] } else { slopes::hermite(h, [y0, s0], [y1, s1]) }
-        };
-        // Along y: of the value, and of the slope along x.
-        let along_y = |i: usize| {
-            let ([f, fx, fy, fxy], [g, gx, gy, gxy]) = (self.nodes[i][j], self.nodes[i][j_other]);
-            [join(hy, [f, fy], [g, gy]), join(hy, [fx, fxy], [gx, gxy])].map(|along| at_y.kept(along))
-        };
-        let ([values, by_x], [others, others_by_x]) = (along_y(i), along_y(i_other));
-        let mut constants = [0.0; 20];
-        constants[..4].copy_from_slice(&[at_x.base[0], at_x.base[1], at_y.base[0], at_y.base[1]]);
-        for b in 0..4 {
-            let along_x = at_x.kept(join(hx, [values[b], by_x[b]], [others[b], others_by_x[b]]));
-            for (a, coefficient) in along_x.into_iter().enumerate() {
-                constants[4 + 4 * a + b] = coefficient;
-            }
+/// The bases of the piece at (x, y), and its coefficients of `u^a w^b` in the order of a, then b.
+#[inline]
+fn constants(
+    axes: (&Axis<impl AsRef<[f64]>>, &Axis<impl AsRef<[f64]>>),
+    nodes: &[[f64; 4]],
+    is_linear: bool,
+    [x, y]: [f64; 2],
+) -> [f64; 20] {
+    let (at_x, at_y) = (axes.0.place(x), axes.1.place(y));
+    let ([i, i_other], hx) = piece(axes.0.knots.as_ref(), at_x.index);
+    let ([j, j_other], hy) = piece(axes.1.knots.as_ref(), at_y.index);
+    let n = axes.1.knots.as_ref().len();
+    let join = |h: f64, [y0, s0]: [f64; 2], [y1, s1]: [f64; 2]| {
+        if is_linear { [y0, (y1 - y0) / h, 0.0, 0.0] } else { slopes::hermite(h, [y0, s0], [y1, s1]) }
+    };
+    // Along y: of the value, and of the slope along x.
+    let along_y = |i: usize| {
+        let ([f, fx, fy, fxy], [g, gx, gy, gxy]) = (nodes[i * n + j], nodes[i * n + j_other]);
+        [join(hy, [f, fy], [g, gy]), join(hy, [fx, fxy], [gx, gxy])].map(|along| at_y.kept(along))
+    };
+    let ([values, by_x], [others, others_by_x]) = (along_y(i), along_y(i_other));
+    let mut constants = [0.0; 20];
+    constants[..4].copy_from_slice(&[at_x.base[0], at_x.base[1], at_y.base[0], at_y.base[1]]);
+    for b in 0..4 {
+        let along_x = at_x.kept(join(hx, [values[b], by_x[b]], [others[b], others_by_x[b]]));
+        for (a, coefficient) in along_x.into_iter().enumerate() {
+            constants[4 + 4 * a + b] = coefficient;
         }
-        constants
     }
+    constants
 }
 
 /// A knot and the other end of its piece, and their distance; from the last knot the piece goes back.
 #[inline]
-fn piece<const N: usize>(knots: &[f64; N], index: usize) -> ([usize; 2], f64) {
-    let other = if index + 1 < N { index + 1 } else { index - 1 };
+fn piece(knots: &[f64], index: usize) -> ([usize; 2], f64) {
+    let other = if index + 1 < knots.len() { index + 1 } else { index - 1 };
     ([index, other], knots[other] - knots[index])
 }
 
 /// A polynomial in u and w.
-struct Piece<T> {
+pub(super) struct Piece<T> {
     u: T,
     w: T,
     /// Of `u^a w^b`.
@@ -198,7 +261,7 @@ struct Piece<T> {
 impl<T: Number> Piece<T> {
     /// The derivative of these orders along x and y.
     #[inline(always)]
-    fn derivative(&self, along_x: usize, along_y: usize) -> T {
+    pub(super) fn derivative(&self, along_x: usize, along_y: usize) -> T {
         let rows: [T; 4] = core::array::from_fn(|a| polynomial::<_, 4>(&self.coefficients[a], self.w, along_y));
         polynomial::<_, 4>(&rows, self.u, along_x)
     }

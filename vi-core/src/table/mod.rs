@@ -1,7 +1,8 @@
 //! Functions given by points: piecewise polynomials.
 //!
 //! A [`Table`] is a function of one number, a [`Grid`] of two; the values of a [`Uniform`] table are parameters. All are
-//! computed while compiling, and evaluated in every number type. Their derivatives are those of the polynomials.
+//! computed while compiling, and evaluated in every number type. Their derivatives are those of the polynomials. An
+//! [`AnyTable`] is any of them, computed at run time.
 //!
 //! ```
 //! use vi_core::function::Jets;
@@ -13,6 +14,8 @@
 //! assert!((value - 0.625_f64).abs() < 1e-15 && (slope - 0.05_f64).abs() < 1e-15);
 //! ```
 
+#[cfg(feature = "alloc")]
+mod any;
 mod axis;
 mod grid;
 mod quintic;
@@ -20,6 +23,8 @@ mod slopes;
 mod tridiagonal;
 mod uniform;
 
+#[cfg(feature = "alloc")]
+pub use any::{AnyTable, Interpolation};
 pub use axis::Outside;
 pub use grid::Grid;
 pub use uniform::{Uniform, WithValues};
@@ -43,7 +48,7 @@ enum Kind {
 /// it has exactly the given values.
 #[derive(Clone, Copy, Debug)]
 pub struct Table<const N: usize, const C: usize> {
-    axis: Axis<N>,
+    axis: Axis<[f64; N]>,
     /// Coefficients of each piece at its left knot, and of the last one at its right knot.
     pieces: [[f64; C]; N],
     kind: Kind,
@@ -55,12 +60,7 @@ impl<const N: usize> Table<N, 2> {
     pub const fn linear(knots: [f64; N], values: [f64; N]) -> Self {
         const { assert!(N >= 2, "a table needs two points") };
         let mut pieces = [[0.0; 2]; N];
-        let mut i = 0;
-        while i < N {
-            let left = if i == N - 1 { i - 1 } else { i };
-            pieces[i] = [values[i], (values[left + 1] - values[left]) / (knots[left + 1] - knots[left])];
-            i += 1;
-        }
+        lines(&knots, &values, &mut pieces);
         Self::new(knots, pieces, Kind::Spline, Outside::Undefined)
     }
 
@@ -95,18 +95,13 @@ impl<const N: usize> Table<N, 4> {
 
     const fn joined(knots: [f64; N], values: [f64; N], kind: Kind, outside: Outside) -> Self {
         const { assert!(N >= 2, "a table needs two points") };
-        let slopes = match kind {
-            Kind::Spline => slopes::spline(&knots, &values, outside),
-            Kind::Monotone => slopes::monotone(&knots, &values, outside),
-        };
-        let mut pieces = [[0.0; 4]; N];
-        let mut i = 0;
-        while i < N {
-            let other = if i == N - 1 { i - 1 } else { i + 1 };
-            let h = knots[other] - knots[i];
-            pieces[i] = slopes::hermite(h, [values[i], slopes[i]], [values[other], slopes[other]]);
-            i += 1;
+        let mut slopes = [0.0; N];
+        match kind {
+            Kind::Spline => slopes = slopes::spline(&knots, &values, outside),
+            Kind::Monotone => slopes::monotone(&knots, &values, outside, &mut slopes),
         }
+        let mut pieces = [[0.0; 4]; N];
+        cubics(&knots, &values, &slopes, &mut pieces);
         Self::new(knots, pieces, kind, outside)
     }
 }
@@ -181,20 +176,49 @@ impl<const N: usize, const C: usize> Table<N, C> {
     /// The distance from the base of a piece, and its coefficients.
     #[inline(always)]
     fn piece<T: Number>(&self, x: T) -> (T, [T; 6]) {
-        let [whole, rest, c0, c1, c2, c3, c4, c5] = T::lookup([x], |[x]| self.constants(x));
-        (distance(&self.axis, x, [whole, rest]), [c0, c1, c2, c3, c4, c5])
+        piece(&self.axis, &self.pieces, x)
     }
+}
 
-    /// The base of the piece at x, and its coefficients, up to six.
-    #[inline]
-    fn constants(&self, x: f64) -> [f64; 8] {
-        let place = self.axis.place(x);
-        let coefficients = place.kept(self.pieces[place.index]);
-        let mut constants = [place.base[0], place.base[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        for (constant, coefficient) in constants[2..].iter_mut().zip(coefficients) {
-            *constant = coefficient;
-        }
-        constants
+/// The distance from the base of the piece at x, and its coefficients.
+#[inline(always)]
+fn piece<T: Number, const C: usize>(axis: &Axis<impl AsRef<[f64]>>, pieces: &[[f64; C]], x: T) -> (T, [T; 6]) {
+    let [whole, rest, c0, c1, c2, c3, c4, c5] = T::lookup([x], |[x]| constants(axis, pieces, x));
+    (distance(axis, x, [whole, rest]), [c0, c1, c2, c3, c4, c5])
+}
+
+/// The base of the piece at x, and its coefficients, up to six.
+#[inline]
+fn constants<const C: usize>(axis: &Axis<impl AsRef<[f64]>>, pieces: &[[f64; C]], x: f64) -> [f64; 8] {
+    let place = axis.place(x);
+    let coefficients = place.kept(pieces[place.index]);
+    let mut constants = [place.base[0], place.base[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    for (constant, coefficient) in constants[2..].iter_mut().zip(coefficients) {
+        *constant = coefficient;
+    }
+    constants
+}
+
+/// The pieces of straight lines, each at its left knot, and the last one at its right knot.
+const fn lines(knots: &[f64], values: &[f64], pieces: &mut [[f64; 2]]) {
+    let n = knots.len();
+    let mut i = 0;
+    while i < n {
+        let left = if i == n - 1 { i - 1 } else { i };
+        pieces[i] = [values[i], (values[left + 1] - values[left]) / (knots[left + 1] - knots[left])];
+        i += 1;
+    }
+}
+
+/// The cubic pieces with these slopes at the knots, as [`lines`].
+const fn cubics(knots: &[f64], values: &[f64], slopes: &[f64], pieces: &mut [[f64; 4]]) {
+    let n = knots.len();
+    let mut i = 0;
+    while i < n {
+        let other = if i == n - 1 { i - 1 } else { i + 1 };
+        let h = knots[other] - knots[i];
+        pieces[i] = slopes::hermite(h, [values[i], slopes[i]], [values[other], slopes[other]]);
+        i += 1;
     }
 }
 
@@ -249,14 +273,14 @@ fn polynomial<T: Number, const C: usize>(coefficients: &[T], u: T, order: usize)
 
 /// `x − base`, without losing digits to whole periods.
 #[inline(always)]
-fn distance<T: Number, const N: usize>(axis: &Axis<N>, x: T, [whole, rest]: [T; 2]) -> T {
-    if axis.is_periodic() { x - whole - rest } else { x - rest }
+fn distance<T: Number, X>(axis: &Axis<X>, x: T, [whole, rest]: [T; 2]) -> T {
+    if axis.outside == Outside::Periodic { x - whole - rest } else { x - rest }
 }
 
 /// Whether finite numbers ascend.
-const fn ascend<const N: usize>(knots: &[f64; N]) -> bool {
+const fn ascend(knots: &[f64]) -> bool {
     let mut i = 1;
-    while i < N {
+    while i < knots.len() {
         // Also false for NaN and for an infinite distance.
         let distance = knots[i] - knots[i - 1];
         if distance <= 0.0 || !distance.is_finite() {
@@ -268,7 +292,7 @@ const fn ascend<const N: usize>(knots: &[f64; N]) -> bool {
 }
 
 /// The failure of a function of an argument outside of the range; `None` for NaN, which has another reason.
-fn undefined_along<const N: usize>(axis: &Axis<N>, function: &'static str, x: f64) -> Option<Undefined> {
+fn undefined_along(axis: &Axis<impl AsRef<[f64]>>, function: &'static str, x: f64) -> Option<Undefined> {
     let is_outside = !x.is_nan() && !axis.covers(x);
     is_outside.then_some(Undefined { function, argument: x, range: Some(axis.range) })
 }

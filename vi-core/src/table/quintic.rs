@@ -1,4 +1,4 @@
-//! The quintic spline with continuous fourth derivatives, while compiling.
+//! The quintic spline with continuous fourth derivatives, while compiling or at run time.
 //!
 //! Unknowns are the slope s and the second derivative m at each knot. Continuity of the third and of the fourth
 //! derivative gives two equations for each, in 2 × 2 blocks:
@@ -11,18 +11,18 @@
 //! Each is determined by three values and by value, s and m at its inner end, so that its knots have no unknowns.
 
 /// A 2 × 2 block, by rows.
-type Block = [[f64; 2]; 2];
+pub(super) type Block = [[f64; 2]; 2];
 
 /// The equations of one knot: the blocks of the knot before, of its own and of the knot after, and the right side.
 #[derive(Clone, Copy)]
-struct Row {
+pub(super) struct Row {
     lower: Block,
     diagonal: Block,
     upper: Block,
     right: [f64; 2],
 }
 
-const ZERO: Block = [[0.0; 2]; 2];
+pub(super) const ZERO: Block = [[0.0; 2]; 2];
 
 const fn add([[a, b], [c, d]]: Block, [[e, f], [g, h]]: Block) -> Block {
     [[a + e, b + f], [c + g, d + h]]
@@ -48,10 +48,21 @@ const fn divided([[e, f], [g, h]]: Block, [x, y]: [f64; 2], [[a, b], [c, d]]: Bl
     (block, [(d * x - b * y) * inverse, (a * y - c * x) * inverse])
 }
 
+impl Row {
+    pub(super) const ZERO: Self = Self { lower: ZERO, diagonal: ZERO, upper: ZERO, right: [0.0; 2] };
+}
+
+/// Buffers for so many knots as there are.
+pub(super) struct Buffers<'a> {
+    pub(super) rows: &'a mut [Row],
+    pub(super) known: &'a mut [[f64; 2]],
+    pub(super) above: &'a mut [Block],
+    pub(super) by_last: &'a mut [Block],
+}
+
 /// As [`tridiagonal::solve`](super::tridiagonal::solve), with blocks.
-const fn solve<const N: usize>(rows: &[Row; N], count: usize, is_cyclic: bool) -> [[f64; 2]; N] {
+const fn solve(Buffers { rows, known, above, by_last }: &mut Buffers, count: usize, is_cyclic: bool) {
     let last = count - 1;
-    let (mut known, mut above, mut by_last) = ([[0.0; 2]; N], [ZERO; N], [ZERO; N]);
     let mut i = 0;
     while i < last {
         let Row { lower, diagonal, upper, right } = &rows[i];
@@ -94,7 +105,6 @@ const fn solve<const N: usize>(rows: &[Row; N], count: usize, is_cyclic: bool) -
             less_vector(known[i], above[i], known[i + 1])
         };
     }
-    known
 }
 
 /// Adds the piece `[knot − h, knot]` with the chord d to the equations of its right knot.
@@ -123,7 +133,7 @@ struct Side {
 
 impl Side {
     /// The points of these indices relative to a knot.
-    const fn new<const N: usize>(x: &[f64; N], y: &[f64; N], points: [usize; 3], knot: usize) -> Self {
+    const fn new(x: &[f64], y: &[f64], points: [usize; 3], knot: usize) -> Self {
         let [a, b, c] = points;
         Self {
             u: [x[a] - x[knot], x[b] - x[knot], x[c] - x[knot]],
@@ -192,17 +202,30 @@ const fn hermite(h: f64, [y0, s0, m0]: [f64; 3], [y1, s1, m1]: [f64; 3]) -> [f64
 
 /// Coefficients of the pieces, each at its left knot, and of the last one at its right knot.
 pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_periodic: bool) -> [[f64; 6]; N] {
-    if !is_periodic && N <= 6 {
-        return polynomial(x, y);
+    let mut pieces = [[0.0; 6]; N];
+    let mut buffers = Buffers {
+        rows: &mut [Row::ZERO; N],
+        known: &mut [[0.0; 2]; N],
+        above: &mut [ZERO; N],
+        by_last: &mut [ZERO; N],
+    };
+    pieces_of(x, y, is_periodic, &mut pieces, &mut buffers);
+    pieces
+}
+
+/// The same for lists of one length; the coefficients begin as zeros.
+pub(super) const fn pieces_of(x: &[f64], y: &[f64], is_periodic: bool, pieces: &mut [[f64; 6]], buffers: &mut Buffers) {
+    let n = x.len();
+    if !is_periodic && n <= 6 {
+        return polynomial(x, y, pieces);
     }
     // The knots with unknowns.
-    let (first, count) = if is_periodic { (0, N - 1) } else { (3, N - 6) };
-    let mut rows = [Row { lower: ZERO, diagonal: ZERO, upper: ZERO, right: [0.0; 2] }; N];
+    let (first, count) = if is_periodic { (0, n - 1) } else { (3, n - 6) };
     let mut i = 0;
     while i < count {
         let knot = first + i;
-        let (before, after) = (if knot == 0 { N - 2 } else { knot - 1 }, knot);
-        let mut row = rows[i];
+        let (before, after) = (if knot == 0 { n - 2 } else { knot - 1 }, knot);
+        let mut row = buffers.rows[i];
         row = if is_periodic || i > 0 {
             let h = x[before + 1] - x[before];
             with_piece_before(row, h, (y[before + 1] - y[before]) / h)
@@ -213,13 +236,13 @@ pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_period
             let h = x[after + 1] - x[after];
             with_piece_after(row, h, (y[after + 1] - y[after]) / h)
         } else {
-            Side::new(x, y, [N - 3, N - 2, N - 1], knot).added_to(row, 1.0)
+            Side::new(x, y, [n - 3, n - 2, n - 1], knot).added_to(row, 1.0)
         };
-        rows[i] = row;
+        buffers.rows[i] = row;
         i += 1;
     }
-    let found = solve(&rows, count, is_periodic);
-    let mut pieces = [[0.0; 6]; N];
+    solve(buffers, count, is_periodic);
+    let found = &*buffers.known;
     i = 0;
     while i < count {
         let knot = first + i;
@@ -232,33 +255,26 @@ pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_period
     }
     if is_periodic {
         let ([s0, m0], [s, m]) = (found[count - 1], found[0]);
-        pieces[N - 1] = hermite(x[N - 2] - x[N - 1], [y[N - 1], s, m], [y[N - 2], s0, m0]);
-        return pieces;
+        pieces[n - 1] = hermite(x[n - 2] - x[n - 1], [y[n - 1], s, m], [y[n - 2], s0, m0]);
+        return;
     }
     // The polynomials of three pieces, at each of their knots.
-    let (left, right) = (3, N - 4);
+    let (left, right) = (3, n - 4);
     let mut k = 0;
     while k < 3 {
         pieces[k] = one_of_three(x, y, &Side::new(x, y, [0, 1, 2], left), found[0], [left, k]);
         k += 1;
     }
     k = right;
-    while k < N {
-        let side = Side::new(x, y, [N - 3, N - 2, N - 1], right);
+    while k < n {
+        let side = Side::new(x, y, [n - 3, n - 2, n - 1], right);
         pieces[k] = one_of_three(x, y, &side, found[count - 1], [right, k]);
         k += 1;
     }
-    pieces
 }
 
 /// The polynomial of three pieces that has slope and second derivative `[s, m]` at the knot `base`, at the knot `at`.
-const fn one_of_three<const N: usize>(
-    x: &[f64; N],
-    y: &[f64; N],
-    side: &Side,
-    [s, m]: [f64; 2],
-    [base, at]: [usize; 2],
-) -> [f64; 6] {
+const fn one_of_three(x: &[f64], y: &[f64], side: &Side, [s, m]: [f64; 2], [base, at]: [usize; 2]) -> [f64; 6] {
     let [a, b, c] = side.highest([s, m]);
     let mut piece = shifted([y[base], s, 0.5 * m, a, b, c], x[at] - x[base]);
     piece[0] = y[at];
@@ -266,22 +282,27 @@ const fn one_of_three<const N: usize>(
 }
 
 /// The polynomial through at most six points, at each of them: Newton's form, then its expansion.
-const fn polynomial<const N: usize>(x: &[f64; N], y: &[f64; N]) -> [[f64; 6]; N] {
-    let mut differences = *y;
+const fn polynomial(x: &[f64], y: &[f64], pieces: &mut [[f64; 6]]) {
+    let n = x.len();
+    let mut differences = [0.0; 6];
+    let mut i = 0;
+    while i < n {
+        differences[i] = y[i];
+        i += 1;
+    }
     let mut order = 1;
-    while order < N {
-        let mut i = N - 1;
+    while order < n {
+        i = n - 1;
         while i >= order {
             differences[i] = (differences[i] - differences[i - 1]) / (x[i] - x[i - order]);
             i -= 1;
         }
         order += 1;
     }
-    let mut pieces = [[0.0; 6]; N];
     let mut at = 0;
-    while at < N {
+    while at < n {
         let mut piece = [0.0; 6];
-        let mut k = N;
+        let mut k = n;
         while k > 0 {
             k -= 1;
             // piece ← piece (u + distance) + difference.
@@ -297,5 +318,4 @@ const fn polynomial<const N: usize>(x: &[f64; N], y: &[f64; N]) -> [[f64; 6]; N]
         pieces[at] = piece;
         at += 1;
     }
-    pieces
 }

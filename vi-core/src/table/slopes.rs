@@ -1,18 +1,19 @@
-//! Slopes at the knots of piecewise cubic polynomials, while compiling.
+//! Slopes at the knots of piecewise cubic polynomials, while compiling or at run time.
 
 use super::axis::Outside;
 use super::tridiagonal;
 
 /// Distance of knot i from the next, and the slope of the chord between them.
-const fn chord<const N: usize>(x: &[f64; N], y: &[f64; N], i: usize) -> [f64; 2] {
+const fn chord(x: &[f64], y: &[f64], i: usize) -> [f64; 2] {
     let h = x[i + 1] - x[i];
     [h, (y[i + 1] - y[i]) / h]
 }
 
 /// The two chords that meet at knot i; at the ends of a periodic table the first and the last one.
-const fn chords<const N: usize>(x: &[f64; N], y: &[f64; N], i: usize) -> [[f64; 2]; 2] {
-    let before = if i == 0 { N - 2 } else { i - 1 };
-    let after = if i == N - 1 { 0 } else { i };
+const fn chords(x: &[f64], y: &[f64], i: usize) -> [[f64; 2]; 2] {
+    let last = x.len() - 1;
+    let before = if i == 0 { last - 1 } else { i - 1 };
+    let after = if i == last { 0 } else { i };
     [chord(x, y, before), chord(x, y, after)]
 }
 
@@ -21,15 +22,30 @@ const fn chords<const N: usize>(x: &[f64; N], y: &[f64; N], i: usize) -> [[f64; 
 ///
 /// Source: de Boor, A Practical Guide to Splines, chapter IV.
 pub(super) const fn spline<const N: usize>(x: &[f64; N], y: &[f64; N], outside: Outside) -> [f64; N] {
+    let mut slopes = [0.0; N];
+    spline_of(x, y, outside, &mut slopes, (&mut [[0.0; 4]; N], &mut [[0.0; 2]; N]));
+    slopes
+}
+
+/// The same for lists of one length, with buffers of this length.
+pub(super) const fn spline_of(
+    x: &[f64],
+    y: &[f64],
+    outside: Outside,
+    slopes: &mut [f64],
+    (rows, others): (&mut [[f64; 4]], &mut [[f64; 2]]),
+) {
+    let n = x.len();
     let is_periodic = matches!(outside, Outside::Periodic);
-    if !is_periodic && N == 2 {
-        return [chord(x, y, 0)[1]; N];
+    if !is_periodic && n == 2 {
+        slopes[0] = chord(x, y, 0)[1];
+        slopes[1] = slopes[0];
+        return;
     }
-    let mut rows = [[0.0; 4]; N];
-    let count = if is_periodic { N - 1 } else { N };
+    let count = if is_periodic { n - 1 } else { n };
     let mut i = 0;
     while i < count {
-        let is_end = !is_periodic && (i == 0 || i == N - 1);
+        let is_end = !is_periodic && (i == 0 || i == n - 1);
         rows[i] = if !is_end {
             let [[h0, d0], [h1, d1]] = chords(x, y, i);
             [h1, 2.0 * (h0 + h1), h0, 3.0 * (h1 * d0 + h0 * d1)]
@@ -38,25 +54,24 @@ pub(super) const fn spline<const N: usize>(x: &[f64; N], y: &[f64; N], outside: 
             let sum = h0 + h1;
             [0.0, h1, sum, ((h0 + 2.0 * sum) * h1 * d0 + h0 * h0 * d1) / sum]
         } else {
-            let [[h1, d1], [h0, d0]] = chords(x, y, N - 2);
+            let [[h1, d1], [h0, d0]] = chords(x, y, n - 2);
             let sum = h0 + h1;
             [sum, h1, 0.0, ((h0 + 2.0 * sum) * h1 * d0 + h0 * h0 * d1) / sum]
         };
         i += 1;
     }
-    if !is_periodic && N == 3 {
+    if !is_periodic && n == 3 {
         // The two ends ask for the same: both are replaced by the parabola.
         let [[h0, d0], [h1, d1]] = chords(x, y, 1);
         let bend = (d1 - d0) / (h0 + h1);
         rows[0] = [0.0, 1.0, 0.0, d0 - bend * h0];
         rows[1] = [0.0, 1.0, 0.0, d0 + bend * h0];
-        rows[N - 1] = [0.0, 1.0, 0.0, d1 + bend * h1];
+        rows[n - 1] = [0.0, 1.0, 0.0, d1 + bend * h1];
     }
-    let mut slopes = tridiagonal::solve(&rows, count);
+    tridiagonal::solve(rows, count, slopes, others);
     if is_periodic {
-        slopes[N - 1] = slopes[0];
+        slopes[n - 1] = slopes[0];
     }
-    slopes
 }
 
 /// Slopes of the cubic interpolant that is monotone wherever the values are: a weighted harmonic mean of both chords,
@@ -64,15 +79,17 @@ pub(super) const fn spline<const N: usize>(x: &[f64; N], y: &[f64; N], outside: 
 ///
 /// Source: Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984); the ends as in Moler, Numerical Computing with
 /// MATLAB, section 3.6.
-pub(super) const fn monotone<const N: usize>(x: &[f64; N], y: &[f64; N], outside: Outside) -> [f64; N] {
+pub(super) const fn monotone(x: &[f64], y: &[f64], outside: Outside, slopes: &mut [f64]) {
+    let n = x.len();
     let is_periodic = matches!(outside, Outside::Periodic);
-    if !is_periodic && N == 2 {
-        return [chord(x, y, 0)[1]; N];
+    if !is_periodic && n == 2 {
+        slopes[0] = chord(x, y, 0)[1];
+        slopes[1] = slopes[0];
+        return;
     }
-    let mut slopes = [0.0; N];
     let mut i = 0;
-    while i < N {
-        slopes[i] = if is_periodic || i > 0 && i < N - 1 {
+    while i < n {
+        slopes[i] = if is_periodic || i > 0 && i < n - 1 {
             let [[h0, d0], [h1, d1]] = chords(x, y, i);
             let (w0, w1) = (2.0 * h1 + h0, h1 + 2.0 * h0);
             if d0 * d1 > 0.0 { (w0 + w1) / (w0 / d0 + w1 / d1) } else { 0.0 }
@@ -80,12 +97,11 @@ pub(super) const fn monotone<const N: usize>(x: &[f64; N], y: &[f64; N], outside
             let [near, far] = chords(x, y, 1);
             end(near, far)
         } else {
-            let [far, near] = chords(x, y, N - 2);
+            let [far, near] = chords(x, y, n - 2);
             end(near, far)
         };
         i += 1;
     }
-    slopes
 }
 
 /// Slope at an end: that of the parabola, limited so that the first piece is monotone.

@@ -1,6 +1,7 @@
 //! A table at equal distances whose values are parameters.
 
 use super::axis::{Axis, Outside, number};
+use super::grid::Buffers;
 use super::{ascend, derivatives, distance, polynomial, slopes, tridiagonal, undefined_along};
 use crate::function::{Gradient, Hessian, Jets, ThirdDerivatives};
 use crate::lagrangian::Undefined;
@@ -21,7 +22,7 @@ use crate::real::{Number, Real};
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Uniform<const N: usize> {
-    axis: Axis<N>,
+    axis: Axis<[f64; N]>,
     /// For each knot, the slopes of all cardinal functions; `None` for straight lines.
     slopes: Option<[[f64; N]; N]>,
     /// Whether the range is not finite or does not ascend.
@@ -35,18 +36,13 @@ impl<const N: usize> Uniform<N> {
     pub const fn cubic(from: f64, to: f64) -> Self {
         let mut table = Self::linear(from, to);
         let mut by_knot = [[0.0; N]; N];
-        let mut j = 0;
-        while j < N {
-            let mut cardinal = [0.0; N];
-            cardinal[j] = 1.0;
-            let of_cardinal = slopes::spline(&table.axis.knots, &cardinal, Outside::Undefined);
-            let mut i = 0;
-            while i < N {
-                by_knot[i][j] = of_cardinal[i];
-                i += 1;
-            }
-            j += 1;
-        }
+        let mut buffers = Buffers {
+            values: &mut [0.0; N],
+            slopes: &mut [0.0; N],
+            rows: &mut [[0.0; 4]; N],
+            others: &mut [[0.0; 2]; N],
+        };
+        cardinal_slopes(&table.axis.knots, by_knot.as_flattened_mut(), &mut buffers);
         table.slopes = Some(by_knot);
         table
     }
@@ -56,11 +52,7 @@ impl<const N: usize> Uniform<N> {
     pub const fn linear(from: f64, to: f64) -> Self {
         const { assert!(N >= 2, "a table needs two points") };
         let mut knots = [from; N];
-        let mut i = 1;
-        while i < N {
-            knots[i] = from + (to - from) * (number(i) / number(N - 1));
-            i += 1;
-        }
+        spread([from, to], N - 1, &mut knots);
         knots[N - 1] = to;
         Self { axis: Axis::new(knots, to, Outside::Undefined), slopes: None, is_invalid: !ascend(&knots) }
     }
@@ -71,28 +63,17 @@ impl<const N: usize> Uniform<N> {
     pub const fn periodic(self) -> Self {
         let [from, to] = self.axis.range;
         let mut knots = [from; N];
-        let mut i = 1;
-        while i < N {
-            knots[i] = from + (to - from) * (number(i) / number(N));
-            i += 1;
-        }
+        spread([from, to], N, &mut knots);
         let mut slopes = self.slopes;
         if slopes.is_some() {
-            let per_distance = 3.0 * number(N) / (to - from);
             let mut by_knot = [[0.0; N]; N];
-            let mut j = 0;
-            while j < N {
-                let mut rows = [[1.0, 4.0, 1.0, 0.0]; N];
-                rows[(j + N - 1) % N][3] += per_distance;
-                rows[(j + 1) % N][3] -= per_distance;
-                let of_cardinal = tridiagonal::solve(&rows, N);
-                i = 0;
-                while i < N {
-                    by_knot[i][j] = of_cardinal[i];
-                    i += 1;
-                }
-                j += 1;
-            }
+            let mut buffers = Buffers {
+                values: &mut [0.0; N],
+                slopes: &mut [0.0; N],
+                rows: &mut [[0.0; 4]; N],
+                others: &mut [[0.0; 2]; N],
+            };
+            periodic_slopes([from, to], by_knot.as_flattened_mut(), &mut buffers);
             slopes = Some(by_knot);
         }
         Self { axis: Axis::new(knots, to, Outside::Periodic), slopes, is_invalid: self.is_invalid }
@@ -126,29 +107,103 @@ impl<const N: usize> Uniform<N> {
     pub fn undefined<T: Real>(&self, function: &'static str, [x]: [T; 1]) -> Option<Undefined> {
         undefined_along(&self.axis, function, x.to_f64())
     }
+}
 
-    /// The base of the piece at x, and the coefficients of the cardinal function j there.
-    #[inline]
-    fn constants(&self, x: f64, j: usize) -> [f64; 6] {
-        let place = self.axis.place(x);
-        let i = place.index;
-        // The last knot is at the end of the range, unless the table is periodic.
-        let (other, h) = if i + 1 < N {
-            (i + 1, self.axis.knots[i + 1] - self.axis.knots[i])
-        } else if self.axis.is_periodic() {
-            (0, self.axis.range[1] - self.axis.knots[i])
-        } else {
-            (i - 1, self.axis.knots[i - 1] - self.axis.knots[i])
-        };
-        let cardinal = |knot: usize| if knot == j { 1.0 } else { 0.0 };
-        let coefficients = match &self.slopes {
-            Some(slopes) => slopes::hermite(h, [cardinal(i), slopes[i][j]], [cardinal(other), slopes[other][j]]),
-            None => [cardinal(i), (cardinal(other) - cardinal(i)) / h, 0.0, 0.0],
-        };
-        let coefficients = if self.is_invalid { [f64::NAN; 4] } else { place.kept(coefficients) };
-        let [c0, c1, c2, c3] = coefficients;
-        [place.base[0], place.base[1], c0, c1, c2, c3]
+/// Sets knots at these parts of a range.
+pub(super) const fn spread([from, to]: [f64; 2], parts: usize, knots: &mut [f64]) {
+    knots[0] = from;
+    let mut i = 1;
+    while i < knots.len() {
+        knots[i] = from + (to - from) * (number(i) / number(parts));
+        i += 1;
     }
+}
+
+/// The slopes of all cardinal functions at each knot, row by row.
+pub(super) const fn cardinal_slopes(knots: &[f64], slopes: &mut [f64], buffers: &mut Buffers) {
+    let n = knots.len();
+    let mut j = 0;
+    while j < n {
+        let mut i = 0;
+        while i < n {
+            buffers.values[i] = if i == j { 1.0 } else { 0.0 };
+            i += 1;
+        }
+        buffers.spline(knots, Outside::Undefined);
+        i = 0;
+        while i < n {
+            slopes[i * n + j] = buffers.slopes[i];
+            i += 1;
+        }
+        j += 1;
+    }
+}
+
+/// The same of periodic ones, which have as many knots as there are buffers.
+pub(super) const fn periodic_slopes([from, to]: [f64; 2], slopes: &mut [f64], buffers: &mut Buffers) {
+    let n = buffers.values.len();
+    let per_distance = 3.0 * number(n) / (to - from);
+    let mut j = 0;
+    while j < n {
+        let mut i = 0;
+        while i < n {
+            buffers.rows[i] = [1.0, 4.0, 1.0, 0.0];
+            i += 1;
+        }
+        buffers.rows[(j + n - 1) % n][3] += per_distance;
+        buffers.rows[(j + 1) % n][3] -= per_distance;
+        tridiagonal::solve(buffers.rows, n, buffers.slopes, buffers.others);
+        i = 0;
+        while i < n {
+            slopes[i * n + j] = buffers.slopes[i];
+            i += 1;
+        }
+        j += 1;
+    }
+}
+
+/// The base of the piece at x, and the coefficients of the cardinal function j there; `slopes` are those of all cardinal
+/// functions at each knot, none of straight lines.
+#[inline]
+fn constants(axis: &Axis<impl AsRef<[f64]>>, slopes: Option<&[f64]>, is_invalid: bool, x: f64, j: usize) -> [f64; 6] {
+    let (place, knots) = (axis.place(x), axis.knots.as_ref());
+    let (i, n) = (place.index, knots.len());
+    // The last knot is at the end of the range, unless the table is periodic.
+    let (other, h) = if i + 1 < n {
+        (i + 1, knots[i + 1] - knots[i])
+    } else if axis.outside == Outside::Periodic {
+        (0, axis.range[1] - knots[i])
+    } else {
+        (i - 1, knots[i - 1] - knots[i])
+    };
+    let cardinal = |knot: usize| if knot == j { 1.0 } else { 0.0 };
+    let coefficients = match slopes {
+        Some(slopes) => slopes::hermite(h, [cardinal(i), slopes[i * n + j]], [cardinal(other), slopes[other * n + j]]),
+        None => [cardinal(i), (cardinal(other) - cardinal(i)) / h, 0.0, 0.0],
+    };
+    let coefficients = if is_invalid { [f64::NAN; 4] } else { place.kept(coefficients) };
+    let [c0, c1, c2, c3] = coefficients;
+    [place.base[0], place.base[1], c0, c1, c2, c3]
+}
+
+/// The distance from the base of a piece, and its coefficients: those of the cardinal functions times the values.
+#[inline(always)]
+pub(super) fn piece<T: Number>(
+    axis: &Axis<impl AsRef<[f64]>>,
+    (slopes, is_invalid): (Option<&[f64]>, bool),
+    x: T,
+    values: &[T],
+) -> (T, [T; 6]) {
+    let mut coefficients = [T::zero(); 6];
+    let mut base = [T::zero(); 2];
+    for (j, value) in values.iter().enumerate() {
+        let [whole, rest, c0, c1, c2, c3] = T::lookup([x], |[x]| constants(axis, slopes, is_invalid, x, j));
+        base = [whole, rest];
+        for (sum, cardinal) in coefficients.iter_mut().zip([c0, c1, c2, c3]) {
+            *sum += *value * cardinal;
+        }
+    }
+    (distance(axis, x, base), coefficients)
 }
 
 /// A [`Uniform`] table with the values at its knots.
@@ -166,19 +221,10 @@ impl<T: Number, const N: usize> WithValues<'_, T, N> {
         polynomial::<_, 4>(&coefficients, u, 0)
     }
 
-    /// The distance from the base of a piece, and its coefficients: those of the cardinal functions times the values.
     #[inline(always)]
     fn piece(&self, x: T) -> (T, [T; 6]) {
-        let mut coefficients = [T::zero(); 6];
-        let mut base = [T::zero(); 2];
-        for (j, value) in self.values.iter().enumerate() {
-            let [whole, rest, c0, c1, c2, c3] = T::lookup([x], |[x]| self.table.constants(x, j));
-            base = [whole, rest];
-            for (sum, cardinal) in coefficients.iter_mut().zip([c0, c1, c2, c3]) {
-                *sum += *value * cardinal;
-            }
-        }
-        (distance(&self.table.axis, x, base), coefficients)
+        let Uniform { axis, slopes, is_invalid } = self.table;
+        piece(axis, (slopes.as_ref().map(|of| of.as_flattened()), *is_invalid), x, self.values)
     }
 }
 

@@ -1,6 +1,8 @@
 // Values at knots and of exact formulas are exact.
 #![allow(clippy::float_cmp, clippy::items_after_statements)]
 
+#[cfg(feature = "alloc")]
+mod any;
 mod scipy;
 
 use super::*;
