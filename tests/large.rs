@@ -571,8 +571,8 @@ fn dense<const N: usize, const R: usize>(rows: &impl Rectangular<N, f64>) -> SMa
 /// Compares all functions of a system with constraints in loops with those in lines.
 fn compare_constrained<A, B, F, G, const N: usize, const K: usize>(loops: A, lines: B, [off, solved]: [f64; 2])
 where
-    F: Form,
-    G: Form,
+    F: Form<Multipliers<K, f64> = [f64; K]>,
+    G: Form<Multipliers<K, f64> = [f64; K]>,
     A: Convertible<N, Kind = Bound<K, F>>,
     B: Convertible<N, Kind = Bound<K, G>>,
 {
@@ -635,7 +635,7 @@ fn compare_constrained_steps<A, B, F, G, const N: usize, const K: usize>(
     let theirs = lines.at_state(start).integrate(Gauss::<2>, h).and_then(|mut run| run.until(until)).expect("steps");
     let moved = (theirs.q - start.q).amax();
     let found = (ours.q - theirs.q).amax().max((ours.p - theirs.p).amax()) / moved;
-    let held = loops.constraints(until, &ours.q).into_iter().fold(0.0_f64, |worst, value| worst.max(value.abs()));
+    let held = loops.constraints(until, &ours.q).as_ref().iter().fold(0.0_f64, |worst, value| worst.max(value.abs()));
     println!("{}: states off by {found:.1e} after {moved:.2}, constraints by {held:.1e}", A::NAME);
     assert!(moved > 0.1 && found < off && held < 1e-14);
 }

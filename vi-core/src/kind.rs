@@ -4,7 +4,7 @@
 //! constraints: the arrays of its multipliers and gradients are empty. So one trait describes the motion of both kinds,
 //! and a method asks the kind where its solver differs.
 
-use crate::linear::{Rectangular, Sparse};
+use crate::linear::{AtMost, Rectangular, Rows, Sparse};
 #[cfg(feature = "alloc")]
 use crate::method::energy_gauss::BoundLengths;
 use crate::method::energy_gauss::{FreeLengths, LengthSolver};
@@ -20,7 +20,7 @@ use nalgebra::SVector;
 
 /// The number of constraints of a system, and the types of their values and derivatives over the numbers T.
 pub trait Kind: Copy + Debug + Send + Sync + 'static {
-    /// The number of constraints.
+    /// The number of constraints; the largest one if the system is known at run time only.
     const COUNT: usize;
     /// One number for each constraint.
     type Multipliers<T: Real>: Copy + Debug + PartialEq + Send + Sync + AsRef<[T]> + AsMut<[T]>;
@@ -52,17 +52,22 @@ pub trait Kind: Copy + Debug + Send + Sync + 'static {
 pub enum Free {}
 
 /// The kind of a system with K constraints; its solvers need the feature `alloc`. F is the form of the derivatives of
-/// the constraints: [`Dense`], or [`Nonzeros`] in generated systems.
+/// the constraints: [`Dense`], [`Nonzeros`] in generated systems, or [`Counted`] in those that are known at run time only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bound<const K: usize, F = Dense>(PhantomData<F>);
 
 /// The form of the derivatives of constraints.
 pub trait Form: Copy + Debug + Send + Sync + 'static {
+    /// One number for each constraint.
+    type Multipliers<const K: usize, T: Real>: Copy + Debug + PartialEq + Send + Sync + AsRef<[T]> + AsMut<[T]>;
     /// K rows of N entries.
     type Gradients<const K: usize, const N: usize, T: Real>: Rectangular<N, T> + Copy + Debug + PartialEq + Send + Sync;
     /// N rows of N entries.
     type ReactionMatrix<const N: usize, T: Real>: Rectangular<N, T> + Copy + Debug + PartialEq + Send + Sync;
 
+    /// K zeros.
+    #[doc(hidden)]
+    fn no_multipliers<const K: usize, T: Real>() -> Self::Multipliers<K, T>;
     /// K zero rows.
     #[doc(hidden)]
     fn no_gradients<const K: usize, const N: usize, T: Real>() -> Self::Gradients<K, N, T>;
@@ -76,8 +81,13 @@ pub trait Form: Copy + Debug + Send + Sync + 'static {
 pub enum Dense {}
 
 impl Form for Dense {
+    type Multipliers<const K: usize, T: Real> = [T; K];
     type Gradients<const K: usize, const N: usize, T: Real> = [SVector<T, N>; K];
     type ReactionMatrix<const N: usize, T: Real> = [SVector<T, N>; N];
+
+    fn no_multipliers<const K: usize, T: Real>() -> [T; K] {
+        [T::zero(); K]
+    }
 
     fn no_gradients<const K: usize, const N: usize, T: Real>() -> [SVector<T, N>; K] {
         [SVector::zeros(); K]
@@ -93,8 +103,13 @@ impl Form for Dense {
 pub enum Nonzeros<const W: usize, const R: usize> {}
 
 impl<const W: usize, const R: usize> Form for Nonzeros<W, R> {
+    type Multipliers<const K: usize, T: Real> = [T; K];
     type Gradients<const K: usize, const N: usize, T: Real> = Sparse<K, W, T>;
     type ReactionMatrix<const N: usize, T: Real> = Sparse<N, R, T>;
+
+    fn no_multipliers<const K: usize, T: Real>() -> [T; K] {
+        [T::zero(); K]
+    }
 
     fn no_gradients<const K: usize, const N: usize, T: Real>() -> Sparse<K, W, T> {
         Sparse { columns: const { &[&[]; K] }, rows: [[T::zero(); W]; K] }
@@ -105,7 +120,29 @@ impl<const W: usize, const R: usize> Form for Nonzeros<W, R> {
     }
 }
 
-/// The multipliers of a system: `[T; K]`.
+/// Rows by their nonzeros, as [`Nonzeros`], of at most K constraints: for a system that is known at run time only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Counted {}
+
+impl Form for Counted {
+    type Multipliers<const K: usize, T: Real> = AtMost<K, T>;
+    type Gradients<const K: usize, const N: usize, T: Real> = Rows<K, N, T>;
+    type ReactionMatrix<const N: usize, T: Real> = Rows<N, N, T>;
+
+    fn no_multipliers<const K: usize, T: Real>() -> AtMost<K, T> {
+        AtMost::zeros(K)
+    }
+
+    fn no_gradients<const K: usize, const N: usize, T: Real>() -> Rows<K, N, T> {
+        Rows::zeros(&[])
+    }
+
+    fn no_reaction<const N: usize, T: Real>() -> Rows<N, N, T> {
+        Rows::zeros(&[])
+    }
+}
+
+/// The multipliers of a system: `[T; K]`, or [`AtMost`] K.
 pub type Multipliers<S, const N: usize, T = f64> = <<S as Motion<N, T>>::Kind as Kind>::Multipliers<T>;
 /// The gradients of the constraints of a system.
 pub type Gradients<S, const N: usize, T = f64> = <<S as Motion<N, T>>::Kind as Kind>::Gradients<N, T>;
@@ -136,14 +173,14 @@ impl Kind for Free {
 #[cfg(feature = "alloc")]
 impl<const K: usize, F: Form> Kind for Bound<K, F> {
     const COUNT: usize = K;
-    type Multipliers<T: Real> = [T; K];
+    type Multipliers<T: Real> = F::Multipliers<K, T>;
     type Gradients<const N: usize, T: Real> = F::Gradients<K, N, T>;
     type ReactionMatrix<const N: usize, T: Real> = F::ReactionMatrix<N, T>;
     type Stages<S: Convertible<N, Kind = Self>, const N: usize, const STAGES: usize> = BoundGauss<STAGES>;
     type Lengths<S: Convertible<N, Kind = Self>, const N: usize, const STAGES: usize> = BoundLengths<STAGES>;
 
-    fn no_multipliers<T: Real>() -> [T; K] {
-        [T::zero(); K]
+    fn no_multipliers<T: Real>() -> Self::Multipliers<T> {
+        F::no_multipliers()
     }
 
     fn no_gradients<const N: usize, T: Real>() -> Self::Gradients<N, T> {

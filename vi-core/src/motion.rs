@@ -60,8 +60,8 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// without blocks, dense elimination. Multiplier r is unknown N + r.
     const BLOCKS: &'static [Block] = &[];
 
-    /// [`Motion::CONSTANT_MASS`]. This function and the next two return their constants, except those of a system that
-    /// is known at run time only.
+    /// [`Motion::CONSTANT_MASS`]. This function and the following ones without arguments return their constants, except
+    /// those of a system that is known at run time only.
     #[inline(always)]
     fn has_constant_mass(&self) -> bool {
         Self::CONSTANT_MASS
@@ -75,6 +75,26 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     #[inline(always)]
     fn scales_time(&self) -> bool {
         Self::SCALES_TIME
+    }
+    /// [`Motion::POINT_MASSES`].
+    #[inline(always)]
+    fn has_point_masses(&self) -> bool {
+        Self::POINT_MASSES
+    }
+    /// [`Motion::CONSTRAINTS`].
+    #[inline(always)]
+    fn constraint_names(&self) -> &'static [&'static str] {
+        Self::CONSTRAINTS
+    }
+    /// [`Motion::HOLONOMIC`].
+    #[inline(always)]
+    fn holonomic(&self) -> usize {
+        Self::HOLONOMIC
+    }
+    /// [`Motion::BLOCKS`].
+    #[inline(always)]
+    fn blocks(&self) -> &'static [Block] {
+        Self::BLOCKS
     }
     /// Evaluates `L_v`, `L_q + f` and M at a point.
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;

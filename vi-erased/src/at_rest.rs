@@ -1,6 +1,7 @@
 //! A system without its last coordinates, which are at rest.
 //!
-//! In: a type-erased system of more coordinates than were declared; the others are free, have the mass 1, and no force.
+//! In: a type-erased system of more coordinates than were declared; the others have the mass 1, no force and no
+//! constraint.
 //! Out: a [`System`] of the declared ones. Given vectors get zeros at their end, and found ones lose them. So few numbers
 //! of coordinates have to be compiled.
 
@@ -126,7 +127,7 @@ impl System for Declared<dyn System> {
 
     fn evaluate(&self, of: Quantity, [t, q, v]: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError> {
         let [q, v] = self.points([q, v]);
-        if matches!(of, Quantity::Lagrangian | Quantity::Energy | Quantity::Hamiltonian | Quantity::TimeScale) {
+        if !of.has_coordinates() {
             return self.of.evaluate(of, [t, &q, &v], out);
         }
         let mut found = Vec::new();
@@ -193,25 +194,32 @@ impl Control for Declared<dyn System> {
     fn equilibrium(&self, t: f64, guess: &[f64]) -> Result<Rest, StepError> {
         let (all, size) = (self.all(), self.size);
         let mut rest = self.of.control().equilibrium(t, &with_rest(guess, size, all, "number of coordinates")?)?;
-        // Without constraints the directions are the coordinates.
-        let square = |of: &[f64]| cut(&of[..size * all], all, size);
+        // Each coordinate at rest is a direction of its own: no constraint holds it.
+        let freedom = rest.freedom;
+        let is_declared = |direction: &usize| (size..all).all(|i| rest.directions[i * freedom + direction] == 0.0);
+        let declared: Vec<usize> = (0..freedom).filter(is_declared).collect();
+        let of_declared = |row: &[f64]| declared.iter().map(|direction| row[*direction]).collect::<Vec<_>>();
+        rest.directions = rest.directions.chunks_exact(freedom.max(1)).take(size).flat_map(of_declared).collect();
+        rest.matrices = rest.matrices.map(|of| {
+            let rows = declared.iter().map(|direction| &of[direction * freedom..(direction + 1) * freedom]);
+            rows.flat_map(of_declared).collect()
+        });
         rest.q.truncate(size);
         rest.free.truncate(size);
-        rest.freedom = size;
-        rest.directions = square(&rest.directions);
-        rest.matrices = rest.matrices.map(|of| square(&of));
-        let free = rest.free.iter().filter(|is_free| **is_free).count();
-        let [mass, damping, stiffness] = [0, 1, 2].map(|of| DMatrix::from_row_slice(size, size, &rest.matrices[of]));
+        rest.free_motions -= freedom - declared.len();
+        rest.freedom = declared.len();
+        let matrix = |of: usize| DMatrix::from_row_slice(rest.freedom, rest.freedom, &rest.matrices[of]);
+        let [mass, damping, stiffness] = [0, 1, 2].map(matrix);
         // Its rates follow from the matrices alone.
         let declared = Equilibrium::<1> {
             t,
             q: SVector::zeros(),
             multipliers: Vec::new(),
-            directions: DMatrix::identity(size, size),
+            directions: DMatrix::zeros(size, rest.freedom),
             mass,
             damping,
             stiffness,
-            free_motions: DMatrix::zeros(size, free),
+            free_motions: DMatrix::zeros(size, rest.free_motions),
             residual: rest.residual,
         };
         rest.rates = pairs(declared.rates()?);

@@ -41,6 +41,8 @@ pub struct Rest {
     pub matrices: [Vec<f64>; 3],
     /// For each coordinate, whether it changes along a motion along which the forces do not.
     pub free: Vec<bool>,
+    /// Number of independent such motions.
+    pub free_motions: usize,
     /// Largest unbalanced force, in roundings.
     pub residual: f64,
     /// Real and imaginary part of each rate of small motions.
@@ -58,6 +60,7 @@ impl Rest {
             directions: rows(&of.directions),
             matrices: [&of.mass, &of.damping, &of.stiffness].map(rows),
             free: of.free().to_vec(),
+            free_motions: of.free_motions.ncols(),
             residual: of.residual,
             rates: pairs(of.rates()?),
         })

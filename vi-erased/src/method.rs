@@ -313,12 +313,8 @@ impl<S: Runnable<N>, const N: usize> Method<S, N> for AnyMethod<S, N> {
         memory.0.discrete_energy(system, node, h)
     }
 
-    fn check(&self, memory: &Self::Memory, h: f64, t: f64) -> Result<(), StepError> {
-        memory.0.check(h, t)
-    }
-
-    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
-        self.0.check_node(system, node)
+    fn check(&self, system: &S, (node, memory): (&Node<N>, &Self::Memory), h: f64) -> Result<(), StepError> {
+        memory.0.check(system, node, h)
     }
 }
 

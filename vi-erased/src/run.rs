@@ -85,7 +85,7 @@ fn at_constraints<S: Runnable<N>, const N: usize>(system: &S, state: &State<N>) 
     }
     let reactions = match state.reaction(system) {
         Ok(reactions) => reactions.as_ref().iter().copied().map(Some).collect(),
-        Err(_) => vec![None; S::CONSTRAINTS.len()],
+        Err(_) => vec![None; system.constraint_names().len()],
     };
     let residual = state.velocity(system).ok().map(|v| {
         let mut residuals = Vec::new();

@@ -45,6 +45,14 @@ pub enum Quantity {
     Residuals,
 }
 
+impl Quantity {
+    /// Whether it has one number for each coordinate.
+    pub(crate) fn has_coordinates(self) -> bool {
+        use Quantity::{Acceleration, ExtendedAcceleration, Force, Momentum, ReactionForce, Velocity};
+        matches!(self, Momentum | Force | Acceleration | ExtendedAcceleration | Velocity | ReactionForce)
+    }
+}
+
 /// A point on the constraints, and how far it is from the given one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OnConstraints {
@@ -212,7 +220,7 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
         let has_method = self.integrators.iter().any(|integrator| integrator.built.0 == wanted.0);
         found.ok_or(match wanted {
             // Methods that keep constraints have stages.
-            (_, stages, _) if !S::CONSTRAINTS.is_empty() && (!has_method || stages.is_none()) => {
+            (_, stages, _) if !self.system.constraint_names().is_empty() && (!has_method || stages.is_none()) => {
                 StepError::HasConstraints { system: self.system.name() }
             }
             (.., true) if !self.system.scales_time() => StepError::NoTimeScale { system: self.system.name() },
@@ -262,7 +270,7 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
     }
 
     fn constraints(&self) -> &'static [&'static str] {
-        S::CONSTRAINTS
+        self.system.constraint_names()
     }
 
     fn parameters(&self) -> Vec<(&'static str, f64)> {
@@ -346,7 +354,12 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
             Some(p) => State { t: plan.t, q, p: vector(p, "number of momenta")? },
             None => State::at(&self.system, plan.t, q, vector::<N>(&plan.v, "number of velocities")?),
         };
-        (self.integrator(plan.wanted(!S::CONSTRAINTS.is_empty()))?.begin)(self.system, plan, state, goes_on)
+        (self.integrator(plan.wanted(!self.system.constraint_names().is_empty()))?.begin)(
+            self.system,
+            plan,
+            state,
+            goes_on,
+        )
     }
 
     #[cfg(feature = "checkpoints")]

@@ -52,7 +52,7 @@ pub fn constraints<const N: usize, S: MotionChecked<N>>(system: &S, place: &Plac
         let v = state.velocity(system).map_err(|error| check.step(error))?;
         let values = system.constraints(state.t, &state.q);
         let (rows, rates) = system.constraint_gradients(state.t, &state.q);
-        for (r, name) in S::CONSTRAINTS.iter().enumerate() {
+        for (r, name) in system.constraint_names().iter().enumerate() {
             let (row, rate) = (rows.row(r), rates.as_ref()[r]);
             let of_velocity = (row.dot(&v) + rate, row.terms(&v) + rate.abs());
             let of_place = (values.as_ref()[r], row.terms(&state.q) + (rate * state.t).abs());
@@ -81,7 +81,7 @@ fn gradients<const N: usize, S: MotionChecked<N>>(
     let by_q: [_; N] = array::from_fn(|j| along(&place, &unit(j)));
     let values = by_q.map(|q| dual.constraints(Dual::fixed(time), &q));
     let of_time = dual.constraints(Dual::variable(time), &lift(&place));
-    for r in 0..S::HOLONOMIC {
+    for r in 0..system.holonomic() {
         let wanted = SVector::from_fn(|j, _| values[j].as_ref()[r].slope);
         check.vector("gradient", &vector_of::<N>(&found.row(r).dense(), &again.row(r).dense()), &wanted)?;
         check.number("rate", again_rates.as_ref()[r].of(found_rates.as_ref()[r]), of_time.as_ref()[r].slope)?;
@@ -98,10 +98,10 @@ fn gradients<const N: usize, S: MotionChecked<N>>(
     let of_place = by_q.map(|q| rates(Dual::fixed(time), &q));
     let of_time = rates(Dual::variable(time), &lift(&place));
     // Nonholonomic gradients are given by their rates: those of velocities.
-    for r in 0..S::CONSTRAINTS.len() {
+    for r in 0..system.constraint_names().len() {
         let wanted = SVector::from_fn(|j, _| of_place[j].as_ref()[r].slope);
         let found = vector_of::<N>(&found.row(r).dense(), &again.row(r).dense());
-        check.vector(if r < S::HOLONOMIC { "derivative of a rate" } else { "gradient" }, &found, &wanted)?;
+        check.vector(if r < system.holonomic() { "derivative of a rate" } else { "gradient" }, &found, &wanted)?;
         let found = again_rates.as_ref()[r].of(found_rates.as_ref()[r]);
         check.number("change of a rate with time", found, of_time.as_ref()[r].slope)?;
     }
@@ -143,11 +143,11 @@ pub fn reaction<const N: usize, S: MotionChecked<N>>(system: &S, place: &Place<N
         let (bounded, dual, second) =
             (system.convert::<Bounded>(), system.convert::<First>(), system.convert::<Second>());
         let (time, place, velocity) = (Bounded::exact(t), exact(&q), exact(&v));
-        let found = accelerations(&system, (t, &q, &v), &mut bordered::<S, N, f64>());
+        let found = accelerations(&system, (t, &q, &v), &mut bordered(&system));
         let (a, multipliers) = found.map_err(|error| check.step(error))?;
-        let again = accelerations(&bounded, (time, &place, &velocity), &mut bordered::<S::In<Bounded>, N, Bounded>());
+        let again = accelerations(&bounded, (time, &place, &velocity), &mut bordered(&bounded));
         let (bounds, again) = again.map_err(|error| check.step(error))?;
-        let unknowns = N + S::CONSTRAINTS.len();
+        let unknowns = N + system.constraint_names().len();
         let a = SVector::from_vec(solution(a.as_slice(), bounds.as_slice(), unknowns));
         let multipliers = solution(multipliers.as_ref(), again.as_ref(), unknowns);
         let (moving, changing) = (along(&place, &velocity), along(&velocity, &a));

@@ -92,7 +92,7 @@ pub fn gauss_symplecticity<const N: usize, S: MotionChecked<N>>(
     if system.is_forced() {
         return Err(check.not_applicable("a system with a force does not preserve the symplectic form"));
     }
-    if S::HOLONOMIC < S::CONSTRAINTS.len() {
+    if system.holonomic() < system.constraint_names().len() {
         return Err(check.not_applicable("a constraint on velocities does not preserve the symplectic form"));
     }
     let place = &placed(system, place, &check)?;
@@ -115,7 +115,7 @@ fn impulses<const N: usize, S: MotionChecked<N>>(
     if const { S::Kind::COUNT == 0 } {
         return Ok(Vec::new());
     }
-    let (_, multipliers) = accelerations(system, (*t, q, v), &mut bordered::<S, N, f64>())?;
+    let (_, multipliers) = accelerations(system, (*t, q, v), &mut bordered(system))?;
     Ok(multipliers.as_ref().iter().map(|multiplier| multiplier * h / 2.0).collect())
 }
 

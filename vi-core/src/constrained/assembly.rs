@@ -104,7 +104,8 @@ impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
         let (t, q, _) = place;
         let weights = weights(&self.metric(place).diagonal());
         let fixed = self.fixed(&self.gradients(t, q).0);
-        let rows: Vec<usize> = (0..S::HOLONOMIC).filter(|r| !fixed[*r] && !self.system.is_dropped(*r)).collect();
+        let rows: Vec<usize> =
+            (0..self.system.holonomic()).filter(|r| !fixed[*r] && !self.system.is_dropped(*r)).collect();
         // g, and A over the weights.
         let at = |x: &SVector<f64, N>| {
             let (values, gradients) = (self.system.constraints(t, x), self.gradients(t, x).0);
@@ -158,13 +159,13 @@ impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
     pub(super) fn open(&self, t: f64, x: &SVector<f64, N>, passed: f64) -> StepError {
         let values = self.system.constraints(t, x);
         let (gradients, _) = self.system.constraint_gradients(t, x);
-        let gaps = values.as_ref().iter().zip(gradients.rows()).take(S::HOLONOMIC);
+        let gaps = values.as_ref().iter().zip(gradients.rows()).take(self.system.holonomic());
         let gaps = gaps.map(|(value, gradient)| match gradient.dense::<N>().norm() {
             length if length > 0.0 => value.abs() / length,
             _ => value.abs(),
         });
         let (worst, gap) = gaps.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b)).unwrap_or((0, 0.0));
-        let (constraint, residual) = (S::CONSTRAINTS[worst], values.as_ref()[worst]);
+        let (constraint, residual) = (self.system.constraint_names()[worst], values.as_ref()[worst]);
         StepError::NotAssembled { t, constraint, residual, gap, passed }
     }
 }

@@ -37,7 +37,7 @@ where
     S: Convertible<N>,
 {
     let of = (node, h, sign);
-    let reduced = workspace.reduced.as_mut().filter(|_| S::POINT_MASSES && sign > 0);
+    let reduced = workspace.reduced.as_mut().filter(|_| system.has_point_masses() && sign > 0);
     let solved = reduced.and_then(|reduced| reduced::step(system, (node, h, is_next), u, reduced));
     if let Some((solved, contraction)) = solved {
         if contraction <= FAST {
@@ -167,7 +167,7 @@ where
 
     fn short(&mut self, part: f64) -> Option<Unknowns> {
         let of = (self.node, self.h * part, &self.v);
-        let guess = from_node::<S, N, STAGES>(self.system, of, &mut bordered::<S, N, f64>()).ok()?;
+        let guess = from_node::<S, N, STAGES>(self.system, of, &mut bordered(self.system)).ok()?;
         let step = self.solved(part, guess)?;
         let is_resolved = || is_resolved(&velocities::<N, STAGES>(&step.unknowns), &self.weights);
         (step.contraction <= FAST || is_resolved()).then_some(step)

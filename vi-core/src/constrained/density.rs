@@ -44,7 +44,7 @@ where
     let t = Series::variable(state.t);
     let q_start = state.q.map(Series::fixed);
     let v_start = state.velocity(system)?.map(Series::fixed);
-    let bordered = &mut bordered::<S::In<Series>, N, Series>();
+    let bordered = &mut bordered(&series);
     let (mut q, mut v) = (q_start, v_start);
     let (mut a, mut multipliers) = accelerations(&series, (t, &q, &v), bordered)?;
     // Each integration adds one correct term; v is then known to the term s, Λ to the term s − 1.
@@ -62,9 +62,9 @@ where
 
     let values = series.constraints(t, &q);
     let (gradients, rates) = series.constraint_gradients(t, &q);
-    let of_constraints = (0..S::CONSTRAINTS.len()).fold(0.0, |sum, r| {
+    let of_constraints = (0..system.constraint_names().len()).fold(0.0, |sum, r| {
         let multiplier = multipliers.as_ref()[r];
-        sum + if r < S::HOLONOMIC {
+        sum + if r < system.holonomic() {
             real(stages + 1) / real(stages) * (multiplier * values.as_ref()[r]).derivative(2 * stages)
         } else {
             let rate = gradients.row(r).dot(&v) + rates.as_ref()[r];

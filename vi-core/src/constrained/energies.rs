@@ -44,7 +44,8 @@ pub(crate) fn energies<S: Motion<N, T>, const N: usize, const STAGES: usize, T: 
     }
     for j in 0..STAGES {
         let (c, (t, q)) = if j == 0 { (0.0, &(node.t, node.q)) } else { (lobatto.c[j - 1], &nodes[j - 1]) };
-        let work = -power_of::<S, N, T>(system, (*t, q), impulses::<N, STAGES, T>(u, S::CONSTRAINTS.len(), j));
+        let work =
+            -power_of::<S, N, T>(system, (*t, q), impulses::<N, STAGES, T>(u, system.constraint_names().len(), j));
         done += work * T::real(c);
         left += work * T::real(1.0 - c);
         size += work.abs();

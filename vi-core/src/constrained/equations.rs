@@ -116,7 +116,7 @@ impl<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, S
         u: &[T],
     ) -> Self {
         let Tableau { b, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
-        let constraints = S::CONSTRAINTS.len();
+        let constraints = system.constraint_names().len();
         let zeros = SVector::<T, N>::zeros();
         let abs = |vector: SVector<T, N>| vector.map(T::abs);
         let v: [SVector<T, N>; STAGES] = core::array::from_fn(|i| stage_velocity(u, i));
@@ -160,7 +160,7 @@ impl<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, S
                     _ => sum,
                 })
             };
-            for r in 0..S::HOLONOMIC {
+            for r in 0..system.holonomic() {
                 if system.is_dropped(r) {
                     (residual[r], scale[r]) = (own[r], own[r].abs());
                     continue;
@@ -169,11 +169,11 @@ impl<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, S
                 residual[r] = values.as_ref()[r] / h;
                 scale[r] = row.terms(q) / h.abs() + rates.as_ref()[r].abs() + of_momentum(row);
             }
-            if S::HOLONOMIC == constraints {
+            if system.holonomic() == constraints {
                 continue;
             }
             let (gradients, rates) = system.constraint_gradients(stages[i].0, &stages[i].1);
-            for r in S::HOLONOMIC..constraints {
+            for r in system.holonomic()..constraints {
                 if system.is_dropped(r) {
                     (residual[r], scale[r]) = (own[r], own[r].abs());
                     continue;
@@ -265,7 +265,7 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
     pub(crate) fn jacobian(&self, system: &S, h: f64, u: &[f64], jacobian: &mut Fronts) {
         let Tableau { b, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
         let lobatto = const { &Lobatto::<STAGES>::VALUES };
-        let constraints = S::CONSTRAINTS.len();
+        let constraints = system.constraint_names().len();
         let weights = b.map(|b| h * b);
         scale(jacobian.scales(), self.mass.iter().copied(), self.first.rows());
         for i in 0..STAGES {
@@ -298,7 +298,7 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
                     }
                 }
             });
-            for r in 0..S::HOLONOMIC {
+            for r in 0..system.holonomic() {
                 for (column, slope) in self.gradients[i].row(r).iter() {
                     let entry = jacobian.entry(N + r, column);
                     for k in 0..STAGES {
@@ -306,10 +306,10 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
                     }
                 }
             }
-            if S::HOLONOMIC < constraints {
+            if system.holonomic() < constraints {
                 let (gradients, _) = system.constraint_gradients(*t, q);
                 let (rates_dq, _) = system.constraint_rate_derivatives(*t, q, &v);
-                for r in S::HOLONOMIC..constraints {
+                for r in system.holonomic()..constraints {
                     for (column, slope) in gradients.row(r).iter() {
                         let entry = jacobian.entry(N + r, column);
                         jacobian.add(entry, [i, i], slope);
@@ -349,7 +349,7 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
         }
         let (t, q) = &self.nodes[j - 1];
         let mut multipliers = self.constraint[0];
-        let of_node = impulses::<N, STAGES, f64>(u, S::CONSTRAINTS.len(), j);
+        let of_node = impulses::<N, STAGES, f64>(u, system.constraint_names().len(), j);
         multipliers.as_mut().copy_from_slice(of_node);
         let derivatives = system.reaction_derivatives(*t, q, &multipliers);
         for (row, entries) in derivatives.rows().enumerate() {
@@ -409,7 +409,8 @@ pub(crate) fn discrete_energy<S: Motion<N>, const N: usize, const STAGES: usize>
     });
     (0..STAGES).fold(of_stages, |sum, i| {
         let (_, rates) = system.constraint_gradients(nodes[i].0, &nodes[i].1);
-        let impulse = if i + 1 == STAGES { mu } else { impulses::<N, STAGES, f64>(u, S::CONSTRAINTS.len(), i + 1) };
+        let impulse =
+            if i + 1 == STAGES { mu } else { impulses::<N, STAGES, f64>(u, system.constraint_names().len(), i + 1) };
         let c = if i + 1 == STAGES { 1.0 } else { lobatto.c[i] };
         sum - c * rates.as_ref().iter().zip(impulse).map(|(rate, impulse)| rate * impulse).sum::<f64>()
     })

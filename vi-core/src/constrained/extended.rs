@@ -25,7 +25,7 @@ impl<const N: usize, T: Real, S: Motion<N, T>> Lagrangian<N, T> for Extended<S> 
         if const { S::Kind::COUNT == 0 } {
             return self.0.acceleration(t, q, v);
         }
-        accelerations(&self.0, (t, q, v), &mut bordered::<S, N, T>()).map(|(acceleration, _)| acceleration)
+        accelerations(&self.0, (t, q, v), &mut bordered(&self.0)).map(|(acceleration, _)| acceleration)
     }
 
     fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {

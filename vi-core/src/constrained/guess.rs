@@ -91,7 +91,7 @@ pub(crate) fn from_node<S: Motion<N>, const N: usize, const STAGES: usize>(
 ) -> Result<Vec<f64>, StepError> {
     let (acceleration, multipliers) = accelerations(system, (node.t, &node.q, v), bordered)?;
     // Room for the length of the step.
-    let mut guess = Vec::with_capacity(unknowns::<N, STAGES>(S::CONSTRAINTS.len()) + 1);
+    let mut guess = Vec::with_capacity(unknowns::<N, STAGES>(system.constraint_names().len()) + 1);
     for c in const { Tableau::<STAGES>::VALUES.c } {
         guess.extend((v + acceleration * (h * c)).iter());
     }

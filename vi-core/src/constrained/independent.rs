@@ -44,7 +44,7 @@ impl<S> Independent<S> {
     where
         S: Motion<N>,
     {
-        let of = S::CONSTRAINTS.len();
+        let of = system.constraint_names().len();
         if of > 64 * WORDS {
             #[allow(clippy::cast_precision_loss)] // for the message
             let value = of as f64;
@@ -56,7 +56,7 @@ impl<S> Independent<S> {
         Node::new(State { t, q, p: rest }, 0.0).check_finite(0.0)?;
         let mass = system.point(t, &q, &rest).mass;
         let (gradients, _) = system.constraint_gradients(t, &q);
-        let is_regular = Bordered::new(N, 0, S::BLOCKS).factor(&mass, &gradients).is_ok();
+        let is_regular = Bordered::new(N, 0, system.blocks()).factor(&mass, &gradients).is_ok();
         let all: Vec<usize> = (0..of).collect();
         let kept = independent_rows(&gradients, &all, &mass, is_regular);
         let mut dropped = [0; WORDS];
@@ -81,7 +81,7 @@ impl<S> Independent<S> {
     where
         S: Motion<N>,
     {
-        let names = S::CONSTRAINTS.iter().enumerate();
+        let names = self.system.constraint_names().iter().enumerate();
         names.filter(|(constraint, _)| self.is_dropped(*constraint)).map(|(_, name)| *name)
     }
 
@@ -95,7 +95,10 @@ impl<S> Independent<S> {
         S: Motion<N>,
     {
         let v = state.velocity(self)?;
-        Ok(self.measured(state.t, &state.q, &v).map(|(r, value, _)| (S::CONSTRAINTS[r], value)).collect())
+        Ok(self
+            .measured(state.t, &state.q, &v)
+            .map(|(r, value, _)| (self.system.constraint_names()[r], value))
+            .collect())
     }
 
     /// Index, value and terms of each dropped constraint.
@@ -110,10 +113,10 @@ impl<S> Independent<S> {
     {
         let values = self.system.constraints(t, q);
         let (gradients, rates) = self.system.constraint_gradients(t, q);
-        let dropped = (0..S::CONSTRAINTS.len()).filter(|r| self.is_dropped(*r));
+        let dropped = (0..self.system.constraint_names().len()).filter(|r| self.is_dropped(*r));
         let measured = dropped.map(move |r| {
             let (gradient, rate) = (gradients.row(r), rates.as_ref()[r]);
-            if r < S::HOLONOMIC {
+            if r < self.system.holonomic() {
                 (r, values.as_ref()[r], gradient.terms(q) + (rate * t).abs())
             } else {
                 (r, gradient.dot(v) + rate, gradient.terms(v) + rate.abs())
@@ -130,7 +133,7 @@ impl<S> Independent<S> {
     where
         S: Motion<N, T>,
     {
-        for r in (0..S::CONSTRAINTS.len()).filter(|r| self.is_dropped(*r)) {
+        for r in (0..self.system.constraint_names().len()).filter(|r| self.is_dropped(*r)) {
             rows.0.row_mut(r).1.fill(T::zero());
             rows.1.as_mut()[r] = T::zero();
         }
@@ -172,7 +175,7 @@ impl<const N: usize, T: Real, S: Motion<N, T>> Motion<N, T> for Independent<S> {
         multipliers: &Multipliers<Self, N, T>,
     ) -> ReactionMatrix<Self, N, T> {
         let mut kept = *multipliers;
-        for r in (0..S::CONSTRAINTS.len()).filter(|r| self.is_dropped(*r)) {
+        for r in (0..self.system.constraint_names().len()).filter(|r| self.is_dropped(*r)) {
             kept.as_mut()[r] = T::zero();
         }
         self.system.reaction_derivatives(t, q, &kept)

@@ -95,7 +95,7 @@ where
         beside: Option<&TriedLength<N, STAGES, Multipliers<S, N>>>,
         u: &mut Vec<f64>,
     ) {
-        let count = unknowns::<N, STAGES>(S::CONSTRAINTS.len());
+        let count = unknowns::<N, STAGES>(self.system.constraint_names().len());
         let of = if let Some(other) = beside {
             other.write(u);
             other.h
@@ -125,7 +125,7 @@ where
         let (workspace, of) = (&mut **workspace.borrow_mut(), (node, h, *sign));
         connected::unprojected::<S, N, STAGES>(system, of, u, workspace, is_factored).or_else(|left| {
             let flow = node.state().raw_flow(*system).map_err(|_| left)?;
-            let bordered = &mut bordered::<S, N, f64>();
+            let bordered = &mut bordered(system);
             *u = from_node::<S, N, STAGES>(system, (node, h, &flow.v), bordered).map_err(|_| left)?;
             connected::unprojected::<S, N, STAGES>(system, of, u, workspace, false).map_err(|_| left)
         })
@@ -149,7 +149,7 @@ where
             v: core::array::from_fn(|i| stage_velocity(u, i)),
             lambda: core::array::from_fn(|j| {
                 let mut lambda = any;
-                lambda.as_mut().copy_from_slice(impulses::<N, STAGES, f64>(u, S::CONSTRAINTS.len(), j));
+                lambda.as_mut().copy_from_slice(impulses::<N, STAGES, f64>(u, self.system.constraint_names().len(), j));
                 lambda
             }),
             of_rows: solution.residual,

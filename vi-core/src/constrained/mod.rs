@@ -67,8 +67,8 @@ use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
 /// The bordered mass matrix of a system, in its blocks.
-pub(crate) fn bordered<S: Motion<N, T>, const N: usize, T: Real>() -> Bordered<T> {
-    Bordered::new(N, S::CONSTRAINTS.len(), S::BLOCKS)
+pub(crate) fn bordered<S: Motion<N, T>, const N: usize, T: Real>(system: &S) -> Bordered<T> {
+    Bordered::new(N, system.constraint_names().len(), system.blocks())
 }
 
 /// Factors the mass matrix bordered by gradients, without dropped constraints.

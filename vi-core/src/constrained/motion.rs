@@ -174,7 +174,7 @@ pub fn constrained_acceleration<S: Motion<N, T>, const N: usize, T: Real>(
     v: &SVector<T, N>,
 ) -> Result<SVector<T, N>, StepError> {
     satisfied(system, (t, q, v))?;
-    accelerations(system, (t, q, v), &mut bordered::<S, N, T>()).map(|(acceleration, _)| acceleration)
+    accelerations(system, (t, q, v), &mut bordered(system)).map(|(acceleration, _)| acceleration)
 }
 
 /// Checks that a point satisfies the constraints. Points that are not finite pass: their acceleration is not finite.
@@ -197,7 +197,7 @@ fn satisfied<S: Motion<N, T>, const N: usize, T: Real>(
     let values = system.constraints(t, q);
     let (gradients, offsets) = system.constraint_gradients(t, q);
     let is_off = |value: T, terms: T| value.to_f64().abs() > SATISFIED * terms.to_f64();
-    for (r, constraint) in S::CONSTRAINTS.iter().enumerate().filter(|(r, _)| !system.is_dropped(*r)) {
+    for (r, constraint) in system.constraint_names().iter().enumerate().filter(|(r, _)| !system.is_dropped(*r)) {
         let (value, offset, row) = (values.as_ref()[r], offsets.as_ref()[r], gradients.row(r));
         let rate = row.dot(v) + offset;
         let of_value = row.terms(&sizes) + (offset * t).abs();
@@ -210,7 +210,7 @@ fn satisfied<S: Motion<N, T>, const N: usize, T: Real>(
     match system.broken(t, q, v) {
         Some((r, residual)) if residual.is_finite() => {
             let (t, residual) = (t.to_f64(), residual.to_f64());
-            Err(StepError::DroppedConstraint { t, constraint: S::CONSTRAINTS[r], residual })
+            Err(StepError::DroppedConstraint { t, constraint: system.constraint_names()[r], residual })
         }
         _ => Ok(()),
     }
@@ -228,7 +228,7 @@ pub fn constrained_flow<S: Motion<N, T>, const N: usize, T: Real>(
     q: &SVector<T, N>,
     p: &SVector<T, N>,
 ) -> Result<Flow<N, T>, StepError> {
-    let bordered = &mut bordered::<S, N, T>();
+    let bordered = &mut bordered(system);
     let Velocity { v, .. } = from_rest(system, (t, q, p), bordered)?;
     let (_, multipliers) = accelerations(system, (t, q, &v), bordered)?;
     let (gradients, offsets) = system.constraint_gradients(t, q);
@@ -262,7 +262,7 @@ impl<const N: usize, T: Scalar> State<N, T> {
     /// As [`State::velocity`]; [`StepError::Singular`] if the constraints are redundant here.
     pub fn reaction<S: Motion<N, T>>(&self, system: &S) -> Result<Multipliers<S, N, T>, StepError> {
         let node = Node::new(*self, T::zero());
-        let bordered = &mut bordered::<S, N, T>();
+        let bordered = &mut bordered(system);
         let found = node.check_finite(T::zero()).and_then(|()| from_rest(system, (self.t, &self.q, &self.p), bordered));
         let found = found.and_then(|Velocity { v, .. }| accelerations(system, (self.t, &self.q, &v), bordered));
         found.map(|(_, multipliers)| multipliers).map_err(|failure| failure.explained_at(system, &node, T::zero()))

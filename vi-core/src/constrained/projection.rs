@@ -136,7 +136,7 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
     pub(super) fn fixed(&self, gradients: &Gradients<S, N>) -> Vec<bool> {
         let is_zero = |r: usize| gradients.row(r).iter().all(|(_, entry)| entry == 0.0);
         let is_fixed = |r: usize| self.held.contains(&true) && !self.system.is_dropped(r) && is_zero(r);
-        (0..S::CONSTRAINTS.len()).map(is_fixed).collect()
+        (0..self.system.constraint_names().len()).map(is_fixed).collect()
     }
 
     /// Factors the mass matrix bordered by gradients, without dropped and fixed constraints.
@@ -163,13 +163,13 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
     pub(super) fn metric(&self, (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>)) -> SMatrix<f64, N, N> {
         let mass = self.mass(t, q, v);
         let (gradients, _) = self.gradients(t, q);
-        with_idle(&mass, &gradients, S::HOLONOMIC).unwrap_or(mass)
+        with_idle(&mass, &gradients, self.system.holonomic()).unwrap_or(mass)
     }
 
     /// A and a, without gradients along held coordinates.
     pub(super) fn gradients(&self, t: f64, q: &SVector<f64, N>) -> (Gradients<S, N>, Multipliers<S, N>) {
         let (mut gradients, rates) = self.system.constraint_gradients(t, q);
-        for r in 0..S::CONSTRAINTS.len() {
+        for r in 0..self.system.constraint_names().len() {
             let (columns, values) = gradients.row_mut(r);
             for (column, value) in columns.iter().zip(values) {
                 if self.held[*column] {
@@ -188,7 +188,7 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
         v: &SVector<f64, N>,
     ) -> Result<Projected<N>, StepError> {
         let system = self.system;
-        let bordered = &mut Bordered::new(N, S::CONSTRAINTS.len(), &[]);
+        let bordered = &mut Bordered::new(N, system.constraint_names().len(), &[]);
         let (gradients, _) = self.gradients(t, x);
         let fixed = self.fixed(&gradients);
         self.border(bordered, (&self.mass(t, x, v), &gradients, &fixed), t)?;
@@ -197,7 +197,7 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
         for (r, rate) in rates.as_ref().iter().enumerate().filter(|(r, _)| fixed[*r]) {
             let (row, value) = (all.row(r), all.row(r).dot(v) + rate);
             if roundings(value, row.terms(v) + rate.abs()) > CONSISTENT {
-                let constraint = S::CONSTRAINTS[r];
+                let constraint = system.constraint_names()[r];
                 return Err(StepError::InconsistentStart { constraint, residual: 0.0, rate: value });
             }
         }
@@ -229,13 +229,13 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
         let mut last = f64::INFINITY;
         for _ in 0..SLIDES {
             // The move to q without its parts across the constraints.
-            let bordered = &mut Bordered::new(N, S::HOLONOMIC, &[]);
+            let bordered = &mut Bordered::new(N, self.system.holonomic(), &[]);
             let (gradients, _) = self.gradients(t, &x);
             self.border(bordered, (&mass, &gradients, &self.fixed(&gradients)), t).ok()?;
             let mut along = mass * (q - x);
             let mut none = self.system.constraints(t, &x);
             none.as_mut().fill(0.0);
-            bordered.solve(&mut along, &mut none.as_mut()[..S::HOLONOMIC]);
+            bordered.solve(&mut along, &mut none.as_mut()[..self.system.holonomic()]);
             let length = along.component_mul(&weights).norm();
             let size = (x.abs() + q.abs()).component_mul(&weights).norm();
             if length <= SETTLED * size {
@@ -267,7 +267,7 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
         from: &SVector<f64, N>,
         target: Option<&Multipliers<S, N>>,
     ) -> Result<Option<SVector<f64, N>>, StepError> {
-        let (system, holonomic) = (self.system, S::HOLONOMIC);
+        let (system, holonomic) = (self.system, self.system.holonomic());
         let mass = self.metric((t, q, v));
         let weights = weights(&mass.diagonal());
         let [_, positions] = spread(&mass, q, &SVector::zeros());

@@ -204,8 +204,8 @@ impl Schur {
 impl Reduced {
     /// Allocates; `None` if the system needs the general solver.
     pub(crate) fn new<S: Motion<N>, const N: usize>(system: &S, node: &Node<N>) -> Option<Self> {
-        let count = S::CONSTRAINTS.len();
-        if !S::POINT_MASSES || S::HOLONOMIC < count {
+        let count = system.constraint_names().len();
+        if !system.has_point_masses() || system.holonomic() < count {
             return None;
         }
         let (gradients, _) = system.constraint_gradients(node.t, &node.q);

@@ -150,7 +150,8 @@ fn sign_of_short_steps<S: Motion<N>, const N: usize, const STAGES: usize>(
     sign: i8,
     workspace: &Workspace,
 ) -> i8 {
-    let kept = [S::HOLONOMIC, S::CONSTRAINTS.len()].map(|count| (0..count).filter(|r| !system.is_dropped(*r)).count());
+    let kept = [system.holonomic(), system.constraint_names().len()]
+        .map(|count| (0..count).filter(|r| !system.is_dropped(*r)).count());
     expected_sign(workspace.signs, (sign, STAGES), kept)
 }
 
@@ -184,7 +185,7 @@ where
     let projected = velocity(system, (t, &q, &p), &stage_velocity(u, STAGES - 1), &mut workspace.bordered)?;
     let Velocity { v, momentum, mut mu, residual: of_velocity } = projected;
     if let Some((constraint, residual)) = system.broken(t, &q, &v) {
-        let constraint = S::CONSTRAINTS[constraint];
+        let constraint = system.constraint_names()[constraint];
         return Err(StepError::DroppedConstraint { t, constraint, residual });
     }
     if workspace.bordered.determinant_sign() != sign {
@@ -214,19 +215,19 @@ where
 
 impl Workspace {
     /// Allocates for the steps of a system.
-    pub(crate) fn new<S: Motion<N>, const N: usize, const STAGES: usize>() -> Self {
-        let constraints = S::CONSTRAINTS.len();
+    pub(crate) fn new<S: Motion<N>, const N: usize, const STAGES: usize>(system: &S) -> Self {
+        let constraints = system.constraint_names().len();
         let unknowns = unknowns::<N, STAGES>(constraints);
         Self {
             sizes: [N, constraints, STAGES],
             signs: signs::<STAGES>(),
-            jacobian: Factored::new(S::BLOCKS, N + constraints, STAGES),
+            jacobian: Factored::new(system.blocks(), N + constraints, STAGES),
             reduced: None,
             eliminated: vec![0.0; unknowns],
             correction: vec![0.0; unknowns],
             behind: vec![0.0; unknowns],
             trial: vec![0.0; unknowns],
-            bordered: bordered::<S, N, f64>(),
+            bordered: bordered(system),
             unknowns: vec![0.0; unknowns],
         }
     }
@@ -234,7 +235,7 @@ impl Workspace {
     /// The same for fixed steps from a node on, in the impulses alone if the system has such steps.
     pub(crate) fn of_steps<S: Motion<N>, const N: usize, const STAGES: usize>(system: &S, node: &Node<N>) -> Self {
         let reduced = if STAGES == 1 { Reduced::new(system, node).map(Box::new) } else { None };
-        Self { reduced, ..Self::new::<S, N, STAGES>() }
+        Self { reduced, ..Self::new::<S, N, STAGES>(system) }
     }
 
     /// Factors the Jacobian at u, and returns the sign of its determinant.

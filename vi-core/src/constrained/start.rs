@@ -42,14 +42,14 @@ where
     let v = found.as_ref().map_or(SVector::zeros(), |found| found.v);
     let mass = system.point(*t, q, &v).mass;
     // The name of a redundant constraint says more than a singular matrix.
-    let inverse = &mut Bordered::new(N, 0, S::BLOCKS);
+    let inverse = &mut Bordered::new(N, 0, system.blocks());
     let is_regular = inverse.factor(&mass, &gradients).is_ok();
-    let given: Vec<usize> = (0..S::CONSTRAINTS.len()).filter(|r| !system.is_dropped(*r)).collect();
+    let given: Vec<usize> = (0..system.constraint_names().len()).filter(|r| !system.is_dropped(*r)).collect();
     let kept = independent_rows(&gradients, &given, &mass, is_regular);
     if kept.len() < given.len() {
         // The last declared of those that follow from the others.
         let last = (0..given.len()).rfind(|index| !kept.contains(index)).unwrap_or(0);
-        let (constraint, of, rank) = (S::CONSTRAINTS[given[last]], given.len(), kept.len());
+        let (constraint, of, rank) = (system.constraint_names()[given[last]], given.len(), kept.len());
         return Err(StepError::Redundant { constraint, of, rank });
     }
     let Velocity { mu, .. } = found?;
@@ -69,10 +69,10 @@ where
     let (gradients, mut none) = system.constraint_gradients(*t, q);
     none.as_mut().fill(0.0);
     // Without a velocity the next step fails; the coordinates are measured all the same.
-    let found = from_rest(system, (*t, q, p), &mut bordered::<S, N, f64>());
+    let found = from_rest(system, (*t, q, p), &mut bordered(system));
     let (v, mu) = found.map_or((SVector::zeros(), none), |Velocity { v, mu, .. }| (v, mu));
     let mass = system.point(*t, q, &v).mass;
-    let inverse = &mut Bordered::new(N, 0, S::BLOCKS);
+    let inverse = &mut Bordered::new(N, 0, system.blocks());
     let is_regular = inverse.factor(&mass, &gradients).is_ok();
     consistent(system, node, (&v, &mu), (&mass, is_regular.then_some(inverse)), STORED)
 }
@@ -114,7 +114,7 @@ where
             uncertainty += column.abs();
         }
     }
-    for (r, constraint) in S::CONSTRAINTS.iter().enumerate().filter(|(r, _)| !system.is_dropped(*r)) {
+    for (r, constraint) in system.constraint_names().iter().enumerate().filter(|(r, _)| !system.is_dropped(*r)) {
         let value = values.as_ref()[r];
         let of_velocity = rounded_gradients.row(r).iter().map(|(column, entry)| entry * Rounded::nearest(v[column]));
         let bound = of_velocity.fold(offsets.as_ref()[r], |sum, term| sum + term).ulps();
@@ -129,7 +129,9 @@ where
         }
     }
     match system.broken(node.t, &node.q, v) {
-        Some((r, residual)) => Err(StepError::DroppedConstraint { t: node.t, constraint: S::CONSTRAINTS[r], residual }),
+        Some((r, residual)) => {
+            Err(StepError::DroppedConstraint { t: node.t, constraint: system.constraint_names()[r], residual })
+        }
         None => Ok(()),
     }
 }

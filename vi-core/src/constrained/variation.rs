@@ -52,12 +52,12 @@ pub(crate) fn vary<S, const N: usize, const STAGES: usize>(
 where
     S: Convertible<N>,
 {
-    let workspace = &mut Workspace::new::<S, N, STAGES>();
+    let workspace = &mut Workspace::new::<S, N, STAGES>(system);
     let rows = Rows::<S, N, STAGES>::at(system, before, h, u);
     workspace.factor(&rows, system, h, u);
     let (t, q) = rows.end();
     let p = before.p + (before.p_low + rows.increment);
-    let bordered = &mut bordered::<S, N, f64>();
+    let bordered = &mut bordered(system);
     let Velocity { v, .. } = velocity(system, (t, &q, &p), &stage_velocity(u, STAGES - 1), bordered)?;
     let gradients = rows.end_gradients();
     let factored = border(bordered, system, &system.point(t, &q, &v).mass, gradients);
@@ -147,14 +147,15 @@ where
     if variations.iter().any(|variation| variation.parameters.len() > system.parameters().len()) {
         return Err(more_parameters(t));
     }
-    let [full, holonomic] = &mut [S::CONSTRAINTS.len(), S::HOLONOMIC].map(|count| Bordered::new(N, count, S::BLOCKS));
+    let [full, holonomic] = &mut [system.constraint_names().len(), system.holonomic()]
+        .map(|count| Bordered::new(N, count, system.blocks()));
     let Velocity { v, .. } = from_rest(system, (t, &q, &p), full)?;
     let mass = system.point(t, &q, &v).mass;
     let (gradients, _) = system.constraint_gradients(t, &q);
     border(full, system, &mass, &gradients).map_err(|failure| unsolvable(failure, t))?;
-    let factored = match with_idle(&mass, &gradients, S::HOLONOMIC) {
+    let factored = match with_idle(&mass, &gradients, system.holonomic()) {
         Some(mass) => {
-            *holonomic = Bordered::new(N, S::HOLONOMIC, &[]);
+            *holonomic = Bordered::new(N, system.holonomic(), &[]);
             border(holonomic, system, &mass, &gradients)
         }
         None => border(holonomic, system, &mass, &gradients),
@@ -171,7 +172,7 @@ where
                 |(r, value): (usize, &Varied)| if system.is_dropped(r) { 0.0 } else { value.slope.0[direction] };
             let residuals: Vec<f64> = values.as_ref().iter().enumerate().map(residual).collect();
             let mut moved = SVector::zeros();
-            let mut multipliers: Vec<f64> = residuals[..S::HOLONOMIC].iter().map(|residual| -residual).collect();
+            let mut multipliers: Vec<f64> = residuals[..system.holonomic()].iter().map(|residual| -residual).collect();
             holonomic.solve(&mut moved, &mut multipliers);
             variation.q += moved;
             let (zeros, impulses) = (SVector::zeros(), Vec::new());
@@ -238,7 +239,8 @@ where
             if length > 0.0 { part } else { 0.0 }
         };
         let worst = (0..residuals.len()).max_by(|a, b| part(*a).total_cmp(&part(*b))).unwrap_or(0);
-        let (t, constraint, residual, impulse) = (node.t, S::CONSTRAINTS[worst], residuals[worst], impulses[worst]);
+        let (t, constraint, residual, impulse) =
+            (node.t, system.constraint_names()[worst], residuals[worst], impulses[worst]);
         return Err(StepError::InconsistentTangent { t, constraint, residual, impulse });
     }
     Ok(())
@@ -257,7 +259,7 @@ pub(crate) fn velocity_along<S, const N: usize>(
 where
     S: Convertible<N>,
 {
-    let bordered = &mut bordered::<S, N, f64>();
+    let bordered = &mut bordered(system);
     let (gradients, _) = system.constraint_gradients(state.t, &state.q);
     let factored = border(bordered, system, &system.point(state.t, &state.q, v).mass, &gradients);
     factored.map_err(|failure| unsolvable(failure, state.t))?;

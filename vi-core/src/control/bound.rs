@@ -35,7 +35,7 @@ pub(super) fn find<S: Convertible<N>, const N: usize>(
 ) -> Result<Equilibrium<N>, StepError> {
     let place = Projection::of(system).assembled(t, guess, [0.0; N])?;
     let (_, rates) = system.constraint_gradients(t, &place.state.q);
-    let moving = rates.as_ref().iter().zip(S::CONSTRAINTS).find(|(rate, _)| **rate != 0.0);
+    let moving = rates.as_ref().iter().zip(system.constraint_names()).find(|(rate, _)| **rate != 0.0);
     if let Some((rate, constraint)) = moving {
         return Err(StepError::InconsistentStart { constraint, residual: 0.0, rate: *rate });
     }
@@ -98,7 +98,7 @@ impl<S: Convertible<N>, const N: usize> Rest<'_, S, N> {
         let sizes = SVector::<f64, N>::repeat(of_guess.max(q.amax()));
         let mut residual = over.iter().fold(0.0, |worst, row| worse(*row, worst));
         for (r, value) in values.as_mut().iter_mut().enumerate() {
-            if r >= S::HOLONOMIC || system.is_dropped(r) {
+            if r >= system.holonomic() || system.is_dropped(r) {
                 *value = 0.0;
             }
             residual = worse(roundings(*value, gradients.row(r).terms(&sizes)), residual);
@@ -128,8 +128,8 @@ impl<S: Convertible<N>, const N: usize> Rest<'_, S, N> {
     /// Damped Newton iteration from a place on the constraints, with the multipliers of the motion from rest there.
     fn equilibrium(&self, q: SVector<f64, N>) -> Result<Equilibrium<N>, StepError> {
         let Self { system, t, .. } = *self;
-        let (_, multipliers) = accelerations(system, (t, &q, &SVector::zeros()), &mut bordered::<S, N, f64>())?;
-        let bordered = &mut Bordered::new(N, S::CONSTRAINTS.len(), &[]);
+        let (_, multipliers) = accelerations(system, (t, &q, &SVector::zeros()), &mut bordered(system))?;
+        let bordered = &mut Bordered::new(N, system.constraint_names().len(), &[]);
         let mut found = self.at(q, multipliers);
         for _ in 0..ITERATIONS {
             if found.residual.is_nan() {

@@ -44,7 +44,7 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Lyapunov<M, S, 
     /// [`StepError::InvalidInput`] unless `count` is 1 to 2N, less 2 for each holonomic and 1 for each nonholonomic
     /// constraint.
     pub fn new(run: Run<M, S, N>, count: usize) -> Result<Self, StepError> {
-        if count == 0 || count > dimension::<S, N>() {
+        if count == 0 || count > dimension(&run.system) {
             #[allow(clippy::cast_precision_loss)] // for the message
             let value = count as f64;
             let allowed =
@@ -53,7 +53,7 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Lyapunov<M, S, 
         }
         let start = run.t();
         let mut variations = Variation::of_state();
-        if dimension::<S, N>() == 2 * N {
+        if dimension(&run.system) == 2 * N {
             variations.truncate(count);
             variations.iter_mut().for_each(turn);
         } else {

@@ -270,8 +270,8 @@ where
 }
 
 /// The number of independent admissible tangent vectors at a node, with fixed time and parameters.
-pub(crate) const fn dimension<S: Motion<N>, const N: usize>() -> usize {
-    2 * N - S::HOLONOMIC - S::CONSTRAINTS.len()
+pub(crate) fn dimension<S: Motion<N>, const N: usize>(system: &S) -> usize {
+    2 * N - system.holonomic() - system.constraint_names().len()
 }
 
 /// The derivative of the velocity v of a state, whose momenta are `state.p`, along a tangent vector.

@@ -40,7 +40,7 @@ pub(crate) use bordered::{Bordered, Unsolvable, scale};
 pub(crate) use fronts::{Factored, Fronts, reciprocal_power, reciprocal_root};
 #[cfg(feature = "alloc")]
 pub(crate) use pivoted::Pivoted;
-pub use rectangular::{Rectangular, Row, Sparse};
+pub use rectangular::{AtMost, Rectangular, Row, Rows, Sparse};
 pub use symmetric::Symmetric;
 pub use tridiagonal::Tridiagonal;
 

@@ -98,39 +98,109 @@ impl<const N: usize, const K: usize, const W: usize, T: Real> Rectangular<N, T> 
     }
 }
 
-/// The derivatives of equations of motion with constraints have this form; solutions with such a matrix alone are dense.
-impl<const N: usize, const W: usize, T: Real> Matrix<N, T> for Sparse<N, W, T> {
-    type Inverse = SMatrix<T, N, N>;
+/// At most K numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtMost<const K: usize, T> {
+    count: usize,
+    /// The numbers, then zeros.
+    values: [T; K],
+}
 
-    fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-        dense::pivoted(self.dense(), *rhs)
-    }
-
-    fn inverse(&self) -> Self::Inverse {
-        dense::pivoted(self.dense(), SMatrix::identity())
-    }
-
-    fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N> {
-        inverse * rhs
-    }
-
-    fn entry(&self, row: usize, column: usize) -> T {
-        let place = self.columns[row].iter().position(|other| *other == column);
-        place.map_or_else(T::zero, |place| self.rows[row][place])
-    }
-
-    #[inline]
-    fn each_entry(&self, mut f: impl FnMut(usize, usize, T)) {
-        for (row, entries) in Rectangular::<N, T>::rows(self).enumerate() {
-            entries.iter().for_each(|(column, value)| f(row, column, value));
-        }
-    }
-
-    #[inline]
-    fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
-        SVector::from_fn(|row, _| self.row(row).dot(x))
+impl<const K: usize, T: Real> AtMost<K, T> {
+    /// So many zeros, at most K.
+    #[must_use]
+    pub fn zeros(count: usize) -> Self {
+        Self { count: count.min(K), values: [T::zero(); K] }
     }
 }
+
+impl<const K: usize, T> AsRef<[T]> for AtMost<K, T> {
+    fn as_ref(&self) -> &[T] {
+        &self.values[..self.count]
+    }
+}
+
+impl<const K: usize, T> AsMut<[T]> for AtMost<K, T> {
+    fn as_mut(&mut self) -> &mut [T] {
+        &mut self.values[..self.count]
+    }
+}
+
+/// At most K rows with at most W nonzeros each, in columns that are known at run time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rows<const K: usize, const W: usize, T> {
+    /// The columns of the nonzeros of each row, ascending; at most K rows of at most W columns.
+    columns: &'static [&'static [usize]],
+    /// Row r, column `columns[r][k]` at `[r][k]`; entries without a column have no meaning.
+    rows: [[T; W]; K],
+}
+
+impl<const K: usize, const W: usize, T: Real> Rows<K, W, T> {
+    /// Zeros in these columns of each row: at most K rows of at most W columns, ascending.
+    #[must_use]
+    pub fn zeros(columns: &'static [&'static [usize]]) -> Self {
+        Self { columns, rows: [[T::zero(); W]; K] }
+    }
+}
+
+impl<const N: usize, const K: usize, const W: usize, T: Real> Rectangular<N, T> for Rows<K, W, T> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.columns.len()
+    }
+
+    #[inline(always)]
+    fn row(&self, row: usize) -> Row<'_, T> {
+        let columns = self.columns[row];
+        Row { columns, values: &self.rows[row][..columns.len()] }
+    }
+
+    #[inline(always)]
+    fn row_mut(&mut self, row: usize) -> (&'static [usize], &mut [T]) {
+        let columns = self.columns[row];
+        (columns, &mut self.rows[row][..columns.len()])
+    }
+}
+
+/// The derivatives of equations of motion with constraints have this form; solutions with such a matrix alone are dense.
+macro_rules! sparse_matrix {
+    ($($form:ident),*) => {$(
+        impl<const N: usize, const W: usize, T: Real> Matrix<N, T> for $form<N, W, T> {
+            type Inverse = SMatrix<T, N, N>;
+
+            fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+                dense::pivoted(self.dense(), *rhs)
+            }
+
+            fn inverse(&self) -> Self::Inverse {
+                dense::pivoted(self.dense(), SMatrix::identity())
+            }
+
+            fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N> {
+                inverse * rhs
+            }
+
+            fn entry(&self, row: usize, column: usize) -> T {
+                let Row { columns, values } = Rectangular::<N, T>::row(self, row);
+                columns.iter().position(|other| *other == column).map_or_else(T::zero, |place| values[place])
+            }
+
+            #[inline]
+            fn each_entry(&self, mut f: impl FnMut(usize, usize, T)) {
+                for (row, entries) in Rectangular::<N, T>::rows(self).enumerate() {
+                    entries.iter().for_each(|(column, value)| f(row, column, value));
+                }
+            }
+
+            #[inline]
+            fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
+                SVector::from_fn(|row, _| Rectangular::<N, T>::row(self, row).dot(x))
+            }
+        }
+    )*};
+}
+
+sparse_matrix!(Sparse, Rows);
 
 /// Dense rows: the form to write by hand.
 impl<const N: usize, T: Real> Rectangular<N, T> for [SVector<T, N>] {

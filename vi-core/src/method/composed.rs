@@ -9,7 +9,6 @@
 use super::gauss::bound::{ConstrainedStep, ConstrainedSteps};
 use super::{Composition, Gauss, Memory, Method, Problem, Report};
 use crate::constrained::solve::Workspace;
-use crate::constrained::start;
 use crate::constrained::variation::vary;
 use crate::derivatives::{Differentiable, Variation, not_last};
 use crate::error::StepError;
@@ -200,7 +199,7 @@ where
         })
     }
 
-    fn check(&self, memory: &Self::Memory, h: f64, t: f64) -> Result<(), StepError> {
+    fn check(&self, system: &S, (node, memory): (&Node<N>, &Self::Memory), h: f64) -> Result<(), StepError> {
         if memory.all.len() != self.scheme.weights.len() {
             #[allow(clippy::cast_precision_loss)] // a few substeps
             let value = memory.all.len() as f64;
@@ -208,11 +207,7 @@ where
             return Err(StepError::InvalidInput { input: "the substeps of a checkpoint", allowed, value });
         }
         let mut substeps = memory.all.iter().zip(self.scheme.lengths(h));
-        substeps.try_for_each(|(memory, h)| Method::<S, N>::check(&self.method, memory, h, t))
-    }
-
-    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
-        start::check_stored(system, node)
+        substeps.try_for_each(|(memory, h)| self.method.check(system, (node, memory), h))
     }
 }
 

@@ -263,7 +263,7 @@ where
         Report { residual, iterations: memory.iterations }
     }
 
-    fn check(&self, memory: &Substeps<N, T>, h: T, t: T) -> Result<(), StepError> {
+    fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Substeps<N, T>), h: T) -> Result<(), StepError> {
         let mut substeps = memory.all.iter();
         let is_of_scheme = self.lengths(h).all(|h| substeps.next().is_some_and(|substep| substep.h == h));
         if !is_of_scheme || substeps.next().is_some() {
@@ -272,7 +272,7 @@ where
             let allowed = "those of the composition of the restarted run";
             return Err(StepError::InvalidInput { input: "the substeps of a checkpoint", allowed, value });
         }
-        memory.all.iter().try_for_each(|substep| check_steps(substep, substep.h, t))
+        memory.all.iter().try_for_each(|substep| check_steps(substep, substep.h, node.t))
     }
 }
 

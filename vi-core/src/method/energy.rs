@@ -211,8 +211,8 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         Some(memory.discrete_energy(node))
     }
 
-    fn check(&self, memory: &Lengths<N, T>, _h: T, t: T) -> Result<(), StepError> {
-        memory.check(t)
+    fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Lengths<N, T>), _h: T) -> Result<(), StepError> {
+        memory.check(node.t)
     }
 }
 

@@ -192,8 +192,8 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
         memory.discrete_energy(system, node, h)
     }
 
-    fn check(&self, memory: &Velocities<N, T>, h: T, t: T) -> Result<(), StepError> {
-        memory.check(h, t)
+    fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Velocities<N, T>), h: T) -> Result<(), StepError> {
+        memory.check(h, node.t)
     }
 }
 
@@ -291,8 +291,8 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         memory.discrete_energy(system, node, h)
     }
 
-    fn check(&self, memory: &Velocities<N, T>, h: T, t: T) -> Result<(), StepError> {
-        memory.check(h, t)
+    fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Velocities<N, T>), h: T) -> Result<(), StepError> {
+        memory.check(h, node.t)
     }
 }
 

@@ -339,19 +339,12 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
         None
     }
 
-    /// Checks whether a run can continue from a stored memory. A file may contain any numbers.
+    /// Checks whether a run can continue from a stored node, whose numbers are finite, and a stored memory. A file may
+    /// contain any numbers.
     ///
     /// # Errors
-    /// The first invalid number.
-    fn check(&self, _memory: &Self::Memory, _h: T, _t: T) -> Result<(), StepError> {
-        Ok(())
-    }
-
-    /// Checks whether a run can continue from a stored node, whose numbers are finite.
-    ///
-    /// # Errors
-    /// The constraint that the node does not satisfy.
-    fn check_node(&self, _system: &S, _node: &Node<N, T>) -> Result<(), StepError> {
+    /// The first invalid number, or the constraint that the node does not satisfy.
+    fn check(&self, _system: &S, _at: (&Node<N, T>, &Self::Memory), _h: T) -> Result<(), StepError> {
         Ok(())
     }
 }

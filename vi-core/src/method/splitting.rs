@@ -436,11 +436,11 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
         Report { residual: 0.0, iterations: self.forces() as u32 }
     }
 
-    fn check(&self, memory: &Kicked<N, T>, _h: T, t: T) -> Result<(), StepError> {
+    fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Kicked<N, T>), _h: T) -> Result<(), StepError> {
         if memory.fingerprint.to_bits() != self.fingerprint().to_bits() {
             let (input, allowed) = ("the weights of a checkpoint", "those of the splitting of the restarted run");
             return Err(StepError::InvalidInput { input, allowed, value: memory.fingerprint });
         }
-        checked(&memory.force, t)
+        checked(&memory.force, node.t)
     }
 }

@@ -236,8 +236,8 @@ where
         memory.convergence.has_begun().then_some(node.energy)
     }
 
-    fn check(&self, memory: &Self::Memory, _dtau: f64, t: f64) -> Result<(), StepError> {
-        memory.check(t)
+    fn check(&self, _system: &S, (node, memory): (&Node<N>, &Self::Memory), _dtau: f64) -> Result<(), StepError> {
+        memory.check(node.t)
     }
 }
 

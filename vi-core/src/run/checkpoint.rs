@@ -80,8 +80,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
         angles::check(&system, &node.q, &turns)?;
-        method.check(&memory, h, t)?;
-        method.check_node(&system, &node)?;
+        method.check(&system, (&node, &memory), h)?;
         Ok(Self { turns, ..Self::resumed(method, system, (node, h, memory)) })
     }
 }

@@ -69,7 +69,6 @@ pub(super) trait ErasedMethod<S, const N: usize>: Debug + Send + Sync {
     fn has_reactions(&self) -> bool;
     fn check_length(&self, system: &S, h: f64) -> Result<(), StepError>;
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError>;
-    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError>;
     fn evaluations(&self, iterations: u32) -> u64;
     #[cfg(feature = "derivatives")]
     fn keeps_energy(&self) -> bool;
@@ -133,7 +132,7 @@ pub(super) trait ErasedMemory<S, const N: usize>: Debug + Send + Sync {
     fn longest(&self, h: f64) -> f64;
     fn report(&self) -> Report;
     fn discrete_energy(&self, system: &S, node: &Node<N>, h: f64) -> Option<f64>;
-    fn check(&self, h: f64, t: f64) -> Result<(), StepError>;
+    fn check(&self, system: &S, node: &Node<N>, h: f64) -> Result<(), StepError>;
     fn sampled_energy(&self, system: &S, parts: Parts<(), N>) -> Result<(f64, f64), StepError>;
     fn shifted_energy(&self, system: &S, parts: Parts<(), N>) -> Option<ShiftedEnergy>;
     #[cfg(feature = "checkpoints")]
@@ -225,10 +224,6 @@ impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usiz
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError> {
         let memory = self.method.begin(&W::wrapped(*system), node, h)?;
         Ok(Remembered::<M, W, N>::of(&self.method, memory))
-    }
-
-    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
-        self.method.check_node(&W::wrapped(*system), node)
     }
 
     fn evaluations(&self, iterations: u32) -> u64 {
@@ -422,8 +417,8 @@ impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usiz
         self.method.discrete_energy(&W::wrapped(*system), node, h, &self.memory)
     }
 
-    fn check(&self, h: f64, t: f64) -> Result<(), StepError> {
-        Method::<W, N>::check(&self.method, &self.memory, h, t)
+    fn check(&self, system: &S, node: &Node<N>, h: f64) -> Result<(), StepError> {
+        self.method.check(&W::wrapped(*system), (node, &self.memory), h)
     }
 
     fn sampled_energy(&self, system: &S, parts: Parts<(), N>) -> Result<(f64, f64), StepError> {

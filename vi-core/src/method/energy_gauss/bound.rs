@@ -29,7 +29,7 @@ fn lengths<'a, S: Motion<N>, const N: usize, const STAGES: usize>(
     steps: &'a ConstrainedSteps<N>,
     cache: &'a mut Option<Box<Workspace>>,
 ) -> ConstrainedLengths<'a, S, N> {
-    let workspace = cache.get_or_insert_with(|| Box::new(Workspace::new::<S, N, STAGES>()));
+    let workspace = cache.get_or_insert_with(|| Box::new(Workspace::new::<S, N, STAGES>(system)));
     ConstrainedLengths { system, last: &steps.unknowns, sign: steps.sign, workspace: RefCell::new(workspace) }
 }
 
@@ -48,14 +48,14 @@ where
     type DenseOutput = Hermite<N>;
 
     fn check_start(system: &S, node: &Node<N>) -> Result<(), StepError> {
-        start::checked(system, node, &mut bordered::<S, N, f64>()).map(drop)
+        start::checked(system, node, &mut bordered(system)).map(drop)
     }
 
     fn fresh(system: &S, node: &Node<N>, h: f64) -> Result<Self::Steps, StepError> {
-        let (v, bordered) = (node.state().velocity(system)?, &mut bordered::<S, N, f64>());
+        let (v, bordered) = (node.state().velocity(system)?, &mut bordered(system));
         let mut guess = from_node::<S, N, STAGES>(system, (node, h, &v), bordered)?;
         guess.push(h);
-        Ok(ConstrainedSteps::new::<S>((node, h), &guess, bordered.determinant_sign()))
+        Ok(ConstrainedSteps::new(system, (node, h), &guess, bordered.determinant_sign()))
     }
 
     fn first(system: &S, node: &Node<N>, h: f64, steps: &mut Self::Steps) -> Result<f64, StepError> {
@@ -64,7 +64,7 @@ where
         let mut unknowns = Vec::new();
         first.write(&mut unknowns);
         unknowns.push(h);
-        *steps = ConstrainedSteps::new::<S>((node, h), &unknowns, steps.sign);
+        *steps = ConstrainedSteps::new(system, (node, h), &unknowns, steps.sign);
         Ok(first.residual())
     }
 
@@ -122,8 +122,10 @@ where
         Hermite::between(system, before, &node.state(), h)
     }
 
-    fn check(steps: &Self::Steps, t: f64) -> Result<(), StepError> {
-        steps.check([unknowns::<N, STAGES>(K) + 1, K], t)
+    fn check(system: &S, node: &Node<N>, steps: &Self::Steps) -> Result<(), StepError> {
+        let constraints = system.constraint_names().len();
+        steps.check([unknowns::<N, STAGES>(constraints) + 1, constraints], node.t)?;
+        start::check_stored(system, node)
     }
 
     fn step_density(system: &S, state: &State<N>) -> Result<f64, StepError> {
@@ -135,10 +137,6 @@ where
         let found = energies::energies::<S, N, STAGES, f64>(&run.system, (before, *h), unknowns.newest(), base);
         let State { t, q, .. } = run.node.state();
         [found.start, found.end - energies::power_of::<S, N, f64>(&run.system, (t, &q), mu)]
-    }
-
-    fn check_node(system: &S, node: &Node<N>) -> Result<(), StepError> {
-        start::check_stored(system, node)
     }
 }
 

@@ -256,8 +256,8 @@ where
         stages.dense_output(system, before, node, h)
     }
 
-    fn check(stages: &Self::Steps, t: f64) -> Result<(), StepError> {
-        stages.check(t)
+    fn check(_system: &S, node: &Node<N>, stages: &Self::Steps) -> Result<(), StepError> {
+        stages.check(node.t)
     }
 
     fn step_density(system: &S, state: &State<N>) -> Result<f64, StepError> {
@@ -268,10 +268,6 @@ where
         let LastStages { before, stages, h, .. } = &run.memory;
         let Energies { start, end, .. } = energies(&run.system, before, *h, stages.data.0, base);
         [start, end]
-    }
-
-    fn check_node(_system: &S, _node: &Node<N>) -> Result<(), StepError> {
-        Ok(())
     }
 
     #[cfg(feature = "alloc")]

@@ -154,11 +154,11 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
         node: &Node<N>,
         h: f64,
     ) -> Result<Self::DenseOutput, StepError>;
-    /// Checks stored steps. A file may contain any numbers.
+    /// Checks a stored node, whose numbers are finite, and stored steps. A file may contain any numbers.
     ///
     /// # Errors
-    /// [`StepError::NonFinite`] and [`StepError::InvalidInput`].
-    fn check(steps: &Self::Steps, t: f64) -> Result<(), StepError>;
+    /// As [`Method::check`].
+    fn check(system: &S, node: &Node<N>, steps: &Self::Steps) -> Result<(), StepError>;
     /// The step density D_s at a state.
     ///
     /// # Errors
@@ -166,11 +166,6 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     fn step_density(system: &S, state: &State<N>) -> Result<f64, StepError>;
     /// The discrete energies E0 and E1 of the last step of fixed steps, less `base`.
     fn energies(run: &Run<Gauss<STAGES>, S, N>, base: f64) -> [f64; 2];
-    /// [`Method::check_node`].
-    ///
-    /// # Errors
-    /// As there.
-    fn check_node(system: &S, node: &Node<N>) -> Result<(), StepError>;
     /// [`Differentiable::vary`](crate::derivatives::Differentiable::vary), here and below.
     ///
     /// # Errors
@@ -454,13 +449,9 @@ where
         Some(node.energy + course.control.gap() + power::<STAGES>(course.h()) * course.shift)
     }
 
-    fn check(&self, memory: &Self::Memory, _h: f64, t: f64) -> Result<(), StepError> {
-        Solver::<S, N, STAGES>::check(&memory.steps, t)?;
-        memory.course.check(t)
-    }
-
-    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
-        Solver::<S, N, STAGES>::check_node(system, node)
+    fn check(&self, system: &S, (node, memory): (&Node<N>, &Self::Memory), _h: f64) -> Result<(), StepError> {
+        memory.course.check(node.t)?;
+        Solver::<S, N, STAGES>::check(system, node, &memory.steps)
     }
 }
 

@@ -93,13 +93,13 @@ impl<const N: usize> ConstrainedSteps<N> {
         bordered: &mut Bordered,
     ) -> Result<Self, StepError> {
         let guess = from_node::<S, N, STAGES>(system, (node, h, v), bordered)?;
-        Ok(Self::new::<S>((node, h), &guess, bordered.determinant_sign()))
+        Ok(Self::new(system, (node, h), &guess, bordered.determinant_sign()))
     }
 
     /// Before the first step of the length h from a node, with a guess of its unknowns and the sign of the determinant
     /// of the bordered mass matrix.
-    pub(crate) fn new<S: Motion<N>>((node, h): (&Node<N>, f64), guess: &[f64], sign: i8) -> Self {
-        let mu = vec![0.0; S::CONSTRAINTS.len()];
+    pub(crate) fn new<S: Motion<N>>(system: &S, (node, h): (&Node<N>, f64), guess: &[f64], sign: i8) -> Self {
+        let mu = vec![0.0; system.constraint_names().len()];
         Self { unknowns: Extrapolation::new(guess), mu, before: *node, h, sign, residual: 0.0, iterations: 0 }
     }
 
@@ -116,7 +116,7 @@ impl<const N: usize> ConstrainedSteps<N> {
         system: &S,
         node: &Node<N>,
     ) -> Option<Impulses<Multipliers<S, N>, STAGES>> {
-        let constraints = S::CONSTRAINTS.len();
+        let constraints = system.constraint_names().len();
         let of = |slice: &[f64]| {
             let mut multipliers = system.constraints(node.t, &node.q);
             multipliers.as_mut().copy_from_slice(slice);
@@ -184,7 +184,7 @@ where
     fn prepare(&self, _system: &S, _h: f64) {}
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
-        let bordered = &mut bordered::<S, N, f64>();
+        let bordered = &mut bordered(system);
         let v = start::checked(system, node, bordered)?;
         ConstrainedSteps::from_node::<S, STAGES>(system, (node, h, &v), bordered)
     }
@@ -196,7 +196,7 @@ where
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, StepError> {
         let Problem { system, node, h, .. } = at;
-        let constraints = S::CONSTRAINTS.len();
+        let constraints = system.constraint_names().len();
         let count = unknowns::<N, STAGES>(constraints);
         let workspace = cache.get_or_insert_with(|| Box::new(Workspace::of_steps::<S, N, STAGES>(system, node)));
         let mut unknowns = core::mem::take(&mut workspace.unknowns);
@@ -219,7 +219,7 @@ where
         // The last unknowns may not extrapolate: a step from the node alone.
         let Problem { system, node, h, .. } = at;
         let flow = node.state().raw_flow(system).map_err(|_| left)?;
-        let bordered = &mut bordered::<S, N, f64>();
+        let bordered = &mut bordered(system);
         let memory =
             ConstrainedSteps::from_node::<S, STAGES>(system, (node, h, &flow.v), bordered).map_err(|_| left)?;
         self.attempt(at, &memory, cache)
@@ -251,7 +251,7 @@ where
         h: f64,
     ) -> Result<Self::Memory, StepError> {
         let v = node.state().velocity(system)?;
-        let bordered = &mut bordered::<S, N, f64>();
+        let bordered = &mut bordered(system);
         ConstrainedSteps::from_node::<S, STAGES>(system, (node, h, &v), bordered)
     }
 
@@ -276,16 +276,13 @@ where
         (memory.has_step(node) && energy.is_finite()).then_some(energy)
     }
 
-    fn check(&self, memory: &Self::Memory, h: f64, t: f64) -> Result<(), StepError> {
+    fn check(&self, system: &S, (node, memory): (&Node<N>, &Self::Memory), h: f64) -> Result<(), StepError> {
         if memory.h.to_bits() != h.to_bits() {
             let (input, allowed) = ("the step of a checkpoint", "that of its run");
             return Err(StepError::InvalidInput { input, allowed, value: memory.h });
         }
-        let constraints = S::CONSTRAINTS.len();
-        memory.check([unknowns::<N, STAGES>(constraints), constraints], t)
-    }
-
-    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
+        let constraints = system.constraint_names().len();
+        memory.check([unknowns::<N, STAGES>(constraints), constraints], node.t)?;
         start::check_stored(system, node)
     }
 }

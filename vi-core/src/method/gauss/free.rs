@@ -310,12 +310,12 @@ where
         memory.discrete_energy(system, node)
     }
 
-    fn check(&self, memory: &Self::Memory, h: f64, t: f64) -> Result<(), StepError> {
+    fn check(&self, _system: &S, (node, memory): (&Node<N>, &Self::Memory), h: f64) -> Result<(), StepError> {
         if memory.h.to_bits() != h.to_bits() {
             let (input, allowed) = ("the step of a checkpoint", "that of its run");
             return Err(StepError::InvalidInput { input, allowed, value: memory.h });
         }
-        memory.check(t)
+        memory.check(node.t)
     }
 }
 

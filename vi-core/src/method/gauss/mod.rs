@@ -167,11 +167,7 @@ where
         solver::<S, N, STAGES>().discrete_energy(system, node, h, memory)
     }
 
-    fn check(&self, memory: &Self::Memory, h: f64, t: f64) -> Result<(), StepError> {
-        Method::<S, N>::check(&solver::<S, N, STAGES>(), memory, h, t)
-    }
-
-    fn check_node(&self, system: &S, node: &Node<N>) -> Result<(), StepError> {
-        solver::<S, N, STAGES>().check_node(system, node)
+    fn check(&self, system: &S, at: (&Node<N>, &Self::Memory), h: f64) -> Result<(), StepError> {
+        solver::<S, N, STAGES>().check(system, at, h)
     }
 }
