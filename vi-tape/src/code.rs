@@ -1,6 +1,8 @@
 //! What the traits of a system ask for: facts and functions.
 
 use crate::lines::Lines;
+use vi_core::linear::Block;
+use vi_core::table::AnyTable;
 use vi_dispatch::Instructions;
 
 /// The form of a matrix.
@@ -33,6 +35,12 @@ functions!(
     power,
     scaled_point,
     non_finite,
+    undefined,
+    applied,
+    constraints,
+    constraint_gradients,
+    constraint_rate_derivatives,
+    reaction_derivatives,
     ld,
     d1_ld,
     d2_ld,
@@ -51,6 +59,36 @@ functions!(
     extended_residual,
     extended_derivatives
 );
+
+/// The columns of the nonzeros of each row, ascending.
+pub(crate) type Columns = &'static [&'static [usize]];
+
+/// The constraints of a system. The matrices of such a system are rows by their nonzeros: an entry of a result has the
+/// place among the columns of its row, not the column.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Constraints {
+    /// Holonomic ones come first.
+    pub(crate) names: &'static [&'static str],
+    pub(crate) holonomic: usize,
+    pub(crate) has_point_masses: bool,
+    /// The order of elimination.
+    pub(crate) blocks: &'static [Block],
+    pub(crate) mass: Columns,
+    pub(crate) point_matrix: Columns,
+    pub(crate) gradients: Columns,
+    pub(crate) rate_derivatives: Columns,
+    pub(crate) reaction_derivatives: Columns,
+}
+
+/// A call of a table.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Call {
+    /// The call as it is written.
+    pub(crate) text: &'static str,
+    pub(crate) table: &'static AnyTable,
+    /// One, or two of a grid.
+    pub(crate) arguments: usize,
+}
 
 /// A place to start from.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,6 +126,10 @@ pub(crate) struct Code {
     pub(crate) start: Option<Start>,
     /// The expressions whose values `non_finite` computes.
     pub(crate) watched: Box<[&'static str]>,
+    /// The calls of tables in L and f, whose arguments `undefined` computes.
+    pub(crate) calls: Box<[Call]>,
+    /// The name of a monotone table in L.
+    pub(crate) monotone_table: Option<&'static str>,
     pub(crate) is_autonomous: bool,
     pub(crate) is_forced: bool,
     pub(crate) is_separable: bool,
@@ -101,6 +143,8 @@ pub(crate) struct Code {
     pub(crate) has_constant_jacobian: bool,
     pub(crate) has_closed_form: bool,
     pub(crate) is_inlined: bool,
+    /// None of a free system.
+    pub(crate) constraints: Option<Constraints>,
     pub(crate) mass: Form,
     pub(crate) point_matrix: Form,
     pub(crate) jacobian: Form,

@@ -7,8 +7,9 @@
 mod instructions;
 mod order;
 mod registers;
+mod tables;
 
-use crate::code::{Code, Form, Functions, Start};
+use crate::code::{Call, Code, Columns, Constraints, Form, Functions, Start};
 use crate::lines::{Entry, Input, Kind, Lines, Source};
 use crate::mistakes::Mistakes;
 use crate::sizes::size;
@@ -17,32 +18,52 @@ use order::in_runs;
 use proc_macro2::TokenStream;
 use registers::{Placed, placed};
 use std::collections::HashMap;
-use vi_codegen::findings::{CLOSED, Pattern, StepFindings};
+use tables::Tables;
+use vi_codegen::findings::{self, CLOSED, Elimination, Pattern, StepFindings};
 use vi_codegen::inspect::{report, source};
 use vi_codegen::model::{CheckState, Coordinate, Model, Parameter};
 use vi_codegen::program::{Function, FunctionId, Operation, OperationId, Output};
 use vi_codegen::symbol::{Symbol, Variable};
-use vi_codegen::{Derived, derive_own, dimension, syntax};
+use vi_codegen::{Derived, derive_own, sizes, syntax};
+use vi_core::linear::Block;
 use vi_dispatch::Instructions;
+use vi_expr::{Expr, Node};
 
 /// Characters of an expression in a message.
 const CHARACTERS: usize = 400;
 
-/// Compiles the text of a file: `struct … { … }`, or the same in a `lagrangian!`.
+/// Parses the text of a file: `struct … { … }`, or the same in a `lagrangian!`. Files of tables have these texts; others
+/// are read.
 ///
 /// # Errors
-/// The mistakes of the text, or what only the macro compiles.
-pub(crate) fn code(file: &str, text: &str) -> Result<Code, Mistakes> {
+/// The mistakes of the text.
+pub(crate) fn parsed(file: &str, text: &str, files: &[(String, String)]) -> Result<Parsed, Mistakes> {
     let unreadable = |error: syn::Error| Mistakes::of(report::unreadable(file, text, &error));
     let tokens = declaration(text).map_err(unreadable)?;
     let tokens = tokens.ok_or_else(|| Mistakes::of(ONE.to_owned()))?;
     let wrong = |error: syn::Error| Mistakes::of(report::report(file, text, &error));
     syntax::alone::check(&tokens).map_err(wrong)?;
-    let system = syntax::parse::system(tokens.clone()).map_err(wrong)?;
-    // Parsing bounds the nesting; this recurses.
-    let definition = tokens.to_string();
-    let declared = dimension(&system).map_err(wrong)?;
-    let rest = size(&system.name.to_string(), declared)? - declared;
+    let mut system = syntax::parse::system(tokens.clone()).map_err(wrong)?;
+    system.files = files.iter().map(|(path, text)| (path.into(), text.clone())).collect();
+    system.read_files();
+    // Parsing bounds the nesting; `to_string` recurses.
+    Ok(Parsed { system, definition: tokens.to_string() })
+}
+
+/// A system as it is written.
+pub(crate) struct Parsed {
+    pub(crate) system: syntax::System,
+    definition: String,
+}
+
+/// Compiles the system of the text of a file.
+///
+/// # Errors
+/// The mistakes of the text, or what only the macro compiles.
+pub(crate) fn code(file: &str, text: &str, Parsed { system, definition }: Parsed) -> Result<Code, Mistakes> {
+    let wrong = |error: syn::Error| Mistakes::of(report::report(file, text, &error));
+    let [declared, constraints] = sizes(&system).map_err(wrong)?;
+    let rest = size(&system.name.to_string(), [declared, constraints])? - declared;
     let system = if rest == 0 { system } else { system.with_rest(&unused(&definition), rest).map_err(wrong)? };
     of_derived(&derive_own(&system).map_err(wrong)?, definition, declared)
 }
@@ -73,13 +94,7 @@ fn declaration(text: &str) -> syn::Result<Option<TokenStream>> {
 fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code, Mistakes> {
     let Derived { pool, model, system, program, findings } = of;
     let compiled = |what: &str| Mistakes::compiled(&model.name.to_string(), what);
-    if !model.constraints.is_empty() {
-        let has_rotation = model.coordinates.iter().any(|coordinate| coordinate.is_rotation);
-        return Err(compiled(if has_rotation { "a rotation" } else { "constraints" }));
-    }
-    if !model.functions.is_empty() {
-        return Err(compiled("tables"));
-    }
+    let tables = Tables::of(model).ok_or_else(|| compiled("Rust functions"))?;
     let size = model.dimension();
     let (steps, continuous) = (findings.steps.as_ref(), &system.continuous);
     let jacobian = steps.map_or(Form::Dense, |steps| form(&steps.pattern, steps.symmetric, size));
@@ -87,6 +102,7 @@ fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code,
     let watched = continuous.watched.iter();
     let inputs = (0..).zip(&model.parameters).filter(|(_, parameter)| parameter.is_input);
     let parameters = names(model, Parameter::text);
+    let constraints = constraints(of);
     Ok(Code {
         name: model.name.to_string().leak(),
         declared,
@@ -101,9 +117,15 @@ fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code,
         cyclic: continuous.cyclic.clone().into(),
         start: model.check_state.as_ref().map(|state| start(state, parameters, declared)),
         watched: watched.map(|expr| &*pool.render_within(CHARACTERS, *expr, &name).leak()).collect(),
+        calls: continuous
+            .calls
+            .iter()
+            .filter_map(|(call, arguments)| called(of, &tables, *call, arguments.len()))
+            .collect(),
+        monotone_table: model.monotone_table(pool).map(|name| &*name.leak()),
         is_autonomous: findings.autonomous,
         is_forced: findings.forced,
-        is_separable: findings.force_of_position,
+        is_separable: findings.force_of_position && model.constraints.is_empty(),
         is_quadratic: continuous.quadratic,
         has_constant_mass: findings.constant_mass,
         scales_time: continuous.time_scale.is_some(),
@@ -112,12 +134,20 @@ fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code,
         has_constant_jacobian: steps.is_some_and(StepFindings::constant_jacobian),
         has_closed_form: findings.closed_form(),
         is_inlined: program.has_short_steps(),
+        constraints,
         mass: form(&findings.mass, true, size),
         point_matrix: form(&findings.point_derivatives, false, size),
         jacobian,
-        functions: functions(of).map_err(|too_many| compiled(&format!("too many {too_many}")))?,
+        functions: functions(of, constraints, &tables).map_err(|too_many| compiled(&format!("too many {too_many}")))?,
         instructions: Instructions::detected(),
     })
+}
+
+/// The call of a table in L or f.
+fn called(of: &Derived, tables: &Tables, call: Expr, arguments: usize) -> Option<Call> {
+    let Node::Opaque(function, _) = of.pool.node(call) else { return None };
+    let text = of.pool.render_within(CHARACTERS, call, &|symbol| of.system.spell(&of.model, symbol));
+    Some(Call { text: text.leak(), table: &tables.all[usize::from(tables.place(&function.name)?)], arguments })
 }
 
 /// The state of the checks, for these parameters and this number of declared coordinates.
@@ -130,6 +160,54 @@ fn start(state: &CheckState, parameters: &[&'static str], declared: usize) -> St
 /// A text of each parameter.
 fn names(model: &Model, of: impl Fn(&Parameter) -> String) -> &'static [&'static str] {
     model.parameters.iter().map(|parameter| &*of(parameter).leak()).collect::<Vec<_>>().leak()
+}
+
+/// The constraints of a system, if it has any.
+fn constraints(of: &Derived) -> Option<Constraints> {
+    let Derived { model, findings, .. } = of;
+    let Elimination { gradients, rates_dq, reaction_dq, blocks, .. } = findings.elimination.as_ref()?;
+    let size = model.dimension();
+    let names = model.constraints.iter().map(|constraint| &*constraint.text().leak()).collect::<Vec<_>>();
+    let block = |of: &findings::Block| Block { own: of.own.clone().leak(), border: of.border.clone().leak() };
+    Some(Constraints {
+        names: names.leak(),
+        holonomic: model.constraints.iter().filter(|constraint| constraint.is_holonomic).count(),
+        has_point_masses: findings.point_masses,
+        // One block is the elimination of a dense matrix.
+        blocks: if blocks.len() > 1 { blocks.iter().map(block).collect::<Vec<_>>().leak() } else { &[] },
+        mass: leaked(&columns(&findings.mass, size)),
+        point_matrix: leaked(&columns(&findings.point_derivatives, size)),
+        gradients: leaked(gradients),
+        rate_derivatives: leaked(rates_dq),
+        reaction_derivatives: leaked(reaction_dq),
+    })
+}
+
+/// The columns of the nonzeros of each row of a square matrix with this pattern.
+fn columns(pattern: &Pattern, size: usize) -> Vec<Vec<usize>> {
+    let block = |row: usize, blocks: &[Vec<usize>]| blocks.iter().find(|of| of.contains(&row)).cloned();
+    let of = |row: usize| match pattern {
+        Pattern::Diagonal => vec![row],
+        Pattern::Blocks(blocks) => block(row, blocks).unwrap_or_default(),
+        Pattern::Sparse(columns) => columns.get(row).cloned().unwrap_or_default(),
+        _ => (0..size).collect(),
+    };
+    (0..size).map(of).collect()
+}
+
+fn leaked(rows: &[Vec<usize>]) -> Columns {
+    rows.iter().map(|columns| &*columns.clone().leak()).collect::<Vec<_>>().leak()
+}
+
+/// Replaces the columns of these quantities by their places among the columns of each row.
+fn in_places(lines: &mut Lines, quantities: &[usize], columns: Columns) -> Result<(), TooMany> {
+    for quantity in quantities {
+        for entry in lines.results.get_mut(*quantity).into_iter().flat_map(|of| of.iter_mut()) {
+            let place = columns[usize::from(entry.row)].iter().position(|column| *column == usize::from(entry.column));
+            entry.column = place.and_then(|place| u16::try_from(place).ok()).ok_or("columns")?;
+        }
+    }
+    Ok(())
 }
 
 /// The form of a matrix with this pattern; those of few entries in a row are dense.
@@ -146,7 +224,7 @@ fn form(pattern: &Pattern, is_symmetric: bool, size: usize) -> Form {
 /// What a text has too many of.
 type TooMany = &'static str;
 
-fn functions(of: &Derived) -> Result<Functions, TooMany> {
+fn functions(of: &Derived, constraints: Option<Constraints>, tables: &Tables) -> Result<Functions, TooMany> {
     use FunctionId as F;
     use Output as O;
     const POINT: [Output; 3] = [O::Momentum, O::AppliedForce, O::Mass];
@@ -177,11 +255,11 @@ fn functions(of: &Derived) -> Result<Functions, TooMany> {
         O::EnergyIncrementDh,
     ];
     let lines = |id: FunctionId, outputs: &[Output]| match of.program.function(id) {
-        Some(function) => lines(function, outputs),
+        Some(function) => lines(function, outputs, tables),
         None => Ok(Lines::default()),
     };
     let value = |id| lines(id, &[O::Value]);
-    Ok(Functions {
+    let mut functions = Functions {
         lagrangian: value(F::Lagrangian)?,
         energy: value(F::Energy)?,
         momentum: value(F::Momentum)?,
@@ -194,6 +272,12 @@ fn functions(of: &Derived) -> Result<Functions, TooMany> {
         power: value(F::Power)?,
         scaled_point: lines(F::ScaledPoint, &SCALED)?,
         non_finite: value(F::NonFinite)?,
+        undefined: value(F::Undefined)?,
+        applied: value(F::Applied)?,
+        constraints: value(F::Constraints)?,
+        constraint_gradients: lines(F::ConstraintGradients, &[O::Gradients, O::Rates])?,
+        constraint_rate_derivatives: lines(F::ConstraintRateDerivatives, &[O::RatesDq, O::RatesDt])?,
+        reaction_derivatives: lines(F::ReactionDerivatives, &[O::ReactionDq])?,
         ld: value(F::Ld)?,
         d1_ld: value(F::D1Ld)?,
         d2_ld: value(F::D2Ld)?,
@@ -211,7 +295,16 @@ fn functions(of: &Derived) -> Result<Functions, TooMany> {
         extended_system: lines(F::ExtendedSystem, &SYSTEM)?,
         extended_residual: lines(F::ExtendedResidual, &RESIDUAL)?,
         extended_derivatives: lines(F::ExtendedDerivatives, &DERIVATIVES)?,
-    })
+    };
+    if let Some(of) = constraints {
+        in_places(&mut functions.point, &[2], of.mass)?;
+        in_places(&mut functions.point_derivatives, &[0, 1, 2, 3], of.point_matrix)?;
+        in_places(&mut functions.scaled_point, &[2], of.mass)?;
+        in_places(&mut functions.constraint_gradients, &[0], of.gradients)?;
+        in_places(&mut functions.constraint_rate_derivatives, &[0], of.rate_derivatives)?;
+        in_places(&mut functions.reaction_derivatives, &[0], of.reaction_derivatives)?;
+    }
+    Ok(functions)
 }
 
 /// Where an input is: the argument and the entry, as the functions of `tape` pass them.
@@ -226,7 +319,7 @@ fn place(symbol: &Symbol, of: FunctionId) -> Option<(u8, usize)> {
         Symbol::Continuous(Variable::Coordinate(i)) | Symbol::Q0(i) => (1, *i),
         Symbol::Continuous(Variable::Velocity(i)) | Symbol::StepVelocity(i) => (2, *i),
         Symbol::Parameter { index, .. } => (3, *index),
-        Symbol::Acceleration(i) | Symbol::Q1(i) => (4, *i),
+        Symbol::Acceleration(i) | Symbol::Q1(i) | Symbol::Multiplier(i) => (4, *i),
         Symbol::P0(i) => (5, *i),
         Symbol::Low(of) => match &**of {
             Symbol::T0 => (0, 1),
@@ -240,7 +333,7 @@ fn place(symbol: &Symbol, of: FunctionId) -> Option<(u8, usize)> {
 }
 
 /// The instructions for these quantities of a function.
-fn lines(function: &Function, outputs: &[Output]) -> Result<Lines, TooMany> {
+fn lines(function: &Function, outputs: &[Output], tables: &Tables) -> Result<Lines, TooMany> {
     let operations = &function.operations;
     let results = || outputs.iter().flat_map(|output| function.results.matrix(*output)).flatten();
     let needed = operations.needed(results());
@@ -253,7 +346,7 @@ fn lines(function: &Function, outputs: &[Output]) -> Result<Lines, TooMany> {
     }
     inputs.sort_unstable();
     let mut constants = Constants::default();
-    let all = instructions(function, &needed, results().copied(), &mut constants)?;
+    let all = instructions(function, &needed, results().copied(), &mut constants, tables)?;
     let of_inputs: Vec<OperationId> = inputs.iter().map(|(.., id)| *id).collect();
     let order = in_runs(&all, &of_inputs);
     let Placed { operands, registers, of } = placed(&all, &order, &of_inputs, results().copied())?;
@@ -271,6 +364,7 @@ fn lines(function: &Function, outputs: &[Output]) -> Result<Lines, TooMany> {
         runs: runs.into(),
         operands: operands.into(),
         constants: constants.into(),
+        tables: tables.all,
         registers,
     })
 }

@@ -11,6 +11,7 @@
 //! | `code` | the facts and functions of a system |
 //! | `compile` | the code of a text |
 //! | `matrix` | matrices whose form is known at run time |
+//! | `kinds` | what differs between systems without and with constraints |
 //! | `tape` | a code as a system of N coordinates |
 //! | `sizes` | the numbers of coordinates that are built |
 
@@ -18,6 +19,7 @@
 
 mod code;
 mod compile;
+mod kinds;
 mod lines;
 mod matrix;
 mod mistakes;
@@ -30,6 +32,7 @@ pub use mistakes::Mistakes;
 use code::Code;
 use core::ops::{Deref, DerefMut};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 /// A system of a text, with every method. Its functions and runs are those of [`vi_erased::System`].
@@ -43,18 +46,19 @@ impl System {
     /// Equal texts share their code, which stays until the program ends.
     ///
     /// # Errors
-    /// The mistakes of the text with their places; what has to be compiled: constraints, tables, more coordinates or
-    /// parameters than are built.
+    /// The mistakes of the text with their places; what has to be compiled: Rust functions, more coordinates, constraints
+    /// or parameters than are built.
     pub fn parse(text: &str) -> Result<Self, Mistakes> {
-        Self::of_file("definition", text)
+        Self::of_file("definition", text, &[])
     }
 
-    /// The same of the text of a file, whose name is in the mistakes.
+    /// The same of the text of a file, whose name is in the mistakes. `files` are paths and texts of files of tables, as the
+    /// system names them; others are read.
     ///
     /// # Errors
     /// As [`System::parse`].
-    pub fn of_file(file: &str, text: &str) -> Result<Self, Mistakes> {
-        let code = code(file, text)?;
+    pub fn of_file(file: &str, text: &str, files: &[(String, String)]) -> Result<Self, Mistakes> {
+        let code = code(file, text, files)?;
         Ok(Self { of: sizes::system(code)?, code })
     }
 
@@ -85,16 +89,20 @@ impl DerefMut for System {
     }
 }
 
-/// The codes of all texts so far.
-static CODES: Mutex<BTreeMap<Box<str>, &'static Code>> = Mutex::new(BTreeMap::new());
+/// The codes of all texts so far, with the texts of the files of their tables.
+static CODES: Mutex<BTreeMap<Key, &'static Code>> = Mutex::new(BTreeMap::new());
+
+type Key = (Box<str>, BTreeMap<PathBuf, String>);
 
 /// The code of a text. Systems are `Copy` and refer to it, so that it stays.
-fn code(file: &str, text: &str) -> Result<&'static Code, Mistakes> {
+fn code(file: &str, text: &str, files: &[(String, String)]) -> Result<&'static Code, Mistakes> {
     let known = || CODES.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(code) = known().get(text) {
+    let parsed = compile::parsed(file, text, files)?;
+    let key = (text.into(), parsed.system.files.clone());
+    if let Some(code) = known().get(&key) {
         return Ok(code);
     }
-    let code = compile::code(file, text)?;
+    let code = compile::code(file, text, parsed)?;
     // Another thread may have compiled it meanwhile.
-    Ok(known().entry(text.into()).or_insert_with(|| Box::leak(Box::new(code))))
+    Ok(known().entry(key).or_insert_with(|| Box::leak(Box::new(code))))
 }

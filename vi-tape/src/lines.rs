@@ -5,7 +5,9 @@
 
 use core::any::{Any, TypeId};
 use core::cell::RefCell;
+use vi_core::SVector;
 use vi_core::real::Real;
+use vi_core::table::AnyTable;
 use vi_dispatch::{Instructions, Loop};
 use vi_expr::Function as Elementary;
 
@@ -42,6 +44,8 @@ pub(crate) enum Kind {
     SineCosine,
     /// A function of a, or of a and b, by the library
     Call(Elementary),
+    /// A derivative of a table at a, or at (a, b); the values of a table of parameters begin at b
+    Table { of: u16, orders: [u8; 2] },
     /// b if a is positive, else c
     Select,
     /// a, or 0 if b is 0; then this number of its derivatives is 0 too
@@ -67,6 +71,7 @@ pub(crate) enum Source {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Entry {
     pub(crate) row: u16,
+    /// The column, or its place among the columns of the row.
     pub(crate) column: u16,
     pub(crate) source: Source,
 }
@@ -74,7 +79,7 @@ pub(crate) struct Entry {
 impl Entry {
     /// The number.
     #[inline(always)]
-    pub(crate) fn value<T: Real>(&self, registers: &[T]) -> T {
+    fn value<T: Real>(&self, registers: &[T]) -> T {
         match self.source {
             Source::Register(register) => registers[register as usize],
             Source::Constant(value) => T::real(value),
@@ -100,6 +105,7 @@ pub(crate) struct Lines {
     /// For each instruction the register of its result, and a, b, c; the place of a constant is in that of b.
     pub(crate) operands: Box<[[u16; 4]]>,
     pub(crate) constants: Box<[f64]>,
+    pub(crate) tables: &'static [AnyTable],
     /// The number of registers.
     pub(crate) registers: usize,
     /// The entries of each quantity, in the order in which the function lists them.
@@ -161,7 +167,7 @@ impl Lines {
         &self,
         instructions: Instructions,
         arguments: &[&[T]],
-        read: impl FnOnce(&[T]) -> Y,
+        read: impl FnOnce(Results<'_, T>) -> Y,
     ) -> Y {
         let (mut few, mut some, mut many, mut most);
         let mut kept = None;
@@ -185,7 +191,7 @@ impl Lines {
             }
         };
         self.run(instructions, arguments, registers);
-        let value = read(registers);
+        let value = read(Results { lines: self, registers });
         if let Some(kept) = kept {
             keep(kept);
         }
@@ -265,6 +271,11 @@ impl Lines {
                     }
                 }
                 Kind::Call(of) => each!(|a, b| call(of, &a, &b)),
+                Kind::Table { of, orders } => {
+                    for [to, a, b, _] in own {
+                        r[*to as usize] = table(&self.tables[of as usize], orders, r, [*a, *b].map(usize::from));
+                    }
+                }
                 Kind::Select => each!(|a, b, c| a.if_positive(b, c)),
                 Kind::ZeroWhere(derivatives) => each!(|a, b| a.zero_where(b, derivatives)),
                 Kind::MultiplyAdd => each!(|a, b, c| a * b + c),
@@ -274,21 +285,52 @@ impl Lines {
             }
         }
     }
+}
 
-    /// The entries of a quantity.
+/// The results of a function.
+#[derive(Clone, Copy)]
+pub(crate) struct Results<'a, T> {
+    lines: &'a Lines,
+    registers: &'a [T],
+}
+
+impl<'a, T: Real> Results<'a, T> {
     #[inline(always)]
-    pub(crate) fn entries(&self, quantity: usize) -> &[Entry] {
-        self.results.get(quantity).map_or(&[], |of| of)
+    fn entries(self, quantity: usize) -> &'a [Entry] {
+        self.lines.results.get(quantity).map_or(&[], |of| of)
     }
 
     /// A quantity that is one number.
     #[inline(always)]
-    pub(crate) fn number<T: Real>(&self, quantity: usize, registers: &[T]) -> T {
+    pub(crate) fn number(self, quantity: usize) -> T {
         match self.entries(quantity) {
-            [entry, ..] => entry.value(registers),
+            [entry, ..] => entry.value(self.registers),
             [] => T::zero(),
         }
     }
+
+    /// A quantity of N numbers.
+    #[inline(always)]
+    pub(crate) fn vector<const N: usize>(self, quantity: usize) -> SVector<T, N> {
+        let mut vector = SVector::zeros();
+        self.each(quantity, |_, column, value| vector[column] = value);
+        vector
+    }
+
+    /// Row, column and value of each entry of a quantity that is not the constant 0.
+    #[inline(always)]
+    pub(crate) fn each(self, quantity: usize, mut put: impl FnMut(usize, usize, T)) {
+        for entry in self.entries(quantity) {
+            put(entry.row.into(), entry.column.into(), entry.value(self.registers));
+        }
+    }
+}
+
+/// A derivative of a table: one copy for each type of numbers.
+#[inline(never)]
+fn table<T: Real>(of: &AnyTable, orders: [u8; 2], registers: &[T], [a, b]: [usize; 2]) -> T {
+    let values = &registers[b..b + of.parameters()];
+    of.derivative(orders.map(usize::from), [registers[a], registers[b]], values)
 }
 
 /// A function by the library: one copy for each type of numbers.

@@ -1,6 +1,7 @@
 //! A matrix whose form is known at run time.
 
 use crate::code::Form;
+use crate::lines::Results;
 use core::cmp::Ordering;
 use vi_core::SVector;
 use vi_core::linear::{Banded, Matrix, Symmetric, Tridiagonal};
@@ -30,7 +31,7 @@ pub(crate) enum Inverse<const N: usize, T: Real> {
 impl<const N: usize, T: Real> AnyMatrix<N, T> {
     /// The zero matrix.
     #[inline(always)]
-    pub(crate) fn zeros(form: Form) -> Self {
+    fn zeros(form: Form) -> Self {
         let zeros = [T::zero(); N];
         match form {
             Form::Diagonal => Self::Diagonal(Banded { rows: [[T::zero()]; N] }),
@@ -40,9 +41,17 @@ impl<const N: usize, T: Real> AnyMatrix<N, T> {
         }
     }
 
+    /// The matrix of this form among the results of a function.
+    #[inline(always)]
+    pub(crate) fn of(form: Form, of: Results<'_, T>, quantity: usize) -> Self {
+        let mut matrix = Self::zeros(form);
+        of.each(quantity, |row, column, value| matrix.put(row, column, value));
+        matrix
+    }
+
     /// Sets an entry.
     #[inline(always)]
-    pub(crate) fn put(&mut self, row: usize, column: usize, value: T) {
+    fn put(&mut self, row: usize, column: usize, value: T) {
         match self {
             Self::Diagonal(of) => of.rows[row][0] = value,
             Self::Tridiagonal(of) => {

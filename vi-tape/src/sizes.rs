@@ -1,11 +1,13 @@
 //! The numbers of coordinates that are built.
 //!
 //! In: a code. Out: its system with every method, type-erased. The compiler instantiates all that is generic over the
-//! number of coordinates here.
+//! number of coordinates and the kind here.
 
 use crate::code::Code;
+use crate::kinds::Interpreted;
 use crate::mistakes::Mistakes;
-use crate::tape::{PARAMETERS, Tape};
+use crate::tape::Tape;
+use vi_core::kind::{Bound, Counted, Free};
 use vi_erased::at_rest::without_rest;
 use vi_erased::plan::{Built, Method};
 use vi_erased::{System, Typed, integrator, integrators};
@@ -18,7 +20,8 @@ macro_rules! sizes {
         /// The system of a code, which has a number of coordinates that is built.
         fn built(code: &'static Code) -> Option<Box<dyn System>> {
             match code.coordinates.len() {
-                $($size => Some(sized::<$size>(code)),)*
+                $($size if code.constraints.is_some() => Some(bound::<$size>(code)),
+                $size => Some(free::<$size>(code)),)*
                 _ => None,
             }
         }
@@ -30,14 +33,17 @@ sizes!(2, 4, 8);
 #[cfg(feature = "wide")]
 sizes!(2, 4, 8, 16);
 
-/// The smallest number of coordinates that is built and is at least that of a system of this name.
+/// The smallest number of coordinates that is built and is at least that of a system of this name, and that of its
+/// constraints.
 ///
 /// # Errors
-/// More coordinates than are built.
-pub(crate) fn size(name: &str, declared: usize) -> Result<usize, Mistakes> {
+/// More coordinates or constraints than are built.
+pub(crate) fn size(name: &str, [coordinates, constraints]: [usize; 2]) -> Result<usize, Mistakes> {
     let most = SIZES.last().copied().unwrap_or_default();
-    let what = || format!("{declared} coordinates; a text has {most} at most");
-    SIZES.iter().copied().find(|size| *size >= declared).ok_or_else(|| Mistakes::compiled(name, &what()))
+    let (count, of) =
+        if coordinates < constraints { (constraints, "constraints") } else { (coordinates, "coordinates") };
+    let what = || format!("{count} {of}; a text has {most} at most");
+    SIZES.iter().copied().find(|size| *size >= count).ok_or_else(|| Mistakes::compiled(name, &what()))
 }
 
 /// The system of a code.
@@ -52,16 +58,19 @@ pub(crate) fn system(code: &'static Code) -> Result<Box<dyn System>, Mistakes> {
 }
 
 fn check(code: &Code) -> Result<(), Mistakes> {
-    let count = code.defaults.len();
-    if count <= PARAMETERS {
+    let (count, most) =
+        (code.defaults.len(), if code.constraints.is_some() { Of::<1>::PARAMETERS } else { Free::PARAMETERS });
+    if count <= most {
         return Ok(());
     }
-    let what = format!("{count} parameters; a text has {PARAMETERS} at most");
-    Err(Mistakes::compiled(code.name, &what))
+    Err(Mistakes::compiled(code.name, &format!("{count} parameters; a text has {most} at most")))
 }
 
-/// The system of N coordinates, with the methods that it has.
-fn sized<const N: usize>(code: &'static Code) -> Box<dyn System> {
+/// The kind of up to K constraints.
+type Of<const K: usize> = Bound<K, Counted>;
+
+/// The system of N coordinates without constraints, with the methods that it has.
+fn free<const N: usize>(code: &'static Code) -> Box<dyn System> {
     let mut all = integrator::all([
         integrators!(fixed),
         integrators!(splitting),
@@ -71,7 +80,13 @@ fn sized<const N: usize>(code: &'static Code) -> Box<dyn System> {
         integrators!(energy 1, 2, 3),
     ]);
     all.retain(|of| has(code, of.built));
-    Box::new(Typed::of(Tape::<N>::new(code), all))
+    Box::new(Typed::of(Tape::<N, Free>::new(code), all))
+}
+
+/// The system of N coordinates with up to N constraints.
+fn bound<const N: usize>(code: &'static Code) -> Box<dyn System> {
+    let all = integrator::all([integrators!(gauss 1, 2, 3), integrators!(energy 2)]);
+    Box::new(Typed::of(Tape::<N, Of<N>>::new(code), all))
 }
 
 /// Whether a system has this method.

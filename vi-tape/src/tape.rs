@@ -1,11 +1,13 @@
 //! A system whose functions are instructions.
 
 use crate::code::{Code, Form};
-use crate::lines::Lines;
+use crate::kinds::Interpreted;
+use crate::lines::{Lines, Results};
 use crate::matrix::AnyMatrix;
 use core::array;
-use vi_core::kind::Free;
-use vi_core::lagrangian::{Described, Flow, Parameters};
+use vi_core::kind::{Free, Gradients, Multipliers, ReactionMatrix};
+use vi_core::lagrangian::{Described, Flow, Parameters, Undefined};
+use vi_core::linear::Block;
 use vi_core::motion::{Motion, Point, PointDerivatives, ScaledPoint, Separable, Sides};
 use vi_core::node::Node;
 use vi_core::real::{Real, Rounded};
@@ -15,41 +17,44 @@ use vi_core::stepping::{
 };
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError, support};
 
-/// The number of parameters that a tape has room for.
-pub(crate) const PARAMETERS: usize = 32;
-
-/// A system of N coordinates over the numbers T.
+/// A system of N coordinates over the numbers T, free or with constraints.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tape<const N: usize, T = f64> {
+pub(crate) struct Tape<const N: usize, K: Interpreted = Free, T: Real = f64> {
     code: &'static Code,
-    parameters: [T; PARAMETERS],
+    parameters: K::Parameters<T>,
 }
 
-impl<const N: usize> Tape<N> {
-    /// The system with its default parameters. Its code has N coordinates, and at most as many parameters as a tape has room for.
+impl<const N: usize, K: Interpreted> Tape<N, K> {
+    /// The system with its default parameters. Its code has N coordinates, and at most as many parameters as a tape has
+    /// room for.
     pub(crate) fn new(code: &'static Code) -> Self {
-        let mut parameters = [0.0; PARAMETERS];
-        parameters.iter_mut().zip(&code.defaults).for_each(|(to, value)| *to = *value);
+        let mut parameters = K::parameters();
+        parameters.as_mut().iter_mut().zip(&code.defaults).for_each(|(to, value)| *to = *value);
         Self { code, parameters }
     }
 }
 
-impl<const N: usize, T: Real> Tape<N, T> {
+impl<const N: usize, K: Interpreted, T: Real> Tape<N, K, T> {
     #[inline(always)]
-    fn over<U: Real>(&self) -> Tape<N, U> {
-        let mut parameters = [U::zero(); PARAMETERS];
-        for (to, from) in parameters.iter_mut().zip(&self.parameters[..self.code.defaults.len()]) {
+    fn over<U: Real>(&self) -> Tape<N, K, U> {
+        let mut parameters = K::parameters::<U>();
+        for (to, from) in parameters.as_mut().iter_mut().zip(&self.parameters.as_ref()[..self.code.defaults.len()]) {
             *to = U::real(from.to_f64());
         }
         Tape { code: self.code, parameters }
     }
 }
 
-impl<const N: usize, T: Real> Tape<N, T> {
+impl<const N: usize, K: Interpreted, T: Real> Tape<N, K, T> {
     /// Evaluates a function of a state.
     #[inline(always)]
-    fn at<Y>(&self, lines: &Lines, (t, q, v): (T, &SVector<T, N>, &SVector<T, N>), read: impl FnOnce(&[T]) -> Y) -> Y {
-        lines.evaluated(self.code.instructions, &[&[t], q.as_slice(), v.as_slice(), &self.parameters], read)
+    fn at<Y>(
+        &self,
+        lines: &Lines,
+        (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
+        read: impl FnOnce(Results<'_, T>) -> Y,
+    ) -> Y {
+        lines.evaluated(self.code.instructions, &[&[t], q.as_slice(), v.as_slice(), self.parameters.as_ref()], read)
     }
 
     /// Evaluates a function of a node, a step and a velocity.
@@ -58,43 +63,26 @@ impl<const N: usize, T: Real> Tape<N, T> {
         &self,
         lines: &Lines,
         (node, h, v): (&Node<N, T>, T, &SVector<T, N>),
-        read: impl FnOnce(&[T]) -> Y,
+        read: impl FnOnce(Results<'_, T>) -> Y,
     ) -> Y {
         let numbers = [node.t, node.t_low, node.energy, node.energy_low, h];
         let (q, q_low, p, p_low) = (node.q.as_slice(), node.q_low.as_slice(), node.p.as_slice(), node.p_low.as_slice());
-        let arguments = [&numbers, q, v.as_slice(), &self.parameters, q_low, p, p_low];
+        let arguments = [&numbers, q, v.as_slice(), self.parameters.as_ref(), q_low, p, p_low];
         lines.evaluated(self.code.instructions, &arguments, read)
     }
 
     /// Evaluates a function of an interval.
     #[inline(always)]
-    fn between<Y>(&self, lines: &Lines, of: &Interval<N, T>, read: impl FnOnce(&[T]) -> Y) -> Y {
+    fn between<Y>(&self, lines: &Lines, of: &Interval<N, T>, read: impl FnOnce(Results<'_, T>) -> Y) -> Y {
         let h = of.t1 - of.t0;
         let v: SVector<T, N> = SVector::from_fn(|i, _| (of.q1[i] - of.q0[i]) / h);
-        let arguments = [&[of.t0, of.t1, h], of.q0.as_slice(), v.as_slice(), &self.parameters, of.q1.as_slice()];
+        let arguments =
+            [&[of.t0, of.t1, h], of.q0.as_slice(), v.as_slice(), self.parameters.as_ref(), of.q1.as_slice()];
         lines.evaluated(self.code.instructions, &arguments, read)
     }
 }
 
-#[inline(always)]
-fn vector<const N: usize, T: Real>(lines: &Lines, quantity: usize, registers: &[T]) -> SVector<T, N> {
-    let mut vector = SVector::zeros();
-    for entry in lines.entries(quantity) {
-        vector[entry.column as usize] = entry.value(registers);
-    }
-    vector
-}
-
-#[inline(always)]
-fn matrix<const N: usize, T: Real>(form: Form, lines: &Lines, quantity: usize, registers: &[T]) -> AnyMatrix<N, T> {
-    let mut matrix = AnyMatrix::zeros(form);
-    for entry in lines.entries(quantity) {
-        matrix.put(entry.row as usize, entry.column as usize, entry.value(registers));
-    }
-    matrix
-}
-
-impl<const N: usize> Described for Tape<N> {
+impl<const N: usize, K: Interpreted> Described for Tape<N, K> {
     const ABOUT: &'static str = "";
     const PARAMETERS_ABOUT: &'static [&'static str] = &[];
     const DEFINITION: &'static str = "";
@@ -112,10 +100,10 @@ impl<const N: usize> Described for Tape<N> {
     }
 }
 
-impl<const N: usize, T: Real> Parameters<T> for Tape<N, T> {
+impl<const N: usize, K: Interpreted, T: Real> Parameters<T> for Tape<N, K, T> {
     fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
         let index = self.code.parameters.iter().position(|known| *known == name)?;
-        self.parameters.get_mut(index)
+        self.parameters.as_mut().get_mut(index)
     }
 }
 
@@ -124,22 +112,12 @@ macro_rules! of_state {
         #[inline]
         fn $name(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> $out {
             let lines = &self.code.functions.$name;
-            self.at(lines, (t, q, v), |r| read::$read(lines, 0, r))
+            self.at(lines, (t, q, v), |r| r.$read(0))
         }
     )*};
 }
 
-mod read {
-    pub(super) use super::vector;
-    use super::{Lines, Real};
-
-    #[inline(always)]
-    pub(super) fn number<T: Real>(lines: &Lines, quantity: usize, registers: &[T]) -> T {
-        lines.number(quantity, registers)
-    }
-}
-
-impl<const N: usize, T: Real> Lagrangian<N, T> for Tape<N, T> {
+impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T> {
     // The facts are those of the code: functions return them.
     const NAME: &'static str = "";
     const COORDINATES: [&'static str; N] = [""; N];
@@ -178,26 +156,35 @@ impl<const N: usize, T: Real> Lagrangian<N, T> for Tape<N, T> {
         self.code.parameters
     }
 
+    fn monotone_table(&self) -> Option<&'static str> {
+        self.code.monotone_table
+    }
+
     fn inputs(&self) -> &'static [usize] {
         self.code.inputs
     }
 
     fn parameter(&self, index: usize) -> T {
-        self.parameters[index]
+        self.parameters.as_ref()[index]
     }
 
     of_state!(lagrangian number -> T, energy number -> T, momentum vector -> SVector<T, N>, force vector -> SVector<T, N>);
 
     #[inline]
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
+        if const { K::COUNT > 0 } {
+            return support::constrained_acceleration(self, t, q, v);
+        }
         let lines = &self.code.functions.acceleration;
-        let (mass, applied) =
-            self.at(lines, (t, q, v), |r| (matrix::<N, T>(self.code.mass, lines, 0, r), vector(lines, 1, r)));
+        let (mass, applied) = self.at(lines, (t, q, v), |r| (K::mass(self.code, r, 0), r.vector(1)));
         support::acceleration(t, &mass, &applied)
     }
 
     #[inline]
     fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
+        if const { K::COUNT > 0 } {
+            return support::constrained_flow(self, t, q, p);
+        }
         let velocity = if self.code.is_quadratic {
             let at_rest = self.point(t, q, &SVector::zeros());
             support::velocity_by_mass(t, &at_rest.mass, &(p - at_rest.momentum))?
@@ -210,24 +197,37 @@ impl<const N: usize, T: Real> Lagrangian<N, T> for Tape<N, T> {
     }
 
     #[cold]
+    fn undefined(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<Undefined> {
+        let mut arguments = vec![T::zero(); self.code.calls.iter().map(|call| call.arguments).sum()];
+        let lines = &self.code.functions.undefined;
+        self.at(lines, (t, q, v), |r| r.each(0, |_, place, value| arguments[place] = value));
+        let mut arguments = &*arguments;
+        self.code.calls.iter().find_map(|call| {
+            let (own, rest) = arguments.split_at(call.arguments);
+            arguments = rest;
+            call.table.undefined(call.text, [own[0], own[own.len() - 1]])
+        })
+    }
+
+    #[cold]
     fn non_finite(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<&'static str> {
         let mut first = None;
         let lines = &self.code.functions.non_finite;
         self.at(lines, (t, q, v), |r| {
-            for entry in lines.entries(0) {
-                if first.is_none() && !entry.value(r).is_finite() {
-                    first = self.code.watched.get(entry.column as usize).copied();
+            r.each(0, |_, watched, value| {
+                if first.is_none() && !value.is_finite() {
+                    first = self.code.watched.get(watched).copied();
                 }
-            }
+            });
         });
         first
     }
 }
 
-impl<const N: usize, T: Real> Motion<N, T> for Tape<N, T> {
-    type Kind = Free;
-    type Mass = AnyMatrix<N, T>;
-    type PointMatrix = AnyMatrix<N, T>;
+impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
+    type Kind = K;
+    type Mass = K::Matrix<N, T>;
+    type PointMatrix = K::Matrix<N, T>;
     const CONSTANT_MASS: bool = false;
 
     fn has_constant_mass(&self) -> bool {
@@ -242,75 +242,125 @@ impl<const N: usize, T: Real> Motion<N, T> for Tape<N, T> {
         self.code.scales_time
     }
 
+    fn has_point_masses(&self) -> bool {
+        self.code.constraints.is_some_and(|of| of.has_point_masses)
+    }
+
+    fn constraint_names(&self) -> &'static [&'static str] {
+        self.code.constraints.map_or(&[], |of| of.names)
+    }
+
+    fn holonomic(&self) -> usize {
+        self.code.constraints.map_or(0, |of| of.holonomic)
+    }
+
+    fn blocks(&self) -> &'static [Block] {
+        self.code.constraints.map_or(&[], |of| of.blocks)
+    }
+
     #[inline(always)]
-    fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, AnyMatrix<N, T>> {
+    fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass> {
         let lines = &self.code.functions.point;
         self.at(lines, (t, q, v), |r| Point {
-            momentum: vector(lines, 0, r),
-            force: vector(lines, 1, r),
-            mass: matrix(self.code.mass, lines, 2, r),
+            momentum: r.vector(0),
+            force: r.vector(1),
+            mass: K::mass(self.code, r, 2),
         })
     }
 
     #[inline(always)]
     fn sides(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T> {
         let lines = &self.code.functions.sides;
-        self.at(lines, (t, q, v), |r| Sides { momentum: vector(lines, 0, r), force: vector(lines, 1, r) })
+        self.at(lines, (t, q, v), |r| Sides { momentum: r.vector(0), force: r.vector(1) })
     }
 
     #[inline(always)]
     fn applied_force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
         let lines = &self.code.functions.applied_force;
-        self.at(lines, (t, q, v), |r| vector(lines, 0, r))
+        self.at(lines, (t, q, v), |r| r.vector(0))
     }
 
     #[inline(always)]
-    fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<AnyMatrix<N, T>> {
-        let form = self.code.point_matrix;
+    fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix> {
         let lines = &self.code.functions.point_derivatives;
         self.at(lines, (t, q, v), |r| PointDerivatives {
-            momentum_dq: matrix(form, lines, 0, r),
-            mass: matrix(form, lines, 1, r),
-            force_dq: matrix(form, lines, 2, r),
-            force_dv: matrix(form, lines, 3, r),
+            momentum_dq: K::point_matrix(self.code, r, 0),
+            mass: K::point_matrix(self.code, r, 1),
+            force_dq: K::point_matrix(self.code, r, 2),
+            force_dv: K::point_matrix(self.code, r, 3),
         })
     }
 
     of_state!(power number -> T);
 
-    fn scaled_point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> ScaledPoint<N, T, AnyMatrix<N, T>> {
+    fn scaled_point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> ScaledPoint<N, T, Self::Mass> {
         let lines = &self.code.functions.scaled_point;
         self.at(lines, (t, q, v), |r| ScaledPoint {
-            point: Point {
-                momentum: vector(lines, 0, r),
-                force: vector(lines, 1, r),
-                mass: matrix(self.code.mass, lines, 2, r),
-            },
-            energy: lines.number(3, r),
-            power: lines.number(4, r),
-            g: lines.number(5, r),
-            g_dq: vector(lines, 6, r),
-            g_dt: lines.number(7, r),
+            point: Point { momentum: r.vector(0), force: r.vector(1), mass: K::mass(self.code, r, 2) },
+            energy: r.number(3),
+            power: r.number(4),
+            g: r.number(5),
+            g_dq: r.vector(6),
+            g_dt: r.number(7),
         })
+    }
+
+    fn applied(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        let lines = &self.code.functions.applied;
+        self.at(lines, (t, q, v), |r| r.vector(0))
+    }
+
+    fn constraints(&self, t: T, q: &SVector<T, N>) -> Multipliers<Self, N, T> {
+        let lines = &self.code.functions.constraints;
+        self.at(lines, (t, q, &SVector::zeros()), |r| K::multipliers(self.code, r, 0))
+    }
+
+    fn constraint_gradients(&self, t: T, q: &SVector<T, N>) -> (Gradients<Self, N, T>, Multipliers<Self, N, T>) {
+        let columns = self.code.constraints.map_or(&[][..], |of| of.gradients);
+        let lines = &self.code.functions.constraint_gradients;
+        self.at(lines, (t, q, &SVector::zeros()), |r| (K::gradients(columns, r, 0), K::multipliers(self.code, r, 1)))
+    }
+
+    fn constraint_rate_derivatives(
+        &self,
+        t: T,
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
+    ) -> (Gradients<Self, N, T>, Multipliers<Self, N, T>) {
+        let columns = self.code.constraints.map_or(&[][..], |of| of.rate_derivatives);
+        let lines = &self.code.functions.constraint_rate_derivatives;
+        self.at(lines, (t, q, v), |r| (K::gradients(columns, r, 0), K::multipliers(self.code, r, 1)))
+    }
+
+    fn reaction_derivatives(
+        &self,
+        t: T,
+        q: &SVector<T, N>,
+        multipliers: &Multipliers<Self, N, T>,
+    ) -> ReactionMatrix<Self, N, T> {
+        let columns = self.code.constraints.map_or(&[][..], |of| of.reaction_derivatives);
+        let lines = &self.code.functions.reaction_derivatives;
+        let arguments = [&[t], q.as_slice(), &[], self.parameters.as_ref(), multipliers.as_ref()];
+        lines.evaluated(self.code.instructions, &arguments, |r| K::reaction(columns, r, 0))
     }
 }
 
-impl<const N: usize, T: Real> Separable<N, T> for Tape<N, T> {}
+impl<const N: usize, T: Real> Separable<N, T> for Tape<N, Free, T> {}
 
-impl<const N: usize> Convertible<N> for Tape<N> {
-    type In<T: Real> = Tape<N, T>;
+impl<const N: usize, K: Interpreted> Convertible<N> for Tape<N, K> {
+    type In<T: Real> = Tape<N, K, T>;
 
     #[inline(always)]
-    fn convert<T: Real>(&self) -> Tape<N, T> {
+    fn convert<T: Real>(&self) -> Tape<N, K, T> {
         self.over()
     }
 }
 
 impl<const N: usize> Discretized<N> for Tape<N> {
-    type Steps<T: Real> = Tape<N, T>;
+    type Steps<T: Real> = Tape<N, Free, T>;
 
     #[inline(always)]
-    fn steps<T: Real>(&self) -> Tape<N, T> {
+    fn steps<T: Real>(&self) -> Tape<N, Free, T> {
         self.over()
     }
 }
@@ -320,12 +370,12 @@ macro_rules! of_interval {
         #[inline]
         fn $name(&self, interval: &Interval<N, T>) -> $out {
             let lines = &self.code.functions.$name;
-            self.between(lines, interval, |r| read::$read(lines, 0, r))
+            self.between(lines, interval, |r| r.$read(0))
         }
     )*};
 }
 
-impl<const N: usize, T: Real> DiscreteLagrangian<N, T> for Tape<N, T> {
+impl<const N: usize, T: Real> DiscreteLagrangian<N, T> for Tape<N, Free, T> {
     of_interval!(
         ld number -> T, d1_ld number -> T, d2_ld vector -> SVector<T, N>, d3_ld number -> T,
         d4_ld vector -> SVector<T, N>, fd_minus vector -> SVector<T, N>, fd_plus vector -> SVector<T, N>,
@@ -333,7 +383,7 @@ impl<const N: usize, T: Real> DiscreteLagrangian<N, T> for Tape<N, T> {
     );
 }
 
-impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, T> {
+impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, Free, T> {
     type Jacobian = AnyMatrix<N, T>;
     type StepMatrix = AnyMatrix<N, T>;
     const CONSTANT_JACOBIAN: bool = false;
@@ -354,8 +404,8 @@ impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, T> {
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, AnyMatrix<N, T>> {
         let lines = &self.code.functions.momentum_equation;
         self.in_step(lines, (node, h, v), |r| MomentumEquation {
-            residual: vector(lines, 0, r),
-            jacobian: matrix(self.code.jacobian, lines, 1, r),
+            residual: r.vector(0),
+            jacobian: AnyMatrix::of(self.code.jacobian, r, 1),
         })
     }
 
@@ -363,9 +413,9 @@ impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, T> {
     fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
         let lines = &self.code.functions.momentum_residual;
         self.in_step(lines, (node, h, v), |r| MomentumResidual {
-            residual: vector(lines, 0, r),
-            scale: vector(lines, 1, r),
-            increment: vector(lines, 2, r),
+            residual: r.vector(0),
+            scale: r.vector(1),
+            increment: r.vector(2),
         })
     }
 
@@ -377,7 +427,7 @@ impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, T> {
         v: &SVector<T, N>,
     ) -> MomentumDerivatives<AnyMatrix<N, T>, AnyMatrix<N, T>> {
         let lines = &self.code.functions.momentum_derivatives;
-        self.in_step(lines, (node, h, v), |r| derivatives(self.code, lines, r))
+        self.in_step(lines, (node, h, v), |r| derivatives(self.code, r))
     }
 
     #[cold]
@@ -388,45 +438,41 @@ impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, T> {
     #[inline(always)]
     fn discrete_energy(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> T {
         let lines = &self.code.functions.discrete_energy;
-        self.in_step(lines, (node, h, v), |r| lines.number(0, r))
+        self.in_step(lines, (node, h, v), |r| r.number(0))
     }
 }
 
 #[inline(always)]
 fn derivatives<const N: usize, T: Real>(
     code: &Code,
-    lines: &Lines,
-    registers: &[T],
+    r: Results<'_, T>,
 ) -> MomentumDerivatives<AnyMatrix<N, T>, AnyMatrix<N, T>> {
     MomentumDerivatives {
-        residual_dv: matrix(code.jacobian, lines, 0, registers),
-        residual_dq: matrix(Form::Dense, lines, 1, registers),
-        increment_dq: matrix(Form::Dense, lines, 2, registers),
-        increment_dv: matrix(Form::Dense, lines, 3, registers),
+        residual_dv: AnyMatrix::of(code.jacobian, r, 0),
+        residual_dq: AnyMatrix::of(Form::Dense, r, 1),
+        increment_dq: AnyMatrix::of(Form::Dense, r, 2),
+        increment_dv: AnyMatrix::of(Form::Dense, r, 3),
     }
 }
 
-impl<const N: usize, T: Real> EnergyStepping<N, T> for Tape<N, T> {
+impl<const N: usize, T: Real> EnergyStepping<N, T> for Tape<N, Free, T> {
     #[inline]
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
         let a = self.acceleration(t, q, v)?;
         let lines = &self.code.functions.step_density;
-        let arguments = &[&[t], q.as_slice(), v.as_slice(), &self.parameters, a.as_slice()];
-        lines.evaluated(self.code.instructions, arguments, |r| support::step_density(t, lines.number(0, r)))
+        let arguments = &[&[t], q.as_slice(), v.as_slice(), self.parameters.as_ref(), a.as_slice()];
+        lines.evaluated(self.code.instructions, arguments, |r| support::step_density(t, r.number(0)))
     }
 
     #[inline(always)]
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, AnyMatrix<N, T>> {
         let lines = &self.code.functions.extended_system;
         self.in_step(lines, (node, h, v), |r| ExtendedSystem {
-            momentum: MomentumEquation {
-                residual: vector(lines, 0, r),
-                jacobian: matrix(self.code.jacobian, lines, 1, r),
-            },
-            residual_dh: vector(lines, 2, r),
-            energy_residual: lines.number(3, r),
-            energy_dv: vector(lines, 4, r),
-            energy_dh: lines.number(5, r),
+            momentum: MomentumEquation { residual: r.vector(0), jacobian: AnyMatrix::of(self.code.jacobian, r, 1) },
+            residual_dh: r.vector(2),
+            energy_residual: r.number(3),
+            energy_dv: r.vector(4),
+            energy_dh: r.number(5),
         })
     }
 
@@ -434,11 +480,11 @@ impl<const N: usize, T: Real> EnergyStepping<N, T> for Tape<N, T> {
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
         let lines = &self.code.functions.extended_residual;
         self.in_step(lines, (node, h, v), |r| ExtendedResidual {
-            residual: vector(lines, 0, r),
-            scale: vector(lines, 1, r),
-            energy_residual: lines.number(2, r),
-            energy_scale: lines.number(3, r),
-            increment: Increment { momentum: vector(lines, 4, r), energy: lines.number(5, r) },
+            residual: r.vector(0),
+            scale: r.vector(1),
+            energy_residual: r.number(2),
+            energy_scale: r.number(3),
+            increment: Increment { momentum: r.vector(4), energy: r.number(5) },
         })
     }
 
@@ -451,15 +497,15 @@ impl<const N: usize, T: Real> EnergyStepping<N, T> for Tape<N, T> {
     ) -> ExtendedDerivatives<N, T, AnyMatrix<N, T>, AnyMatrix<N, T>> {
         let lines = &self.code.functions.extended_derivatives;
         self.in_step(lines, (node, h, v), |r| ExtendedDerivatives {
-            momentum: derivatives(self.code, lines, r),
-            residual_dh: vector(lines, 4, r),
-            energy_dq: vector(lines, 5, r),
-            energy_dv: vector(lines, 6, r),
-            energy_dh: lines.number(7, r),
-            increment_dh: vector(lines, 8, r),
-            energy_increment_dq: vector(lines, 9, r),
-            energy_increment_dv: vector(lines, 10, r),
-            energy_increment_dh: lines.number(11, r),
+            momentum: derivatives(self.code, r),
+            residual_dh: r.vector(4),
+            energy_dq: r.vector(5),
+            energy_dv: r.vector(6),
+            energy_dh: r.number(7),
+            increment_dh: r.vector(8),
+            energy_increment_dq: r.vector(9),
+            energy_increment_dv: r.vector(10),
+            energy_increment_dh: r.number(11),
         })
     }
 

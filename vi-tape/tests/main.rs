@@ -2,5 +2,7 @@
 
 mod allocations;
 mod bits;
+mod bound;
 mod padded;
+mod tables;
 mod texts;

@@ -17,7 +17,7 @@ use vi_runs::system::System;
 /// # Errors
 /// The mistakes of the text, at their places in the file of this name.
 pub fn entry(file: &str, text: &str) -> Result<Entry, String> {
-    let mut system = vi_tape::System::of_file(file, text).map_err(|mistakes| mistakes.to_string())?;
+    let mut system = vi_tape::System::of_file(file, text, &[]).map_err(|mistakes| mistakes.to_string())?;
     let zeros = vec![0.0; system.coordinates().len()];
     let start = system.start().cloned();
     for (name, value) in start.iter().flat_map(|start| &start.parameters) {

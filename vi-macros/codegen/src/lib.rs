@@ -195,17 +195,18 @@ pub fn derive(system: &System) -> syn::Result<Derivations> {
     Ok(Derivations { own, further })
 }
 
-/// The number of coordinates of a system, with the entries of arrays.
+/// The numbers of coordinates and of constraints of a system, with the entries of arrays.
 ///
 /// # Errors
-/// All errors of the check, if the number depends on it.
-pub fn dimension(system: &System) -> syn::Result<usize> {
+/// All errors of the check, if the numbers depend on it.
+pub fn sizes(system: &System) -> syn::Result<[usize; 2]> {
     let is_one = |of: &syntax::Coordinate| of.lengths.is_empty() && !of.is_rotation;
-    if system.coordinates.iter().all(is_one) {
-        return Ok(system.coordinates.len());
+    if system.coordinates.iter().all(is_one) && system.constraints.is_empty() {
+        return Ok([system.coordinates.len(), 0]);
     }
     let mut pool = Pool::bounded(limits::WORK);
-    check::model(&mut pool, system, 0).map(|model| model.dimension()).map_err(messages::bounded)
+    let model = check::model(&mut pool, system, 0).map_err(messages::bounded)?;
+    Ok([model.dimension(), model.constraints.len()])
 }
 
 /// Runs the stages from the parsed system to its program in straight lines, for the default rule alone.

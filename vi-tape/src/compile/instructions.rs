@@ -2,6 +2,7 @@
 //! inside.
 
 use super::TooMany;
+use super::tables::Tables;
 use crate::lines::Kind;
 use std::collections::{HashMap, HashSet};
 use vi_codegen::program::{Function, Operation, OperationId, Operations};
@@ -47,6 +48,7 @@ pub(super) fn instructions(
     needed: &[OperationId],
     results: impl Iterator<Item = OperationId>,
     constants: &mut Constants,
+    tables: &Tables,
 ) -> Result<Vec<Instruction>, TooMany> {
     let operations = &function.operations;
     let mut uses: HashMap<OperationId, usize> = HashMap::new();
@@ -64,7 +66,7 @@ pub(super) fn instructions(
             continue;
         }
         let instruction =
-            alone(operations, *id, constants, &mut |other| uses.contains_key(&other) && done.insert(other))?;
+            alone(operations, *id, (constants, tables), &mut |other| uses.contains_key(&other) && done.insert(other))?;
         for operand in &instruction.operands {
             if let Some(value) = operations.as_constant(*operand).filter(|_| loaded.insert(*operand)) {
                 let constant = constants.place(value)?;
@@ -80,7 +82,7 @@ pub(super) fn instructions(
 fn alone(
     operations: &Operations,
     id: OperationId,
-    constants: &mut Constants,
+    (constants, tables): (&mut Constants, &Tables),
     is_joined: &mut dyn FnMut(OperationId) -> bool,
 ) -> Result<Instruction, TooMany> {
     let operation = operations.get(id);
@@ -121,7 +123,11 @@ fn alone(
             Kind::SineCosine
         }
         Operation::Call(of, _) | Operation::Call2(of, ..) => Kind::Call(*of),
-        Operation::Constant(_) | Operation::Input(_) | Operation::Opaque(..) => return Err("kinds of operations"),
+        Operation::Opaque(of, _) => {
+            let table = tables.place(&of.name).ok_or("kinds of functions")?;
+            Kind::Table { of: table, orders: [of.orders[0], of.orders[1]] }
+        }
+        Operation::Constant(_) | Operation::Input(_) => return Err("kinds of operations"),
     };
     Ok(Instruction { kind, results, operands: operation.operands().collect(), constant: of_cosine })
 }

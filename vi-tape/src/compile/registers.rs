@@ -56,6 +56,13 @@ pub(super) fn placed(
             *place = *of.get(id).ok_or("operands")?;
         }
         match instruction.kind {
+            // The values of a table of parameters, which are neighbouring inputs.
+            Kind::Table { .. } if instruction.operands.len() > 2 => {
+                let mut values = instruction.operands[1..].iter().map(|id| of.get(id)).zip(places[2]..);
+                if !values.all(|(found, wanted)| found == Some(&wanted)) {
+                    return Err("kinds of tables");
+                }
+            }
             Kind::AddConstant | Kind::SubtractConstant | Kind::SubtractFromConstant | Kind::Scale | Kind::Constant => {
                 places[2] = instruction.constant;
             }

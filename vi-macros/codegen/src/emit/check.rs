@@ -5,7 +5,6 @@
 //! without a rule has the tests of its motion, of its constraints and of its Gauss steps.
 
 use super::formula::number;
-use super::lagrangian::monotone_table;
 use super::{Source, Steps, by_marker};
 use crate::indexed::Indexed;
 use crate::model::Model;
@@ -179,7 +178,7 @@ struct Properties {
 impl Properties {
     /// Those of steps in straight lines.
     fn of(steps: &Steps) -> Self {
-        let is_monotone = monotone_table(steps).is_some();
+        let is_monotone = steps.model.monotone_table(steps.pool).is_some();
         Self {
             rule: steps.discrete.rule,
             has_energy_steps: steps.discrete.has_energy_steps() && !is_monotone,

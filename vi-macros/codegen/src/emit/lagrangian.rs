@@ -6,7 +6,7 @@ use super::constraints;
 use super::formula::item_name;
 use super::matrix::matrix;
 use super::state_function::{number, vector, vector_of};
-use crate::model::{Coordinate, Function, Model, Parameter};
+use crate::model::{Coordinate, Model, Parameter};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::{Literal, TokenStream};
@@ -33,7 +33,11 @@ pub(super) fn item(source: &Source) -> TokenStream {
         non_finite(source),
         undefined(source),
     ];
-    let properties = Properties { autonomous: of.autonomous, cyclic: &of.cyclic, monotone: monotone_table(source) };
+    let properties = Properties {
+        autonomous: of.autonomous,
+        cyclic: &of.cyclic,
+        monotone: source.model.monotone_table(source.pool),
+    };
     implementation(source.model, properties, &functions)
 }
 
@@ -84,16 +88,6 @@ fn inputs(model: &Model) -> Option<TokenStream> {
     let inputs = (0..).zip(&model.parameters).filter(|(_, parameter)| parameter.is_input);
     let inputs: Vec<Literal> = inputs.map(|(index, _)| Literal::usize_unsuffixed(index)).collect();
     (!inputs.is_empty()).then(|| quote!(const INPUTS: &'static [::core::primitive::usize] = &[#(#inputs),*];))
-}
-
-/// The name of a monotone table in L.
-pub(super) fn monotone_table(source: &Source) -> Option<String> {
-    let is_monotone = |function: &&Function| {
-        let is_called =
-            |expr: Expr| matches!(source.pool.node(expr), Node::Opaque(of, _) if function.name == of.name.as_ref());
-        function.is_monotone() && source.pool.reachable(&[source.model.lagrangian]).into_iter().any(is_called)
-    };
-    source.model.functions.iter().find(is_monotone).map(|function| function.name.to_string())
 }
 
 /// The constant that marks angles, if there are any.

@@ -121,7 +121,7 @@ pub(super) fn functions(context: &mut Context, written: &syntax::System, declare
     }
     for written_table in &written.tables {
         let name = &written_table.name;
-        let Some((table, parameters)) = table::table(context, written_table, (&written.folder, declared)) else {
+        let Some((table, parameters)) = table::table(context, written_table, (written, declared)) else {
             context.declare(name, Meaning::Wrong);
             continue;
         };

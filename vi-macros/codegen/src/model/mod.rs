@@ -45,7 +45,7 @@ pub use table::{Outside, Table, TableKind, Values};
 use crate::arrays::bracketed;
 use crate::symbol::{LetEntry, Symbol};
 use proc_macro2::{Ident, Span};
-use vi_expr::Expr;
+use vi_expr::{Expr, Node, Pool};
 
 /// A constraint, or one entry of an array of them.
 #[derive(Clone)]
@@ -215,6 +215,17 @@ impl Model {
     #[must_use]
     pub fn about(&self) -> String {
         words(&self.attributes)
+    }
+
+    /// The name of a monotone table in L, whose expressions are in the pool.
+    #[must_use]
+    pub fn monotone_table(&self, pool: &Pool<Symbol>) -> Option<String> {
+        let is_monotone = |function: &&Function| {
+            let is_called =
+                |expr: Expr| matches!(pool.node(expr), Node::Opaque(of, _) if function.name == of.name.as_ref());
+            function.is_monotone() && pool.reachable(&[self.lagrangian]).into_iter().any(is_called)
+        };
+        self.functions.iter().find(is_monotone).map(|function| function.name.to_string())
     }
 
     /// The parameters grouped by field of the struct: a scalar parameter, or the entries of an array row by row.

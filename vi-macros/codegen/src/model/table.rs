@@ -16,8 +16,6 @@ use vi_expr::Expr;
 
 /// Maximum number of values of a table.
 const VALUES: usize = 4096;
-/// Largest file, in bytes.
-const LARGEST_FILE: u64 = 16_000_000;
 /// Maximum number of parameters that are values of a table: each evaluation reads all of them.
 const PARAMETERS: usize = 64;
 /// Minimum number of values of a periodic table: with fewer, no spline is determined.
@@ -153,9 +151,9 @@ impl Table {
 pub(super) fn table(
     context: &mut Context,
     written: &syntax::Table,
-    (folder, declared): (&Path, &[Parameter]),
+    (of, declared): (&syntax::System, &[Parameter]),
 ) -> Option<(Table, Vec<Expr>)> {
-    let mut reader = Reader { context, written, wrong: false };
+    let mut reader = Reader { context, written, of, wrong: false };
     let (kind, outside) = reader.words();
     if !(1..=2).contains(&written.arguments.len()) {
         reader.report(
@@ -165,7 +163,7 @@ pub(super) fn table(
         );
         return None;
     }
-    let (values, parameters, file) = reader.values(folder)?;
+    let (values, parameters, file) = reader.values()?;
     let table = Table { kind, outside, values, file };
     reader.check(&table);
     reader.check_period(&table, &parameters, declared);
@@ -175,6 +173,7 @@ pub(super) fn table(
 struct Reader<'a, 'b> {
     context: &'a mut Context<'b>,
     written: &'a syntax::Table,
+    of: &'a syntax::System,
     wrong: bool,
 }
 
@@ -220,11 +219,11 @@ impl Reader<'_, '_> {
         (kind.unwrap_or(TableKind::Cubic), outside.unwrap_or(Outside::Nothing))
     }
 
-    fn values(&mut self, folder: &Path) -> Option<(Values, Vec<Expr>, Option<PathBuf>)> {
+    fn values(&mut self) -> Option<(Values, Vec<Expr>, Option<PathBuf>)> {
         match &self.written.data {
             TableData::File(path) => {
-                let file = folder.join(path.value());
-                let rows = self.file(folder, &file, path.span())?;
+                let file = self.of.folder.join(path.value());
+                let rows = self.file(&file, path.span())?;
                 Some((self.values_of_rows(rows, path.span())?, Vec::new(), Some(file)))
             }
             TableData::Points(points) => {
@@ -335,27 +334,38 @@ impl Reader<'_, '_> {
 
     /// The numbers of a file, row by row. Its first row may be a header, in which no cell begins as a number; the corner
     /// of a grid may be text.
-    fn file(&mut self, folder: &Path, file: &Path, span: Span) -> Option<Vec<Vec<f64>>> {
-        // A device has no end.
-        let is_readable = |about: std::fs::Metadata| about.is_file() && about.len() <= LARGEST_FILE;
-        if std::fs::metadata(file).is_ok_and(|about| !is_readable(about)) {
+    fn file(&mut self, file: &Path, span: Span) -> Option<Vec<Vec<f64>>> {
+        let text = match self.of.files.get(file) {
+            Some(text) => text.clone(),
+            None => self.read(file, span)?,
+        };
+        self.rows(&text, span)
+    }
+
+    /// The text of a file.
+    fn read(&mut self, file: &Path, span: Span) -> Option<String> {
+        if std::fs::metadata(file).is_ok_and(|about| !syntax::is_readable(&about)) {
             let help = format!("`{}`: write the path of a file of at most 16 MB", file.display());
             self.report(span, "cannot be read from its file".to_owned(), help);
             return None;
         }
-        let text = match std::fs::read_to_string(file) {
-            Ok(text) => text,
+        match std::fs::read_to_string(file) {
+            Ok(text) => Some(text),
             Err(reason) => {
                 let start = match &self.written.data {
                     TableData::File(path) if Path::new(&path.value()).is_absolute() => "of a file that exists",
-                    _ if folder.as_os_str().is_empty() => "that starts at the current folder",
+                    _ if self.of.folder.as_os_str().is_empty() => "that starts at the current folder",
                     _ => "that starts at the folder of `Cargo.toml`",
                 };
                 let help = format!("`{}`: {reason}; write a path {start}", file.display());
                 self.report(span, "cannot be read from its file".to_owned(), help);
-                return None;
+                None
             }
-        };
+        }
+    }
+
+    /// The numbers of the text of a file.
+    fn rows(&mut self, text: &str, span: Span) -> Option<Vec<Vec<f64>>> {
         let is_grid = self.written.arguments.len() == 2;
         let mut rows: Vec<Vec<f64>> = Vec::new();
         let mut is_first = true;

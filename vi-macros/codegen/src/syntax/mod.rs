@@ -14,6 +14,7 @@ use crate::rules::{self, GAUSS, NamedRule};
 pub use expression::{Comparison, Expression, Kind, Operator, Range};
 pub use function::{Body, Function, Table, TableArgument, TableData};
 use proc_macro2::{Ident, Span};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::rc::Rc;
 
@@ -66,6 +67,8 @@ pub struct System {
     pub tables: Vec<Table>,
     /// The folder of the paths of tables.
     pub folder: PathBuf,
+    /// The texts of files that are known, by their paths from the folder; others are read.
+    pub files: BTreeMap<PathBuf, String>,
     /// `let a = …;` in order.
     pub lets: Vec<Definition>,
     /// `L = …;`, each occurrence.
@@ -117,6 +120,20 @@ impl System {
         Ok(self)
     }
 
+    /// Reads the files of tables that are not known. The check reports those that cannot be read.
+    pub fn read_files(&mut self) {
+        for table in &self.tables {
+            let TableData::File(path) = &table.data else { continue };
+            let path = self.folder.join(path.value());
+            if !self.files.contains_key(&path)
+                && std::fs::metadata(&path).is_ok_and(|about| is_readable(&about))
+                && let Ok(text) = std::fs::read_to_string(&path)
+            {
+                self.files.insert(path, text);
+            }
+        }
+    }
+
     /// The declared built-in rules, in order.
     #[must_use]
     pub fn named_rules(&self) -> Vec<&'static NamedRule> {
@@ -127,6 +144,14 @@ impl System {
             _ => Vec::new(),
         }
     }
+}
+
+/// Largest file of a table, in bytes.
+const LARGEST_FILE: u64 = 16_000_000;
+
+/// Whether a file of a table is read: a device has no end.
+pub(crate) fn is_readable(about: &std::fs::Metadata) -> bool {
+    about.is_file() && about.len() <= LARGEST_FILE
 }
 
 /// A name with its expression.

@@ -15,6 +15,7 @@ use crate::habits::{self, Habit};
 use crate::messages::{Errors, Message, bounded, error, nearest};
 use num_traits::Zero;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use std::collections::BTreeMap;
 use std::rc::Rc;
 use syn::buffer::Cursor;
 use syn::ext::IdentExt;
@@ -165,6 +166,7 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         functions: Vec::new(),
         tables: Vec::new(),
         folder: std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default().into(),
+        files: BTreeMap::new(),
         lets: Vec::new(),
         lagrangians: Vec::new(),
         forces: Vec::new(),

@@ -1,0 +1,125 @@
+//! What differs between systems without and with constraints: the forms of matrices, and the functions of constraints.
+
+use crate::code::{Code, Columns};
+use crate::lines::Results;
+use crate::matrix::AnyMatrix;
+use core::fmt::Debug;
+use vi_core::kind::{Bound, Counted, Free, Kind};
+use vi_core::linear::{AtMost, Matrix, Rectangular, Rows};
+use vi_core::real::Real;
+
+/// The kind of a system whose functions are instructions.
+pub(crate) trait Interpreted: Kind {
+    /// The largest number of parameters.
+    const PARAMETERS: usize;
+    /// Room for so many parameters.
+    type Parameters<T: Real>: Copy + Debug + Send + Sync + AsRef<[T]> + AsMut<[T]>;
+    /// The mass matrix, and the derivatives of the equations of motion.
+    type Matrix<const N: usize, T: Real>: Matrix<N, T>;
+
+    /// So many zeros.
+    fn parameters<T: Real>() -> Self::Parameters<T>;
+    /// The mass matrix among the results of a function.
+    fn mass<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Self::Matrix<N, T>;
+    /// A derivative of the equations of motion.
+    fn point_matrix<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Self::Matrix<N, T>;
+    /// One number for each constraint.
+    fn multipliers<T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Self::Multipliers<T>;
+    /// A row in these columns for each constraint.
+    fn gradients<const N: usize, T: Real>(
+        columns: Columns,
+        of: Results<'_, T>,
+        quantity: usize,
+    ) -> Self::Gradients<N, T>;
+    /// A row in these columns for each coordinate.
+    fn reaction<const N: usize, T: Real>(
+        columns: Columns,
+        of: Results<'_, T>,
+        quantity: usize,
+    ) -> Self::ReactionMatrix<N, T>;
+}
+
+impl Interpreted for Free {
+    const PARAMETERS: usize = 32;
+    type Parameters<T: Real> = [T; Self::PARAMETERS];
+    type Matrix<const N: usize, T: Real> = AnyMatrix<N, T>;
+
+    #[inline(always)]
+    fn parameters<T: Real>() -> Self::Parameters<T> {
+        [T::zero(); Self::PARAMETERS]
+    }
+
+    #[inline(always)]
+    fn mass<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> AnyMatrix<N, T> {
+        AnyMatrix::of(code.mass, of, quantity)
+    }
+
+    #[inline(always)]
+    fn point_matrix<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> AnyMatrix<N, T> {
+        AnyMatrix::of(code.point_matrix, of, quantity)
+    }
+
+    fn multipliers<T: Real>(_code: &Code, _of: Results<'_, T>, _quantity: usize) -> [T; 0] {
+        Self::no_multipliers()
+    }
+
+    fn gradients<const N: usize, T: Real>(
+        _columns: Columns,
+        _of: Results<'_, T>,
+        _quantity: usize,
+    ) -> Self::Gradients<N, T> {
+        Self::no_gradients::<N, T>()
+    }
+
+    fn reaction<const N: usize, T: Real>(
+        _columns: Columns,
+        _of: Results<'_, T>,
+        _quantity: usize,
+    ) -> Self::ReactionMatrix<N, T> {
+        Self::no_reaction::<N, T>()
+    }
+}
+
+impl<const K: usize> Interpreted for Bound<K, Counted> {
+    // Copies of a system take little beside the elimination.
+    const PARAMETERS: usize = 64;
+    type Parameters<T: Real> = [T; 64];
+    type Matrix<const N: usize, T: Real> = Rows<N, N, T>;
+
+    fn parameters<T: Real>() -> Self::Parameters<T> {
+        [T::zero(); 64]
+    }
+
+    fn mass<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Rows<N, N, T> {
+        rows::<N, N, N, T>(code.constraints.map_or(&[], |of| of.mass), of, quantity)
+    }
+
+    fn point_matrix<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Rows<N, N, T> {
+        rows::<N, N, N, T>(code.constraints.map_or(&[], |of| of.point_matrix), of, quantity)
+    }
+
+    fn multipliers<T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> AtMost<K, T> {
+        let mut multipliers = AtMost::zeros(code.constraints.map_or(0, |of| of.names.len()));
+        of.each(quantity, |_, constraint, value| multipliers.as_mut()[constraint] = value);
+        multipliers
+    }
+
+    fn gradients<const N: usize, T: Real>(columns: Columns, of: Results<'_, T>, quantity: usize) -> Rows<K, N, T> {
+        rows::<N, K, N, T>(columns, of, quantity)
+    }
+
+    fn reaction<const N: usize, T: Real>(columns: Columns, of: Results<'_, T>, quantity: usize) -> Rows<N, N, T> {
+        rows::<N, N, N, T>(columns, of, quantity)
+    }
+}
+
+/// The rows in these columns, for vectors of N numbers.
+fn rows<const N: usize, const K: usize, const W: usize, T: Real>(
+    columns: Columns,
+    of: Results<'_, T>,
+    quantity: usize,
+) -> Rows<K, W, T> {
+    let mut rows = Rows::zeros(columns);
+    of.each(quantity, |row, place, value| Rectangular::<N, T>::row_mut(&mut rows, row).1[place] = value);
+    rows
+}
