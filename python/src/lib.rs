@@ -61,11 +61,12 @@ fn properties(definition: &str) -> PyResult<(bool, bool)> {
 
 /// The type of the system that a text declares, with every method.
 ///
-/// Raises ValueError for a mistake, with its line; NotImplementedError for a system that has to be compiled.
+/// `files` are paths and texts of the files of its tables. Raises ValueError for a mistake, with its line;
+/// NotImplementedError for a system that has to be compiled.
 #[pyfunction]
 #[pyo3(crate = "vi_python::pyo3")]
-fn of_text(py: Python<'_>, definition: &str) -> PyResult<Kind> {
-    let system = py.detach(|| vi_tape::System::parse(definition));
+fn of_text(py: Python<'_>, definition: &str, files: Vec<(String, String)>) -> PyResult<Kind> {
+    let system = py.detach(|| vi_tape::System::of_file("definition", definition, &files));
     let raised = |mistakes: vi_tape::Mistakes| {
         let words = mistakes.to_string();
         if mistakes.needs_compiler() { PyNotImplementedError::new_err(words) } else { PyValueError::new_err(words) }

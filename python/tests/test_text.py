@@ -152,8 +152,8 @@ def test_deep_nesting_is_a_mistake():
 def test_mistakes_have_their_line():
     with pytest.raises(vi.CompileError, match=r"unknown name `c`(.|\n)*definition:6:\d+"):
         vi.System(SPRING.replace("k * x^2", "c * x^2"))
-    with pytest.raises(vi.CompileError, match="has constraints"):
-        vi.System("struct Rod { coord x, y; L = (dot(x)^2 + dot(y)^2) / 2 - y; constraint rod = x^2 + y^2 - 1; }")
+    with pytest.raises(vi.CompileError, match="Rust function"):
+        vi.System("struct Odd { coord x; fn f(a) = crate::f; L = dot(x)^2 / 2 - f(x); }")
     with pytest.raises(TypeError, match="the text of a system"):
         vi.System()
     with pytest.raises(TypeError, match="must be a text, not int"):
@@ -216,3 +216,90 @@ def test_native_is_the_same_system(warm_cache):
     assert Native.native() is Native and Named.native() is Native
     one, other = (cls().integrate([1.0], h=0.1).steps(100) for cls in (Spring, Native))
     assert np.abs(one.q - other.q).max() < 1e-13  # 2.2e-16
+
+
+def test_constraints_and_rotations():
+    # A rod and a blade: three coordinates, and one at rest.
+    Both = vi.System("""
+        struct Both {
+            param m = 1.5;
+            coord x, y; angle theta;
+            L = m * (dot(x)^2 + dot(y)^2) / 2 + 0.35 * dot(theta)^2 - m * 9.81 * y + 0.1 * cos(theta);
+            constraint rod = x^2 + y^2 - 1.69;
+            constraint spin = dot(theta) - 0.3 * y * dot(x);
+        }
+    """)
+    assert Both.constraints == ("rod", "spin") and {method for method, *_ in Both.integrators} == {"gauss", "energy"}
+    both = Both()
+    start = both.project([1.0, -0.8, 0.3], [0.5, 0.0, 0.0])
+    run = both.integrate(start.q, start.v, h=0.01)
+    sol = run.until(2.0)
+    assert np.abs(sol.q[:, 0] ** 2 + sol.q[:, 1] ** 2 - 1.69).max() < 1e-14  # 4.4e-16
+    assert np.abs(sol.energy - sol.energy[0]).max() < 1e-9  # 3.6e-12
+    assert sol.q.shape[1] == 3 and both.reaction(0.0, start.q, both.momentum(0.0, start.q, start.v)).shape == (2,)
+    # The lowest place: the pendulum has ω² = g/l, and the blade no force of its own.
+    Hanging = vi.System("""
+        struct Hanging {
+            coord x, y, z;
+            L = (dot(x)^2 + dot(y)^2 + dot(z)^2) / 2 - 9.81 * y - 2 * z^2;
+            constraint rod = x^2 + y^2 - 1.69;
+        }
+    """)
+    rest = Hanging().equilibrium([0.1, -1.2, 0.2])
+    assert np.allclose(rest.q, [0.0, -1.3, 0.0], atol=1e-15) and rest.mass.shape == (2, 2)
+    found = np.sort(np.abs(np.imag(rest.rates)))
+    assert np.allclose(found, np.sort([2.0, 2.0, np.sqrt(9.81 / 1.3), np.sqrt(9.81 / 1.3)]), rtol=1e-14)
+    linear = Hanging().linearization(0.0, rest.q, np.zeros(3))
+    assert linear.A.shape == (6, 6)
+    # Free motion along z: it is counted once, without the coordinate at rest.
+    Sliding = vi.System("""
+        struct Sliding {
+            coord x, y, z;
+            L = (dot(x)^2 + dot(y)^2 + dot(z)^2) / 2 - 9.81 * y;
+            constraint rod = x^2 + y^2 - 1.69;
+        }
+    """)
+    rest = Sliding().equilibrium([0.1, -1.2, 0.2])
+    assert tuple(rest.free) == (False, False, True) and rest.q[2] == 0.2
+    assert np.sum(np.abs(rest.rates) == 0.0) == 2
+    Body = vi.System("""
+        struct Body {
+            param J[3] = [0.2, 0.3, 0.4];
+            rotation R;
+            let w = rate(R);
+            L = (J[0] * w[0]^2 + J[1] * w[1]^2 + J[2] * w[2]^2) / 2;
+        }
+    """)
+    assert len(Body.coordinates) == 4 and len(Body.constraints) == 1
+
+
+TABLED = """
+struct Tabled {
+    coord x;
+    table pull(x) = "FILE" extend;
+    L = dot(x)^2 / 2;
+    force x = -pull(x);
+}
+"""
+
+
+def test_tables_are_pickled_by_their_values(tmp_path):
+    path = tmp_path / "pull.csv"
+    text = TABLED.replace("FILE", path.as_posix())
+    path.write_text("x,f\n-1,-2\n0,0\n1,2\n")
+    Tabled = vi.System(text)
+    end = Tabled().integrate([1.0], h=0.05).at([1.0]).q[0, 0]
+    # A spring of the stiffness 2, whose table has no knots.
+    assert end == pytest.approx(np.cos(np.sqrt(2.0)), abs=1e-12)  # 1.1e-15
+    stored = pickle.dumps(Tabled())
+    path.write_text("x,f\n-1,-3\n0,0\n1,3\n")
+    Other = vi.System(text)
+    assert Other is not Tabled
+    assert Other().integrate([1.0], h=0.05).at([1.0]).q[0, 0] == pytest.approx(np.cos(np.sqrt(3.0)), abs=1e-12)
+    with pytest.raises(vi.CompileError, match=r"pull\.csv of a table changed"):
+        Tabled.native()
+    path.unlink()
+    again = pickle.loads(stored)
+    assert type(again) is Tabled and again.integrate([1.0], h=0.05).at([1.0]).q[0, 0] == end
+    with pytest.raises(vi.CompileError, match="cannot be read from its file"):
+        vi.System(text)

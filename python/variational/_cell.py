@@ -10,7 +10,7 @@ def load_ipython_extension(shell: Any) -> None:
     """`%load_ext variational` adds the cell `%%lagrangian`: a definition, whose class then has its name.
 
     It is that of `System`. With the methods to build on the first line, `%%lagrangian fixed; gauss 4, 8`, it is that of
-    `compile`, as it is for a text with constraints or tables.
+    `compile`, as it is for a text that has to be compiled.
     """
 
     def lagrangian(line: str, cell: str) -> None:

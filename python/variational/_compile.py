@@ -111,7 +111,7 @@ def _unpickled(definition: str, methods: str, tables: str) -> type[System]:
     """
     digest = _digest(definition, methods, tables)
     if digest not in _loaded and not _built(digest).exists() and _located(definition)[1] != tables:
-        files = ", ".join(found[2] for found in _TABLE.finditer(definition))
+        files = ", ".join(found[2] for found in TABLE.finditer(definition))
         raise ValueError(
             f"the tables of this system had other values when it was pickled: {files} changed or is missing, and the "
             "library of the old system is not in the cache. Restore the file, or make the pickle again"
@@ -318,7 +318,7 @@ _CONSTRAINT = re.compile(r"(?:^|[;{}])\s*(?:constraint|rotation)\s+[^\W\d]")
 """A clause that declares a constraint."""
 
 
-_TABLE = re.compile(r'(\btable\b[^;"]*=\s*")([^"]+)(")')
+TABLE = re.compile(r'(\btable\b[^;"]*=\s*")([^"]+)(")')
 
 
 def _located(definition: str) -> tuple[str, str]:
@@ -332,7 +332,7 @@ def _located(definition: str) -> tuple[str, str]:
             digest.update(path.read_bytes())
         return found[1] + path.as_posix() + found[3]
 
-    return _TABLE.sub(located, definition), digest.hexdigest()
+    return TABLE.sub(located, definition), digest.hexdigest()
 
 
 def _checked(definition: str) -> str:

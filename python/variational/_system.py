@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib
 import inspect
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -85,7 +85,7 @@ class System(metaclass=SystemType):
     """A mechanical system with its parameters: the base of the classes of all systems.
 
     `System(text)` is the class of the system that a text in the language of `lagrangian!` declares. It takes
-    milliseconds, needs no compiler, and has every method. A text with constraints or tables needs `compile`.
+    milliseconds, needs no compiler, and has every method. A text with Rust functions needs `compile`.
 
     >>> Spring = System('''
     ... struct Spring {
@@ -137,8 +137,12 @@ class System(metaclass=SystemType):
         itself, without `methods`."""
         if not hasattr(cls, "_text") and methods is None:
             return cls
-        from ._compile import compile
+        from ._compile import CompileError, compile
 
+        of_text: Any = getattr(cls, "_text", None)
+        for path, text in of_text[3] if of_text else ():
+            if not Path(path).is_file() or Path(path).read_text(encoding="utf-8") != text:
+                raise CompileError(f"the file {path} of a table changed or is missing: make the system again from its text")
         return compile(cls.definition, methods=methods, verbose=verbose)
 
     @classmethod
@@ -172,10 +176,8 @@ class System(metaclass=SystemType):
         return self.__copy__()
 
     def __reduce__(self) -> Any:
-        cls = type(self)
-        # A system of a text is known by it. A compiled one is compiled again if it is not in the cache.
-        source = vars(cls).get("_source", vars(cls).get("_text"))
-        return (_unpickled, (cls.__module__, cls.__qualname__, cls.definition, source, self._values.tolist()))
+        # Classes of texts are pickled with their text; a compiled one is compiled again if it is not in the cache.
+        return (_unpickled, (type(self), self.definition, self._values.tolist()))
 
     def _fixed(self) -> System:
         """The system, whose parameters can no longer be set: the system of a run, or of its rows."""
@@ -428,21 +430,7 @@ _ANSWERS = [name for name, of in vars(System).items() if inspect.isfunction(of) 
 check_arguments(System, [name for name in _ANSWERS if name not in ("set", "copy")])
 
 
-def _unpickled(module: str, name: str, definition: str, source: Any, values: list[float]) -> System:
-    if isinstance(source, str):
-        from ._text import of_text
-
-        cls = of_text(source)
-    elif source is not None:
-        from . import _compile
-
-        cls = _compile._unpickled(*source)
-    else:
-        cls = getattr(importlib.import_module(module), name)
+def _unpickled(cls: type[System], definition: str, values: list[float]) -> System:
     if cls.definition != definition:
-        raise ValueError(f"{name} had another definition when it was pickled")
+        raise ValueError(f"{cls.__name__} had another definition when it was pickled")
     return cls._of(values)
-
-
-def _shown(value: Any) -> str:
-    return f"{value:g}" if np.ndim(value) == 0 else np.array2string(np.asarray(value), separator=", ")
