@@ -129,12 +129,18 @@ fn sections(manifest: &str) -> Vec<(&str, String)> {
     sections
 }
 
-/// The manifest of a crate without tests and benchmarks.
+/// The manifest of a crate without tests and benchmarks, and without a dependency that the lock file does not have: of
+/// members of a workspace it lists optional ones too.
 fn manifest(text: &str) -> String {
     let is_kept =
         |header: &str| !["[dev-dependencies", "[[test", "[[bench"].iter().any(|start| header.starts_with(start));
-    sections(text).into_iter().filter(|(header, _)| is_kept(header)).map(|(_, text)| text).collect()
+    let text: String = sections(text).into_iter().filter(|(header, _)| is_kept(header)).map(|(_, text)| text).collect();
+    let lines = text.lines().filter(|line| !line.starts_with(UNLOCKED));
+    lines.map(|line| line.replace(&format!("\"dep:{UNLOCKED}\""), "") + "\n").collect()
 }
+
+/// The dependency of the feature `studies` of vi-erased.
+const UNLOCKED: &str = "differential-equations";
 
 /// The workspace of a compiled system: versions and lints of the repository, profiles of this crate.
 fn workspace(repository: &str, this: &str) -> String {

@@ -10,7 +10,7 @@ use vi_core::nalgebra::SMatrix;
 use vi_core::prelude::*;
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{Lagrangian, SVector, StepError, linear};
-use vi_runs::rival;
+use vi_erased::studies::rival;
 
 macro_rules! links {
     ($name:ident $count:literal) => {

@@ -7,12 +7,18 @@
 
 #[cfg(feature = "derivatives")]
 use crate::control::{Control, Linear, Rest, pairs};
+#[cfg(feature = "studies")]
+use crate::plan::ENERGY_STAGES;
 use crate::plan::{Built, PhasePoint, Plan};
 use crate::section::{Section, Watch};
 use crate::simulation::{AtConstraints, Met, ShiftedEnergy, Simulation, Steps, wrong_size};
 #[cfg(feature = "sessions")]
 use crate::simulation::{Rows, Session, StepOutput};
+#[cfg(feature = "studies")]
+use crate::studies::{Studies, exponents::Exponents, rival::Ended};
 use crate::system::{OnConstraints, Quantity, System};
+#[cfg(feature = "studies")]
+use core::cell::Cell;
 use std::borrow::Cow;
 use vi_core::StepError;
 #[cfg(feature = "derivatives")]
@@ -62,6 +68,15 @@ impl Declared<dyn System> {
         let [q, v] = [(&at.q, "number of coordinates"), (&at.v, "number of velocities")];
         let full = |(values, input): (&Vec<f64>, _)| with_rest(values, self.size, self.all(), input);
         Ok(PhasePoint { t: at.t, q: full(q)?, v: full(v)? })
+    }
+
+    fn plan(&self, plan: &Plan) -> Result<Plan, StepError> {
+        let full = |values: &[f64], input| with_rest(values, self.size, self.all(), input);
+        let q = full(&plan.q, "number of coordinates")?;
+        Ok(match &plan.p {
+            Some(p) => Plan { q, p: Some(full(p, "number of momenta")?), ..plan.clone() },
+            None => Plan { q, v: full(&plan.v, "number of velocities")?, ..plan.clone() },
+        })
     }
 
     fn cut(&self, mut of: OnConstraints) -> OnConstraints {
@@ -150,14 +165,17 @@ impl System for Declared<dyn System> {
         self
     }
 
+    #[cfg(feature = "studies")]
+    fn studies(&self) -> &dyn Studies {
+        self
+    }
+
+    fn start(&self) -> Option<[Vec<f64>; 2]> {
+        self.of.start().map(|of| of.map(|of| cut(&of, self.all(), self.size)))
+    }
+
     fn begin_while(&self, plan: &Plan, goes_on: &mut dyn FnMut() -> bool) -> Result<Box<dyn Simulation>, StepError> {
-        let full = |values: &[f64], input| with_rest(values, self.size, self.all(), input);
-        let q = full(&plan.q, "number of coordinates")?;
-        let plan = match &plan.p {
-            Some(p) => Plan { q, p: Some(full(p, "number of momenta")?), ..plan.clone() },
-            None => Plan { q, v: full(&plan.v, "number of velocities")?, ..plan.clone() },
-        };
-        Ok(Box::new(Declared { of: self.of.begin_while(&plan, goes_on)?, size: self.size }))
+        Ok(Box::new(Declared { of: self.of.begin_while(&self.plan(plan)?, goes_on)?, size: self.size }))
     }
 
     #[cfg(feature = "checkpoints")]
@@ -224,6 +242,67 @@ impl Control for Declared<dyn System> {
         };
         rest.rates = pairs(declared.rates()?);
         Ok(rest)
+    }
+}
+
+#[cfg(feature = "studies")]
+impl Declared<dyn System> {
+    fn cut_point(&self, mut of: PhasePoint) -> PhasePoint {
+        of.q.truncate(self.size);
+        of.v.truncate(self.size);
+        of
+    }
+}
+
+#[cfg(feature = "studies")]
+impl Studies for Declared<dyn System> {
+    fn step_density(&self, at: &PhasePoint) -> Option<f64> {
+        self.of.studies().step_density(&self.point(at).ok()?)
+    }
+
+    fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()] {
+        let [q, p] = [q, p].map(|of| extended(of, self.all()));
+        self.of.studies().step_densities(t, &q, &p)
+    }
+
+    fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {
+        Ok(self.cut_point(self.of.studies().follow(&self.point(from)?, end)?))
+    }
+
+    fn lyapunov(&self, plan: &Plan, count: usize, coordinates: usize) -> Result<Box<dyn Exponents>, StepError> {
+        let of = self.of.studies().lyapunov(&self.plan(plan)?, count, coordinates.min(self.size))?;
+        Ok(Box::new(Declared { of, size: self.size }))
+    }
+
+    fn rival(
+        &self,
+        from: &PhasePoint,
+        end: f64,
+        tolerance: f64,
+        evaluations: &Cell<u64>,
+        watch: Option<&mut dyn FnMut(f64, f64)>,
+    ) -> Result<PhasePoint, Ended> {
+        let reached = self.of.studies().rival(&self.point(from)?, end, tolerance, evaluations, watch)?;
+        Ok(self.cut_point(reached))
+    }
+}
+
+#[cfg(feature = "studies")]
+impl Exponents for Declared<dyn Exponents> {
+    fn advance(&mut self, steps: u64) -> Result<(), StepError> {
+        self.of.advance(steps)
+    }
+
+    fn t(&self) -> f64 {
+        self.of.t()
+    }
+
+    fn q(&self) -> &[f64] {
+        &self.of.q()[..self.size]
+    }
+
+    fn exponents(&self) -> Vec<f64> {
+        self.of.exponents()
     }
 }
 

@@ -13,6 +13,8 @@ use crate::start;
 use core::convert::identity;
 #[cfg(feature = "checkpoints")]
 use serde_json::value::RawValue;
+#[cfg(feature = "studies")]
+use vi_core::SVector;
 use vi_core::kind::{Free, Kind};
 use vi_core::method::{Controlled, Shiftable, Storable};
 #[cfg(feature = "checkpoints")]
@@ -38,7 +40,14 @@ pub struct Integrator<S, const N: usize> {
     pub(crate) begin: Begin<S, N>,
     #[cfg(feature = "checkpoints")]
     pub(crate) restart: Restart<S>,
+    /// The step density of energy-preserving steps of order 2.
+    #[cfg(feature = "studies")]
+    pub(crate) density: Option<Density<S, N>>,
 }
+
+/// The step density of a rule at (t, q, v); `None` without a value.
+#[cfg(feature = "studies")]
+type Density<S, const N: usize> = fn(&S, f64, &SVector<f64, N>, &SVector<f64, N>) -> Option<f64>;
 
 /// Integrators of several words of [`kind!`](crate::kind).
 #[must_use]
@@ -67,6 +76,8 @@ macro_rules! integrator {
             begin: $begin,
             #[cfg(feature = "checkpoints")]
             restart: |system, stored| restarted(system, AnyMethod::of($method, $wrapped), stored),
+            #[cfg(feature = "studies")]
+            density: None,
         }
     };
 }
@@ -158,7 +169,7 @@ pub fn energy<S: EnergyStepping<N> + Runnable<N>, const N: usize>() -> Integrato
 where
     EnergyPreserving: Erasable<S, N, Memory: Controlled<f64>>,
 {
-    integrator!(
+    let integrator = integrator!(
         (Method::Energy, None, false),
         identity,
         EnergyPreserving,
@@ -176,7 +187,11 @@ where
             };
             Ok(erased(AnyMethod::erased(system, run.with_fallback(fallback(plan))), false))
         }
-    )
+    );
+    #[cfg(feature = "studies")]
+    let integrator =
+        Integrator { density: Some(|system: &S, t, q, v| system.step_density(t, q, v).ok()), ..integrator };
+    integrator
 }
 
 /// An integrator of energy-preserving Gauss steps.

@@ -19,6 +19,7 @@
 //! | `session` | a run in the hands of a program; feature `sessions` |
 //! | [`integrator`] | an integrator that is built for a system |
 //! | [`system`] | a system with its parameters |
+//! | [`studies`] | exponents, accurate motions, DOP853; feature `studies` |
 //! | [`at_rest`] | a system without its coordinates at rest |
 //!
 //! No module imports one below it in this table.
@@ -38,6 +39,8 @@ pub mod section;
 mod session;
 pub mod simulation;
 pub mod start;
+#[cfg(feature = "studies")]
+pub mod studies;
 pub mod system;
 
 pub use integrator::Integrator;

@@ -9,6 +9,8 @@ use crate::integrator::Integrator;
 use crate::plan::{Built, Method, PhasePoint, Plan};
 use crate::run::constraint_residuals;
 use crate::simulation::{Simulation, vector, wrong_size};
+#[cfg(feature = "studies")]
+use crate::studies::Studies;
 use std::sync::Arc;
 use vi_core::constrained::{Extended, Projected};
 #[cfg(feature = "derivatives")]
@@ -111,6 +113,11 @@ pub trait System: Send + Sync {
     /// What a controller asks of it.
     #[cfg(feature = "derivatives")]
     fn control(&self) -> &dyn Control;
+    /// What studies compare its runs with.
+    #[cfg(feature = "studies")]
+    fn studies(&self) -> &dyn Studies;
+    /// The default initial coordinates and velocities, if they follow from the parameters.
+    fn start(&self) -> Option<[Vec<f64>; 2]>;
     /// Starts a run.
     ///
     /// # Errors
@@ -139,6 +146,24 @@ impl dyn System + '_ {
     #[must_use]
     pub fn has(&self, method: Method) -> bool {
         self.integrators().iter().any(|(built, ..)| *built == method)
+    }
+
+    /// Whether the system has constraints.
+    #[must_use]
+    pub fn has_constraints(&self) -> bool {
+        !self.constraints().is_empty()
+    }
+
+    /// Whether the system has a rule, and with it fixed and energy-preserving steps of order 2.
+    #[must_use]
+    pub fn has_rule(&self) -> bool {
+        self.has(Method::Fixed)
+    }
+
+    /// The default method of the system.
+    #[must_use]
+    pub fn usual_method(&self) -> Method {
+        if self.has_rule() { Method::Fixed } else { Method::Gauss }
     }
 
     /// H at a point.
@@ -182,8 +207,12 @@ impl dyn System + '_ {
 pub struct Typed<S, const N: usize> {
     /// The system.
     pub system: S,
-    integrators: Arc<[Integrator<S, N>]>,
+    pub(crate) integrators: Arc<[Integrator<S, N>]>,
+    start: Option<StartOf<S, N>>,
 }
+
+/// Initial coordinates and velocities of a system with its parameters.
+pub type StartOf<S, const N: usize> = fn(&S) -> ([f64; N], [f64; N]);
 
 impl<S: Runnable<N> + Described + Default, const N: usize> Typed<S, N> {
     /// The system with its default parameters.
@@ -197,7 +226,13 @@ impl<S: Runnable<N>, const N: usize> Typed<S, N> {
     /// A system with its parameters.
     #[must_use]
     pub fn of(system: S, integrators: Vec<Integrator<S, N>>) -> Self {
-        Self { system, integrators: integrators.into() }
+        Self { system, integrators: integrators.into(), start: None }
+    }
+
+    /// The same with an initial state that follows from the parameters.
+    #[must_use]
+    pub fn with_start(self, start: StartOf<S, N>) -> Self {
+        Self { start: Some(start), ..self }
     }
 }
 
@@ -346,6 +381,18 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
     #[cfg(feature = "derivatives")]
     fn control(&self) -> &dyn Control {
         self
+    }
+
+    #[cfg(feature = "studies")]
+    fn studies(&self) -> &dyn Studies {
+        self
+    }
+
+    fn start(&self) -> Option<[Vec<f64>; 2]> {
+        self.start.map(|start| {
+            let (q, v) = start(&self.system);
+            [q.to_vec(), v.to_vec()]
+        })
     }
 
     fn begin_while(&self, plan: &Plan, goes_on: &mut dyn FnMut() -> bool) -> Result<Box<dyn Simulation>, StepError> {

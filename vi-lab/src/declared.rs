@@ -117,8 +117,8 @@ mod tests {
     #[test]
     fn a_system_without_a_rule_runs_by_gauss_steps() {
         let entry = (&&&Declared::<Alone>::new()).entry("two springs", [1.0, 0.2], [0.0, 0.0], 0.01);
-        assert!(!entry.system.has_rule() && entry.system.step_density(&entry.q, &entry.v).is_none());
         let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
+        assert!(!entry.system.has_rule() && entry.system.studies().step_density(&start).is_none());
         let by = |method, stages| Plan { stages, ..Plan::new(method, entry.h, start.clone()) };
         for (method, stages) in [(Method::Gauss, Some(4)), (Method::Energy, Some(2))] {
             let mut run = entry.system.begin(&by(method, stages)).expect("a start");
@@ -139,8 +139,8 @@ mod tests {
     #[test]
     fn a_system_with_a_rule_keeps_it() {
         let entry = (&&&Declared::<Ruled>::new()).entry("a spring", [1.0], [0.0], 0.01);
-        assert!(entry.system.has_rule() && entry.system.step_density(&entry.q, &entry.v).is_some());
         let start = PhasePoint { t: 0.0, q: entry.q, v: entry.v };
+        assert!(entry.system.has_rule() && entry.system.studies().step_density(&start).is_some());
         let mut run = entry.system.begin(&Plan::new(Method::Fixed, entry.h, start)).expect("a start");
         run.advance_by(10).expect("steps");
         assert!(run.evaluations() > 10);

@@ -34,9 +34,9 @@ use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 use vi_report::catalogue::Catalogue;
 pub use vi_report::catalogue::Systems;
+pub use vi_report::entry::Entry;
 use vi_report::failure::Failure;
 use vi_report::terminal::{end, print};
-pub use vi_runs::entry::Entry;
 
 /// Variational integrators: simulate a system, or reproduce the paper.
 #[derive(Debug, Parser)]

@@ -7,7 +7,7 @@
 use crate::run;
 use clap::Args;
 use vi_erased::plan::Method;
-use vi_report::catalogue::{Catalogue, compiled, kebab};
+use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::numbers::short;
@@ -54,13 +54,6 @@ const LONGER: f64 = 5.0;
 /// Wrong input; a failed step, after printing the estimates so far.
 pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let Arguments { target, count, h, steps, set, q, v } = arguments;
-    let named = catalogue.named(target.as_deref()).ok().map(|entry| compiled(entry, "lyapunov")).transpose()?;
-    if let Some(entry) = named
-        && entry.system.has_constraints()
-    {
-        let name = kebab(entry.system.name());
-        return Err(Failure::Input(format!("{name} has constraints: exponents of such motions are not supported")));
-    }
     let wanted = run::Arguments {
         target: target.clone(),
         method: Some(Method::Gauss),
@@ -81,7 +74,10 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), 
         let name = kebab(system.name());
         return Err(Failure::Input(format!("{name} has 1 to {most} exponents (--count), not {count}")));
     }
-    let mut exponents = system.lyapunov(&plan, *count).map_err(|error| Failure::start(error, &plan))?;
+    let mut exponents = system
+        .studies()
+        .lyapunov(&plan, *count, system.coordinates().len())
+        .map_err(|error| Failure::start(error, &plan))?;
     let names: Vec<String> = (1..=*count).map(|index| format!("λ{index}")).collect();
     print(&format!("t,{}", names.join(",")))?;
     let mut taken = 0;

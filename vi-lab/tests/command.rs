@@ -210,7 +210,6 @@ fn initial_states_keep_or_meet_the_constraints() {
              lengths with --set, or give a start with --q and --v",
         ),
         (&["run", "kepler", "--project"], "kepler has no constraints to --project onto; remove it"),
-        (&["lyapunov", "heavy-top"], "heavy-top has constraints: exponents of such motions are not supported"),
     ]);
     let (status, _, errors) = lab(&["run", "rod-pendulum", "--set", "l=0", "--steps", "3"]);
     assert_eq!(status, Some(1));

@@ -114,6 +114,8 @@ pub(crate) struct Code {
     pub(crate) declared: usize,
     pub(crate) about: &'static str,
     pub(crate) definition: &'static str,
+    /// The texts of the files of tables.
+    pub(crate) files: Box<[String]>,
     pub(crate) coordinates: Box<[&'static str]>,
     pub(crate) parameters: &'static [&'static str],
     pub(crate) parameters_about: &'static [&'static str],

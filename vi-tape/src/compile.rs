@@ -64,8 +64,9 @@ pub(crate) fn code(file: &str, text: &str, Parsed { system, definition }: Parsed
     let wrong = |error: syn::Error| Mistakes::of(report::report(file, text, &error));
     let [declared, constraints] = sizes(&system).map_err(wrong)?;
     let rest = size(&system.name.to_string(), [declared, constraints])? - declared;
+    let files = system.files.values().cloned().collect();
     let system = if rest == 0 { system } else { system.with_rest(&unused(&definition), rest).map_err(wrong)? };
-    of_derived(&derive_own(&system).map_err(wrong)?, definition, declared)
+    of_derived(&derive_own(&system).map_err(wrong)?, (definition, files), declared)
 }
 
 /// A name that a definition does not contain.
@@ -91,7 +92,7 @@ fn declaration(text: &str) -> syn::Result<Option<TokenStream>> {
     }
 }
 
-fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code, Mistakes> {
+fn of_derived(of: &Derived, (definition, files): (String, Box<[String]>), declared: usize) -> Result<Code, Mistakes> {
     let Derived { pool, model, system, program, findings } = of;
     let compiled = |what: &str| Mistakes::compiled(&model.name.to_string(), what);
     let tables = Tables::of(model).ok_or_else(|| compiled("Rust functions"))?;
@@ -108,6 +109,7 @@ fn of_derived(of: &Derived, definition: String, declared: usize) -> Result<Code,
         declared,
         about: model.about().leak(),
         definition: definition.leak(),
+        files,
         coordinates: model.coordinates.iter().map(|of| &*Coordinate::text(of).leak()).collect(),
         parameters,
         parameters_about: names(model, Parameter::about),

@@ -70,8 +70,13 @@ impl System {
 
     /// The state of the clause `check { … }`, if the text has one: a place to start from.
     #[must_use]
-    pub fn start(&self) -> Option<&Start> {
+    pub fn check(&self) -> Option<&Start> {
         self.code.start.as_ref()
+    }
+
+    /// The texts of the files of its tables.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.code.files.iter().map(String::as_str)
     }
 }
 

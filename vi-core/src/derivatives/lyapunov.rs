@@ -44,7 +44,17 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Lyapunov<M, S, 
     /// [`StepError::InvalidInput`] unless `count` is 1 to 2N, less 2 for each holonomic and 1 for each nonholonomic
     /// constraint.
     pub fn new(run: Run<M, S, N>, count: usize) -> Result<Self, StepError> {
-        if count == 0 || count > dimension(&run.system) {
+        Self::of_first(run, count, N)
+    }
+
+    /// The exponents of the first `coordinates`; the others are at rest, and nothing depends on them.
+    ///
+    /// # Errors
+    /// As [`Lyapunov::new`], with this number of coordinates.
+    #[doc(hidden)]
+    pub fn of_first(run: Run<M, S, N>, count: usize, coordinates: usize) -> Result<Self, StepError> {
+        let dimension = dimension(&run.system) - 2 * (N - coordinates);
+        if count == 0 || count > dimension {
             #[allow(clippy::cast_precision_loss)] // for the message
             let value = count as f64;
             let allowed =
@@ -53,7 +63,13 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Lyapunov<M, S, 
         }
         let start = run.t();
         let mut variations = Variation::of_state();
-        if dimension(&run.system) == 2 * N {
+        let mut index = 0;
+        variations.retain(|_| {
+            index += 1;
+            (index - 1) % N < coordinates
+        });
+        let turn = |variation: &mut Variation<N>| turn(variation, coordinates);
+        if dimension == 2 * coordinates {
             variations.truncate(count);
             variations.iter_mut().for_each(turn);
         } else {
@@ -103,10 +119,11 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Lyapunov<M, S, 
     }
 }
 
-/// Turns a direction away from its coordinate or momentum axis, because it could never leave an invariant plane.
-fn turn<const N: usize>(variation: &mut Variation<N>) {
+/// Turns a direction away from its coordinate or momentum axis, among the first coordinates, because it could never leave
+/// an invariant plane.
+fn turn<const N: usize>(variation: &mut Variation<N>, coordinates: usize) {
     let mut part = 0.1;
-    for entry in variation.q.iter_mut().chain(variation.p.iter_mut()) {
+    for entry in variation.q.iter_mut().take(coordinates).chain(variation.p.iter_mut().take(coordinates)) {
         *entry += part;
         part *= -0.9;
     }

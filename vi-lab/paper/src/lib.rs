@@ -11,6 +11,7 @@ mod conservative;
 mod equations;
 mod forced;
 mod law;
+pub mod raw;
 mod theory;
 
 use book::Book;

@@ -5,7 +5,7 @@
 
 pub mod text;
 
-use vi_runs::entry::Entry;
+use vi_report::entry::Entry;
 use vi_systems::{
     AndrewsSqueezer, ChaplyginSleigh, ChargedParticle, DampedOscillator, DoublePendulum, DoubleRodPendulum, DoubleWell,
     DoubleWellDuffing, FourBar, FpuChain, HardDuffing, HarmonicOscillator, HeavyTop, HenonHeiles, Kepler, NPendulum,

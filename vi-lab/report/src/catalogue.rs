@@ -3,12 +3,12 @@
 //!
 //! In: lists of systems; a name, in any spelling of case and hyphens. Out: an [`Entry`], or an error with the nearest name.
 
+use crate::entry::Entry;
 use crate::failure::Failure;
 use crate::input;
 use crate::machine::program;
 use crate::table::Table;
 use std::path::Path;
-use vi_runs::entry::Entry;
 
 /// Systems that a program knows.
 #[derive(Clone, Copy, Debug)]
@@ -123,7 +123,7 @@ impl Catalogue {
     #[must_use]
     pub fn table(&self) -> Table {
         let mut table = Table::new("systems", ["system", "what it is", "parameters", "starts at", "h"]);
-        for Entry { system, about, q, v, h } in self.entries() {
+        for Entry { system, about, q, v, h, .. } in self.entries() {
             let parameters: Vec<String> =
                 system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
             let coordinates = shortened(system.coordinates().iter().map(ToString::to_string).collect());
@@ -132,21 +132,6 @@ impl Catalogue {
         }
         table
     }
-}
-
-/// Rejects the system of a text for a command that needs more than runs.
-///
-/// # Errors
-/// [`Failure::Input`] for a system that is not compiled.
-pub fn compiled(entry: Entry, command: &str) -> Result<Entry, Failure> {
-    if entry.system.is_compiled() {
-        return Ok(entry);
-    }
-    let name = entry.system.name();
-    Err(Failure::Input(format!(
-        "{command} needs a compiled system, and {name} is a text: make a project of it by `{} new`",
-        program()
-    )))
 }
 
 /// Rejects an entry without a rule for a page that compares steps by a rule.

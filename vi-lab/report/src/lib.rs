@@ -8,10 +8,11 @@
 //! | [`chart`], [`table`], [`html`], [`page`] | figures, tables, and their page |
 //! | [`input`], [`numbers`] | numbers in input, pages and messages |
 //! | [`progress`], [`machine`], [`interrupt`], [`failure`], [`terminal`] | bars, versions, signals, errors, the exit of a program |
-//! | [`catalogue`], [`quantity`] | the systems by name; the quantities that vary from run to run |
+//! | [`entry`], [`catalogue`], [`quantity`] | a system with a place to start from; the systems by name; the quantities that vary from run to run |
 
 pub mod catalogue;
 pub mod chart;
+pub mod entry;
 pub mod failure;
 pub mod html;
 pub mod input;

@@ -4,8 +4,8 @@
 //! which sets a system and a plan.
 
 use crate::failure::Failure;
+use vi_erased::System;
 use vi_erased::plan::Plan;
-use vi_runs::system::System;
 
 /// A quantity that varies from run to run.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -36,6 +36,7 @@ use std::io::{self, Write as _};
 use std::path::PathBuf;
 use vi_core::StepError;
 use vi_core::run::ErrorEstimate;
+use vi_erased::System;
 use vi_erased::plan::{ENERGY_STAGES, Method, Plan, Shift, Start};
 use vi_erased::simulation::{Row, Steps};
 use vi_report::catalogue::Catalogue;
@@ -44,7 +45,6 @@ use vi_report::input::{count, number};
 use vi_report::interrupt::{Interrupt, Signal};
 use vi_report::numbers::{about, short};
 use vi_report::progress::Progress;
-use vi_runs::system::System;
 
 /// Bytes of complete rows written at once.
 const BLOCK: usize = 1 << 16;

@@ -4,10 +4,10 @@
 //! velocities of a plan, for the parameters that a system has.
 
 use vi_core::StepError;
+use vi_erased::System;
 use vi_erased::plan::{PhasePoint, Plan};
 use vi_report::catalogue::kebab;
 use vi_report::failure::Failure;
-use vi_runs::system::System;
 
 /// What determines an initial state on the constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -10,6 +10,7 @@ use crate::sweep::scene::Sweep;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use vi_core::StepError;
+use vi_erased::System;
 use vi_erased::plan::Named as _;
 use vi_erased::plan::{
     BOUND_ENERGY_STAGES, BOUND_STAGES, DEFAULT_BOUND_STAGES, DEFAULT_STAGES, ENERGY_STAGES, Method, PhasePoint, Plan,
@@ -20,7 +21,6 @@ use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::Failure;
 use vi_report::input::number;
 use vi_report::numbers::{about, short};
-use vi_runs::system::System;
 
 /// Default number of steps.
 const DEFAULT_STEPS: u64 = 1000;
@@ -31,6 +31,8 @@ const MEASURED_STEPS: f64 = 1e4;
 pub(crate) struct Request {
     /// The system with its parameters.
     pub(crate) system: Box<dyn System>,
+    /// The text of a system that is not compiled, with the texts of its files.
+    pub(crate) text: Option<String>,
     /// Integrator, step and initial state.
     pub(crate) plan: Plan,
     /// How long.
@@ -253,7 +255,10 @@ impl Request {
         let moved = moved.map(|[q, v]| {
             format!("note: the initial coordinates moved by up to {}, the velocities by up to {}", about(q), about(v))
         });
-        Ok((Self { system, plan, length, every, output, plot, large_output, placement, moved }, scene.sweep))
+        Ok((
+            Self { system, text: entry.text, plan, length, every, output, plot, large_output, placement, moved },
+            scene.sweep,
+        ))
     }
 
     /// Names of the columns of a row.
@@ -684,7 +689,7 @@ mod tests {
 
     #[test]
     fn a_system_without_a_rule_gets_the_names_of_its_methods() {
-        let system = vi_runs::entry::Entry::with_gauss_only::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
+        let system = vi_report::entry::Entry::with_gauss_only::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
         let of = |method, stages| {
             let arguments = Arguments { method: Some(method), stages, ..arguments("kepler") };
             check_rule(system.as_ref(), method, &Options::of(&arguments, &Scene::default()))

@@ -36,7 +36,7 @@ pub(super) fn of(request: &Request, error: &StepError, node: &Row) -> Option<Str
         let stages = request.plan.stages.map_or_else(String::new, |stages| format!("--stages {stages} "));
         ways.push(format!("{stages}--shift {} gives steps along this motion", about(shift)));
     }
-    let densities = request.system.step_densities(node.t, &node.q, &node.p);
+    let densities = request.system.studies().step_densities(node.t, &node.q, &node.p);
     let others: Vec<String> = ENERGY_STAGES
         .into_iter()
         .zip(densities)

@@ -6,10 +6,10 @@
 use super::random::{normal, uniform};
 use super::scene::{Over, Spacing};
 use core::fmt;
+use vi_erased::System;
 use vi_report::failure::Failure;
 use vi_report::numbers::short;
 use vi_report::quantity::Quantity;
-use vi_runs::system::System;
 
 /// A quantity with its values.
 #[derive(Clone, Debug, PartialEq)]

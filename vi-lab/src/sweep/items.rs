@@ -9,9 +9,9 @@ use super::random::bits;
 use super::scene::Sweep;
 use super::schema::MOST;
 use crate::run::placement::Placement;
+use vi_erased::System;
 use vi_erased::plan::Plan;
 use vi_report::failure::Failure;
-use vi_runs::system::System;
 
 /// All runs of a sweep.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,11 +4,11 @@ use super::ending::Ending;
 use super::keep::STEPS_OF_A_PERIOD;
 use crate::run::{self, Length};
 use vi_core::StepError;
+use vi_erased::System;
 use vi_erased::plan::Plan;
 use vi_erased::section::Section;
 use vi_erased::simulation::Met;
 use vi_erased::{Row, Steps};
-use vi_runs::system::System;
 
 /// Maximum ratio of steps to the predicted number, for runs that solve for their steps.
 const PATIENCE: f64 = 1000.0;

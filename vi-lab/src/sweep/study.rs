@@ -40,8 +40,8 @@ impl Study {
         let items = Items::of(&sweep, request.system.as_ref())?.with_placement(request.placement);
         let coordinates = request.system.coordinates();
         let kept = Kept::of(&sweep, (&coordinates, request.system.constraints()), &request.plan)?;
-        let text = (!request.system.is_compiled()).then(|| request.system.definition());
-        let sources = fingerprint(&catalogue.sources().chain(text).collect::<Vec<_>>());
+        let own: Vec<&str> = catalogue.sources().collect();
+        let sources = fingerprint(&own.into_iter().chain(request.text.as_deref()).collect::<Vec<_>>());
         let study = Self { request, items, kept, sources };
         study.check_series()?;
         Ok(study)

@@ -8,11 +8,11 @@
 use super::method::{Method, TOO_MANY, Task, methods};
 use super::reference::Reference;
 use core::cell::Cell;
+use vi_erased::System;
 use vi_erased::plan::{PhasePoint, Plan};
+use vi_erased::studies::rival::Ended;
 use vi_report::numbers::order;
 use vi_report::progress::Progress;
-use vi_runs::rival::Ended;
-use vi_runs::system::System;
 
 /// Tolerances of DOP853.
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
@@ -148,7 +148,7 @@ fn run_rival(task: &Task<'_>, evaluations: &mut u64, watch: &mut MaximumError<'_
         }
     };
     let count = Cell::new(0);
-    let reached = system.rival(task.start, task.end, task.setting, &count, Some(&mut see));
+    let reached = system.studies().rival(task.start, task.end, task.setting, &count, Some(&mut see));
     *evaluations = count.get();
     reached.and(seen)
 }

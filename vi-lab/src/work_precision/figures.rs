@@ -279,7 +279,7 @@ mod tests {
     use super::super::study::TimedRun;
     use super::*;
     use vi_core::StepError;
-    use vi_runs::rival::Ended;
+    use vi_erased::studies::rival::Ended;
 
     /// Two runs of the energy-preserving integrator, off by 1e-12 and 1e-14, and one that ended.
     fn findings() -> Findings {

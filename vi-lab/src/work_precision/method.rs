@@ -5,12 +5,12 @@
 //! the end; the others take the nearest number of steps.
 
 use core::cell::Cell;
+use vi_erased::System;
 use vi_erased::plan::Named as _;
 use vi_erased::plan::{self, PhasePoint, Plan};
 use vi_erased::simulation::Simulation;
+use vi_erased::studies::rival::Ended;
 use vi_report::chart::Look;
-use vi_runs::rival::Ended;
-use vi_runs::system::System;
 
 /// A method of the comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,7 +165,7 @@ impl Task<'_> {
             (FinalState { t: run.t(), q: run.q().to_vec(), p: run.p().to_vec() }, run.evaluations())
         } else {
             let evaluations = Cell::new(0);
-            let at = system.rival(self.start, self.end, self.setting, &evaluations, None)?;
+            let at = system.studies().rival(self.start, self.end, self.setting, &evaluations, None)?;
             (FinalState { t: at.t, p: system.momentum(&at)?, q: at.q }, evaluations.get())
         };
         let is_finite = reached.0.q.iter().chain(&reached.0.p).all(|entry| entry.is_finite());
@@ -181,7 +181,7 @@ impl Task<'_> {
         let evaluations = Cell::new(0);
         match self.plan() {
             Some(plan) => self.follow(system.begin(&plan)?.as_mut()),
-            None => system.rival(self.start, self.end, self.setting, &evaluations, None).map(drop),
+            None => system.studies().rival(self.start, self.end, self.setting, &evaluations, None).map(drop),
         }
     }
 

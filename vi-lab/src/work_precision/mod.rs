@@ -22,7 +22,8 @@ mod study;
 use clap::Args;
 use std::path::PathBuf;
 use study::Findings;
-use vi_report::catalogue::{Catalogue, compiled, kebab, with_rule};
+use vi_report::catalogue::{Catalogue, kebab, with_rule};
+use vi_report::entry::Entry;
 use vi_report::failure::Failure;
 use vi_report::html::escape;
 use vi_report::input::number;
@@ -30,7 +31,6 @@ use vi_report::machine::Machine;
 use vi_report::numbers::scientific;
 use vi_report::page::{Page, Report};
 use vi_report::progress::Progress;
-use vi_runs::entry::Entry;
 
 /// `vi-lab work-precision SYSTEM`.
 #[derive(Debug, Args)]
@@ -90,7 +90,7 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
 
 /// The entry of the system, with the requested initial state.
 fn entry(arguments: &Arguments, catalogue: &Catalogue) -> Result<Entry, Failure> {
-    let entry = compiled(catalogue.named(arguments.system.as_deref())?, "work-precision")?;
+    let entry = catalogue.named(arguments.system.as_deref())?;
     let q = arguments.q.clone().unwrap_or(entry.q);
     let v = arguments.v.clone().unwrap_or(entry.v);
     for (what, values) in [("coordinates (--q)", &q), ("velocities (--v)", &v)] {

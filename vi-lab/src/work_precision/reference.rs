@@ -10,9 +10,9 @@
 //! ```
 
 use super::method::{FinalState, Method, Task};
+use vi_erased::System;
 use vi_erased::plan::PhasePoint;
-use vi_runs::rival::Ended;
-use vi_runs::system::System;
+use vi_erased::studies::rival::Ended;
 
 /// Number of intervals at whose ends the reference is stored.
 const PARTS: u32 = 256;
@@ -56,7 +56,7 @@ impl<'a> Reference<'a> {
         let mut reference = Self { system, track: vec![start.clone()], largest_q: 0.0, largest_p: 0.0 };
         let mut last = start.clone();
         for part in 0..=PARTS {
-            last = system.follow(&last, start.t + (end - start.t) * f64::from(part) / f64::from(PARTS))?;
+            last = system.studies().follow(&last, start.t + (end - start.t) * f64::from(part) / f64::from(PARTS))?;
             reference.largest_q = reference.largest_q.max(largest(&last.q));
             reference.largest_p = reference.largest_p.max(largest(&system.momentum(&last)?));
             reference.track.push(last.clone());
@@ -71,7 +71,7 @@ impl<'a> Reference<'a> {
     pub(super) fn at(&self, t: f64) -> Result<PhasePoint, Ended> {
         let later = self.track.partition_point(|point| point.t <= t);
         let before = self.track.get(later.saturating_sub(1)).ok_or(Ended::NonFinite)?;
-        Ok(self.system.follow(before, t)?)
+        Ok(self.system.studies().follow(before, t)?)
     }
 
     /// The error of a state, at its own time.

@@ -6,12 +6,12 @@ use super::drift::{self, Drift};
 use super::method::{Method, Task, methods};
 use super::reference::{Agreement, Reference};
 use std::time::Instant;
+use vi_erased::System;
 use vi_erased::plan::PhasePoint;
+use vi_erased::studies::rival::Ended;
+use vi_report::entry::Entry;
 use vi_report::numbers::{median, order};
 use vi_report::progress::Progress;
-use vi_runs::entry::Entry;
-use vi_runs::rival::Ended;
-use vi_runs::system::System;
 
 /// Number of default steps in the runs for errors.
 const STEPS: f64 = 4000.0;

@@ -5,9 +5,9 @@
 
 use vi_core::stepping::{EnergyStepping, FixedStepping};
 use vi_core::{EnergyPreserving, FixedStep, SVector, Starts, State, StepError};
+use vi_erased::System;
 use vi_erased::plan::Plan;
 use vi_report::chart::Class;
-use vi_runs::system::System;
 
 /// When a run is over.
 #[derive(Clone, Copy, Debug)]

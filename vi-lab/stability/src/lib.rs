@@ -34,7 +34,7 @@ mod trial;
 use atlas::Atlas;
 use clap::Args;
 use std::path::PathBuf;
-use vi_report::catalogue::{Catalogue, compiled, kebab, with_rule};
+use vi_report::catalogue::{Catalogue, kebab, with_rule};
 use vi_report::failure::Failure;
 use vi_report::machine::Machine;
 use vi_report::page::{Page, Report};
@@ -68,7 +68,7 @@ pub struct Arguments {
 pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let machine = Machine::here();
     let entry = match &arguments.system {
-        Some(name) => Some(compiled(catalogue.find(name)?, "stability")?),
+        Some(name) => Some(catalogue.find(name)?),
         None => catalogue.own(),
     };
     if entry.is_none() && (arguments.x.is_some() || arguments.y.is_some()) {

@@ -6,11 +6,11 @@
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};
 use core::f64::consts::FRAC_PI_2;
+use vi_erased::System;
 use vi_erased::plan::{Method, PhasePoint, Plan, Shift};
 use vi_report::catalogue::Catalogue;
 use vi_report::chart::{Axis, Class, boundary};
 use vi_report::failure::Failure;
-use vi_runs::system::System;
 
 const LIMIT: Limit = Limit { steps: 20_000, until: 25.0, bound: 1e3 };
 const STEPS: (f64, f64) = (0.02, 0.8);

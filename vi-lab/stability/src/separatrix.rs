@@ -9,8 +9,8 @@ use super::system;
 use vi_core::stepping::EnergyStepping;
 use vi_report::catalogue::Catalogue;
 use vi_report::chart::{Axis, Class, boundary};
+use vi_report::entry::Entry;
 use vi_report::failure::Failure;
-use vi_runs::entry::Entry;
 use vi_systems::{DoubleWell, Pendulum};
 
 /// Steps enough for the time even where the first one, close to D = 0, is by far the longest.

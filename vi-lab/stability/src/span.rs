@@ -3,9 +3,9 @@
 //! In: `NAME=LOW:HIGH`. Out: a [`Span`].
 
 use vi_report::chart::Axis;
+use vi_report::entry::Entry;
 use vi_report::failure::Failure;
 use vi_report::quantity::Quantity;
-use vi_runs::entry::Entry;
 
 /// A quantity with its range.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,14 +6,14 @@
 use super::atlas::{Atlas, Axes, Grid, Labels};
 use super::ending::{Course, Limit, size};
 use super::span::Span;
+use vi_erased::System;
 use vi_erased::plan::{Method, PhasePoint, Plan, Start};
 use vi_erased::simulation::Simulation;
 use vi_report::catalogue::kebab;
 use vi_report::chart::{Class, Look, Series, boundary, middles};
+use vi_report::entry::Entry;
 use vi_report::failure::Failure;
 use vi_report::quantity::Quantity;
-use vi_runs::entry::Entry;
-use vi_runs::system::System;
 
 /// Steps of a run.
 const STEPS: u32 = 2500;
@@ -99,7 +99,8 @@ pub(super) fn energy(atlas: &mut Atlas, labels: Labels<'_>, entry: &Entry, axes:
     let grid = grid(atlas, entry, axes);
     let zeros = grid.zeros(&|a, b| {
         let (system, plan) = varied(entry, axes, (a, b), Method::Energy);
-        system.step_density(&plan.q, &plan.v).unwrap_or(f64::NAN)
+        let at = PhasePoint { t: 0.0, q: plan.q, v: plan.v };
+        system.studies().step_density(&at).unwrap_or(f64::NAN)
     });
     let mut curves = boundary("D = 0", zeros);
     if entry.q.len() == 1 && (&x.quantity, &y.quantity) == (&Quantity::Coordinate(0), &Quantity::Velocity(0)) {

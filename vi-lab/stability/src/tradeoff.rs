@@ -7,9 +7,9 @@ use super::atlas::Atlas;
 use rayon::prelude::*;
 use vi_core::{EnergyPreserving, Lagrangian, SVector, StepError};
 use vi_erased::start::second_point;
+use vi_paper::raw::{RawNode, Unknowns};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
-use vi_runs::raw::{RawNode, Unknowns};
 use vi_systems::DoubleWell;
 
 const LADDER: [f64; 9] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1];

@@ -5,6 +5,7 @@ use super::super::{Study, unexpected};
 use super::CASES;
 use super::plain::{Plain, Seen, Solver, density, magnitude};
 use super::runs::Case;
+use crate::raw::{RawNode, Unknowns};
 use vi_core::{FixedStep, SVector, Starts, StepError};
 use vi_erased::start::motion;
 use vi_report::chart::{Axis, Chart, Look, Series};
@@ -12,7 +13,6 @@ use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, order, scientific};
 use vi_report::page::math::{frac, id, num, op, row, sup};
 use vi_report::table::Table;
-use vi_runs::raw::{RawNode, Unknowns};
 use vi_systems::DoubleWell;
 
 /// Initial steps.

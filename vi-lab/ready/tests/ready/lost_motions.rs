@@ -5,7 +5,7 @@
 //! chaotic motion, shows in no estimate of one step.
 
 use vi_erased::plan::{Method, PhasePoint, Plan};
-use vi_runs::entry::Entry;
+use vi_report::entry::Entry;
 
 /// Numbers between −1 and 1.
 struct Random(u64);

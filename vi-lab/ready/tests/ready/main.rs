@@ -1,6 +1,7 @@
 //! Every predefined system starts with every method.
 
 mod lost_motions;
+mod studies;
 
 use vi_core::StepError;
 use vi_erased::plan::{BOUND_ENERGY_STAGES, Method, PhasePoint, Plan, Shift};

@@ -3,7 +3,7 @@
 use core::cell::Cell;
 use vi_core::StepError;
 use vi_core::check::Trajectory;
-use vi_runs::rival::{Ended, motion};
+use vi_erased::studies::rival::{Ended, motion};
 use vi_systems::{DampedOscillator, Kepler};
 
 #[test]
