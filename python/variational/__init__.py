@@ -29,6 +29,7 @@ from ._errors import *  # noqa: F403
 from ._errors import __all__ as _error_names
 from ._events import Event, Period
 from ._explanation import Explanation
+from ._fit import Fit, Unidentifiable, fit
 from ._run import LocalError, Run
 from ._solution import Events, Solution
 from ._stubs import stubs
@@ -51,7 +52,8 @@ def __getattr__(name: str) -> type[System]:
 
 
 __all__ = [
-    "CompileError", "Ensemble", "Equilibrium", "Event", "Events", "Explanation", "Linearization", "LocalError",
-    "Period", "Projected", "Run", "Solution", "System", "compile", "load_ipython_extension", "stubs", "systems", "warm",
+    "CompileError", "Ensemble", "Equilibrium", "Event", "Events", "Explanation", "Fit", "Linearization",
+    "LocalError", "Period", "Projected", "Run", "Solution", "System", "Unidentifiable", "compile", "fit",
+    "load_ipython_extension", "stubs", "systems", "warm",
     *_error_names, *systems,
 ]  # fmt: skip

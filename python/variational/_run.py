@@ -292,10 +292,15 @@ class Run:
         """
         n = len(self._cls.coordinates)
         names, indices = self._wrt(wrt)
-        with self._advising():
-            columns = self._run.tangent(_count(steps, "the number of steps"), indices).T
+        columns = self._tangent(_count(steps, "the number of steps"), indices)
         found = {"q": columns[:, :n].copy(), "p": columns[:, n : 2 * n].copy()}
         return {**found, **self._split(columns[:, 2 * n :], names)}
+
+    def _tangent(self, steps: int, indices: list[int]) -> Array:
+        """The derivatives of (q, p) after these steps with respect to (q, p) and these numbers of the system: a column
+        for each."""
+        with self._advising():
+            return self._run.tangent(steps, indices).T
 
     def gradient(
         self, steps: int, *, q: ArrayLike | None = None, p: ArrayLike | None = None, wrt: Sequence[str] = ()

@@ -24,6 +24,7 @@ from ._control import Equilibrium as Equilibrium, Linearization as Linearization
 from ._ensemble import Ensemble as Ensemble
 from ._events import Event as Event, Period as Period
 from ._explanation import Explanation as Explanation
+from ._fit import Fit as Fit, Unidentifiable as Unidentifiable, fit as fit
 from ._run import LocalError as LocalError, Run as Run
 from ._solution import Events as Events, Solution as Solution
 from ._stubs import stubs as stubs

@@ -37,6 +37,12 @@ class Parameter:
         """Its places among the numbers of the system."""
         return range(self.start, self.start + (1 if self.length is None else self.length))
 
+    @property
+    def entries(self) -> dict[str, int]:
+        """Its entries by name, `m[0]` or `K[1][2]`, and their places."""
+        names = (self.name + "".join(f"[{i}]" for i in index) for index in np.ndindex(self.shape))
+        return dict(zip(names, self.indices, strict=True))
+
     def __get__(self, system: System | None, owner: type | None = None) -> Any:
         if system is None:
             return self

@@ -1,0 +1,509 @@
+"""Parameters and start values from measurements, by least squares with exact sensitivities."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._arrays import Array, array, finite, fixed, number, ordered, vector
+from ._errors import StepError
+from ._names import among, course, meant
+from ._solution import Solution
+
+if TYPE_CHECKING:
+    from ._system import System
+
+
+class Unidentifiable(ValueError):
+    """The measurements do not determine the unknowns.
+
+    `direction` has the changes of the unknowns that together change no residual, relative to the largest of them, and
+    `change` the change of the residuals by them, relative to that by each unknown alone.
+    """
+
+    __module__ = "variational"
+
+    def __init__(self, message: str, direction: dict[str, float], change: float):
+        super().__init__(message)
+        self.direction = direction
+        self.change = change
+
+    def __reduce__(self) -> Any:
+        return (type(self), (str(self), self.direction, self.change))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit:
+    """The unknowns for which the sum of the squared residuals is least.
+
+    An unknown at a bound has no error: its entries of `errors` and `covariance` are NaN, and those of the others belong
+    to its fixed value.
+    """
+
+    parameters: dict[str, float]
+    """The value of each unknown."""
+    errors: dict[str, float]
+    """The standard error of each unknown."""
+    covariance: Array
+    """The covariance of the unknowns in the order of `parameters`, (U, U)."""
+    residuals: Array
+    """Measured less computed values, (K, C) in the order of `columns`; NaN if there is no measurement."""
+    columns: tuple[str, ...]
+    """Names of the measured columns."""
+    deviation: float
+    """The standard deviation of a residual; with `sigma` relative to it, so that about 1 is expected."""
+    jacobian: Array
+    """Derivatives of the computed values with respect to the unknowns, (K, C, U)."""
+    system: System
+    """The system with the parameters found."""
+    solution: Solution
+    """The motion at the times of the measurements."""
+    success: bool
+    """Whether the iteration converged."""
+    message: str
+    """Why the iteration ended."""
+    evaluations: int
+    """How many motions were computed."""
+
+    @property
+    def correlation(self) -> Array:
+        """The correlations of the unknowns, (U, U)."""
+        errors = np.sqrt(np.diag(self.covariance))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return self.covariance / np.outer(errors, errors)
+
+    def __getitem__(self, name: str) -> float:
+        found = among(name, self.parameters)
+        if found not in self.parameters:
+            raise KeyError(
+                f"the fit has no unknown {name!r}{meant(name, self.parameters)}; it has {_listed(self.parameters)}"
+            )
+        return self.parameters[found]
+
+    def __repr__(self) -> str:
+        count = int(np.isfinite(self.residuals).sum())
+        width = max(map(len, self.parameters))
+        lines = [f"Fit of {type(self.system).__name__} to {count} values of {', '.join(self.columns)}:"]
+        for name, value in self.parameters.items():
+            lines.append(f"  {name:{width}} = {_with_error(value, self.errors[name])}")
+        lines.append(f"standard deviation of the residuals: {self.deviation:.3g}")
+        if not self.success:
+            lines.append(f"not converged: {self.message}")
+        return "\n".join(lines)
+
+
+def fit(
+    system: System,
+    data: Any,
+    parameters: str | Iterable[str],
+    *,
+    q: ArrayLike,
+    v: ArrayLike | None = None,
+    t: float | None = None,
+    h: float | None = None,
+    tolerance: float | None = None,
+    method: str | None = None,
+    stages: int | None = None,
+    bounds: Mapping[str, Sequence[float]] | None = None,
+    sigma: float | Mapping[str, float] | None = None,
+) -> Fit:
+    """Finds parameters and start values of a system from measurements of its motion, by `scipy.optimize.least_squares`
+    with the exact sensitivities of the steps.
+
+    Parameters
+    ----------
+    system : System
+        The system. Its parameters are the first guess of the unknown ones.
+    data : dict, DataFrame or array
+        Columns "t" with ascending times, and measurements of coordinates "x" and velocities "dot(x)"; NaN if there is
+        none. The column of an input has its value from this time to the next. An array (K, 1 + N) has the columns t and
+        all coordinates.
+    parameters : list of str
+        The unknowns: names of parameters, or of entries such as "m[0]"; a coordinate "x" or a velocity "dot(x)" is its
+        value at the start.
+    q, v, t : array, array, float
+        Coordinates, velocities and time of the start; the first guess of the unknown ones. By default at rest, at the
+        first time.
+    h, tolerance, method, stages
+        As in `integrate`. Steps between two times have equal lengths of at most h.
+    bounds : dict
+        The least and the greatest value of unknowns: `{"k": (0.0, 10.0)}`.
+    sigma : float or dict
+        The standard deviation of the measurements, or that of each column. Without it all values have one deviation,
+        which is estimated from the residuals.
+
+    The system must have no constraints. Raises Unidentifiable if the measurements do not determine the unknowns, and
+    StepError if the motion of the first guess fails.
+    """
+    try:
+        from scipy.optimize import least_squares
+    except ImportError:
+        raise ImportError("fit needs scipy: pip install scipy") from None
+    model = _Model(system, data, parameters, q, v, t)
+    model.begin(h, tolerance, method, stages)
+    names = list(model.unknowns)
+    guess = model.guess()
+    limits = _bounds({} if bounds is None else bounds, type(system), dict(zip(names, guess.tolist(), strict=True)))
+    weights = np.broadcast_to(1.0 / _sigmas(sigma, model.columns), model.measured.shape)
+    there = np.isfinite(model.measured)
+    if there.sum() < len(names):
+        raise ValueError(f"{len(names)} unknowns need as many measurements or more, not {there.sum()}")
+
+    def residuals(unknowns: Array) -> Array:
+        try:
+            computed = model(unknowns)[0]
+        except StepError:
+            if np.array_equal(unknowns, guess):
+                raise
+            # The method takes a shorter step where residuals are not finite.
+            return np.full(there.sum(), np.nan)
+        return ((computed - model.measured) * weights)[there]
+
+    def jacobian(unknowns: Array) -> Array:
+        return (model(unknowns)[1] * weights[..., None])[there]
+
+    # The test of the gradient alone depends on the units.
+    found = least_squares(residuals, guess, jacobian, limits, x_scale="jac", ftol=1e-13, xtol=1e-13, gtol=None)
+    values = dict(zip(names, found.x.tolist(), strict=True))
+    is_free = found.active_mask == 0
+    computed, slopes, end = model(found.x)
+    least = _ROUNDING * float(np.linalg.norm((computed * weights)[there]))
+    inverse = _inverse(found.jac[:, is_free], {name: values[name] for name in np.array(names)[is_free].tolist()}, least)
+    spare = there.sum() - len(names)
+    deviation = math.sqrt(2.0 * found.cost / spare) if spare else math.nan
+    covariance = np.full((len(names),) * 2, np.nan)
+    covariance[np.ix_(is_free, is_free)] = inverse * (deviation**2 if sigma is None else 1.0)
+    return Fit(
+        values,
+        dict(zip(names, np.sqrt(np.diag(covariance)).tolist(), strict=True)),
+        fixed(covariance),
+        fixed(model.measured - computed),
+        model.columns,
+        deviation,
+        fixed(slopes),
+        end.system,
+        end,
+        bool(found.success),
+        found.message,
+        model.evaluations,
+    )
+
+
+class _Model:
+    """The computed values at the times of the measurements, and their derivatives."""
+
+    def __init__(
+        self, system: System, data: Any, parameters: str | Iterable[str], q: ArrayLike, v: ArrayLike | None, t: Any
+    ):
+        from ._system import System
+
+        if not isinstance(system, System):
+            raise TypeError(f"fit needs a system such as vi.Pendulum(), not {system!r}")
+        cls, n = type(system), len(system.coordinates)
+        if cls.constraints:
+            raise NotImplementedError(
+                f"{cls.__name__} has constraints: fit needs a system without them, in coordinates that satisfy them"
+            )
+        self.cls = cls
+        self.values = system._values.copy()
+        times, self.rows, inputs = _read(data, cls)
+        self.t = times[0] if t is None else number(t, "t")
+        self.times = ordered(times, 1.0)
+        if self.times[0] < self.t:
+            raise ValueError(f"the first time of the data, {self.times[0]:g}, is before the start t = {self.t:g}")
+        self.columns = tuple(self.rows)
+        self.measured = np.column_stack([values for _, values in self.rows.values()])
+        self.inputs = inputs
+        self.start = np.concatenate(
+            [vector(q, n, "q", cls.coordinates), np.zeros(n) if v is None else vector(v, n, "v", cls.coordinates)]
+        )
+        self.unknowns = _unknowns(parameters, cls)
+        for name, column in inputs.items():
+            if column[0] in [index for is_start, index in self.unknowns.values() if not is_start]:
+                raise ValueError(f"{name} is an unknown and a column of the data")
+        self.is_parameter = np.array([not is_start for is_start, _ in self.unknowns.values()])
+        self.indices = [index for is_start, index in self.unknowns.values() if not is_start]
+        self.evaluations = 0
+        self._last: tuple[Array, Any] | None = None
+
+    def begin(self, h: float | None, tolerance: float | None, method: str | None, stages: int | None) -> None:
+        """Checks the options of a run, and finds the length of its steps."""
+        if method == "energy":
+            raise ValueError('method="energy" has steps of other lengths, which do not end at the times of the data')
+        n = len(self.start) // 2
+        options: dict[str, Any] = {"h": h, "tolerance": tolerance, "method": method, "stages": stages}
+        run = self.cls._of(self.values).integrate(self.start[:n], self.start[n:], t=self.t, **options)
+        self.h = run.h
+        if self.h < 0.0:
+            raise ValueError(f"h must be positive, not {self.h!r}")
+        self.options: dict[str, Any] = {"method": method, "stages": stages}
+
+    def guess(self) -> Array:
+        """The first guess of the unknowns."""
+        return np.array(
+            [(self.start if is_start else self.values)[index] for is_start, index in self.unknowns.values()]
+        )
+
+    def __call__(self, unknowns: Array) -> tuple[Array, Array, Solution]:
+        """Values (K, C), derivatives (K, C, U) and the motion. The last ones are kept: scipy asks twice."""
+        if self._last is None or not np.array_equal(self._last[0], unknowns):
+            self.evaluations += 1
+            self._last = (unknowns.copy(), self._computed(unknowns))
+        return self._last[1]
+
+    def _computed(self, unknowns: Array) -> tuple[Array, Array, Solution]:
+        n = len(self.start) // 2
+        values, start = self.values.copy(), self.start.copy()
+        slope = np.zeros((2 * n, len(unknowns)))
+        for column, ((is_start, index), value) in enumerate(zip(self.unknowns.values(), unknowns, strict=True)):
+            (start if is_start else values)[index] = value
+            if is_start:
+                slope[index, column] = 1.0
+        system = self._system(values, 0)
+        q, v, t = start[:n], start[n:], self.t
+        scale = np.where(q == 0.0, 1.0, np.abs(q))
+        by_q, by_parameter = self._momentum_slopes(system, t, q, v, scale)
+        slope[n:] = system.mass_matrix(t, q, v) @ slope[n:] + by_q @ slope[:n]
+        slope[n:, self.is_parameter] += by_parameter
+        p = system.momentum(t, q, v)
+        parts, slopes = [], []
+        for row, end in enumerate(self.times):
+            if end > t:
+                steps = math.ceil((end - t) / self.h * (1.0 - 1e-9))
+                run = system.integrate(q, p=p, t=t, h=(end - t) / steps, **self.options)
+                columns = run._tangent(steps, self.indices)
+                slope = columns[:, : 2 * n] @ slope
+                slope[:, self.is_parameter] += columns[:, 2 * n :]
+                t, q, p = end, run.q, run.p
+            parts.append((system, t, q, p))
+            slopes.append(slope)
+            # Inputs change after the row.
+            system = self._system(values, row)
+        return self._outputs(parts, np.array(slopes), scale)
+
+    def _system(self, values: Array, row: int) -> System:
+        """The system from the time of a row on."""
+        values = values.copy()
+        for index, column in self.inputs.values():
+            values[index] = column[row]
+        return self.cls._of(values)
+
+    def _outputs(self, parts: list[tuple], slopes: Array, scale: Array) -> tuple[Array, Array, Solution]:
+        """The measured ones of the coordinates and velocities of all rows, and the rows."""
+        systems, *nodes = zip(*parts, strict=True)
+        t, q, p = map(np.array, nodes)
+        n = q.shape[-1]
+        solution = Solution(systems[0].copy()._fixed(), t, q, p)
+        # Without inputs all rows have one system.
+        groups = [slice(k, k + 1) for k in range(len(t))] if self.inputs else [slice(None)]
+        v = np.concatenate([systems[rows.start or 0].velocity(t[rows], q[rows], p[rows]) for rows in groups])
+        of_v = np.zeros_like(slopes[:, :n])
+        if any(is_velocity for (is_velocity, _), _ in self.rows.values()):
+            scale = np.maximum(scale, np.abs(q).max(axis=0))
+            for rows in groups:
+                system, at = systems[rows.start or 0], (t[rows], q[rows], v[rows])
+                by_q, by_parameter = self._momentum_slopes(system, *at, scale)
+                change = slopes[rows, n:] - by_q @ slopes[rows, :n]
+                change[..., self.is_parameter] -= by_parameter
+                of_v[rows] = np.linalg.solve(system.mass_matrix(*at), change)
+        if self.inputs:
+            energy = np.concatenate([systems[k].energy(t[rows], q[rows], v[rows]) for k, rows in enumerate(groups)])
+            solution.__dict__.update(v=fixed(v), energy=fixed(energy))
+        indices = [index + n * is_velocity for (is_velocity, index), _ in self.rows.values()]
+        computed = np.concatenate([q, v], axis=-1)[:, indices]
+        return computed, np.concatenate([slopes[:, :n], of_v], axis=1)[:, indices], solution
+
+    def _momentum_slopes(self, system: System, t: Any, q: Array, v: Array, scale: Array) -> tuple[Array, Array]:
+        """∂p/∂q (…, N, N) and ∂p/∂parameter (…, N, P) for constant velocities, by differences of order 6."""
+
+        def of_q(index: int, change: float) -> Array:
+            moved = q.copy()
+            moved[..., index] += change
+            return system.momentum(t, moved, v)
+
+        def of_parameter(index: int, change: float) -> Array:
+            values = system._values.copy()
+            values[index] += change
+            return self.cls._of(values).momentum(t, q, v)
+
+        by_q = [_difference(of_q, index, float(scale[index])) for index in range(q.shape[-1])]
+        by_parameter = [_difference(of_parameter, k, abs(float(system._values[k])) or 1.0) for k in self.indices]
+        empty = np.zeros((*q.shape, 0))
+        return np.stack(by_q, axis=-1), np.stack(by_parameter, axis=-1) if by_parameter else empty
+
+
+_WEIGHTS = ((1, 45.0), (2, -9.0), (3, 1.0))
+_WIDTH = 2e-3
+"""Relative: the truncation, about 36 · _WIDTH⁶, and rounding are then below 1e-12."""
+
+
+def _difference(of: Any, index: int, scale: float) -> Array:
+    width = _WIDTH * scale
+    return sum(w * (of(index, k * width) - of(index, -k * width)) for k, w in _WEIGHTS) / (60.0 * width)
+
+
+def _read(data: Any, cls: Any) -> tuple[Array, dict[str, tuple[tuple[bool, int], Array]], dict[str, tuple[int, Array]]]:
+    """Times, measured columns with what they measure, and columns of inputs with their index."""
+    if hasattr(data, "columns") and hasattr(data, "to_dict"):
+        columns = {name: data[name].to_numpy() for name in data.columns}
+    elif isinstance(data, Mapping):
+        columns = dict(data)
+    else:
+        wanted = 1 + len(cls.coordinates)
+        table = array(data, "data")
+        if table.ndim != 2 or table.shape[1] != wanted:
+            listed = ", ".join(cls.coordinates)
+            raise ValueError(
+                f"an array of data has the columns t, {listed}, not the shape {table.shape}: give a dict or a "
+                "DataFrame with some of them"
+            )
+        columns = dict(zip(["t", *cls.coordinates], table.T, strict=True))
+    if "t" not in columns:
+        raise ValueError('data has no column "t", the times')
+    times = array(columns.pop("t"), "t")
+    if times.ndim != 1 or not len(times):
+        raise ValueError(f"the times of the data must be a list, not of shape {times.shape}")
+    measured, inputs = {}, {}
+    for name, values in columns.items():
+        found = array(values, f"the column {name!r}")
+        if found.shape != times.shape:
+            raise ValueError(f"the column {name!r} has the shape {found.shape}, and the times {times.shape}")
+        if name in cls.inputs:
+            finite(found, name)
+            inputs[name] = (cls._parameter(name).start, found)
+            continue
+        is_velocity, index = course(name, cls.coordinates, cls.__name__)
+        label = cls.coordinates[index]
+        if np.isinf(found).any():
+            finite(found, name)
+        measured[f"dot({label})" if is_velocity else label] = ((is_velocity, index), found)
+    if not measured:
+        raise ValueError(
+            f"data has no column of a coordinate or a velocity; {cls.__name__} has {_listed(cls.coordinates)}"
+        )
+    return times, measured, inputs
+
+
+def _unknowns(parameters: str | Iterable[str], cls: Any) -> dict[str, tuple[bool, int]]:
+    """Whether each unknown is a start value, and its index: in (q, v), or in the numbers of the system."""
+    names = [parameters] if isinstance(parameters, str) else list(parameters)
+    found: dict[str, tuple[bool, int]] = {}
+    for name in names:
+        found |= _entries(name, cls)
+    if not found:
+        raise ValueError("give at least one unknown")
+    return found
+
+
+def _entries(name: str, cls: Any) -> dict[str, tuple[bool, int]]:
+    """The unknowns of a name; an array of parameters has several."""
+    if not isinstance(name, str):
+        raise TypeError(f"unknowns must be names, not {name!r}")
+    arrays = {whole: cls._parameter(whole).entries for whole in cls.parameters}
+    known = {whole: {entry: (False, index) for entry, index in entries.items()} for whole, entries in arrays.items()}
+    known |= {entry: {entry: of} for entries in list(known.values()) for entry, of in entries.items()}
+    starts = [*cls.coordinates, *(f"dot({x})" for x in cls.coordinates)]
+    known |= {start: {start: (True, index)} for index, start in enumerate(starts)}
+    found = among(name, known)
+    if found not in known:
+        raise ValueError(
+            f"{cls.__name__} has no parameter or start value {name!r}{meant(name, known)}; "
+            f"it has {_listed([*cls.parameters, *starts])}"
+        )
+    return known[found]
+
+
+def _bounds(bounds: Mapping[str, Sequence[float]], cls: Any, guess: Mapping[str, float]) -> tuple[Array, Array]:
+    """The least and the greatest value of each unknown."""
+    if not isinstance(bounds, Mapping):
+        raise TypeError(f'bounds must be a dict such as {{"{next(iter(guess))}": (0.0, 1.0)}}, not {bounds!r}')
+    found = dict.fromkeys(guess, (-math.inf, math.inf))
+    for name, pair in bounds.items():
+        limits = array(pair, f"the bounds of {name}")
+        if limits.shape != (2,) or not limits[0] < limits[1]:
+            raise ValueError(f"the bounds of {name} must be two ascending numbers, not {pair!r}")
+        for entry in _entries(name, cls):
+            if entry not in guess:
+                raise ValueError(f"{name!r} of bounds is not an unknown{meant(name, guess)}; they are {_listed(guess)}")
+            if not limits[0] <= guess[entry] <= limits[1]:
+                raise ValueError(
+                    f"the first guess {entry} = {guess[entry]:g} is outside of its bounds "
+                    f"{limits[0]:g} to {limits[1]:g}"
+                )
+            found[entry] = tuple(limits)
+    lower, upper = np.array([*found.values()]).T
+    return lower, upper
+
+
+def _sigmas(sigma: float | Mapping[str, float] | None, columns: tuple[str, ...]) -> Array:
+    """The standard deviation of each column."""
+    if sigma is None:
+        return np.ones(len(columns))
+    given = sigma if isinstance(sigma, Mapping) else dict.fromkeys(columns, sigma)
+    found = {among(name, columns): number(value, f"sigma of {name}") for name, value in given.items()}
+    for name in [*found, *columns]:
+        if name not in columns:
+            raise ValueError(
+                f"{name!r} of sigma is no measured column{meant(name, columns)}; they are {_listed(columns)}"
+            )
+        if not found.get(name, 0.0) > 0.0:
+            raise ValueError(f"sigma of {name} must be positive, not {found.get(name)!r}")
+    return np.array([found[name] for name in columns])
+
+
+_SINGULAR = 1e-10
+"""Derivatives are exact to about 1e-12."""
+
+_ROUNDING = 1e-13
+"""Derivatives with respect to the logarithm of an unknown, relative to the computed values."""
+
+
+def _inverse(jacobian: Array, values: dict[str, float], least: float) -> Array:
+    """(JᵀJ)⁻¹. Derivatives with respect to the logarithm of an unknown are zero below `least`.
+
+    Raises Unidentifiable if J has less than full rank to rounding.
+    """
+    sizes = np.linalg.norm(jacobian, axis=0)
+    for (name, value), size in zip(values.items(), sizes, strict=True):
+        if size == 0.0 or (value != 0.0 and size * abs(value) < least):
+            raise Unidentifiable(
+                f"the measurements do not depend on {name}: their derivative is {size:.1e}; "
+                "leave it out of the unknowns",
+                {name: 1.0},
+                0.0,
+            )
+    _, singular, rows = np.linalg.svd(jacobian / sizes, full_matrices=False)
+    if len(singular) and singular[-1] < _SINGULAR:
+        share = np.abs(rows[-1]) > 1e-6
+        direction = rows[-1] / sizes
+        direction = direction / direction[np.argmax(np.abs(rows[-1]))]
+        changes = {name: float(d) for name, d, counts in zip(values, direction, share, strict=True) if counts}
+        listed = ", ".join(f"{name} by {d:.3g}" for name, d in changes.items())
+        raise Unidentifiable(
+            f"the measurements do not determine {_listed(changes)} separately: a change of {listed} together "
+            f"changes the residuals by {singular[-1]:.1e} times the change by one alone; leave one out, "
+            "or measure more",
+            changes,
+            float(singular[-1]),
+        )
+    half = (rows.T / singular) / sizes[:, None]
+    return half @ half.T
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(names)
+
+
+def _with_error(value: float, error: float) -> str:
+    """A value to the second digit of its error."""
+    if not math.isfinite(error):
+        return f"{value:.6g} (no standard error)"
+    if error == 0.0 or value == 0.0:
+        return f"{value:.6g} ± {error:.2g}"
+    digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 2
+    return f"{value:#.{min(max(digits, 1), 15)}g} ± {error:#.2g}"
