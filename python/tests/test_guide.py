@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 PAGES = ["docs/python.md", "docs/from_scipy.md", "python/README.md", "README.md"]
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 OPTIONAL = ["matplotlib", "pandas", "scipy"]
-USES = {"matplotlib": ".plot(", "scipy": "vi.fit("}
+USES = {"matplotlib": (".plot(", ".animate("), "scipy": ("vi.fit(",)}
 
 
 def blocks():
@@ -25,7 +25,7 @@ def blocks():
 @pytest.mark.parametrize("code", list(blocks()))
 def test_block(code, request, tmp_path):
     for name in OPTIONAL:
-        if name in code or USES.get(name, name) in code:
+        if any(word in code for word in (name, *USES.get(name, ()))):
             pytest.importorskip(name)
     if "vi.compile" in code:
         request.getfixturevalue("warm_cache")

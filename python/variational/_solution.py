@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._animation import animated
 from ._arrays import Array, array, finite, fixed
 from ._names import course
 
@@ -208,6 +209,35 @@ class Solution(ByName):
             below.plot(self.t, self.energy - self.energy[0])
         below.set(xlabel="t", ylabel="H - H(start)")
         return axes
+
+    def animate(
+        self,
+        points: Callable[[Array], Any] | None = None,
+        *,
+        trace: int | None = None,
+        fps: float = 25.0,
+        speed: float = 1.0,
+        axes: Any = None,
+    ) -> Any:
+        """An animation of the motion in a plane, by matplotlib: `sol.animate().save("motion.gif")`.
+
+        It needs dense output, `until(t, dense=True)`: its frames are at a constant distance in time.
+
+        Parameters
+        ----------
+        points : function
+            Of the coordinates q: the points (x, y) that a line joins, such as the joints of a linkage. A point of NaN
+            is a gap in the line. Pendulums, chains, linkages and orbits among the ready systems need none.
+        trace : int
+            Index of a point whose path is drawn.
+        fps : float
+            Frames in a second.
+        speed : float
+            Units of time in a second.
+        axes : Axes
+            The axes to draw in; by default those of a new figure.
+        """
+        return animated(self, points, trace, fps, speed, axes)
 
 
 class Events(Solution):
