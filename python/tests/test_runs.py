@@ -143,6 +143,39 @@ def test_steps_of_a_given_length(kepler):
     assert kepler.h == 0.05
 
 
+def test_an_event_in_each_turn():
+    # An angle without forces turns uniformly: it is at 0.3 plus whole turns at exact times.
+    Wheel = vi.System("struct Wheel { angle θ; L = dot(θ)^2 / 2; }")
+    for v in (2.0, -2.0):
+        run = Wheel().integrate([0.0], [v], h=0.1)
+        every = vi.Event("theta", 0.3, period=2 * np.pi)
+        exact = np.array([0.3 + 2 * np.pi * k for k in range(-6, 7)]) / v
+        exact = np.sort(exact[(exact > 0.0) & (exact < 15.0)])
+        found = run.copy().events(every, 15.0)
+        np.testing.assert_allclose(found.t, exact, rtol=0.0, atol=1e-14)  # 1.8e-15
+        assert (found.rising == (v > 0.0)).all()
+        along, against = (vi.Event("θ", 0.3, np.copysign(1.0, v) * sign, 2 * np.pi) for sign in (1, -1))
+        assert np.array_equal(run.copy().events([along, against], 15.0).t, found.t)
+        assert set(run.copy().events([against, along], 15.0).which) == {1}
+        # The first event, past those of the other direction.
+        stops = run.copy()
+        times = [stops.next_event(along, 15.0).t[0] for _ in exact]
+        np.testing.assert_allclose(times, exact, rtol=0.0, atol=1e-14)  # 1.8e-15
+        assert len(stops.next_event(along, 15.0)) == 0 and stops.t == 15.0
+        assert len(run.next_event(against, 15.0)) == 0 and run.t == 15.0
+
+    # Without a whole turn it is the event of the value.
+    for direction in (-1, 0, 1):
+        pendulum = vi.Pendulum().integrate([2.5], h=0.05)
+        plain = pendulum.copy().events(vi.Event("θ", 0.2, direction), 30.0)
+        turning = pendulum.copy().events(vi.Event("θ", 0.2, direction, 2 * np.pi), 30.0)
+        np.testing.assert_allclose(turning.t, plain.t, rtol=0.0, atol=1e-14)  # 0
+        assert np.array_equal(turning.rising, plain.rising)
+    for wrong in (vi.Event("θ", period=0.0), vi.Event("dot(θ)", period=1.0)):
+        with pytest.raises(ValueError, match="period of a coordinate must be positive"):
+            vi.Pendulum().integrate([2.5], h=0.05).events(wrong, 1.0)
+
+
 def test_several_events_of_one_search(kepler):
     def apart(t, q, v):
         return q[0] ** 2 + q[1] ** 2 - 1.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import FrozenInstanceError, dataclass
 from typing import Any
@@ -18,11 +19,15 @@ class Event:
     """A coordinate, or `dot(x)` its velocity, crosses a value: `Event("x", 0.0, direction=+1)`.
 
     The direction is +1 for rising, -1 for falling, and 0 for both. The search does not call Python.
+
+    With a period the coordinate crosses the value plus a whole number of periods: `Event("θ", period=2 * np.pi)` is an
+    event in each turn of an angle. That search calls Python.
     """
 
     of: str
     at: float = 0.0
     direction: float = 0
+    period: float | None = None
 
 
 @dataclass(frozen=True)
@@ -55,15 +60,29 @@ _PERIOD = 4.0
 
 def descriptions(events: Watched | Iterable[Watched], cls: Any, h: float, is_first: bool) -> list[tuple]:
     """The events as `_core` reads them, for a run with steps of about the length h; `is_first` if it stops at one."""
-    if isinstance(events, (Event, Period, str)) or callable(events):
-        events = [events]
-    try:
-        listed = list(events)
-    except TypeError:
-        raise TypeError(f"events must be an Event, a function g(t, q, v), or a list of them, not {events!r}") from None
+    listed = _listed(events)
     if not listed:
         raise ValueError("give at least one event")
     return [_description(event, cls, _PERIOD * h, f"event {index}", is_first) for index, event in enumerate(listed)]
+
+
+def _listed(events: Watched | Iterable[Watched]) -> list[Watched]:
+    if isinstance(events, (Event, Period, str)) or callable(events):
+        return [events]
+    try:
+        return list(events)
+    except TypeError:
+        raise TypeError(f"events must be an Event, a function g(t, q, v), or a list of them, not {events!r}") from None
+
+
+def periodic(events: Watched | Iterable[Watched], cls: Any) -> dict[int, tuple[int, int]]:
+    """Coordinate and direction of the events with a period, by their index. The search finds both directions of them:
+    its function changes its own from one period to the next."""
+    return {
+        index: (course(event.of, cls.coordinates, cls.__name__)[1], _sign(event.direction))
+        for index, event in enumerate(_listed(events))
+        if isinstance(event, Event) and event.period is not None
+    }
 
 
 def _description(event: Watched, cls: Any, least: float, place: str, is_first: bool) -> tuple:
@@ -71,7 +90,14 @@ def _description(event: Watched, cls: Any, least: float, place: str, is_first: b
         event = Event(event)
     if isinstance(event, Event):
         is_velocity, index = course(event.of, cls.coordinates, cls.__name__)
-        return (is_velocity, index, number(event.at, "at"), _sign(event.direction))
+        at = number(event.at, "at")
+        if event.period is None:
+            return (is_velocity, index, at, _sign(event.direction))
+        period = number(event.period, "period")
+        if period <= 0.0 or is_velocity:
+            raise ValueError(f"the period of a coordinate must be positive, not {event!r}")
+        _sign(event.direction)
+        return (lambda t, q, v: math.sin(math.pi * ((q[index] - at) / period)), 0, place)
     if isinstance(event, Period):
         period = number(event.period, "period")
         if period <= 0.0:

@@ -15,7 +15,7 @@ from ._arrays import Array, count, fixed, number, ordered, real, vector
 from ._calls import check_arguments, unfit
 from ._control import Linearization
 from ._errors import InconsistentStart, StepError, advised  # type: ignore[attr-defined]
-from ._events import Watched, descriptions
+from ._events import Watched, descriptions, periodic
 from ._solution import Events, Solution
 
 if TYPE_CHECKING:
@@ -239,10 +239,17 @@ class Run:
         _check_on_error(on_error)
         end = number(until, "until")
         wanted = descriptions(events, self._cls, abs(self.h), is_first)
-        (t, q, p), error, met = self._run.events(wanted, end, is_first)
-        which = np.array([index for index, _ in met], dtype=np.intp)
-        rising = np.array([rises for _, rises in met], dtype=np.bool_)
-        return _finished(Events(self.system, t, q, p, advised(error, self._cls), which, rising), on_error)
+        turns = periodic(events, self._cls)
+        while True:
+            (t, q, p), error, met = self._run.events(wanted, end, is_first)
+            which = np.array([index for index, _ in met], dtype=np.intp)
+            rising = np.array([rises for _, rises in met], dtype=np.bool_)
+            found = Events(self.system, t, q, p, advised(error, self._cls), which, rising)
+            if turns and len(found):
+                found = found._directed(turns)
+            # The first event may have the other direction.
+            if not is_first or len(found) or not len(met) or error is not None:
+                return _finished(found, on_error)
 
     def set(self, **parameters: Any) -> Run:
         """Changes parameters from here on. Coordinates and momenta stay.

@@ -259,7 +259,16 @@ class Events(Solution):
 
     def of(self, index: int) -> Events:
         """The rows of one of the given events."""
-        rows = self.which == index
-        return Events(
-            self.system, self.t[rows], self.q[rows], self.p[rows], self.error, self.which[rows], self.rising[rows]
-        )
+        return self._only(self.which == index, self.rising)
+
+    def _only(self, rows: NDArray[np.bool_], rising: NDArray[np.bool_]) -> Events:
+        return Events(self.system, self.t[rows], self.q[rows], self.p[rows], self.error, self.which[rows], rising[rows])
+
+    def _directed(self, turns: dict[int, tuple[int, int]]) -> Events:
+        """The rows without those of the wrong direction, for the coordinate and the direction of these events."""
+        rising, is_wanted = self.rising.copy(), np.ones(len(self), dtype=np.bool_)
+        for index, (coordinate, direction) in turns.items():
+            here = self.which == index
+            rising[here] = self.v[here, coordinate] > 0.0
+            is_wanted[here] = (direction == 0) | (rising[here] == (direction > 0))
+        return self._only(is_wanted, rising)
