@@ -30,6 +30,7 @@ from ._errors import __all__ as _error_names
 from ._events import Event, Period
 from ._explanation import Explanation
 from ._fit import Fit, Unidentifiable, fit
+from ._names import meant
 from ._run import LocalError, Run
 from ._solution import Events, Solution
 from ._stubs import stubs
@@ -46,7 +47,8 @@ systems: list[str] = sorted([*_bind(_core, globals(), __name__), *_texts])
 def __getattr__(name: str) -> type[System]:
     """A ready system that is a text: its class is made when it is asked for."""
     if name not in _texts:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        close = "" if name.startswith("_") else meant(name, __all__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{close}", name=name, obj=None)
     globals()[name] = of_text(_texts[name], module=__name__)
     return globals()[name]
 

@@ -1,6 +1,7 @@
-"""Calls in the words of other tools: an unknown argument is reported with the word of this package.
+"""Unknown arguments and attributes: their messages have the word of this package for that of another tool, or a close
+name.
 
-In: the classes whose methods users call. Out: the same methods, which check the names of their arguments first.
+In: the classes and functions that users call. Out: the same ones, which check the names of their arguments first.
 """
 
 from __future__ import annotations
@@ -8,9 +9,9 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, TypeVar, cast
 
-from ._names import meant
+from ._names import among, meant
 
 _ELSEWHERE = {
     "h": "dt delta_t deltat step step_size stepsize timestep time_step max_step first_step",
@@ -29,6 +30,8 @@ _ELSEWHERE = {
     "steps": "n_steps nsteps num_steps n",
     "parameters": "args params",
     "callback": "callbacks",
+    "axes": "ax axis",
+    "fps": "frame_rate framerate rate",
 }
 """Words of this package, and what scipy, MuJoCo, sympy and others call the same."""
 
@@ -43,6 +46,51 @@ _OF_A_RUN = {
     "callback": "until(…, callback=…)",
 }
 """Arguments of other tools that are methods of a run here."""
+
+
+_ATTRIBUTES = {
+    "integrate": "simulate solve run start propagate evolve solve_ivp odeint",
+    "until": "integrate simulate solve run propagate evolve propagate_until",
+    "at": "propagate_grid sample evaluate",
+    "next_event": "event",
+    "checkpoint": "save dump",
+    "ensemble": "map batch vmap",
+    "explain": "equations latex show",
+    "to_dataframe": "df dataframe to_df to_pandas to_csv",
+    "plot": "show draw",
+    "animate": "animation movie",
+    "parameters": "params args",
+    "t": "time times ts",
+    "q": "qpos position positions states x",
+    "v": "qvel qdot qd velocities",
+    "p": "momenta momentum",
+    "energy": "E H hamiltonian energies",
+    "reactions": "multipliers lambdas forces",
+}
+"""Attributes of this package, and what other tools or other classes call the same."""
+
+
+def no_attribute(owner: Any, name: str, advice: str = "") -> AttributeError:
+    """The exception of an attribute that an object does not have, with this advice if it is given."""
+    what = f"{type(owner).__name__} has no attribute {name!r}"
+    if advice:
+        return AttributeError(f"{what}: {advice}", name=name, obj=None)
+    if name.startswith("_"):
+        return AttributeError(what)
+    known = [public for public in dir(type(owner)) if not public.startswith("_")]
+    known += [public for public in getattr(owner, "__dict__", ()) if not public.startswith("_")]
+    ours = [word for word, theirs in _ATTRIBUTES.items() if word in known and name in theirs.split()]
+    spelled = among(name, known)
+    if ours:
+        hint = f": it is called {ours[0]}"
+    else:
+        hint = f" (did you mean {spelled!r}?)" if spelled in known else meant(name, known)
+    # Of the class: an attribute of the object may be the one that is missing.
+    listed = ", ".join(getattr(type(owner), "parameters", ()))
+    if not hint and listed:
+        hint = f"; its parameters are {listed}"
+    # Python adds a name of its own if it knows the object.
+    return AttributeError(what + hint, name=name, obj=None)
 
 
 def unfit(function: Callable[..., Any], count: int) -> str | None:
@@ -62,23 +110,32 @@ def unfit(function: Callable[..., Any], count: int) -> str | None:
 def check_arguments(cls: type, names: Iterable[str]) -> None:
     """Replaces these methods of a class by ones that check their arguments."""
     for name in names:
-        setattr(cls, name, _checking(cls, cls.__dict__[name]))
+        setattr(cls, name, _checking(cls.__dict__[name], cls))
 
 
-def _checking(cls: type, function: Callable[..., Any]) -> Callable[..., Any]:
-    _, *listed = inspect.signature(function).parameters
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def checked_call(function: _Function) -> _Function:
+    """The function, which checks the names of its arguments first."""
+    return cast("_Function", _checking(function, None))
+
+
+def _checking(function: Callable[..., Any], cls: type | None) -> Callable[..., Any]:
+    listed = list(inspect.signature(function).parameters)[0 if cls is None else 1 :]
     known = frozenset(listed)
+    title = function.__name__ if cls is None or function.__name__ != "__init__" else cls.__name__
 
     @functools.wraps(function)
     def checked(*arguments: Any, **options: Any) -> Any:
-        if not arguments or not isinstance(arguments[0], cls):
+        if cls is not None and not (arguments and isinstance(arguments[0], cls)):
             raise TypeError(
-                f"{function.__name__} needs a system, not its class: write the parentheses, as in "
-                f"vi.Pendulum().{function.__name__}(…), with parameters between them"
+                f"{title} needs a system, not its class: write the parentheses, as in "
+                f"vi.Pendulum().{title}(…), with parameters between them"
             )
         if not options.keys() <= known:
             wrong = next(name for name in options if name not in known)
-            raise TypeError(_unknown(function.__name__, wrong, listed, arguments[0]))
+            raise TypeError(_unknown(title, wrong, listed, None if cls is None else arguments[0]))
         return function(*arguments, **options)
 
     return checked

@@ -34,7 +34,9 @@ from typing import Any
 
 from . import _core
 from ._binding import CONTRACT, _bind
+from ._calls import checked_call
 from ._lock import locked
+from ._names import meant
 from ._system import System, SystemType
 
 _SUFFIX = ".pyd" if os.name == "nt" else ".abi3.so"
@@ -122,6 +124,7 @@ def _unpickled(definition: str, methods: str, tables: str) -> type[System]:
 copyreg.pickle(_Compiled, _pickled)
 
 
+@checked_call
 def compile(definition: str, *, methods: str | None = None, verbose: bool = False) -> type[System]:
     """The class of the system that a text in the language of `lagrangian!` declares.
 
@@ -276,7 +279,7 @@ def _methods(methods: str | None, code: str) -> str:
         stages = [stage.strip() for stage in rest.split(",")] if rest.strip() else []
         most = _MOST_STAGES.get(word)
         if most is None:
-            several = ""
+            several = meant(word, _MOST_STAGES)
             if word.startswith("splitting"):
                 several = " (splitting has splitting-4 and splitting-6)"
             elif "-" in word:

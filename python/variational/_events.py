@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ._arrays import Array, _shown, number
-from ._calls import unfit
+from ._calls import check_arguments, unfit
 from ._names import course
 
 
@@ -47,6 +47,9 @@ def _refuse(self: Any, name: str, value: Any) -> None:
 
 for _cls in (Event, Period):
     _cls.__setattr__ = _refuse  # type: ignore[method-assign, assignment]
+
+check_arguments(Event, ["__init__"])
+check_arguments(Period, ["__init__"])
 
 Function = Callable[[float, Array, Array], float]
 Watched = Event | Period | str | Function

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Array, array, finite, fixed, number, ordered, vector
+from ._calls import checked_call
 from ._errors import StepError
 from ._names import among, course, meant
 from ._solution import Solution
@@ -97,6 +98,7 @@ class Fit:
         return "\n".join(lines)
 
 
+@checked_call
 def fit(
     system: System,
     data: Any,

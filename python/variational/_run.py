@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Array, count, fixed, number, ordered, real, vector
-from ._calls import check_arguments, unfit
+from ._calls import check_arguments, no_attribute, unfit
 from ._control import Linearization
 from ._errors import InconsistentStart, StepError, advised  # type: ignore[attr-defined]
 from ._events import Watched, descriptions, periodic
+from ._names import meant
 from ._solution import Events, Solution
 
 if TYPE_CHECKING:
@@ -61,6 +62,17 @@ class Run:
             raise AttributeError(f"a run has no attribute {name!r}: run.set({name}=…) changes the parameter")
         else:
             raise AttributeError(f"run.{name} cannot be assigned")
+
+    def __getattr__(self, name: str) -> Any:
+        if hasattr(Run, name):
+            # A property raised the exception.
+            return object.__getattribute__(self, name)
+        # A run that is being copied has no class.
+        if not name.startswith("_") and name in (names := self._cls.coordinates):
+            raise no_attribute(self, name, f"the coordinate is run.q[{names.index(name)}]")
+        if not name.startswith("_") and name in self._cls.parameters:
+            raise no_attribute(self, name, f"the parameter is run.system.{name}")
+        raise no_attribute(self, name)
 
     @property
     def t(self) -> float:
@@ -395,6 +407,7 @@ class Run:
         return (_restarted, (self.system, self._run.integrator, self._run.checkpoint()))
 
 
+# Not `step`, which programs call most.
 check_arguments(Run, ["until", "steps", "at", "events", "next_event", "set_state", "tangent", "gradient"])
 
 
@@ -445,9 +458,12 @@ def _joined(system: System, parts: list[Solution], error: Any) -> Solution:
     return joined
 
 
+_ON_ERROR = ("raise", "return")
+
+
 def _check_on_error(on_error: str) -> None:
-    if on_error not in ("raise", "return"):
-        raise ValueError(f'on_error must be "raise" or "return", not {on_error!r}')
+    if on_error not in _ON_ERROR:
+        raise ValueError(f'on_error must be "raise" or "return", not {on_error!r}{meant(str(on_error), _ON_ERROR)}')
 
 
 _count = count

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._animation import animated
 from ._arrays import Array, array, finite, fixed
-from ._names import course
+from ._calls import check_arguments, no_attribute
+from ._names import among, course
 
 if TYPE_CHECKING:
     from ._errors import StepError
@@ -33,6 +34,16 @@ class ByName:
         """A coordinate, `sol["x"]`, or its velocity, `sol["dot(x)"]`."""
         is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
         return (self.v if is_velocity else self.q)[..., index]
+
+    def __getattr__(self, name: str) -> Any:
+        if hasattr(type(self), name):
+            # A property raised the exception.
+            return object.__getattribute__(self, name)
+        # An object that is being unpickled has no system.
+        names = self.__dict__["system"].coordinates if "system" in self.__dict__ else ()
+        if (found := among(name, names)) in names:
+            raise no_attribute(self, name, f'the coordinate is ["{found}"], its velocity ["dot({found})"]')
+        raise no_attribute(self, name)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -238,6 +249,9 @@ class Solution(ByName):
             The axes to draw in; by default those of a new figure.
         """
         return animated(self, points, trace, fps, speed, axes)
+
+
+check_arguments(Solution, ["plot", "animate"])
 
 
 class Events(Solution):

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Array, array, finite, fixed, number, vector
-from ._calls import check_arguments
+from ._calls import check_arguments, no_attribute
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble
@@ -136,6 +136,20 @@ class System(metaclass=SystemType):
         for parameter, numbers in [(parameter, parameter.numbers(value)) for parameter, value in changes]:
             self._values[parameter.start : parameter.start + len(numbers)] = numbers
         return self
+
+    def __getattr__(self, name: str) -> Any:
+        if hasattr(type(self), name):
+            # A property raised the exception.
+            return object.__getattribute__(self, name)
+        raise no_attribute(self, name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        try:
+            object.__setattr__(self, name, value)
+        except AttributeError:
+            if hasattr(type(self), name):
+                raise
+            raise no_attribute(self, name) from None
 
     @classmethod
     def native(cls, *, methods: str | None = None, verbose: bool = False) -> type[System]:
