@@ -57,3 +57,50 @@ def test_no_runs():
 def test_times_must_be_in_order():
     with pytest.raises(ValueError, match="times must be ascending"):
         vi.Pendulum().ensemble([1.0], h=0.1, times=[2.0, 1.0])
+
+
+def test_tables():
+    pandas = pytest.importorskip("pandas")
+    end = vi.Pendulum().ensemble([1.0], h=0.05, until=5.0, parameters={"l": LENGTHS}).to_dataframe()
+    assert list(end.columns) == ["l", "t", "θ", "dot(θ)", "p_θ", "energy"] and end.index.name == "run"
+    assert np.array_equal(end["l"], LENGTHS)
+    film = vi.Kepler().ensemble([[0.4, 0.0], [0.0, 0.0]], [0.0, 2.0], h=0.1, times=[0.5, 1.0, 1.5])
+    frame = film.to_dataframe()
+    assert len(frame) == 6 and frame.index.tolist() == [0, 0, 0, 1, 1, 1]
+    one = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.1).at([0.5, 1.0, 1.5]).to_dataframe()
+    pandas.testing.assert_frame_equal(frame.loc[0].reset_index(drop=True), one)
+    assert frame.loc[1, "x"].isna().all()
+    Masses = vi.System("struct Masses { param k[2] = 3.0; coord x; L = dot(x)^2 / 2 - (k[0] + k[1]) * x^2 / 2; }")
+    many = Masses().ensemble([1.0], h=0.1, times=[1.0, 2.0], parameters={"k": [[1.0, 2.0], [3.0, 4.0]]}).to_dataframe()
+    assert many["k[1]"].tolist() == [2.0, 2.0, 4.0, 4.0]
+    assert len(vi.Pendulum().ensemble(np.zeros((0, 1)), h=0.01, until=1.0).to_dataframe()) == 0
+
+
+def test_plots():
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    film = vi.Kepler().ensemble([[0.4, 0.0], [0.5, 0.0], [0.6, 0.0]], [0.0, 1.5], h=0.1, times=[0.5, 1.0])
+    above, below = film.plot()
+    assert len(above.lines) == 6 and len(below.lines) == 3
+    assert [text.get_text() for text in above.get_legend().get_texts()] == ["x", "y"]
+    assert np.array_equal(above.lines[1].get_xydata(), np.column_stack([film.t[1], film["x"][1]]))
+    assert below.get_xlabel() == "t"
+    end = vi.Pendulum().ensemble([1.0], h=0.05, until=5.0, parameters={"l": LENGTHS})
+    axes = end.plot(axes=plt.subplots(2)[1])
+    assert np.array_equal(axes[0].lines[0].get_ydata(), end["θ"]) and axes[1].get_xlabel() == "run"
+    assert np.array_equal(axes[1].lines[0].get_ydata(), end.energy)
+    with pytest.raises(TypeError, match="write axes=…"):
+        end.plot(ax=axes)
+    plt.close("all")
+
+
+def test_reactions():
+    pendulum = vi.RodPendulum()
+    starts = [pendulum.project([np.sin(angle), -np.cos(angle)]).q for angle in (0.5, 1.0)]
+    many = pendulum.ensemble(starts, h=0.02, times=[0.5, 1.0], parameters={"m": [1.0, 2.0]})
+    assert many.reactions.shape == (2, 2, 1)
+    one = vi.RodPendulum(m=2.0).integrate(starts[1], h=0.02).at([0.5, 1.0])
+    np.testing.assert_allclose(many.reactions[1], one.reactions, rtol=1e-13)  # 0
+    assert vi.Pendulum().ensemble([1.0], h=0.1, until=1.0).reactions.shape == (1, 0)

@@ -93,3 +93,19 @@ def test_greek_letters_may_be_written_out():
 def test_latex_leaves_the_step_density_to_the_explanation():
     latex = vi.DoublePendulum()._repr_latex_()
     assert "E &=" in latex and "D &=" not in latex and "D = " in vi.DoublePendulum().explain().text
+
+
+@pytest.mark.parametrize("name", ["Kepler", "DampedOscillator", "FourBar"])
+def test_latex_of_all_formulas(name):
+    mathtext = pytest.importorskip("matplotlib.mathtext")
+    explanation = getattr(vi, name)().explain()
+    latex = explanation.latex()
+    formulas = [(left, right) for _, lines in explanation.sections for left, right in lines if left]
+    assert latex.count(" &= ") == len(formulas) > 5
+    assert latex.count(r"\begin{align*}") == latex.count(r"\end{align*}") == latex.count(r"\subsection*{")
+    # The signs of titles are escaped: one of constraints has `A^T`.
+    assert ("A\\^{}T" in latex) == (name == "FourBar")
+    # Another reader of LaTeX knows every formula.
+    parser = mathtext.MathTextParser("path")
+    for left, right in formulas:
+        parser.parse(f"${left} = {right}$")

@@ -109,6 +109,18 @@ def test_ctrl_c_ends_it(name):
     assert time.perf_counter() - began < 5.0
 
 
+def test_ctrl_c_keeps_the_rows_of_a_callback():
+    timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    run = long_run()
+    with pytest.raises(KeyboardInterrupt) as caught:
+        run.until(1e7, every=1000, callback=lambda run: None)
+    rows = caught.value.solution
+    assert len(rows) > 10 and rows.t[0] == 0.0 and rows.t[-1] <= run.t
+    again = long_run().until(rows.t[-1], every=1000)
+    assert np.array_equal(again.q[:-1], rows.q[:-1])
+
+
 def _child(connection):
     many = vi.Pendulum().ensemble([[1.0], [0.5]], h=0.05, until=1.0)
     connection.send(many.q.tolist())

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Array, array, count, finite, fixed, number, ordered
+from ._calls import check_arguments
 from ._errors import advised
-from ._solution import ByName
+from ._solution import ByName, columns_of, two_axes
 
 if TYPE_CHECKING:
     from ._errors import StepError
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Ensemble(ByName):
-    """The states of M runs: `t` (M,), `q`, `p`, `v` (M, N), or with an axis of K times after M.
+    """The states of M runs: `t` (M,), `q`, `p`, `v` (M, N), `energy` (M,), or with an axis of K times after M.
 
     `errors` has for each run None, or the exception that ended it; `parameters` the parameters that differ.
     """
@@ -70,6 +71,11 @@ class Ensemble(ByName):
         """The energy H."""
         return self._evaluate("hamiltonian")
 
+    @cached_property
+    def reactions(self) -> Array:
+        """The multiplier Λ of each constraint, on the last axis in the order of `system.constraints`."""
+        return self._evaluate("reaction", (len(self.system.constraints),))
+
     @property
     def success(self) -> bool:
         """Whether all runs reached their end."""
@@ -78,9 +84,50 @@ class Ensemble(ByName):
     def __len__(self) -> int:
         return len(self.errors)
 
+    def to_dataframe(self) -> Any:
+        """The rows as a pandas DataFrame: the parameters that differ, and the columns of a solution. Its index is the
+        number of the run, so that `frame.loc[3]` has the times of run 3. A failed run has NaN from its failure on."""
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_dataframe needs pandas: pip install pandas") from None
+        per_run = self.t.size // len(self) if len(self) else 1
+        columns: dict[str, Any] = {}
+        for name, values in self.parameters.items():
+            parameter = type(self.system)._parameter(name)
+            # One value may stand for all runs.
+            entries = np.broadcast_to(values.reshape(len(values), -1), (len(self), parameter.length or 1))
+            for entry, of_runs in zip(parameter.entries, entries.T, strict=True):
+                columns[entry] = np.repeat(of_runs, per_run)
+        rows = {name: values.reshape(-1) for name, values in columns_of(self)}
+        index = pandas.Index(np.repeat(np.arange(len(self)), per_run), name="run")
+        return pandas.DataFrame({**columns, **rows}, index=index)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Plots the coordinates and the energy of all runs, over time, or over the number of the run if there is one
+        time; returns the two axes of matplotlib."""
+        axes = two_axes(axes)
+        above, below = axes
+        is_film = self.t.ndim == 2
+        over = self.t.T if is_film else np.arange(len(self))
+        style: dict[str, Any] = {"lw": 0.8, "alpha": 0.6} if is_film else {"ls": "", "marker": "."}
+        for index, name in enumerate(self.system.coordinates):
+            lines = above.plot(over, self.q[..., index].T, color=f"C{index % 10}", **style)
+            for line in lines[:1]:
+                line.set_label(name)
+        if len(self) and len(self.system.coordinates) <= 10:
+            above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        above.set_ylabel("coordinates")
+        below.plot(over, self.energy.T, color="tab:blue", **style)
+        below.set(xlabel="t" if is_film else "run", ylabel="H")
+        return axes
+
     def __repr__(self) -> str:
         failed = sum(error is not None for error in self.errors)
         return f"<Ensemble of {len(self)} runs of {type(self.system).__name__}, {failed} failed>"
+
+
+check_arguments(Ensemble, ["plot"])
 
 
 def ensemble(

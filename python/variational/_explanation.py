@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 
 class Explanation:
     """The mathematics of a system: `text`, and `sections` of (left, right) in LaTeX; words have an empty left side."""
@@ -22,9 +24,24 @@ class Explanation:
                 return "$$\\begin{aligned}" + " \\\\ ".join(rows) + "\\end{aligned}$$"
         return ""
 
+    def latex(self) -> str:
+        """All formulas in LaTeX, by sections, for a document with the package amsmath."""
+        parts = []
+        for title, lines in self.sections:
+            rows = [f"{left} &= {right}" for left, right in lines if left]
+            if rows:
+                body = " \\\\\n".join(rows)
+                parts.append(f"\\subsection*{{{_escaped(title)}}}\n\\begin{{align*}}\n{body}\n\\end{{align*}}")
+        return "\n\n".join(parts)
+
     def _repr_markdown_(self) -> str:
         parts = [f"### {self.title}"]
         for title, lines in self.sections:
             parts.append(f"**{title}**")
             parts += [f"$${left} = {right}$$" if left else f"- {right}" for left, right in lines]
         return "\n\n".join(parts)
+
+
+def _escaped(words: str) -> str:
+    """Words with the signs of LaTeX escaped."""
+    return re.sub(r"[#$%&_{}]", r"\\\g<0>", words).replace("^", "\\^{}")

@@ -57,6 +57,26 @@ class ByName:
     __iter__ = None
 
 
+def columns_of(rows: Any) -> Iterator[tuple[str, Array]]:
+    """The columns of a table of these rows: t, q, dot(q), p_q, Λ of each constraint, and energy."""
+    yield "t", rows.t
+    for label, values in (("{}", rows.q), ("dot({})", rows.v), ("p_{}", rows.p)):
+        for index, name in enumerate(rows.system.coordinates):
+            yield label.format(name), values[..., index]
+    for index, name in enumerate(rows.system.constraints):
+        yield f"Λ_{name}", rows.reactions[..., index]
+    yield "energy", rows.energy
+
+
+def two_axes(axes: Any) -> Any:
+    """The axes of a plot: the given ones, or those of a new figure."""
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError:
+        raise ImportError("plot needs matplotlib: pip install matplotlib") from None
+    return plt.subplots(2, 1, sharex=True, layout="constrained")[1] if axes is None else axes
+
+
 class Solution(ByName):
     """The rows of a run: `t` (K,), `q`, `p`, `v` (K, N), `energy` (K,), and for C constraints `reactions` (K, C).
 
@@ -180,32 +200,17 @@ class Solution(ByName):
         # Dense output belongs to the compiled module: an unpickled solution takes the steps again when it is called.
         return {**self.__dict__, "_dense": None}
 
-    def _columns(self) -> Iterator[tuple[str, Array]]:
-        names = self.system.coordinates
-        yield "t", self.t
-        for label, values in (("{}", self.q), ("dot({})", self.v), ("p_{}", self.p)):
-            for index, name in enumerate(names):
-                yield label.format(name), values[:, index]
-        for index, name in enumerate(self.system.constraints):
-            yield f"Λ_{name}", self.reactions[:, index]
-        yield "energy", self.energy
-
     def to_dataframe(self) -> Any:
         """The rows as a pandas DataFrame with the columns t, q, dot(q), p_q, Λ of each constraint, and energy."""
         try:
             import pandas
         except ImportError:
             raise ImportError("to_dataframe needs pandas: pip install pandas") from None
-        return pandas.DataFrame(dict(self._columns()))
+        return pandas.DataFrame(dict(columns_of(self)))
 
     def plot(self, axes: Any = None) -> Any:
         """Plots the coordinates and the energy error over time; returns the two axes of matplotlib."""
-        try:
-            import matplotlib.pyplot as plt
-        except ImportError:
-            raise ImportError("plot needs matplotlib: pip install matplotlib") from None
-        if axes is None:
-            _, axes = plt.subplots(2, 1, sharex=True, layout="constrained")
+        axes = two_axes(axes)
         above, below = axes
         # Long steps would show as corners.
         is_smooth = self.sol is not None and len(self)
