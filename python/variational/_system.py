@@ -454,3 +454,7 @@ def _unpickled(cls: type[System], definition: str, values: list[float]) -> Syste
     if cls.definition != definition:
         raise ValueError(f"{cls.__name__} had another definition when it was pickled")
     return cls._of(values)
+
+
+def _shown(value: Any) -> str:
+    return f"{value:g}" if np.ndim(value) == 0 else np.array2string(np.asarray(value), separator=", ")
