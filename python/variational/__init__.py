@@ -21,6 +21,7 @@ except ImportError as error:
 
 from ._binding import _bind
 from ._cell import load_ipython_extension
+from ._compare import Comparison, compare
 from ._compile import CompileError, compile, warm
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
@@ -54,8 +55,8 @@ def __getattr__(name: str) -> type[System]:
 
 
 __all__ = [
-    "CompileError", "Ensemble", "Equilibrium", "Event", "Events", "Explanation", "Fit", "Linearization",
-    "LocalError", "Period", "Projected", "Run", "Solution", "System", "Unidentifiable", "compile", "fit",
+    "Comparison", "CompileError", "Ensemble", "Equilibrium", "Event", "Events", "Explanation", "Fit", "Linearization",
+    "LocalError", "Period", "Projected", "Run", "Solution", "System", "Unidentifiable", "compare", "compile", "fit",
     "load_ipython_extension", "stubs", "systems", "warm",
     *_error_names, *systems,
 ]  # fmt: skip

@@ -24,6 +24,13 @@ class Explanation:
                 return "$$\\begin{aligned}" + " \\\\ ".join(rows) + "\\end{aligned}$$"
         return ""
 
+    @property
+    def operations(self) -> dict[str, int]:
+        """The number of operations of each function."""
+        _, _, listed = self.text.partition("\nOperations of each function\n")
+        rows = (line.split() for line in listed.split("\n\n")[0].splitlines())
+        return {row[0]: int(row[1]) for row in rows if len(row) == 2}
+
     def latex(self) -> str:
         """All formulas in LaTeX, by sections, for a document with the package amsmath."""
         parts = []

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from numpy import float64
 
 from ._cell import load_ipython_extension as load_ipython_extension
+from ._compare import Comparison as Comparison, compare as compare
 from ._compile import CompileError as CompileError, compile as compile, warm as warm
 from ._constraints import Projected as Projected
 from ._control import Equilibrium as Equilibrium, Linearization as Linearization
