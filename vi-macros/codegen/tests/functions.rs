@@ -213,6 +213,14 @@ fn a_lagrangian_that_jumps_is_refused() {
         // Between borders that are close.
         "if (x - 0.3)^2 < 1e-6 { 1 } else { 0 }",
         "if abs(x - 0.31) < 1e-5 { y } else { 0 }",
+        "if (x - 0.3)^2 + (y - 0.2)^2 < 1e-6 { 1 } else { 0 }",
+        "if 1e6 * (x - 0.3)^2 + 4 * (y - 200)^2 < 1e-4 { x } else { 0 }",
+        "if (x - 0.3)^2 + (y - 0.2)^2 + (dot(x) - 0.7)^2 < 1e-8 { 1 } else { 0 }",
+        "if abs(x - 0.3) + abs(y - 0.2) < 1e-4 { 1 } else { 0 }",
+        "if max(abs(x - 0.3), abs(y - 0.2)) < 1e-4 { 1 } else { 0 }",
+        "if sqrt((x - c)^2 + (y + 2)^2) < 1e-3 { 1 } else { 0 }",
+        "if exp(-((x - 0.3)^2 + (y - 0.2)^2) / 1e-6) > 0.5 { 1 } else { 0 }",
+        "if 1 / ((x - 0.3)^2 + (y - 0.2)^2) > 1e6 { 1 } else { 0 }",
     ] {
         let message = "`L` jumps where `";
         case(&format!("param c = 0.3; coord x, y; «L» = dot(x)^2 + c * dot(y)^2 - {jumps};"), message);
@@ -229,6 +237,9 @@ fn a_lagrangian_that_jumps_is_refused() {
         "sign(x * y) * x * y",
         "abs(x)^3",
         "abs(x) / (1 + x^2)",
+        "if (x - 0.3)^2 + (y - 0.2)^2 < 1e-6 { ((x - 0.3)^2 + (y - 0.2)^2 - 1e-6)^2 } else { 0 }",
+        "max(1e-6 - (x - 0.3)^2 - (y - 0.2)^2, 0)^2",
+        "if x^2 + y^2 + 1 > 0 { x } else { y }",
         "abs(x)^3 / x",
         "c / abs(x)",
         "y / abs(x)^3",

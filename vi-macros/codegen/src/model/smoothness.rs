@@ -15,8 +15,9 @@ use vi_expr::{Expr, Function, Node, Pool};
 const PAIRS: u32 = 40;
 /// Pairs of points from which the zero of a condition is sought by iteration.
 const NARROW: u32 = 8;
-/// Iterations for a zero.
+/// Iterations for a zero, and the step of their difference quotients.
 const ITERATIONS: u32 = 60;
+const QUOTIENT: f64 = 1e-6;
 /// Part of the way between two points beside a border.
 const BESIDE: f64 = 1e-9;
 /// Growth of a difference from there to the border that shows a pole.
@@ -181,7 +182,8 @@ pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]
             if is_narrow && borders > 0 {
                 break;
             }
-            let Some(values) = border(pool, condition, (pair, is_narrow), &exprs, parameters) else {
+            let found = if is_narrow { narrow_change(pool, condition, pair, parameters) } else { Some(Ends::new()) };
+            let Some(values) = found.and_then(|ends| border(pool, condition, (pair, ends), &exprs, parameters)) else {
                 continue;
             };
             let [difference, around, size] = values;
@@ -198,54 +200,94 @@ pub(super) fn jump(pool: &mut Pool<Symbol>, expr: Expr, parameters: &[Parameter]
     None
 }
 
-/// Two ways between which a function changes its sign, found by Newton's iteration with difference quotients; the zeros
-/// may be so close that it has one sign at most points. The first way is 0.
-fn narrow_change(function: &mut dyn FnMut(f64) -> f64) -> Option<[f64; 2]> {
-    let is_positive = function(0.0) > 0.0;
-    let mut way = 0.0_f64;
-    for _ in 0..ITERATIONS {
-        let step = 1e-6 * way.abs().max(1.0);
-        let slope = (function(way + step) - function(way - step)) / (2.0 * step);
-        let next = way - function(way) / slope;
-        if !next.is_finite() {
-            break;
+/// The values of symbols at two points.
+type Ends = BTreeMap<Symbol, [f64; 2]>;
+
+/// The values of the next symbol at the two points of a pair.
+fn drawn(pair: u32, index: usize) -> [f64; 2] {
+    let draw = if pair.is_multiple_of(2) { probe::near_one } else { probe::of_any_size };
+    [draw(2 * pair, 2 * index), draw(2 * pair + 1, 2 * index + 1)]
+}
+
+/// The default of a parameter; `None` for another symbol.
+fn default(symbol: &Symbol, parameters: &[Parameter]) -> Option<f64> {
+    let Symbol::Parameter { index, .. } = symbol else { return None };
+    Some(parameters.get(*index).map_or(f64::NAN, |parameter| parameter.default))
+}
+
+/// Two points between which a condition changes its sign, though it may have one sign at nearly all points. The first is
+/// that of a pair. Newton's iteration, with steps along the gradient, leads to a zero of the condition, of one of its sums,
+/// such as the distance in `exp(-distance) > 1/2`, or of all sums in turn, as at the centre of a narrow ellipse.
+fn narrow_change(pool: &Pool<Symbol>, condition: Expr, pair: u32, parameters: &[Parameter]) -> Option<Ends> {
+    let symbols: Vec<Symbol> =
+        pool.symbols(condition).into_iter().filter(|symbol| default(symbol, parameters).is_none()).collect();
+    let value = |expr: Expr, point: &[f64]| {
+        pool.evaluate(expr, &mut |symbol| {
+            let place = || symbols.iter().position(|other| other == symbol);
+            default(symbol, parameters).or_else(|| place().map(|place| point[place])).unwrap_or(f64::NAN)
+        })
+    };
+    let start: Vec<f64> = (0..symbols.len()).map(|index| drawn(pair, index)[0]).collect();
+    let is_positive = value(condition, &start) > 0.0;
+    let is_beyond = |point: &[f64]| (value(condition, point) > 0.0) != is_positive;
+    let is_sum = |node: &Expr| matches!(pool.node(*node), Node::Sum(_));
+    let sums: Vec<Expr> = pool.reachable(&[condition]).into_iter().filter(is_sum).collect();
+    let alone = [condition].into_iter().chain(sums.clone()).map(|function| vec![function]);
+    let end = alone.chain([sums]).find_map(|functions| {
+        let mut point = start.clone();
+        let mut along = vec![0.0; point.len()];
+        for function in (0..ITERATIONS).flat_map(|_| functions.iter().copied()) {
+            let mut next = point.clone();
+            for (index, slope) in along.iter_mut().enumerate() {
+                let step = QUOTIENT * point[index].abs().max(1.0);
+                let mut beside = |side: f64| {
+                    next[index] = side.mul_add(step, point[index]);
+                    value(function, &next)
+                };
+                *slope = (beside(1.0) - beside(-1.0)) / (2.0 * step);
+                next[index] = point[index];
+            }
+            let size: f64 = along.iter().map(|slope| slope * slope).sum();
+            let step = value(function, &point) / size;
+            next.iter_mut().zip(&along).for_each(|(entry, slope)| *entry -= step * slope);
+            if !next.iter().all(|entry| entry.is_finite()) {
+                break;
+            }
+            point = next;
+            if is_beyond(&point) {
+                return Some(point);
+            }
         }
-        way = next;
-        if (function(way) > 0.0) != is_positive {
-            return Some([0.0, way]);
-        }
-    }
-    let nearby = (1..15).flat_map(|power| [1.0, -1.0].map(|side| side * 10.0_f64.powi(-power)));
-    let mut nearby = nearby.map(|distance| way + distance);
-    nearby.find(|way| (function(*way) > 0.0) != is_positive).map(|way| [0.0, way])
+        let size = along.iter().map(|slope| slope * slope).sum::<f64>().sqrt();
+        let nearby = (1..15).flat_map(|power| [1.0, -1.0].map(|side| side * 10.0_f64.powi(-power) / size));
+        let moved = |way: f64| point.iter().zip(&along).map(|(entry, slope)| way.mul_add(*slope, *entry)).collect();
+        let mut nearby = nearby.map(moved);
+        nearby.find(|point: &Vec<f64>| is_beyond(point))
+    })?;
+    Some(symbols.into_iter().zip(start.into_iter().zip(end).map(|(start, end)| [start, end])).collect())
 }
 
 /// The absolute difference of two expressions at a point where a condition changes its sign, the largest one around it,
 /// and the size of both; `None` if the condition does not change its sign between the two points of this pair, or if a
-/// value is not finite.
+/// value is not finite. Symbols without `ends` have those of the pair.
 fn border(
     pool: &Pool<Symbol>,
     condition: Expr,
-    (pair, is_narrow): (u32, bool),
+    (pair, mut ends): (u32, Ends),
     exprs: &[Expr; 3],
     parameters: &[Parameter],
 ) -> Option<[f64; 3]> {
-    let mut ends: BTreeMap<Symbol, [f64; 2]> = BTreeMap::new();
     let mut at = |way: f64, exprs: &[Expr]| {
         pool.evaluate_all(exprs, &mut |symbol| {
-            if let Symbol::Parameter { index, .. } = symbol {
-                return parameters.get(*index).map_or(f64::NAN, |parameter| parameter.default);
-            }
-            let drawn = ends.len();
-            let [from, to] = *ends.entry(symbol.clone()).or_insert_with(|| {
-                let draw = if pair.is_multiple_of(2) { probe::near_one } else { probe::of_any_size };
-                [draw(2 * pair, 2 * drawn), draw(2 * pair + 1, 2 * drawn + 1)]
-            });
-            from + way * (to - from)
+            default(symbol, parameters).unwrap_or_else(|| {
+                let index = ends.len();
+                let [from, to] = *ends.entry(symbol.clone()).or_insert_with(|| drawn(pair, index));
+                from + way * (to - from)
+            })
         })
     };
     let mut sign = |way: f64| at(way, &[condition]).first().map_or(f64::NAN, |value| *value);
-    let [mut low, mut high] = if is_narrow { narrow_change(&mut sign)? } else { [0.0, 1.0] };
+    let [mut low, mut high] = [0.0, 1.0];
     let first = sign(low) > 0.0;
     if (sign(high) > 0.0) == first {
         return None;
