@@ -10,6 +10,7 @@ mod energy;
 mod energy_runs;
 mod errors;
 mod far;
+mod gears;
 mod redundant;
 mod references;
 mod runs;

@@ -245,7 +245,7 @@ pub enum Message {
     /// Notation that this language writes differently.
     Habit(Habit),
     /// An expression that changes if an angle makes a turn.
-    NotPeriodic { what: String, angle: String, name: String },
+    NotPeriodic { what: String, angle: String, name: String, ratio: Option<String> },
     /// A number that is not a decimal integer or fraction.
     NotDecimal,
     /// A number outside the range of `f64`.
@@ -558,6 +558,10 @@ impl Message {
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
             Self::NoDerivative { .. } => NO_DERIVATIVE.to_owned(),
+            Self::NotPeriodic { name, ratio: Some(ratio), .. } => format!(
+                "write its ratio with `const`, as in `const n = 3;` or `const n = 33 / 20;`: with a rational number the \
+                 constraint holds modulo whole turns, with the parameter `{ratio}` it does not; or declare `{name}` with `coord`"
+            ),
             Self::NotPeriodic { angle, name, .. } => format!(
                 "declare `{name}` with `coord`, or use it in functions of period 2π, as `cos({angle})` and `sin(2 * {angle})`; write a \
                  constant torque as a force, `force {angle} = …;`"

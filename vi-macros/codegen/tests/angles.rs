@@ -134,6 +134,43 @@ fn forces_dissipation_and_time_scale_are_periodic_too() {
     assert_eq!(both.len(), 2, "{both:#?}");
 }
 
+/// A constraint that is linear in angles with rational factors holds modulo their turns.
+#[test]
+fn couplings_with_rational_ratios_are_periodic() {
+    let system = |gear: &str| {
+        format!(
+            "const n = 33 / 20, m = 4; param k = 1, c = 2; angle θ, φ; coord x; \
+             L = k * (dot(θ)^2 + dot(φ)^2 + c * dot(x)^2); constraint «gear» = {gear};"
+        )
+    };
+    for gear in [
+        "θ - φ",
+        "θ - 3 * φ",
+        "θ - n * φ",
+        "2 * θ - m * φ",
+        "1.5 * θ + 0.75 * φ - c * x - sin(θ - t)",
+        "θ - c * t - x",
+        "θ",
+    ] {
+        let code = emitted(&system(gear)).unwrap_or_else(|found| panic!("{gear}\n{found:#?}"));
+        assert!(code.contains("const ANGLES : [bool ; 3usize] = [true , true , false]"), "{gear}");
+    }
+    let message =
+        "the constraint `gear` is not periodic in the angle `θ`: it changes when `θ` makes a turn of 2π\nhelp: ";
+    for (gear, help) in [
+        (
+            "θ - c * φ",
+            "write its ratio with `const`, as in `const n = 3;` or `const n = 33 / 20;`: with a rational number the constraint holds modulo whole turns, with the parameter `c` it does not",
+        ),
+        ("c * θ - x", "write its ratio with `const`"),
+        ("sqrt(2) * θ - x", "declare `θ` with `coord`"),
+        ("θ^2 - φ", "declare `θ` with `coord`"),
+        ("x * θ - φ", "declare `θ` with `coord`"),
+    ] {
+        case(&system(gear), &format!("{message}{help}"));
+    }
+}
+
 #[test]
 fn an_angle_is_a_coordinate() {
     // Order of declaration, names and messages are those of `coord`.

@@ -309,16 +309,21 @@ fn jumps_and_kinks() {
 #[test]
 fn angles_and_derivatives() {
     case(
-        "angle θ; coord x; constraint «roll» = x - θ; L = dot(x)^2 + dot(θ)^2;",
+        "angle θ; coord x; constraint «roll» = x - θ^2; L = dot(x)^2 + dot(θ)^2;",
         "the constraint `roll` is not periodic in the angle `θ`",
     );
     case(
-        "angle θ, φ; coord x; constraint «gear»[i in 0..1] = sin(θ) - φ; L = dot(x)^2 + dot(θ)^2 + dot(φ)^2;",
+        "angle θ, φ; coord x; constraint «gear»[i in 0..1] = sin(θ) - φ * x; L = dot(x)^2 + dot(θ)^2 + dot(φ)^2;",
         "the constraint `gear` is not periodic in the angle `φ`",
     );
     let text = "struct System { angle θ; coord x, y; constraint blade = sin(θ) * dot(x) - cos(θ) * dot(y); \
                 L = dot(x)^2 + dot(y)^2 + dot(θ)^2; }";
     assert_eq!(errors(text), []);
+    // A wheel that rolls, modulo its turns.
+    assert_eq!(
+        errors("struct System { angle θ; coord x; constraint roll = x - 0.3 * θ; L = dot(x)^2 + dot(θ)^2; }"),
+        []
+    );
     clause("constraint «c» = 0^x - y;", "`pow(0, x) - y` has no derivative with respect to `a coordinate or the time`");
     clause("constraint c = «ln»(-1) * x;", "this expression has no value");
 }

@@ -12,7 +12,7 @@ use super::force::{self, Entries};
 use super::lets::Closed;
 use super::point::Point;
 use super::rule::Rule;
-use super::{Constraint, Coordinate, Parameter, probe};
+use super::{Constraint, Coordinate, Parameter, mass, probe};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, System};
@@ -52,17 +52,20 @@ pub(super) fn check(
             what: "the rule".to_owned(),
             angle: coordinates[angle].text(),
             name: name.to_string(),
+            ratio: None,
         };
         context.errors.at(rule.span, &message);
     }
     let mut clauses = clauses(context, system, lagrangian, time_scale);
+    let others = clauses.len();
     clauses.extend(constraints.chunk_by(|left, right| left.name == right.name).filter_map(|array| {
         let name = &array.first()?.name;
         let exprs = array.iter().map(|constraint| constraint.value).collect();
         Some(Clause { exprs, span: name.span(), what: format!("the constraint `{name}`") })
     }));
     let closed = Closed::of(context.pool, context.scope.kept.as_deref().unwrap_or_default());
-    for Clause { mut exprs, span, what } in clauses {
+    for (index, Clause { mut exprs, span, what }) in clauses.into_iter().enumerate() {
+        let is_constraint = index >= others;
         for expr in &mut exprs {
             *expr = closed.expression(context.pool, *expr);
         }
@@ -72,7 +75,10 @@ pub(super) fn check(
             failing.or_else(|| exprs.iter().find_map(|expr| outside_periods(context.pool, *expr, &are_angles)));
         if let Some(angle) = failing {
             let Coordinate { name, .. } = &coordinates[angle];
-            let message = Message::NotPeriodic { what, angle: coordinates[angle].text(), name: name.to_string() };
+            let ratio = exprs.iter().find_map(|expr| ratio(context.pool, *expr, &are_angles));
+            let ratio = ratio.filter(|_| is_constraint).map(|index| parameters[index].text());
+            let message =
+                Message::NotPeriodic { what, angle: coordinates[angle].text(), name: name.to_string(), ratio };
             context.errors.at(span, &message);
         }
     }
@@ -108,7 +114,7 @@ fn angle_of_rule(pool: &Pool<Symbol>, rule: &Rule, are_angles: &[bool]) -> Optio
 }
 
 /// An angle of which an expression is not periodic by its structure.
-fn outside_periods(pool: &mut Pool<Symbol>, expr: Expr, are_angles: &[bool]) -> Option<usize> {
+pub(super) fn outside_periods(pool: &mut Pool<Symbol>, expr: Expr, are_angles: &[bool]) -> Option<usize> {
     let is_moved = |symbol: &Symbol, angle: usize| *symbol == Symbol::Continuous(Variable::Coordinate(angle));
     let angles: Vec<usize> = (0..are_angles.len()).filter(|angle| are_angles[*angle]).collect();
     let any = |symbol: &Symbol| angles.iter().any(|angle| is_moved(symbol, *angle));
@@ -137,6 +143,19 @@ fn outside_periods(pool: &mut Pool<Symbol>, expr: Expr, are_angles: &[bool]) -> 
         outside.is(expr) || turned != expr
     };
     angles.into_iter().find(|angle| is_failing(pool, *angle))
+}
+
+/// A parameter in the constant factor of an angle.
+fn ratio(pool: &mut Pool<Symbol>, expr: Expr, are_angles: &[bool]) -> Option<usize> {
+    (0..are_angles.len()).filter(|angle| are_angles[*angle]).find_map(|angle| {
+        let symbols = mass::slope(pool, expr, Variable::Coordinate(angle));
+        let symbols = pool.symbols(symbols);
+        let is_constant = !symbols.iter().any(|symbol| matches!(symbol, Symbol::Continuous(_)));
+        symbols.into_iter().filter(|_| is_constant).find_map(|symbol| match symbol {
+            Symbol::Parameter { index, .. } => Some(index),
+            _ => None,
+        })
+    })
 }
 
 /// Which parts of an expression contain moved symbols outside of functions with a period.

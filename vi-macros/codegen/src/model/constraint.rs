@@ -12,6 +12,7 @@
 //! coordinates may depend on each other only where they hold, as those of mechanisms that move nevertheless: see
 //! `mobility`.
 
+use super::angles::outside_periods;
 use super::context::Context;
 use super::force::{over, path};
 use super::lets::Closed;
@@ -27,6 +28,8 @@ use crate::limits::bounded;
 use crate::messages::{Errors, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Expression, Kind, Operator, System};
+use num_integer::Integer;
+use num_traits::{One, Zero};
 use std::collections::{BTreeMap, BTreeSet};
 use syn::Result;
 use vi_expr::{Expr, Function, Node, Pool, Rational};
@@ -130,7 +133,8 @@ pub(super) fn constraints(context: &mut Context, lines: &[Definition], coordinat
             declared.insert(name, is_array);
         }
         let made = entries(context, &closed, line);
-        for constraint in context.report(made).unwrap_or_default() {
+        for mut constraint in context.report(made).unwrap_or_default() {
+            modulo_turns(context.pool, &mut constraint, coordinates);
             let text = constraint.text();
             let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Coordinate(_)));
             let is_free = constraint.is_holonomic && !context.pool.depends_on(constraint.value, &moves);
@@ -194,6 +198,41 @@ fn entries(context: &mut Context, closed: &Closed, line: &Definition) -> Result<
         Ok(())
     })?;
     Ok(made)
+}
+
+/// Makes a constraint g that is linear in angles, with rational factors, periodic in them. If the factors are whole
+/// multiples of ρ, the turns of the angles change g by any whole multiple of 2πρ, and g holds modulo 2πρ:
+///
+/// ```text
+/// ρ atan2(sin(g/ρ), cos(g/ρ)) = 0        g less the nearest multiple of 2πρ, with the gradient of g
+/// ```
+fn modulo_turns(pool: &mut Pool<Symbol>, constraint: &mut Constraint, coordinates: &[Coordinate]) {
+    let are_angles: Vec<bool> = coordinates.iter().map(|coordinate| coordinate.is_angle).collect();
+    let is_angle = |(term, _): &(Expr, Rational)| match pool.as_symbol(*term) {
+        Some(Symbol::Continuous(Variable::Coordinate(index))) => are_angles[*index],
+        _ => false,
+    };
+    let terms = match pool.node(constraint.value) {
+        Node::Sum(sum) => sum.terms.clone(),
+        _ => vec![(constraint.value, Rational::one())],
+    };
+    let (of_angles, others): (Vec<_>, Vec<_>) = terms.into_iter().partition(is_angle);
+    if others.into_iter().any(|(term, _)| outside_periods(pool, term, &are_angles).is_some()) {
+        return;
+    }
+    let common = of_angles.iter().fold(Rational::zero(), |common, (_, factor)| {
+        let numerator = (common.numer() * factor.denom()).gcd(&(factor.numer() * common.denom()));
+        Rational::new(numerator, common.denom() * factor.denom())
+    });
+    if common.is_zero() {
+        return;
+    }
+    for expr in [&mut constraint.value, &mut constraint.written] {
+        let part = pool.scale(*expr, &common.recip());
+        let [sine, cosine] = [Function::Sin, Function::Cos].map(|function| pool.call(function, &[part]));
+        let least = pool.call(Function::Atan2, &[sine, cosine]);
+        *expr = pool.scale(least, &common);
+    }
 }
 
 /// The first term that is not linear in the velocities.
