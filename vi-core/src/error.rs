@@ -597,7 +597,8 @@ impl fmt::Display for StepError {
                 "; start nearer to an equilibrium; if the equilibria form a family, hold `{coordinate}` by a weak spring"
             ),
             Self::Singular { matrix: BORDERED_MASS, .. } => f.write_str(
-                "; there the constraints depend on each other, as at a dead point with bars in one line, or a motion along them has no mass",
+                "; there the constraints depend on each other, as at a dead point with bars in one line, or a motion along them has no mass: \
+                 a step may pass such a place, but none ends there; take another length or time, or the iterator `events`, which passes it",
             ),
             Self::Singular { .. }
             | Self::NonFinite { .. }

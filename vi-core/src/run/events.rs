@@ -14,6 +14,9 @@
 //! the side there, so that exactly one of them reports an event at their common end. At the returned state g has its
 //! old side, to a rounding of its arguments, and leaves it at the next longer step length: a ball is never below its
 //! floor, even if the run stops there. Rising and falling refer to the direction of the run.
+//!
+//! A step may pass a dead point of a mechanism, while no step ends there. A crossing at this place is that of the dense
+//! output, and a run cannot stop at it.
 
 use super::Run;
 use super::event::{Crossing, Event, Events, Moment};
@@ -31,8 +34,9 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     /// state. The crossing contains all events of that instant; see [`Crossing`].
     ///
     /// # Errors
-    /// As [`Run::until`]; [`StepError::NonFinite`] for a function that is not finite; [`StepError::CannotLeave`] if the
-    /// run begins at a zero of a one-directional event whose function passes zero again at that instant.
+    /// As [`Run::until`]; [`StepError::Singular`] for an event at a dead point of a mechanism, where no step ends;
+    /// [`StepError::NonFinite`] for a function that is not finite; [`StepError::CannotLeave`] if the run begins at a
+    /// zero of a one-directional event whose function passes zero again at that instant.
     pub fn next_event(&mut self, events: impl Events<N>, until: f64) -> Result<Option<Crossing<N>>, StepError> {
         Crossings::new(self, events, until, unwatched).stop()
     }

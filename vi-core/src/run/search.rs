@@ -6,6 +6,7 @@
 //! samples    each function at both nodes, at SAMPLES − 1 points of the dense output between them, and at extrema nearer to zero
 //! bracket    between two samples of different sign: the dense output, then steps of exact length, to neighbouring lengths (`solve::bracket`)
 //! instant    the side of every function at the first such length
+//! singular   a step may pass a dead point of a mechanism, but none ends there: the dense output has the crossing
 //! ```
 
 use super::event::{Crossing, Event, Met, Moment};
@@ -16,6 +17,7 @@ use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::solve::bracket::{Point, narrowed};
+use crate::state::State;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::convert::Infallible;
@@ -116,12 +118,15 @@ pub(super) struct Watched {
     next: usize,
     /// Length at which it is not finite.
     lost: Option<f64>,
+    /// Length of the next step beyond its sign change, if no step ends there.
+    beyond: Option<f64>,
 }
 
 impl Watched {
     /// A function with a known side.
     pub(super) fn new(side: &Side) -> Self {
-        Self { is_positive: side.is_positive, sure: side.after, samples: Vec::new(), next: 0, lost: None }
+        let (is_positive, sure) = (side.is_positive, side.after);
+        Self { is_positive, sure, samples: Vec::new(), next: 0, lost: None, beyond: None }
     }
 }
 
@@ -195,8 +200,12 @@ impl<const N: usize> Step<N> {
                 search.point(event, length)?;
             }
             is_over = first.is_none();
-            let sides =
-                search.at(length, |node| wanted.iter().map(|event| node.side(event)).collect::<Result<Vec<_>, _>>())?;
+            let beyond = first.and_then(|first| watched[first].beyond.take());
+            let sides = match beyond {
+                Some(beyond) => search.sides_along(wanted, watched, (first, length, beyond))?,
+                None => search
+                    .at(length, |node| wanted.iter().map(|event| node.side(event)).collect::<Result<Vec<_>, _>>())?,
+            };
             // An earlier sign change that the samples missed comes first.
             let mut is_unseen = false;
             for (index, side) in sides.iter().enumerate() {
@@ -227,7 +236,8 @@ impl<const N: usize> Step<N> {
                 }
             }
             if !events.is_empty() {
-                let StepEnd { state, v } = search.reached(length)?;
+                let StepEnd { state, v } =
+                    if beyond.is_some() { search.end_along(length) } else { search.reached(length)? };
                 if take(Crossing { events, state, v, length: length.copysign(self.length) }) {
                     return Ok(());
                 }
@@ -245,6 +255,37 @@ impl<const N: usize> Search<'_, N> {
     fn along(&self, length: f64) -> Moment<N> {
         let passed = length.copysign(self.step.length);
         Moment { t: self.step.t + passed, q: self.step.path.state(passed).q, v: self.step.path.velocity(passed) }
+    }
+
+    /// The state after a length, by dense output.
+    fn end_along(&self, length: f64) -> StepEnd<N> {
+        let passed = length.copysign(self.step.length);
+        let state = State { t: self.step.t + passed, ..self.step.path.state(passed) };
+        StepEnd { state, v: self.step.path.velocity(passed) }
+    }
+
+    /// The sign change of a function between two samples, by dense output.
+    fn crossing_along(&self, event: &Event<N>, between: [Point; 2]) -> f64 {
+        let value = |x: f64| Ok::<_, Infallible>(event.at(&self.along(x)));
+        let Ok([before, _]) = narrowed(value, between, None, 0.0);
+        before.x
+    }
+
+    /// The sides of all functions after a length at which no step ends: `first` changes its sign there, the others keep
+    /// theirs up to the next step that has an end.
+    fn sides_along(
+        &self,
+        wanted: &[Event<N>],
+        watched: &[Watched],
+        (first, length, beyond): (Option<usize>, f64, f64),
+    ) -> Result<Vec<Side>, StepError> {
+        let moment = self.along(length);
+        let side = |(index, event): (usize, &Event<N>)| {
+            let (is_first, value) = (first == Some(index), event.value(&moment)?);
+            let is_positive = watched[index].is_positive != is_first;
+            Ok(Side { is_positive, after: beyond - length, is_zero: is_first, is_turned: false, value })
+        };
+        wanted.iter().enumerate().map(side).collect()
     }
 
     /// The end of a step of this length.
@@ -307,12 +348,17 @@ impl<const N: usize> Search<'_, N> {
 
     /// The length of the next sign change of a function. It may revert within the rounding error of the function.
     fn change(&self, event: &Event<N>, watched: &mut Watched) -> Result<Option<f64>, StepError> {
+        watched.beyond = None;
         while let Some(&sample) = watched.samples.get(watched.next) {
             watched.next += 1;
             if sample.x <= watched.sure || sample.is_positive() == watched.is_positive {
                 continue;
             }
-            let moment = self.moment(sample.x)?;
+            let moment = match self.moment(sample.x) {
+                // The next one is beyond the place where no step ends.
+                Err(StepError::Singular { .. }) => continue,
+                moment => moment?,
+            };
             let to = Point { x: sample.x, y: event.value(&moment)? };
             if to.is_positive() == watched.is_positive {
                 watched.sure = sample.x;
@@ -331,7 +377,7 @@ impl<const N: usize> Search<'_, N> {
     }
 
     /// The length of the sign change of a function before `to`.
-    fn located(&self, event: &Event<N>, watched: &Watched, to: Point) -> Result<f64, StepError> {
+    fn located(&self, event: &Event<N>, watched: &mut Watched, to: Point) -> Result<f64, StepError> {
         let is_before = |point: Point| point.is_positive() == watched.is_positive;
         let mut from = self.point(event, watched.sure)?;
         if !is_before(from) {
@@ -345,15 +391,17 @@ impl<const N: usize> Search<'_, N> {
             }
         }
         let [before, after] = [watched.samples[watched.next - 2], watched.samples[watched.next - 1]];
-        let along = |x: f64| Ok::<_, Infallible>(event.at(&self.along(x)));
-        let guess = if is_before(before) {
-            let Ok([guess, _]) = narrowed(along, [before, after], None, 0.0);
-            Some(guess.x)
-        } else {
-            None
-        };
+        let guess = is_before(before).then(|| self.crossing_along(event, [before, after]));
         let resolution = resolution(self.step.t, self.run.node().step_length());
-        let [from, to] = narrowed(|x| self.point(event, x).map(|point| point.y), [from, to], guess, resolution)?;
+        let by_steps = narrowed(|x| self.point(event, x).map(|point| point.y), [from, to], guess, resolution);
+        // A step that passes a singular place, as a dead point, does not end there.
+        if let Err(StepError::Singular { .. }) = by_steps
+            && let Some(pair) = watched.samples[..watched.next].windows(2).rfind(|pair| is_before(pair[0]))
+        {
+            watched.beyond = Some(to.x);
+            return Ok(self.crossing_along(event, [pair[0], pair[1]]));
+        }
+        let [from, to] = by_steps?;
         if to.y == 0.0 {
             return Ok(to.x);
         }

@@ -5,6 +5,7 @@ mod blocks;
 mod checks;
 mod composed;
 mod control;
+mod dead_points;
 mod derivatives;
 mod energy;
 mod energy_runs;
