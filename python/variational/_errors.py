@@ -144,7 +144,8 @@ ADVICE: dict[str, str] = {
     "DroppedConstraint": "start elsewhere, or correct its lengths",
     "NotAssembled": "check lengths and anchors of `{constraint}` and its neighbours, or start from another guess",
     "InconsistentTangent": "choose changes of the start that keep the constraint",
-    "Redundant": "drop `{constraint}`, or start elsewhere",
+    "Redundant": "delete the constraints that system.redundant(q, t=…) names from the definition, here {dependent} of "
+    "{of}, such as `{constraint}`, or start elsewhere",
     "Undefined": "take shorter steps, or stop the run before it gets there",
     "CannotLeave": "set the velocity toward the zero to zero with run.set_state, or search without event {event}",
     "OtherSystem": "restart with the parameters of the checkpoint",
@@ -185,6 +186,7 @@ def _message(
 ) -> str:
     """The reason, and what to do in a system with these integrators."""
     numbers = {**fields, "twice": 2.0 * fields.get("largest", 0.0), "h": abs(fields.get("h", 0.0))}
+    numbers["dependent"] = fields.get("of", 0) - fields.get("rank", 0)
     if variant == "NotConverged" and numbers["h"] == 0.0:
         return f"{reason}; start from the momenta of a velocity, or take a shorter h"
     if variant == "Redundant" and not fields.get("rank"):

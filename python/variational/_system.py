@@ -273,6 +273,15 @@ class System(metaclass=SystemType):
         """
         return self._moved(q, v, t, True)
 
+    def redundant(self, q: ArrayLike, *, t: float = 0.0) -> tuple[str, ...]:
+        """The names of the constraints that follow from the others at coordinates q, which satisfy all of them.
+
+        A run does not start from such a place, because the reactions are not unique. Without these constraints the
+        motion is the same, up to a place where the others become dependent too.
+        """
+        q = vector(q, len(self.coordinates), "q", self.coordinates)
+        return tuple(self._kind.redundant(self._values, number(t, "t"), q))
+
     def _moved(self, q: ArrayLike, v: ArrayLike | None, t: float, is_far: bool) -> Projected:
         (n,), names = self._shape, self.coordinates
         q = vector(q, n, "q", names)

@@ -161,6 +161,12 @@ impl System for Declared<dyn System> {
     }
 
     #[cfg(feature = "derivatives")]
+    fn redundant(&self, t: f64, q: &[f64]) -> Result<Vec<&'static str>, StepError> {
+        let PhasePoint { q, .. } = self.point(&PhasePoint { t, q: q.to_vec(), v: vec![0.0; q.len()] })?;
+        self.of.redundant(t, &q)
+    }
+
+    #[cfg(feature = "derivatives")]
     fn control(&self) -> &dyn Control {
         self
     }

@@ -12,6 +12,8 @@ use crate::simulation::{Simulation, vector, wrong_size};
 #[cfg(feature = "studies")]
 use crate::studies::Studies;
 use std::sync::Arc;
+#[cfg(feature = "derivatives")]
+use vi_core::constrained::Independent;
 use vi_core::constrained::{Extended, Projected};
 #[cfg(feature = "derivatives")]
 use vi_core::control::Dynamics as _;
@@ -110,6 +112,13 @@ pub trait System: Send + Sync {
     /// As [`State::assembled`]; [`StepError::InvalidInput`] for a point with another number of coordinates.
     #[cfg(feature = "derivatives")]
     fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
+    /// Names of the constraints that follow from the others at coordinates which satisfy all, as [`Independent::at`] drops
+    /// them.
+    ///
+    /// # Errors
+    /// As [`Independent::at`]; [`StepError::InvalidInput`] for another number of coordinates.
+    #[cfg(feature = "derivatives")]
+    fn redundant(&self, t: f64, q: &[f64]) -> Result<Vec<&'static str>, StepError>;
     /// What a controller asks of it.
     #[cfg(feature = "derivatives")]
     fn control(&self) -> &dyn Control;
@@ -376,6 +385,15 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
     #[cfg(feature = "derivatives")]
     fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError> {
         self.moved(at, State::assembled)
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn redundant(&self, t: f64, q: &[f64]) -> Result<Vec<&'static str>, StepError> {
+        let q = vector::<N>(q, "number of coordinates")?;
+        if S::CONSTRAINTS.is_empty() {
+            return Ok(Vec::new());
+        }
+        Ok(Independent::at(self.system, t, q)?.dropped_names().collect())
     }
 
     #[cfg(feature = "derivatives")]

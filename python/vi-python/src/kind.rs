@@ -194,6 +194,18 @@ impl Kind {
         Ok([point.q, point.v, moved_q, moved_v].map(|of| PyArray1::from_vec(py, of)))
     }
 
+    /// Names of the constraints that follow from the others at coordinates.
+    fn redundant<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray1<'py, f64>,
+        t: f64,
+        q: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Vec<&'static str>> {
+        let q = vector(&q, self.n, "q")?;
+        self.with(parameters.as_slice()?)?.redundant(t, &q).raise(py)
+    }
+
     /// Starts a run from velocities, or from momenta.
     #[pyo3(signature = (parameters, request, t, q, v=None, p=None))]
     #[allow(clippy::too_many_arguments)] // Python's keywords
