@@ -111,3 +111,9 @@ def test_fields_have_their_types(name):
         value = getattr(caught.value, field)
         assert isinstance(value, types[kind]), field
         assert value == caught.value.fields[field]
+
+
+def test_a_dead_point_names_what_passes_it():
+    dead_point = _exception("Singular", "the reason", {"t": 0.5, "matrix": "mass matrix bordered by the constraints"})
+    assert "run.events(…), which passes it" in str(dead_point)
+    assert str(_exception("Singular", "the reason", {"t": 0.5, "matrix": "mass matrix"})) == "the reason"

@@ -191,6 +191,12 @@ def _message(
         return f"{reason}; start from the momenta of a velocity, or take a shorter h"
     if variant == "Redundant" and not fields.get("rank"):
         return f"{reason}; correct its lengths, or start elsewhere"
+    if variant == "Singular" and fields.get("matrix") == "mass matrix bordered by the constraints":
+        return (
+            f"{reason}; there the constraints depend on each other, as at a dead point with bars in one line, or a "
+            "motion along them has no mass: a step may pass such a place, but none ends there; take another length or "
+            "time, or run.events(…), which passes it"
+        )
     if variant == "Tolerance" and not fields.get("estimate"):
         return f"{reason}; give a step length h"
     if variant not in ADVICE:
