@@ -717,6 +717,32 @@ fn a_density_that_changes_its_sign_is_a_typed_error_and_nothing_is_lost() {
     }
 }
 
+/// D_3 falls below zero for a shorter time than a step. Across it h changed for good, up to 1.2, with the energy kept.
+#[test]
+fn a_step_across_a_change_of_sign_is_a_typed_error() {
+    let system = DoublePendulum { g: 9.81, ..DoublePendulum::default() };
+    for (h, steps) in [(0.08, 16), (0.04, 34)] {
+        let mut run = begin::<2, 3, _>(system, ([0.3, 0.2], [0.0; 2]), h);
+        for _ in 0..steps {
+            let state = run.step().expect("a step");
+            assert!(run.h() < 2.0 * h && step_density::<_, 2, 3>(&system, &state).expect("a density") > 0.0);
+        }
+        let error = run.step().expect_err("a change of sign");
+        let StepError::NoForwardGaussStep { density, excess, .. } = error else { panic!("{error}") };
+        assert!(density < 0.0 && excess > 0.0, "{error}");
+        assert_eq!(run.step().expect_err("the same error"), error);
+        // D does change its sign within the next step, and has its sign again at the end.
+        let mut motion = system.at_state(run.state()).integrate(Gauss::<6>, 0.002).expect("a start");
+        let densities = (0..60).map(|_| step_density::<_, 2, 3>(&system, &motion.step().expect("a step")));
+        let densities: Vec<f64> = densities.map(|density| density.expect("a density")).collect();
+        assert!(densities.iter().any(|density| *density < 0.0), "{densities:?}");
+        // Fixed steps lead across.
+        let mut run = begin::<2, 3, _>(system, ([0.3, 0.2], [0.0; 2]), h).with_fallback(Fallback::FixedSteps);
+        run.until(4.0).unwrap_or_else(|error| panic!("{error}"));
+        assert!(run.switches().fixed_steps > 0 && run.switches().returns > 0, "{:?}", run.switches());
+    }
+}
+
 #[test]
 fn a_step_of_no_length_is_degenerate() {
     // In free motion every length is valid; for short steps rounding hides the energy difference.

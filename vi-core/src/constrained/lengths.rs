@@ -8,6 +8,7 @@ use super::guess::{Extrapolation, from_node};
 use super::solve::{Solution, Workspace, projected};
 use super::solved::Solved;
 use super::{bordered, connected, density};
+use crate::dense_output::Hermite;
 use crate::error::StepError;
 use crate::gauss::density::power;
 use crate::kind::Multipliers;
@@ -206,7 +207,7 @@ where
         measured(self.system, node)
     }
 
-    fn ended(&self, node: &Node<N>, trial: &Self::Trial) -> Result<Ended<Self::Taken>, StepError> {
+    fn ended(&self, node: &Node<N>, trial: &Self::Trial) -> Result<Ended<Self::Taken, N>, StepError> {
         let Self { system, sign, workspace, .. } = self;
         let workspace = &mut **workspace.borrow_mut();
         let mut u = core::mem::take(&mut workspace.unknowns);
@@ -221,6 +222,11 @@ where
         end.check_finite(node.t)?;
         let total = system.energy(end.t, &end.q, &v);
         let measured = excess_of(NodeEnergy { total, size: v.dot(&end.p).abs() + total.abs() }, &end)?;
-        Ok(Ended { taken: TakenLength { end, tried: *trial, mu, residual }, gain, measured })
+        let state = end.state();
+        Ok(Ended { taken: TakenLength { end, tried: *trial, mu, residual }, state, gain, measured })
+    }
+
+    fn between(&self, before: &State<N>, after: &State<N>, h: f64) -> Result<Hermite<N>, StepError> {
+        Hermite::between(self.system, before, after, h)
     }
 }

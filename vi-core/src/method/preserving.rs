@@ -6,6 +6,7 @@
 use super::bounds::{Alternating, Control, FirstStep, RATIO, too_long};
 use super::length::{Search, Trial};
 use super::{Method, Problem};
+use crate::dense_output::{DenseOutput as _, Hermite};
 use crate::error::StepError;
 use crate::gauss::density::power;
 use crate::gauss::history::StepHistory;
@@ -49,12 +50,18 @@ pub(crate) trait StepsOfAnyLength<const N: usize, const K: usize> {
     ///
     /// # Errors
     /// [`StepError::NonFinite`] and the reason why H has no value there.
-    fn ended(&self, node: &Node<N>, trial: &Self::Trial) -> Result<Ended<Self::Taken>, StepError>;
+    fn ended(&self, node: &Node<N>, trial: &Self::Trial) -> Result<Ended<Self::Taken, N>, StepError>;
+    /// Dense output between two states.
+    ///
+    /// # Errors
+    /// As [`Hermite::between`].
+    fn between(&self, before: &State<N>, after: &State<N>, h: f64) -> Result<Hermite<N>, StepError>;
 }
 
 /// The end of a step.
-pub(crate) struct Ended<T> {
+pub(crate) struct Ended<T, const N: usize> {
     pub(crate) taken: T,
+    pub(crate) state: State<N>,
     /// `E1 − E0`.
     pub(crate) gain: f64,
     /// `H − E'` there, and the size of the terms of H.
@@ -69,6 +76,12 @@ pub struct PreservingStep<T> {
     pub(crate) gain: f64,
     pub(crate) course: StepHistory,
 }
+
+/// Change of `h^(2s+1) |D|` from step to step from which a step may have passed a sign change of D: the step law says that
+/// it is constant up to O(h²).
+const IRREGULAR: f64 = 1.3;
+/// Parts of such a step at which D is evaluated.
+const PARTS: u32 = 16;
 
 /// Largest accepted rounding error of an energy, relative to its terms. With fewer digits the energy is not preserved.
 const KNOWN: f64 = 1e-10;
@@ -122,9 +135,13 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
     /// The error if no forward step exists.
     #[cold]
     fn no_step(&self) -> StepError {
-        let Self { steps, node, course } = *self;
-        let told = || course.initial_density::<K>() - course.shift;
-        let density = steps.density(&node.state()).unwrap_or_else(|_| told());
+        let told = || self.course.initial_density::<K>() - self.course.shift;
+        self.no_step_at(self.steps.density(&self.node.state()).unwrap_or_else(|_| told()))
+    }
+
+    /// The same because of this density D_s.
+    fn no_step_at(&self, density: f64) -> StepError {
+        let Self { node, course, .. } = *self;
         let StepHistory { excess, shift, largest, .. } = *course;
         let largest = largest.max(density.abs());
         StepError::NoForwardGaussStep { t: node.t, h: course.h(), stages: K, excess, density, shift, largest }
@@ -181,16 +198,44 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
         Ok((step, slope, iterations.get()))
     }
 
-    /// Computes the energies at the end of a step.
-    fn after(&self, trial: &P::Trial) -> Result<PreservingStep<P::Taken>, StepError> {
+    /// Whether `h^(2s+1) |D|` has changed since the last step as it does not where steps resolve D.
+    fn is_irregular(&self, after: &StepHistory) -> bool {
+        let (Some([density, last]), false) = (after.densities, self.course.is_first()) else { return false };
+        let ratio = after.h() / self.course.h();
+        let change = (power::<K>(ratio) / power::<K>(1.0) * ratio * (density / last)).abs();
+        !(IRREGULAR.recip()..=IRREGULAR).contains(&change)
+    }
+
+    /// Checks that D keeps its sign from the start of a step to its end, if it has that sign at its end: the step law does
+    /// not hold across a short time with the other sign. A step to where D has the other sign is the last one.
+    ///
+    /// # Errors
+    /// [`StepError::NoForwardGaussStep`].
+    #[cold]
+    fn check_sign(&self, end: &State<N>, h: f64) -> Result<(), StepError> {
         let Self { steps, node, course } = *self;
-        let Ended { taken, gain, measured } = steps.ended(node, trial)?;
+        let before = node.state();
+        let is_other = |density: f64| (density + course.shift) * course.excess < 0.0;
+        // Without a density there is no sign.
+        let (Ok(path), Ok(last)) = (steps.between(&before, end, h), steps.density(end)) else { return Ok(()) };
+        let at = |part: u32| path.state(before.t + h * (f64::from(part) / f64::from(PARTS)));
+        let mut other = (0..PARTS).filter_map(|part| steps.density(&at(part)).ok());
+        match other.find(|density| is_other(*density)) {
+            Some(density) if !is_other(last) => Err(self.no_step_at(density)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Computes the energies at the end of a step.
+    fn after(&self, trial: &P::Trial) -> Result<(PreservingStep<P::Taken>, State<N>), StepError> {
+        let Self { steps, node, course } = *self;
+        let Ended { taken, state, gain, measured } = steps.ended(node, trial)?;
         let mut course = *course;
         // The mean of `H − E0` at the start and of `H − E1` at the end.
         let mean = 0.5 * (course.excess + measured[0]) - trial.residual();
         course.push(trial.h(), mean / power::<K>(trial.h()));
         course.set_excess(measured);
-        Ok(PreservingStep { taken, gain, course })
+        Ok((PreservingStep { taken, gain, course }, state))
     }
 }
 
@@ -218,7 +263,10 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Alternating<f64>
         }
         let here = Preserving { steps: self.steps, node: &node, course: &course };
         let (trial, slope, iterations) = here.found()?;
-        let mut found = here.after(&trial)?;
+        let (mut found, end) = here.after(&trial)?;
+        if here.is_irregular(&found.course) {
+            here.check_sign(&end, trial.h())?;
+        }
         found.gain += gap;
         found.course.residual = match trial.roundings() {
             few if few <= FLOOR => few,
@@ -231,7 +279,7 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Alternating<f64>
     fn fixed(&self, h: f64) -> Result<(PreservingStep<P::Taken>, [f64; 2]), StepError> {
         let trial = self.tried(h, None)?;
         let last = self.course.initial_density::<K>();
-        let mut found = self.after(&trial)?;
+        let (mut found, _) = self.after(&trial)?;
         found.course.residual = 0.0;
         found.course.forget_lengths();
         found.course.iterations = P::iterations(&trial);

@@ -3,6 +3,7 @@
 #[cfg(feature = "alloc")]
 use super::{EnergyPreservingGauss, Lengths};
 use super::{GivenStep, LengthSolver};
+use crate::dense_output::Hermite;
 #[cfg(feature = "alloc")]
 use crate::derivatives::{Sought, Variation, check_fallback, not_last};
 use crate::error::StepError;
@@ -135,14 +136,18 @@ where
         measured(self.system, node)
     }
 
-    fn ended(&self, node: &Node<N>, trial: &Tried<N, K>) -> Result<Ended<Step<N, K>>, StepError> {
+    fn ended(&self, node: &Node<N>, trial: &Tried<N, K>) -> Result<Ended<Step<N, K>, N>, StepError> {
         let step = trial.step;
         let mut after = *node;
         after.advance(step.h, &step.increment.velocity, &step.increment.momentum);
         let gain = if self.system.conserves_energy() { 0.0 } else { trial.work };
         after.add_energy(gain);
         after.check_finite(node.t)?;
-        Ok(Ended { taken: step, gain, measured: measured(self.system, &after)? })
+        Ok(Ended { taken: step, state: after.state(), gain, measured: measured(self.system, &after)? })
+    }
+
+    fn between(&self, before: &State<N>, after: &State<N>, h: f64) -> Result<Hermite<N>, StepError> {
+        Hermite::between(self.system, before, after, h)
     }
 }
 
