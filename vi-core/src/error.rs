@@ -293,7 +293,7 @@ pub enum StepError {
     OtherSystem {
         /// Name of the system to restart.
         system: &'static str,
-        /// The parameter that differs; `None` if the systems or their rules differ.
+        /// The parameter that differs; `None` if the systems, their rules or their tables differ.
         parameter: Option<&'static str>,
         /// Its value in the checkpoint; NaN if the systems differ.
         stored: f64,
@@ -476,7 +476,10 @@ impl fmt::Display for Reason<'_> {
                 write!(f, "`{system}` has no parameter of the given name")
             }
             StepError::OtherSystem { system, parameter: None, .. } => {
-                write!(f, "the checkpoint belongs to another system than `{system}`, or to another rule")
+                write!(
+                    f,
+                    "the checkpoint belongs to another system than `{system}`, or to another rule, or to tables of other numbers"
+                )
             }
             StepError::OtherSystem { system, parameter: Some(parameter), stored, given } => {
                 write!(f, "the checkpoint of `{system}` was taken with `{parameter}` = {stored:e}, not {given:e}")
@@ -556,7 +559,7 @@ impl fmt::Display for StepError {
                 f.write_str("; its parameters are ")?;
                 listed(f, parameters)
             }
-            Self::OtherSystem { parameter: None, .. } => f.write_str("; restart its own system with its own rule"),
+            Self::OtherSystem { parameter: None, .. } => f.write_str("; restart its own system with its own rule, and with the files of its tables as they were"),
             Self::OtherSystem { .. } => f.write_str("; restart with the parameters of the checkpoint"),
             Self::CannotLeave { event, .. } => write!(
                 f,

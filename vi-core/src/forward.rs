@@ -56,6 +56,7 @@ macro_rules! forward {
         const PARAMETERS: &'static [&'static str] = <$s as $crate::Lagrangian<$n, $t>>::PARAMETERS;
         const INPUTS: &'static [usize] = <$s as $crate::Lagrangian<$n, $t>>::INPUTS;
         const MONOTONE_TABLE: Option<&'static str> = <$s as $crate::Lagrangian<$n, $t>>::MONOTONE_TABLE;
+        const TABLES: u32 = <$s as $crate::Lagrangian<$n, $t>>::TABLES;
         const INTERPRETED: bool = <$s as $crate::Lagrangian<$n, $t>>::INTERPRETED;
 
         $crate::forward! { @facts ($this) ($to) $crate::Lagrangian<$n, $t>, $s,

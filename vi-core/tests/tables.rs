@@ -158,3 +158,35 @@ fn a_function_that_is_not_finite_is_named() {
     let text = "`cl(a)` is not finite at 1.7, past t = 0.500000000; return a finite number there, or stop the run before it gets there";
     assert_eq!(error.to_string(), text);
 }
+
+/// A system before and after the points of its table have changed.
+mod before {
+    vi_core::lagrangian! {
+        pub(super) struct Well {
+            coord x;
+            table V(x) = [(-1, 1), (0, 0), (1, 1), (2, 4)] extend;
+            L = dot(x)^2 / 2 - V(x);
+        }
+    }
+}
+
+mod after {
+    vi_core::lagrangian! {
+        pub(super) struct Well {
+            coord x;
+            table V(x) = [(-1, 1), (0, 0), (1, 1), (2, 4.5)] extend;
+            L = dot(x)^2 / 2 - V(x);
+        }
+    }
+}
+
+#[test]
+fn a_checkpoint_is_not_resumed_with_other_tables() {
+    let mut run = before::Well::default().at(0.0, [0.5], [0.0]).integrate(Gauss::<2>, 0.1).expect("a start");
+    run.step().expect("a step");
+    let resumed = Run::restart(before::Well::default(), Gauss::<2>, run.checkpoint()).expect("its own system");
+    assert_eq!(resumed.state(), run.state());
+    let failure = Run::restart(after::Well::default(), Gauss::<2>, run.checkpoint()).err();
+    let Some(failure @ StepError::OtherSystem { parameter: None, .. }) = failure else { panic!("{failure:?}") };
+    assert!(failure.to_string().contains("tables of other numbers"), "{failure}");
+}

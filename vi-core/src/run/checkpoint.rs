@@ -33,6 +33,9 @@ pub struct Checkpoint<Y, const N: usize, T = f64> {
     rule: Option<String>,
     /// Names and values, in the order of their declaration.
     parameters: Vec<(String, T)>,
+    /// [`Lagrangian::TABLES`]; 0 also in files of before.
+    #[cfg_attr(feature = "serde", serde(default))]
+    tables: u32,
     run: Stored<Y, N, T>,
 }
 
@@ -64,6 +67,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             system: system.name().to_owned(),
             rule: self.method.rule().map(str::to_owned),
             parameters: named.map(|(index, name)| ((*name).to_owned(), system.parameter(index))).collect(),
+            tables: S::TABLES,
             run: Stored { node: self.node, turns: self.turns, h: self.h, memory: self.memory.stored() },
         }
     }
@@ -92,17 +96,18 @@ impl<Y, const N: usize, T: Scalar> Checkpoint<Y, N, T> {
     /// Those of `of`.
     #[doc(hidden)]
     pub fn try_map<Z, E>(self, of: impl FnOnce(Y) -> Result<Z, E>) -> Result<Checkpoint<Z, N, T>, E> {
-        let Self { system, rule, parameters, run: Stored { node, turns, h, memory } } = self;
-        Ok(Checkpoint { system, rule, parameters, run: Stored { node, turns, h, memory: of(memory)? } })
+        let Self { system, rule, parameters, tables, run: Stored { node, turns, h, memory } } = self;
+        Ok(Checkpoint { system, rule, parameters, tables, run: Stored { node, turns, h, memory: of(memory)? } })
     }
 
-    /// Returns the stored data, if system, rule and parameters agree.
+    /// Returns the stored data, if system, rule, tables and parameters agree.
     fn run_of<S: Lagrangian<N, T>>(self, system: &S, rule: Option<&'static str>) -> Result<Stored<Y, N, T>, StepError> {
         let other =
             |parameter, stored, given| StepError::OtherSystem { system: system.name(), parameter, stored, given };
         let names = self.parameters.iter().map(|(name, _)| name.as_str());
         if self.system != system.name()
             || self.rule.as_deref() != rule
+            || self.tables != 0 && self.tables != S::TABLES
             || !names.eq(system.parameters().iter().copied())
         {
             return Err(other(None, f64::NAN, f64::NAN));

@@ -351,6 +351,30 @@ fn files_of_tables() {
     assert!(grid.starts_with("the table `g` has no finite number in column 3 of line 1"), "{grid}");
 }
 
+/// An edited file is another system for a checkpoint.
+#[test]
+fn tables_have_a_digest() {
+    let digest = |content: &str, more: &str| {
+        let path = file("digest.csv", content);
+        let text = format!("struct S {{ coord x; table g(x) = {path:?}{more}; L = dot(x)^2 / 2 - g(x); }}");
+        let code = vi_codegen::expand(text.parse().expect("tokens")).to_string();
+        let digest = code.split("const TABLES : :: core :: primitive :: u32 = ").nth(1).expect("a digest");
+        digest.split(' ').next().expect("a number").to_owned()
+    };
+    let first = digest("0,0.1\n1,0.3\n2,0.2\n", "");
+    assert_eq!(first, digest("# the same\n0;0.1\n1;0.30\n2;0.2\n", ""));
+    for (content, more) in [
+        ("0,0.1\n1,0.3\n2,0.20000000000000004\n", ""),
+        ("0,0.1\n1.5,0.3\n2,0.2\n", ""),
+        ("0,0.1\n1,0.3\n", ""),
+        ("0,0.1\n1,0.3\n2,0.2\n", " extend"),
+    ] {
+        assert_ne!(first, digest(content, more), "{content} {more}");
+    }
+    let without = "struct S { coord x; L = dot(x)^2 / 2; }".parse().expect("tokens");
+    assert!(!vi_codegen::expand(without).to_string().contains("TABLES"));
+}
+
 #[test]
 fn a_text_alone_has_the_language_only() {
     let said = |text: &str| {

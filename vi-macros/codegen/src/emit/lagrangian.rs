@@ -4,6 +4,7 @@ use super::Source;
 use super::body::{Body, VelocityFrom, body, state_parts};
 use super::constraints;
 use super::formula::item_name;
+use super::functions::digest_of_tables;
 use super::matrix::matrix;
 use super::state_function::{number, vector, vector_of};
 use crate::model::{Coordinate, Model, Parameter};
@@ -62,6 +63,8 @@ pub(super) fn implementation(model: &Model, properties: Properties, functions: &
             const MONOTONE_TABLE: ::core::option::Option<&'static str> = ::core::option::Option::Some(#name);
         }
     });
+    let tables = digest_of_tables(model).map(Literal::u32_unsuffixed);
+    let tables = tables.map(|digest| quote!(const TABLES: ::core::primitive::u32 = #digest;));
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
             const NAME: &'static str = #text;
@@ -73,6 +76,7 @@ pub(super) fn implementation(model: &Model, properties: Properties, functions: &
             const PARAMETERS: &'static [&'static str] = &[#(#names),*];
             #inputs
             #monotone
+            #tables
 
             fn parameter(&self, index: usize) -> T {
                 [#(self.#parameters),*][index]
