@@ -62,7 +62,7 @@ macro_rules! forward {
         $crate::forward! { @facts ($this) ($to) $crate::Lagrangian<$n, $t>, $s,
             name -> &'static str, coordinates -> [&'static str; $n], is_autonomous -> bool, is_forced -> bool,
             cyclic -> [bool; $n], angles -> [bool; $n], parameters -> &'static [&'static str],
-            inputs -> &'static [usize], monotone_table -> Option<&'static str> }
+            inputs -> &'static [usize], tables -> u32, monotone_table -> Option<&'static str> }
 
         fn parameter(&$this, index: usize) -> $t {
             <$s as $crate::Lagrangian<$n, $t>>::parameter($to, index)

@@ -75,6 +75,10 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     fn inputs(&self) -> &'static [usize] {
         Self::INPUTS
     }
+    /// [`Lagrangian::TABLES`].
+    fn tables(&self) -> u32 {
+        Self::TABLES
+    }
     /// [`Lagrangian::MONOTONE_TABLE`].
     fn monotone_table(&self) -> Option<&'static str> {
         Self::MONOTONE_TABLE

@@ -390,7 +390,7 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
     #[cfg(feature = "derivatives")]
     fn redundant(&self, t: f64, q: &[f64]) -> Result<Vec<&'static str>, StepError> {
         let q = vector::<N>(q, "number of coordinates")?;
-        if S::CONSTRAINTS.is_empty() {
+        if self.system.constraint_names().is_empty() {
             return Ok(Vec::new());
         }
         Ok(Independent::at(self.system, t, q)?.dropped_names().collect())

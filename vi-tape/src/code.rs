@@ -130,6 +130,8 @@ pub(crate) struct Code {
     pub(crate) watched: Box<[&'static str]>,
     /// The calls of tables in L and f, whose arguments `undefined` computes.
     pub(crate) calls: Box<[Call]>,
+    /// The digest of the tables.
+    pub(crate) tables: u32,
     /// The name of a monotone table in L.
     pub(crate) monotone_table: Option<&'static str>,
     pub(crate) is_autonomous: bool,

@@ -124,6 +124,7 @@ fn of_derived(of: &Derived, (definition, files): (String, Box<[String]>), declar
             .iter()
             .filter_map(|(call, arguments)| called(of, &tables, *call, arguments.len()))
             .collect(),
+        tables: model.digest_of_tables(),
         monotone_table: model.monotone_table(pool).map(|name| &*name.leak()),
         is_autonomous: findings.autonomous,
         is_forced: findings.forced,

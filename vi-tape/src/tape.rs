@@ -156,6 +156,10 @@ impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T>
         self.code.parameters
     }
 
+    fn tables(&self) -> u32 {
+        self.code.tables
+    }
+
     fn monotone_table(&self) -> Option<&'static str> {
         self.code.monotone_table
     }

@@ -33,8 +33,7 @@ pub struct Checkpoint<Y, const N: usize, T = f64> {
     rule: Option<String>,
     /// Names and values, in the order of their declaration.
     parameters: Vec<(String, T)>,
-    /// [`Lagrangian::TABLES`]; 0 also in files of before.
-    #[cfg_attr(feature = "serde", serde(default))]
+    /// [`Lagrangian::TABLES`].
     tables: u32,
     run: Stored<Y, N, T>,
 }
@@ -67,7 +66,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             system: system.name().to_owned(),
             rule: self.method.rule().map(str::to_owned),
             parameters: named.map(|(index, name)| ((*name).to_owned(), system.parameter(index))).collect(),
-            tables: S::TABLES,
+            tables: system.tables(),
             run: Stored { node: self.node, turns: self.turns, h: self.h, memory: self.memory.stored() },
         }
     }
@@ -107,7 +106,7 @@ impl<Y, const N: usize, T: Scalar> Checkpoint<Y, N, T> {
         let names = self.parameters.iter().map(|(name, _)| name.as_str());
         if self.system != system.name()
             || self.rule.as_deref() != rule
-            || self.tables != 0 && self.tables != S::TABLES
+            || self.tables != system.tables()
             || !names.eq(system.parameters().iter().copied())
         {
             return Err(other(None, f64::NAN, f64::NAN));

@@ -107,17 +107,6 @@ fn table_value(table: &Table) -> (TokenStream, TokenStream) {
     (quote!(::vi_core::table::#item<#counts>), quote!(::vi_core::table::#item::#kind(#values)#outside))
 }
 
-/// A digest of all tables, by the hash FNV-1a; `None` without tables.
-pub(super) fn digest_of_tables(model: &Model) -> Option<u32> {
-    let tables = model.functions.iter().filter_map(|function| match &function.kind {
-        FunctionKind::Table(table) => Some(format!("{} {}", function.name, table_value(table).1)),
-        FunctionKind::Rust(_) => None,
-    });
-    let text: String = tables.collect();
-    (!text.is_empty())
-        .then(|| text.bytes().fold(0x811C_9DC5, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)))
-}
-
 /// The calls of one function at the same arguments.
 #[derive(Default)]
 pub(super) struct Calls {

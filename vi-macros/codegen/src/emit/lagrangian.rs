@@ -4,7 +4,6 @@ use super::Source;
 use super::body::{Body, VelocityFrom, body, state_parts};
 use super::constraints;
 use super::formula::item_name;
-use super::functions::digest_of_tables;
 use super::matrix::matrix;
 use super::state_function::{number, vector, vector_of};
 use crate::model::{Coordinate, Model, Parameter};
@@ -63,8 +62,8 @@ pub(super) fn implementation(model: &Model, properties: Properties, functions: &
             const MONOTONE_TABLE: ::core::option::Option<&'static str> = ::core::option::Option::Some(#name);
         }
     });
-    let tables = digest_of_tables(model).map(Literal::u32_unsuffixed);
-    let tables = tables.map(|digest| quote!(const TABLES: ::core::primitive::u32 = #digest;));
+    let digest = Some(model.digest_of_tables()).filter(|digest| *digest != 0).map(Literal::u32_unsuffixed);
+    let tables = digest.map(|digest| quote!(const TABLES: ::core::primitive::u32 = #digest;));
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
             const NAME: &'static str = #text;

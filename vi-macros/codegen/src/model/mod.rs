@@ -217,6 +217,24 @@ impl Model {
         words(&self.attributes)
     }
 
+    /// A digest of the numbers of all tables, by the hash FNV-1a; 0 without tables.
+    #[must_use]
+    pub fn digest_of_tables(&self) -> u32 {
+        let tables = self.functions.iter().filter_map(|function| match &function.kind {
+            FunctionKind::Table(Table { kind, outside, values, .. }) => {
+                let values = match values {
+                    Values::Parameters { ends, count, .. } => format!("{ends:?} {count}"),
+                    numbers => format!("{numbers:?}"),
+                };
+                Some(format!("{} {kind:?} {outside:?} {values}", function.name))
+            }
+            FunctionKind::Rust(_) => None,
+        });
+        let text: String = tables.collect();
+        let hash = |hash: u32, byte: u8| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193);
+        if text.is_empty() { 0 } else { text.bytes().fold(0x811C_9DC5, hash) }
+    }
+
     /// The name of a monotone table in L, whose expressions are in the pool.
     #[must_use]
     pub fn monotone_table(&self, pool: &Pool<Symbol>) -> Option<String> {
