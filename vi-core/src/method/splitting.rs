@@ -412,12 +412,15 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
 
     fn with_length(
         &self,
-        _system: &S,
+        system: &S,
         memory: &Kicked<N, T>,
-        _node: &Node<N, T>,
+        node: &Node<N, T>,
         _h: T,
     ) -> Result<Kicked<N, T>, StepError> {
-        Ok(*memory)
+        // The node may be another one than that of the memory: a monitor halves steps that are past.
+        let force = if self.begins_with_kick() { force_at(system, node) } else { memory.force };
+        checked(&force, node.t)?;
+        Ok(Kicked { force, ..*memory })
     }
 
     fn dense_output(
