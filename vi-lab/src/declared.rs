@@ -8,8 +8,8 @@ use crate::Entry;
 use core::marker::PhantomData;
 use vi_core::kind::{Bound, Form, Free};
 use vi_core::lagrangian::Described;
-use vi_core::stepping::EnergyStepping;
 use vi_erased::erasable::Runnable;
+use vi_report::entry::Ruled;
 
 /// A system declared by a program.
 #[derive(Debug)]
@@ -44,7 +44,7 @@ pub trait WithoutRule<const N: usize> {
 
 impl<S, const N: usize> WithRule<N> for &&Declared<S>
 where
-    S: EnergyStepping<N> + Runnable<N, Kind = Free> + Described + Default,
+    S: Ruled<N>,
 {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
         Entry::new::<S, N>(about, q, v, h)

@@ -4,8 +4,10 @@
 
 use vi_core::kind::Free;
 use vi_core::lagrangian::Described;
+use vi_core::method::Controlled;
 use vi_core::stepping::EnergyStepping;
-use vi_erased::erasable::Runnable;
+use vi_core::{Composition, EnergyPreserving, FixedStep};
+use vi_erased::erasable::{Erasable, Runnable};
 use vi_erased::integrator::{self, Integrator};
 use vi_erased::plan::{BOUND_ENERGY_STAGES, BOUND_STAGES, ENERGY_STAGES, STAGES};
 use vi_erased::system::StartOf;
@@ -30,11 +32,9 @@ pub struct Entry {
 impl Entry {
     /// A system with a place to start from: what it is, its initial coordinates and velocities, a step.
     #[must_use]
-    pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
-    where
-        S: EnergyStepping<N> + Runnable<N, Kind = Free> + Described + Default,
-    {
-        Self::of(Typed::<S, N>::new(with_rule()), about, (q, v), h)
+    pub fn new<S: Ruled<N>, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self {
+        let integrators = integrator::all([S::with_rule(), without_rule()]);
+        Self::of(Typed::<S, N>::new(integrators), about, (q, v), h)
     }
 
     /// The same of a system without a rule, which has Gauss steps alone.
@@ -72,9 +72,22 @@ impl Entry {
     }
 }
 
-/// Every integrator of a system with a rule.
-fn with_rule<S: EnergyStepping<N> + Runnable<N, Kind = Free>, const N: usize>() -> Vec<Integrator<S, N>> {
-    integrator::all([integrator::by_rule(), vec![integrator::energy()], without_rule()])
+/// A system with a rule that has fixed and energy-preserving steps: every generated one with `discretize midpoint`.
+pub trait Ruled<const N: usize>: EnergyStepping<N> + Runnable<N, Kind = Free> + Described + Default {
+    /// The integrators that need the rule.
+    fn with_rule() -> Vec<Integrator<Self, N>>;
+}
+
+impl<S, const N: usize> Ruled<N> for S
+where
+    S: EnergyStepping<N> + Runnable<N, Kind = Free> + Described + Default,
+    FixedStep: Erasable<S, N>,
+    Composition: Erasable<S, N>,
+    EnergyPreserving: Erasable<S, N, Memory: Controlled<f64>>,
+{
+    fn with_rule() -> Vec<Integrator<S, N>> {
+        integrator::all([integrator::by_rule(), vec![integrator::energy()]])
+    }
 }
 
 /// Every integrator that needs no rule.
