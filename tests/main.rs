@@ -31,6 +31,7 @@ mod large;
 mod limits;
 mod loops;
 mod lost_motions;
+mod methods;
 mod motions;
 mod orders;
 mod predicted;
