@@ -721,27 +721,3 @@ fn searches_cut_at_nodes_find_the_same_bits() {
     }
     assert!(seen > 700, "{seen}");
 }
-
-#[test]
-fn single_searches_of_all_methods_find_the_same_as_one_search() {
-    let spring = Spring::default();
-    let mut seed = 23;
-    let mut seen = 0;
-    for _ in 0..3 {
-        let events = functions(&mut seed);
-        let (q, v) = ([uniform(&mut seed)], [uniform(&mut seed)]);
-        for ((name, mut one_by_one), (_, mut whole)) in
-            runs(spring, 0.0, [q, v], 0.05).into_iter().zip(runs(spring, 0.0, [q, v], 0.05))
-        {
-            let whole: Vec<_> = whole.every(&events, 5.0).iter().flat_map(met).collect();
-            let mut found = Vec::new();
-            while let Some(crossing) = one_by_one.go(&events, 5.0).expect("the run goes on") {
-                found.extend(met(&crossing));
-                assert!(found.len() < 200, "{name}: the same event again");
-            }
-            assert_eq!(whole, found, "{name}");
-            seen += found.len();
-        }
-    }
-    assert!(seen > 150, "{seen}");
-}

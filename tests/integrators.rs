@@ -1,5 +1,4 @@
-//! Features of all integrators: output at given times, events, inputs, changed states; against closed forms and
-//! restarted runs.
+//! Features of all integrators at their edges: times, events, inputs, changed states; against closed forms.
 
 use core::f64::consts::{PI, TAU};
 use vi_core::run::{Crossing, DenseOutput, Event, Met};
@@ -30,56 +29,8 @@ lagrangian! {
     }
 }
 
-/// A state of Kepler's problem of eccentricity e at its perihelion.
-fn planet(e: f64) -> State<2> {
-    State::at(&Kepler::default(), 0.0, [1.0 - e, 0.0], [0.0, ((1.0 + e) / (1.0 - e)).sqrt()])
-}
-
 fn distance<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
     (a.q - b.q).norm() + (a.p - b.p).norm()
-}
-
-/// The state at t from runs with different numbers of steps.
-fn ends_at<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(mut run: Run<M, S, N>, t: f64) -> State<N> {
-    let state = run.until(t).expect("the run goes on");
-    assert_eq!(state.t.to_bits(), t.to_bits());
-    assert_eq!(state, run.state());
-    // A run that is already there does not move.
-    assert_eq!(run.until(t), Ok(state));
-    // It continues with its own step.
-    let h = run.h();
-    let next = run.step().expect("the run goes on").t - t;
-    assert!(next / h > 0.3 && next / h < 3.0, "{next} after {h}");
-    state
-}
-
-#[test]
-fn a_run_ends_exactly_at_a_time() {
-    let kepler = Kepler::default();
-    let start = planet(0.3);
-    let exact = ends_at(kepler.at_state(start).integrate(Gauss::<8>, 0.05).expect("valid"), 7.3);
-    let runs = |h: f64| {
-        [
-            ends_at(kepler.at_state(start).integrate(FixedStep, h).expect("valid"), 7.3),
-            ends_at(kepler.at_state(start).integrate(Composition::SUZUKI_4, h).expect("valid"), 7.3),
-            ends_at(kepler.at_state(start).integrate(Gauss::<2>, h).expect("valid"), 7.3),
-        ]
-    };
-    // The last step is shorter, and the order of the method remains.
-    let coarse = runs(0.1);
-    let fine = runs(0.05);
-    for (index, order) in [2.0, 4.0, 4.0].into_iter().enumerate() {
-        let slope = (distance(&coarse[index], &exact) / distance(&fine[index], &exact)).log2();
-        // 2.003, 4.022, 3.995.
-        assert!((slope - order).abs() < 0.1, "{index}: {slope}");
-    }
-    let half = |h: f64| {
-        let (q, v) = (start.q, start.velocity(&kepler).expect("regular"));
-        ends_at(EnergyPreserving::from_midpoint(kepler, 0.0, q, v, h).expect("valid"), 7.3)
-    };
-    let slope = (distance(&half(0.04), &exact) / distance(&half(0.02), &exact)).log2();
-    // 1.998.
-    assert!((slope - 2.0).abs() < 0.1, "energy-preserving: {slope}");
 }
 
 #[test]
@@ -101,17 +52,6 @@ fn runs_to_multiples_of_a_step_take_plain_steps() {
 }
 
 #[test]
-fn backwards_and_forwards_again() {
-    let kepler = Kepler::default();
-    let start = planet(0.5);
-    let end = kepler.at_state(start).integrate(Gauss::<6>, 0.1).expect("valid").until(5.03).expect("solvable");
-    let back = kepler.at_state(end).integrate(Gauss::<6>, -0.1).expect("valid").until(0.0).expect("solvable");
-    assert_eq!(back.t.to_bits(), 0.0_f64.to_bits());
-    // 1.6e-15: the steps differ, and both are accurate to rounding.
-    assert!(distance(&back, &start) < 1e-14, "{}", distance(&back, &start));
-}
-
-#[test]
 fn times_behind_or_beyond_all_are_typed_errors() {
     let well = DoubleWell::default();
     let start = State::at(&well, 1.0, [0.8], [0.0]);
@@ -128,84 +68,6 @@ fn times_behind_or_beyond_all_are_typed_errors() {
         assert!(matches!(run.step_of(h), Err(StepError::InvalidInput { .. })), "{h}");
     }
     assert!(run.step().is_ok(), "the run goes on");
-}
-
-/// Checks that states at given times are as accurate as nodes and leave the steps of the run unchanged.
-fn is_undisturbed<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run: &Run<M, S, N>) {
-    let mut asked = run.clone();
-    let mut plain = run.clone();
-    let times: Vec<f64> = (0..=40).map(|k| f64::from(k) * 0.317).collect();
-    let states: Vec<_> = asked.states_at(times.iter().copied()).map(|state| state.expect("solvable")).collect();
-    assert_eq!(states.len(), times.len());
-    for (state, t) in states.iter().zip(&times) {
-        assert_eq!(state.t.to_bits(), t.to_bits());
-    }
-    // The last node not beyond.
-    let end = asked.t();
-    assert!(end <= times[40] && times[40] - end < 2.0 * asked.h());
-    while plain.t() < end {
-        plain.step().expect("solvable");
-    }
-    assert_eq!((plain.state(), *plain.node()), (asked.state(), *asked.node()));
-    // Each state equals that of a run to its time.
-    for (state, t) in states.iter().zip(&times).skip(1).step_by(7) {
-        let alone = run.clone().until(*t).expect("solvable");
-        assert_eq!((alone.q, alone.p), (state.q, state.p));
-    }
-}
-
-#[test]
-fn a_grid_leaves_the_run_as_it_is() {
-    let well = DoubleWell::default();
-    let start = State::at(&well, 0.0, [0.8], [0.0]);
-    is_undisturbed(&well.at_state(start).integrate(FixedStep, 0.1).expect("valid"));
-    is_undisturbed(&well.at_state(start).integrate(Composition::KAHAN_LI_6, 0.4).expect("valid"));
-    is_undisturbed(&well.at_state(start).integrate(Gauss::<5>, 0.3).expect("valid"));
-    // Several times in one step.
-    is_undisturbed(&well.at_state(start).integrate(Gauss::<8>, 0.9).expect("valid"));
-    let mut energy = EnergyPreserving::from_midpoint(well, -0.05, [0.8], [0.0], 0.1).expect("valid");
-    energy.until(0.0).expect("solvable");
-    is_undisturbed(&energy);
-}
-
-/// The largest error of dense output over the first step of a run, and of its derivative.
-fn path_error<M: Method<S, 2>, S: Lagrangian<2> + Copy>(
-    mut run: Run<M, S, 2>,
-    exact: &Run<Gauss<10>, Kepler, 2>,
-) -> f64 {
-    let before = run.state();
-    let after = run.step().expect("solvable");
-    let path = run.dense_output(&before).expect("regular");
-    let at_start = distance(&path.state(before.t), &before);
-    // 8.3e-17.
-    let at_end = distance(&path.state(after.t), &after);
-    assert!(at_start == 0.0 && at_end < 1e-15, "{at_start} {at_end}");
-    let parts = [0.2, 0.37, 0.5, 0.81];
-    let errors = parts.map(|part| {
-        let t = before.t + part * (after.t - before.t);
-        let truth = exact.clone().until(t).expect("solvable");
-        let v = truth.velocity(&Kepler::default()).expect("regular");
-        // The derivative is one order lower.
-        let of_velocity = (path.velocity(t) - v).norm() * (after.t - before.t);
-        distance(&path.state(t), &truth) + of_velocity
-    });
-    errors.into_iter().fold(0.0, f64::max)
-}
-
-#[test]
-fn paths_have_their_order_and_end_at_the_nodes() {
-    let kepler = Kepler::default();
-    let start = planet(0.4);
-    let exact = kepler.at_state(start).integrate(Gauss::<10>, 0.05).expect("valid");
-    let slope = |error: &dyn Fn(f64) -> f64| (error(0.1) / error(0.05)).log2();
-    // With S stages: order S + 1 over one step, also for the velocity; for cubics order 3. Measured: 3.988, 4.976,
-    // 3.016.
-    let three = slope(&|h| path_error(kepler.at_state(start).integrate(Gauss::<3>, h).expect("valid"), &exact));
-    let four = slope(&|h| path_error(kepler.at_state(start).integrate(Gauss::<4>, h).expect("valid"), &exact));
-    let cubic = slope(&|h| path_error(kepler.at_state(start).integrate(FixedStep, h).expect("valid"), &exact));
-    assert!((three - 4.0).abs() < 0.2, "{three}");
-    assert!((four - 5.0).abs() < 0.2, "{four}");
-    assert!((cubic - 3.0).abs() < 0.2, "{cubic}");
 }
 
 /// Zeros of the angle of a pendulum from 2 rad, rising.
@@ -379,42 +241,6 @@ fn a_ball_bounces() {
     }
 }
 
-/// The largest difference between a step after changed parameters and the first step of a new run from there.
-fn difference<M: Method<Pushed, 1>>(
-    mut run: Run<M, Pushed, 1>,
-    anew: impl Fn(Pushed, State<1>) -> Run<M, Pushed, 1>,
-) -> f64 {
-    let mut worst = 0.0_f64;
-    for step in 0..200 {
-        let u = (0.7 * f64::from(step)).sin() + if step % 50 < 25 { 1.0 } else { -1.0 };
-        run.set_parameters(|system| {
-            system.u = u;
-            system.k = 2.3 + 0.5 * u;
-        })
-        .expect("regular");
-        let fresh = anew(*run.system(), run.state()).step().expect("solvable");
-        let state = run.step().expect("solvable");
-        worst = worst.max(distance(&fresh, &state));
-    }
-    worst
-}
-
-#[test]
-fn changed_parameters_are_those_of_a_new_run() {
-    let system = Pushed::default();
-    let start = State::at(&system, 0.0, [0.4], [0.2]);
-    let fixed = |system: Pushed, state| system.at_state(state).integrate(FixedStep, 0.1).expect("valid");
-    let composed = |system: Pushed, state| system.at_state(state).integrate(Composition::SUZUKI_4, 0.1).expect("valid");
-    let gauss = |system: Pushed, state| system.at_state(state).integrate(Gauss::<4>, 0.1).expect("valid");
-    // 1.0e-15, 1.0e-15, 9.5e-16: from the residuals of two guesses, and from carried low parts.
-    let errors = [
-        difference(fixed(system, start), fixed),
-        difference(composed(system, start), composed),
-        difference(gauss(system, start), gauss),
-    ];
-    assert!(errors.into_iter().all(|error| error < 3e-15), "{errors:?}");
-}
-
 #[test]
 fn the_last_step_is_reported_with_the_new_parameters() {
     let system = Pushed { u: 0.3, ..Pushed::default() };
@@ -508,62 +334,6 @@ fn parameters_with_which_nothing_moves_are_refused() {
     refuses(system.at_state(start).integrate(Composition::SUZUKI_4, 0.1).expect("valid"));
     refuses(system.at_state(start).integrate(Gauss::<4>, 0.1).expect("valid"));
     refuses(EnergyPreserving::from_midpoint(system, 0.0, [0.4], [0.2], 0.05).expect("valid"));
-}
-
-/// The largest error of the energy at the nodes up to t = 7.
-fn largest_error_of_energy<M: Method<S, 2>, S: Lagrangian<2> + Copy>(mut run: Run<M, S, 2>) -> f64 {
-    let first = run.energy().expect("regular");
-    let mut worst = 0.0_f64;
-    while run.t() < 7.0 {
-        run.step().expect("solvable");
-        worst = worst.max((run.energy().expect("regular") - first).abs());
-    }
-    worst
-}
-
-#[test]
-fn energies_at_nodes_are_of_order_2_and_2s() {
-    let kepler = Kepler::default();
-    let start = planet(0.3);
-    let slope = |error: &dyn Fn(f64) -> f64| (error(0.1) / error(0.05)).log2();
-    let two = slope(&|h| largest_error_of_energy(kepler.at_state(start).integrate(FixedStep, h).expect("valid")));
-    let four = slope(&|h| largest_error_of_energy(kepler.at_state(start).integrate(Gauss::<2>, h).expect("valid")));
-    let six = slope(&|h| largest_error_of_energy(kepler.at_state(start).integrate(Gauss::<3>, h).expect("valid")));
-    // 2.000, 3.995, 6.003.
-    assert!((two - 2.0).abs() < 0.2 && (four - 4.0).abs() < 0.2 && (six - 6.0).abs() < 0.3, "{two} {four} {six}");
-}
-
-#[test]
-fn a_composition_restarts_bit_for_bit() {
-    let kepler = Kepler::default();
-    let mut run = kepler.at_state(planet(0.4)).integrate(Composition::KAHAN_LI_6, 0.2).expect("valid");
-    for _ in 0..30 {
-        run.step().expect("solvable");
-    }
-    let text = serde_json::to_string(&run.checkpoint()).expect("plain numbers");
-    let stored = serde_json::from_str(&text).expect("what was written");
-    let mut again = Run::restart(kepler, Composition::KAHAN_LI_6, stored).expect("the same system");
-    for _ in 0..30 {
-        assert_eq!(run.step(), again.step());
-        assert_eq!(run.node(), again.node());
-    }
-    let other = Run::restart(kepler, Composition::KAHAN_LI_8, run.checkpoint());
-    assert!(matches!(other, Err(StepError::InvalidInput { .. })), "{other:?}");
-    let other = Run::restart(Kepler { mu: 2.0 }, Composition::KAHAN_LI_6, run.checkpoint());
-    assert!(matches!(other, Err(StepError::OtherSystem { .. })), "{other:?}");
-}
-
-#[test]
-fn the_motion_continues_after_a_failed_step() {
-    // A step that is too long has no solution; the run may take a shorter one.
-    let kepler = Kepler::default();
-    let mut run = kepler.at_state(planet(0.6)).integrate(Gauss::<3>, 0.05).expect("valid");
-    run.step().expect("solvable");
-    let before = run.clone();
-    assert!(run.step_of(1e200).is_err());
-    assert_eq!(run.state(), before.state());
-    assert!(run.step().is_ok());
-    assert_eq!(<Kepler as Lagrangian<2>>::NAME, "Kepler");
 }
 
 #[test]
