@@ -8,6 +8,7 @@ use vi_erased::control::{Control, Linear};
 use vi_erased::plan::Built;
 use vi_erased::section::Section;
 use vi_erased::simulation::{AtConstraints, Met, Rows, Session, ShiftedEnergy, StepOutput, Steps};
+use vi_erased::studies::Studies;
 use vi_erased::system::{OnConstraints, Quantity};
 use vi_erased::{PhasePoint, Plan, Row, Simulation, System};
 
@@ -92,6 +93,9 @@ impl System for Spoiled<dyn System> {
         fn evaluate(&self, of: Quantity, points: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError>;
         fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
         fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
+        fn redundant(&self, t: f64, q: &[f64]) -> Result<Vec<&'static str>, StepError>;
+        fn studies(&self) -> &dyn Studies;
+        fn start(&self) -> Option<[Vec<f64>; 2]>;
         fn control(&self) -> &dyn Control;
     }
 

@@ -106,7 +106,7 @@ impl AnyTable {
         let (m, n) = (x.len(), y.len());
         let mut nodes = vec![[0.0; 4]; m * n];
         with_buffers(m, |along_x| {
-            with_buffers(n, |along_y| grid::joined(x, y, values, [outside; 2], &mut nodes, along_x, along_y));
+            with_buffers(n, |along_y| grid::joined([x, y], values, [outside; 2], &mut nodes, along_x, along_y));
         });
         if !(ascend(x) && ascend(y)) {
             nodes.fill([f64::NAN; 4]);

@@ -97,7 +97,7 @@ impl<const M: usize, const N: usize> Grid<M, N> {
             rows: &mut [[0.0; 4]; N],
             others: &mut [[0.0; 2]; N],
         };
-        joined(&x, &y, values.as_flattened(), outside, nodes.as_flattened_mut(), &mut along_x, &mut along_y);
+        joined([&x, &y], values.as_flattened(), outside, nodes.as_flattened_mut(), &mut along_x, &mut along_y);
         if !(ascend(&x) && ascend(&y)) {
             nodes = [[[f64::NAN; 4]; N]; M];
         }
@@ -145,8 +145,7 @@ impl Buffers<'_> {
 
 /// Value, slope along x, slope along y and mixed second derivative at each knot, row by row.
 pub(super) const fn joined(
-    x: &[f64],
-    y: &[f64],
+    [x, y]: [&[f64]; 2],
     values: &[f64],
     outside: [Outside; 2],
     nodes: &mut [[f64; 4]],
