@@ -10,9 +10,9 @@
 //! | [`Tridiagonal`] | neighbours only | elimination of two rows at a time, from both ends at once |
 //! | [`Banded`] | entries near the diagonal | elimination inside the band |
 //! | [`Blocks`] | disjoint blocks | each block separately |
-//! | [`Sparse`] | any nonzeros | dense elimination |
+//! | [`Sparse`], [`Rows`] | any nonzeros, in columns that are known while compiling, or at run time | dense elimination |
 //!
-//! Gradients of constraints have N columns and the form [`Sparse`] or that of dense rows ([`Rectangular`]). `fronts` solves
+//! Gradients of constraints have N columns and the form [`Sparse`], [`Rows`] or that of dense rows ([`Rectangular`]). `fronts` solves
 //! for coordinates and multipliers together, by the [`Block`]s of their graph.
 //!
 //! The matrices are mass matrices plus terms of order h. Elimination in the order of the rows is stable for almost all
