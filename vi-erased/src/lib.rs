@@ -18,8 +18,8 @@
 //! | `derivatives` | tangent vectors and gradients of runs; feature `derivatives` |
 //! | `session` | a run in the hands of a program; feature `sessions` |
 //! | [`integrator`] | an integrator that is built for a system |
-//! | [`system`] | a system with its parameters |
 //! | [`studies`] | exponents, accurate motions, DOP853; feature `studies` |
+//! | [`system`] | a system with its parameters |
 //! | [`at_rest`] | a system without its coordinates at rest |
 //!
 //! No module imports one below it in this table.

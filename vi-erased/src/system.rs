@@ -6,17 +6,33 @@
 use crate::control::{Control, Linear, Rest};
 use crate::erasable::Runnable;
 use crate::integrator::Integrator;
+#[cfg(feature = "studies")]
+use crate::plan::ENERGY_STAGES;
 use crate::plan::{Built, Method, PhasePoint, Plan};
 use crate::run::constraint_residuals;
 use crate::simulation::{Simulation, vector, wrong_size};
 #[cfg(feature = "studies")]
 use crate::studies::Studies;
+#[cfg(feature = "studies")]
+use crate::studies::exponents::{self, Exponents};
+#[cfg(feature = "studies")]
+use crate::studies::rival::{self, Ended};
+#[cfg(feature = "studies")]
+use core::cell::Cell;
 use std::sync::Arc;
+#[cfg(feature = "studies")]
+use vi_core::Called;
+#[cfg(feature = "studies")]
+use vi_core::check::Trajectory;
 #[cfg(feature = "derivatives")]
 use vi_core::constrained::Independent;
 use vi_core::constrained::{Extended, Projected};
 #[cfg(feature = "derivatives")]
 use vi_core::control::Dynamics as _;
+#[cfg(feature = "studies")]
+use vi_core::gauss::step_density;
+#[cfg(feature = "studies")]
+use vi_core::kind::Kind;
 use vi_core::lagrangian::Described;
 use vi_core::{Lagrangian as _, SVector, State, StepError};
 
@@ -467,4 +483,68 @@ impl<S: Runnable<N> + Described, const N: usize> Control for Typed<S, N> {
 fn each<const N: usize>([t, q, v]: [&[f64]; 3]) -> impl Iterator<Item = (f64, SVector<f64, N>, SVector<f64, N>)> {
     let of = SVector::<f64, N>::from_column_slice;
     t.iter().zip(q.chunks_exact(N)).zip(v.chunks_exact(N)).map(move |((t, q), v)| (*t, of(q), of(v)))
+}
+
+#[cfg(feature = "studies")]
+impl<S: Runnable<N> + Described, const N: usize> Studies for Typed<S, N> {
+    fn step_density(&self, at: &PhasePoint) -> Option<f64> {
+        let Trajectory { t, q, v } = sized(at).ok()?;
+        let energy = self.integrators.iter().find(|of| of.built == (Method::Energy, None, false))?;
+        energy.density.and_then(|density| density(&self.system, t, &q, &v)).filter(|density| density.is_finite())
+    }
+
+    fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()] {
+        let none = [None; ENERGY_STAGES.len()];
+        if const { S::Kind::COUNT > 0 } {
+            return none;
+        }
+        let state =
+            vector(q, "number of coordinates").and_then(|q| Ok(State { t, q, p: vector(p, "number of momenta")? }));
+        let Ok(state) = state else { return none };
+        let system = Called(self.system);
+        [
+            step_density::<_, N, { ENERGY_STAGES[0] }>(&system, &state).ok(),
+            step_density::<_, N, { ENERGY_STAGES[1] }>(&system, &state).ok(),
+            step_density::<_, N, { ENERGY_STAGES[2] }>(&system, &state).ok(),
+        ]
+    }
+
+    fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {
+        sized(from)?.at(&Extended(self.system), end).map(erased_point)
+    }
+
+    fn lyapunov(&self, plan: &Plan, count: usize, coordinates: usize) -> Result<Box<dyn Exponents>, StepError> {
+        exponents::begin(self.system, plan, (count, coordinates))
+    }
+
+    fn rival(
+        &self,
+        from: &PhasePoint,
+        end: f64,
+        tolerance: f64,
+        evaluations: &Cell<u64>,
+        mut watch: Option<&mut dyn FnMut(f64, f64)>,
+    ) -> Result<PhasePoint, Ended> {
+        let system = Extended(self.system);
+        let mut show = |motion: &Trajectory<N>| {
+            if let Some(watch) = &mut watch {
+                watch(motion.t, system.energy(motion.t, &motion.q, &motion.v));
+            }
+        };
+        rival::motion(system, &sized(from)?, end, tolerance, evaluations, &mut show).map(erased_point)
+    }
+}
+
+/// A point with the system's number of coordinates.
+#[cfg(feature = "studies")]
+fn sized<const N: usize>(point: &PhasePoint) -> Result<Trajectory<N>, StepError> {
+    let q: SVector<f64, N> = vector(&point.q, "number of coordinates")?;
+    let v = vector(&point.v, "number of velocities")?;
+    Ok(Trajectory { t: point.t, q, v })
+}
+
+/// A type-erased point.
+#[cfg(feature = "studies")]
+fn erased_point<const N: usize>(motion: Trajectory<N>) -> PhasePoint {
+    PhasePoint { t: motion.t, q: motion.q.as_slice().to_vec(), v: motion.v.as_slice().to_vec() }
 }
