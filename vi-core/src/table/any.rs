@@ -3,7 +3,8 @@
 use super::axis::{Axis, Outside};
 use super::grid::{self, Piece};
 use super::quintic::{self, Row};
-use super::{ascend, cubics, lines, piece, polynomial, slopes, undefined_along, uniform};
+use super::slopes::Buffers;
+use super::{ascend, cubics, lines, piece, polynomial, undefined_along, uniform};
 use crate::lagrangian::Undefined;
 use crate::real::{Number, Real};
 use alloc::vec;
@@ -41,9 +42,9 @@ fn axis(knots: &[f64], to: f64, outside: Outside) -> Axis<Vec<f64>> {
     Axis::measured(knots, to, outside).owned()
 }
 
-/// Calls `use_of` with buffers for so many knots.
-fn with_buffers<Y>(count: usize, use_of: impl FnOnce(&mut grid::Buffers) -> Y) -> Y {
-    use_of(&mut grid::Buffers {
+/// Calls `use_of` with buffers for `count` knots.
+fn with_buffers<Y>(count: usize, use_of: impl FnOnce(&mut Buffers) -> Y) -> Y {
+    use_of(&mut Buffers {
         values: &mut vec![0.0; count],
         slopes: &mut vec![0.0; count],
         rows: &mut vec![[0.0; 4]; count],
@@ -71,11 +72,11 @@ impl AnyTable {
             Interpolation::Cubic | Interpolation::Monotone => {
                 let mut pieces = vec![[0.0; 4]; n];
                 with_buffers(n, |buffers| {
+                    buffers.values.copy_from_slice(values);
                     if of == Interpolation::Cubic {
-                        buffers.values.copy_from_slice(values);
                         buffers.spline(knots, outside);
                     } else {
-                        slopes::monotone(knots, values, outside, buffers.slopes);
+                        buffers.monotone(knots, outside);
                     }
                     cubics(knots, values, buffers.slopes, &mut pieces);
                 });

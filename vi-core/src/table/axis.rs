@@ -74,12 +74,14 @@ impl Axis<&[f64]> {
     }
 }
 
-impl<X: Copy> Axis<X> {
+impl<X> Axis<X> {
     /// Whether the argument is periodic.
     pub(super) const fn is_periodic(&self) -> bool {
         matches!(self.outside, Outside::Periodic)
     }
+}
 
+impl<X: Copy> Axis<X> {
     /// The axis with another continuation beyond both ends; a periodic one stays.
     pub(super) const fn continued(mut self, outside: Outside) -> Self {
         if !self.is_periodic() {
@@ -101,7 +103,7 @@ impl<X: AsRef<[f64]>> Axis<X> {
     pub(super) fn place(&self, x: f64) -> Place {
         let [from, to] = self.range;
         let knots = self.knots.as_ref();
-        if self.outside == Outside::Periodic {
+        if self.is_periodic() {
             let [high, middle, low] = self.period;
             let turns = ((x - from) / (to - from)).floor();
             let (whole, rest) = (turns * high, turns * low);

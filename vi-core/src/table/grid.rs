@@ -1,6 +1,7 @@
 //! A table of two arguments on a rectangular grid.
 
 use super::axis::{Axis, Outside};
+use super::slopes::{Arrays, Buffers};
 use super::{ascend, distance, polynomial, slopes, undefined_along};
 use crate::function::{Gradient, Hessian, Jets, ThirdDerivatives};
 use crate::lagrangian::Undefined;
@@ -85,19 +86,9 @@ impl<const M: usize, const N: usize> Grid<M, N> {
     const fn joined(x: [f64; M], y: [f64; N], values: &[[f64; N]; M], outside: [Outside; 2]) -> Self {
         const { assert!(M >= 2 && N >= 2, "a grid needs two points on each axis") };
         let mut nodes = [[[0.0; 4]; N]; M];
-        let mut along_x = Buffers {
-            values: &mut [0.0; M],
-            slopes: &mut [0.0; M],
-            rows: &mut [[0.0; 4]; M],
-            others: &mut [[0.0; 2]; M],
-        };
-        let mut along_y = Buffers {
-            values: &mut [0.0; N],
-            slopes: &mut [0.0; N],
-            rows: &mut [[0.0; 4]; N],
-            others: &mut [[0.0; 2]; N],
-        };
-        joined([&x, &y], values.as_flattened(), outside, nodes.as_flattened_mut(), &mut along_x, &mut along_y);
+        let (mut along_x, mut along_y) = (Arrays::new([0.0; M]), Arrays::new([0.0; N]));
+        let (along_x, along_y) = (&mut along_x.buffers(), &mut along_y.buffers());
+        joined([&x, &y], values.as_flattened(), outside, nodes.as_flattened_mut(), along_x, along_y);
         if !(ascend(&x) && ascend(&y)) {
             nodes = [[[f64::NAN; 4]; N]; M];
         }
@@ -125,21 +116,6 @@ impl<const M: usize, const N: usize> Grid<M, N> {
     #[inline(always)]
     fn piece<T: Number>(&self, arguments: [T; 2]) -> Piece<T> {
         Piece::at((&self.x, &self.y), self.nodes.as_flattened(), self.is_linear, arguments)
-    }
-}
-
-/// Buffers of a spline along one axis.
-pub(super) struct Buffers<'a> {
-    pub(super) values: &'a mut [f64],
-    pub(super) slopes: &'a mut [f64],
-    pub(super) rows: &'a mut [[f64; 4]],
-    pub(super) others: &'a mut [[f64; 2]],
-}
-
-impl Buffers<'_> {
-    /// The slopes of the spline through the values.
-    pub(super) const fn spline(&mut self, knots: &[f64], outside: Outside) {
-        slopes::spline_of(knots, self.values, outside, self.slopes, (self.rows, self.others));
     }
 }
 

@@ -33,6 +33,7 @@ use crate::function::{Gradient, Hessian, Jets, ThirdDerivatives};
 use crate::lagrangian::Undefined;
 use crate::real::{Number, Real};
 use axis::{Axis, number};
+use slopes::Arrays;
 
 /// How the pieces of a table join.
 #[derive(Clone, Copy, Debug)]
@@ -95,13 +96,13 @@ impl<const N: usize> Table<N, 4> {
 
     const fn joined(knots: [f64; N], values: [f64; N], kind: Kind, outside: Outside) -> Self {
         const { assert!(N >= 2, "a table needs two points") };
-        let mut slopes = [0.0; N];
+        let mut arrays = Arrays::new(values);
         match kind {
-            Kind::Spline => slopes = slopes::spline(&knots, &values, outside),
-            Kind::Monotone => slopes::monotone(&knots, &values, outside, &mut slopes),
+            Kind::Spline => arrays.buffers().spline(&knots, outside),
+            Kind::Monotone => arrays.buffers().monotone(&knots, outside),
         }
         let mut pieces = [[0.0; 4]; N];
-        cubics(&knots, &values, &slopes, &mut pieces);
+        cubics(&knots, &values, &arrays.slopes, &mut pieces);
         Self::new(knots, pieces, kind, outside)
     }
 }
@@ -274,7 +275,7 @@ fn polynomial<T: Number, const C: usize>(coefficients: &[T], u: T, order: usize)
 /// `x − base`, without losing digits to whole periods.
 #[inline(always)]
 fn distance<T: Number, X>(axis: &Axis<X>, x: T, [whole, rest]: [T; 2]) -> T {
-    if axis.outside == Outside::Periodic { x - whole - rest } else { x - rest }
+    if axis.is_periodic() { x - whole - rest } else { x - rest }
 }
 
 /// Whether finite numbers ascend.

@@ -52,7 +52,7 @@ impl Row {
     pub(super) const ZERO: Self = Self { lower: ZERO, diagonal: ZERO, upper: ZERO, right: [0.0; 2] };
 }
 
-/// Buffers for so many knots as there are.
+/// Buffers, one entry for each knot.
 pub(super) struct Buffers<'a> {
     pub(super) rows: &'a mut [Row],
     pub(super) known: &'a mut [[f64; 2]],

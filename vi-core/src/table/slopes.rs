@@ -3,6 +3,45 @@
 use super::axis::Outside;
 use super::tridiagonal;
 
+/// The values of a function and the slopes of its pieces, one entry for each knot, with buffers.
+pub(super) struct Buffers<'a> {
+    pub(super) values: &'a mut [f64],
+    pub(super) slopes: &'a mut [f64],
+    pub(super) rows: &'a mut [[f64; 4]],
+    pub(super) others: &'a mut [[f64; 2]],
+}
+
+impl Buffers<'_> {
+    /// Computes the slopes of the spline through the values.
+    pub(super) const fn spline(&mut self, knots: &[f64], outside: Outside) {
+        spline(knots, self.values, outside, self.slopes, (self.rows, self.others));
+    }
+
+    /// Computes those of the cubic pieces without overshoot.
+    pub(super) const fn monotone(&mut self, knots: &[f64], outside: Outside) {
+        monotone(knots, self.values, outside, self.slopes);
+    }
+}
+
+/// The arrays of N knots.
+pub(super) struct Arrays<const N: usize> {
+    values: [f64; N],
+    pub(super) slopes: [f64; N],
+    rows: [[f64; 4]; N],
+    others: [[f64; 2]; N],
+}
+
+impl<const N: usize> Arrays<N> {
+    pub(super) const fn new(values: [f64; N]) -> Self {
+        Self { values, slopes: [0.0; N], rows: [[0.0; 4]; N], others: [[0.0; 2]; N] }
+    }
+
+    pub(super) const fn buffers(&mut self) -> Buffers<'_> {
+        let Self { values, slopes, rows, others } = self;
+        Buffers { values, slopes, rows, others }
+    }
+}
+
 /// Distance of knot i from the next, and the slope of the chord between them.
 const fn chord(x: &[f64], y: &[f64], i: usize) -> [f64; 2] {
     let h = x[i + 1] - x[i];
@@ -21,14 +60,7 @@ const fn chords(x: &[f64], y: &[f64], i: usize) -> [[f64; 2]; 2] {
 /// the last inner knot ("not-a-knot"), or the spline is periodic. Three points give their parabola, two their line.
 ///
 /// Source: de Boor, A Practical Guide to Splines, chapter IV.
-pub(super) const fn spline<const N: usize>(x: &[f64; N], y: &[f64; N], outside: Outside) -> [f64; N] {
-    let mut slopes = [0.0; N];
-    spline_of(x, y, outside, &mut slopes, (&mut [[0.0; 4]; N], &mut [[0.0; 2]; N]));
-    slopes
-}
-
-/// The same for lists of one length, with buffers of this length.
-pub(super) const fn spline_of(
+const fn spline(
     x: &[f64],
     y: &[f64],
     outside: Outside,
@@ -79,7 +111,7 @@ pub(super) const fn spline_of(
 ///
 /// Source: Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984); the ends as in Moler, Numerical Computing with
 /// MATLAB, section 3.6.
-pub(super) const fn monotone(x: &[f64], y: &[f64], outside: Outside, slopes: &mut [f64]) {
+const fn monotone(x: &[f64], y: &[f64], outside: Outside, slopes: &mut [f64]) {
     let n = x.len();
     let is_periodic = matches!(outside, Outside::Periodic);
     if !is_periodic && n == 2 {

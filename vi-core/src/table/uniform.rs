@@ -1,7 +1,7 @@
 //! A table at equal distances whose values are parameters.
 
 use super::axis::{Axis, Outside, number};
-use super::grid::Buffers;
+use super::slopes::{Arrays, Buffers};
 use super::{ascend, derivatives, distance, polynomial, slopes, tridiagonal, undefined_along};
 use crate::function::{Gradient, Hessian, Jets, ThirdDerivatives};
 use crate::lagrangian::Undefined;
@@ -36,13 +36,8 @@ impl<const N: usize> Uniform<N> {
     pub const fn cubic(from: f64, to: f64) -> Self {
         let mut table = Self::linear(from, to);
         let mut by_knot = [[0.0; N]; N];
-        let mut buffers = Buffers {
-            values: &mut [0.0; N],
-            slopes: &mut [0.0; N],
-            rows: &mut [[0.0; 4]; N],
-            others: &mut [[0.0; 2]; N],
-        };
-        cardinal_slopes(&table.axis.knots, by_knot.as_flattened_mut(), &mut buffers);
+        let mut arrays = Arrays::new([0.0; N]);
+        cardinal_slopes(&table.axis.knots, by_knot.as_flattened_mut(), &mut arrays.buffers());
         table.slopes = Some(by_knot);
         table
     }
@@ -67,13 +62,8 @@ impl<const N: usize> Uniform<N> {
         let mut slopes = self.slopes;
         if slopes.is_some() {
             let mut by_knot = [[0.0; N]; N];
-            let mut buffers = Buffers {
-                values: &mut [0.0; N],
-                slopes: &mut [0.0; N],
-                rows: &mut [[0.0; 4]; N],
-                others: &mut [[0.0; 2]; N],
-            };
-            periodic_slopes([from, to], by_knot.as_flattened_mut(), &mut buffers);
+            let mut arrays = Arrays::new([0.0; N]);
+            periodic_slopes([from, to], by_knot.as_flattened_mut(), &mut arrays.buffers());
             slopes = Some(by_knot);
         }
         Self { axis: Axis::new(knots, to, Outside::Periodic), slopes, is_invalid: self.is_invalid }
@@ -171,7 +161,7 @@ fn constants(axis: &Axis<impl AsRef<[f64]>>, slopes: Option<&[f64]>, is_invalid:
     // The last knot is at the end of the range, unless the table is periodic.
     let (other, h) = if i + 1 < n {
         (i + 1, knots[i + 1] - knots[i])
-    } else if axis.outside == Outside::Periodic {
+    } else if axis.is_periodic() {
         (0, axis.range[1] - knots[i])
     } else {
         (i - 1, knots[i - 1] - knots[i])
