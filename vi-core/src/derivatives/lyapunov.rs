@@ -62,12 +62,8 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Lyapunov<M, S, 
             return Err(StepError::InvalidInput { input: "the number of Lyapunov exponents", allowed, value });
         }
         let start = run.t();
-        let mut variations = Variation::of_state();
-        let mut index = 0;
-        variations.retain(|_| {
-            index += 1;
-            (index - 1) % N < coordinates
-        });
+        let of_state = Variation::of_state().into_iter().enumerate().filter(|(index, _)| index % N < coordinates);
+        let mut variations: Vec<_> = of_state.map(|(_, variation)| variation).collect();
         let turn = |variation: &mut Variation<N>| turn(variation, coordinates);
         if dimension == 2 * coordinates {
             variations.truncate(count);
