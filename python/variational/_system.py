@@ -6,7 +6,6 @@ import dataclasses
 import inspect
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -158,10 +157,12 @@ class System(metaclass=SystemType):
         if not hasattr(cls, "_text") and methods is None:
             return cls
         from ._compile import CompileError, compile
+        from ._text import files_of
 
         of_text: Any = getattr(cls, "_text", None)
-        for path, text in of_text[3] if of_text else ():
-            if not Path(path).is_file() or Path(path).read_text(encoding="utf-8") != text:
+        if of_text:
+            definition, _, _, files = of_text
+            for path, _ in set(files) - set(files_of(definition)):
                 raise CompileError(f"the file {path} of a table changed or is missing: make the system again from its text")
         return compile(cls.definition, methods=methods, verbose=verbose)
 

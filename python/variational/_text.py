@@ -34,7 +34,7 @@ def of_text(
     if not isinstance(definition, str):
         raise TypeError(f"the definition must be a text, not {type(definition).__name__}")
     if files is None:
-        files = _files(definition)
+        files = files_of(definition)
     cls: Any = _known.get((definition, files))
     if cls is None:
         try:
@@ -54,7 +54,7 @@ def of_text(
     return cls
 
 
-def _files(definition: str) -> tuple[tuple[str, str], ...]:
+def files_of(definition: str) -> tuple[tuple[str, str], ...]:
     """Path and text of each file of a table that can be read. The compiler names the others."""
     found = []
     for path in dict.fromkeys(match[2] for match in TABLE.finditer(definition)):
