@@ -12,12 +12,12 @@ use vi_core::real::Real;
 pub(crate) trait Interpreted: Kind {
     /// The largest number of parameters.
     const PARAMETERS: usize;
-    /// Room for so many parameters.
+    /// An array of [`Interpreted::PARAMETERS`] numbers.
     type Parameters<T: Real>: Copy + Debug + Send + Sync + AsRef<[T]> + AsMut<[T]>;
     /// The mass matrix, and the derivatives of the equations of motion.
     type Matrix<const N: usize, T: Real>: Matrix<N, T>;
 
-    /// So many zeros.
+    /// The array of zeros.
     fn parameters<T: Real>() -> Self::Parameters<T>;
     /// The mass matrix among the results of a function.
     fn mass<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Self::Matrix<N, T>;

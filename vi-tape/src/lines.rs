@@ -112,8 +112,8 @@ pub(crate) struct Lines {
     pub(crate) results: Box<[Box<[Entry]>]>,
 }
 
-/// The registers that a thread keeps for each type of numbers. More than 32 are not on the stack: zeros in so many take as
-/// long as a function.
+/// The number of registers that a thread keeps for each type of numbers. Functions with up to 32 registers have them on
+/// the stack; to zero more takes as long as a function.
 const KEPT: usize = 1024;
 
 /// Registers that do not cross lines of the cache.

@@ -107,7 +107,7 @@ pub struct AtMost<const K: usize, T> {
 }
 
 impl<const K: usize, T: Real> AtMost<K, T> {
-    /// So many zeros, at most K.
+    /// `count` zeros, K if it is larger.
     #[must_use]
     pub fn zeros(count: usize) -> Self {
         Self { count: count.min(K), values: [T::zero(); K] }
