@@ -1,6 +1,7 @@
 //! The tests across crates with few steps as one program, compiled without optimization, so that shared code (above all
 //! generated steppers) compiles once. Tests with many steps are in `long`.
 
+mod adaptive;
 mod allocations;
 mod angles;
 mod arrays;

@@ -128,12 +128,12 @@ pub use control::Dynamics;
 pub use discrete::DiscreteLagrangian;
 pub use error::StepError;
 pub use lagrangian::Lagrangian;
+pub use method::{
+    Adaptive, Connected, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep,
+    Gauss, GaussLobatto, InTransformedTime, Method, Splitting,
+};
 #[cfg(feature = "alloc")]
 pub use method::{Composed, Composition};
-pub use method::{
-    Connected, EnergyPreserving, EnergyPreservingGauss, EnergyPreservingGaussLobatto, Fallback, FixedStep, Gauss,
-    GaussLobatto, InTransformedTime, Method, Splitting,
-};
 pub use nalgebra;
 pub use nalgebra::SVector;
 pub use run::{Run, Start, Starts, Tolerance};

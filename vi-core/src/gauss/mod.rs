@@ -46,7 +46,7 @@ mod modes;
 pub mod newton;
 mod pair;
 pub(crate) mod points;
-mod polynomial;
+pub(crate) mod polynomial;
 mod rounding;
 mod separable;
 mod slots;

@@ -11,6 +11,7 @@
 //! | `splitting` | [`Splitting`]: explicit kicks and drifts of systems whose forces depend on the coordinates alone, order 2, 4, 6 |
 //! | `composed` | [`Composed`]: compositions of steps with constraints, order 4, 6, 8 |
 //! | `gauss` | [`Gauss`]: collocation at S Gauss points, order 2S, with or without constraints |
+//! | `adaptive` | [`Adaptive`]: Gauss steps whose length follows the motion, order 2S |
 //! | `transformed` | [`InTransformedTime`]: Gauss steps of constant length in transformed time |
 //! | `energy` | [`EnergyPreserving`]: steps of order 2 whose length preserves the discrete energy |
 //! | `energy_gauss` | [`EnergyPreservingGauss`]: the same with Gauss steps, order 2S |
@@ -19,6 +20,7 @@
 //! | `shift` | the shift of the step density |
 //! | `length` | the search for the step length |
 
+pub mod adaptive;
 pub mod bounds;
 #[cfg(feature = "alloc")]
 pub mod composed;
@@ -34,6 +36,7 @@ pub mod shift;
 pub mod splitting;
 pub mod transformed;
 
+pub use adaptive::Adaptive;
 pub use bounds::{Control, Controlled, Fallback, Switches};
 #[cfg(feature = "alloc")]
 pub use composed::Composed;
@@ -254,14 +257,8 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
         [h, next]: [T; 2],
     ) -> Result<(Node<N, T>, Self::Memory), StepError> {
         check_step(h)?;
-        let (mut node, mut memory) = (*node, self.with_length(system, memory, node, h)?);
-        let prepared = self.prepare(system, h);
-        let at = Problem { system, prepared: &prepared, node: &node, h };
-        let cache = &mut Self::Cache::default();
-        let step = self.solve(at, &memory, cache)?;
-        self.take(system, h, (&mut node, &mut memory), cache, step);
-        let memory = self.with_length(system, &memory, &node, next)?;
-        Ok((node, memory))
+        let memory = self.with_length(system, memory, node, h)?;
+        step_from(self, system, (node, memory), [h, next])
     }
 
     /// The memory for steps of another length from a node.
@@ -347,6 +344,27 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
     fn check(&self, _system: &S, _at: (&Node<N, T>, &Self::Memory), _h: T) -> Result<(), StepError> {
         Ok(())
     }
+}
+
+/// The node and the memory after one step of the length h, with the memory of steps of this length; that is then of the
+/// length `next`.
+///
+/// # Errors
+/// The reason why the step failed.
+pub(crate) fn step_from<M: Method<S, N, T>, S, const N: usize, T: Scalar>(
+    method: &M,
+    system: &S,
+    (node, mut memory): (&Node<N, T>, M::Memory),
+    [h, next]: [T; 2],
+) -> Result<(Node<N, T>, M::Memory), StepError> {
+    let mut node = *node;
+    let prepared = method.prepare(system, h);
+    let at = Problem { system, prepared: &prepared, node: &node, h };
+    let cache = &mut M::Cache::default();
+    let step = method.solve(at, &memory, cache)?;
+    method.take(system, h, (&mut node, &mut memory), cache, step);
+    let memory = method.with_length(system, &memory, &node, next)?;
+    Ok((node, memory))
 }
 
 /// Rejects zero, subnormal and non-finite h: 1/h must be finite.

@@ -26,9 +26,12 @@ use crate::constrained::guess::{Extrapolation, from_node};
 use crate::constrained::solve::Workspace;
 use crate::constrained::solved::Solved;
 use crate::constrained::variation::vary;
-use crate::constrained::{bordered, discrete_energy, impulses, start, unknowns};
+use crate::constrained::{bordered, discrete_energy, impulses, stage_velocity, start, unknowns};
 use crate::derivatives::{Variation, not_last};
 use crate::error::StepError;
+use crate::gauss::polynomial::{coefficients, polynomials, sum};
+use crate::gauss::stages::set;
+use crate::gauss::tableau::Tableau;
 use crate::kind::{Bound, Form, Multipliers};
 use crate::linear::Bordered;
 use crate::method::{Memory, Method, Problem, Report};
@@ -291,6 +294,31 @@ impl<S, const N: usize, const STAGES: usize> StageSolver<S, N, STAGES> for Bound
 where
     S: Convertible<N>,
 {
+    fn resized(
+        system: &S,
+        memory: &ConstrainedSteps<N>,
+        node: &Node<N>,
+        h: f64,
+    ) -> Result<ConstrainedSteps<N>, StepError> {
+        let fresh = Self.with_length(system, memory, node, h)?;
+        let ratio = h / memory.h;
+        if !(memory.has_step(node) && ratio > 0.0) {
+            return Ok(fresh);
+        }
+        // The velocities continue the polynomials of the last step, the impulses are those of the node.
+        let last = memory.unknowns.newest();
+        let mut stages = [[0.0; STAGES]; N];
+        for i in 0..STAGES {
+            set(&mut stages, i, &stage_velocity::<N, f64>(last, i));
+        }
+        let of_last = coefficients(&stages);
+        let mut guess = fresh.unknowns.newest().to_vec();
+        for (velocity, c) in guess.chunks_exact_mut(N).zip(const { Tableau::<STAGES>::VALUES.c }) {
+            velocity.copy_from_slice(sum(&of_last, &polynomials::<STAGES>(1.0 + ratio * c)).as_slice());
+        }
+        Ok(ConstrainedSteps { unknowns: Extrapolation::new(&guess), ..fresh })
+    }
+
     /// Allocates the matrix of the step.
     fn vary(
         system: &S,

@@ -21,8 +21,10 @@ use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
 use crate::gauss::linearization::Linearization;
 use crate::gauss::newton::Buffer;
 use crate::gauss::points::ErasedSystem;
+use crate::gauss::polynomial::{coefficients, polynomials, sum};
 use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
-use crate::gauss::stages::LOOPED;
+use crate::gauss::stages::{LOOPED, set};
+use crate::gauss::tableau::Tableau;
 #[cfg(feature = "alloc")]
 use crate::gauss::variation::vary;
 use crate::gauss::{CollocationPolynomial, Slots};
@@ -70,6 +72,20 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         let stages = SMatrix::from_array_storage(ArrayStorage(constant(system, node)?));
         let (convergence, pause) = (Convergence::NONE, Pause::NONE);
         Ok(Self { stages, before: *node, h, convergence, pause, linearization: None })
+    }
+
+    /// The same for a step of the length h: stages of a step of that length before the node, of the same polynomials.
+    fn resized<Y: Motion<N>>(&self, system: &Y, node: &Node<N>, h: f64) -> Result<Self, StepError> {
+        let ratio = h / self.h;
+        if !(self.has_step(node) && ratio > 0.0) {
+            return Self::constant(system, node, h);
+        }
+        let of_last = coefficients(&self.stages.data.0);
+        let mut stages = [[0.0; S]; N];
+        for (i, c) in const { Tableau::<S>::VALUES.c }.iter().enumerate() {
+            set(&mut stages, i, &sum(&of_last, &polynomials(1.0 - ratio * (1.0 - c))));
+        }
+        Ok(Self { stages: SMatrix::from_array_storage(ArrayStorage(stages)), h, linearization: None, ..*self })
     }
 
     /// Whether the stages belong to the step that led to the node. After a change of parameters they do not.
@@ -323,6 +339,15 @@ impl<S, const N: usize, const STAGES: usize> StageSolver<S, N, STAGES> for FreeG
 where
     S: Convertible<N>,
 {
+    fn resized(
+        system: &S,
+        memory: &LastStages<N, STAGES>,
+        node: &Node<N>,
+        h: f64,
+    ) -> Result<LastStages<N, STAGES>, StepError> {
+        memory.resized(system, node, h)
+    }
+
     #[cfg(feature = "alloc")]
     fn vary(
         system: &S,

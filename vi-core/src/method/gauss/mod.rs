@@ -33,6 +33,13 @@ pub struct Gauss<const STAGES: usize>;
 
 /// A solver of Gauss steps.
 pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memory: Storable> + Default {
+    /// The memory for a step of another length from the node, with a guess from the polynomials of the last step.
+    ///
+    /// # Errors
+    /// The reason why no step can start there.
+    #[doc(hidden)]
+    fn resized(system: &S, memory: &Self::Memory, node: &Node<N>, h: f64) -> Result<Self::Memory, StepError>;
+
     /// Maps tangent vectors at `before`, the start of the step that led to the node, to those at its end.
     ///
     /// # Errors
@@ -52,7 +59,7 @@ pub(crate) type Solver<S, const N: usize, const STAGES: usize> = <<S as Motion<N
 
 /// That solver as a value.
 #[inline(always)]
-fn solver<S: Convertible<N>, const N: usize, const STAGES: usize>() -> Solver<S, N, STAGES> {
+pub(crate) fn solver<S: Convertible<N>, const N: usize, const STAGES: usize>() -> Solver<S, N, STAGES> {
     Solver::<S, N, STAGES>::default()
 }
 

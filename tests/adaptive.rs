@@ -1,0 +1,307 @@
+//! Gauss steps whose length follows the motion: the law of their lengths, order, reversal, energies of long runs, and
+//! what they cost.
+
+use crate::support::assert_order_of;
+use serde_json::{Value, json};
+use std::f64::consts::TAU;
+use vi_core::derivatives::{Differentiable, Tangent, Variation};
+use vi_core::run::{Checkpoint, DenseOutput};
+use vi_core::stepping::Convertible;
+use vi_core::{Adaptive, Gauss, Run, SVector, Starts, State, StepError, Tolerance, lagrangian};
+use vi_systems::{DampedOscillator, Kepler, RodPendulum};
+
+lagrangian! {
+    /// A planet without a time scale.
+    struct Planet {
+        param mu = 1.6;
+        coord x, y;
+        L = (dot(x)^2 + dot(y)^2) / 2 + mu / sqrt(x^2 + y^2);
+    }
+}
+
+lagrangian! {
+    /// A pendulum on a cart: its mass matrix varies, and its stiffness passes through zero.
+    struct Cart {
+        param m = 0.7, l = 1.3, k = 0.4, g = 2.0;
+        coord x, a;
+        L = dot(x)^2 / 2 + m * ((dot(x) + l * dot(a) * cos(a))^2 + (l * dot(a) * sin(a))^2) / 2 - k * x^2 / 2 + m * g * l * cos(a);
+    }
+}
+
+lagrangian! {
+    /// A particle that nothing holds.
+    struct Thrown {
+        param g = 9.81;
+        coord x, y;
+        L = (dot(x)^2 + dot(y)^2) / 2 - g * y;
+    }
+}
+
+/// The nearest point of an ellipse with the semi-major axis 1, and the velocity there.
+fn perihelion(mu: f64, eccentricity: f64) -> ([f64; 2], [f64; 2]) {
+    ([1.0 - eccentricity, 0.0], [0.0, (mu * (1.0 + eccentricity) / (1.0 - eccentricity)).sqrt()])
+}
+
+/// The place on this ellipse at a time, by Kepler's equation.
+fn on_ellipse(mu: f64, e: f64, t: f64) -> SVector<f64, 2> {
+    let mean = (mu.sqrt() * t).rem_euclid(TAU);
+    let mut anomaly = if mean < TAU / 2.0 { mean + e } else { mean - e };
+    for _ in 0..50 {
+        anomaly -= (anomaly - e * anomaly.sin() - mean) / (1.0 - e * anomaly.cos());
+    }
+    SVector::from([anomaly.cos() - e, (1.0 - e * e).sqrt() * anomaly.sin()])
+}
+
+type PlanetRun = Run<Adaptive<Gauss<4>>, Planet, 2>;
+
+fn planet(h: f64) -> PlanetRun {
+    let system = Planet { mu: 1.6 };
+    let (q, v) = perihelion(system.mu, 0.8);
+    system.at(0.0, q, v).integrate(Gauss::<4>.adaptive(), h).expect("a start")
+}
+
+/// ω of the planet, by hand.
+fn frequency(q: &SVector<f64, 2>, v: &SVector<f64, 2>) -> f64 {
+    let (mu, r, speed) = (1.6, q.norm(), q.dot(v) / q.norm());
+    let mut of_slope = 0.0;
+    for i in 0..2 {
+        for j in 0..2 {
+            let same = f64::from(u8::from(i == j));
+            let slope = -3.0 * speed * same / r.powi(4) - 3.0 * (v[i] * q[j] + q[i] * v[j]) / r.powi(5)
+                + 15.0 * speed * q[i] * q[j] / r.powi(6);
+            of_slope += (mu * slope) * (mu * slope);
+        }
+    }
+    // The eigenvalues of K are mu/r³ and −2 mu/r³.
+    ((5.0 * mu * mu / r.powi(6)).powf(1.5) + of_slope).powf(1.0 / 6.0)
+}
+
+#[test]
+fn lengths_follow_the_frequency_of_the_forces() {
+    let mut spreads = Vec::new();
+    for h in [0.02, 0.01] {
+        let mut run = planet(h);
+        let (mut lengths, mut products) = ([f64::INFINITY, 0.0_f64], [f64::INFINITY, 0.0_f64]);
+        for step in 0..400 {
+            let before = run.state();
+            run.step().expect("a step");
+            // The density belongs to the middle of a step.
+            let motion = run.dense_output(&before).expect("a polynomial");
+            let t = before.t + 0.5 * run.h();
+            let product = run.h() * frequency(&motion.state(t).q, &motion.velocity(t));
+            lengths = [lengths[0].min(run.h()), lengths[1].max(run.h())];
+            products = [products[0].min(product), products[1].max(product)];
+            assert!(step > 0 || (run.h() / h - 1.0).abs() < 0.1, "the first step has {}", run.h());
+        }
+        assert!(lengths[1] > 20.0 * lengths[0], "{lengths:?}");
+        spreads.push(products[1] / products[0] - 1.0);
+    }
+    println!("h ω varies by {spreads:?}");
+    // Of second order. Measured: 0.016, 0.0038.
+    assert!(spreads[0] < 0.03 && spreads[1] < 0.3 * spreads[0], "{spreads:?}");
+}
+
+#[test]
+fn the_order_is_that_of_the_stages() {
+    let start = Cart { m: 0.8, l: 1.1, k: 0.5, g: 1.7 }.at(0.2, [0.3, 2.2], [0.4, 0.9]);
+    let exact = start.integrate(Gauss::<8>, 0.01).expect("a start").until(2.2).expect("a motion");
+    macro_rules! check {
+        ($stages:literal, $lengths:expr) => {
+            let points = $lengths.map(|h: f64| {
+                let mut run = start.integrate(Gauss::<$stages>.adaptive(), h).expect("a start");
+                let end = run.until(2.2).expect("a motion");
+                (h, (end.q - exact.q).norm() + (end.p - exact.p).norm())
+            });
+            assert_order_of($stages, "adaptive", &points, 0.4);
+        };
+    }
+    check!(1, [0.02, 0.01, 0.005]);
+    check!(2, [0.08, 0.04, 0.02]);
+    check!(3, [0.16, 0.08, 0.04]);
+}
+
+#[test]
+fn the_energy_of_many_periods_does_not_drift() {
+    // Seventeen steps in a period: with fewer than fourteen some lengths resonate with the orbit.
+    let mut run = planet(0.03);
+    let start = run.energy().expect("an energy");
+    let mut worst = [0.0_f64; 2];
+    for (part, end) in [10.0, 300.0].iter().enumerate() {
+        while run.t() < end * TAU / 1.6_f64.sqrt() {
+            run.step().expect("a step");
+            worst[part] = worst[part].max((run.energy().expect("an energy") - start).abs());
+        }
+    }
+    println!("H off by {worst:?} over 10 and 300 periods");
+    // Measured: 1.3e-6 over each.
+    assert!(worst[0] > 1e-7 && worst[1] < 1.05 * worst[0], "{worst:?}");
+}
+
+/// The run from its node with reversed velocities, with the density of the step behind.
+fn reversed(run: &PlanetRun) -> PlanetRun {
+    // A further step has the density that the reversed run has to find.
+    let mut ahead = run.clone();
+    ahead.step().expect("a step");
+    let density = |run: &PlanetRun| -> Value {
+        serde_json::to_value(run.checkpoint()).expect("numbers")["run"]["memory"]["density"].clone()
+    };
+    let mut stored = serde_json::to_value(run.checkpoint()).expect("numbers");
+    stored["run"]["memory"]["density"] = density(&ahead);
+    for name in ["p", "p_low"] {
+        for entry in stored["run"]["node"][name].as_array_mut().into_iter().flatten() {
+            *entry = json!(-entry.as_f64().expect("a number"));
+        }
+    }
+    let stored: Checkpoint<_, 2> = serde_json::from_value(stored).expect("the same numbers");
+    Run::restart(*run.system(), Gauss::<4>.adaptive(), stored).expect("a run")
+}
+
+#[test]
+fn a_motion_returns_with_its_lengths() {
+    let mut run = planet(0.03);
+    let start = run.state();
+    let mut lengths = Vec::new();
+    for _ in 0..120 {
+        run.step().expect("a step");
+        lengths.push(run.h());
+    }
+    let mut back = reversed(&run);
+    let mut worst = 0.0_f64;
+    for length in lengths.iter().rev() {
+        back.step().expect("a step");
+        worst = worst.max((back.h() / length - 1.0).abs());
+    }
+    let off = (back.state().q - start.q).norm() + (back.state().p + start.p).norm();
+    println!("lengths off by {worst:.1e}, the state by {off:.1e}");
+    // Differences of G have 1e-13. Measured: 8.1e-12 and 2.1e-11.
+    assert!(worst < 2e-11 && off < 5e-11, "{worst:e} {off:e}");
+}
+
+#[test]
+fn few_steps_pass_a_perihelion() {
+    for (e, least) in [(0.9, 10.0), (0.99, 150.0)] {
+        let (system, end) = (Planet { mu: 1.6 }, 2.3);
+        let (q, v) = perihelion(system.mu, e);
+        let exact = on_ellipse(system.mu, e, end);
+        let start = system.at(0.0, q, v);
+        let mut adaptive = start.integrate(Gauss::<8>.adaptive(), Tolerance(1e-9)).expect("a start");
+        let h = start.integrate(Gauss::<8>, Tolerance(1e-9)).expect("a start").h();
+        let mut steps = 0.0;
+        let mut ahead = adaptive.clone();
+        while ahead.t() < end {
+            ahead.step().expect("a step");
+            steps += 1.0;
+        }
+        let error = (adaptive.until(end).expect("a motion").q - exact).norm();
+        println!("e = {e}: {steps} steps instead of {}, error {error:.1e}", end / h);
+        assert!(end / h > least * steps, "e = {e}: {steps} steps instead of {}", end / h);
+        // Measured: 1.8e-10, 3.7e-9.
+        assert!(error < 1e-8, "e = {e}: {error:e}");
+    }
+}
+
+#[test]
+fn a_time_scale_sets_the_lengths() {
+    let system = Kepler { mu: 1.6 };
+    let (q, v) = perihelion(system.mu, 0.8);
+    let mut run = system.at(0.0, q, v).integrate(Gauss::<4>.adaptive(), 0.01).expect("a start");
+    let mut products = [f64::INFINITY, 0.0_f64];
+    for _ in 0..300 {
+        let before = run.state();
+        run.step().expect("a step");
+        let r = run.dense_output(&before).expect("a polynomial").state(before.t + 0.5 * run.h()).q.norm();
+        let product = run.h() / r.powf(1.5);
+        products = [products[0].min(product), products[1].max(product)];
+    }
+    println!("h / r^(3/2) in {products:?}");
+    // Measured: 1.0027.
+    assert!(products[1] < 1.005 * products[0], "{products:?}");
+}
+
+#[test]
+fn steps_without_forces_grow_to_a_bound_and_damped_ones_go_on() {
+    let mut run =
+        Thrown::default().at(0.0, [0.0, 0.0], [1.0, 5.0]).integrate(Gauss::<4>.adaptive(), 0.1).expect("a start");
+    for _ in 0..50 {
+        run.step().expect("a step");
+        assert!((run.h() - 0.1).abs() < 1e-12, "{}", run.h());
+    }
+    let State { t, q, .. } = run.state();
+    assert!((q[1] - (5.0 * t - 9.81 * t * t / 2.0)).abs() < 1e-12 && (q[0] - t).abs() < 1e-13, "{q:?}");
+
+    // One frequency: equal steps, as those of `Gauss`.
+    let system = DampedOscillator::default();
+    let mut run = system.at(0.0, [1.0], [0.3]).integrate(Gauss::<4>.adaptive(), 0.1).expect("a start");
+    let mut equal = system.at(0.0, [1.0], [0.3]).integrate(Gauss::<4>, 0.1).expect("a start");
+    let (one, other) = (run.until(10.0).expect("a motion"), equal.until(10.0).expect("a motion"));
+    assert!((one.q - other.q).norm() < 1e-12 && (run.h() - 0.1).abs() < 1e-9, "{}", run.h());
+}
+
+#[test]
+fn constraints_shorten_the_steps_of_a_fast_turn() {
+    // Over the top and round: the force of the rod is the stiffness.
+    let system = RodPendulum::default();
+    let start = system.at(0.0, [0.0, 1.0], [0.3, 0.0]);
+    let mut run = start.integrate(Gauss::<3>.adaptive(), 0.1).expect("a start");
+    let exact = start.integrate(Gauss::<3>, 0.005).expect("a start").until(4.0).expect("a motion");
+    let energy = run.energy().expect("an energy");
+    let mut lengths = [f64::INFINITY, 0.0_f64];
+    let mut aside = run.clone();
+    for _ in 0..300 {
+        aside.step().expect("a step");
+        let q = aside.state().q;
+        assert!((q.norm() - 1.0).abs() < 1e-14, "{q}");
+        lengths = [lengths[0].min(aside.h()), lengths[1].max(aside.h())];
+    }
+    let drift = (aside.energy().expect("an energy") - energy).abs();
+    let off = (run.until(4.0).expect("a motion").q - exact.q).norm();
+    println!("lengths {lengths:?}, off by {off:.1e}, H by {drift:.1e}");
+    // Measured: 3.7 between the lengths, 4.0e-6, 6.3e-7.
+    assert!(lengths[1] > 3.0 * lengths[0] && off < 1e-5 && drift < 2e-6, "{lengths:?} {off:e} {drift:e}");
+}
+
+#[test]
+fn stored_numbers_are_checked() {
+    let mut run = planet(0.03);
+    run.step().expect("a step");
+    let stored = serde_json::to_value(run.checkpoint()).expect("numbers");
+    for (name, value) in [("density", -1.0), ("density", 0.0), ("scale", -0.1), ("floor", 0.0), ("h", -0.03)] {
+        let mut changed = stored.clone();
+        changed["run"]["memory"][name] = json!(value);
+        let changed: Checkpoint<_, 2> = serde_json::from_value(changed).expect("numbers");
+        let refused = Run::restart(*run.system(), Gauss::<4>.adaptive(), changed).expect_err("a wrong number");
+        assert!(matches!(refused, StepError::NonFinite { .. }), "{name} = {value}: {refused}");
+    }
+    let again: Checkpoint<_, 2> = serde_json::from_value(stored).expect("numbers");
+    let mut again = Run::restart(*run.system(), Gauss::<4>.adaptive(), again).expect("a run");
+    for _ in 0..20 {
+        assert_eq!(run.step(), again.step());
+    }
+}
+
+#[test]
+fn tangent_vectors_are_those_of_the_motion() {
+    // The lengths are held fixed: the derivative of the motion to the error of the steps, and symplectic.
+    let system = Cart { m: 0.8, l: 1.1, k: 0.5, g: 1.7 };
+    let start = system.at(0.2, [0.3, 2.2], [0.4, 0.9]);
+    let by = |h: f64| vectors_at(start.integrate(Gauss::<4>.adaptive(), h).expect("a start"), 2.2);
+    let exact = vectors_at(start.integrate(Gauss::<8>, 0.02).expect("a start"), 2.2);
+    let off =
+        |found: &[SVector<f64, 4>]| found.iter().zip(&exact).map(|(one, other)| (one - other).norm()).sum::<f64>();
+    let errors = [0.2, 0.1].map(|h: f64| off(&by(h)));
+    println!("tangent vectors off by {errors:?}");
+    // Measured: 6.6e-9, 3.3e-11.
+    assert!(errors[0] > 1e-9 && errors[1] < 0.02 * errors[0] && errors[1] < 1e-10, "{errors:?}");
+}
+
+/// Tangent vectors of the start at a time, for each direction of the state.
+fn vectors_at<M, S>(run: Run<M, S, 2>, end: f64) -> Vec<SVector<f64, 4>>
+where
+    M: Differentiable<S, 2>,
+    S: Convertible<2>,
+{
+    let mut tangent = Tangent::from_start(run, Variation::of_state()).expect("tangent vectors");
+    tangent.until(end).expect("a motion");
+    let each = tangent.variations().iter().map(|of| SVector::from([of.q[0], of.q[1], of.p[0], of.p[1]]));
+    each.collect()
+}
