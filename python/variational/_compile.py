@@ -255,6 +255,7 @@ _MOST_STAGES = {
     "splitting": 0,
     "energy": 3,
     "gauss": 16,
+    "adaptive": 16,
     "transformed": 16,
 }
 
@@ -286,14 +287,14 @@ def _methods(methods: str | None, code: str) -> str:
                 several = " (compositions has suzuki-4, kahan-li-6 and kahan-li-8)"
             raise CompileError(
                 f"there is no method {word!r}{several}: "
-                "write fixed, compositions, splitting, gauss 8, transformed 8, energy, energy 2"
+                "write fixed, compositions, splitting, gauss 8, adaptive 8, transformed 8, energy, energy 2"
             )
         if not all(stage.isascii() and stage.isdigit() and 1 <= int(stage) <= most for stage in stages):
             limits = f"stages from 1 to {most}" if most else "no stages"
             raise CompileError(f"{word} has {limits}, not {rest!r}")
-        if word in ("gauss", "transformed") and not stages:
+        if word in ("gauss", "adaptive", "transformed") and not stages:
             raise CompileError(f'{word} needs its stages, such as "{word} 8"')
-        if has_constraints and word not in ("gauss", "energy"):
+        if has_constraints and word not in ("gauss", "adaptive", "energy"):
             raise CompileError(f'the method {word} does not keep constraints: write "gauss 3" or "energy 2"')
         if has_constraints and not stages:
             raise CompileError('energy needs its stages with constraints: write "energy 2"')

@@ -71,7 +71,7 @@ def checked(
         raise ValueError('shift, shift_from and fallback are options of method="energy"')
     if shift is not None and shift_from is not None:
         raise TypeError("give one of shift and shift_from, not both")
-    if stages is not None and method not in ("gauss", "energy"):
+    if stages is not None and method not in ("gauss", "adaptive", "energy"):
         raise ValueError(f"method={method!r} has no stages: leave out stages=")
     request = Request(
         method=method,

@@ -387,15 +387,16 @@ class System(metaclass=SystemType):
         Parameters
         ----------
         h : float
-            Length of a step; negative steps go back in time. For method="energy" the length of the first step.
+            Length of a step; negative steps go back in time. For method="energy" and "adaptive" about that of the first
+            step.
         tolerance : float
             In place of h: the largest error of a step, relative to the scale of its motion.
         dtau : float
             In place of h: length of a step in transformed time, for a system with a `time_scale`.
         method : str
-            "gauss", the default, "fixed", "suzuki-4", "kahan-li-6", "kahan-li-8" or "energy"; "splitting-4" or
-            "splitting-6" if the mass matrix is constant and no force depends on velocities. A system with constraints
-            has "gauss" and "energy".
+            "gauss", the default; "adaptive", Gauss steps whose length follows the forces along the motion; "fixed",
+            "suzuki-4", "kahan-li-6", "kahan-li-8" or "energy"; "splitting-4" or "splitting-6" if the mass matrix is
+            constant and no force depends on velocities. A system with constraints has "gauss", "adaptive" and "energy".
         stages : int
             Stages of Gauss steps, whose order is twice that number, also with constraints; of energy-preserving steps.
         shift, shift_from : float

@@ -53,7 +53,18 @@ struct Method {
 impl Method {
     /// Whether steps begin at equal distances in time.
     fn has_equal_steps(&self) -> bool {
-        !self.keeps_energy && !self.built.2
+        !self.keeps_energy && !self.built.2 && !self.follows_motion()
+    }
+
+    /// Whether tangent vectors are differences of its runs. Runs from a midpoint or from two points do not begin at the
+    /// start; lengths that follow the motion are held fixed.
+    fn has_tangents(&self) -> bool {
+        self.start == Start::State && !self.follows_motion()
+    }
+
+    /// Whether the lengths of its steps follow the motion.
+    fn follows_motion(&self) -> bool {
+        self.built.0 == plan::Method::Adaptive
     }
 }
 
@@ -69,6 +80,11 @@ const fn gauss(name: &'static str, stages: u32, is_transformed: bool, stretch: f
     Method { name, built, start: Start::State, order, stretch, keeps_energy: false, dense }
 }
 
+const fn adaptive(name: &'static str, stages: u32, stretch: f64) -> Method {
+    let built = (plan::Method::Adaptive, Some(stages as usize), false);
+    Method { built, ..gauss(name, stages, false, stretch) }
+}
+
 const fn energy(name: &'static str, start: Start) -> Method {
     let built = (plan::Method::Energy, None, false);
     Method { name, built, start, order: 2, stretch: 1.0, keeps_energy: true, dense: 3 }
@@ -79,7 +95,7 @@ const fn energy_gauss(name: &'static str, stages: u32, stretch: f64) -> Method {
     Method { built, keeps_energy: true, ..gauss(name, stages, false, stretch) }
 }
 
-const METHODS: [Method; 19] = [
+const METHODS: [Method; 21] = [
     equal("fixed", plan::Method::Fixed, [2, 3], 1.0),
     equal("Suzuki 4", plan::Method::Suzuki4, [4, 4], 2.0),
     equal("Kahan–Li 6", plan::Method::KahanLi6, [6, 4], 4.0),
@@ -91,6 +107,8 @@ const METHODS: [Method; 19] = [
     gauss("Gauss 3", 3, false, 3.0),
     gauss("Gauss 4", 4, false, 5.0),
     gauss("Gauss 8", 8, false, 16.0),
+    adaptive("adaptive 3", 3, 3.0),
+    adaptive("adaptive 4", 4, 5.0),
     gauss("transformed Gauss 4", 4, true, 6.0),
     gauss("transformed Gauss 8", 8, true, 14.0),
     energy("energy", Start::State),

@@ -69,8 +69,12 @@ fn energy_error(case: &Case) -> Result<(), String> {
     if case.system.conserves_energy() { is_order(case, 1, 0.1) } else { Ok(()) }
 }
 
-/// Steps of the length −h return to the start. Methods that find their length have no such steps.
+/// Steps of the length −h return to the start. Methods that find their length have no such steps; those whose lengths
+/// follow the motion return with the density of the last step, which a start does not have.
 fn reversal(case: &Case) -> Result<(), String> {
+    if case.method.follows_motion() {
+        return Ok(());
+    }
     let mut run = case.run()?;
     let (start, h) = (Node::of(&*run), case.h());
     advance(&mut *run, 20)?;
@@ -109,5 +113,5 @@ fn energy_errors_have_the_order_of_the_method() {
 #[test]
 fn steps_backward_return() {
     holds(reversal);
-    fails(reversal, "coupled", Fault::Kick, |method| !method.keeps_energy);
+    fails(reversal, "coupled", Fault::Kick, |method| !method.keeps_energy && !method.follows_motion());
 }

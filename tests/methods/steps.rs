@@ -10,7 +10,7 @@ use vi_erased::{PhasePoint, Simulation};
 /// A run whose next step fails: far too long, or far too fast for its length.
 fn failing(case: &Case) -> Result<Box<dyn Simulation>, String> {
     let factors = [1e2, 1e3, 1e4, 1e100, 1e150, 1e200, 1e300];
-    let is_equal = case.method.has_equal_steps();
+    let is_equal = case.method.has_equal_steps() || case.method.follows_motion();
     let long = factors.iter().filter(|_| is_equal).filter_map(|factor| case.with(factor * case.h()).ok());
     let fast = factors.iter().filter_map(|factor| {
         let mut run = case.run().ok()?;

@@ -211,7 +211,7 @@ pub(super) const SCENES: [Scene; 10] = [
     },
     Scene {
         name: "rod",
-        system: || kind!(RodPendulum, { gauss 1, 2, 3; energy 1, 2 }),
+        system: || kind!(RodPendulum, { gauss 1, 2, 3; adaptive 3; energy 1, 2 }),
         parameters: &[("m", 1.3), ("l", 1.25)],
         q: &[0.75, -1.0],
         v: &[0.8, 0.6],

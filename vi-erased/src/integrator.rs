@@ -21,8 +21,8 @@ use vi_core::method::{Controlled, Shiftable, Storable};
 use vi_core::run::Checkpoint;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{
-    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
-    Presumed, Run, Splitting, Starts, State, StepError,
+    Adaptive, Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss,
+    InTransformedTime, Presumed, Run, Splitting, Starts, State, StepError,
 };
 
 /// Starts a run of a plan from a state, as [`System::begin_while`](crate::System::begin_while).
@@ -141,6 +141,27 @@ where
     by_length!(Method::Gauss, Some(STAGES), identity, Gauss::<STAGES>)
 }
 
+/// Gauss steps of the given number of stages whose length follows the motion.
+#[must_use]
+pub fn adaptive<S: Runnable<N>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
+where
+    Called<S>: Runnable<N>,
+    Adaptive<Gauss<STAGES>>: Erasable<S, N>,
+    Adaptive<Gauss<STAGES>>: Erasable<Called<S>, N>,
+{
+    if const { is_called::<S, N>() } {
+        by_length!(Method::Adaptive, Some(STAGES), Called, Gauss::<STAGES>.adaptive())
+    } else {
+        by_length!(Method::Adaptive, Some(STAGES), identity, Gauss::<STAGES>.adaptive())
+    }
+}
+
+/// Whether steps that are not optimised for the system take it as [`Called`]. With constraints most of a step is
+/// elimination, which calls no function of the system, and calls of an interpreter are calls already.
+const fn is_called<S: Runnable<N>, const N: usize>() -> bool {
+    S::Kind::COUNT == 0 && !S::INTERPRETED
+}
+
 /// Gauss steps in transformed time.
 #[must_use]
 pub fn transformed<S: Runnable<N, Kind = Free>, const N: usize, const STAGES: usize>() -> Integrator<S, N>
@@ -220,9 +241,7 @@ where
     EnergyPreservingGauss<STAGES>: Erasable<S, N, Memory: Controlled<f64>>,
     EnergyPreservingGauss<STAGES>: Erasable<Called<S>, N, Memory: Controlled<f64>>,
 {
-    // With constraints most of a step is elimination, which calls no function of the system.
-    // Calls of an interpreter are calls already.
-    if const { S::Kind::COUNT == 0 && !S::INTERPRETED } { energy_gauss!(Called) } else { energy_gauss!(identity) }
+    if const { is_called::<S, N>() } { energy_gauss!(Called) } else { energy_gauss!(identity) }
 }
 
 /// A run of energy-preserving steps with the shift and the fallback of a plan.
@@ -304,6 +323,15 @@ where
 impl<S: Runnable<N>, const N: usize, const STAGES: usize> Erasable<S, N> for Gauss<STAGES>
 where
     Gauss<STAGES>: Derived<S, N, Memory: Storable>,
+{
+    fn evaluations(&self, iterations: u32) -> u64 {
+        u64::from(iterations) * STAGES as u64
+    }
+}
+
+impl<S: Runnable<N>, const N: usize, const STAGES: usize> Erasable<S, N> for Adaptive<Gauss<STAGES>>
+where
+    Adaptive<Gauss<STAGES>>: Derived<S, N, Memory: Storable>,
 {
     fn evaluations(&self, iterations: u32) -> u64 {
         u64::from(iterations) * STAGES as u64

@@ -58,7 +58,8 @@ pub use system::{System, Typed};
 /// | `fixed` | fixed steps of order 2, and their compositions of order 4, 6, 8 |
 /// | `fixed_2` | fixed steps of order 2 only, in half the compile time |
 /// | `gauss 4, 8` | Gauss steps of 4 and of 8 stages, which keep constraints |
-/// | `transformed 4, 8` | the same in transformed time, for a system with a `time_scale` |
+/// | `adaptive 4, 8` | the same with lengths that follow the motion |
+/// | `transformed 4, 8` | Gauss steps in transformed time, for a system with a `time_scale` |
 /// | `splitting` | kicks and drifts of order 4 and 6, for a system whose motion splits |
 /// | `energy` | energy-preserving steps of order 2 |
 /// | `energy 2, 3` | energy-preserving Gauss steps of 2 and of 3 stages, which keep constraints |
@@ -92,6 +93,9 @@ macro_rules! integrators {
     };
     (gauss $($stages:literal),+) => {
         vec![$($crate::integrator::gauss::<_, _, $stages>()),+]
+    };
+    (adaptive $($stages:literal),+) => {
+        vec![$($crate::integrator::adaptive::<_, _, $stages>()),+]
     };
     (transformed $($stages:literal),+) => {
         vec![$($crate::integrator::transformed::<_, _, $stages>()),+]

@@ -23,6 +23,8 @@ pub enum Method {
     Splitting6,
     /// Gauss steps, of order 2S with S stages. They keep constraints.
     Gauss,
+    /// Gauss steps whose length follows the motion.
+    Adaptive,
     /// The integrator that solves for its own step and preserves the discrete energy.
     Energy,
 }
@@ -36,16 +38,14 @@ pub const DEFAULT_STAGES: usize = 8;
 /// Numbers of stages of energy-preserving Gauss steps: with more, rounding hides their length.
 pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 
-/// Numbers of stages of Gauss steps of systems with constraints.
-pub const BOUND_STAGES: [usize; 3] = [1, 2, 3];
-/// The default number of these stages: the highest order that is built.
+/// The default number of stages of Gauss steps of systems with constraints.
 pub const DEFAULT_BOUND_STAGES: usize = 3;
-/// The number of stages of energy-preserving Gauss steps of systems with constraints.
-pub const BOUND_ENERGY_STAGES: usize = 2;
+/// The default number of stages of their energy-preserving steps.
+pub const DEFAULT_BOUND_ENERGY_STAGES: usize = 2;
 
 impl Method {
     /// All integrators.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Fixed,
         Self::Suzuki4,
         Self::KahanLi6,
@@ -53,6 +53,7 @@ impl Method {
         Self::Splitting4,
         Self::Splitting6,
         Self::Gauss,
+        Self::Adaptive,
         Self::Energy,
     ];
 
@@ -131,6 +132,7 @@ impl Named for Method {
             Self::Splitting4 => "splitting-4",
             Self::Splitting6 => "splitting-6",
             Self::Gauss => "gauss",
+            Self::Adaptive => "adaptive",
             Self::Energy => "energy",
         }
     }
@@ -144,6 +146,7 @@ impl Named for Method {
             Self::Splitting4 => "Kicks and drifts of order 4, by Blanes and Moan, for forces of the coordinates alone",
             Self::Splitting6 => "Kicks and drifts of order 6, by Blanes and Moan, for forces of the coordinates alone",
             Self::Gauss => "Gauss steps, of order 2S for --stages S; they keep constraints",
+            Self::Adaptive => "Gauss steps whose length follows the forces along the motion; they keep constraints",
             Self::Energy => "The integrator that solves for its own step and preserves the discrete energy",
         }
     }
@@ -188,8 +191,7 @@ pub struct Plan {
     pub method: Method,
     /// The start of the energy-preserving integrator without stages and shift; unused by others.
     pub start: Start,
-    /// The stages of Gauss steps, one of [`STAGES`], with constraints one of [`BOUND_STAGES`]; or of energy-preserving
-    /// ones, one of [`ENERGY_STAGES`], with constraints [`BOUND_ENERGY_STAGES`].
+    /// The stages of Gauss steps or of energy-preserving ones, such as the system has.
     pub stages: Option<usize>,
     /// The shift of energy-preserving steps.
     pub shift: Option<Shift>,
@@ -235,7 +237,7 @@ impl Plan {
     #[must_use]
     pub fn gauss_stages(&self, has_constraints: bool) -> Option<usize> {
         let usual = if has_constraints { DEFAULT_BOUND_STAGES } else { DEFAULT_STAGES };
-        (self.method == Method::Gauss).then(|| self.stages.unwrap_or(usual))
+        matches!(self.method, Method::Gauss | Method::Adaptive).then(|| self.stages.unwrap_or(usual))
     }
 
     /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); `None` for steps with [`EnergyPreserving`](vi_core::EnergyPreserving).

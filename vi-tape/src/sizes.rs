@@ -31,7 +31,7 @@ macro_rules! sizes {
 #[cfg(not(feature = "wide"))]
 sizes!(2, 4, 8);
 #[cfg(feature = "wide")]
-sizes!(2, 4, 8, 16);
+sizes!(2, 4, 8, 16, 32);
 
 /// The smallest number of coordinates that is built and is at least that of a system of this name, and that of its
 /// constraints.
@@ -75,6 +75,7 @@ fn free<const N: usize>(code: &'static Code) -> Box<dyn System> {
         integrators!(fixed),
         integrators!(splitting),
         integrators!(gauss 4, 8),
+        integrators!(adaptive 4, 8),
         integrators!(transformed 4, 8),
         integrators!(energy),
         integrators!(energy 1, 2, 3),
@@ -85,7 +86,7 @@ fn free<const N: usize>(code: &'static Code) -> Box<dyn System> {
 
 /// The system of N coordinates with up to N constraints.
 fn bound<const N: usize>(code: &'static Code) -> Box<dyn System> {
-    let all = integrator::all([integrators!(gauss 1, 2, 3), integrators!(energy 2)]);
+    let all = integrator::all([integrators!(gauss 1, 2, 3, 4, 6), integrators!(adaptive 3), integrators!(energy 1, 2)]);
     Box::new(Typed::of(Tape::<N, Of<N>>::new(code), all))
 }
 

@@ -11,17 +11,17 @@ use vi_systems::{
 
 macro_rules! systems {
     ($($system:ident),* $(,)?) => {
-        vec![$(kind!($system, { fixed; splitting; gauss 4, 8; energy; energy 1, 2, 3 })),*]
+        vec![$(kind!($system, { fixed; splitting; gauss 4, 8; adaptive 4, 8; energy; energy 1, 2, 3 })),*]
     };
 }
 
 /// The compiled systems with their default parameters.
 #[must_use]
 pub fn systems() -> Vec<Box<dyn System>> {
-    let mut systems = systems!(DoublePendulum, FpuChain, OuterSolarSystem, Pendulum);
-    systems.push(kind!(RodChain, { gauss 1, 2, 3; energy 2 }));
+    let mut systems = systems!(DoublePendulum, OuterSolarSystem);
     // Steps in transformed time are built only for the system that declares a time scale.
-    systems.push(kind!(Kepler, { fixed; splitting; gauss 4, 8; transformed 4, 8; energy; energy 1, 2, 3 }));
+    systems
+        .push(kind!(Kepler, { fixed; splitting; gauss 4, 8; adaptive 4, 8; transformed 4, 8; energy; energy 1, 2, 3 }));
     systems
 }
 
@@ -40,12 +40,15 @@ pub fn texts() -> Vec<(&'static str, &'static str)> {
         DoubleWell,
         DoubleWellDuffing,
         FourBar,
+        FpuChain,
         HardDuffing,
         HarmonicOscillator,
         HeavyTop,
         HenonHeiles,
         NPendulum,
         ParametricPendulum,
+        Pendulum,
+        RodChain,
         RodPendulum,
         RollingBall,
         RollingDisk,

@@ -3,7 +3,7 @@
 use crate::failure::wrong;
 use pyo3::prelude::*;
 use vi_erased::System;
-use vi_erased::plan::{BOUND_ENERGY_STAGES, Built, Method, Named as _, PhasePoint, Plan, Shift, Start};
+use vi_erased::plan::{Built, DEFAULT_BOUND_ENERGY_STAGES, Method, Named as _, PhasePoint, Plan, Shift, Start};
 
 /// Method and options of a run. Python has checked their names.
 #[derive(Clone, Debug, FromPyObject)]
@@ -58,7 +58,7 @@ impl Request {
 /// The stages of a plan: if none are given, the default if it is built, else the most that are built.
 fn stages(plan: &Plan, system: &dyn System) -> Option<usize> {
     let has_constraints = !system.constraints().is_empty();
-    let of_energy = (plan.method == Method::Energy && has_constraints).then_some(BOUND_ENERGY_STAGES);
+    let of_energy = (plan.method == Method::Energy && has_constraints).then_some(DEFAULT_BOUND_ENERGY_STAGES);
     let usual = plan.gauss_stages(has_constraints).or(of_energy).filter(|_| plan.stages.is_none());
     let Some(usual) = usual else { return plan.stages };
     let built = system.integrators().into_iter().filter(|of| of.0 == plan.method && of.2 == plan.dtau.is_some());

@@ -4,7 +4,7 @@
 //! the run.
 
 use crate::erasable::Runnable;
-use crate::plan::{BOUND_STAGES, Plan, STAGES};
+use crate::plan::{DEFAULT_BOUND_STAGES, Plan, STAGES};
 use crate::simulation::vector;
 use vi_core::derivatives::Lyapunov;
 use vi_core::kind::Kind;
@@ -12,7 +12,7 @@ use vi_core::{Gauss, Starts, StepError};
 
 /// Stages of the Gauss steps of a free system and of one with constraints; programs contain these anyway.
 const FREE: usize = STAGES[1];
-const BOUND: usize = BOUND_STAGES[2];
+const BOUND: usize = DEFAULT_BOUND_STAGES;
 
 /// Lyapunov exponents along a run.
 pub trait Exponents {

@@ -9,7 +9,7 @@ use vi_core::stepping::EnergyStepping;
 use vi_core::{Composition, EnergyPreserving, FixedStep};
 use vi_erased::erasable::{Erasable, Runnable};
 use vi_erased::integrator::{self, Integrator};
-use vi_erased::plan::{BOUND_ENERGY_STAGES, BOUND_STAGES, ENERGY_STAGES, STAGES};
+use vi_erased::plan::{DEFAULT_BOUND_ENERGY_STAGES, DEFAULT_BOUND_STAGES, ENERGY_STAGES, STAGES};
 use vi_erased::system::StartOf;
 use vi_erased::{System, Typed};
 
@@ -95,6 +95,8 @@ fn without_rule<S: Runnable<N, Kind = Free>, const N: usize>() -> Vec<Integrator
     let gauss = vec![
         integrator::gauss::<S, N, { STAGES[0] }>(),
         integrator::gauss::<S, N, { STAGES[1] }>(),
+        integrator::adaptive::<S, N, { STAGES[0] }>(),
+        integrator::adaptive::<S, N, { STAGES[1] }>(),
         integrator::transformed::<S, N, { STAGES[0] }>(),
         integrator::transformed::<S, N, { STAGES[1] }>(),
         integrator::energy_gauss::<S, N, { ENERGY_STAGES[0] }>(),
@@ -107,9 +109,10 @@ fn without_rule<S: Runnable<N, Kind = Free>, const N: usize>() -> Vec<Integrator
 /// Every integrator that keeps constraints.
 fn with_constraints<S: Runnable<N>, const N: usize>() -> Vec<Integrator<S, N>> {
     vec![
-        integrator::gauss::<S, N, { BOUND_STAGES[0] }>(),
-        integrator::gauss::<S, N, { BOUND_STAGES[1] }>(),
-        integrator::gauss::<S, N, { BOUND_STAGES[2] }>(),
-        integrator::energy_gauss::<S, N, BOUND_ENERGY_STAGES>(),
+        integrator::gauss::<S, N, 1>(),
+        integrator::gauss::<S, N, 2>(),
+        integrator::gauss::<S, N, DEFAULT_BOUND_STAGES>(),
+        integrator::adaptive::<S, N, DEFAULT_BOUND_STAGES>(),
+        integrator::energy_gauss::<S, N, DEFAULT_BOUND_ENERGY_STAGES>(),
     ]
 }

@@ -13,8 +13,7 @@ use vi_core::StepError;
 use vi_erased::System;
 use vi_erased::plan::Named as _;
 use vi_erased::plan::{
-    BOUND_ENERGY_STAGES, BOUND_STAGES, DEFAULT_BOUND_STAGES, DEFAULT_STAGES, ENERGY_STAGES, Method, PhasePoint, Plan,
-    STAGES, Shift, Start,
+    DEFAULT_BOUND_ENERGY_STAGES, DEFAULT_BOUND_STAGES, DEFAULT_STAGES, Method, PhasePoint, Plan, Shift, Start,
 };
 use vi_erased::simulation::{Row, Steps};
 use vi_report::catalogue::{Catalogue, kebab};
@@ -284,7 +283,7 @@ fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<
         )));
     }
     let needs_none = match method {
-        Method::Gauss => true,
+        Method::Gauss | Method::Adaptive => true,
         Method::Energy => options.stages.is_some() || options.shift.is_some(),
         _ => false,
     };
@@ -349,7 +348,7 @@ impl Options {
                 format!("{energy} --shift; add --method energy, or remove it")
             }
             () if fallback && !is_energy => format!("{energy} --fallback; add --method energy, or remove it"),
-            () if stages.is_some() && !is_energy && !is_gauss => {
+            () if stages.is_some() && !is_energy && !is_gauss && method != Method::Adaptive => {
                 "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it"
                     .to_owned()
             }
@@ -365,38 +364,40 @@ impl Options {
     }
 }
 
-/// A number of stages that is built into the command, by default that of the method; `None` for steps without stages.
+/// A number of stages that the system has, by default that of the method; `None` for steps without stages.
 fn stages(system: &dyn System, method: Method, wanted: Option<u64>) -> Result<Option<usize>, Failure> {
-    let is_energy = method == Method::Energy;
     let Some(wanted) = wanted else {
         return Ok(match (method, system.has_constraints()) {
-            (Method::Gauss, true) => Some(DEFAULT_BOUND_STAGES),
-            (Method::Gauss, false) => Some(DEFAULT_STAGES),
-            (Method::Energy, true) => Some(BOUND_ENERGY_STAGES),
+            (Method::Gauss | Method::Adaptive, true) => Some(DEFAULT_BOUND_STAGES),
+            (Method::Gauss | Method::Adaptive, false) => Some(DEFAULT_STAGES),
+            (Method::Energy, true) => Some(DEFAULT_BOUND_ENERGY_STAGES),
             _ => None,
         });
     };
-    let built: &[usize] = match (is_energy, system.has_constraints()) {
-        (true, true) => &[BOUND_ENERGY_STAGES],
-        (true, false) => &ENERGY_STAGES,
-        (false, true) => &BOUND_STAGES,
-        (false, false) => &STAGES,
-    };
-    let found = built.iter().copied().find(|built| *built as u64 == wanted);
-    found.map(Some).ok_or_else(|| {
-        Failure::Input(match (is_energy, system.has_constraints()) {
-            (true, true) => format!(
-                "energy-preserving steps with constraints have {BOUND_ENERGY_STAGES} stages in the command, not {wanted}"
-            ),
-            (true, false) => format!(
-                "energy-preserving steps have 1, 2 or 3 stages, not {wanted}: with more, rounding hides the length"
-            ),
-            (false, true) => format!("steps with constraints have 1, 2 or 3 stages in the command, not {wanted}"),
-            (false, false) => {
-                format!("Gauss steps of {wanted} stages are not built into the command; --stages may be 4 or 8")
-            }
-        })
-    })
+    let mut built: Vec<usize> = system.integrators().iter().filter(|of| of.0 == method).filter_map(|of| of.1).collect();
+    built.sort_unstable();
+    built.dedup();
+    if let Some(found) = built.iter().find(|built| **built as u64 == wanted) {
+        return Ok(Some(*found));
+    }
+    let built = alternatives(&built);
+    Err(Failure::Input(match (method, system.has_constraints()) {
+        (Method::Energy, true) => format!("energy-preserving steps with constraints have {built} stages, not {wanted}"),
+        (Method::Energy, false) => {
+            format!("energy-preserving steps have {built} stages, not {wanted}: with more, rounding hides the length")
+        }
+        (_, true) => format!("steps with constraints have {built} stages in the command, not {wanted}"),
+        (_, false) => {
+            format!("Gauss steps of {wanted} stages are not built into the command; --stages may be {built}")
+        }
+    }))
+}
+
+/// `1, 2 or 3`.
+fn alternatives(numbers: &[usize]) -> String {
+    let mut words: Vec<String> = numbers.iter().map(usize::to_string).collect();
+    let last = words.pop().unwrap_or_default();
+    if words.is_empty() { last } else { format!("{} or {last}", words.join(", ")) }
 }
 
 /// Ratio of the default step to that of the system. For short energy-preserving steps of order 4 and 6, rounding hides

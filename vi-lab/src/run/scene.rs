@@ -219,7 +219,7 @@ mod tests {
             ("h = 1.0\n", "the scene names no system; add a line such as `system = \"kepler\"`"),
             (
                 "system = \"a\"\nmethod = \"euler\"\n",
-                "line 2: unknown variant `euler`, expected one of `fixed`, `suzuki-4`, `kahan-li-6`, `kahan-li-8`, `splitting-4`, `splitting-6`, `gauss`, `energy`",
+                "line 2: unknown variant `euler`, expected one of `fixed`, `suzuki-4`, `kahan-li-6`, `kahan-li-8`, `splitting-4`, `splitting-6`, `gauss`, `adaptive`, `energy`",
             ),
         ] {
             let message = Scene::parse(text).err().unwrap_or_default();

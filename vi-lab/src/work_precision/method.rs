@@ -68,7 +68,7 @@ impl Method {
             Self::Own(plan::Method::KahanLi8) => eight,
             Self::Own(plan::Method::Splitting4 | plan::Method::Splitting6) => split,
             Self::Gauss(4) => few,
-            Self::Gauss(_) | Self::Own(plan::Method::Gauss) => many,
+            Self::Gauss(_) | Self::Own(plan::Method::Gauss | plan::Method::Adaptive) => many,
             Self::Own(plan::Method::Energy) => Look::ENERGY,
             Self::Rival => Look::RIVAL,
         }

@@ -4,7 +4,7 @@ mod lost_motions;
 mod studies;
 
 use vi_core::StepError;
-use vi_erased::plan::{BOUND_ENERGY_STAGES, Method, PhasePoint, Plan, Shift};
+use vi_erased::plan::{DEFAULT_BOUND_ENERGY_STAGES, Method, PhasePoint, Plan, Shift};
 
 #[test]
 fn every_entry_starts_and_keeps_its_parameters() {
@@ -22,7 +22,7 @@ fn every_entry_starts_and_keeps_its_parameters() {
             let mut plan = Plan::new(method, entry.h, start);
             if method == Method::Energy && entry.system.has_constraints() {
                 let shift = Some(Shift::Over(20.0 * entry.h));
-                plan = Plan { stages: Some(BOUND_ENERGY_STAGES), shift, ..plan };
+                plan = Plan { stages: Some(DEFAULT_BOUND_ENERGY_STAGES), shift, ..plan };
             }
             let begun = entry.system.begin(&plan);
             let mut run = begun.unwrap_or_else(|error| panic!("{name}: {error}"));
