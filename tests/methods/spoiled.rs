@@ -99,6 +99,10 @@ impl System for Spoiled<dyn System> {
         fn control(&self) -> &dyn Control;
     }
 
+    fn without(&self, constraints: &[&str]) -> Option<Box<dyn System>> {
+        Some(system(self.of.without(constraints)?, self.fault))
+    }
+
     fn set(&mut self, name: &str, value: f64) -> bool {
         self.of.set(name, value)
     }

@@ -171,6 +171,11 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn is_dropped(&self, _constraint: usize) -> bool {
         false
     }
+    /// The system without the constraints of these indices, which have to follow from the others; `None` if its type keeps
+    /// all. Only [`Independent`](crate::constrained::Independent) drops some.
+    fn without(&self, _constraints: &[usize]) -> Option<Self> {
+        None
+    }
     /// The first dropped constraint that does not hold at a node, by its index, with its value.
     fn broken(&self, _t: T, _q: &SVector<T, N>, _v: &SVector<T, N>) -> Option<(usize, T)> {
         None

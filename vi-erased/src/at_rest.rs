@@ -166,6 +166,10 @@ impl System for Declared<dyn System> {
         self.of.redundant(t, &q)
     }
 
+    fn without(&self, constraints: &[&str]) -> Option<Box<dyn System>> {
+        Some(without_rest(self.of.without(constraints)?, self.size))
+    }
+
     #[cfg(feature = "derivatives")]
     fn control(&self) -> &dyn Control {
         self

@@ -135,6 +135,9 @@ pub trait System: Send + Sync {
     /// As [`Independent::at`]; [`StepError::InvalidInput`] for another number of coordinates.
     #[cfg(feature = "derivatives")]
     fn redundant(&self, t: f64, q: &[f64]) -> Result<Vec<&'static str>, StepError>;
+    /// The same system without constraints of these names, which follow from the others: they have no reaction, and every
+    /// step checks them. `None` for a name of no constraint, and for a compiled system, whose type keeps all.
+    fn without(&self, constraints: &[&str]) -> Option<Box<dyn System>>;
     /// What a controller asks of it.
     #[cfg(feature = "derivatives")]
     fn control(&self) -> &dyn Control;
@@ -410,6 +413,13 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
             return Ok(Vec::new());
         }
         Ok(Independent::at(self.system, t, q)?.dropped_names().collect())
+    }
+
+    fn without(&self, constraints: &[&str]) -> Option<Box<dyn System>> {
+        let names = self.system.constraint_names();
+        let index = |name: &&str| names.iter().position(|known| known == name);
+        let dropped = constraints.iter().map(index).collect::<Option<Vec<_>>>()?;
+        Some(Box::new(Self { system: self.system.without(&dropped)?, ..self.clone() }))
     }
 
     #[cfg(feature = "derivatives")]

@@ -7,6 +7,7 @@ use crate::code::Code;
 use crate::kinds::Interpreted;
 use crate::mistakes::Mistakes;
 use crate::tape::Tape;
+use vi_core::constrained::Independent;
 use vi_core::kind::{Bound, Counted, Free};
 use vi_erased::at_rest::without_rest;
 use vi_erased::plan::{Built, Method};
@@ -87,7 +88,7 @@ fn free<const N: usize>(code: &'static Code) -> Box<dyn System> {
 /// The system of N coordinates with up to N constraints.
 fn bound<const N: usize>(code: &'static Code) -> Box<dyn System> {
     let all = integrator::all([integrators!(gauss 1, 2, 3, 4, 6), integrators!(adaptive 3), integrators!(energy 1, 2)]);
-    Box::new(Typed::of(Tape::<N, Of<N>>::new(code), all))
+    Box::new(Typed::of(Independent::of(Tape::<N, Of<N>>::new(code)), all))
 }
 
 /// Whether a system has this method.

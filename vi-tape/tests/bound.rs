@@ -2,6 +2,7 @@
 //!
 //! Both eliminate in the same order, so that bits are equal; with a coordinate at rest the order may differ.
 
+use vi_core::StepError;
 use vi_erased::plan::{Method, PhasePoint, Plan};
 use vi_erased::system::Quantity;
 use vi_erased::{System, kind};
@@ -140,4 +141,45 @@ fn coordinates_at_rest_have_no_constraint() {
     assert!((x * x + y * y - 1.69).abs() < 1e-14); // 2.2e-16
     let off_rod = Plan::new(Method::Gauss, 0.01, guess);
     assert!(matches!(narrow.begin(&off_rod).err(), Some(vi_core::StepError::InconsistentStart { .. })));
+}
+
+/// A coupler on three parallel cranks, two of which would hold it: the third one follows from them.
+const CRANKS: &str = "struct Cranks {
+    param b = 2.0, c = 1.0, g = 9.81;
+    coord x, y, u, w;
+    L = (dot(x)^2 + dot(y)^2 + dot(u)^2 + dot(w)^2) / 2 - g * (y + w);
+    constraint left = x^2 + y^2 - 1, right = (u - b)^2 + w^2 - 1, coupler = (u - x)^2 + (w - y)^2 - b^2;
+    constraint middle = ((x + u) / 2 - b / 2)^2 + ((y + w) / 2)^2 - c^2;
+}";
+
+#[test]
+fn dropped_constraints_leave_the_motion() {
+    let mut all = vi_tape::System::parse(CRANKS).unwrap_or_else(|error| panic!("{error}")).into_inner();
+    all.set("g", 5.0);
+    let two = CRANKS.replace("c = 1.0, ", "");
+    let two = format!("{}}}", two.split("constraint middle").next().expect("the rest"));
+    let mut two = vi_tape::System::parse(&two).unwrap_or_else(|error| panic!("{error}")).into_inner();
+    two.set("g", 5.0);
+    let (sine, cosine) = 0.5_f64.sin_cos();
+    let at = PhasePoint { t: 0.0, q: vec![sine, -cosine, 2.0 + sine, -cosine], v: vec![0.0; 4] };
+    let kept = all.without(&["middle"]).expect("a constraint");
+    assert_eq!((kept.constraints(), kept.parameters()), (all.constraints(), all.parameters()));
+    assert!(all.without(&["top"]).is_none() && kind!(RodPendulum, { gauss 1 }).without(&["rod"]).is_none());
+    for stages in [1, 3] {
+        let plan = Plan { stages: Some(stages), ..Plan::new(Method::Gauss, 0.02, at.clone()) };
+        assert!(all.begin(&plan).is_err());
+        let [mut run, mut other] = [&kept, &two].map(|of| of.begin(&plan).expect("a start"));
+        run.advance_by(50).expect("steps");
+        other.advance_by(50).expect("steps");
+        let [one, other] = [run.row(), other.row()];
+        let found = off(&one.q, &other.q).max(off(&one.p, &other.p));
+        assert!(found < 1e-13 && off(&one.q, &at.q) > 0.1, "{stages}: {found:e}"); // 0
+        let of = one.constraints.expect("constraints");
+        assert!(of.reactions[3] == Some(0.0) && of.residual.expect("a velocity") < 1e-14, "{of:?}");
+    }
+    // A third crank of another length contradicts the others.
+    let mut wrong = kept.copy();
+    wrong.set("c", 1.1);
+    let refused = wrong.begin(&Plan { stages: Some(1), ..Plan::new(Method::Gauss, 0.02, at) }).err();
+    assert!(matches!(refused, Some(StepError::DroppedConstraint { constraint: "middle", .. })), "{refused:?}");
 }

@@ -8,7 +8,7 @@ use super::{constrained_acceleration, constrained_flow};
 use crate::error::StepError;
 use crate::forward;
 use crate::kind::{Gradients, Multipliers, ReactionMatrix};
-use crate::lagrangian::{Flow, Lagrangian, Parameters};
+use crate::lagrangian::{Described, Flow, Lagrangian, Parameters};
 use crate::linear::{Bordered, Rectangular};
 use crate::motion::Motion;
 use crate::node::Node;
@@ -59,11 +59,20 @@ impl<S> Independent<S> {
         let is_regular = Bordered::new(N, 0, system.blocks()).factor(&mass, &gradients).is_ok();
         let all: Vec<usize> = (0..of).collect();
         let kept = independent_rows(&gradients, &all, &mass, is_regular);
-        let mut dropped = [0; WORDS];
-        for r in (0..of).filter(|r| !kept.contains(r)) {
-            dropped[r / 64] |= 1 << (r % 64);
+        Ok(Self::of(system).dropping((0..of).filter(|r| !kept.contains(r))))
+    }
+
+    /// Keeps all constraints; [`Motion::without`] drops some.
+    pub fn of(system: S) -> Self {
+        Self { system, dropped: [0; WORDS] }
+    }
+
+    /// Drops the constraints of these indices, below 512.
+    fn dropping(mut self, constraints: impl IntoIterator<Item = usize>) -> Self {
+        for r in constraints {
+            self.dropped[r / 64] |= 1 << (r % 64);
         }
-        Ok(Self { system, dropped })
+        self
     }
 
     /// The system with all constraints.
@@ -126,7 +135,7 @@ impl<S> Independent<S> {
     }
 
     /// Removes the rows of dropped constraints.
-    fn without<const N: usize, T: Real>(
+    fn without_dropped<const N: usize, T: Real>(
         &self,
         mut rows: (Gradients<S, N, T>, Multipliers<S, N, T>),
     ) -> (Gradients<S, N, T>, Multipliers<S, N, T>)
@@ -155,10 +164,10 @@ impl<const N: usize, T: Real, S: Motion<N, T>> Lagrangian<N, T> for Independent<
 }
 
 impl<const N: usize, T: Real, S: Motion<N, T>> Motion<N, T> for Independent<S> {
-    forward! { [N T S] self => &self.system; [] motion_types point point_derivatives power applied constraints }
+    forward! { [N T S] self => &self.system; [] motion_types point sides applied_force point_derivatives power applied constraints }
 
     fn constraint_gradients(&self, t: T, q: &SVector<T, N>) -> (Gradients<Self, N, T>, Multipliers<Self, N, T>) {
-        self.without(self.system.constraint_gradients(t, q))
+        self.without_dropped(self.system.constraint_gradients(t, q))
     }
     fn constraint_rate_derivatives(
         &self,
@@ -166,7 +175,7 @@ impl<const N: usize, T: Real, S: Motion<N, T>> Motion<N, T> for Independent<S> {
         q: &SVector<T, N>,
         v: &SVector<T, N>,
     ) -> (Gradients<Self, N, T>, Multipliers<Self, N, T>) {
-        self.without(self.system.constraint_rate_derivatives(t, q, v))
+        self.without_dropped(self.system.constraint_rate_derivatives(t, q, v))
     }
     fn reaction_derivatives(
         &self,
@@ -183,7 +192,14 @@ impl<const N: usize, T: Real, S: Motion<N, T>> Motion<N, T> for Independent<S> {
     fn is_dropped(&self, constraint: usize) -> bool {
         Self::is_dropped(self, constraint)
     }
+    fn without(&self, constraints: &[usize]) -> Option<Self> {
+        let count = self.system.constraint_names().len().min(64 * WORDS);
+        constraints.iter().all(|r| *r < count).then(|| self.dropping(constraints.iter().copied()))
+    }
     fn broken(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<(usize, T)> {
+        if self.dropped == [0; WORDS] {
+            return None;
+        }
         let mut measured = self.measured(t, q, v);
         // False for NaN.
         let holds = |value: T, scale: T| value.to_f64().abs() <= HOLDS * scale.to_f64();
@@ -196,6 +212,22 @@ impl<const N: usize, S: Convertible<N>> Convertible<N> for Independent<S> {
 
     fn convert<T: Real>(&self) -> Self::In<T> {
         Independent { system: self.system.convert(), dropped: self.dropped }
+    }
+}
+
+impl<S: Described> Described for Independent<S> {
+    const ABOUT: &'static str = S::ABOUT;
+    const PARAMETERS_ABOUT: &'static [&'static str] = S::PARAMETERS_ABOUT;
+    const DEFINITION: &'static str = S::DEFINITION;
+
+    fn about(&self) -> &'static str {
+        self.system.about()
+    }
+    fn parameters_about(&self) -> &'static [&'static str] {
+        self.system.parameters_about()
+    }
+    fn definition(&self) -> &'static str {
+        self.system.definition()
     }
 }
 
