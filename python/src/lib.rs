@@ -6,6 +6,7 @@
 use proc_macro2::{LexError, TokenStream};
 use pyo3::exceptions::{PyNotImplementedError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 use vi_codegen::inspect::{self, Line, report};
 use vi_python::{Kind, pyo3};
 
@@ -61,17 +62,28 @@ fn properties(definition: &str) -> PyResult<(bool, bool)> {
 
 /// The type of the system that a text declares, with every method.
 ///
-/// `files` are paths and texts of the files of its tables. Raises ValueError for a mistake, with its line;
-/// NotImplementedError for a system that has to be compiled.
+/// `files` are paths and texts of the files of its tables, `dropped` names of constraints that follow from the others.
+/// Raises ValueError for a mistake, with its line; NotImplementedError for a system that has to be compiled.
 #[pyfunction]
 #[pyo3(crate = "vi_python::pyo3")]
-fn of_text(py: Python<'_>, definition: &str, files: Vec<(String, String)>) -> PyResult<Kind> {
+fn of_text(
+    py: Python<'_>,
+    definition: &str,
+    files: Vec<(String, String)>,
+    dropped: Vec<PyBackedStr>,
+) -> PyResult<Kind> {
     let system = py.detach(|| vi_tape::System::of_file("definition", definition, &files));
     let raised = |mistakes: vi_tape::Mistakes| {
         let words = mistakes.to_string();
         if mistakes.needs_compiler() { PyNotImplementedError::new_err(words) } else { PyValueError::new_err(words) }
     };
-    system.map(|system| Kind::new(system.into_inner())).map_err(raised)
+    let system = system.map_err(raised)?.into_inner();
+    if dropped.is_empty() {
+        return Ok(Kind::new(system));
+    }
+    let names: Vec<&str> = dropped.iter().map(|name| &**name).collect();
+    let unknown = || PyValueError::new_err(format!("{} has not all constraints of {names:?}", system.name()));
+    system.without(&names).map(Kind::new).ok_or_else(unknown)
 }
 
 /// Path and text of each source file that a compiled system needs.

@@ -226,7 +226,7 @@ def test_a_text_with_constraints(warm_cache):
     with pytest.raises(vi.Redundant) as caught:
         Twice().integrate([1.0, 0.0, 0.0], h=0.01)
     assert (caught.value.constraint, caught.value.of, caught.value.rank) == ("bowl", 2, 1)
-    assert "system.redundant(q, t=…) names from the definition, here 1 of 2, such as `bowl`" in str(caught.value)
+    assert "that follow from the others, here 1 of 2, such as `bowl`" in str(caught.value)
     assert Twice().redundant([1.0, 0.0, 0.0]) == ("bowl",)
     assert Twice().redundant([0.6, 0.0, 0.8]) == () and bead.redundant([1.0, 1.0]) == ()
     with pytest.raises(ValueError, match="q"):

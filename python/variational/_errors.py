@@ -144,8 +144,8 @@ ADVICE: dict[str, str] = {
     "DroppedConstraint": "start elsewhere, or correct its lengths",
     "NotAssembled": "check lengths and anchors of `{constraint}` and its neighbours, or start from another guess",
     "InconsistentTangent": "choose changes of the start that keep the constraint",
-    "Redundant": "delete the constraints that system.redundant(q, t=…) names from the definition, here {dependent} of "
-    "{of}, such as `{constraint}`, or start elsewhere",
+    "Redundant": "start from system.independent(q, t=…), which drops the constraints that follow from the others, "
+    "here {dependent} of {of}, such as `{constraint}`, or start elsewhere",
     "Undefined": "take shorter steps, or stop the run before it gets there",
     "CannotLeave": "set the velocity toward the zero to zero with run.set_state, or search without event {event}",
     "OtherSystem": "restart with the parameters of the checkpoint",

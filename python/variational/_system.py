@@ -161,7 +161,10 @@ class System(metaclass=SystemType):
 
         of_text: Any = getattr(cls, "_text", None)
         if of_text:
-            definition, _, _, files = of_text
+            definition, _, _, files, dropped = of_text
+            if dropped:
+                left_out = ", ".join(dropped)
+                raise CompileError(f"{cls.__name__} is without {left_out}: delete these from its text to compile it")
             for path, _ in set(files) - set(files_of(definition)):
                 raise CompileError(f"the file {path} of a table changed or is missing: make the system again from its text")
         return compile(cls.definition, methods=methods, verbose=verbose)
@@ -277,14 +280,30 @@ class System(metaclass=SystemType):
     def redundant(self, q: ArrayLike, *, t: float = 0.0) -> tuple[str, ...]:
         """The names of the constraints that follow from the others at coordinates q, which satisfy all of them.
 
-        A run does not start from such a place, because the reactions are not unique. Without these constraints the
-        motion is the same, up to a place where the others become dependent too.
+        A run does not start from such a place, because the reactions are not unique: `independent` returns a system
+        that does.
         """
         q = vector(q, len(self.coordinates), "q", self.coordinates)
         return tuple(self._kind.redundant(self._values, number(t, "t"), q))
 
     def _moved(self, q: ArrayLike, v: ArrayLike | None, t: float, is_far: bool) -> Projected:
         (n,), names = self._shape, self.coordinates
+    def independent(self, q: ArrayLike, *, t: float = 0.0) -> System:
+        """The same system without the constraints that `redundant` names at coordinates q, which satisfy all of them.
+
+        Its motion is the same. Dropped constraints have the reaction 0, and every step checks that they hold:
+        DroppedConstraint is raised where they do not follow from the others any more, and Singular where the others
+        become dependent: there another subset may be independent. A compiled system becomes one of its text.
+        """
+        dropped = self.redundant(q, t=t)
+        if not dropped:
+            return self.copy()
+        from ._text import of_text
+
+        own: Any = getattr(self, "_text", None)
+        cls = of_text(own[0], files=own[3], dropped=dropped) if own else of_text(self.definition, dropped=dropped)
+        return cls._of(self._values)
+
         q = vector(q, n, "q", names)
         v = np.zeros(n) if v is None else vector(v, n, "v", names)
         return Projected(*self._kind.project(self._values, number(t, "t"), q, v, is_far))

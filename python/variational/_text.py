@@ -25,9 +25,11 @@ def of_text(
     or_compiled: bool = False,
     module: str = "variational.of_text",
     files: tuple[tuple[str, str], ...] | None = None,
+    dropped: tuple[str, ...] = (),
 ) -> type[System]:
     """The class of the system that a text declares. Equal texts have one class. With `or_compiled` a system that has
     to be compiled is compiled. `files` are paths and texts of the files of its tables; otherwise they are read.
+    `dropped` are constraints that follow from the others.
 
     Raises CompileError.
     """
@@ -35,10 +37,11 @@ def of_text(
         raise TypeError(f"the definition must be a text, not {type(definition).__name__}")
     if files is None:
         files = files_of(definition)
-    cls: Any = _known.get((definition, files))
+    key = (definition, files, dropped)
+    cls: Any = _known.get(key)
     if cls is None:
         try:
-            kind = _core.of_text(definition, list(files))
+            kind = _core.of_text(definition, list(files), list(dropped))
         except ValueError as mistake:
             raise CompileError(str(mistake)) from None
         except NotImplementedError as reason:
@@ -47,10 +50,10 @@ def of_text(
             raise CompileError(str(reason)) from None
         cls = class_of(kind, module, _OfText)
         cls.definition = inspect.cleandoc(definition)
-        cls._text = (definition, False, module, files)
+        cls._text = (definition, False, module, files, dropped)
         # Another thread may have made it meanwhile.
         with _lock:
-            cls = _known.setdefault((definition, files), cls)
+            cls = _known.setdefault(key, cls)
     return cls
 
 
