@@ -51,7 +51,7 @@ enum Action {
     /// Compute every figure and table of the paper's numerical study, next to the published numbers
     Paper(vi_paper::Study),
     /// Simulate one system, and write its states
-    Run(run::Arguments),
+    Run(Box<run::Arguments>),
     /// Map where methods fail: the complete page, or the map of one system
     Stability(vi_stability::Arguments),
     /// Chart error against time, evaluations and step for every method on one system

@@ -175,7 +175,11 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
         }
         (StepError::NotAssembled { .. }, _) => "start from another guess with --q, or set other lengths with --set",
         (StepError::Redundant { rank: 0, .. }, _) => "set another length with --set, or start elsewhere with --q",
-        (StepError::Redundant { .. }, _) => "start elsewhere with --q, or remove this constraint from the system",
+        (StepError::Redundant { constraint, .. }, _) => {
+            return Some(format!(
+                "leave it out with --drop '{constraint}', if the system is one of a file; or start elsewhere with --q"
+            ));
+        }
         _ => return None,
     };
     Some(advice.to_owned())

@@ -163,6 +163,9 @@ pub(crate) struct Arguments {
     /// Move the initial state to the nearest one on the constraints, and print by how much
     #[arg(long)]
     pub(crate) project: bool,
+    /// Leave out a constraint that follows from the others, in a system of a file; every step checks it. Repeat for several
+    #[arg(long, value_name = "CONSTRAINT")]
+    pub(crate) drop: Vec<String>,
     /// Write every Nth node and the last [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) every: Option<u64>,

@@ -187,6 +187,9 @@ impl Request {
         for (name, value) in &scene.parameters {
             set(system.as_mut(), name, *value)?;
         }
+        if !arguments.drop.is_empty() {
+            system = without(system.as_ref(), &arguments.drop)?;
+        }
         let mut names = BTreeSet::new();
         for assignment in &arguments.set {
             let (name, value) = parse_assignment(assignment)?;
@@ -446,6 +449,23 @@ fn shift(wanted: Wanted, length: Length, plan: &Plan) -> Result<Shift, Failure> 
         Wanted::Given(shift) => Ok(Shift::Of(shift)),
         Wanted::Auto => Ok(Shift::Over(length.measured(plan))),
     }
+}
+
+/// The system of a file without these constraints.
+fn without(system: &dyn System, constraints: &[String]) -> Result<Box<dyn System>, Failure> {
+    let known = system.constraints();
+    if let Some(name) = constraints.iter().find(|name| !known.contains(&name.as_str())) {
+        let (of, known) = (kebab(system.name()), known.join(", "));
+        let known = if known.is_empty() { "none" } else { &known };
+        return Err(Failure::Input(format!("{of} has no constraint `{name}` to --drop; it has {known}")));
+    }
+    let names: Vec<&str> = constraints.iter().map(String::as_str).collect();
+    system.without(&names).ok_or_else(|| {
+        let name = kebab(system.name());
+        Failure::Input(format!(
+            "{name} is compiled and keeps all its constraints; give its file, .vi or .rs, with --drop"
+        ))
+    })
 }
 
 fn set(system: &mut dyn System, name: &str, value: f64) -> Result<(), Failure> {

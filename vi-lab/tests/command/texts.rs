@@ -1,7 +1,7 @@
 //! Systems of a file, without a crate.
 
-use super::lab;
 use super::sweep::Folder;
+use super::{assert_refused, lab, rows};
 
 const OWN: &str = "
 /// A pendulum on a cart.
@@ -82,4 +82,37 @@ fn a_wrong_file_says_where() {
     assert!(errors.contains("unknown name `r`") && errors.contains("wrong.vi:6:"), "{errors}");
     let (status, _, errors) = lab(&["run", &folder.at("none.vi")]);
     assert!(status == Some(2) && errors.contains("none.vi"), "{errors}");
+}
+
+#[test]
+fn constraints_that_follow_from_the_others_are_left_out() {
+    let folder = Folder::new("drop", "");
+    let bars = folder.file(
+        "bars.vi",
+        "struct Bars {
+            coord x, y, u, w;
+            L = (dot(x)^2 + dot(y)^2 + dot(u)^2 + dot(w)^2) / 2 - 9.81 * (y + w);
+            constraint left = x^2 + y^2 - 1, right = (u - 2)^2 + w^2 - 1, coupler = (u - x)^2 + (w - y)^2 - 4;
+            constraint middle = ((x + u) / 2 - 1)^2 + ((y + w) / 2)^2 - 1;
+            check { x = 0.6, y = -0.8, u = 2.6, w = -0.8; h = 0.01; }
+        }",
+    );
+    let (status, _, errors) = lab(&["run", &bars, "--steps", "3"]);
+    assert!(status == Some(1) && errors.contains("leave it out with --drop 'middle'"), "{errors}");
+    let (status, csv, errors) = lab(&["run", &bars, "--drop", "middle", "--steps", "20", "--every", "20"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    // t, q, p, Λ of each constraint, the residual of all.
+    let last = &rows(&csv)[1];
+    assert!(last[12].abs() <= 0.0 && last[13] < 1e-14, "{csv}");
+    assert!((last[1] - last[3] + 2.0).abs() < 1e-14 && (last[1] - 0.6).abs() > 0.05, "{csv}");
+    assert_refused(&[
+        (
+            &["run", &bars, "--drop", "top"],
+            "bars has no constraint `top` to --drop; it has left, right, coupler, middle",
+        ),
+        (
+            &["run", "rod-pendulum", "--drop", "rod"],
+            "rod-pendulum is compiled and keeps all its constraints; give its file, .vi or .rs, with --drop",
+        ),
+    ]);
 }
