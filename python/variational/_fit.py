@@ -278,7 +278,7 @@ class _Model:
             if end > t:
                 steps = math.ceil((end - t) / self.h * (1.0 - 1e-9))
                 run = system.integrate(q, p=p, t=t, h=(end - t) / steps, **self.options)
-                columns = run._tangent(steps, self.indices)
+                columns = run._tangent(self.indices, steps=steps)[: 2 * n]
                 slope = columns[:, : 2 * n] @ slope
                 slope[:, self.is_parameter] += columns[:, 2 * n :]
                 t, q, p = end, run.q, run.p

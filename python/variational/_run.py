@@ -15,7 +15,7 @@ from ._arrays import Array, count, fixed, number, ordered, real, vector
 from ._calls import check_arguments, no_attribute, unfit
 from ._control import Linearization
 from ._errors import InconsistentStart, StepError, advised  # type: ignore[attr-defined]
-from ._events import Watched, descriptions, periodic
+from ._events import Event, Watched, descriptions, periodic
 from ._names import meant
 from ._solution import Events, Solution
 
@@ -303,23 +303,67 @@ class Run:
         self._run.set_state(t, q, p, _pairs(self._cls, parameters or {}))
         return self
 
-    def tangent(self, steps: int, wrt: Sequence[str] = ()) -> dict[str, Array]:
-        """Takes steps, and returns the derivatives of (q, p) at their end, exact to rounding.
+    def tangent(
+        self,
+        steps: int | None = None,
+        wrt: Sequence[str] = (),
+        *,
+        until: float | None = None,
+        event: Event | str | None = None,
+        velocities: bool = False,
+    ) -> dict[str, Array]:
+        """Takes steps, or runs to the time `until`, and returns the derivatives of (q, p) there, exact to rounding.
 
         The matrices "q" and "p" (2N, N) are with respect to the start; each name in `wrt` adds the derivative with
-        respect to this parameter: (2N,), or (2N, K) for an array.
+        respect to this parameter: (2N,), or (2N, K) for an array. The name "h" means the length of the steps, if no
+        parameter has it. With `velocities` all are in (q, v): the matrices are "q" and "v", and velocities are constant
+        where a parameter changes.
+
+        With an event, a coordinate or a velocity that crosses a value, the run ends at its first time before `until`.
+        A last row then has the derivatives of this time. With constraints the start is the nearest state on them, as of
+        `System.project`: changes of the coordinates or of a parameter move it.
+
+        Raises ValueError if there is no event before `until`.
         """
         n = len(self._cls.coordinates)
-        names, indices = self._wrt(wrt)
-        columns = self._tangent(_count(steps, "the number of steps"), indices)
-        found = {"q": columns[:, :n].copy(), "p": columns[:, n : 2 * n].copy()}
+        if (steps is None) == (until is None):
+            raise TypeError("give one of steps and until")
+        names, indices = self._wrt(wrt, True)
+        options: dict[str, Any] = {"steps": 0 if steps is None else _count(steps, "the number of steps")}
+        if until is not None:
+            options["t"] = number(until, "until")
+        if event is not None:
+            if until is None:
+                raise TypeError("give until with an event: the time up to which it is looked for")
+            if not isinstance(event, (Event, str)) or getattr(event, "period", None) is not None:
+                raise TypeError(
+                    f"an event of a derivative must be a coordinate or velocity that crosses a value, such as "
+                    f'vi.Event("{self._cls.coordinates[0]}", 0.0), not {event!r}'
+                )
+            met = self.copy().next_event(event, until)
+            if not len(met):
+                raise ValueError(f"there is no event before t = {until:g}")
+            options["t"], (options["event"],) = float(met.t[0]), descriptions(event, self._cls, abs(self.h), True)
+        columns = self._tangent(indices, velocities=[velocities, velocities], **options)
+        columns = columns if event is not None else columns[: 2 * n]
+        second = "v" if velocities else "p"
+        found = {"q": columns[:, :n].copy(), second: columns[:, n : 2 * n].copy()}
         return {**found, **self._split(columns[:, 2 * n :], names)}
 
-    def _tangent(self, steps: int, indices: list[int]) -> Array:
-        """The derivatives of (q, p) after these steps with respect to (q, p) and these numbers of the system: a column
-        for each."""
+    def _tangent(self, indices: list[int], **options: Any) -> Array:
+        """The derivatives of (q, p, t) at the end of steps with respect to (q, p) and these numbers of the system: a
+        column for each."""
         with self._advising():
-            return self._run.tangent(steps, indices).T
+            return self._run.tangent(indices, **options).T
+
+    def lyapunov(self, steps: int, count: int = 1) -> Array:
+        """Takes steps, and returns the largest Lyapunov exponents of them, per unit of time, in descending order.
+
+        `count` is at most 2N, less 2 for each constraint on positions and 1 for each on velocities.
+        """
+        steps = _count(steps, "the number of steps", 1)
+        with self._advising():
+            return self._run.lyapunov(steps, _count(count, "the number of exponents", 1))
 
     def gradient(
         self, steps: int, *, q: ArrayLike | None = None, p: ArrayLike | None = None, wrt: Sequence[str] = ()
@@ -327,7 +371,8 @@ class Run:
         """Takes steps, and returns the gradient of a function of their end by one backward pass.
 
         q and p are the derivatives of that function with respect to (q, p) at the end. The result has its gradients
-        with respect to "q" and "p" at the start, and to each parameter in `wrt`.
+        with respect to "q" and "p" at the start, and to each parameter in `wrt`. With constraints the start is the
+        nearest state on them.
         """
         names_of, n = self._cls.coordinates, len(self._cls.coordinates)
         if q is None and p is None:
@@ -345,21 +390,27 @@ class Run:
         except StepError as error:
             raise advised(error, self._cls) from None
 
-    def _wrt(self, wrt: Sequence[str]) -> tuple[list[str], list[int]]:
+    def _wrt(self, wrt: Sequence[str], has_length: bool = False) -> tuple[list[str], list[int]]:
+        """The names, and the indices of their numbers; that of the step length is the number of parameters."""
         names = [wrt] if isinstance(wrt, str) else list(wrt)
         if not all(isinstance(name, str) for name in names):
             raise TypeError(f"wrt must be names of parameters, not {wrt!r}")
-        parameters = [self._cls._parameter(name) for name in names]
-        return names, [index for parameter in parameters for index in parameter.indices]
+        length = range(len(self._cls._defaults), len(self._cls._defaults) + 1)
+        is_length = [has_length and name == "h" and name not in self._cls.parameters for name in names]
+        named = zip(names, is_length, strict=True)
+        indices = [length if own else self._cls._parameter(name).indices for name, own in named]
+        return names, [index for of in indices for index in of]
 
     def _split(self, columns: Array, names: list[str]) -> dict[str, Array]:
         """The last axis by parameters."""
         found, start = {}, 0
         for name in names:
-            parameter = self._cls._parameter(name)
-            part = columns[..., start : start + len(parameter.indices)]
-            start += len(parameter.indices)
-            found[name] = part.copy() if parameter.length is not None else part[..., 0].copy()
+            # The step length is no parameter.
+            parameter = self._cls._parameter(name) if name != "h" or name in self._cls.parameters else None
+            count = len(parameter.indices) if parameter else 1
+            part = columns[..., start : start + count]
+            start += count
+            found[name] = part.copy() if parameter and parameter.length is not None else part[..., 0].copy()
         return found
 
     def linearization(self) -> Linearization:
@@ -408,7 +459,7 @@ class Run:
 
 
 # Not `step`, which programs call most.
-check_arguments(Run, ["until", "steps", "at", "events", "next_event", "set_state", "tangent", "gradient"])
+check_arguments(Run, ["until", "steps", "at", "events", "next_event", "set_state", "tangent", "gradient", "lyapunov"])
 
 
 def _pairs(cls: type[System], parameters: Mapping[str, Any]) -> list[tuple[int, float]]:

@@ -3,6 +3,9 @@
 use super::spoiled::Fault;
 use super::{Case, Node, advance, ensure, fails, holds, largest};
 use vi_core::StepError;
+use vi_erased::plan::PhasePoint;
+use vi_erased::simulation::Wanted;
+use vi_erased::system::Quantity;
 
 /// Steps of a case: few if rounding of an energy visibly changes a length.
 fn steps(case: &Case) -> u64 {
@@ -16,10 +19,24 @@ fn parameters(case: &Case) -> Vec<usize> {
     (0..case.system.parameters().len()).collect()
 }
 
-/// Tangent vectors of the first steps.
+/// Tangent vectors of the first steps: changes of (q, p, t).
 fn tangents(case: &Case, steps: u64) -> Result<Vec<Vec<f64>>, String> {
-    let found = case.run()?.tangent(steps, &parameters(case), &mut || true);
+    let wanted = Wanted { parameters: &parameters(case), ..Wanted::after(steps) };
+    let found = case.run()?.tangent(wanted, &mut || true);
     found.map_err(|error| error.to_string())?.ok_or_else(|| "interrupted".into())
+}
+
+/// Moves the coordinates of a node to the nearest ones on the constraints, where its momenta become those of their
+/// velocity.
+fn nearest(case: &Case, node: &mut Node) -> Result<(), StepError> {
+    let still = PhasePoint { t: node.t, q: node.q.clone(), v: vec![0.0; node.q.len()] };
+    node.q = case.system.project(&still)?.point.q;
+    let evaluated = |of: Quantity, second: &[f64]| {
+        let mut found = Vec::new();
+        case.system.evaluate(of, [&[node.t], &node.q, second], &mut found).map(|()| found)
+    };
+    node.p = evaluated(Quantity::Momentum, &evaluated(Quantity::Velocity, &node.p)?)?;
+    Ok(())
 }
 
 /// The node after some steps from a start that is moved along a direction: a coordinate, a momentum or a parameter.
@@ -34,15 +51,25 @@ fn moved(case: &Case, start: &Node, direction: usize, by: f64) -> Result<Vec<f64
             system.set(name, value + by);
         }
     }
-    let mut run = case.of_system(system).from(case.h(), &start).map_err(|error| error.to_string())?;
+    let moved = case.of_system(system);
+    if !case.is_free() {
+        nearest(&moved, &mut start).map_err(|error| error.to_string())?;
+    }
+    let mut run = moved.from(case.h(), &start).map_err(|error| error.to_string())?;
     advance(&mut *run, steps(case))?;
-    Ok(Node::of(&*run).numbers())
+    let end = Node::of(&*run);
+    Ok([end.numbers(), vec![end.t]].concat())
 }
 
-/// Tangent vectors are differences of runs. With constraints no coordinate moves alone.
+/// Whether steps have no derivative: energy-preserving ones with constraints.
+fn has_no_derivative(case: &Case) -> bool {
+    !case.is_free() && case.method.keeps_energy
+}
+
+/// Tangent vectors are differences of runs, with constraints of runs from the nearest states on them.
 fn tangent(case: &Case) -> Result<(), String> {
-    if !case.is_free() {
-        let refused = case.run()?.tangent(1, &[], &mut || true);
+    if has_no_derivative(case) {
+        let refused = case.run()?.tangent(Wanted::after(1), &mut || true);
         ensure!(matches!(refused, Err(StepError::NoDerivative { .. })), "constraints: {refused:?}");
         return Ok(());
     }
@@ -73,7 +100,7 @@ fn tangent(case: &Case) -> Result<(), String> {
 
 /// A gradient, found by one backward pass, is that of tangent vectors.
 fn gradient(case: &Case) -> Result<(), String> {
-    if !case.is_free() {
+    if has_no_derivative(case) {
         return Ok(());
     }
     let n = case.scene.q.len();
@@ -109,7 +136,7 @@ fn linearization(case: &Case) -> Result<(), String> {
     advance(&mut *run, 1)?;
     let (before, found) = (run.row(), run.linearization());
     ensure!(run.row() == before, "a linearization changes the run");
-    if !case.is_free() && case.method.keeps_energy {
+    if has_no_derivative(case) {
         ensure!(matches!(found, Err(StepError::NoDerivative { .. })), "constraints and an energy: {found:?}");
         return Ok(());
     }
@@ -119,14 +146,13 @@ fn linearization(case: &Case) -> Result<(), String> {
     let end = Node::of(&*next).numbers();
     let off = largest(end.iter().zip(&found.value).map(|(one, other)| one - other));
     ensure!(off < 1e-14, "the next node is off by {off:e}");
-    if case.is_free() {
-        let columns = run.tangent(1, &[], &mut || true).map_err(|error| error.to_string())?.ok_or("interrupted")?;
-        let n = end.len();
-        let entry = |row: usize, column: usize| columns[column][row] - found.a[row * n + column];
-        let off = largest((0..n).flat_map(|row| (0..n).map(move |column| (row, column))).map(|(r, c)| entry(r, c)));
-        let size = largest(columns.iter().flatten().copied());
-        ensure!(off < 1e-11 * size, "the tangent map is off by {off:e} of {size}");
-    }
+    let columns =
+        run.tangent(Wanted::after(1), &mut || true).map_err(|error| error.to_string())?.ok_or("interrupted")?;
+    let n = end.len();
+    let entry = |row: usize, column: usize| columns[column][row] - found.a[row * n + column];
+    let off = largest((0..n).flat_map(|row| (0..n).map(move |column| (row, column))).map(|(r, c)| entry(r, c)));
+    let size = largest(columns.iter().flatten().copied());
+    ensure!(off < 1e-11 * size, "the tangent map is off by {off:e} of {size}");
     Ok(())
 }
 

@@ -7,7 +7,7 @@ use vi_core::run::ErrorEstimate;
 use vi_erased::control::{Control, Linear};
 use vi_erased::plan::Built;
 use vi_erased::section::Section;
-use vi_erased::simulation::{AtConstraints, Met, Rows, Session, ShiftedEnergy, StepOutput, Steps};
+use vi_erased::simulation::{AtConstraints, Met, Rows, Session, ShiftedEnergy, StepOutput, Steps, Wanted};
 use vi_erased::studies::Studies;
 use vi_erased::system::{OnConstraints, Quantity};
 use vi_erased::{PhasePoint, Plan, Row, Simulation, System};
@@ -294,13 +294,21 @@ impl Session for Spoiled<dyn Simulation> {
 
     fn tangent(
         &mut self,
-        steps: u64,
-        parameters: &[usize],
+        wanted: Wanted<'_>,
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Vec<f64>>>, StepError> {
         let factor = self.factor(Fault::Tangent, 1.001);
-        let found = self.of.tangent(steps, parameters, goes_on)?;
+        let found = self.of.tangent(wanted, goes_on)?;
         Ok(found.map(|of| of.iter().map(|of| of.iter().map(|entry| entry * factor).collect()).collect()))
+    }
+
+    fn lyapunov(
+        &mut self,
+        steps: u64,
+        count_and_coordinates: [usize; 2],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError> {
+        self.of.lyapunov(steps, count_and_coordinates, goes_on)
     }
 
     fn gradient(

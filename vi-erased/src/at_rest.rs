@@ -11,6 +11,8 @@ use crate::control::{Control, Linear, Rest, pairs};
 use crate::plan::ENERGY_STAGES;
 use crate::plan::{Built, PhasePoint, Plan};
 use crate::section::{Section, Watch};
+#[cfg(feature = "derivatives")]
+use crate::simulation::Wanted;
 use crate::simulation::{AtConstraints, Met, ShiftedEnergy, Simulation, Steps, wrong_size};
 #[cfg(feature = "sessions")]
 use crate::simulation::{Rows, Session, StepOutput};
@@ -530,17 +532,27 @@ impl Session for Declared<dyn Simulation> {
     #[cfg(feature = "derivatives")]
     fn tangent(
         &mut self,
-        steps: u64,
-        parameters: &[usize],
+        wanted: Wanted<'_>,
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Vec<f64>>>, StepError> {
         let (all, size) = (self.all(), self.size);
-        let found = self.of.tangent(steps, parameters, goes_on)?;
+        let found = self.of.tangent(wanted, goes_on)?;
         let is_declared = |at: usize| at >= 2 * all || at % all < size;
         Ok(found.map(|rows| {
-            let rows = rows.iter().enumerate().filter(|(at, _)| is_declared(*at));
-            rows.map(|(_, row)| cut(row, all, size)).collect()
+            let declared = |of: Vec<f64>| of.into_iter().enumerate().filter(|(at, _)| is_declared(*at));
+            let rows = rows.into_iter().enumerate().filter(|(at, _)| is_declared(*at));
+            rows.map(|(_, row)| declared(row).map(|(_, entry)| entry).collect()).collect()
         }))
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn lyapunov(
+        &mut self,
+        steps: u64,
+        [count, coordinates]: [usize; 2],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError> {
+        self.of.lyapunov(steps, [count, coordinates.min(self.size)], goes_on)
     }
 
     #[cfg(feature = "derivatives")]

@@ -1,49 +1,84 @@
 //! Derivatives of runs.
 //!
-//! In: a run. Out: its linearization, tangent vectors and gradients as plain numbers, and the run at
-//! their end. With constraints, the change of one coordinate alone is no motion: runs have a linearization only.
+//! In: a run. Out: its tangent vectors, gradients and Lyapunov exponents as plain numbers, and the run at their end. With
+//! constraints, the change of one coordinate alone is no motion: derivatives are those of the run from the nearest state
+//! on the constraints.
 
 use crate::erasable::Runnable;
 use crate::method::{AnyMethod, AnyRun};
-use vi_core::derivatives::{self, Covector, Objective, Tangent, Variation};
-use vi_core::kind::Kind;
-use vi_core::{State, StepError};
-
-/// Checks that a change of one coordinate alone is a motion.
-///
-/// # Errors
-/// [`StepError::NoDerivative`] with constraints.
-fn check_free<S: Runnable<N>, const N: usize>(t: f64) -> Result<(), StepError> {
-    let because = "a change of one coordinate alone leaves the constraints; use the linearization of the run";
-    if const { S::Kind::COUNT == 0 } { Ok(()) } else { Err(StepError::NoDerivative { t, because }) }
-}
+use crate::simulation::{End, Wanted};
+use vi_core::derivatives::{self, Covector, Lyapunov, Objective, Tangent, Variation};
+use vi_core::{SVector, State, StepError};
 
 /// A value at the end of some steps, and the run there; `None` if it was interrupted.
 type AtEnd<S, Y, const N: usize> = Result<Option<(AnyRun<S, N>, Y)>, StepError>;
 
-/// Derivatives of the node after steps by the start, as [`Session::tangent`](crate::Session::tangent); `begins` if the run
-/// is where it began.
+/// Derivatives of the end of some steps with respect to their start, as [`Session::tangent`](crate::Session::tangent);
+/// `begins` if the run is where it began.
 ///
 /// # Errors
 /// As there.
 pub(crate) fn tangent<S: Runnable<N>, const N: usize>(
     run: &AnyRun<S, N>,
     begins: bool,
-    steps: u64,
-    parameters: &[usize],
+    Wanted { end, parameters, has_velocities: [at_start, at_end] }: Wanted<'_>,
     goes_on: &mut dyn FnMut() -> bool,
 ) -> AtEnd<S, Vec<Vec<f64>>, N> {
-    check_free::<S, N>(run.t())?;
-    let mut tangent = varied(run, begins, parameters)?;
-    for _ in 0..steps {
+    let mut tangent = varied(run, begins, parameters, at_start)?;
+    let (mut left, time) = match end {
+        End::Steps(steps) => (steps, None),
+        End::Time(t) | End::Crossing(_, t) => (u64::MAX, Some(t)),
+    };
+    if let Some(t) = time {
+        run.check_ahead(t)?;
+    }
+    // The last step to a time is found by the tangent itself.
+    let is_far = |run: &AnyRun<S, N>, t: f64| (run.time_to(t) - 2.0 * run.longest()) * run.h().signum() > 0.0;
+    while left > 0 && time.is_none_or(|t| is_far(tangent.run(), t)) {
         if !goes_on() {
             return Ok(None);
         }
         tangent.step()?;
+        left -= 1;
     }
-    let of_node = |of: &Variation<N>| of.q.iter().chain(&of.p).copied().collect();
-    let found = tangent.variations().iter().map(of_node).collect();
+    match end {
+        End::Steps(_) => {}
+        End::Time(t) => drop(tangent.until(t)?),
+        End::Crossing(section, t) => {
+            let because = "an event of a derivative is a coordinate or a velocity that crosses a value";
+            let event = section.smooth_event().ok_or(StepError::NoDerivative { t, because })?;
+            // Beyond the time of the crossing, where rounding decides on which side it is.
+            tangent.until_event(&event, t + run.longest())?;
+        }
+    }
+    let velocities = at_end.then(|| tangent.velocities()).transpose()?;
+    let of_node = |(direction, of): (usize, &Variation<N>)| {
+        let second = velocities.as_ref().map_or(&of.p, |of| &of[direction]);
+        of.q.iter().chain(second).chain([&of.t]).copied().collect()
+    };
+    let found = tangent.variations().iter().enumerate().map(of_node).collect();
     Ok(Some((tangent.run().clone(), found)))
+}
+
+/// The largest Lyapunov exponents of the first coordinates over some steps, as
+/// [`Session::lyapunov`](crate::Session::lyapunov).
+///
+/// # Errors
+/// As there.
+pub(crate) fn lyapunov<S: Runnable<N>, const N: usize>(
+    run: &AnyRun<S, N>,
+    steps: u64,
+    [count, coordinates]: [usize; 2],
+    goes_on: &mut dyn FnMut() -> bool,
+) -> AtEnd<S, Vec<f64>, N> {
+    let mut of = Lyapunov::of_first(run.clone(), count, coordinates.min(N))?;
+    for _ in 0..steps {
+        if !goes_on() {
+            return Ok(None);
+        }
+        of.advance(1)?;
+    }
+    Ok(Some((of.run().clone(), of.exponents())))
 }
 
 /// Steps of a stretch of a gradient, whose states are all kept.
@@ -61,7 +96,6 @@ pub(crate) fn gradient<S: Runnable<N>, const N: usize>(
     parameters: &[usize],
     goes_on: &mut dyn FnMut() -> bool,
 ) -> AtEnd<S, Vec<f64>, N> {
-    check_free::<S, N>(run.t())?;
     let names: Vec<&'static str> =
         parameters.iter().filter_map(|index| run.system().parameters().get(*index).copied()).collect();
     // The run at the start of each stretch; the pass goes back from the last one.
@@ -90,12 +124,12 @@ pub(crate) fn gradient<S: Runnable<N>, const N: usize>(
             sums.iter_mut().zip(of_a_step).for_each(|(sum, slope)| *sum += slope);
         }
         // The sum includes a change of the kept energy, by H at the start of each stretch.
-        let changed = Tangent::from_change(run.clone(), directions(parameters))?;
+        let changed = Tangent::from_change(run.clone(), directions(run, parameters))?;
         for (sum, direction) in sums.iter_mut().zip(&changed.variations()[2 * N..]) {
             *sum -= slope.energy * direction.energy;
         }
     }
-    let directions = varied(run, begins, parameters)?;
+    let directions = varied(run, begins, parameters, false)?;
     let mut of: Vec<f64> = directions.variations().iter().map(|direction| slope.of(direction)).collect();
     of[2 * N..].iter_mut().zip(&sums).for_each(|(of, sum)| *of += sum);
     Ok(Some((ahead, of)))
@@ -119,20 +153,32 @@ impl<S: Runnable<N>, const N: usize> Objective<AnyMethod<S, N>, S, N> for AtTheE
 }
 
 /// The directions of the coordinates, the momenta, and the parameters of these indices.
-fn directions<const N: usize>(parameters: &[usize]) -> Vec<Variation<N>> {
-    Variation::of_state().into_iter().chain(parameters.iter().copied().map(Variation::of_index)).collect()
+fn directions<S: Runnable<N>, const N: usize>(run: &AnyRun<S, N>, parameters: &[usize]) -> Vec<Variation<N>> {
+    let count = run.system().parameters().len();
+    let of = |index: &usize| if *index < count { Variation::of_index(*index) } else { Variation::of_length() };
+    Variation::of_state().into_iter().chain(parameters.iter().map(of)).collect()
 }
 
-/// The run with its directions. Where it began, the energy that it keeps follows from its start; later it changes as H
-/// does.
+/// The run with its directions, which are moved to the nearest admissible ones. With `has_velocities` the second half of
+/// those of the state is of velocities, and parameters vary with constant velocities. Where the run began, the energy
+/// that it keeps follows from its start; later it changes as H does.
 ///
 /// # Errors
-/// As [`Tangent::from_start`] and [`Tangent::from_change`].
+/// As [`Tangent::project`], [`Tangent::from_start`] and [`Tangent::from_change`].
 fn varied<S: Runnable<N>, const N: usize>(
     run: &AnyRun<S, N>,
     begins: bool,
     parameters: &[usize],
+    has_velocities: bool,
 ) -> Result<Tangent<AnyMethod<S, N>, S, N>, StepError> {
+    let directions = directions(run, parameters);
+    let velocities: Vec<SVector<f64, N>> = directions.iter().map(|of| of.p).collect();
+    let mut tangent = Tangent::new(run.clone(), directions);
+    tangent.project()?;
+    if has_velocities {
+        tangent.set_velocities(&velocities)?;
+        tangent.project()?;
+    }
     let of = if begins { Tangent::from_start } else { Tangent::from_change };
-    of(run.clone(), directions(parameters))
+    of(run.clone(), tangent.variations().to_vec())
 }

@@ -15,7 +15,7 @@
 //! | [`erasable`] | what a system and a method must have |
 //! | [`method`] | a method behind a pointer: runs are compiled once for each system |
 //! | `run` | a run of such a method |
-//! | `derivatives` | tangent vectors and gradients of runs; feature `derivatives` |
+//! | `derivatives` | tangent vectors, gradients and Lyapunov exponents of runs; feature `derivatives` |
 //! | `session` | a run in the hands of a program; feature `sessions` |
 //! | [`integrator`] | an integrator that is built for a system |
 //! | [`studies`] | exponents, accurate motions, DOP853; feature `studies` |

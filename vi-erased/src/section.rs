@@ -5,6 +5,8 @@
 
 use core::fmt;
 use std::sync::Arc;
+#[cfg(feature = "derivatives")]
+use vi_core::real::Dual;
 use vi_core::run::{Event, Moment};
 
 /// The direction in which a function crosses zero, along the run.
@@ -117,5 +119,23 @@ impl Section {
             Direction::Falling => Event::falling(g),
             Direction::Both => Event::crossing(g),
         }
+    }
+
+    /// The same event with a derivative; `None` for a period and a function, which have none.
+    #[cfg(feature = "derivatives")]
+    pub(crate) fn smooth_event<const N: usize>(&self) -> Option<Event<N>> {
+        let (is_velocity, index, at) = match self {
+            Self::Coordinate { index, at, .. } => (false, *index, *at),
+            Self::Velocity { index, at, .. } => (true, *index, *at),
+            Self::Period { .. } | Self::Function(..) => return None,
+        };
+        let g = move |moment: &Moment<N, Dual<f64>>| {
+            (if is_velocity { moment.v[index] } else { moment.q[index] }) - Dual::fixed(at)
+        };
+        Some(match self.direction() {
+            Direction::Rising => Event::smooth_rising(g),
+            Direction::Falling => Event::smooth_falling(g),
+            Direction::Both => Event::smooth_crossing(g),
+        })
     }
 }

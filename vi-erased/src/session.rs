@@ -10,6 +10,8 @@ use crate::method::AnyMemory;
 use crate::method::{AnyMethod, AnyOutput, AnyRun, Progress};
 use crate::run::{Simulated, met};
 use crate::section::Section;
+#[cfg(feature = "derivatives")]
+use crate::simulation::Wanted;
 use crate::simulation::{Met, Rows, Session, StepOutput, vector};
 #[cfg(feature = "checkpoints")]
 use serde_json::value::RawValue;
@@ -183,16 +185,22 @@ impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
     #[cfg(feature = "derivatives")]
     fn tangent(
         &mut self,
-        steps: u64,
-        parameters: &[usize],
+        wanted: Wanted<'_>,
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Vec<f64>>>, StepError> {
-        let found = derivatives::tangent(&self.run, self.begins(), steps, parameters, goes_on)?;
-        Ok(found.map(|(run, of)| {
-            self.run = run;
-            self.resume();
-            of
-        }))
+        let found = derivatives::tangent(&self.run, self.begins(), wanted, goes_on)?;
+        Ok(self.at_end(found))
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn lyapunov(
+        &mut self,
+        steps: u64,
+        count_and_coordinates: [usize; 2],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError> {
+        let found = derivatives::lyapunov(&self.run, steps, count_and_coordinates, goes_on)?;
+        Ok(self.at_end(found))
     }
 
     #[cfg(feature = "derivatives")]
@@ -209,11 +217,7 @@ impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
         };
         let slope = Covector { q, p, ..Covector::zero() };
         let found = derivatives::gradient(&self.run, self.begins(), (steps, slope), parameters, goes_on)?;
-        Ok(found.map(|(run, of)| {
-            self.run = run;
-            self.resume();
-            of
-        }))
+        Ok(self.at_end(found))
     }
 }
 
@@ -222,5 +226,14 @@ impl<S: Runnable<N>, const N: usize> Simulated<S, N> {
     /// Whether the run is where it began.
     fn begins(&self) -> bool {
         self.start.as_ref() == Some(self.run.node())
+    }
+
+    /// Continues at the end of differentiated steps, unless they were interrupted, and returns their derivatives.
+    fn at_end<Y>(&mut self, found: Option<(AnyRun<S, N>, Y)>) -> Option<Y> {
+        found.map(|(run, of)| {
+            self.run = run;
+            self.resume();
+            of
+        })
     }
 }

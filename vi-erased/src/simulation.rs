@@ -153,6 +153,39 @@ pub trait StepOutput: Send + Sync {
     fn at(&self, t: f64) -> [Vec<f64>; 3];
 }
 
+/// The end of the steps that are differentiated.
+#[cfg(feature = "derivatives")]
+#[derive(Clone, Copy, Debug)]
+pub enum End<'a> {
+    /// After this number of steps.
+    Steps(u64),
+    /// At this time, which does not vary.
+    Time(f64),
+    /// At the first crossing of a section, which is at this time.
+    Crossing(&'a Section, f64),
+}
+
+/// The derivatives that are wanted of a run.
+#[cfg(feature = "derivatives")]
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted<'a> {
+    /// The end of the steps.
+    pub end: End<'a>,
+    /// Indices of parameters that vary. The number of parameters is the index of the step length.
+    pub parameters: &'a [usize],
+    /// Whether velocities vary at the start, and are differentiated at the end, in place of momenta.
+    pub has_velocities: [bool; 2],
+}
+
+#[cfg(feature = "derivatives")]
+impl Wanted<'_> {
+    /// The derivatives with respect to (q, p) after this number of steps.
+    #[must_use]
+    pub fn after(steps: u64) -> Self {
+        Self { end: End::Steps(steps), parameters: &[], has_velocities: [false; 2] }
+    }
+}
+
 /// What a program asks of a run.
 #[cfg(feature = "sessions")]
 pub trait Session {
@@ -221,24 +254,35 @@ pub trait Session {
     /// The linearization of the next step. The run does not change.
     ///
     /// # Errors
-    /// As [`Run::linearization`](vi_core::Run::linearization); here and below [`StepError::NoDerivative`] for a system
-    /// with constraints.
+    /// As [`Run::linearization`](vi_core::Run::linearization).
     #[cfg(feature = "derivatives")]
     fn linearization(&self) -> Result<Linear, StepError>;
-    /// Takes steps, and returns the derivatives of the node at their end by each coordinate, each momentum, and the
-    /// parameters of these indices at the start: one vector of (q, p) for each. The energy that a run keeps follows from
+    /// Takes steps, and returns the derivatives of (q, p, t) at their end with respect to each coordinate, each momentum
+    /// and the parameters at the start: one vector for each. With constraints they are those of a run that starts from the
+    /// nearest state on the constraints. The energy that a run keeps follows from
     /// the start where the run began; later it changes as by [`Session::set_state`] and [`Session::set_parameters`].
     /// `goes_on` is called for each step; if it is false the result is `None`, and the run stays where it was.
     ///
     /// # Errors
-    /// As [`Tangent::step`](vi_core::derivatives::Tangent::step).
+    /// As [`Tangent::step`](vi_core::derivatives::Tangent::step), `until` and `until_event` there.
     #[cfg(feature = "derivatives")]
     fn tangent(
         &mut self,
-        steps: u64,
-        parameters: &[usize],
+        wanted: Wanted<'_>,
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Vec<f64>>>, StepError>;
+    /// Takes steps, and returns the largest Lyapunov exponents of them, of the first `coordinates`. Otherwise as
+    /// [`Session::tangent`].
+    ///
+    /// # Errors
+    /// As [`Lyapunov`](vi_core::derivatives::Lyapunov).
+    #[cfg(feature = "derivatives")]
+    fn lyapunov(
+        &mut self,
+        steps: u64,
+        count_and_coordinates: [usize; 2],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<f64>>, StepError>;
     /// Takes steps, and returns the gradient of `slope·(q, p)` at their end by q, p, and the parameters of these
     /// indices, by one backward pass.
     ///

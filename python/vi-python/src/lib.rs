@@ -41,7 +41,7 @@ use pyo3::prelude::*;
 use vi_erased::System;
 
 /// The version of the interface between these classes and the Python files of the package `variational`.
-pub const CONTRACT: u32 = 3;
+pub const CONTRACT: u32 = 4;
 
 /// Adds systems to a Python module.
 ///

@@ -11,7 +11,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 use vi_core::StepError;
 use vi_erased::plan::Named as _;
-use vi_erased::simulation::Met;
+use vi_erased::simulation::{End, Met, Wanted};
 use vi_erased::{Built, Rows, Simulation};
 
 /// A run. A lock, not the borrow checker of pyo3, guards it: its message is for Python's users.
@@ -264,16 +264,44 @@ impl Run {
         Ok((to_python(py, rows, self.n)?, error, met))
     }
 
-    /// Takes steps. Returns the derivatives of (q, p) at their end: a row for each coordinate, momentum, and parameter
-    /// of these indices at the start.
-    fn tangent<'py>(&self, py: Python<'py>, steps: u64, parameters: Vec<usize>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    /// Takes steps: a number of them, or up to a time, or up to an event, which is at this time. Returns the derivatives of
+    /// (q, p, t) at their end: a row for each coordinate, momentum, and parameter of these indices at the start; the
+    /// number of parameters is the index of the step length. `velocities` are in place of momenta at the start, at the
+    /// end.
+    #[pyo3(signature = (parameters, steps=0, t=None, event=None, velocities=[false, false]))]
+    fn tangent<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: Vec<usize>,
+        steps: u64,
+        t: Option<f64>,
+        event: Option<Description>,
+        velocities: [bool; 2],
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (sections, _) = sections(event.into_iter().collect(), self.n, &Raised::default())?;
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
-        Self::check_parameters(run, parameters.iter().copied())?;
+        let count = run.parameters().len();
+        Self::check_parameters(run, parameters.iter().copied().filter(|index| *index != count))?;
+        let end = match (t, &sections[..]) {
+            (None, _) => End::Steps(steps),
+            (Some(t), [section, _signals]) => End::Crossing(section, t),
+            (Some(t), _) => End::Time(t),
+        };
+        let wanted = Wanted { end, parameters: &parameters, has_velocities: velocities };
         let mut signal = Signal::new();
-        let rows = py.detach(|| run.tangent(steps, &parameters, &mut || signal.is_silent())).raise(py)?;
+        let rows = py.detach(|| run.tangent(wanted, &mut || signal.is_silent())).raise(py)?;
         let rows = signal.unless_raised(rows)?;
         Ok(PyArray2::from_vec2(py, &rows)?)
+    }
+
+    /// Takes steps. Returns the largest Lyapunov exponents of them.
+    fn lyapunov<'py>(&self, py: Python<'py>, steps: u64, count: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mut guard = self.lock()?;
+        let run: &mut dyn Simulation = &mut **guard;
+        let mut signal = Signal::new();
+        let found = py.detach(|| run.lyapunov(steps, [count, self.n], &mut || signal.is_silent())).raise(py)?;
+        Ok(PyArray1::from_vec(py, signal.unless_raised(found)?))
     }
 
     /// The linearization of the next step: (q, p) at its end, A and B.

@@ -18,13 +18,14 @@ use super::variation::velocity_along;
 use super::variation::{Variation, changes_of_energy, not_finite};
 use crate::constrained::variation;
 use crate::error::StepError;
-use crate::lagrangian::{Flow, Parameters};
+use crate::lagrangian::{Flow, Lagrangian as _, Parameters};
 use crate::method::Method;
 use crate::real::Dual;
 use crate::run::{Crossing, Event, Moment, Run};
 use crate::state::State;
 use crate::stepping::Convertible;
 use alloc::vec::Vec;
+use nalgebra::SVector;
 
 /// A run with tangent vectors at its node.
 #[derive(Clone, Debug)]
@@ -129,6 +130,35 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Tangent<M, S, N
     pub fn variations_mut(&mut self) -> &mut [Variation<N>] {
         self.are_admissible = false;
         &mut self.variations
+    }
+
+    /// The derivative of the velocity along each tangent vector at the current node.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] if the mass matrix, bordered by the constraints, is singular; those of
+    /// [`State::velocity`].
+    pub fn velocities(&self) -> Result<Vec<SVector<f64, N>>, StepError> {
+        let (system, state) = (&self.run.system, self.run.node.state());
+        let v = state.velocity(system)?;
+        self.variations.iter().map(|variation| velocity_along(system, &state, &v, variation)).collect()
+    }
+
+    /// Sets the momenta of each tangent vector to those of this change of the velocity, with its changes of time,
+    /// coordinates and parameters.
+    ///
+    /// # Errors
+    /// Those of [`State::velocity`].
+    pub fn set_velocities(&mut self, changes: &[SVector<f64, N>]) -> Result<(), StepError> {
+        let State { t, q, .. } = self.run.node.state();
+        let v = self.run.node.state().velocity(&self.run.system)?;
+        for (variation, change) in self.variations.iter_mut().zip(changes) {
+            let along = |value: f64, slope: f64| Dual { value, slope };
+            let (q, v) = (q.zip_map(&variation.q, along), v.zip_map(change, along));
+            let momentum = along_parameters(&self.run.system, variation).momentum(along(t, variation.t), &q, &v);
+            variation.p = momentum.map(|entry| entry.slope);
+        }
+        self.are_admissible = false;
+        Ok(())
     }
 
     /// The tangent vectors, for linear combinations of them.

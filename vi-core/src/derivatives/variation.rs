@@ -74,7 +74,8 @@ impl<const N: usize> Variation<N> {
     }
 
     /// The direction of the step length.
-    pub(crate) fn of_length() -> Self {
+    #[must_use]
+    pub fn of_length() -> Self {
         Self { h: 1.0, ..Self::zero() }
     }
 
