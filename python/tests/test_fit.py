@@ -173,6 +173,19 @@ def test_a_trial_that_fails_shortens_the_step():
     assert vi.fit(Well(k=4.0), data, "k", **options)["k"] == pytest.approx(0.4, rel=1e-12)  # 2.8e-16
 
 
+def test_a_parameter_of_a_constrained_system():
+    true = vi.RodPendulum(g=9.6).integrate([0.6, -0.8], h=0.05).at(TIMES)
+    data = {"t": TIMES, "x": true["x"], "dot(y)": true.v[:, 1]}
+    found = vi.fit(vi.RodPendulum(), data, "g", q=[0.6, -0.8], t=0.0, h=0.05)
+    assert found["g"] == pytest.approx(9.6, rel=1e-9)  # 1.4e-10, of steps of other lengths
+    # Against differences of motions.
+    ends = [vi.RodPendulum(g=found["g"] + by).integrate([0.6, -0.8], h=0.05).at(TIMES) for by in (1e-4, -1e-4)]
+    plus, minus = (np.column_stack([end["x"], end.v[:, 1]]) for end in ends)
+    assert np.abs(found.jacobian[..., 0] - (plus - minus) / 2e-4).max() < 5e-8  # 2.3e-8, of the differences
+
+
+ROD = {"system": vi.RodPendulum(), "q": [0.6, -0.8]}
+
 MISTAKES = [
     ({"parameters": ["kk"]}, ValueError, "no parameter or start value 'kk' .did you mean 'k'"),
     ({"parameters": []}, ValueError, "at least one unknown"),
@@ -193,7 +206,8 @@ MISTAKES = [
     ({"h": -0.1}, ValueError, "h must be positive"),
     ({"method": "energy"}, ValueError, "steps of other lengths"),
     ({"system": vi.HarmonicOscillator}, TypeError, "fit needs a system"),
-    ({"system": vi.RodPendulum()}, NotImplementedError, "RodPendulum has constraints"),
+    (ROD | {"parameters": ["x"]}, NotImplementedError, "has constraints, which a change of one start"),
+    (ROD | {"parameters": ["l"]}, NotImplementedError, "a change of l moves the constraints away from the start"),
 ]
 
 

@@ -139,8 +139,8 @@ def fit(
         The standard deviation of the measurements, or that of each column. Without it all values have one deviation,
         which is estimated from the residuals.
 
-    The system must have no constraints. Raises Unidentifiable if the measurements do not determine the unknowns, and
-    StepError if the motion of the first guess fails.
+    With constraints, only parameters that keep the start on them can be unknown. Raises Unidentifiable if the
+    measurements do not determine the unknowns, and StepError if the motion of the first guess fails.
     """
     try:
         from scipy.optimize import least_squares
@@ -207,10 +207,6 @@ class _Model:
         if not isinstance(system, System):
             raise TypeError(f"fit needs a system such as vi.Pendulum(), not {system!r}")
         cls, n = type(system), len(system.coordinates)
-        if cls.constraints:
-            raise NotImplementedError(
-                f"{cls.__name__} has constraints: fit needs a system without them, in coordinates that satisfy them"
-            )
         self.cls = cls
         self.values = system._values.copy()
         times, self.rows, inputs = _read(data, cls)
@@ -228,6 +224,11 @@ class _Model:
         for name, column in inputs.items():
             if column[0] in [index for is_start, index in self.unknowns.values() if not is_start]:
                 raise ValueError(f"{name} is an unknown and a column of the data")
+        if cls.constraints and any(is_start for is_start, _ in self.unknowns.values()):
+            raise NotImplementedError(
+                f"{cls.__name__} has constraints, which a change of one start value leaves: fit parameters, or a "
+                "system in coordinates without constraints"
+            )
         self.is_parameter = np.array([not is_start for is_start, _ in self.unknowns.values()])
         self.indices = [index for is_start, index in self.unknowns.values() if not is_start]
         self.evaluations = 0
@@ -240,10 +241,22 @@ class _Model:
         n = len(self.start) // 2
         options: dict[str, Any] = {"h": h, "tolerance": tolerance, "method": method, "stages": stages}
         run = self.cls._of(self.values).integrate(self.start[:n], self.start[n:], t=self.t, **options)
+        self._check_start(run)
         self.h = run.h
         if self.h < 0.0:
             raise ValueError(f"h must be positive, not {self.h!r}")
         self.options: dict[str, Any] = {"method": method, "stages": stages}
+
+    def _check_start(self, run: Any) -> None:
+        """Checks that the start stays on the constraints where a parameter changes."""
+        moved = run._tangent(self.indices, velocities=[True, True])[: len(self.start), len(self.start) :]
+        names = [name for name, (is_start, _) in self.unknowns.items() if not is_start]
+        for name, change in zip(names, moved.T, strict=True):
+            if np.abs(change).max(initial=0.0) > _ROUNDING:
+                raise NotImplementedError(
+                    f"a change of {name} moves the constraints away from the start: fit needs parameters that keep it "
+                    "on them"
+                )
 
     def guess(self) -> Array:
         """The first guess of the unknowns."""
@@ -266,27 +279,33 @@ class _Model:
             (start if is_start else values)[index] = value
             if is_start:
                 slope[index, column] = 1.0
-        system = self._system(values, 0)
-        q, v, t = start[:n], start[n:], self.t
-        scale = np.where(q == 0.0, 1.0, np.abs(q))
-        by_q, by_parameter = self._momentum_slopes(system, t, q, v, scale)
-        slope[n:] = system.mass_matrix(t, q, v) @ slope[n:] + by_q @ slope[:n]
-        slope[n:, self.is_parameter] += by_parameter
-        p = system.momentum(t, q, v)
-        parts, slopes = [], []
+        t = self.t
+        run = self._system(values, 0).integrate(start[:n], start[n:], t=t, h=self.h, **self.options)
+        slope = self._carried(run, slope, velocities=[True, False])
+        rows, outputs = [], []
         for row, end in enumerate(self.times):
             if end > t:
                 steps = math.ceil((end - t) / self.h * (1.0 - 1e-9))
-                run = system.integrate(q, p=p, t=t, h=(end - t) / steps, **self.options)
-                columns = run._tangent(self.indices, steps=steps)[: 2 * n]
-                slope = columns[:, : 2 * n] @ slope
-                slope[:, self.is_parameter] += columns[:, 2 * n :]
-                t, q, p = end, run.q, run.p
-            parts.append((system, t, q, p))
-            slopes.append(slope)
-            # Inputs change after the row.
-            system = self._system(values, row)
-        return self._outputs(parts, np.array(slopes), scale)
+                # Inputs change after the row.
+                system = self._system(values, max(row - 1, 0))
+                run = system.integrate(run.q, p=run.p, t=t, h=(end - t) / steps, **self.options)
+                slope = self._carried(run, slope, steps=steps)
+                t = end
+            rows.append((t, run.q, run.p, run.v, run.energy))
+            outputs.append(self._carried(run, slope, velocities=[False, True]))
+        t, q, p, v, energy = (np.array(column) for column in zip(*rows, strict=True))
+        solution = Solution(self._system(values, 0)._fixed(), t, q, p)
+        # With inputs each row has a system of its own.
+        solution.__dict__.update(v=fixed(v), energy=fixed(energy))
+        indices = [index + n * is_velocity for (is_velocity, index), _ in self.rows.values()]
+        return np.concatenate([q, v], axis=-1)[:, indices], np.array(outputs)[:, indices], solution
+
+    def _carried(self, run: Any, slope: Array, **options: Any) -> Array:
+        """The derivatives with respect to the unknowns, (2N, U), carried from the node of a run over its steps."""
+        columns = run._tangent(self.indices, **options)[: len(self.start)]
+        carried = columns[:, : len(self.start)] @ slope
+        carried[:, self.is_parameter] += columns[:, len(self.start) :]
+        return carried
 
     def _system(self, values: Array, row: int) -> System:
         """The system from the time of a row on."""
@@ -294,59 +313,6 @@ class _Model:
         for index, column in self.inputs.values():
             values[index] = column[row]
         return self.cls._of(values)
-
-    def _outputs(self, parts: list[tuple], slopes: Array, scale: Array) -> tuple[Array, Array, Solution]:
-        """The measured ones of the coordinates and velocities of all rows, and the rows."""
-        systems, *nodes = zip(*parts, strict=True)
-        t, q, p = map(np.array, nodes)
-        n = q.shape[-1]
-        solution = Solution(systems[0].copy()._fixed(), t, q, p)
-        # Without inputs all rows have one system.
-        groups = [slice(k, k + 1) for k in range(len(t))] if self.inputs else [slice(None)]
-        v = np.concatenate([systems[rows.start or 0].velocity(t[rows], q[rows], p[rows]) for rows in groups])
-        of_v = np.zeros_like(slopes[:, :n])
-        if any(is_velocity for (is_velocity, _), _ in self.rows.values()):
-            scale = np.maximum(scale, np.abs(q).max(axis=0))
-            for rows in groups:
-                system, at = systems[rows.start or 0], (t[rows], q[rows], v[rows])
-                by_q, by_parameter = self._momentum_slopes(system, *at, scale)
-                change = slopes[rows, n:] - by_q @ slopes[rows, :n]
-                change[..., self.is_parameter] -= by_parameter
-                of_v[rows] = np.linalg.solve(system.mass_matrix(*at), change)
-        if self.inputs:
-            energy = np.concatenate([systems[k].energy(t[rows], q[rows], v[rows]) for k, rows in enumerate(groups)])
-            solution.__dict__.update(v=fixed(v), energy=fixed(energy))
-        indices = [index + n * is_velocity for (is_velocity, index), _ in self.rows.values()]
-        computed = np.concatenate([q, v], axis=-1)[:, indices]
-        return computed, np.concatenate([slopes[:, :n], of_v], axis=1)[:, indices], solution
-
-    def _momentum_slopes(self, system: System, t: Any, q: Array, v: Array, scale: Array) -> tuple[Array, Array]:
-        """∂p/∂q (…, N, N) and ∂p/∂parameter (…, N, P) for constant velocities, by differences of order 6."""
-
-        def of_q(index: int, change: float) -> Array:
-            moved = q.copy()
-            moved[..., index] += change
-            return system.momentum(t, moved, v)
-
-        def of_parameter(index: int, change: float) -> Array:
-            values = system._values.copy()
-            values[index] += change
-            return self.cls._of(values).momentum(t, q, v)
-
-        by_q = [_difference(of_q, index, float(scale[index])) for index in range(q.shape[-1])]
-        by_parameter = [_difference(of_parameter, k, abs(float(system._values[k])) or 1.0) for k in self.indices]
-        empty = np.zeros((*q.shape, 0))
-        return np.stack(by_q, axis=-1), np.stack(by_parameter, axis=-1) if by_parameter else empty
-
-
-_WEIGHTS = ((1, 45.0), (2, -9.0), (3, 1.0))
-_WIDTH = 2e-3
-"""Relative: the truncation, about 36 · _WIDTH⁶, and rounding are then below 1e-12."""
-
-
-def _difference(of: Any, index: int, scale: float) -> Array:
-    width = _WIDTH * scale
-    return sum(w * (of(index, k * width) - of(index, -k * width)) for k, w in _WEIGHTS) / (60.0 * width)
 
 
 def _read(data: Any, cls: Any) -> tuple[Array, dict[str, tuple[tuple[bool, int], Array]], dict[str, tuple[int, Array]]]:
