@@ -81,6 +81,13 @@ def test_a_start_off_the_constraints_is_refused_or_moved():
     system.integrate(found.q, found.v, h=0.01).step()
     with pytest.raises(vi.Singular):
         system.project([0.0, 0.0])
+    # Many at once.
+    q = np.array([[0.6, -0.9], [3.0, 4.0]])
+    for many in (system.project(q, [1.0, 0.0]), system.assemble(q, [1.0, 0.0])):
+        assert many.q.shape == many.moved_v.shape == (2, 2)
+        assert np.array_equal(many.v[0], found.v) and np.array_equal(many.q[1], system.project([3.0, 4.0]).q)
+    with pytest.raises(ValueError, match=r"q must have the shape \(M, 2\) or \(2,\)"):
+        system.project(np.zeros((2, 3)))
 
 
 def test_far_guesses_are_assembled():

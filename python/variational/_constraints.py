@@ -8,7 +8,7 @@ from ._arrays import Array
 
 
 class Projected(NamedTuple):
-    """A state on the constraints, and how far it is from the given one."""
+    """A state on the constraints, and how far it is from the given one; of many states with an axis of M before N."""
 
     q: Array
     """Coordinates, (N,)."""

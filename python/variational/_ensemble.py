@@ -147,11 +147,11 @@ def ensemble(
         raise TypeError(f'parameters must be a dict such as {{"l": lengths}}, not {parameters!r}')
     if (until is None) == (times is None):
         raise TypeError("give one of until and times")
-    states = {"q": _states(q, "q", cls), "v": np.zeros(n) if v is None else _states(v, "v", cls)}
+    given_states = {"q": states(q, "q", cls), "v": np.zeros(n) if v is None else states(v, "v", cls)}
     given = {}
     for name, value in parameters.items():
         given[name] = (cls._parameter(name), _values(cls._parameter(name), value))
-    sizes = {name: len(values) for name, values in states.items() if values.ndim == 2}
+    sizes = {name: len(values) for name, values in given_states.items() if values.ndim == 2}
     sizes |= {name: len(values) for name, (_, values) in given.items() if values.ndim == 2}
     if len(set(sizes.values()) - {1}) > 1:
         listed = ", ".join(f"{name} has {size}" for name, size in sizes.items())
@@ -160,7 +160,7 @@ def ensemble(
     values = np.tile(system._values, (many, 1))
     for parameter, of in given.values():
         values[:, parameter.start : parameter.start + of.shape[-1]] = of
-    rows = {name: np.ascontiguousarray(np.broadcast_to(of, (many, n))) for name, of in states.items()}
+    rows = {name: np.ascontiguousarray(np.broadcast_to(of, (many, n))) for name, of in given_states.items()}
     end = None if until is None else number(until, "until")
     listed_times = None if times is None else ordered(times, request.h or request.dtau or 1.0).tolist()
     limit = _threads(threads)
@@ -181,7 +181,8 @@ def ensemble(
     )
 
 
-def _states(value: ArrayLike, name: str, cls: type[System]) -> Array:
+def states(value: ArrayLike, name: str, cls: type[System]) -> Array:
+    """States of the shape (M, N), or one of the shape (N,)."""
     found = array(value, name)
     n = len(cls.coordinates)
     if found.ndim not in (1, 2) or found.shape[-1] != n:

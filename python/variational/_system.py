@@ -16,7 +16,7 @@ from ._arrays import Array, array, finite, fixed, number, vector
 from ._calls import check_arguments, no_attribute
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
-from ._ensemble import Ensemble, ensemble
+from ._ensemble import Ensemble, ensemble, states
 from ._explanation import Explanation
 from ._names import among, meant
 from ._request import checked
@@ -263,6 +263,8 @@ class System(metaclass=SystemType):
     def project(self, q: ArrayLike, v: ArrayLike | None = None, *, t: float = 0.0) -> Projected:
         """The state on the constraints nearest to (t, q, v) in the metric of the mass matrix, and how far it is.
 
+        q and v of the shape (M, N) are many states.
+
         Raises NotAssembled if no coordinates are found that satisfy the constraints, Singular if the constraints depend on
         each other on the way. From a far guess it may find another assembly than `assemble`.
         """
@@ -286,8 +288,6 @@ class System(metaclass=SystemType):
         q = vector(q, len(self.coordinates), "q", self.coordinates)
         return tuple(self._kind.redundant(self._values, number(t, "t"), q))
 
-    def _moved(self, q: ArrayLike, v: ArrayLike | None, t: float, is_far: bool) -> Projected:
-        (n,), names = self._shape, self.coordinates
     def independent(self, q: ArrayLike, *, t: float = 0.0) -> System:
         """The same system without the constraints that `redundant` names at coordinates q, which satisfy all of them.
 
@@ -304,9 +304,15 @@ class System(metaclass=SystemType):
         cls = of_text(own[0], files=own[3], dropped=dropped) if own else of_text(self.definition, dropped=dropped)
         return cls._of(self._values)
 
-        q = vector(q, n, "q", names)
-        v = np.zeros(n) if v is None else vector(v, n, "v", names)
-        return Projected(*self._kind.project(self._values, number(t, "t"), q, v, is_far))
+    def _moved(self, q: ArrayLike, v: ArrayLike | None, t: float, is_far: bool) -> Projected:
+        (n,), names, t = self._shape, self.coordinates, number(t, "t")
+        v = np.zeros(n) if v is None else v
+        if np.ndim(q) == np.ndim(v) == 1:
+            q, v = vector(q, n, "q", names), vector(v, n, "v", names)
+            return Projected(*self._kind.project(self._values, t, q, v, is_far))
+        rows = np.broadcast_arrays(states(q, "q", type(self)), states(v, "v", type(self)))
+        found = [self._moved(*row, t, is_far) for row in zip(*rows, strict=True)]
+        return Projected(*(np.array(column).reshape(-1, n) for column in zip(*found, strict=True)))
 
     def mass_matrix(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
         """The mass matrix M = ∂²L/∂v² at (t, q, v): (..., N, N)."""
