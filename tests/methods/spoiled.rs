@@ -95,7 +95,6 @@ impl System for Spoiled<dyn System> {
         fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
         fn redundant(&self, t: f64, q: &[f64]) -> Result<Vec<&'static str>, StepError>;
         fn studies(&self) -> &dyn Studies;
-        fn start(&self) -> Option<[Vec<f64>; 2]>;
         fn control(&self) -> &dyn Control;
     }
 

@@ -182,10 +182,6 @@ impl System for Declared<dyn System> {
         self
     }
 
-    fn start(&self) -> Option<[Vec<f64>; 2]> {
-        self.of.start().map(|of| of.map(|of| cut(&of, self.all(), self.size)))
-    }
-
     fn begin_while(&self, plan: &Plan, goes_on: &mut dyn FnMut() -> bool) -> Result<Box<dyn Simulation>, StepError> {
         Ok(Box::new(Declared { of: self.of.begin_while(&self.plan(plan)?, goes_on)?, size: self.size }))
     }

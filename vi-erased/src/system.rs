@@ -144,8 +144,6 @@ pub trait System: Send + Sync {
     /// What studies compare its runs with.
     #[cfg(feature = "studies")]
     fn studies(&self) -> &dyn Studies;
-    /// The default initial coordinates and velocities, if they follow from the parameters.
-    fn start(&self) -> Option<[Vec<f64>; 2]>;
     /// Starts a run.
     ///
     /// # Errors
@@ -236,11 +234,7 @@ pub struct Typed<S, const N: usize> {
     /// The system.
     pub system: S,
     pub(crate) integrators: Arc<[Integrator<S, N>]>,
-    start: Option<StartOf<S, N>>,
 }
-
-/// Initial coordinates and velocities of a system with its parameters.
-pub type StartOf<S, const N: usize> = fn(&S) -> ([f64; N], [f64; N]);
 
 impl<S: Runnable<N> + Described + Default, const N: usize> Typed<S, N> {
     /// The system with its default parameters.
@@ -254,13 +248,7 @@ impl<S: Runnable<N>, const N: usize> Typed<S, N> {
     /// A system with its parameters.
     #[must_use]
     pub fn of(system: S, integrators: Vec<Integrator<S, N>>) -> Self {
-        Self { system, integrators: integrators.into(), start: None }
-    }
-
-    /// The same with an initial state that follows from the parameters.
-    #[must_use]
-    pub fn with_start(self, start: StartOf<S, N>) -> Self {
-        Self { start: Some(start), ..self }
+        Self { system, integrators: integrators.into() }
     }
 }
 
@@ -430,13 +418,6 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
     #[cfg(feature = "studies")]
     fn studies(&self) -> &dyn Studies {
         self
-    }
-
-    fn start(&self) -> Option<[Vec<f64>; 2]> {
-        self.start.map(|start| {
-            let (q, v) = start(&self.system);
-            [q.to_vec(), v.to_vec()]
-        })
     }
 
     fn begin_while(&self, plan: &Plan, goes_on: &mut dyn FnMut() -> bool) -> Result<Box<dyn Simulation>, StepError> {

@@ -60,7 +60,7 @@ pub(crate) fn explain(arguments: &Arguments, catalogue: &Catalogue) -> Result<St
         return expand::each(file, |tokens| explained(tokens).map(show));
     }
     let entry = catalogue.named(system.as_deref())?;
-    ready(catalogue, entry.system.name(), explained).map(show)
+    ready(catalogue, entry.name, explained).map(show)
 }
 
 /// The mathematics of a predefined system.
@@ -90,7 +90,7 @@ mod tests {
     fn every_system_of_the_catalogue_is_explained() {
         let catalogue = crate::ready();
         for entry in catalogue.entries() {
-            let name = entry.system.name();
+            let name = entry.name;
             let explanation = ready(&catalogue, name, inspect::explain).unwrap_or_else(|failure| panic!("{failure}"));
             assert_eq!(explanation.title, name);
         }

@@ -1,11 +1,13 @@
 //! The predefined systems, each with an initial state, and those of a text ([`text`]).
 //!
-//! In: the systems of `vi_systems`. Out: a list of type-erased [`Entry`] values. The compiler instantiates every integrator for
-//! each of them here, which takes longer than the rest of the command: only `vi-lab` depends on this crate.
+//! In: the systems of `vi_systems`. Out: a list of [`Entry`] values, which build nothing until a system is used. Most are
+//! texts for `vi_tape`. Compiled with every integrator are those whose speed is shown, and those with more coordinates
+//! than a text may have.
 
 pub mod text;
 
-use vi_report::entry::Entry;
+use text::ready;
+use vi_report::entry::{Entry, start};
 use vi_systems::{
     AndrewsSqueezer, ChaplyginSleigh, ChargedParticle, DampedOscillator, DoublePendulum, DoubleRodPendulum, DoubleWell,
     DoubleWellDuffing, FourBar, FpuChain, HardDuffing, HarmonicOscillator, HeavyTop, HenonHeiles, Kepler, NPendulum,
@@ -30,32 +32,34 @@ const EIGHT_V: [f64; 6] = [
     -0.864_731_460_921_02,
 ];
 
+/// The entry of a text with constraints, whose initial state follows from its parameters.
+macro_rules! placed {
+    ($system:ident, $about:literal, $h:literal) => {
+        ready::<$system, _>($about, $system::default().start(), $h).placed(|of| start(of, $system::start))
+    };
+}
+
 /// The predefined systems in the order of the list.
 #[must_use]
 pub fn systems() -> Vec<Entry> {
     let rest = [0.0];
-    let inclined = [0.8, 0.0];
+    let (chain, chain_v) = RodChain::default().start();
     vec![
-        Entry::new::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
-        Entry::new::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
+        ready::<DoubleWell, 1>("particle in a double well: the paper's conservative example", ([0.74], rest), 0.01),
+        ready::<DampedOscillator, 1>("damped oscillator: the paper's forced example", ([1.0], rest), 0.01),
         Entry::new::<Pendulum, 1>("mass on a rod", [1.0], rest, 0.01),
         Entry::new::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
         Entry::new::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
-        Entry::new::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),
-        Entry::new::<HardDuffing, 1>("driven oscillator with a stiffening spring", [1.0], rest, 0.01),
-        Entry::new::<DoubleWellDuffing, 1>("driven double well: chaos", [0.8], rest, 0.01),
-        Entry::new::<ParametricPendulum, 1>("pendulum with a modulated gravity", [0.5], rest, 0.01),
-        Entry::new::<RotatingHoop, 1>("bead on a rotating hoop", [1.0], rest, 0.01),
-        Entry::new::<SphericalPendulum, 2>("mass on a rod in space", inclined, [0.0, 4.0], 0.005),
-        Entry::new::<HenonHeiles, 2>("star in a galaxy near its circular orbit", [0.0, 0.1], [0.5, 0.0], 0.02),
-        Entry::new::<ChargedParticle, 3>("charge in a magnetic field", [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], 0.01),
-        Entry::new::<NPendulum, 4>(
-            "four pendula, each hanging from the one above",
-            [0.6, 0.4, 0.2, 0.1],
-            [0.0; 4],
-            0.005,
-        ),
-        Entry::new::<ThreeBody, 6>("three bodies on a figure of eight, period 6.3259", EIGHT, EIGHT_V, 0.005),
+        ready::<HarmonicOscillator, 1>("mass on a spring", ([1.0], rest), 0.01),
+        ready::<HardDuffing, 1>("driven oscillator with a stiffening spring", ([1.0], rest), 0.01),
+        ready::<DoubleWellDuffing, 1>("driven double well: chaos", ([0.8], rest), 0.01),
+        ready::<ParametricPendulum, 1>("pendulum with a modulated gravity", ([0.5], rest), 0.01),
+        ready::<RotatingHoop, 1>("bead on a rotating hoop", ([1.0], rest), 0.01),
+        ready::<SphericalPendulum, 2>("mass on a rod in space", ([0.8, 0.0], [0.0, 4.0]), 0.005),
+        ready::<HenonHeiles, 2>("star in a galaxy near its circular orbit", ([0.0, 0.1], [0.5, 0.0]), 0.02),
+        ready::<ChargedParticle, 3>("charge in a magnetic field", ([1.0, 0.0, 0.1], [0.0, 1.0, 0.0]), 0.01),
+        ready::<NPendulum, 4>("four pendula, each hanging from the one above", ([0.6, 0.4, 0.2, 0.1], [0.0; 4]), 0.005),
+        ready::<ThreeBody, 6>("three bodies on a figure of eight, period 6.3259", (EIGHT, EIGHT_V), 0.005),
         Entry::new::<FpuChain, 16>(
             "sixteen masses on nonlinear springs, in their lowest mode",
             LOWEST_MODE,
@@ -68,15 +72,16 @@ pub fn systems() -> Vec<Entry> {
             OuterSolarSystem::VELOCITIES,
             10.0,
         ),
-        Entry::placed::<RodPendulum, 2>("mass on a rod, in Cartesian coordinates", RodPendulum::start, 0.01),
-        Entry::placed::<DoubleRodPendulum, 4>("two masses on two rods", DoubleRodPendulum::start, 0.01),
-        Entry::placed::<RodChain, 20>("ten masses on a chain of rods", RodChain::start, 0.01),
-        Entry::placed::<FourBar, 4>("four-bar linkage: a closed loop", FourBar::start, 0.01),
-        Entry::placed::<SliderCrank, 3>("crank, connecting rod and slider", SliderCrank::start, 0.01),
-        Entry::placed::<AndrewsSqueezer, 7>("Andrews' squeezer: seven bodies, SI units", AndrewsSqueezer::start, 2e-5),
-        Entry::placed::<HeavyTop, 4>("spinning top, by a unit quaternion", HeavyTop::start, 0.005),
-        Entry::placed::<ChaplyginSleigh, 3>("sleigh on a blade", ChaplyginSleigh::start, 0.01),
-        Entry::placed::<RollingDisk, 5>("disk that rolls on a plane", RollingDisk::start, 0.01),
-        Entry::placed::<RollingBall, 6>("ball that rolls on a turntable", RollingBall::start, 0.01),
+        placed!(RodPendulum, "mass on a rod, in Cartesian coordinates", 0.01),
+        placed!(DoubleRodPendulum, "two masses on two rods", 0.01),
+        Entry::with_constraints::<RodChain, 20>("ten masses on a chain of rods", chain, chain_v, 0.01)
+            .placed(|of| start(of, RodChain::start)),
+        placed!(FourBar, "four-bar linkage: a closed loop", 0.01),
+        placed!(SliderCrank, "crank, connecting rod and slider", 0.01),
+        placed!(AndrewsSqueezer, "Andrews' squeezer: seven bodies, SI units", 2e-5),
+        placed!(HeavyTop, "spinning top, by a unit quaternion", 0.005),
+        placed!(ChaplyginSleigh, "sleigh on a blade", 0.01),
+        placed!(RollingDisk, "disk that rolls on a plane", 0.01),
+        placed!(RollingBall, "ball that rolls on a turntable", 0.01),
     ]
 }

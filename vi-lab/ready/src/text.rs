@@ -1,8 +1,22 @@
-//! A system of a text, which is not compiled.
+//! Systems of a text, which are not compiled.
 //!
-//! In: the text of a file. Out: an [`Entry`], whose system has everything that compiled ones have.
+//! In: the text of a file, or the declaration of a predefined system. Out: an [`Entry`], whose system has everything that
+//! compiled ones have.
 
+use vi_core::Lagrangian;
+use vi_core::lagrangian::Described;
 use vi_report::entry::Entry;
+
+/// A predefined system by the text of its declaration: what it is, its initial coordinates and velocities, a step.
+pub(crate) fn ready<S, const N: usize>(about: &'static str, start: ([f64; N], [f64; N]), h: f64) -> Entry
+where
+    S: Lagrangian<N> + Described + Default,
+{
+    Entry::listed::<S, N>(about, start, h, || {
+        let system = vi_tape::System::parse(S::DEFINITION);
+        system.unwrap_or_else(|mistakes| panic!("a declaration that was compiled is a text: {mistakes}")).into_inner()
+    })
+}
 
 /// The system of a text, which starts at the state of its clause `check`, with the parameters of that clause. Without the
 /// clause it starts at zero, with a step of 0.01.
@@ -18,5 +32,5 @@ pub fn entry(file: &str, text: &str) -> Result<Entry, String> {
     }
     let (q, v, h) = start.map_or_else(|| (zeros.clone(), zeros, 0.01), |start| (start.q, start.v, start.h));
     let text = system.files().fold(system.definition().to_owned(), |all, file| all + "\n" + file);
-    Ok(Entry { about: system.about(), system: system.into_inner(), q, v, h, text: Some(text) })
+    Ok(Entry::of(system.into_inner(), [q, v], h, text))
 }

@@ -59,9 +59,9 @@ impl Catalogue {
     #[must_use]
     pub fn entries(&self) -> Vec<Entry> {
         let mut all = self.own.map_or_else(Vec::new, |own| (own.entries)());
-        let own: Vec<&str> = all.iter().map(|entry| entry.system.name()).collect();
+        let own: Vec<&str> = all.iter().map(|entry| entry.name).collect();
         let ready = (self.ready.entries)();
-        let others: Vec<Entry> = ready.into_iter().filter(|entry| !own.contains(&entry.system.name())).collect();
+        let others: Vec<Entry> = ready.into_iter().filter(|entry| !own.contains(&entry.name)).collect();
         all.extend(others);
         all
     }
@@ -101,16 +101,16 @@ impl Catalogue {
         }
         let wanted = plain(name);
         let mut entries = self.entries();
-        if let Some(index) = entries.iter().position(|entry| plain(entry.system.name()) == wanted) {
+        if let Some(index) = entries.iter().position(|entry| plain(entry.name) == wanted) {
             return Ok(entries.swap_remove(index));
         }
         let near = entries
             .iter()
-            .map(|entry| (strsim::jaro_winkler(&plain(entry.system.name()), &wanted), entry))
+            .map(|entry| (strsim::jaro_winkler(&plain(entry.name), &wanted), entry))
             .filter(|(likeness, _)| *likeness > 0.75)
             .max_by(|(one, _), (other, _)| one.total_cmp(other));
         let hint = match near {
-            Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
+            Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.name)),
             None if name.contains(['/', '\\', '.']) => {
                 "a scene file ends in .toml, a declaration in .rs or .vi".to_owned()
             }
@@ -123,12 +123,11 @@ impl Catalogue {
     #[must_use]
     pub fn table(&self) -> Table {
         let mut table = Table::new("systems", ["system", "what it is", "parameters", "starts at", "h"]);
-        for Entry { system, about, q, v, h, .. } in self.entries() {
-            let parameters: Vec<String> =
-                system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
-            let coordinates = shortened(system.coordinates().iter().map(ToString::to_string).collect());
+        for Entry { name, about, coordinates, parameters, q, v, h, .. } in self.entries() {
+            let parameters: Vec<String> = parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+            let coordinates = shortened(coordinates.iter().map(ToString::to_string).collect());
             let start = format!("({coordinates}) = ({}), v = ({})", list(&q), list(&v));
-            table.row([kebab(system.name()), about.to_owned(), parameters.join(", "), start, h.to_string()]);
+            table.row([kebab(name), about.to_owned(), parameters.join(", "), start, h.to_string()]);
         }
         table
     }
@@ -142,7 +141,7 @@ pub fn with_rule(entry: Entry, page: &str) -> Result<Entry, Failure> {
     if entry.system.has_rule() {
         return Ok(entry);
     }
-    let name = entry.system.name();
+    let name = entry.name;
     if entry.system.has_constraints() {
         return Err(Failure::Input(format!(
             "{page} compares steps by a rule, which {name} cannot have because of its constraints"
@@ -201,8 +200,24 @@ mod tests {
     #[test]
     fn names_are_found_in_any_spelling() {
         for name in ["double-well", "DoubleWell", "double_well", "DOUBLEWELL"] {
-            assert!(catalogue().find(name).is_ok_and(|entry| entry.system.name() == "DoubleWell"), "{name}");
+            assert!(catalogue().find(name).is_ok_and(|entry| entry.name == "DoubleWell"), "{name}");
         }
+    }
+
+    #[test]
+    fn a_list_builds_no_system() {
+        let entries = || {
+            let build = || panic!("the system of a list is built");
+            vec![
+                Entry::listed::<DoubleWell, 1>("well", ([0.74], [0.0]), 0.01, build),
+                Entry::new::<Kepler, 2>("planet", [0.4, 0.0], [0.0, 2.0], 0.005),
+            ]
+        };
+        let catalogue = Catalogue::new(Systems { sources: &[], entries });
+        let shown = catalogue.table().text();
+        assert!(shown.contains("double-well") && shown.contains("(x, y) = (0.4, 0), v = (0, 2)"), "{shown}");
+        assert!(catalogue.find("double-wel").is_err());
+        assert_eq!(catalogue.find("kepler").ok().map(|entry| entry.system.coordinates()), Some(vec!["x", "y"]));
     }
 
     #[test]

@@ -1,40 +1,56 @@
 //! A system with a place to start from: what a list of systems is made of.
 //!
-//! In: the type of a system, and its start. Out: an [`Entry`], the type erased: there the compiler meets all that is generic over systems.
+//! In: the type of a system, and its start. Out: an [`Entry`]. A list shows its data; the system itself, type-erased, is built
+//! when it is first used. The compiler meets all that is generic over systems here.
 
+use std::sync::LazyLock;
 use vi_core::kind::Free;
-use vi_core::lagrangian::Described;
+use vi_core::lagrangian::{Described, Parameters};
 use vi_core::method::Controlled;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{Composition, EnergyPreserving, FixedStep};
+use vi_core::{Composition, EnergyPreserving, FixedStep, Lagrangian};
 use vi_erased::erasable::{Erasable, Runnable};
 use vi_erased::integrator::{self, Integrator};
 use vi_erased::plan::{DEFAULT_BOUND_ENERGY_STAGES, DEFAULT_BOUND_STAGES, ENERGY_STAGES, STAGES};
-use vi_erased::system::StartOf;
 use vi_erased::{System, Typed};
 
 /// A system with a place to start from.
 pub struct Entry {
-    /// The system, with the default parameters.
-    pub system: Box<dyn System>,
+    /// Name of the type.
+    pub name: &'static str,
     /// Its description.
     pub about: &'static str,
+    /// Names of the coordinates.
+    pub coordinates: Vec<&'static str>,
+    /// Names and default values of the parameters.
+    pub parameters: Vec<(&'static str, f64)>,
     /// Default initial coordinates.
     pub q: Vec<f64>,
     /// Default initial velocities.
     pub v: Vec<f64>,
     /// Default step.
     pub h: f64,
-    /// The text of a system that is not compiled, with the texts of its files.
+    /// The default initial state for other parameters, if it follows from them.
+    pub start: Option<Start>,
+    /// The text of a system of a file, with the texts of its files of tables.
     pub text: Option<String>,
+    /// The system, with the default parameters.
+    pub system: OnDemand,
 }
+
+/// A system that is built when it is first used.
+pub type OnDemand = LazyLock<Box<dyn System>, Box<dyn FnOnce() -> Box<dyn System> + Send>>;
+
+/// Initial coordinates and velocities of parameters, which are given by name.
+pub type Start = fn(&[(&'static str, f64)]) -> [Vec<f64>; 2];
 
 impl Entry {
     /// A system with a place to start from: what it is, its initial coordinates and velocities, a step.
     #[must_use]
     pub fn new<S: Ruled<N>, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self {
-        let integrators = integrator::all([S::with_rule(), without_rule()]);
-        Self::of(Typed::<S, N>::new(integrators), about, (q, v), h)
+        Self::listed::<S, N>(about, (q, v), h, || {
+            Box::new(Typed::<S, N>::new(integrator::all([S::with_rule(), without_rule()])))
+        })
     }
 
     /// The same of a system without a rule, which has Gauss steps alone.
@@ -43,7 +59,7 @@ impl Entry {
     where
         S: Runnable<N, Kind = Free> + Described + Default,
     {
-        Self::of(Typed::<S, N>::new(without_rule()), about, (q, v), h)
+        Self::listed::<S, N>(about, (q, v), h, || Box::new(Typed::<S, N>::new(without_rule())))
     }
 
     /// The same of a system with constraints.
@@ -52,24 +68,72 @@ impl Entry {
     where
         S: Runnable<N> + Described + Default,
     {
-        Self::of(Typed::<S, N>::new(with_constraints()), about, (q, v), h)
+        Self::listed::<S, N>(about, (q, v), h, || Box::new(Typed::<S, N>::new(with_constraints())))
     }
 
-    /// The same of a system with constraints whose initial state follows from its parameters, by `start`.
+    /// The same of a system that `build` makes: with the name, the coordinates and the parameters of this type.
     #[must_use]
-    pub fn placed<S, const N: usize>(about: &'static str, start: StartOf<S, N>, h: f64) -> Self
+    pub fn listed<S, const N: usize>(
+        about: &'static str,
+        (q, v): ([f64; N], [f64; N]),
+        h: f64,
+        build: fn() -> Box<dyn System>,
+    ) -> Self
     where
-        S: Runnable<N> + Described + Default,
+        S: Lagrangian<N> + Default,
     {
-        Self::of(Typed::<S, N>::new(with_constraints()).with_start(start), about, start(&S::default()), h)
+        let system = S::default();
+        let parameters =
+            S::PARAMETERS.iter().enumerate().map(|(index, name)| (*name, system.parameter(index))).collect();
+        Self {
+            name: S::NAME,
+            about,
+            coordinates: S::COORDINATES.to_vec(),
+            parameters,
+            q: q.to_vec(),
+            v: v.to_vec(),
+            h,
+            start: None,
+            text: None,
+            system: LazyLock::new(Box::new(build)),
+        }
     }
 
-    fn of<S, const N: usize>(system: Typed<S, N>, about: &'static str, (q, v): ([f64; N], [f64; N]), h: f64) -> Self
-    where
-        S: Runnable<N> + Described,
-    {
-        Self { system: Box::new(system), about, q: q.to_vec(), v: v.to_vec(), h, text: None }
+    /// The entry of a system that is built already, with its text.
+    #[must_use]
+    pub fn of(system: Box<dyn System>, [q, v]: [Vec<f64>; 2], h: f64, text: String) -> Self {
+        Self {
+            name: system.name(),
+            about: system.about(),
+            coordinates: system.coordinates(),
+            parameters: system.parameters(),
+            q,
+            v,
+            h,
+            start: None,
+            text: Some(text),
+            system: LazyLock::new(Box::new(|| system)),
+        }
     }
+
+    /// The same with an initial state that follows from the parameters.
+    #[must_use]
+    pub fn placed(self, start: Start) -> Self {
+        Self { start: Some(start), ..self }
+    }
+}
+
+/// Initial coordinates and velocities of a system with these parameters: for a [`Start`].
+pub fn start<S: Parameters + Default, const N: usize>(
+    parameters: &[(&'static str, f64)],
+    start: fn(&S) -> ([f64; N], [f64; N]),
+) -> [Vec<f64>; 2] {
+    let mut system = S::default();
+    for (name, value) in parameters {
+        system.parameter_mut(name).into_iter().for_each(|parameter| *parameter = *value);
+    }
+    let (q, v) = start(&system);
+    [q.to_vec(), v.to_vec()]
 }
 
 /// A system with a rule that has fixed and energy-preserving steps: every generated one with `discretize midpoint`.

@@ -1,40 +1,41 @@
 //! Initial states on the constraints of a system.
 //!
-//! In: whether the initial state is the default, and whether it moves onto the constraints. Out: the coordinates and
+//! In: how the default initial state follows from the parameters, and whether it moves onto the constraints. Out: the coordinates and
 //! velocities of a plan, for the parameters that a system has.
 
 use vi_core::StepError;
 use vi_erased::System;
 use vi_erased::plan::{PhasePoint, Plan};
 use vi_report::catalogue::kebab;
+use vi_report::entry::Start;
 use vi_report::failure::Failure;
 
 /// What determines an initial state on the constraints.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Placement {
-    /// Whether it is the default of the system, which may follow from the parameters.
-    follows: bool,
+    /// The default of the system, if it follows from the parameters and no other is given.
+    start: Option<Start>,
     /// Whether it moves to the nearest state on the constraints.
     projects: bool,
 }
 
 impl Placement {
-    /// The placement for a default or a given initial state.
+    /// The placement for a default initial state, or without `start` for a given one.
     ///
     /// # Errors
     /// [`Failure::Input`] for a projection of a system without constraints.
-    pub(super) fn of(system: &dyn System, is_default: bool, projects: bool) -> Result<Self, Failure> {
+    pub(super) fn of(system: &dyn System, start: Option<Start>, projects: bool) -> Result<Self, Failure> {
         if projects && !system.has_constraints() {
             let name = kebab(system.name());
             return Err(Failure::Input(format!("{name} has no constraints to --project onto; remove it")));
         }
-        Ok(Self { follows: is_default, projects })
+        Ok(Self { start, projects })
     }
 
     /// Sets the default initial state of the parameters of a system.
     pub(crate) fn follow(self, system: &dyn System, plan: &mut Plan) {
-        if let Some([q, v]) = system.start().filter(|_| self.follows) {
-            (plan.q, plan.v) = (q, v);
+        if let Some(start) = self.start {
+            [plan.q, plan.v] = start(&system.parameters());
         }
     }
 
@@ -44,7 +45,7 @@ impl Placement {
     /// [`Failure::Input`] if it has none.
     pub(super) fn check(self, system: &dyn System, plan: &Plan) -> Result<(), Failure> {
         let is_finite = plan.q.iter().chain(&plan.v).all(|value| value.is_finite());
-        if !self.follows || is_finite || system.start().is_none() {
+        if self.start.is_none() || is_finite {
             return Ok(());
         }
         Err(Failure::Input(format!(

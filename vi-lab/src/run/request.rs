@@ -177,13 +177,13 @@ impl Request {
     fn read(arguments: &Arguments, catalogue: &Catalogue) -> Result<(Self, Option<Sweep>), Failure> {
         let target = match &arguments.target {
             Some(target) => target.clone(),
-            None => catalogue.first_own()?.system.name().to_owned(),
+            None => catalogue.first_own()?.name.to_owned(),
         };
         let extension = Path::new(&target).extension();
         let is_scene = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
         let scene = if is_scene { Scene::read(&target)? } else { Scene::of_system(&target) };
         let entry = catalogue.find(&scene.system)?;
-        let mut system = entry.system;
+        let mut system = entry.system.copy();
         for (name, value) in &scene.parameters {
             set(system.as_mut(), name, *value)?;
         }
@@ -203,7 +203,7 @@ impl Request {
         let [q, v] = [arguments.q.clone().or(scene.q.clone()), arguments.v.clone().or(scene.v.clone())];
         let is_default = q.is_none() && v.is_none();
         let projects = arguments.project || scene.project.unwrap_or(false);
-        let placement = Placement::of(system.as_ref(), is_default, projects)?;
+        let placement = Placement::of(system.as_ref(), entry.start.filter(|_| is_default), projects)?;
         let t = arguments.t.or(scene.t).unwrap_or(0.0);
         let start = PhasePoint { t, q: q.unwrap_or(entry.q), v: v.unwrap_or(entry.v) };
         let method = arguments.method.or(scene.method).unwrap_or(system.usual_method());

@@ -14,7 +14,7 @@ use vi_erased::plan::Plan;
 use vi_report::failure::Failure;
 
 /// All runs of a sweep.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Items {
     axes: Vec<Axis>,
     samples: u64,

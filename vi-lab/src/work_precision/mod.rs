@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
 pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let machine = Machine::here();
     let entry = with_rule(entry(arguments, catalogue)?, "work-precision")?;
-    let name = kebab(entry.system.name());
+    let name = kebab(entry.name);
     let page = Page::new(&format!("Error against work: {name}"), entry.about);
     let mut report = Report::new(&arguments.out, page)?;
     let mut progress = Progress::new(study::length(&entry, arguments.quick));

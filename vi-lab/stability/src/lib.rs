@@ -78,7 +78,7 @@ pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Fai
         Some(entry) => {
             let entry = with_rule(entry, "stability")?;
             let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
-            let title = format!("Where runs of the system {} end", kebab(entry.system.name()));
+            let title = format!("Where runs of the system {} end", kebab(entry.name));
             let report = Report::new(&arguments.out, Page::new(&title, entry.about))?;
             let mut atlas = Atlas::new(report, arguments.columns, 2);
             system::maps(&mut atlas, &entry, &axes)?;

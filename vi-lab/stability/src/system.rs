@@ -57,7 +57,7 @@ fn usual(entry: &Entry) -> [Span; 2] {
 /// Two maps and what they mean.
 pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result<(), Failure> {
     let grid = grid(atlas, entry, axes);
-    let name = kebab(entry.system.name());
+    let name = kebab(entry.name);
     let fixed: Vec<String> =
         entry.system.parameters().iter().map(|(parameter, value)| format!("{parameter} = {value}")).collect();
     atlas.section("The energy-preserving integrator");

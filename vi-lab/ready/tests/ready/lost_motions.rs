@@ -83,7 +83,7 @@ impl Counts {
         for method in Method::ALL.into_iter().filter(|method| entry.system.has(*method)) {
             for ratio in RATIOS {
                 let h = entry.h * f64::from(ratio);
-                let what = || format!("{}, {method:?}, h = {h}, {start:?}", entry.system.name());
+                let what = || format!("{}, {method:?}, h = {h}, {start:?}", entry.name);
                 let Ok(mut run) = entry.system.begin(&plan(method, h)) else {
                     self.ended += 1;
                     continue;

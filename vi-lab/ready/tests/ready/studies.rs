@@ -1,7 +1,9 @@
 //! Systems of a text have the studies of the compiled ones, without their coordinates at rest.
 
 use core::cell::Cell;
+use vi_erased::kind;
 use vi_erased::plan::{Method, PhasePoint, Plan};
+use vi_systems::{ChaplyginSleigh, ChargedParticle, DoubleRodPendulum, DoubleWell, HenonHeiles};
 
 /// The largest difference of two lists of one length.
 fn off(one: &[f64], other: &[f64]) -> f64 {
@@ -12,16 +14,23 @@ fn off(one: &[f64], other: &[f64]) -> f64 {
 #[test]
 fn a_text_is_studied_as_the_compiled_system() {
     // One, two and three coordinates, the others at rest; a rod and a blade.
-    for name in ["DoubleWell", "HenonHeiles", "ChargedParticle", "DoubleRodPendulum", "ChaplyginSleigh"] {
-        let entry = vi_ready::systems().into_iter().find(|entry| entry.system.name() == name).expect("a system");
-        let of_text = vi_ready::text::entry("text", entry.system.definition()).expect("a system");
+    let compiled = [
+        kind!(DoubleWell, { energy }),
+        kind!(HenonHeiles, { energy }),
+        kind!(ChargedParticle, { energy }),
+        kind!(DoubleRodPendulum, { gauss 1 }),
+        kind!(ChaplyginSleigh, { gauss 1 }),
+    ];
+    for compiled in compiled {
+        let name = compiled.name();
+        let entry = vi_ready::systems().into_iter().find(|entry| entry.name == name).expect("a system");
         let at = PhasePoint { t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
-        let systems = [&*entry.system, &*of_text.system];
+        let systems = [&*compiled, &**entry.system];
 
         let [one, other] = systems.map(|system| system.studies().step_density(&at));
-        assert_eq!(one.is_some(), entry.system.has(Method::Fixed), "{name}");
+        assert_eq!(one.is_some(), compiled.has(Method::Energy), "{name}");
         assert!(off(one.as_slice(), other.as_slice()) <= 1e-9 * one.unwrap_or(0.0).abs(), "{name}: {one:?} {other:?}");
-        let p = entry.system.momentum(&at).expect("momenta");
+        let p = compiled.momentum(&at).expect("momenta");
         let [one, other] =
             systems.map(|system| system.studies().step_densities(0.0, &at.q, &p).map(|of| of.unwrap_or(0.0)));
         let scale = one.iter().fold(0.0, |most: f64, of| most.max(of.abs()));
@@ -50,7 +59,7 @@ fn a_text_is_studied_as_the_compiled_system() {
             exponents.exponents()
         });
         assert!(one.iter().any(|of| of.abs() > 1e-3) && off(&one, &other) < 1e-9, "{name}: {one:?} {other:?}");
-        let refused = of_text.system.studies().lyapunov(&plan, freedom + 1, size).err();
+        let refused = entry.system.studies().lyapunov(&plan, freedom + 1, size).err();
         assert!(matches!(refused, Some(vi_core::StepError::InvalidInput { .. })), "{name}: {refused:?}");
     }
 }
