@@ -161,13 +161,17 @@ fn without_rule<S: Runnable<N, Kind = Free>, const N: usize>() -> Vec<Integrator
         integrator::gauss::<S, N, { STAGES[1] }>(),
         integrator::adaptive::<S, N, { STAGES[0] }>(),
         integrator::adaptive::<S, N, { STAGES[1] }>(),
-        integrator::transformed::<S, N, { STAGES[0] }>(),
-        integrator::transformed::<S, N, { STAGES[1] }>(),
         integrator::energy_gauss::<S, N, { ENERGY_STAGES[0] }>(),
         integrator::energy_gauss::<S, N, { ENERGY_STAGES[1] }>(),
         integrator::energy_gauss::<S, N, { ENERGY_STAGES[2] }>(),
     ];
-    integrator::all([integrator::splitting(), gauss])
+    // Compiled for a system with a time scale alone.
+    let transformed = if const { S::SCALES_TIME } {
+        vec![integrator::transformed::<S, N, { STAGES[0] }>(), integrator::transformed::<S, N, { STAGES[1] }>()]
+    } else {
+        Vec::new()
+    };
+    integrator::all([integrator::splitting(), gauss, transformed])
 }
 
 /// Every integrator that keeps constraints.
