@@ -18,7 +18,7 @@ use order::in_runs;
 use proc_macro2::TokenStream;
 use registers::{Placed, placed};
 use std::collections::HashMap;
-use tables::Tables;
+pub(crate) use tables::Tables;
 use vi_codegen::findings::{self, CLOSED, Elimination, Pattern, StepFindings};
 use vi_codegen::inspect::{report, source};
 use vi_codegen::model::{CheckState, Coordinate, Model, Parameter};

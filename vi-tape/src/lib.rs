@@ -13,12 +13,14 @@
 //! | `matrix` | matrices whose form is known at run time |
 //! | `kinds` | what differs between systems without and with constraints |
 //! | `tape` | a code as a system of N coordinates |
+//! | [`expressions`] | expressions in the names of a system, and the summands of L, along a motion |
 //! | `sizes` | the numbers of coordinates that are built |
 
 #![allow(clippy::inline_always, reason = "a call would lose the vector instructions of its caller")]
 
 mod code;
 mod compile;
+pub mod expressions;
 mod kinds;
 mod lines;
 mod matrix;

@@ -3,6 +3,7 @@
 mod allocations;
 mod bits;
 mod bound;
+mod expressions;
 mod padded;
 mod tables;
 mod texts;

@@ -32,6 +32,8 @@ pub mod program;
 pub mod rules;
 pub mod symbol;
 pub mod syntax;
+#[cfg(feature = "inspect")]
+pub mod terms;
 
 pub use derived::{Derivations, Derived};
 pub use indexed::documentation;
@@ -204,9 +206,18 @@ pub fn sizes(system: &System) -> syn::Result<[usize; 2]> {
     if system.coordinates.iter().all(is_one) && system.constraints.is_empty() {
         return Ok([system.coordinates.len(), 0]);
     }
-    let mut pool = Pool::bounded(limits::WORK);
-    let model = check::model(&mut pool, system, 0).map_err(messages::bounded)?;
+    let (_, model) = checked(system, 0)?;
     Ok([model.dimension(), model.constraints.len()])
+}
+
+/// The checked system with the rule at this position of the list, and its expressions.
+///
+/// # Errors
+/// All mistakes of the system.
+pub fn checked(system: &System, place: usize) -> syn::Result<(Pool<Symbol>, Model)> {
+    let mut pool = Pool::bounded(limits::WORK);
+    let model = check::model(&mut pool, system, place).map_err(messages::bounded)?;
+    Ok((pool, model))
 }
 
 /// Runs the stages from the parsed system to its program in straight lines, for the default rule alone.
@@ -219,8 +230,7 @@ pub fn derive_own(system: &System) -> syn::Result<Derived> {
 
 /// Runs the stages for the rule at this position of the list.
 fn derive_by(system: &System, place: usize) -> syn::Result<Derived> {
-    let mut pool = Pool::bounded(limits::WORK);
-    let model = check::model(&mut pool, system, place).map_err(messages::bounded)?;
+    let (mut pool, model) = checked(system, place)?;
     let system = discrete::system::system(&mut pool, &model)?;
     let program = program::program(&mut pool, &model, &system)?;
     let findings = findings::findings(&model, &system, &program);

@@ -2,7 +2,7 @@
 //!
 //! In: expressions and the value of each symbol. Out: their values in `f64`; each shared node is computed once.
 //! Intended for checks, not for speed. Constants are rounded once; a constant without a value, or too large, is NaN.
-//! An opaque function has the value of its stand-in.
+//! An opaque function has the value of its stand-in, unless others are given.
 
 use std::hash::Hash;
 
@@ -10,7 +10,7 @@ use num_traits::ToPrimitive;
 
 use crate::effort::EVALUATED;
 use crate::number::nearest;
-use crate::{Expr, NoConstant, Node, Pool, Rational, Table};
+use crate::{Expr, NoConstant, Node, Opaque, Pool, Rational, Table};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
     /// Value of one expression.
@@ -22,10 +22,21 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// Values of several expressions in order; the closure is called once per symbol.
     #[must_use]
     pub fn evaluate_all(&self, exprs: &[Expr], values: &mut dyn FnMut(&S) -> f64) -> Vec<f64> {
+        self.evaluate_with(exprs, values, &Opaque::value)
+    }
+
+    /// The same with values of opaque functions in place of their stand-ins.
+    #[must_use]
+    pub fn evaluate_with(
+        &self,
+        exprs: &[Expr],
+        values: &mut dyn FnMut(&S) -> f64,
+        opaque: &dyn Fn(&Opaque, &[f64]) -> f64,
+    ) -> Vec<f64> {
         let mut known = Table::default();
         for expr in self.visited(exprs, EVALUATED) {
             if !self.is_constant(expr) {
-                let value = self.node_value(expr, &known, values);
+                let value = self.value_by(expr, &known, values, opaque);
                 known.insert(expr, value);
             }
         }
@@ -34,6 +45,16 @@ impl<S: Clone + Eq + Hash> Pool<S> {
 
     /// Value of an expression with symbols, from the values of its operands.
     pub fn node_value(&self, expr: Expr, known: &Table<Expr, f64>, values: &mut dyn FnMut(&S) -> f64) -> f64 {
+        self.value_by(expr, known, values, &Opaque::value)
+    }
+
+    fn value_by(
+        &self,
+        expr: Expr,
+        known: &Table<Expr, f64>,
+        values: &mut dyn FnMut(&S) -> f64,
+        opaque: &dyn Fn(&Opaque, &[f64]) -> f64,
+    ) -> f64 {
         let of = |expr: Expr| self.value_of(known, expr);
         match self.node(expr) {
             Node::Number(_) | Node::Pi => self.value_of(known, expr),
@@ -51,7 +72,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             }
             Node::Opaque(function, arguments) => {
                 let arguments: Vec<f64> = arguments.iter().map(|argument| of(*argument)).collect();
-                function.value(&arguments)
+                opaque(function, &arguments)
             }
             Node::Select([condition, then, otherwise]) => selected(of(*condition), of(*then), of(*otherwise)),
         }

@@ -4,14 +4,14 @@ use vi_codegen::model::{FunctionKind, Model, Outside, Table, TableKind, Values};
 use vi_core::table::{self, AnyTable, Interpolation};
 
 /// The tables of a system, in the order of their declaration.
-pub(super) struct Tables {
+pub(crate) struct Tables {
     names: Vec<String>,
-    pub(super) all: &'static [AnyTable],
+    pub(crate) all: &'static [AnyTable],
 }
 
 impl Tables {
     /// `None` with a Rust function.
-    pub(super) fn of(model: &Model) -> Option<Self> {
+    pub(crate) fn of(model: &Model) -> Option<Self> {
         let table = |kind: &FunctionKind| match kind {
             FunctionKind::Table(table) => Some(computed(table)),
             FunctionKind::Rust(_) => None,
@@ -22,7 +22,7 @@ impl Tables {
     }
 
     /// The place of the table of this name.
-    pub(super) fn place(&self, name: &str) -> Option<u16> {
+    pub(crate) fn place(&self, name: &str) -> Option<u16> {
         self.names.iter().position(|known| known == name)?.try_into().ok()
     }
 }

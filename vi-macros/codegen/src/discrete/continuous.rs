@@ -252,17 +252,19 @@ fn is_product(pool: &mut Pool<Symbol>, vector: &[Expr], matrix: &[Vec<Expr>]) ->
     Ok(true)
 }
 
+/// The summands of an expression, in its order.
+pub(crate) fn summands(pool: &mut Pool<Symbol>, expr: Expr) -> Vec<Expr> {
+    let Node::Sum(sum) = pool.node(expr).clone() else { return vec![expr] };
+    let mut terms: Vec<Expr> = sum.terms.iter().map(|(term, factor)| pool.scale(*term, factor)).collect();
+    let constant = pool.number(sum.constant);
+    terms.extend((!pool.is_zero(constant)).then_some(constant));
+    terms
+}
+
 /// v·L_v − L, term by term. A term without velocities only changes its sign and keeps the form in which it was written.
-fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Expr {
+pub(crate) fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Expr {
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
-    let terms = match pool.node(lagrangian).clone() {
-        Node::Sum(sum) => {
-            let mut terms: Vec<Expr> = sum.terms.iter().map(|(term, factor)| pool.scale(*term, factor)).collect();
-            terms.push(pool.number(sum.constant));
-            terms
-        }
-        _ => vec![lagrangian],
-    };
+    let terms = summands(pool, lagrangian);
     let (moving_terms, still): (Vec<Expr>, Vec<Expr>) = terms.into_iter().partition(|t| pool.depends_on(*t, &moves));
     let (kinetic, still) = (pool.sum(&moving_terms), pool.sum(&still));
     let mut gains = vec![pool.neg(kinetic)];

@@ -16,6 +16,8 @@ pub mod system;
 
 pub use constraints::Constraints;
 pub use continuous::{Continuous, PointDerivatives, TimeScale};
+#[cfg(feature = "inspect")]
+pub(crate) use continuous::{energy, summands};
 pub use fields::Fields;
 pub use slots::SlotDerivatives;
 pub use step::Equations;

@@ -7,15 +7,15 @@ use super::rotation::{self, COMPONENTS};
 use super::scope::Meaning;
 use super::value::Value;
 use super::{
-    Coordinate, Model, Parameter, Rule, angles, check_state, constraint, force, function, indices, lets, mass, rule,
-    smoothness, time_scale, timeless,
+    Coordinate, Function, Model, Parameter, Rule, angles, check_state, constraint, force, function, indices, lets,
+    mass, rule, smoothness, time_scale, timeless,
 };
 use crate::arrays::ArrayMistake;
 use crate::functions::FunctionMistake;
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
 use crate::messages::{Absence, Message, error};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{self, Constant, Definition, System};
+use crate::syntax::{self, Constant, Definition, Expression, System};
 use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, Pool};
@@ -40,21 +40,28 @@ pub fn large_model(pool: &mut Pool<Symbol>, system: &System) -> Result<Model> {
     checked(pool, system, 0, true)
 }
 
+/// Expressions in the names of a system, with its `let`s, functions and tables.
+///
+/// # Errors
+/// All mistakes of the names and of the expressions.
+pub fn expressions(pool: &mut Pool<Symbol>, system: &System, written: &[Expression]) -> Result<Vec<Expr>> {
+    let mut context = Context::new(pool);
+    context.names(system);
+    let values = written.iter().map(|of| context.value(of)).collect();
+    context.errors.finish(values)
+}
+
+/// What the names of a system mean, except its `let`s.
+struct Named {
+    parameters: Vec<Parameter>,
+    coordinates: Vec<Coordinate>,
+    functions: Vec<Function>,
+}
+
 fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: bool) -> Result<Model> {
     let mut context = Context::new(pool);
     context.scope.kept = is_large.then(Vec::new);
-    let System { constants, parameters, coordinates, lets, .. } = system;
-    context.scope.expect(lets.iter().map(|named| &named.name), Absence::Let);
-    context.scope.expect(coordinates.iter().map(|coordinate| &coordinate.name), Absence::Coordinate);
-    context.scope.expect(parameters.iter().map(|parameter| &parameter.name), Absence::Parameter);
-    context.scope.expect(system.constraints.iter().map(|constraint| &constraint.name), Absence::Constraint);
-    context.scope.expect(constants.iter().map(|constant| &constant.name), Absence::Below);
-    context.constants(constants);
-    let parameters = context.parameters(parameters);
-    let coordinates = context.coordinates(coordinates, &system.name);
-    context.scope.expect(lets.iter().map(|named| &named.name), Absence::Below);
-    let functions = function::functions(&mut context, system, &parameters);
-    lets::lets(&mut context, lets);
+    let Named { parameters, coordinates, functions } = context.names(system);
     let constraints = constraint::constraints(&mut context, &system.constraints, &coordinates);
     if system.is_constrained {
         constraint::check_clauses(&mut context, system);
@@ -139,6 +146,23 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
 }
 
 impl Context<'_> {
+    /// Declares the names of a system, in order.
+    fn names(&mut self, system: &System) -> Named {
+        let System { constants, parameters, coordinates, lets, .. } = system;
+        self.scope.expect(lets.iter().map(|named| &named.name), Absence::Let);
+        self.scope.expect(coordinates.iter().map(|coordinate| &coordinate.name), Absence::Coordinate);
+        self.scope.expect(parameters.iter().map(|parameter| &parameter.name), Absence::Parameter);
+        self.scope.expect(system.constraints.iter().map(|constraint| &constraint.name), Absence::Constraint);
+        self.scope.expect(constants.iter().map(|constant| &constant.name), Absence::Below);
+        self.constants(constants);
+        let parameters = self.parameters(parameters);
+        let coordinates = self.coordinates(coordinates, &system.name);
+        self.scope.expect(lets.iter().map(|named| &named.name), Absence::Below);
+        let functions = function::functions(self, system, &parameters);
+        lets::lets(self, lets);
+        Named { parameters, coordinates, functions }
+    }
+
     fn constants(&mut self, constants: &[Constant]) {
         for Constant { name, lengths: written, value, .. } in constants {
             let too_long = |given| Message::Array(ArrayMistake::Length { given, limit: ENTRIES });

@@ -33,7 +33,7 @@ pub struct LetArray {
 }
 
 /// The derivative of an expression of time, coordinates and `let`s with respect to time.
-pub(crate) fn rate(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
+pub fn rate(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
     pool.derivative(expr, &mut |pool, symbol| match symbol {
         Symbol::Continuous(Variable::Time) => pool.one(),
         Symbol::Continuous(Variable::Coordinate(index)) => pool.symbol(Symbol::Continuous(Variable::Velocity(*index))),

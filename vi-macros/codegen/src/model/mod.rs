@@ -34,7 +34,7 @@ mod vector;
 pub use check_state::CheckState;
 pub use function::{Function, FunctionKind};
 pub use lets::LetArray;
-pub(crate) use lets::rate;
+pub use lets::rate;
 pub(crate) use mass::slope;
 pub use point::Point;
 pub(crate) use rotation::COMPONENTS;

@@ -1,0 +1,180 @@
+//! Expressions of a system along a motion.
+//!
+//! In: the text of a system; for [`Expressions`] further expressions in its names, for [`Terms`] the summands of its L. Out:
+//! their values at one point of a motion after the other. Tables are evaluated as by every method.
+
+use crate::compile::{Tables, parsed};
+use crate::mistakes::Mistakes;
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+use vi_codegen::inspect::report;
+use vi_codegen::model::{Model, check, rate};
+use vi_codegen::symbol::{Symbol, Variable};
+use vi_codegen::syntax::{self, parse};
+use vi_codegen::terms::{self, Term};
+use vi_expr::{Expr, Opaque, Pool};
+
+/// A point of a motion.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Moment<'a> {
+    /// The time.
+    pub t: f64,
+    /// The coordinates.
+    pub q: &'a [f64],
+    /// The velocities.
+    pub v: &'a [f64],
+    /// The accelerations, which only forces of terms need.
+    pub a: &'a [f64],
+    /// The values of the parameters, in the order of the system.
+    pub parameters: &'a [f64],
+}
+
+/// A text with its expressions.
+struct Source {
+    pool: Pool<Symbol>,
+    model: Model,
+    tables: Tables,
+}
+
+impl Source {
+    fn of(text: &str) -> Result<(Self, syntax::System), Mistakes> {
+        let system = parsed("definition", text, &[])?.system;
+        let wrong = |error: syn::Error| Mistakes::of(report::report("definition", text, &error));
+        let (pool, model) = vi_codegen::checked(&system, 0).map_err(wrong)?;
+        let compiled = || Mistakes::compiled(&model.name.to_string(), "Rust functions");
+        let tables = Tables::of(&model).ok_or_else(compiled)?;
+        Ok((Self { pool, model, tables }, system))
+    }
+
+    fn values(&self, exprs: &[Expr], at: &Moment<'_>) -> Vec<f64> {
+        let entry = |of: &[f64], index: usize| of.get(index).copied().unwrap_or(f64::NAN);
+        let mut symbol = |symbol: &Symbol| match symbol {
+            Symbol::Parameter { index, .. } => entry(at.parameters, *index),
+            Symbol::Continuous(Variable::Time) => at.t,
+            Symbol::Continuous(Variable::Coordinate(index)) => entry(at.q, *index),
+            Symbol::Continuous(Variable::Velocity(index)) => entry(at.v, *index),
+            Symbol::Acceleration(index) => entry(at.a, *index),
+            _ => f64::NAN,
+        };
+        self.pool.evaluate_with(exprs, &mut symbol, &|function, arguments| self.table(function, arguments))
+    }
+
+    /// The value of a derivative of a table; behind its arguments are the values of a table of parameters.
+    fn table(&self, of: &Opaque, arguments: &[f64]) -> f64 {
+        let Some(place) = self.tables.place(&of.name) else { return f64::NAN };
+        let orders = [of.orders[0], of.orders[1]].map(usize::from);
+        let (own, values) = arguments.split_at(of.arity.min(arguments.len()));
+        let point = [0, 1].map(|index| own.get(index).copied().unwrap_or(0.0));
+        self.tables.all[usize::from(place)].derivative(orders, point, values)
+    }
+}
+
+/// Expressions of the time and the coordinates of a system.
+pub struct Expressions {
+    source: Source,
+    values: Vec<Expr>,
+    rates: Vec<Expr>,
+}
+
+impl Expressions {
+    /// Expressions in the names of the system of a text: its coordinates, parameters, `let`s, functions and tables. Each
+    /// has a name for messages.
+    ///
+    /// # Errors
+    /// The mistakes of the text or of the first wrong expression; an expression with velocities.
+    pub fn parse(text: &str, written: &[(&str, &str)]) -> Result<Self, Mistakes> {
+        let (mut source, system) = Source::of(text)?;
+        let mut values = Vec::with_capacity(written.len());
+        for (name, expression) in written {
+            let wrong = |error: syn::Error| Mistakes::of(report::report(name, expression, &error));
+            let written = alone(expression).map_err(wrong)?;
+            values.extend(check::expressions(&mut source.pool, &system, &[written]).map_err(wrong)?);
+        }
+        let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
+        if let Some((_, (name, _))) = values.iter().zip(written).find(|(of, _)| source.pool.depends_on(**of, &moves)) {
+            let text =
+                format!("error: the expression of `{name}` has velocities\n = help: write it by coordinates alone");
+            return Err(Mistakes::of(text));
+        }
+        let rates = values.iter().map(|value| rate(&mut source.pool, *value)).collect();
+        Ok(Self { source, values, rates })
+    }
+
+    /// The values at a point.
+    #[must_use]
+    pub fn values(&self, at: &Moment<'_>) -> Vec<f64> {
+        self.source.values(&self.values, at)
+    }
+
+    /// The rates of change at a point, by its velocities.
+    #[must_use]
+    pub fn rates(&self, at: &Moment<'_>) -> Vec<f64> {
+        self.source.values(&self.rates, at)
+    }
+}
+
+/// An expression by itself.
+fn alone(text: &str) -> syn::Result<syntax::Expression> {
+    let head: TokenStream = "struct Alone".parse()?;
+    let mut clause: TokenStream = "let alone =".parse()?;
+    // The parser reads one clause, so that a `;` in the text ends it too early.
+    clause.extend(text.parse::<TokenStream>()?);
+    clause.extend(";".parse::<TokenStream>()?);
+    let body = TokenTree::Group(Group::new(Delimiter::Brace, clause));
+    let system = parse::system(head.into_iter().chain([body]).collect())?;
+    let mut lets = system.lets.into_iter();
+    match (lets.next(), lets.next()) {
+        (Some(only), None) => Ok(only.value),
+        _ => Err(syn::Error::new(proc_macro2::Span::call_site(), "expected one expression")),
+    }
+}
+
+/// The summands of L.
+pub struct Terms {
+    source: Source,
+    summands: Vec<Term>,
+    operations: usize,
+}
+
+impl Terms {
+    /// The summands of L of the system of a text.
+    ///
+    /// # Errors
+    /// The mistakes of the text; a system that is too large.
+    pub fn of(text: &str) -> Result<Self, Mistakes> {
+        let (mut source, _) = Source::of(text)?;
+        let wrong = |error: syn::Error| Mistakes::of(report::report("definition", text, &error));
+        let Source { pool, model, .. } = &mut source;
+        let operations = terms::operations(pool, model).map_err(wrong)?;
+        let summands = terms::terms(pool, model).map_err(wrong)?;
+        Ok(Self { source, summands, operations })
+    }
+
+    /// Each summand as text, and the operations of the equations of motion at one point that it costs.
+    pub fn costs(&self) -> impl Iterator<Item = (String, Option<usize>)> {
+        let Source { pool, model, .. } = &self.source;
+        self.summands.iter().map(|term| {
+            let text = pool.render(term.value, &|symbol| model.spell(symbol));
+            (text, term.operations_without.map(|without| self.operations.saturating_sub(without)))
+        })
+    }
+
+    /// The force `T_q − d/dt T_v` and the energy `v·T_v − T` of each summand T at a point.
+    #[must_use]
+    pub fn at(&self, at: &Moment<'_>) -> Vec<(Vec<f64>, f64)> {
+        let exprs: Vec<Expr> =
+            self.summands.iter().flat_map(|of| of.force.iter().copied().chain([of.energy])).collect();
+        let values = self.source.values(&exprs, at);
+        let each = values.chunks_exact(self.source.model.dimension() + 1);
+        each.map(|of| (of[..of.len() - 1].to_vec(), of[of.len() - 1])).collect()
+    }
+}
+
+/// The operations of the equations of motion of the system of a text at one point.
+///
+/// # Errors
+/// The mistakes of the text; a system that is too large.
+pub fn operations(text: &str) -> Result<usize, Mistakes> {
+    let (mut source, _) = Source::of(text)?;
+    let wrong = |error: syn::Error| Mistakes::of(report::report("definition", text, &error));
+    terms::operations(&mut source.pool, &mut source.model).map_err(wrong)
+}

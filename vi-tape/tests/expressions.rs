@@ -1,0 +1,94 @@
+//! Expressions in the names of a system, and the summands of L.
+
+use vi_erased::system::Quantity;
+use vi_tape::System;
+use vi_tape::expressions::{Expressions, Moment, Terms, operations};
+
+/// A mass with tables of every kind, and terms that mix velocities, coordinates and the time.
+const TEXT: &str = "struct Tabled {
+    param m = 1.3;
+    param c[5] = [0.1, 0.4, -0.2, 0.3, 0.2];
+    coord x, y;
+    table well(x) = [(-2, 1.0), (-1, 0.2), (0, 0.0), (0.7, 0.3), (1.5, 0.9), (2, 1.6), (3, 2.0)] quintic extend;
+    table valley(x in -2..2, y in -2..2) = [[2, 1, 2, 3], [1, 0.2, 1, 2], [1, 0.3, 0.8, 2], [2, 1, 2, 2.5]] extend;
+    table wind(t in 0..2) = c periodic;
+    fn square(a) = a^2;
+    let r = sqrt(square(x) + square(y));
+    L = m * (dot(x)^2 + dot(y)^2) / 2 - well(x) - valley(x, y) + cos(t) * x * dot(y) + dot(x) * dot(y) * sin(x) / 7;
+    force y = wind(t);
+}";
+
+const PARAMETERS: [f64; 6] = [1.3, 0.1, 0.4, -0.2, 0.3, 0.2];
+
+#[test]
+fn the_summands_have_the_force_and_the_energy_of_the_system() {
+    let system = System::parse(TEXT).unwrap_or_else(|error| panic!("{error}"));
+    let terms = Terms::of(TEXT).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(terms.costs().count(), 5);
+    for (t, q, v) in [(0.3, [0.4, -0.7], [0.9, 0.5]), (1.1, [-1.3, 0.2], [-0.4, 1.6])] {
+        let of = |quantity| {
+            let mut values = Vec::new();
+            system.evaluate(quantity, [&[t], &q, &v], &mut values).expect("a value");
+            values
+        };
+        let a = of(Quantity::Acceleration);
+        let found = terms.at(&Moment { t, q: &q, v: &v, a: &a, parameters: &PARAMETERS });
+        // The equations of motion: the forces of all summands and f balance.
+        for (index, applied) in of(Quantity::Force).into_iter().enumerate() {
+            let sum = found.iter().map(|(force, _)| force[index]).sum::<f64>() + applied;
+            assert!(sum.abs() < 1e-14, "{sum:e}"); // 8.0e-16
+        }
+        let energy: f64 = found.iter().map(|(_, energy)| energy).sum();
+        assert!((energy - of(Quantity::Energy)[0]).abs() < 1e-14, "{energy}"); // 4.4e-16
+    }
+}
+
+#[test]
+fn a_total_time_derivative_has_no_force() {
+    let text = "struct Gauge { coord x; L = dot(x)^2 / 2 - x^2 / 2 + 3 * dot(x) * x^2; }";
+    let terms = Terms::of(text).unwrap_or_else(|error| panic!("{error}"));
+    let (x, v, a) = (0.4, 0.9, -2.0);
+    let found = terms.at(&Moment { q: &[x], v: &[v], a: &[a], ..Moment::default() });
+    let named: Vec<String> = terms.costs().map(|(text, _)| text).collect();
+    let of = |name: &str| {
+        let place = named.iter().position(|term| term == name).unwrap_or_else(|| panic!("{name} in {named:?}"));
+        (found[place].0[0], found[place].1)
+    };
+    assert_eq!(of("dot(x)^2/2"), (2.0, v * v / 2.0));
+    assert_eq!(of("-x^2/2"), (-x, x * x / 2.0));
+    assert_eq!(of("3*dot(x)*x^2"), (0.0, 0.0));
+    let without = "struct Gauge { coord x; L = dot(x)^2 / 2 - x^2 / 2; }";
+    let costs: Vec<Option<usize>> = terms.costs().map(|(_, costs)| costs).collect();
+    let saved = operations(text).expect("a system") - operations(without).expect("a system");
+    let place = named.iter().position(|term| term == "3*dot(x)*x^2").expect("the term");
+    assert!(saved > 0 && costs[place] == Some(saved), "{costs:?} {saved}");
+}
+
+#[test]
+fn expressions_use_the_names_of_the_system() {
+    let written = [("u", "m * r"), ("w", "wind(t) + c[1]"), ("a", "x^2 * y - t")];
+    let of = Expressions::parse(TEXT, &written).unwrap_or_else(|error| panic!("{error}"));
+    let (x, y, v) = (0.6, -0.8, [2.0, 0.5]);
+    let at = Moment { t: 0.5, q: &[x, y], v: &v, parameters: &PARAMETERS, ..Moment::default() };
+    // The table has the points c at distances of 2/5.
+    let at_point = Moment { t: 0.4, ..at };
+    for (found, wanted) in of.values(&at_point).into_iter().zip([1.3, 0.4 + 0.4, x * x * y - 0.4]) {
+        assert!((found - wanted).abs() < 1e-15, "{found} instead of {wanted}"); // 0
+    }
+    let [u, _, a] = of.rates(&at)[..] else { panic!("three rates") };
+    assert!((u - 1.3 * (x * v[0] + y * v[1])).abs() < 1e-15, "{u}"); // 0
+    assert!((a - (2.0 * x * v[0] * y + x * x * v[1] - 1.0)).abs() < 1e-15, "{a}"); // 0
+}
+
+#[test]
+fn wrong_expressions_are_named() {
+    for (expression, said) in [
+        ("sin(z)", "error: unknown name `z`\n --> x:1:5"),
+        ("sin(y", "--> x:1:"),
+        ("dot(y) * x", "error: the expression of `x` has velocities"),
+        ("x; let b = y", "expected one expression"),
+    ] {
+        let found = Expressions::parse(TEXT, &[("x", expression)]).err().expect("a mistake").to_string();
+        assert!(found.contains(said), "{expression}: {found}");
+    }
+}
