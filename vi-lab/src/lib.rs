@@ -13,11 +13,13 @@
 //! | `work_precision` | `vi-lab work-precision`: error against time, for every method |
 //! | `sweep` | `vi-lab sweep`, `vi-lab merge`: many runs of one scene, on all cores and many machines |
 //! | `lyapunov` | `vi-lab lyapunov`: Lyapunov exponents |
+//! | `compare` | `vi-lab compare`: two models of one motion |
 //! | `expand`, `explain` | the products of the compiler; the mathematics of a system |
 //! | `place`, `entries` | checks of files to read and write; entries of scenes |
 //! | `vi_report` | output shared by all subcommands; the systems by name |
 //! | `vi_ready` | the predefined systems |
 
+mod compare;
 #[doc(hidden)]
 pub mod declared;
 mod entries;
@@ -58,6 +60,8 @@ enum Action {
     WorkPrecision(work_precision::Arguments),
     /// Estimate the largest Lyapunov exponents of a system along one run
     Lyapunov(lyapunov::Arguments),
+    /// Compare a full and a reduced model of one motion: their difference against time, and what each costs
+    Compare(compare::Arguments),
     /// Run a scene many times over parameters, initial values and steps: on all cores, or one shard of several
     Sweep(sweep::Arguments),
     /// Merge the chunks of a sweep into tables
@@ -141,6 +145,7 @@ fn act(action: Action, catalogue: &Catalogue) -> Result<(), Failure> {
         Action::Stability(arguments) => print(&vi_stability::write(&arguments, catalogue)?),
         Action::WorkPrecision(arguments) => print(&work_precision::write(&arguments, catalogue)?),
         Action::Lyapunov(arguments) => lyapunov::write(&arguments, catalogue),
+        Action::Compare(arguments) => print(&compare::write(&arguments, catalogue)?),
         Action::Sweep(arguments) => print(&sweep::sweep(&arguments, catalogue)?),
         Action::Merge(arguments) => print(&sweep::merge::merge(&arguments)?),
         Action::Expand(arguments) => print(&expand::expand(&arguments)?),

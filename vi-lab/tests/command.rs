@@ -5,6 +5,8 @@ mod ends;
 #[cfg(unix)]
 #[path = "command/hostile.rs"]
 mod hostile;
+#[path = "command/models.rs"]
+mod models;
 #[path = "command/sweep.rs"]
 mod sweep;
 #[path = "command/texts.rs"]

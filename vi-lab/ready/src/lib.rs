@@ -6,6 +6,8 @@
 
 pub mod text;
 
+pub use vi_tape::{Mistakes, expressions};
+
 use text::ready;
 use vi_report::entry::{Entry, start};
 use vi_systems::{

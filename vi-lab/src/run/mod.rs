@@ -30,7 +30,7 @@ use crate::entries::named;
 use clap::Args;
 use extent::Extent;
 use request::Output;
-pub(crate) use request::{Length, Request};
+pub(crate) use request::{Length, Request, is_scene};
 use shift::Wanted;
 use std::io::{self, Write as _};
 use std::path::PathBuf;

@@ -145,12 +145,17 @@ fn check_plot(path: &Path) -> Result<(), Failure> {
     place::check("plot", path)
 }
 
+/// Whether a target is a scene file.
+pub(crate) fn is_scene(target: &str) -> bool {
+    Path::new(target).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+}
+
 impl Request {
     /// The run of the arguments.
     ///
     /// # Errors
     /// [`Failure::Input`] for the first wrong input.
-    pub(super) fn of(arguments: &Arguments, catalogue: &Catalogue) -> Result<Self, Failure> {
+    pub(crate) fn of(arguments: &Arguments, catalogue: &Catalogue) -> Result<Self, Failure> {
         match (Self::read(arguments, catalogue)?, arguments.item) {
             ((request, None), None) | ((request, Some(_)), Some(_)) => Ok(request),
             ((_, None), Some(_)) => Err(Failure::Input("only a scene with [sweep] has an --item".to_owned())),
@@ -179,9 +184,7 @@ impl Request {
             Some(target) => target.clone(),
             None => catalogue.first_own()?.name.to_owned(),
         };
-        let extension = Path::new(&target).extension();
-        let is_scene = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-        let scene = if is_scene { Scene::read(&target)? } else { Scene::of_system(&target) };
+        let scene = if is_scene(&target) { Scene::read(&target)? } else { Scene::of_system(&target) };
         let entry = catalogue.find(&scene.system)?;
         let mut system = entry.system.copy();
         for (name, value) in &scene.parameters {
