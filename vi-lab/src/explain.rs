@@ -2,16 +2,17 @@
 //!
 //! In: the name of a predefined system, or a Rust file with your own systems. Out: L, f, L_d, its slot derivatives, the
 //! equations of a step, findings and operation counts, or the equations of a Gauss step, as text or as a LaTeX
-//! document. The predefined systems are read from the sources of the library.
+//! document. The predefined systems are read from the sources of the library. With the run of a scene, the summands of L
+//! that matter along it ([`along`]).
 
-use super::expand;
+use super::{along, expand};
 use clap::{Args, ValueEnum};
 use proc_macro2::TokenStream;
 use std::path::Path;
 use vi_codegen::inspect::{self, source};
 use vi_report::catalogue::Catalogue;
 use vi_report::failure::Failure;
-use vi_report::input;
+use vi_report::input::{self, number};
 
 /// The command line of `vi-lab explain`.
 #[derive(Debug, Args)]
@@ -28,7 +29,16 @@ pub(crate) struct Arguments {
     /// Stages of a Gauss step, 1 to 16 [default: 2]
     #[arg(long, value_name = "S", requires = "rule", value_parser = clap::value_parser!(u8).range(1..=MOST))]
     stages: Option<u8>,
+    /// Show which summands of L matter along the run of a scene file
+    #[arg(long, value_name = "SCENE.toml", conflicts_with_all = ["latex", "rule"])]
+    along: Option<String>,
+    /// The share of force and of energy below which a summand is named as small [default: 1e-3]
+    #[arg(long, value_name = "SHARE", requires = "along", value_parser = number)]
+    below: Option<f64>,
 }
+
+/// The default of `--below`.
+const BELOW: f64 = 1e-3;
 
 /// A rule that needs no declaration.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -52,7 +62,10 @@ impl Arguments {
 
 /// Explains a system.
 pub(crate) fn explain(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
-    let Arguments { system, latex, .. } = arguments;
+    let Arguments { system, latex, along, below, .. } = arguments;
+    if let Some(scene) = along {
+        return along::terms(system.as_deref(), scene, below.unwrap_or(BELOW), catalogue);
+    }
     let show = |explanation: inspect::Explanation| if *latex { explanation.latex() } else { explanation.text() };
     let explained = |tokens| arguments.explained(tokens);
     let file = system.as_ref().map(Path::new).filter(|path| input::has_systems(path));

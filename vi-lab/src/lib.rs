@@ -15,10 +15,12 @@
 //! | `lyapunov` | `vi-lab lyapunov`: Lyapunov exponents |
 //! | `compare` | `vi-lab compare`: two models of one motion |
 //! | `expand`, `explain` | the products of the compiler; the mathematics of a system |
+//! | `along` | the summands of L that matter along a run |
 //! | `place`, `entries` | checks of files to read and write; entries of scenes |
 //! | `vi_report` | output shared by all subcommands; the systems by name |
 //! | `vi_ready` | the predefined systems |
 
+mod along;
 mod compare;
 #[doc(hidden)]
 pub mod declared;

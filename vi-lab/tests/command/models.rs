@@ -84,3 +84,33 @@ fn wrong_comparisons_are_refused() {
     let (status, errors) = at(&["kepler", "pendulum", "--map", "x = sin(phi)"]);
     assert!(status == Some(1) && errors.contains("--> x:1:5") && errors.contains("phi"), "{status:?} {errors}");
 }
+
+#[test]
+fn terms_that_hardly_act_are_named() {
+    let folder = Folder::new("terms", "");
+    let text = "struct Own { coord x; L = dot(x)^2 / 2 - x^2 / 2 - x^4 / 1000000 + 3 * x^2 * dot(x); check { x = 1; h = 0.01; } }";
+    let own = folder.file("own.vi", text);
+    let scene = folder.file("half.toml", &format!("system = {own:?}\nmethod = \"gauss\"\nuntil = 3.2\n"));
+    let explain = |further: &[&str]| {
+        let (status, output, errors) = lab(&[&["explain", "--along", &scene], further].concat());
+        assert_eq!(status, Some(0), "{errors}");
+        output
+    };
+    let output = explain(&[]);
+    let row = |term: &str| {
+        let mut cells = output.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+        cells.find(|cells| cells.first() == Some(&term)).unwrap_or_else(|| panic!("{term} in {output}"))
+    };
+    // x = cos t: the forces of the terms are -x'', -x, -4e-6 x^3 and 0; their energies change by 1/2, 1/2, 1e-6 and 0.
+    assert_eq!(row("dot(x)^2/2")[1..3], ["1.00", "1.00"]);
+    assert_eq!(row("-x^2/2")[1..3], ["1.00", "1.00"]);
+    assert_eq!(row("-x^4/1000000")[1..3], ["4.00·10⁻⁶", "2.00·10⁻⁶"]);
+    assert_eq!(row("3*dot(x)*x^2")[1..3], ["0", "0"]);
+    let small = |output: &str| output.lines().last().map(str::to_owned).expect("a line");
+    let without = "of both, so that this run may do without:";
+    assert_eq!(small(&output), format!("below 0.001 {without} -x^4/1000000, 3*dot(x)*x^2"));
+    assert_eq!(small(&explain(&["--below", "1e-6"])), format!("below 1e-6 {without} 3*dot(x)*x^2"));
+    assert_eq!(small(&explain(&["--below", "0"])), "no term is below 0 of both");
+    let (status, _, errors) = lab(&["explain", "kepler", "--along", &scene]);
+    assert_eq!((status, errors), (Some(2), format!("error: {scene} is a scene of own, not of kepler\n")));
+}
