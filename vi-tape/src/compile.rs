@@ -38,10 +38,10 @@ const CHARACTERS: usize = 400;
 /// # Errors
 /// The mistakes of the text.
 pub(crate) fn parsed(file: &str, text: &str, files: &[(String, String)]) -> Result<Parsed, Mistakes> {
-    let unreadable = |error: syn::Error| Mistakes::of(report::unreadable(file, text, &error));
+    let unreadable = |error: syn::Error| Mistakes::at(file, text, vec![report::first_unreadable(text, &error)]);
     let tokens = declaration(text).map_err(unreadable)?;
-    let tokens = tokens.ok_or_else(|| Mistakes::of(ONE.to_owned()))?;
-    let wrong = |error: syn::Error| Mistakes::of(report::report(file, text, &error));
+    let tokens = tokens.ok_or_else(|| Mistakes::of(ONE))?;
+    let wrong = |error: syn::Error| Mistakes::at(file, text, report::mistakes(&error));
     syntax::alone::check(&tokens).map_err(wrong)?;
     let mut system = syntax::parse::system(tokens.clone()).map_err(wrong)?;
     system.files = files.iter().map(|(path, text)| (path.into(), text.clone())).collect();
@@ -61,7 +61,7 @@ pub(crate) struct Parsed {
 /// # Errors
 /// The mistakes of the text, or what only the macro compiles.
 pub(crate) fn code(file: &str, text: &str, Parsed { system, definition }: Parsed) -> Result<Code, Mistakes> {
-    let wrong = |error: syn::Error| Mistakes::of(report::report(file, text, &error));
+    let wrong = |error: syn::Error| Mistakes::at(file, text, report::mistakes(&error));
     let [declared, constraints] = sizes(&system).map_err(wrong)?;
     let rest = size(&system.name.to_string(), [declared, constraints])? - declared;
     let files = system.files.values().cloned().collect();

@@ -30,6 +30,7 @@ mod tape;
 
 pub use code::Start;
 pub use mistakes::Mistakes;
+pub use vi_codegen::inspect::report::Mistake;
 
 use code::Code;
 use core::ops::{Deref, DerefMut};

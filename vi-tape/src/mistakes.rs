@@ -1,18 +1,25 @@
 //! Why a text is no system.
 
 use core::fmt;
+use vi_codegen::inspect::report::{Mistake, paragraphs};
 
 /// The mistakes of a text, each with its place and its correction; or what only a compiler makes of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistakes {
     text: String,
+    each: Vec<Mistake>,
     needs_compiler: bool,
 }
 
 impl Mistakes {
-    /// Mistakes in these words.
-    pub(crate) fn of(text: String) -> Self {
-        Self { text, needs_compiler: false }
+    /// A mistake in these words, of the whole text.
+    pub(crate) fn of(words: &str) -> Self {
+        Self { text: words.to_owned(), each: Vec::new(), needs_compiler: false }
+    }
+
+    /// Mistakes in the text of a file.
+    pub(crate) fn at(file: &str, text: &str, each: Vec<Mistake>) -> Self {
+        Self { text: paragraphs(file, text, &each), each, needs_compiler: false }
     }
 
     /// A system that has to be compiled, because it has this.
@@ -20,7 +27,13 @@ impl Mistakes {
         let text = format!(
             "error: `{name}` has {what}\n = help: compile it, by `lagrangian!` in Rust or `vi.compile(text)` in Python, which need Rust; or write it without"
         );
-        Self { text, needs_compiler: true }
+        Self { text, each: Vec::new(), needs_compiler: true }
+    }
+
+    /// Each mistake at its token, for editors; none for those of the whole text.
+    #[must_use]
+    pub fn each(&self) -> &[Mistake] {
+        &self.each
     }
 
     /// Whether the text is right, and `lagrangian!` compiles it.

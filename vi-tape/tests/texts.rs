@@ -69,6 +69,18 @@ fn mistakes_have_their_place() {
 }
 
 #[test]
+fn each_mistake_has_its_token() {
+    let each = |text: &str| System::parse(text).err().map(|found| found.each().to_vec()).unwrap_or_default();
+    let found = each("struct Wrong {\n    coord θ;\n    L = dot(θ)^2 / 2 - kk * θ^2 - j;\n}");
+    let tokens: Vec<_> = found.iter().map(|of| of.token.map(|at| (at.line, at.column))).collect();
+    assert_eq!(tokens, [[(3, 23), (3, 25)], [(3, 34), (3, 35)]]);
+    assert!(found[0].wrong.contains("`kk`") && found[0].helps.starts_with("help: "), "{found:?}");
+    // An unclosed bracket is one character.
+    assert_eq!(each("struct Open {")[0].token.map(|at| (at.line, at.column)), [(1, 12), (1, 12)]);
+    assert!(each("lagrangian! { } lagrangian! { }").is_empty());
+}
+
+#[test]
 fn nesting_is_bounded() {
     let deep = |open: &str, close: &str| {
         let (open, close) = (open.repeat(20_000), close.repeat(20_000));

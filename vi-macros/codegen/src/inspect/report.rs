@@ -13,40 +13,76 @@ const WIDTH: usize = 120;
 /// Marks an omitted part of a line.
 const CUT: &str = "…";
 
-/// All mistakes of a file, each a paragraph.
+/// A mistake at its token.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mistake {
+    /// What is wrong.
+    pub wrong: String,
+    /// The lines of help, each with the kind of help at its begin.
+    pub helps: String,
+    /// The first character of the token, and the one behind it: lines from 1, columns in characters from 0.
+    pub token: [LineColumn; 2],
+}
+
+/// All mistakes of a text, in order.
 #[must_use]
-pub fn report(file: &str, text: &str, error: &syn::Error) -> String {
-    error.into_iter().map(|error| paragraph(file, text, &error)).collect::<Vec<_>>().join("\n")
+pub fn mistakes(error: &syn::Error) -> Vec<Mistake> {
+    error.into_iter().map(|error| Mistake::of(&error)).collect()
 }
 
 /// The first mistake in text that is not valid Rust: at its place if known, otherwise the message of the lexer.
 #[must_use]
-pub fn unreadable(file: &str, text: &str, error: &syn::Error) -> String {
+pub fn first_unreadable(text: &str, error: &syn::Error) -> Mistake {
     match unreadable::unreadable(text) {
-        Some(Unreadable { place, message }) => at(file, text, &message, [place, place]),
-        None => paragraph(file, text, error),
+        Some(Unreadable { place, message }) => Mistake::new(&message, [place, place]),
+        None => Mistake::of(error),
     }
 }
 
-fn paragraph(file: &str, text: &str, error: &syn::Error) -> String {
-    at(file, text, &error.to_string(), [error.span().start(), error.span().end()])
+/// All mistakes of a file, each a paragraph.
+#[must_use]
+pub fn report(file: &str, text: &str, error: &syn::Error) -> String {
+    paragraphs(file, text, &mistakes(error))
 }
 
-/// The message for a token from `start` to `end`.
-fn at(file: &str, text: &str, message: &str, [start, end]: [LineColumn; 2]) -> String {
-    let (wrong, helps) = message.split_once('\n').unwrap_or((message, ""));
-    let line: Vec<char> = text.lines().nth(start.line.saturating_sub(1)).unwrap_or_default().chars().collect();
-    let margin = " ".repeat(start.line.to_string().len());
-    // A token of several lines is marked to the end of its first line.
-    let stop = if end.line == start.line { end.column } else { line.len() };
-    let Excerpt { shown, before, carets } = excerpt(&line, start.column, stop);
-    let mut report = format!("error: {wrong}\n{margin}--> {file}:{}:{}\n", start.line, start.column + 1);
-    // Writing to a string cannot fail.
-    let _ = write!(report, "{margin} |\n{} | {shown}\n{margin} | {before}{carets}\n", start.line);
-    for help in helps.lines() {
-        let _ = writeln!(report, "{margin} = {help}");
+/// [`first_unreadable`] as a paragraph.
+#[must_use]
+pub fn unreadable(file: &str, text: &str, error: &syn::Error) -> String {
+    first_unreadable(text, error).paragraph(file, text)
+}
+
+/// Each mistake of a file as a paragraph.
+#[must_use]
+pub fn paragraphs(file: &str, text: &str, mistakes: &[Mistake]) -> String {
+    mistakes.iter().map(|mistake| mistake.paragraph(file, text)).collect::<Vec<_>>().join("\n")
+}
+
+impl Mistake {
+    fn of(error: &syn::Error) -> Self {
+        Self::new(&error.to_string(), [error.span().start(), error.span().end()])
     }
-    report
+
+    fn new(message: &str, token: [LineColumn; 2]) -> Self {
+        let (wrong, helps) = message.split_once('\n').unwrap_or((message, ""));
+        Self { wrong: wrong.to_owned(), helps: helps.to_owned(), token }
+    }
+
+    /// The mistake with the line of its token, and carets under it.
+    fn paragraph(&self, file: &str, text: &str) -> String {
+        let Self { wrong, helps, token: [start, end] } = self;
+        let line: Vec<char> = text.lines().nth(start.line.saturating_sub(1)).unwrap_or_default().chars().collect();
+        let margin = " ".repeat(start.line.to_string().len());
+        // A token of several lines is marked to the end of its first line.
+        let stop = if end.line == start.line { end.column } else { line.len() };
+        let Excerpt { shown, before, carets } = excerpt(&line, start.column, stop);
+        let mut report = format!("error: {wrong}\n{margin}--> {file}:{}:{}\n", start.line, start.column + 1);
+        // Writing to a string cannot fail.
+        let _ = write!(report, "{margin} |\n{} | {shown}\n{margin} | {before}{carets}\n", start.line);
+        for help in helps.lines() {
+            let _ = writeln!(report, "{margin} = {help}");
+        }
+        report
+    }
 }
 
 /// A line with carets under a token.
