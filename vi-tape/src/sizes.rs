@@ -21,7 +21,8 @@ macro_rules! sizes {
         /// The system of a code, which has a number of coordinates that is built.
         fn built(code: &'static Code) -> Option<Box<dyn System>> {
             match code.coordinates.len() {
-                $($size if code.constraints.is_some() => Some(bound::<$size>(code)),
+                $(#[cfg(feature = "complete")]
+                $size if code.constraints.is_some() => Some(bound::<$size>(code)),
                 $size => Some(free::<$size>(code)),)*
                 _ => None,
             }
@@ -59,6 +60,9 @@ pub(crate) fn system(code: &'static Code) -> Result<Box<dyn System>, Mistakes> {
 }
 
 fn check(code: &Code) -> Result<(), Mistakes> {
+    if cfg!(not(feature = "complete")) && code.constraints.is_some() {
+        return Err(Mistakes::compiled(code.name, "constraints, which this build leaves out"));
+    }
     let (count, most) =
         (code.defaults.len(), if code.constraints.is_some() { Of::<1>::PARAMETERS } else { Free::PARAMETERS });
     if count <= most {
@@ -72,6 +76,7 @@ type Of<const K: usize> = Bound<K, Counted>;
 
 /// The system of N coordinates without constraints, with the methods that it has.
 fn free<const N: usize>(code: &'static Code) -> Box<dyn System> {
+    #[cfg(feature = "complete")]
     let mut all = integrator::all([
         integrators!(fixed),
         integrators!(splitting),
@@ -81,11 +86,14 @@ fn free<const N: usize>(code: &'static Code) -> Box<dyn System> {
         integrators!(energy),
         integrators!(energy 1, 2, 3),
     ]);
+    #[cfg(not(feature = "complete"))]
+    let mut all = integrator::all([integrators!(fixed_2), integrators!(gauss 4, 8), integrators!(energy)]);
     all.retain(|of| has(code, of.built));
     Box::new(Typed::of(Tape::<N, Free>::new(code), all))
 }
 
 /// The system of N coordinates with up to N constraints.
+#[cfg(feature = "complete")]
 fn bound<const N: usize>(code: &'static Code) -> Box<dyn System> {
     let all = integrator::all([integrators!(gauss 1, 2, 3, 4, 6), integrators!(adaptive 3), integrators!(energy 1, 2)]);
     Box::new(Typed::of(Independent::of(Tape::<N, Of<N>>::new(code)), all))
