@@ -38,7 +38,7 @@ struct Source {
 impl Source {
     fn of(text: &str) -> Result<(Self, syntax::System), Mistakes> {
         let system = parsed("definition", text, &[])?.system;
-        let wrong = |error: syn::Error| Mistakes::of(report::report("definition", text, &error));
+        let wrong = |error: syn::Error| Mistakes::at("definition", text, report::mistakes(&error));
         let (pool, model) = vi_codegen::checked(&system, 0).map_err(wrong)?;
         let compiled = || Mistakes::compiled(&model.name.to_string(), "Rust functions");
         let tables = Tables::of(&model).ok_or_else(compiled)?;
@@ -85,7 +85,7 @@ impl Expressions {
         let (mut source, system) = Source::of(text)?;
         let mut values = Vec::with_capacity(written.len());
         for (name, expression) in written {
-            let wrong = |error: syn::Error| Mistakes::of(report::report(name, expression, &error));
+            let wrong = |error: syn::Error| Mistakes::at(name, expression, report::mistakes(&error));
             let written = alone(expression).map_err(wrong)?;
             values.extend(check::expressions(&mut source.pool, &system, &[written]).map_err(wrong)?);
         }
@@ -93,7 +93,7 @@ impl Expressions {
         if let Some((_, (name, _))) = values.iter().zip(written).find(|(of, _)| source.pool.depends_on(**of, &moves)) {
             let text =
                 format!("error: the expression of `{name}` has velocities\n = help: write it by coordinates alone");
-            return Err(Mistakes::of(text));
+            return Err(Mistakes::of(&text));
         }
         let rates = values.iter().map(|value| rate(&mut source.pool, *value)).collect();
         Ok(Self { source, values, rates })
@@ -142,7 +142,7 @@ impl Terms {
     /// The mistakes of the text; a system that is too large.
     pub fn of(text: &str) -> Result<Self, Mistakes> {
         let (mut source, _) = Source::of(text)?;
-        let wrong = |error: syn::Error| Mistakes::of(report::report("definition", text, &error));
+        let wrong = |error: syn::Error| Mistakes::at("definition", text, report::mistakes(&error));
         let Source { pool, model, .. } = &mut source;
         let operations = terms::operations(pool, model).map_err(wrong)?;
         let summands = terms::terms(pool, model).map_err(wrong)?;
@@ -175,6 +175,6 @@ impl Terms {
 /// The mistakes of the text; a system that is too large.
 pub fn operations(text: &str) -> Result<usize, Mistakes> {
     let (mut source, _) = Source::of(text)?;
-    let wrong = |error: syn::Error| Mistakes::of(report::report("definition", text, &error));
+    let wrong = |error: syn::Error| Mistakes::at("definition", text, report::mistakes(&error));
     terms::operations(&mut source.pool, &mut source.model).map_err(wrong)
 }

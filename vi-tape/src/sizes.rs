@@ -7,6 +7,7 @@ use crate::code::Code;
 use crate::kinds::Interpreted;
 use crate::mistakes::Mistakes;
 use crate::tape::Tape;
+#[cfg(feature = "complete")]
 use vi_core::constrained::Independent;
 use vi_core::kind::{Bound, Counted, Free};
 use vi_erased::at_rest::without_rest;
