@@ -37,8 +37,10 @@ def test_every_system_with_constraints_has_a_start():
     assert {name for name in vi.systems if getattr(vi, name).constraints} == set(STARTS)
 
 
-@pytest.mark.parametrize("name", STARTS)
-@pytest.mark.parametrize("stages", [1, 2, 3])
+@pytest.mark.parametrize(
+    ("name", "stages"),
+    [*((name, stages) for name in STARTS for stages in (1, 2, 3)), ("FourBar", 4), ("RodPendulum", 6)],
+)
 def test_constraints_hold_at_every_node(name, stages):
     system = getattr(vi, name)()
     q, v, h = STARTS[name]
@@ -110,8 +112,8 @@ def test_far_guesses_are_assembled():
 def test_methods_without_constraints_are_refused():
     with pytest.raises(ValueError, match=r"RodPendulum has no method 'fixed'.*has constraints"):
         vi.RodPendulum().integrate([0.6, -0.8], h=0.01, method="fixed")
-    with pytest.raises(ValueError, match=r"it has .*stages=3"):
-        vi.RodPendulum().integrate([0.6, -0.8], h=0.01, stages=4)
+    with pytest.raises(ValueError, match=r"it has .*stages=6"):
+        vi.RodPendulum().integrate([0.6, -0.8], h=0.01, stages=5)
 
 
 def test_the_name_of_gauss_with_constraints_in_earlier_versions():
@@ -181,7 +183,7 @@ def test_energies_kept_on_constraints():
     assert run.shifted_energy == kept and sol.residual.max() < 1e-13
     assert 1e-12 < abs(sol.energy - sol.energy[0]).max() < 1e-3
     # Another method of the same system, another order of it.
-    with pytest.raises(ValueError, match='has no integrator method="energy", stages=3; it has method="energy", stages=2'):
+    with pytest.raises(ValueError, match='no .* method="energy", stages=3; it has .*, method="energy", stages=2'):
         pendulum.integrate([0.6, -0.8], h=0.05, method="energy", stages=3)
     with pytest.raises(vi.NoDerivative, match="no linearization"):
         run.linearization()
