@@ -192,15 +192,15 @@ fn initial_states_keep_or_meet_the_constraints() {
         ),
         (
             &["run", "rod-pendulum", "--method", "fixed"],
-            "rod-pendulum has constraints, which --method fixed does not keep: use --method gauss (--stages 1, 2, 3) or energy (--stages 2)",
+            "rod-pendulum has constraints, which --method fixed does not keep: use --method gauss (--stages 1, 2, 3, 4, 6) or adaptive (--stages 3) or energy (--stages 1, 2)",
         ),
         (
-            &["run", "rod-pendulum", "--stages", "4"],
-            "steps with constraints have 1, 2 or 3 stages in the command, not 4",
+            &["run", "rod-pendulum", "--stages", "5"],
+            "steps with constraints have 1, 2, 3, 4 or 6 stages in the command, not 5",
         ),
         (
             &["run", "rod-pendulum", "--method", "energy", "--stages", "3"],
-            "energy-preserving steps with constraints have 2 stages in the command, not 3",
+            "energy-preserving steps with constraints have 1 or 2 stages, not 3",
         ),
         (
             &["run", "rod-pendulum", "--method", "energy", "--start", "midpoint"],
@@ -374,7 +374,7 @@ fn wrong_input_is_one_line_and_status_2() {
         (&["run", "double-well", "--steps", "1", "--q", "1e400"], "the coordinates (--q) must be finite, not inf"),
         (
             &["run", "double-well", "--steps", "1", "--method", "euler"],
-            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, splitting-4, splitting-6, gauss, energy]",
+            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, splitting-4, splitting-6, gauss, adaptive, energy]",
         ),
         (
             &["run", "double-well", "--steps", "1", "--method", "gauss", "--stages", "5"],

@@ -111,8 +111,8 @@ fn constraints_that_follow_from_the_others_are_left_out() {
             "bars has no constraint `top` to --drop; it has left, right, coupler, middle",
         ),
         (
-            &["run", "rod-pendulum", "--drop", "rod"],
-            "rod-pendulum is compiled and keeps all its constraints; give its file, .vi or .rs, with --drop",
+            &["run", "rod-chain", "--drop", "rod[0]"],
+            "rod-chain is compiled and keeps all its constraints; give its file, .vi or .rs, with --drop",
         ),
     ]);
 }
