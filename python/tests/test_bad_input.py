@@ -95,6 +95,8 @@ TABLE = [
     (lambda: begun(h=None), TypeError, "one of h, tolerance and dtau"),
     (lambda: begun(tolerance=1e-9), TypeError, "one of h, tolerance and dtau"),
     (lambda: vi.Pendulum().integrate([1.0], dtau=0.1), ValueError, "Pendulum has no integrator"),
+    (lambda: vi.Kepler().integrate([1.0, 0.0], dtau=0.1, method="adaptive"), ValueError, "an option of method=\"gauss\""),
+    (lambda: vi.Pendulum().integrate([1.0], h=0.1, tolerance=1e-6), TypeError, "h and tolerance were given"),
     (lambda: begun(stages=5), ValueError, "stages=4"),
     (lambda: begun(stages=0), ValueError, "at least 1"),
     (lambda: begun(stages=10**30), ValueError, "no integrator"),

@@ -386,3 +386,16 @@ def test_a_planar_linkage_in_space_is_overconstrained():
     # Measured: 1.6e-11, 2e-15 and 0.
     assert np.abs(np.exp(1j * (angle - exact["a"])) - 1.0).max() < 1e-10
     assert sol.residual.max() < 1e-14 and np.abs(sol.q[:, [2, 5]]).max() < 1e-14
+
+
+def test_a_rule_that_is_too_large():
+    # 24 links: the equations of the motion fit, those of a step by the rule do not.
+    Links = vi.System(
+        """struct Links { coord a[24];
+        let x[i in 0..24] = sum(j in 0..i + 1, sin(a[j])); let y[i in 0..24] = sum(j in 0..i + 1, cos(a[j]));
+        L = sum(i in 0..24, (dot(x[i])^2 + dot(y[i])^2) / 2 + y[i]); discretize midpoint; }"""
+    )
+    start = np.full(24, 0.1)
+    assert np.ptp(Links().integrate(start, h=0.01).steps(3).energy) < 1e-11
+    with pytest.raises(vi.RuleTooLarge, match='`Links` .* too many terms.*method="gauss"'):
+        Links().integrate(start, h=0.01, method="fixed")

@@ -133,6 +133,11 @@ class NoRule(StepError):
 
     system: str
 
+class RuleTooLarge(StepError):
+    """The equations of a step by the rule have too many terms, in a system of a text."""
+
+    system: str
+
 class HasConstraints(StepError):
     """The system has constraints, which the method does not keep."""
 

@@ -52,8 +52,11 @@ def checked(
 
     Raises TypeError or ValueError for options that do not go together, and InvalidInput for wrong numbers.
     """
-    if (h is None) + (tolerance is None) + (dtau is None) != 2:
+    given = [name for name, value in (("h", h), ("tolerance", tolerance), ("dtau", dtau)) if value is not None]
+    if not given:
         raise TypeError("give one of h, tolerance and dtau: h=0.05 is a step of this length")
+    if len(given) > 1:
+        raise TypeError(f"{' and '.join(given)} were given: give one of h, tolerance and dtau")
     # "gauss-lobatto" is the name of "gauss" with constraints in earlier versions.
     if method is None or method == "gauss-lobatto":
         method = "gauss"
@@ -69,6 +72,8 @@ def checked(
         raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}{why}{more}")
     if method != "energy" and (shift is not None or shift_from is not None or fallback):
         raise ValueError('shift, shift_from and fallback are options of method="energy"')
+    if dtau is not None and method != "gauss":
+        raise ValueError(f'dtau is an option of method="gauss": give h or tolerance for method={method!r}')
     if shift is not None and shift_from is not None:
         raise TypeError("give one of shift and shift_from, not both")
     if stages is not None and method not in ("gauss", "adaptive", "energy"):

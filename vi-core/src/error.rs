@@ -157,6 +157,11 @@ pub enum StepError {
         /// Name of the system.
         system: &'static str,
     },
+    /// The equations of a step by the rule have too many terms, in a system of a text.
+    RuleTooLarge {
+        /// Name of the system.
+        system: &'static str,
+    },
     /// The system has constraints, which the method does not keep.
     HasConstraints {
         /// Name of the system.
@@ -404,6 +409,9 @@ impl fmt::Display for Reason<'_> {
                 )
             }
             StepError::NoRule { system } => write!(f, "`{system}` declares no quadrature rule"),
+            StepError::RuleTooLarge { system } => {
+                write!(f, "the equations of a step of `{system}` by its rule have too many terms")
+            }
             StepError::HasConstraints { system } => {
                 write!(f, "`{system}` has constraints, which this method does not keep")
             }
@@ -549,7 +557,9 @@ impl fmt::Display for StepError {
             Self::NoTimeScale { .. } => {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or use `Gauss`")
             }
-            Self::NotSeparable { .. } | Self::HasConstraints { .. } => f.write_str("; take `Gauss`"),
+            Self::NotSeparable { .. } | Self::RuleTooLarge { .. } | Self::HasConstraints { .. } => {
+                f.write_str("; take `Gauss`")
+            }
             Self::NoStepDensity { .. } => f.write_str("; make the table `cubic`, or take `FixedStep` or `Gauss`"),
             Self::NoRule { .. } => f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`"),
             Self::Ambiguous { .. } => {

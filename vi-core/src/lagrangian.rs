@@ -157,6 +157,11 @@ pub trait Described {
     /// The body of its `lagrangian!`, as tokens.
     const DEFINITION: &'static str;
 
+    /// Whether the equations of a step by its rule are too large for a system that is known at run time only.
+    #[doc(hidden)]
+    fn has_too_large_rule(&self) -> bool {
+        false
+    }
     /// [`Described::ABOUT`]; this function and the next two return their constants, except those of a system that is
     /// known at run time only.
     fn about(&self) -> &'static str {

@@ -48,7 +48,7 @@ pub(crate) fn tangent<S: Runnable<N>, const N: usize>(
             let because = "an event of a derivative is a coordinate or a velocity that crosses a value";
             let event = section.smooth_event().ok_or(StepError::NoDerivative { t, because })?;
             // Beyond the time of the crossing, where rounding decides on which side it is.
-            tangent.until_event(&event, t + run.longest())?;
+            tangent.until_event(&event, t + run.h())?;
         }
     }
     let velocities = at_end.then(|| tangent.velocities()).transpose()?;

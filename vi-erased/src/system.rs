@@ -269,6 +269,10 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
     fn integrator(&self, wanted: Built) -> Result<&Integrator<S, N>, StepError> {
         let found = self.integrators.iter().find(|integrator| integrator.built == wanted);
         let has_method = self.integrators.iter().any(|integrator| integrator.built.0 == wanted.0);
+        let is_by_rule = wanted.1.is_none() && wanted.0.splitting().is_none();
+        if found.is_some() && is_by_rule && self.system.has_too_large_rule() {
+            return Err(StepError::RuleTooLarge { system: self.system.name() });
+        }
         found.ok_or(match wanted {
             // Methods that keep constraints have stages.
             (_, stages, _) if !self.system.constraint_names().is_empty() && (!has_method || stages.is_none()) => {

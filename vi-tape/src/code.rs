@@ -1,28 +1,34 @@
 //! What the traits of a system ask for: facts and functions.
 
 use crate::lines::Lines;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::OnceLock;
 use vi_core::linear::Block;
 use vi_core::table::AnyTable;
 use vi_dispatch::Instructions;
 
 /// The form of a matrix.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Form {
     Diagonal,
     Tridiagonal,
     Symmetric,
+    #[default]
     Dense,
 }
 
 macro_rules! functions {
-    ($($name:ident),*) => {
-        /// The functions of a system, by the names of the traits. Those that a system does not have are empty.
+    ($(#[$about:meta])* $all:ident { $($name:ident),* $(,)? }) => {
+        $(#[$about])*
         #[derive(Clone, Debug, Default)]
-        pub(crate) struct Functions { $(pub(crate) $name: Lines),* }
+        pub(crate) struct $all { $(pub(crate) $name: Lines),* }
     };
 }
 
 functions!(
+    /// The functions of a motion, by the names of the traits. Those that a system does not have are empty.
+    Functions {
     lagrangian,
     energy,
     momentum,
@@ -41,6 +47,11 @@ functions!(
     constraint_gradients,
     constraint_rate_derivatives,
     reaction_derivatives,
+});
+
+functions!(
+    /// The functions of the steps by a rule.
+    StepFunctions {
     ld,
     d1_ld,
     d2_ld,
@@ -57,8 +68,21 @@ functions!(
     step_density,
     extended_system,
     extended_residual,
-    extended_derivatives
-);
+    extended_derivatives,
+});
+
+/// The equations of a step by a rule.
+#[derive(Clone, Debug, Default)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
+pub(crate) struct ByRule {
+    pub(crate) jacobian: Form,
+    pub(crate) has_constant_jacobian: bool,
+    pub(crate) has_closed_form: bool,
+    pub(crate) is_inlined: bool,
+    pub(crate) functions: StepFunctions,
+    /// Whether the equations are too large; then there are no functions.
+    pub(crate) is_too_large: bool,
+}
 
 /// The columns of the nonzeros of each row, ascending.
 pub(crate) type Columns = &'static [&'static [usize]];
@@ -114,8 +138,8 @@ pub(crate) struct Code {
     pub(crate) declared: usize,
     pub(crate) about: &'static str,
     pub(crate) definition: &'static str,
-    /// The texts of the files of tables.
-    pub(crate) files: Box<[String]>,
+    /// The texts of the files of tables, by their paths.
+    pub(crate) files: BTreeMap<PathBuf, String>,
     pub(crate) coordinates: Box<[&'static str]>,
     pub(crate) parameters: &'static [&'static str],
     pub(crate) parameters_about: &'static [&'static str],
@@ -144,14 +168,22 @@ pub(crate) struct Code {
     pub(crate) has_rule: bool,
     /// Whether there are energy-preserving steps of order 2.
     pub(crate) has_step_density: bool,
-    pub(crate) has_constant_jacobian: bool,
-    pub(crate) has_closed_form: bool,
-    pub(crate) is_inlined: bool,
     /// None of a free system.
     pub(crate) constraints: Option<Constraints>,
     pub(crate) mass: Form,
     pub(crate) point_matrix: Form,
-    pub(crate) jacobian: Form,
     pub(crate) functions: Functions,
     pub(crate) instructions: Instructions,
+    /// The equations of a step by the rule: most of a code, and needed by few methods.
+    pub(crate) by_rule: OnceLock<ByRule>,
+    /// Derives them.
+    pub(crate) derive: fn(&Self) -> ByRule,
+}
+
+impl Code {
+    /// The equations of a step by the rule, derived at the first call.
+    #[inline]
+    pub(crate) fn by_rule(&self) -> &ByRule {
+        self.by_rule.get_or_init(|| (self.derive)(self))
+    }
 }

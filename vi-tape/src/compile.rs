@@ -9,7 +9,7 @@ mod order;
 mod registers;
 mod tables;
 
-use crate::code::{Call, Code, Columns, Constraints, Form, Functions, Start};
+use crate::code::{ByRule, Call, Code, Columns, Constraints, Form, Functions, Start, StepFunctions};
 use crate::lines::{Entry, Input, Kind, Lines, Source};
 use crate::mistakes::Mistakes;
 use crate::sizes::size;
@@ -17,12 +17,15 @@ use instructions::{Constants, instructions};
 use order::in_runs;
 use proc_macro2::TokenStream;
 use registers::{Placed, placed};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+use std::path::PathBuf;
+use std::sync::OnceLock;
 pub(crate) use tables::Tables;
-use vi_codegen::findings::{self, CLOSED, Elimination, Pattern, StepFindings};
+use vi_codegen::findings::{self, CLOSED, Elimination, Pattern};
 use vi_codegen::inspect::{report, source};
 use vi_codegen::model::{CheckState, Coordinate, Model, Parameter};
 use vi_codegen::program::{Function, FunctionId, Operation, OperationId, Output};
+use vi_codegen::rules::NamedRule;
 use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::{Derived, derive_own, sizes, syntax};
 use vi_core::linear::Block;
@@ -63,10 +66,48 @@ pub(crate) struct Parsed {
 pub(crate) fn code(file: &str, text: &str, Parsed { system, definition }: Parsed) -> Result<Code, Mistakes> {
     let wrong = |error: syn::Error| Mistakes::at(file, text, report::mistakes(&error));
     let [declared, constraints] = sizes(&system).map_err(wrong)?;
-    let rest = size(&system.name.to_string(), [declared, constraints])? - declared;
-    let files = system.files.values().cloned().collect();
-    let system = if rest == 0 { system } else { system.with_rest(&unused(&definition), rest).map_err(wrong)? };
-    of_derived(&derive_own(&system).map_err(wrong)?, (definition, files), declared)
+    // Without coordinates the check says so.
+    let all = if declared == 0 { 0 } else { size(&system.name.to_string(), [declared, constraints])? };
+    let rest = all - declared;
+    let files = system.files.clone();
+    let mut system = with_rest(system, &definition, rest).map_err(wrong)?;
+    let rule = system.take_named_rules();
+    of_derived(&derive_own(&system).map_err(wrong)?, (definition, files), (declared, rule))
+}
+
+/// A system with coordinates at rest.
+///
+/// # Errors
+/// None with a name that is a name.
+fn with_rest(system: syntax::System, definition: &str, count: usize) -> syn::Result<syntax::System> {
+    if count == 0 { Ok(system) } else { system.with_rest(&unused(definition), count) }
+}
+
+/// The equations of a step by the rule of a code, whose text is right.
+fn by_rule(code: &Code) -> ByRule {
+    let derived = code.definition.parse().map_err(Into::into).and_then(syntax::parse::system).and_then(|mut system| {
+        system.files.clone_from(&code.files);
+        derive_own(&with_rest(system, code.definition, code.coordinates.len() - code.declared)?)
+    });
+    let found = derived.ok().and_then(|of| {
+        let tables = Tables::of(&of.model)?;
+        steps(&of, &tables).ok()
+    });
+    found.unwrap_or_else(|| ByRule { is_too_large: true, ..ByRule::default() })
+}
+
+/// The same of a derived system; empty without a rule.
+fn steps(of: &Derived, tables: &Tables) -> Result<ByRule, TooMany> {
+    let Derived { model, program, findings, .. } = of;
+    let Some(steps) = &findings.steps else { return Ok(ByRule::default()) };
+    Ok(ByRule {
+        jacobian: form(&steps.pattern, steps.symmetric, model.dimension()),
+        has_constant_jacobian: steps.constant_jacobian(),
+        has_closed_form: findings.closed_form(),
+        is_inlined: program.has_short_steps(),
+        functions: step_functions(of, tables)?,
+        is_too_large: false,
+    })
 }
 
 /// A name that a definition does not contain.
@@ -92,13 +133,18 @@ fn declaration(text: &str) -> syn::Result<Option<TokenStream>> {
     }
 }
 
-fn of_derived(of: &Derived, (definition, files): (String, Box<[String]>), declared: usize) -> Result<Code, Mistakes> {
-    let Derived { pool, model, system, program, findings } = of;
+/// The code of a system, whose rule has yet to be derived if there is one here.
+fn of_derived(
+    of: &Derived,
+    (definition, files): (String, BTreeMap<PathBuf, String>),
+    (declared, rule): (usize, Option<&'static NamedRule>),
+) -> Result<Code, Mistakes> {
+    let Derived { pool, model, system, findings, .. } = of;
     let compiled = |what: &str| Mistakes::compiled(&model.name.to_string(), what);
+    let too_many = |of: TooMany| compiled(&format!("too many {of}"));
     let tables = Tables::of(model).ok_or_else(|| compiled("Rust functions"))?;
     let size = model.dimension();
-    let (steps, continuous) = (findings.steps.as_ref(), &system.continuous);
-    let jacobian = steps.map_or(Form::Dense, |steps| form(&steps.pattern, steps.symmetric, size));
+    let continuous = &system.continuous;
     let name = |symbol: &Symbol| system.spell(model, symbol);
     let watched = continuous.watched.iter();
     let inputs = (0..).zip(&model.parameters).filter(|(_, parameter)| parameter.is_input);
@@ -132,17 +178,15 @@ fn of_derived(of: &Derived, (definition, files): (String, Box<[String]>), declar
         is_quadratic: continuous.quadratic,
         has_constant_mass: findings.constant_mass,
         scales_time: continuous.time_scale.is_some(),
-        has_rule: system.by_rule.is_some(),
-        has_step_density: system.has_energy_steps(),
-        has_constant_jacobian: steps.is_some_and(StepFindings::constant_jacobian),
-        has_closed_form: findings.closed_form(),
-        is_inlined: program.has_short_steps(),
+        has_rule: rule.is_some() || system.by_rule.is_some(),
+        has_step_density: rule.map_or(system.has_energy_steps(), |rule| rule.step_density),
         constraints,
         mass: form(&findings.mass, true, size),
         point_matrix: form(&findings.point_derivatives, false, size),
-        jacobian,
-        functions: functions(of, constraints, &tables).map_err(|too_many| compiled(&format!("too many {too_many}")))?,
+        functions: functions(of, constraints, &tables).map_err(too_many)?,
         instructions: Instructions::detected(),
+        by_rule: if rule.is_some() { OnceLock::new() } else { steps(of, &tables).map_err(too_many)?.into() },
+        derive: by_rule,
     })
 }
 
@@ -233,6 +277,45 @@ fn functions(of: &Derived, constraints: Option<Constraints>, tables: &Tables) ->
     const POINT: [Output; 3] = [O::Momentum, O::AppliedForce, O::Mass];
     const SCALED: [Output; 8] =
         [POINT[0], POINT[1], POINT[2], O::Energy, O::Power, O::TimeScale, O::TimeScaleDq, O::TimeScaleDt];
+    let lines = |id: FunctionId, outputs: &[Output]| match of.program.function(id) {
+        Some(function) => lines(function, outputs, tables),
+        None => Ok(Lines::default()),
+    };
+    let value = |id| lines(id, &[O::Value]);
+    let mut functions = Functions {
+        lagrangian: value(F::Lagrangian)?,
+        energy: value(F::Energy)?,
+        momentum: value(F::Momentum)?,
+        force: value(F::Force)?,
+        acceleration: lines(F::Acceleration, &[O::Mass, O::MassTimesAcceleration])?,
+        point: lines(F::Point, &POINT)?,
+        sides: lines(F::Point, &POINT[..2])?,
+        applied_force: lines(F::Point, &POINT[1..2])?,
+        point_derivatives: lines(F::PointDerivatives, &[O::MomentumDq, O::Mass, O::ForceDq, O::ForceDv])?,
+        power: value(F::Power)?,
+        scaled_point: lines(F::ScaledPoint, &SCALED)?,
+        non_finite: value(F::NonFinite)?,
+        undefined: value(F::Undefined)?,
+        applied: value(F::Applied)?,
+        constraints: value(F::Constraints)?,
+        constraint_gradients: lines(F::ConstraintGradients, &[O::Gradients, O::Rates])?,
+        constraint_rate_derivatives: lines(F::ConstraintRateDerivatives, &[O::RatesDq, O::RatesDt])?,
+        reaction_derivatives: lines(F::ReactionDerivatives, &[O::ReactionDq])?,
+    };
+    if let Some(of) = constraints {
+        in_places(&mut functions.point, &[2], of.mass)?;
+        in_places(&mut functions.point_derivatives, &[0, 1, 2, 3], of.point_matrix)?;
+        in_places(&mut functions.scaled_point, &[2], of.mass)?;
+        in_places(&mut functions.constraint_gradients, &[0], of.gradients)?;
+        in_places(&mut functions.constraint_rate_derivatives, &[0], of.rate_derivatives)?;
+        in_places(&mut functions.reaction_derivatives, &[0], of.reaction_derivatives)?;
+    }
+    Ok(functions)
+}
+
+fn step_functions(of: &Derived, tables: &Tables) -> Result<StepFunctions, TooMany> {
+    use FunctionId as F;
+    use Output as O;
     const MOMENTUM: [Output; 4] = [O::Jacobian, O::ResidualDq, O::MomentumIncrementDq, O::MomentumIncrementDv];
     const SYSTEM: [Output; 6] = [O::Residual, O::Jacobian, O::ResidualDh, O::EnergyResidual, O::EnergyDv, O::EnergyDh];
     const RESIDUAL: [Output; 6] = [
@@ -262,25 +345,7 @@ fn functions(of: &Derived, constraints: Option<Constraints>, tables: &Tables) ->
         None => Ok(Lines::default()),
     };
     let value = |id| lines(id, &[O::Value]);
-    let mut functions = Functions {
-        lagrangian: value(F::Lagrangian)?,
-        energy: value(F::Energy)?,
-        momentum: value(F::Momentum)?,
-        force: value(F::Force)?,
-        acceleration: lines(F::Acceleration, &[O::Mass, O::MassTimesAcceleration])?,
-        point: lines(F::Point, &POINT)?,
-        sides: lines(F::Point, &POINT[..2])?,
-        applied_force: lines(F::Point, &POINT[1..2])?,
-        point_derivatives: lines(F::PointDerivatives, &[O::MomentumDq, O::Mass, O::ForceDq, O::ForceDv])?,
-        power: value(F::Power)?,
-        scaled_point: lines(F::ScaledPoint, &SCALED)?,
-        non_finite: value(F::NonFinite)?,
-        undefined: value(F::Undefined)?,
-        applied: value(F::Applied)?,
-        constraints: value(F::Constraints)?,
-        constraint_gradients: lines(F::ConstraintGradients, &[O::Gradients, O::Rates])?,
-        constraint_rate_derivatives: lines(F::ConstraintRateDerivatives, &[O::RatesDq, O::RatesDt])?,
-        reaction_derivatives: lines(F::ReactionDerivatives, &[O::ReactionDq])?,
+    Ok(StepFunctions {
         ld: value(F::Ld)?,
         d1_ld: value(F::D1Ld)?,
         d2_ld: value(F::D2Ld)?,
@@ -298,16 +363,7 @@ fn functions(of: &Derived, constraints: Option<Constraints>, tables: &Tables) ->
         extended_system: lines(F::ExtendedSystem, &SYSTEM)?,
         extended_residual: lines(F::ExtendedResidual, &RESIDUAL)?,
         extended_derivatives: lines(F::ExtendedDerivatives, &DERIVATIVES)?,
-    };
-    if let Some(of) = constraints {
-        in_places(&mut functions.point, &[2], of.mass)?;
-        in_places(&mut functions.point_derivatives, &[0, 1, 2, 3], of.point_matrix)?;
-        in_places(&mut functions.scaled_point, &[2], of.mass)?;
-        in_places(&mut functions.constraint_gradients, &[0], of.gradients)?;
-        in_places(&mut functions.constraint_rate_derivatives, &[0], of.rate_derivatives)?;
-        in_places(&mut functions.reaction_derivatives, &[0], of.reaction_derivatives)?;
-    }
-    Ok(functions)
+    })
 }
 
 /// Where an input is: the argument and the entry, as the functions of `tape` pass them.

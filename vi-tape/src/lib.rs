@@ -79,7 +79,7 @@ impl System {
 
     /// The texts of the files of its tables.
     pub fn files(&self) -> impl Iterator<Item = &str> {
-        self.code.files.iter().map(String::as_str)
+        self.code.files.values().map(String::as_str)
     }
 }
 

@@ -98,6 +98,10 @@ impl<const N: usize, K: Interpreted> Described for Tape<N, K> {
     fn definition(&self) -> &'static str {
         self.code.definition
     }
+
+    fn has_too_large_rule(&self) -> bool {
+        self.code.by_rule().is_too_large
+    }
 }
 
 impl<const N: usize, K: Interpreted, T: Real> Parameters<T> for Tape<N, K, T> {
@@ -373,7 +377,7 @@ macro_rules! of_interval {
     ($($name:ident $read:ident -> $out:ty),*) => {$(
         #[inline]
         fn $name(&self, interval: &Interval<N, T>) -> $out {
-            let lines = &self.code.functions.$name;
+            let lines = &self.code.by_rule().functions.$name;
             self.between(lines, interval, |r| r.$read(0))
         }
     )*};
@@ -393,29 +397,29 @@ impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, Free, T> {
     const CONSTANT_JACOBIAN: bool = false;
 
     fn has_constant_jacobian(&self) -> bool {
-        self.code.has_constant_jacobian
+        self.code.by_rule().has_constant_jacobian
     }
 
     fn has_closed_form(&self) -> bool {
-        self.code.has_closed_form
+        self.code.by_rule().has_closed_form
     }
 
     fn is_inlined(&self) -> bool {
-        self.code.is_inlined
+        self.code.by_rule().is_inlined
     }
 
     #[inline(always)]
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, AnyMatrix<N, T>> {
-        let lines = &self.code.functions.momentum_equation;
+        let lines = &self.code.by_rule().functions.momentum_equation;
         self.in_step(lines, (node, h, v), |r| MomentumEquation {
             residual: r.vector(0),
-            jacobian: AnyMatrix::of(self.code.jacobian, r, 1),
+            jacobian: AnyMatrix::of(self.code.by_rule().jacobian, r, 1),
         })
     }
 
     #[inline(always)]
     fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
-        let lines = &self.code.functions.momentum_residual;
+        let lines = &self.code.by_rule().functions.momentum_residual;
         self.in_step(lines, (node, h, v), |r| MomentumResidual {
             residual: r.vector(0),
             scale: r.vector(1),
@@ -430,7 +434,7 @@ impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, Free, T> {
         h: T,
         v: &SVector<T, N>,
     ) -> MomentumDerivatives<AnyMatrix<N, T>, AnyMatrix<N, T>> {
-        let lines = &self.code.functions.momentum_derivatives;
+        let lines = &self.code.by_rule().functions.momentum_derivatives;
         self.in_step(lines, (node, h, v), |r| derivatives(self.code, r))
     }
 
@@ -441,7 +445,7 @@ impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, Free, T> {
 
     #[inline(always)]
     fn discrete_energy(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> T {
-        let lines = &self.code.functions.discrete_energy;
+        let lines = &self.code.by_rule().functions.discrete_energy;
         self.in_step(lines, (node, h, v), |r| r.number(0))
     }
 }
@@ -452,7 +456,7 @@ fn derivatives<const N: usize, T: Real>(
     r: Results<'_, T>,
 ) -> MomentumDerivatives<AnyMatrix<N, T>, AnyMatrix<N, T>> {
     MomentumDerivatives {
-        residual_dv: AnyMatrix::of(code.jacobian, r, 0),
+        residual_dv: AnyMatrix::of(code.by_rule().jacobian, r, 0),
         residual_dq: AnyMatrix::of(Form::Dense, r, 1),
         increment_dq: AnyMatrix::of(Form::Dense, r, 2),
         increment_dv: AnyMatrix::of(Form::Dense, r, 3),
@@ -463,16 +467,19 @@ impl<const N: usize, T: Real> EnergyStepping<N, T> for Tape<N, Free, T> {
     #[inline]
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
         let a = self.acceleration(t, q, v)?;
-        let lines = &self.code.functions.step_density;
+        let lines = &self.code.by_rule().functions.step_density;
         let arguments = &[&[t], q.as_slice(), v.as_slice(), self.parameters.as_ref(), a.as_slice()];
         lines.evaluated(self.code.instructions, arguments, |r| support::step_density(t, r.number(0)))
     }
 
     #[inline(always)]
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, AnyMatrix<N, T>> {
-        let lines = &self.code.functions.extended_system;
+        let lines = &self.code.by_rule().functions.extended_system;
         self.in_step(lines, (node, h, v), |r| ExtendedSystem {
-            momentum: MomentumEquation { residual: r.vector(0), jacobian: AnyMatrix::of(self.code.jacobian, r, 1) },
+            momentum: MomentumEquation {
+                residual: r.vector(0),
+                jacobian: AnyMatrix::of(self.code.by_rule().jacobian, r, 1),
+            },
             residual_dh: r.vector(2),
             energy_residual: r.number(3),
             energy_dv: r.vector(4),
@@ -482,7 +489,7 @@ impl<const N: usize, T: Real> EnergyStepping<N, T> for Tape<N, Free, T> {
 
     #[inline(always)]
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
-        let lines = &self.code.functions.extended_residual;
+        let lines = &self.code.by_rule().functions.extended_residual;
         self.in_step(lines, (node, h, v), |r| ExtendedResidual {
             residual: r.vector(0),
             scale: r.vector(1),
@@ -499,7 +506,7 @@ impl<const N: usize, T: Real> EnergyStepping<N, T> for Tape<N, Free, T> {
         h: T,
         v: &SVector<T, N>,
     ) -> ExtendedDerivatives<N, T, AnyMatrix<N, T>, AnyMatrix<N, T>> {
-        let lines = &self.code.functions.extended_derivatives;
+        let lines = &self.code.by_rule().functions.extended_derivatives;
         self.in_step(lines, (node, h, v), |r| ExtendedDerivatives {
             momentum: derivatives(self.code, r),
             residual_dh: r.vector(4),

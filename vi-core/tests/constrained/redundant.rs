@@ -206,7 +206,7 @@ fn ring() -> Vec<f64> {
     let hinge = |k: u8| {
         let (sine, cosine) = (f64::from(k) * core::f64::consts::FRAC_PI_3).sin_cos();
         [-0.5, 0.5].into_iter().flat_map(move |end| {
-            let (radius, height) = if k % 2 == 0 { (s, end) } else { (s / 2.0 + end, 0.0) };
+            let (radius, height) = if k.is_multiple_of(2) { (s, end) } else { (s / 2.0 + end, 0.0) };
             [radius * cosine, radius * sine, height]
         })
     };
@@ -216,7 +216,8 @@ fn ring() -> Vec<f64> {
 /// The cosines of the joint angles at the hinges, between the common perpendiculars on both sides.
 fn joints(free: &[f64]) -> [f64; 6] {
     let all = [&ring()[..12], free].concat();
-    let middle = |k: usize| SVector::<f64, 3>::from_fn(|i, _| (all[6 * (k % 6) + i] + all[6 * (k % 6) + 3 + i]) / 2.0);
+    let middle =
+        |k: usize| SVector::<f64, 3>::from_fn(|i, _| f64::midpoint(all[6 * (k % 6) + i], all[6 * (k % 6) + 3 + i]));
     core::array::from_fn(|k| {
         let (before, after) = (middle(k) - middle(k + 5), middle(k + 1) - middle(k));
         before.dot(&after) / (before.norm() * after.norm())

@@ -104,6 +104,20 @@ impl System {
         }
     }
 
+    /// Removes the rules of a system without constraints, if they are built-in ones, and returns the first. Others stay,
+    /// with their mistakes.
+    pub fn take_named_rules(&mut self) -> Option<&'static NamedRule> {
+        let [Discretization::Named(names)] = self.discretizations.as_slice() else { return None };
+        let are_known = names.iter().all(|name| *name == GAUSS || rules::named(&name.to_string()).is_some());
+        let are_different = (1..names.len()).all(|index| !names[..index].contains(&names[index]));
+        if !(are_known && are_different && self.constraints.is_empty()) {
+            return None;
+        }
+        let first = *self.named_rules().first()?;
+        self.discretizations.clear();
+        Some(first)
+    }
+
     /// The system with an array of coordinates at rest: of this length and this name, free, with the mass 1.
     ///
     /// # Errors
