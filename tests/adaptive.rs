@@ -242,7 +242,7 @@ fn constraints_shorten_the_steps_of_a_fast_turn() {
     // Over the top and round: the force of the rod is the stiffness.
     let system = RodPendulum::default();
     let start = system.at(0.0, [0.0, 1.0], [0.3, 0.0]);
-    let mut run = start.integrate(Gauss::<3>.adaptive(), 0.1).expect("a start");
+    let mut run = start.integrate(Gauss::<3>.adaptive(), 0.05).expect("a start");
     let exact = start.integrate(Gauss::<3>, 0.005).expect("a start").until(4.0).expect("a motion");
     let energy = run.energy().expect("an energy");
     let mut lengths = [f64::INFINITY, 0.0_f64];
@@ -256,8 +256,45 @@ fn constraints_shorten_the_steps_of_a_fast_turn() {
     let drift = (aside.energy().expect("an energy") - energy).abs();
     let off = (run.until(4.0).expect("a motion").q - exact.q).norm();
     println!("lengths {lengths:?}, off by {off:.1e}, H by {drift:.1e}");
-    // Measured: 3.7 between the lengths, 4.0e-6, 6.3e-7.
+    // Measured: 3.7 between the lengths; with twice these steps 4.0e-6, 6.3e-7.
     assert!(lengths[1] > 3.0 * lengths[0] && off < 1e-5 && drift < 2e-6, "{lengths:?} {off:e} {drift:e}");
+}
+
+lagrangian! {
+    /// A particle between steep walls.
+    struct Box40 {
+        coord x;
+        L = dot(x)^2 / 2 - x^40;
+    }
+}
+
+#[test]
+fn a_step_that_does_not_resolve_the_forces_is_refused() {
+    // It flies freely, and a step would lead through the wall.
+    let mut run = Box40::default().at(0.0, [0.0], [1.0]).integrate(Gauss::<8>.adaptive(), 0.3).expect("a start");
+    let energy = run.energy().expect("an energy");
+    let failure = loop {
+        match run.step() {
+            Ok(state) => {
+                assert!(state.t < 2.0 && (run.energy().expect("an energy") - energy).abs() < 1e-9, "{state:?}")
+            }
+            Err(failure) => break failure,
+        }
+    };
+    assert!(matches!(failure, StepError::LengthsLost { h, .. } if h > 0.2), "{failure}");
+    // Few steps in a period of an orbit: the density leaves the frequency, and no energy is lost before that is said.
+    let mut run = planet(0.0492);
+    let energy = run.energy().expect("an energy");
+    let mut worst = 0.0_f64;
+    let failure = (0..20_000).find_map(|_| {
+        let failure = run.step().err();
+        worst = worst.max((run.energy().expect("an energy") - energy).abs());
+        failure
+    });
+    println!("H off by {worst:.1e}: {failure:?}");
+    // Measured: 6.7e-5.
+    assert!(worst < 1e-3, "{worst:e}");
+    assert!(matches!(failure, None | Some(StepError::LengthsLost { .. })), "{failure:?}");
 }
 
 #[test]

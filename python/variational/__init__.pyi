@@ -72,6 +72,12 @@ class StepRatio(StepError):
     previous: float
     found: float
 
+class LengthsLost(StepError):
+    """The lengths of adaptive steps no longer follow the forces: these change too fast for the steps."""
+
+    t: float
+    h: float
+
 class StepBounds(StepError):
     """The step that solves the equations is shorter or longer than allowed."""
 

@@ -44,6 +44,7 @@ FIELDS: dict[str, dict[str, str]] = {
     },
     "DegenerateStep": {"t": "float", "h": "float", "density": "float"},
     "StepRatio": {"t": "float", "previous": "float", "found": "float"},
+    "LengthsLost": {"t": "float", "h": "float"},
     "StepBounds": {"t": "float", "found": "float", "h_min": "float", "h_max": "float"},
     "NotConverged": {
         "t": "float", "h": "float", "iterations": "int", "residual": "float", "residuals": "list[float]",
@@ -93,6 +94,7 @@ ABOUT: dict[str, str] = {
     "ShiftTooLarge": "The shift of the step density outweighs the energy.",
     "DegenerateStep": "The step density vanishes, so that the step length is not determined.",
     "StepRatio": "The length of the only forward step differs too much from that of the last step.",
+    "LengthsLost": "The lengths of adaptive steps no longer follow the forces: these change too fast for the steps.",
     "StepBounds": "The step that solves the equations is shorter or longer than allowed.",
     "NotConverged": "The Newton iteration ended above the rounding floor.",
     "TooLong": "The step has no solution that continues those of short steps.",
@@ -127,6 +129,7 @@ ADVICE: dict[str, str] = {
     "NoForwardStep": "continue with fallback=True, or with {others} and h={h:.3g}{shifted}",
     "StepRatio": "continue with fallback=True, or with {others} and h={previous:.3g}{shifted}",
     "DegenerateStep": "continue with fallback=True, or with {others} and h={h:.3g}",
+    "LengthsLost": 'start with a shorter h or a smaller tolerance, or use method="gauss"',
     "StepBounds": "continue with fallback=True, or with {others}",
     "NoForwardGaussStep": (
         "use shift={twice:.3e}, which exceeds the largest |D| so far, fallback=True, or {others} with h={h:.3g}"

@@ -77,6 +77,13 @@ pub enum StepError {
         /// Length of the step that solves the equations.
         found: f64,
     },
+    /// The lengths of adaptive steps no longer follow the forces: these change too fast for the steps.
+    LengthsLost {
+        /// Time of the last good node.
+        t: f64,
+        /// Length of the last good step.
+        h: f64,
+    },
     /// The step that solves the equations is shorter or longer than the caller allows.
     StepBounds {
         /// Time of the last good node.
@@ -360,6 +367,12 @@ impl fmt::Display for Reason<'_> {
                 f,
                 "the forward step from t = {t:.9} has h = {found:.3e} after {previous:.3e}, beyond the allowed factor of 3"
             ),
+            StepError::LengthsLost { t, h } => {
+                write!(
+                    f,
+                    "the forces change too fast for the lengths of adaptive steps at t = {t:.9} (last h = {h:.3e})"
+                )
+            }
             StepError::StepBounds { t, found, h_min, h_max } => write!(
                 f,
                 "the forward step from t = {t:.9} has h = {found:.3e}, outside the bounds {h_min:.3e} to {h_max:.3e}"
@@ -528,6 +541,7 @@ impl fmt::Display for StepError {
             Self::NoForwardStep { .. } | Self::StepRatio { .. } => f.write_str(
                 "; start with a shorter step, or continue by `with_fallback(Fallback::FixedSteps)`, by `FixedStep` or `Gauss`, or by energy-preserving Gauss steps with a shift, which `with_shift_from(duration)` measures",
             ),
+            Self::LengthsLost { .. } => f.write_str("; start with a shorter step or a smaller tolerance, or take `Gauss`"),
             Self::NoForwardGaussStep { largest, .. } => write!(
                 f,
                 "; start with a shorter step, use `with_shift_from(duration)`, or `with_shift({:.3e})`, which exceeds the largest |D| so far, another number of stages, `with_fallback(Fallback::FixedSteps)`, or `FixedStep` or `Gauss`",

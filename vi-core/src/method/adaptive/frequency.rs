@@ -32,6 +32,8 @@ use num_traits::Float as _;
 /// δ, in units of 1/ω. The differences are of second order, which keeps the symmetry; a shorter δ adds rounding, which
 /// does not.
 const APART: f64 = 1.0 / 32.0;
+/// The longest δ, in units of the last step: a wall is not felt from afar.
+const WITHIN: f64 = 1.0 / 16.0;
 
 /// ω and G at a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,14 +66,14 @@ impl Frequency {
     }
 }
 
-/// The frequency at a node, at least `floor`.
+/// The frequency at a node, at least `floor`. Differences stay within a part of the last step.
 ///
 /// # Errors
 /// Those of velocity and acceleration at the node; [`StepError::TimeScale`] for a time scale that is not positive.
 pub(crate) fn frequency<S: Convertible<N>, const N: usize>(
     system: &S,
     node: &Node<N>,
-    floor: f64,
+    [floor, last]: [f64; 2],
 ) -> Result<Frequency, StepError> {
     let state = node.state();
     let State { t, q, .. } = state;
@@ -82,7 +84,7 @@ pub(crate) fn frequency<S: Convertible<N>, const N: usize>(
         return Ok(Frequency::Known { value: g.recip(), rate: -(g_dq.dot(&v) + g_dt) / g });
     }
     let a = system.acceleration(t, &q, &v)?;
-    let found = Place { system, t, q, v }.frequency(&a, floor).filter(Frequency::is_finite);
+    let found = Place { system, t, q, v }.frequency(&a, floor, WITHIN * last.abs()).filter(Frequency::is_finite);
     // Where the stiffness has no value, the steps keep their length.
     Ok(found.unwrap_or(Frequency::Known { value: floor, rate: 0.0 }))
 }
@@ -104,9 +106,9 @@ struct Linear<const N: usize> {
 }
 
 impl<S: Convertible<N>, const N: usize> Place<'_, S, N> {
-    fn frequency(&self, a: &SVector<f64, N>, floor: f64) -> Option<Frequency> {
+    fn frequency(&self, a: &SVector<f64, N>, floor: f64, within: f64) -> Option<Frequency> {
         let (here, compliance) = (self.linear()?, self.compliance()?);
-        let delta = APART / self.pace(a, powers(&compliance, &here), floor);
+        let delta = (APART / self.pace(a, powers(&compliance, &here), floor)).min(within);
         if !delta.is_normal() {
             return None;
         }

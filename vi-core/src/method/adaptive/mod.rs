@@ -16,6 +16,9 @@
 //! still follow the motion.
 //!
 //! A step to a given time, a change of parameters or of the state begins a new ρ there, with the same ε.
+//!
+//! The law holds while a step resolves the changes of ω. Where it does not, as at a wall in the way of a free flight or
+//! with a few steps in a period, ρ would wander from ω: such a step is refused, [`StepError::LengthsLost`].
 
 mod frequency;
 
@@ -31,7 +34,7 @@ use crate::state::State;
 use crate::stepping::Convertible;
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
-use frequency::{Frequency, frequency};
+use frequency::frequency;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -52,13 +55,9 @@ impl<const STAGES: usize> Gauss<STAGES> {
 
 /// The frequency has at least this part of the reciprocal of the first step: without forces, steps grow no further.
 const SLOWEST: f64 = 1e-4;
-/// Least part of ω that a density has half a step before or after it.
-const LEAST: f64 = 0.25;
-/// Largest ratio of ρ to its value by ω and G at the node. Their difference is of second order in ε; with steps too long for
-/// the changes of ω it would add up.
-const STRAY: f64 = 2.0;
-/// Halvings of a step that does not exist.
-const HALVINGS: i32 = 10;
+/// Largest ratio of the mean of ρ₋ and ρ₊ to ω, and its reciprocal. It is 1 + O(ε²) along the motion; with steps too long for
+/// the changes of ω, ρ loses it.
+const STRAY: f64 = 1.25;
 
 /// Memory of steps that follow the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,29 +101,29 @@ fn anew<S: Convertible<N>, Y, const N: usize>(
     node: &Node<N>,
     memory: Following<Y>,
 ) -> Result<Following<Y>, StepError> {
-    let density = half_a_step_from(&frequency(system, node, memory.floor)?, -memory.scale);
-    Ok(Following { density, ..memory })
+    let found = frequency(system, node, [memory.floor, memory.h])?;
+    // Half a step earlier, by the rate of ln ω.
+    let before = found.value() * (-0.5 * memory.scale / found.value() * found.rate()).exp();
+    Ok(Following { density: before, ..memory })
 }
 
-/// The density half a step after a frequency; before it for a negative ε.
-fn half_a_step_from(found: &Frequency, scale: f64) -> f64 {
-    (found.value() + 0.5 * scale * found.rate()).max(LEAST * found.value())
-}
-
-/// The next step from a node; one of `2^-halvings` of its length if no longer one exists.
+/// The next step from a node.
 ///
 /// # Errors
-/// As [`frequency`], and those of a start.
+/// [`StepError::LengthsLost`] if ρ has left ω. As [`frequency`], and those of a start.
 fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
     system: &S,
     node: &Node<N>,
     memory: &Following<Steps<S, N, STAGES>>,
-    halvings: i32,
 ) -> Result<Next<Steps<S, N, STAGES>>, StepError> {
-    let Following { steps, scale, density, floor, .. } = memory;
-    let found = frequency(system, node, *floor)?;
-    let near = half_a_step_from(&found, *scale);
-    let density = (density + scale * found.rate()).clamp(near / STRAY, near * STRAY) * 2.0_f64.powi(halvings);
+    let Following { steps, h: last, scale, density: before, floor, .. } = memory;
+    let found = frequency(system, node, [*floor, *last])?;
+    let density = before + scale * found.rate();
+    let ratio = 0.5 * (before + density) / found.value();
+    // False for NaN.
+    if !(density > 0.0 && ratio < STRAY && ratio > 1.0 / STRAY) {
+        return Err(StepError::LengthsLost { t: node.t, h: *last });
+    }
     let h = scale / density;
     check_step(h)?;
     let steps = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
@@ -161,7 +160,7 @@ where
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
         let steps = solver::<S, N, STAGES>().begin(system, node, h)?;
         let floor = SLOWEST / h.abs();
-        let scale = h * frequency(system, node, floor)?.value();
+        let scale = h * frequency(system, node, [floor, h])?.value();
         anew(system, node, Following { steps, h, scale, density: 0.0, floor })
     }
 
@@ -171,7 +170,7 @@ where
         memory: &Self::Memory,
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, Self::Left> {
-        let next = next::<S, N, STAGES>(at.system, at.node, memory, 0).map_err(Err)?;
+        let next = next::<S, N, STAGES>(at.system, at.node, memory).map_err(Err)?;
         match solver::<S, N, STAGES>().attempt(Problem { h: next.h, ..at }, &next.steps, cache) {
             Ok(step) => Ok((next, step)),
             Err(left) => Err(Ok((next, left))),
@@ -181,23 +180,13 @@ where
     fn recover(
         &self,
         at: Problem<'_, S, Self::Prepared, N>,
-        memory: &Self::Memory,
+        _memory: &Self::Memory,
         cache: &mut Self::Cache,
         left: Self::Left,
     ) -> Result<Self::Step, StepError> {
-        let solver = solver::<S, N, STAGES>();
-        let (first, left) = left?;
-        let failure = match solver.recover(Problem { h: first.h, ..at }, &first.steps, cache, left) {
-            Ok(step) => return Ok((first, step)),
-            Err(failure) => failure,
-        };
-        for halvings in 1..=HALVINGS {
-            let shorter = next::<S, N, STAGES>(at.system, at.node, memory, halvings)?;
-            if let Ok(step) = solver.solve(Problem { h: shorter.h, ..at }, &shorter.steps, cache) {
-                return Ok((shorter, step));
-            }
-        }
-        Err(failure)
+        let (next, left) = left?;
+        let step = solver::<S, N, STAGES>().recover(Problem { h: next.h, ..at }, &next.steps, cache, left)?;
+        Ok((next, step))
     }
 
     fn take(

@@ -100,11 +100,11 @@ impl Counts {
                         break true;
                     }
                     steps += 1;
-                    // Energy-preserving steps have nodes of their own.
+                    // Energy-preserving and adaptive steps have nodes of their own.
                     let is_end = run.t() >= end * (1.0 - 1e-12);
-                    let place =
-                        if method == Method::Energy { 2 * DURATION } else { (2 * ratio * steps).min(2 * DURATION) };
-                    if is_end || method != Method::Energy {
+                    let has_own = matches!(method, Method::Energy | Method::Adaptive);
+                    let place = if has_own { 2 * DURATION } else { (2 * ratio * steps).min(2 * DURATION) };
+                    if is_end || !has_own {
                         let energy = run.energy().unwrap_or(f64::INFINITY);
                         worst = worst.max(off(&Node { q: run.q().to_vec(), energy }, &truth[place as usize]));
                     }
