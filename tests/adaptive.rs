@@ -238,26 +238,21 @@ fn steps_without_forces_grow_to_a_bound_and_damped_ones_go_on() {
 }
 
 #[test]
-fn constraints_shorten_the_steps_of_a_fast_turn() {
-    // Over the top and round: the force of the rod is the stiffness.
+fn constraints_hold_until_the_lengths_are_lost() {
+    // Round and round, with a tension that is larger at the bottom.
     let system = RodPendulum::default();
-    let start = system.at(0.0, [0.0, 1.0], [0.3, 0.0]);
-    let mut run = start.integrate(Gauss::<3>.adaptive(), 0.05).expect("a start");
-    let exact = start.integrate(Gauss::<3>, 0.005).expect("a start").until(4.0).expect("a motion");
+    let mut run = system.at(0.0, [0.0, -1.0], [10.0, 0.0]).integrate(Gauss::<3>.adaptive(), 0.01).expect("a start");
     let energy = run.energy().expect("an energy");
-    let mut lengths = [f64::INFINITY, 0.0_f64];
-    let mut aside = run.clone();
-    for _ in 0..300 {
-        aside.step().expect("a step");
-        let q = aside.state().q;
-        assert!((q.norm() - 1.0).abs() < 1e-14, "{q}");
-        lengths = [lengths[0].min(aside.h()), lengths[1].max(aside.h())];
+    for step in 0..100 {
+        match run.step() {
+            Ok(state) => assert!((state.q.norm() - 1.0).abs() < 1e-14, "{state:?}"),
+            Err(failure) => {
+                assert!(step > 5 && matches!(failure, StepError::LengthsLost { .. }), "{step}: {failure}");
+                break;
+            }
+        }
+        assert!((run.energy().expect("an energy") - energy).abs() < 1e-6);
     }
-    let drift = (aside.energy().expect("an energy") - energy).abs();
-    let off = (run.until(4.0).expect("a motion").q - exact.q).norm();
-    println!("lengths {lengths:?}, off by {off:.1e}, H by {drift:.1e}");
-    // Measured: 3.7 between the lengths; with twice these steps 4.0e-6, 6.3e-7.
-    assert!(lengths[1] > 3.0 * lengths[0] && off < 1e-5 && drift < 2e-6, "{lengths:?} {off:e} {drift:e}");
 }
 
 lagrangian! {

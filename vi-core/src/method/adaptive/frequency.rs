@@ -38,7 +38,7 @@ const WITHIN: f64 = 1.0 / 16.0;
 /// ω and G at a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Frequency {
-    /// ω and G of a time scale; or the floor, with G = 0.
+    /// ω and G of a time scale.
     Known { value: f64, rate: f64 },
     /// ω⁶ at the times −δ and δ from the state.
     Around { powers: [f64; 2], delta: f64 },
@@ -66,7 +66,8 @@ impl Frequency {
     }
 }
 
-/// The frequency at a node, at least `floor`. Differences stay within a part of the last step.
+/// The frequency at a node, at least `floor`; `None` where the stiffness has no value. Differences stay within a part of the
+/// last step.
 ///
 /// # Errors
 /// Those of velocity and acceleration at the node; [`StepError::TimeScale`] for a time scale that is not positive.
@@ -74,19 +75,17 @@ pub(crate) fn frequency<S: Convertible<N>, const N: usize>(
     system: &S,
     node: &Node<N>,
     [floor, last]: [f64; 2],
-) -> Result<Frequency, StepError> {
+) -> Result<Option<Frequency>, StepError> {
     let state = node.state();
     let State { t, q, .. } = state;
     let v = state.velocity(system)?;
     if system.scales_time() {
         let ScaledPoint { g, g_dq, g_dt, .. } = system.scaled_point(t, &q, &v);
         check_time_scale(t, g)?;
-        return Ok(Frequency::Known { value: g.recip(), rate: -(g_dq.dot(&v) + g_dt) / g });
+        return Ok(Some(Frequency::Known { value: g.recip(), rate: -(g_dq.dot(&v) + g_dt) / g }));
     }
     let a = system.acceleration(t, &q, &v)?;
-    let found = Place { system, t, q, v }.frequency(&a, floor, WITHIN * last.abs()).filter(Frequency::is_finite);
-    // Where the stiffness has no value, the steps keep their length.
-    Ok(found.unwrap_or(Frequency::Known { value: floor, rate: 0.0 }))
+    Ok(Place { system, t, q, v }.frequency(&a, floor, WITHIN * last.abs()).filter(Frequency::is_finite))
 }
 
 /// A place of the motion.

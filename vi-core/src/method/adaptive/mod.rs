@@ -101,7 +101,7 @@ fn anew<S: Convertible<N>, Y, const N: usize>(
     node: &Node<N>,
     memory: Following<Y>,
 ) -> Result<Following<Y>, StepError> {
-    let found = frequency(system, node, [memory.floor, memory.h])?;
+    let Some(found) = frequency(system, node, [memory.floor, memory.h])? else { return Ok(memory) };
     // Half a step earlier, by the rate of ln ω.
     let before = found.value() * (-0.5 * memory.scale / found.value() * found.rate()).exp();
     Ok(Following { density: before, ..memory })
@@ -117,9 +117,10 @@ fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
     memory: &Following<Steps<S, N, STAGES>>,
 ) -> Result<Next<Steps<S, N, STAGES>>, StepError> {
     let Following { steps, h: last, scale, density: before, floor, .. } = memory;
+    // Where the stiffness has no value, the steps keep their length.
     let found = frequency(system, node, [*floor, *last])?;
-    let density = before + scale * found.rate();
-    let ratio = 0.5 * (before + density) / found.value();
+    let density = before + scale * found.map_or(0.0, |found| found.rate());
+    let ratio = found.map_or(1.0, |found| 0.5 * (before + density) / found.value());
     // False for NaN.
     if !(density > 0.0 && ratio < STRAY && ratio > 1.0 / STRAY) {
         return Err(StepError::LengthsLost { t: node.t, h: *last });
@@ -160,8 +161,8 @@ where
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
         let steps = solver::<S, N, STAGES>().begin(system, node, h)?;
         let floor = SLOWEST / h.abs();
-        let scale = h * frequency(system, node, [floor, h])?.value();
-        anew(system, node, Following { steps, h, scale, density: 0.0, floor })
+        let density = frequency(system, node, [floor, h])?.map_or(floor, |found| found.value());
+        anew(system, node, Following { steps, h, scale: h * density, density, floor })
     }
 
     fn attempt(
