@@ -271,7 +271,7 @@ fn a_step_that_does_not_resolve_the_forces_is_refused() {
     let failure = loop {
         match run.step() {
             Ok(state) => {
-                assert!(state.t < 2.0 && (run.energy().expect("an energy") - energy).abs() < 1e-9, "{state:?}")
+                assert!(state.t < 2.0 && (run.energy().expect("an energy") - energy).abs() < 1e-9, "{state:?}");
             }
             Err(failure) => break failure,
         }
