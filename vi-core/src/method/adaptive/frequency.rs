@@ -11,7 +11,8 @@
 //!
 //! Each term is a sum of squares, and none depends on the choice of coordinates. K' bridges the places where K passes
 //! through zero, as that of a pendulum at a right angle. Derivatives along the motion are differences over 2δ between
-//! points of `q + δ v + δ² a/2`, so that ω is even and G odd when the velocities are reversed.
+//! points of its Taylor polynomial with the jerk, so that ω is even and G odd when the velocities are reversed. Without the
+//! jerk, velocities would err by δ², and with them the change of K' where forces depend on velocities.
 
 #[cfg(feature = "alloc")]
 use crate::constrained::{accelerations, border, bordered};
@@ -35,35 +36,11 @@ const APART: f64 = 1.0 / 32.0;
 /// The longest δ, in units of the last step: a wall is not felt from afar.
 const WITHIN: f64 = 1.0 / 16.0;
 
-/// ω and G at a state.
+/// ω at a state, and G.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Frequency {
-    /// ω and G of a time scale.
-    Known { value: f64, rate: f64 },
-    /// ω⁶ at the times −δ and δ from the state.
-    Around { powers: [f64; 2], delta: f64 },
-}
-
-impl Frequency {
-    /// ω.
-    pub(crate) fn value(&self) -> f64 {
-        match self {
-            Self::Known { value, .. } => *value,
-            Self::Around { powers: [before, after], .. } => (before * after).powf(1.0 / 12.0),
-        }
-    }
-
-    /// G.
-    pub(crate) fn rate(&self) -> f64 {
-        match self {
-            Self::Known { rate, .. } => *rate,
-            Self::Around { powers: [before, after], delta } => (after / before).ln() / (12.0 * delta),
-        }
-    }
-
-    fn is_finite(&self) -> bool {
-        [self.value(), self.rate()].iter().all(|number| number.is_finite())
-    }
+pub(crate) struct Frequency {
+    pub(crate) value: f64,
+    pub(crate) rate: f64,
 }
 
 /// The frequency at a node, at least `floor`; `None` where the stiffness has no value. Differences stay within a part of the
@@ -82,13 +59,14 @@ pub(crate) fn frequency<S: Convertible<N>, const N: usize>(
     if system.scales_time() {
         let ScaledPoint { g, g_dq, g_dt, .. } = system.scaled_point(t, &q, &v);
         check_time_scale(t, g)?;
-        return Ok(Some(Frequency::Known { value: g.recip(), rate: -(g_dq.dot(&v) + g_dt) / g }));
+        return Ok(Some(Frequency { value: g.recip(), rate: -(g_dq.dot(&v) + g_dt) / g }));
     }
-    let a = system.acceleration(t, &q, &v)?;
-    Ok(Place { system, t, q, v }.frequency(&a, floor, WITHIN * last.abs()).filter(Frequency::is_finite))
+    let here = Place { system, t, q, v };
+    let found = here.frequency(&here.acceleration()?, floor, WITHIN * last.abs());
+    Ok(found.filter(|found| found.value.is_finite() && found.rate.is_finite()))
 }
 
-/// A place of the motion.
+/// A place of the motion, or near it.
 struct Place<'a, S, const N: usize> {
     system: &'a S,
     t: f64,
@@ -111,18 +89,21 @@ impl<S: Convertible<N>, const N: usize> Place<'_, S, N> {
         if !delta.is_normal() {
             return None;
         }
+        let [before, after] = [-delta, delta].map(|delta| self.after(delta, a, &SVector::zeros()).acceleration().ok());
+        let jerk = (after? - before?) * (0.5 / delta);
         let is_constant = S::Kind::COUNT == 0 && self.system.has_constant_mass();
         let least = (floor * floor * floor).powi(2);
         let power = |delta: f64| {
-            let place = self.after(delta, a);
-            let (near, far) = (place.linear()?, self.after(2.0 * delta, a).linear()?);
+            let place = self.after(delta, a, &jerk);
+            let (near, far) = (place.linear()?, self.after(2.0 * delta, a, &jerk).linear()?);
             let compliance = if is_constant { compliance } else { place.compliance()? };
             let [of_stiffness, of_damping] = powers(&compliance, &near);
             let slope = (far.stiffness - here.stiffness) * (0.5 / delta);
             let of_damping = of_damping * of_damping * of_damping;
             Some(of_stiffness * of_stiffness.sqrt() + of_damping + size(&compliance, &slope, &slope) + least)
         };
-        Some(Frequency::Around { powers: [power(-delta)?, power(delta)?], delta })
+        let [before, after] = [power(-delta)?, power(delta)?];
+        Some(Frequency { value: (before * after).powf(1.0 / 12.0), rate: (after / before).ln() / (12.0 * delta) })
     }
 
     /// A rate that is not zero where K is: with the change of the velocities.
@@ -132,10 +113,22 @@ impl<S: Convertible<N>, const N: usize> Place<'_, S, N> {
         frequency + acceleration / (speed + acceleration / frequency)
     }
 
-    /// The place after the time δ.
-    fn after(&self, delta: f64, a: &SVector<f64, N>) -> Self {
+    /// The place after the time δ, by the acceleration and the jerk here.
+    fn after(&self, delta: f64, a: &SVector<f64, N>, jerk: &SVector<f64, N>) -> Self {
         let Self { system, t, q, v } = *self;
-        Self { system, t: t + delta, q: q + (v + a * (0.5 * delta)) * delta, v: v + a * delta }
+        let turned = a + jerk * (delta / 3.0);
+        let q = q + (v + turned * (0.5 * delta)) * delta;
+        Self { system, t: t + delta, q, v: v + (a + jerk * (0.5 * delta)) * delta }
+    }
+
+    /// The acceleration, also beside the constraints.
+    fn acceleration(&self) -> Result<SVector<f64, N>, StepError> {
+        let Self { system, t, q, v } = self;
+        #[cfg(feature = "alloc")]
+        if const { S::Kind::COUNT > 0 } {
+            return accelerations(*system, (*t, q, v), &mut bordered(*system)).map(|(acceleration, _)| acceleration);
+        }
+        system.acceleration(*t, q, v)
     }
 
     #[allow(clippy::unnecessary_wraps, reason = "a reaction may have no value")]

@@ -34,7 +34,7 @@ use crate::state::State;
 use crate::stepping::Convertible;
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
-use frequency::frequency;
+use frequency::{Frequency, frequency};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -64,9 +64,9 @@ const STRAY: f64 = 1.25;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Following<Y> {
     /// That of the last step; before the first one, of a step of the length `h`.
-    pub(crate) steps: Y,
+    steps: Y,
     /// Length of the last step, or of the next one before the first.
-    pub(crate) h: f64,
+    h: f64,
     /// ε, with the sign of the steps.
     scale: f64,
     /// ρ of the last step; before the first one, that half a step earlier.
@@ -92,6 +92,11 @@ pub struct Next<Y> {
 /// The memory of the solver of a system.
 type Steps<S, const N: usize, const STAGES: usize> = <Solver<S, N, STAGES> as Method<S, N>>::Memory;
 
+/// The density half a step earlier, by the rate of ln ω.
+fn half_a_step_before(found: &Frequency, scale: f64) -> f64 {
+    found.value * (-0.5 * scale / found.value * found.rate).exp()
+}
+
 /// The memory with a new density at a node.
 ///
 /// # Errors
@@ -102,9 +107,7 @@ fn anew<S: Convertible<N>, Y, const N: usize>(
     memory: Following<Y>,
 ) -> Result<Following<Y>, StepError> {
     let Some(found) = frequency(system, node, [memory.floor, memory.h])? else { return Ok(memory) };
-    // Half a step earlier, by the rate of ln ω.
-    let before = found.value() * (-0.5 * memory.scale / found.value() * found.rate()).exp();
-    Ok(Following { density: before, ..memory })
+    Ok(Following { density: half_a_step_before(&found, memory.scale), ..memory })
 }
 
 /// The next step from a node.
@@ -119,8 +122,8 @@ fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
     let Following { steps, h: last, scale, density: before, floor, .. } = memory;
     // Where the stiffness has no value, the steps keep their length.
     let found = frequency(system, node, [*floor, *last])?;
-    let density = before + scale * found.map_or(0.0, |found| found.rate());
-    let ratio = found.map_or(1.0, |found| 0.5 * (before + density) / found.value());
+    let density = before + scale * found.map_or(0.0, |found| found.rate);
+    let ratio = found.map_or(1.0, |found| 0.5 * (before + density) / found.value);
     // False for NaN.
     if !(density > 0.0 && ratio < STRAY && ratio > 1.0 / STRAY) {
         return Err(StepError::LengthsLost { t: node.t, h: *last });
@@ -161,8 +164,9 @@ where
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
         let steps = solver::<S, N, STAGES>().begin(system, node, h)?;
         let floor = SLOWEST / h.abs();
-        let density = frequency(system, node, [floor, h])?.map_or(floor, |found| found.value());
-        anew(system, node, Following { steps, h, scale: h * density, density, floor })
+        let found = frequency(system, node, [floor, h])?.unwrap_or(Frequency { value: floor, rate: 0.0 });
+        let scale = h * found.value;
+        Ok(Following { steps, h, scale, density: half_a_step_before(&found, scale), floor })
     }
 
     fn attempt(
