@@ -1,6 +1,7 @@
 //! What the traits of a system ask for: facts and functions.
 
 use crate::lines::Lines;
+use crate::tables::Tables;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -154,8 +155,8 @@ pub(crate) struct Code {
     pub(crate) watched: Box<[&'static str]>,
     /// The calls of tables in L and f, whose arguments `undefined` computes.
     pub(crate) calls: Box<[Call]>,
-    /// The digest of the tables.
-    pub(crate) tables: u32,
+    pub(crate) tables: Tables,
+    pub(crate) digest_of_tables: u32,
     /// The name of a monotone table in L.
     pub(crate) monotone_table: Option<&'static str>,
     pub(crate) is_autonomous: bool,

@@ -7,12 +7,12 @@
 mod instructions;
 mod order;
 mod registers;
-mod tables;
 
 use crate::code::{ByRule, Call, Code, Columns, Constraints, Form, Functions, Start, StepFunctions};
 use crate::lines::{Entry, Input, Kind, Lines, Source};
 use crate::mistakes::Mistakes;
 use crate::sizes::size;
+use crate::tables::Tables;
 use instructions::{Constants, instructions};
 use order::in_runs;
 use proc_macro2::TokenStream;
@@ -20,7 +20,6 @@ use registers::{Placed, placed};
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::sync::OnceLock;
-pub(crate) use tables::Tables;
 use vi_codegen::findings::{self, CLOSED, Elimination, Pattern};
 use vi_codegen::inspect::{report, source};
 use vi_codegen::model::{CheckState, Coordinate, Model, Parameter};
@@ -44,7 +43,7 @@ pub(crate) fn parsed(file: &str, text: &str, files: &[(String, String)]) -> Resu
     let unreadable = |error: syn::Error| Mistakes::at(file, text, vec![report::first_unreadable(text, &error)]);
     let tokens = declaration(text).map_err(unreadable)?;
     let tokens = tokens.ok_or_else(|| Mistakes::of(ONE))?;
-    let wrong = |error: syn::Error| Mistakes::at(file, text, report::mistakes(&error));
+    let wrong = |error: syn::Error| Mistakes::wrong(file, text, &error);
     syntax::alone::check(&tokens).map_err(wrong)?;
     let mut system = syntax::parse::system(tokens.clone()).map_err(wrong)?;
     system.files = files.iter().map(|(path, text)| (path.into(), text.clone())).collect();
@@ -64,7 +63,7 @@ pub(crate) struct Parsed {
 /// # Errors
 /// The mistakes of the text, or what only the macro compiles.
 pub(crate) fn code(file: &str, text: &str, Parsed { system, definition }: Parsed) -> Result<Code, Mistakes> {
-    let wrong = |error: syn::Error| Mistakes::at(file, text, report::mistakes(&error));
+    let wrong = |error: syn::Error| Mistakes::wrong(file, text, &error);
     let [declared, constraints] = sizes(&system).map_err(wrong)?;
     // Without coordinates the check says so.
     let all = if declared == 0 { 0 } else { size(&system.name.to_string(), [declared, constraints])? };
@@ -89,10 +88,7 @@ fn by_rule(code: &Code) -> ByRule {
         system.files.clone_from(&code.files);
         derive_own(&with_rest(system, code.definition, code.coordinates.len() - code.declared)?)
     });
-    let found = derived.ok().and_then(|of| {
-        let tables = Tables::of(&of.model)?;
-        steps(&of, &tables).ok()
-    });
+    let found = derived.ok().and_then(|of| steps(&of, &code.tables).ok());
     found.unwrap_or_else(|| ByRule { is_too_large: true, ..ByRule::default() })
 }
 
@@ -170,7 +166,7 @@ fn of_derived(
             .iter()
             .filter_map(|(call, arguments)| called(of, &tables, *call, arguments.len()))
             .collect(),
-        tables: model.digest_of_tables(),
+        digest_of_tables: model.digest_of_tables(),
         monotone_table: model.monotone_table(pool).map(|name| &*name.leak()),
         is_autonomous: findings.autonomous,
         is_forced: findings.forced,
@@ -187,6 +183,7 @@ fn of_derived(
         instructions: Instructions::detected(),
         by_rule: if rule.is_some() { OnceLock::new() } else { steps(of, &tables).map_err(too_many)?.into() },
         derive: by_rule,
+        tables,
     })
 }
 
@@ -277,10 +274,7 @@ fn functions(of: &Derived, constraints: Option<Constraints>, tables: &Tables) ->
     const POINT: [Output; 3] = [O::Momentum, O::AppliedForce, O::Mass];
     const SCALED: [Output; 8] =
         [POINT[0], POINT[1], POINT[2], O::Energy, O::Power, O::TimeScale, O::TimeScaleDq, O::TimeScaleDt];
-    let lines = |id: FunctionId, outputs: &[Output]| match of.program.function(id) {
-        Some(function) => lines(function, outputs, tables),
-        None => Ok(Lines::default()),
-    };
+    let lines = |id, outputs: &[Output]| lines(of, id, outputs, tables);
     let value = |id| lines(id, &[O::Value]);
     let mut functions = Functions {
         lagrangian: value(F::Lagrangian)?,
@@ -340,10 +334,7 @@ fn step_functions(of: &Derived, tables: &Tables) -> Result<StepFunctions, TooMan
         O::EnergyIncrementDv,
         O::EnergyIncrementDh,
     ];
-    let lines = |id: FunctionId, outputs: &[Output]| match of.program.function(id) {
-        Some(function) => lines(function, outputs, tables),
-        None => Ok(Lines::default()),
-    };
+    let lines = |id, outputs: &[Output]| lines(of, id, outputs, tables);
     let value = |id| lines(id, &[O::Value]);
     Ok(StepFunctions {
         ld: value(F::Ld)?,
@@ -391,8 +382,9 @@ fn place(symbol: &Symbol, of: FunctionId) -> Option<(u8, usize)> {
     })
 }
 
-/// The instructions for these quantities of a function.
-fn lines(function: &Function, outputs: &[Output], tables: &Tables) -> Result<Lines, TooMany> {
+/// The instructions for these quantities of a function; none for a function that the system does not have.
+fn lines(of: &Derived, id: FunctionId, outputs: &[Output], tables: &Tables) -> Result<Lines, TooMany> {
+    let Some(function) = of.program.function(id) else { return Ok(Lines::default()) };
     let operations = &function.operations;
     let results = || outputs.iter().flat_map(|output| function.results.matrix(*output)).flatten();
     let needed = operations.needed(results());

@@ -3,10 +3,10 @@
 //! In: the text of a system; for [`Expressions`] further expressions in its names, for [`Terms`] the summands of its L. Out:
 //! their values at one point of a motion after the other. Tables are evaluated as by every method.
 
-use crate::compile::{Tables, parsed};
+use crate::compile::parsed;
 use crate::mistakes::Mistakes;
+use crate::tables::Tables;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
-use vi_codegen::inspect::report;
 use vi_codegen::model::{Model, check, rate};
 use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::syntax::{self, parse};
@@ -38,7 +38,7 @@ struct Source {
 impl Source {
     fn of(text: &str) -> Result<(Self, syntax::System), Mistakes> {
         let system = parsed("definition", text, &[])?.system;
-        let wrong = |error: syn::Error| Mistakes::at("definition", text, report::mistakes(&error));
+        let wrong = |error: syn::Error| Mistakes::wrong("definition", text, &error);
         let (pool, model) = vi_codegen::checked(&system, 0).map_err(wrong)?;
         let compiled = || Mistakes::compiled(&model.name.to_string(), "Rust functions");
         let tables = Tables::of(&model).ok_or_else(compiled)?;
@@ -85,7 +85,7 @@ impl Expressions {
         let (mut source, system) = Source::of(text)?;
         let mut values = Vec::with_capacity(written.len());
         for (name, expression) in written {
-            let wrong = |error: syn::Error| Mistakes::at(name, expression, report::mistakes(&error));
+            let wrong = |error: syn::Error| Mistakes::wrong(name, expression, &error);
             let written = alone(expression).map_err(wrong)?;
             values.extend(check::expressions(&mut source.pool, &system, &[written]).map_err(wrong)?);
         }
@@ -142,7 +142,7 @@ impl Terms {
     /// The mistakes of the text; a system that is too large.
     pub fn of(text: &str) -> Result<Self, Mistakes> {
         let (mut source, _) = Source::of(text)?;
-        let wrong = |error: syn::Error| Mistakes::at("definition", text, report::mistakes(&error));
+        let wrong = |error: syn::Error| Mistakes::wrong("definition", text, &error);
         let Source { pool, model, .. } = &mut source;
         let operations = terms::operations(pool, model).map_err(wrong)?;
         let summands = terms::terms(pool, model).map_err(wrong)?;
@@ -175,6 +175,6 @@ impl Terms {
 /// The mistakes of the text; a system that is too large.
 pub fn operations(text: &str) -> Result<usize, Mistakes> {
     let (mut source, _) = Source::of(text)?;
-    let wrong = |error: syn::Error| Mistakes::at("definition", text, report::mistakes(&error));
+    let wrong = |error: syn::Error| Mistakes::wrong("definition", text, &error);
     terms::operations(&mut source.pool, &mut source.model).map_err(wrong)
 }

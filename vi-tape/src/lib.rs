@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `mistakes` | why a text is no system |
 //! | `lines` | a function as instructions over registers, and the interpreter |
+//! | `tables` | the tables of a system |
 //! | `code` | the facts and functions of a system |
 //! | `compile` | the code of a text |
 //! | `matrix` | matrices whose form is known at run time |
@@ -26,6 +27,7 @@ mod lines;
 mod matrix;
 mod mistakes;
 mod sizes;
+mod tables;
 mod tape;
 
 pub use code::Start;

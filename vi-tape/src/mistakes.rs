@@ -1,7 +1,7 @@
 //! Why a text is no system.
 
 use core::fmt;
-use vi_codegen::inspect::report::{Mistake, paragraphs};
+use vi_codegen::inspect::report::{Mistake, mistakes, paragraphs};
 
 /// The mistakes of a text, each with its place and its correction; or what only a compiler makes of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,6 +20,11 @@ impl Mistakes {
     /// Mistakes in the text of a file.
     pub(crate) fn at(file: &str, text: &str, each: Vec<Mistake>) -> Self {
         Self { text: paragraphs(file, text, &each), each, needs_compiler: false }
+    }
+
+    /// The mistakes that the compiler found in the text of a file.
+    pub(crate) fn wrong(file: &str, text: &str, error: &syn::Error) -> Self {
+        Self::at(file, text, mistakes(error))
     }
 
     /// A system that has to be compiled, because it has this.

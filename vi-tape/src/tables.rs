@@ -4,6 +4,7 @@ use vi_codegen::model::{FunctionKind, Model, Outside, Table, TableKind, Values};
 use vi_core::table::{self, AnyTable, Interpolation};
 
 /// The tables of a system, in the order of their declaration.
+#[derive(Clone, Debug)]
 pub(crate) struct Tables {
     names: Vec<String>,
     pub(crate) all: &'static [AnyTable],

@@ -161,7 +161,7 @@ impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T>
     }
 
     fn tables(&self) -> u32 {
-        self.code.tables
+        self.code.digest_of_tables
     }
 
     fn monotone_table(&self) -> Option<&'static str> {

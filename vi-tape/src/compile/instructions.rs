@@ -2,8 +2,8 @@
 //! inside.
 
 use super::TooMany;
-use super::tables::Tables;
 use crate::lines::Kind;
+use crate::tables::Tables;
 use std::collections::{HashMap, HashSet};
 use vi_codegen::program::{Function, Operation, OperationId, Operations};
 use vi_expr::Function as Elementary;
