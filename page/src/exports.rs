@@ -5,8 +5,8 @@
 #![allow(unsafe_code, reason = "a name for another language; no other function of the program has it")]
 
 use crate::facts::{Length, Model};
-use crate::json::{number, object};
 use crate::motion::Motion;
+use serde_json::json;
 use std::cell::RefCell;
 use vi_core::StepError;
 
@@ -48,7 +48,7 @@ impl Page {
         self.motion = None;
         let motion = self.started(method, length)?;
         let motion = self.motion.insert(motion);
-        Ok(object([("h", number(motion.h())), ("energy", number(motion.initial_energy))]))
+        Ok(json!({ "h": motion.h(), "energy": motion.initial_energy }).to_string())
     }
 
     fn advanced(&mut self, end: f64, most: u32) -> Result<String, String> {

@@ -3,7 +3,7 @@
 //! In: a text. Out: the system, and JSON with its names, defaults, start and methods; or JSON with each mistake at its
 //! token.
 
-use crate::json::{list, number, object, string};
+use serde_json::{Value, json};
 use vi_core::StepError;
 use vi_erased::plan::{Built, Method, Named as _, PhasePoint};
 use vi_erased::{Plan, System};
@@ -30,19 +30,19 @@ impl Model {
     pub fn facts(&self) -> String {
         let system = &self.system;
         let parameters = system.parameters().into_iter().zip(system.parameters_about());
-        let parameters = parameters.map(|((name, value), about)| {
-            object([("name", string(name)), ("about", string(about)), ("value", number(value))])
+        let parameters: Vec<Value> =
+            parameters.map(|((name, value), about)| json!({ "name": name, "about": about, "value": value })).collect();
+        let methods: Vec<String> = self.methods().into_iter().map(name).collect();
+        let facts = json!({
+            "name": system.name(),
+            "about": system.about(),
+            "coordinates": system.coordinates(),
+            "parameters": parameters,
+            "methods": methods,
+            "conserves": system.conserves_energy(),
+            "start": self.start(),
         });
-        let methods = self.methods().into_iter().map(|of| string(&name(of)));
-        object([
-            ("name", string(system.name())),
-            ("about", string(system.about())),
-            ("coordinates", list(system.coordinates().into_iter().map(string))),
-            ("parameters", list(parameters)),
-            ("methods", list(methods)),
-            ("conserves", system.conserves_energy().to_string()),
-            ("start", self.start()),
-        ])
+        facts.to_string()
     }
 
     /// The methods of the system, which the page names by their place in this list.
@@ -52,12 +52,11 @@ impl Model {
     }
 
     /// The state of the clause `check`, if there is one; otherwise all coordinates are 1, at rest.
-    fn start(&self) -> String {
-        let numbers = |of: &[f64]| list(of.iter().copied().map(number));
+    fn start(&self) -> Value {
         let size = self.system.coordinates().len();
         let (q, v) =
             self.system.check().map_or_else(|| (vec![1.0; size], vec![0.0; size]), |at| (at.q.clone(), at.v.clone()));
-        object([("q", numbers(&q)), ("v", numbers(&v))])
+        json!({ "q": q, "v": v })
     }
 
     /// The system with these parameters, and the plan of a run by a method from the time 0. `numbers` are all parameters,
@@ -114,8 +113,8 @@ pub fn keeps_energy(method: Method) -> bool {
 
 fn described(mistakes: &Mistakes) -> String {
     let each = mistakes.each().iter().map(|Mistake { wrong, helps, token }| {
-        let [from, to] = token.map(|of| list([of.line, of.column].map(|count| count.to_string())));
-        object([("wrong", string(wrong)), ("helps", string(helps)), ("from", from), ("to", to)])
+        let [from, to] = token.map(|of| [of.line, of.column]);
+        json!({ "wrong": wrong, "helps": helps, "from": from, "to": to })
     });
-    object([("text", string(&mistakes.to_string())), ("each", list(each))])
+    json!({ "text": mistakes.to_string(), "each": each.collect::<Vec<_>>() }).to_string()
 }

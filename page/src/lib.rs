@@ -5,7 +5,6 @@
 //!
 //! | module | product |
 //! |---|---|
-//! | `json` | text for the page |
 //! | [`facts`] | the facts of a system, or its mistakes |
 //! | [`motion`] | the rows of a run |
 //! | [`rival`] | a Runge–Kutta run with as many evaluations |
@@ -15,6 +14,5 @@
 
 mod exports;
 pub mod facts;
-mod json;
 pub mod motion;
 pub mod rival;
