@@ -2,13 +2,13 @@
 //! what they cost.
 
 use crate::support::assert_order_of;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::f64::consts::TAU;
 use vi_core::derivatives::{Differentiable, Tangent, Variation};
 use vi_core::run::{Checkpoint, DenseOutput};
 use vi_core::stepping::Convertible;
 use vi_core::{Adaptive, Gauss, Run, SVector, Starts, State, StepError, Tolerance, lagrangian};
-use vi_systems::{DampedOscillator, Kepler, RodPendulum};
+use vi_systems::{DampedOscillator, Kepler, Pendulum, RodPendulum};
 
 lagrangian! {
     /// A planet without a time scale.
@@ -85,20 +85,19 @@ fn lengths_follow_the_frequency_of_the_forces() {
         for step in 0..400 {
             let before = run.state();
             run.step().expect("a step");
-            // The density belongs to the middle of a step.
             let motion = run.dense_output(&before).expect("a polynomial");
             let t = before.t + 0.5 * run.h();
             let product = run.h() * frequency(&motion.state(t).q, &motion.velocity(t));
             lengths = [lengths[0].min(run.h()), lengths[1].max(run.h())];
             products = [products[0].min(product), products[1].max(product)];
-            assert!(step > 0 || (run.h() / h - 1.0).abs() < 0.1, "the first step has {}", run.h());
+            assert!(step > 0 || run.h() == h, "the first step has {}", run.h());
         }
         assert!(lengths[1] > 20.0 * lengths[0], "{lengths:?}");
         spreads.push(products[1] / products[0] - 1.0);
     }
     println!("h ω varies by {spreads:?}");
-    // Of second order. Measured: 0.016, 0.0038.
-    assert!(spreads[0] < 0.03 && spreads[1] < 0.3 * spreads[0], "{spreads:?}");
+    // Of second order. Measured: 0.041, 0.011.
+    assert!(spreads[0] < 0.05 && spreads[1] < 0.3 * spreads[0], "{spreads:?}");
 }
 
 #[test]
@@ -122,7 +121,6 @@ fn the_order_is_that_of_the_stages() {
 
 #[test]
 fn the_energy_of_many_periods_does_not_drift() {
-    // Seventeen steps in a period: with fewer than fourteen some lengths resonate with the orbit.
     let mut run = planet(0.03);
     let start = run.energy().expect("an energy");
     let mut worst = [0.0_f64; 2];
@@ -133,20 +131,13 @@ fn the_energy_of_many_periods_does_not_drift() {
         }
     }
     println!("H off by {worst:?} over 10 and 300 periods");
-    // Measured: 1.3e-6 over each.
-    assert!(worst[0] > 1e-7 && worst[1] < 1.05 * worst[0], "{worst:?}");
+    // Measured: 7.9e-7 over each.
+    assert!(worst[0] > 1e-7 && worst[1] < 1.001 * worst[0], "{worst:?}");
 }
 
-/// The run from its node with reversed velocities, with the density of the step behind.
+/// The run from its node with reversed velocities.
 fn reversed(run: &PlanetRun) -> PlanetRun {
-    // A further step has the density that the reversed run has to find.
-    let mut ahead = run.clone();
-    ahead.step().expect("a step");
-    let density = |run: &PlanetRun| -> Value {
-        serde_json::to_value(run.checkpoint()).expect("numbers")["run"]["memory"]["density"].clone()
-    };
     let mut stored = serde_json::to_value(run.checkpoint()).expect("numbers");
-    stored["run"]["memory"]["density"] = density(&ahead);
     for name in ["p", "p_low"] {
         for entry in stored["run"]["node"][name].as_array_mut().into_iter().flatten() {
             *entry = json!(-entry.as_f64().expect("a number"));
@@ -173,8 +164,8 @@ fn a_motion_returns_with_its_lengths() {
     }
     let off = (back.state().q - start.q).norm() + (back.state().p + start.p).norm();
     println!("lengths off by {worst:.1e}, the state by {off:.1e}");
-    // Differences of G have 1e-13. Measured: 1.9e-12 and 3.3e-12.
-    assert!(worst < 4e-12 && off < 7e-12, "{worst:e} {off:e}");
+    // A phase is that of the first step to 1e-10. Measured: 1.2e-10 and 2.7e-10.
+    assert!(worst < 2e-10 && off < 4e-10, "{worst:e} {off:e}");
 }
 
 #[test]
@@ -195,7 +186,7 @@ fn few_steps_pass_a_perihelion() {
         let error = (adaptive.until(end).expect("a motion").q - exact).norm();
         println!("e = {e}: {steps} steps instead of {}, error {error:.1e}", end / h);
         assert!(end / h > least * steps, "e = {e}: {steps} steps instead of {}", end / h);
-        // Measured: 1.8e-10, 3.7e-9.
+        // Measured: 1.5e-10, 5.2e-9.
         assert!(error < 1e-8, "e = {e}: {error:e}");
     }
 }
@@ -214,8 +205,8 @@ fn a_time_scale_sets_the_lengths() {
         products = [products[0].min(product), products[1].max(product)];
     }
     println!("h / r^(3/2) in {products:?}");
-    // Measured: 1.0027.
-    assert!(products[1] < 1.005 * products[0], "{products:?}");
+    // Measured: 1.0115.
+    assert!(products[1] < 1.02 * products[0], "{products:?}");
 }
 
 #[test]
@@ -259,9 +250,17 @@ fn the_tension_of_a_rod_sets_the_lengths() {
     let drift = (aside.energy().expect("an energy") - energy).abs();
     let off = (run.until(3.0).expect("a motion").q - exact.q).norm();
     println!("lengths {lengths:?}, h ω {products:?}, off by {off:.1e}, H by {drift:.1e}");
-    // Measured: 1.47 between the lengths, 1.044 between the products, 4.3e-8, 3.3e-10.
+    // Measured: 1.47 between the lengths, 1.044 between the products, 4.3e-8, 4.8e-10.
     assert!(lengths[1] > 1.4 * lengths[0] && products[1] < 1.06 * products[0], "{lengths:?} {products:?}");
     assert!(off < 1e-7 && drift < 1e-9, "{off:e} {drift:e}");
+}
+
+lagrangian! {
+    /// An oscillator whose stiffness is zero in the middle.
+    struct Quartic {
+        coord x;
+        L = dot(x)^2 / 2 - x^4;
+    }
 }
 
 lagrangian! {
@@ -272,33 +271,63 @@ lagrangian! {
     }
 }
 
+/// The largest deviation of the energy in each of some parts of a run, of steps in them.
+fn deviations<S: Convertible<N>, const N: usize>(run: &mut Run<Adaptive<Gauss<8>>, S, N>, steps: usize) -> [f64; 2] {
+    let energy = run.energy().expect("an energy");
+    [(); 2].map(|()| {
+        let of_step = |_| {
+            run.step().unwrap_or_else(|failure| panic!("{failure}"));
+            (run.energy().expect("an energy") - energy).abs()
+        };
+        (0..steps).map(of_step).fold(0.0, f64::max)
+    })
+}
+
 #[test]
-fn a_step_that_does_not_resolve_the_forces_is_refused() {
-    // It flies freely, and a step would lead through the wall.
+fn a_few_steps_in_a_period_follow_an_oscillator() {
+    // Their stiffness passes through zero, or is zero in the middle.
+    let mut pendulum =
+        Pendulum::default().at(0.0, [2.5], [0.0]).integrate(Gauss::<8>.adaptive(), 1.5).expect("a start");
+    let mut quartic = Quartic::default().at(0.0, [1.0], [0.0]).integrate(Gauss::<8>.adaptive(), 0.3).expect("a start");
+    let found = [deviations(&mut pendulum, 2000), deviations(&mut quartic, 2000)];
+    println!("H off by {found:?}");
+    // Measured: 7.4e-10 and 9.4e-13, in both parts.
+    for ([early, late], worst) in found.into_iter().zip([8e-10, 1e-12]) {
+        assert!(late < worst && late < 1.1 * early, "{early:e} {late:e}");
+    }
+}
+
+#[test]
+fn a_wall_is_felt_before_it_is_met() {
+    // Nothing is felt at the start: the lengths are those of usual steps, and no longer than the first one.
     let mut run = Box40::default().at(0.0, [0.0], [1.0]).integrate(Gauss::<8>.adaptive(), 0.3).expect("a start");
+    let mut lengths = [f64::INFINITY, 0.0_f64];
+    let mut aside = run.clone();
+    for _ in 0..200 {
+        aside.step().expect("a step");
+        lengths = [lengths[0].min(aside.h()), lengths[1].max(aside.h())];
+    }
+    let [early, late] = deviations(&mut run, 1000);
+    println!("lengths {lengths:?}, H off by {early:.1e}, {late:.1e}");
+    // Measured: 0.028 to 0.3, 4.6e-10, 4.5e-10.
+    assert!(
+        lengths[0] < 0.04 && lengths[1] < 0.3 * (1.0 + 1e-9) && early.max(late) < 5e-10,
+        "{lengths:?} {early:e} {late:e}"
+    );
+}
+
+#[test]
+fn a_length_that_no_step_has_is_refused() {
+    // It starts at the wall, with so long a step that the next one would cross the box.
+    let mut run = Box40::default().at(0.0, [1.0], [0.0]).integrate(Gauss::<8>.adaptive(), 0.1).expect("a start");
     let energy = run.energy().expect("an energy");
     let failure = loop {
         match run.step() {
-            Ok(state) => {
-                assert!(state.t < 2.0 && (run.energy().expect("an energy") - energy).abs() < 1e-9, "{state:?}");
-            }
+            Ok(_) => assert!((run.energy().expect("an energy") - energy).abs() < 1e-4, "{:?}", run.state()),
             Err(failure) => break failure,
         }
     };
-    assert!(matches!(failure, StepError::LengthsLost { h, .. } if h > 0.2), "{failure}");
-    // Few steps in a period of an orbit: the density leaves the frequency, and no energy is lost before that is said.
-    let mut run = planet(0.0492);
-    let energy = run.energy().expect("an energy");
-    let mut worst = 0.0_f64;
-    let failure = (0..20_000).find_map(|_| {
-        let failure = run.step().err();
-        worst = worst.max((run.energy().expect("an energy") - energy).abs());
-        failure
-    });
-    println!("H off by {worst:.1e}: {failure:?}");
-    // Measured: 2.8e-4.
-    assert!(worst < 1e-3, "{worst:e}");
-    assert!(matches!(failure, None | Some(StepError::LengthsLost { .. })), "{failure:?}");
+    assert!(matches!(failure, StepError::StagesUnsettled { .. } | StepError::LengthsLost { .. }), "{failure}");
 }
 
 #[test]
@@ -306,7 +335,9 @@ fn stored_numbers_are_checked() {
     let mut run = planet(0.03);
     run.step().expect("a step");
     let stored = serde_json::to_value(run.checkpoint()).expect("numbers");
-    for (name, value) in [("density", -1.0), ("density", 0.0), ("scale", -0.1), ("floor", 0.0), ("h", -0.03)] {
+    for (name, value) in
+        [("phase", -0.1), ("floor", 0.0), ("h", -0.03), ("ahead", 0.0), ("ratio", -1.0), ("slope", 0.0)]
+    {
         let mut changed = stored.clone();
         changed["run"]["memory"][name] = json!(value);
         let changed: Checkpoint<_, 2> = serde_json::from_value(changed).expect("numbers");
@@ -331,8 +362,8 @@ fn tangent_vectors_are_those_of_the_motion() {
         |found: &[SVector<f64, 4>]| found.iter().zip(&exact).map(|(one, other)| (one - other).norm()).sum::<f64>();
     let errors = [0.2, 0.1].map(|h: f64| off(&by(h)));
     println!("tangent vectors off by {errors:?}");
-    // Measured: 6.6e-9, 3.3e-11.
-    assert!(errors[0] > 1e-9 && errors[1] < 0.02 * errors[0] && errors[1] < 1e-10, "{errors:?}");
+    // Measured: 3.7e-9, 1.9e-11.
+    assert!(errors[0] > 1e-9 && errors[1] < 0.02 * errors[0] && errors[1] < 3e-11, "{errors:?}");
 }
 
 /// Tangent vectors of the start at a time, for each direction of the state.

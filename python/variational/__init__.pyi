@@ -73,7 +73,7 @@ class StepRatio(StepError):
     found: float
 
 class LengthsLost(StepError):
-    """The lengths of adaptive steps no longer follow the forces: these change too fast for the steps."""
+    """No length of an adaptive step fits the forces: they change too fast."""
 
     t: float
     h: float

@@ -94,7 +94,7 @@ ABOUT: dict[str, str] = {
     "ShiftTooLarge": "The shift of the step density outweighs the energy.",
     "DegenerateStep": "The step density vanishes, so that the step length is not determined.",
     "StepRatio": "The length of the only forward step differs too much from that of the last step.",
-    "LengthsLost": "The lengths of adaptive steps no longer follow the forces: these change too fast for the steps.",
+    "LengthsLost": "No length of an adaptive step fits the forces: they change too fast.",
     "StepBounds": "The step that solves the equations is shorter or longer than allowed.",
     "NotConverged": "The Newton iteration ended above the rounding floor.",
     "TooLong": "The step has no solution that continues those of short steps.",

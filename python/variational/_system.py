@@ -412,8 +412,8 @@ class System(metaclass=SystemType):
         Parameters
         ----------
         h : float
-            Length of a step; negative steps go back in time. For method="energy" and "adaptive" about that of the first
-            step.
+            Length of a step; negative steps go back in time. For method="energy" about that of the first step,
+            for "adaptive" that of the first step.
         tolerance : float
             In place of h: the largest error of a step, relative to the scale of its motion.
         dtau : float

@@ -95,7 +95,7 @@ const fn energy_gauss(name: &'static str, stages: u32, stretch: f64) -> Method {
     Method { built, keeps_energy: true, ..gauss(name, stages, false, stretch) }
 }
 
-const METHODS: [Method; 20] = [
+const METHODS: [Method; 21] = [
     equal("fixed", plan::Method::Fixed, [2, 3], 1.0),
     equal("Suzuki 4", plan::Method::Suzuki4, [4, 4], 2.0),
     equal("Kahan–Li 6", plan::Method::KahanLi6, [6, 4], 4.0),
@@ -108,6 +108,7 @@ const METHODS: [Method; 20] = [
     gauss("Gauss 4", 4, false, 5.0),
     gauss("Gauss 8", 8, false, 16.0),
     adaptive("adaptive 3", 3, 3.0),
+    adaptive("adaptive 4", 4, 5.0),
     gauss("transformed Gauss 4", 4, true, 6.0),
     gauss("transformed Gauss 8", 8, true, 14.0),
     energy("energy", Start::State),

@@ -77,7 +77,7 @@ pub enum StepError {
         /// Length of the step that solves the equations.
         found: f64,
     },
-    /// The lengths of adaptive steps no longer follow the forces: these change too fast for the steps.
+    /// No length of an adaptive step has the phase of the first step: the forces change too fast for it.
     LengthsLost {
         /// Time of the last good node.
         t: f64,
@@ -370,7 +370,7 @@ impl fmt::Display for Reason<'_> {
             StepError::LengthsLost { t, h } => {
                 write!(
                     f,
-                    "the forces change too fast for the lengths of adaptive steps at t = {t:.9} (last h = {h:.3e})"
+                    "no length of an adaptive step fits the forces after t = {t:.9} (last h = {h:.3e}): they change too fast"
                 )
             }
             StepError::StepBounds { t, found, h_min, h_max } => write!(

@@ -1,26 +1,24 @@
 //! Gauss steps whose length follows the motion.
 //!
-//! The step density ρ, the reciprocal of a step up to a constant ε, changes at the nodes between two steps,
+//! The length h of a step solves
 //!
 //! ```text
-//! ρ₊ = ρ₋ + ε G        h = ε/ρ        G = ω'/ω at the node
+//! h Ω = ε
 //! ```
 //!
-//! with a frequency ω of the forces (`frequency.rs`): along the motion ρ/ω is constant. No error enters ρ,
-//! so that the map (q, p, ρ) is time-symmetric if ω is even in the velocities. A reversible motion then keeps its energy
-//! without drift, which steps that follow a measured error lose. Source: E. Hairer and G. Söderlind, Explicit, time
-//! reversible, adaptive step size control, SIAM J. Sci. Comput. 26 (2005).
+//! with the frequency Ω of the forces along the step (`phase.rs`), which does not change when the step is reversed. The map
+//! is time-symmetric: a reversible motion keeps its energy without drift, which steps that follow a measured error lose.
+//! Source: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, VIII.3.1.
+//!
+//! The equation is solved by secants: each length tried is a step from the stages of the one before. The explicit law of
+//! Hairer and Söderlind (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of four.
+//! But ρ leaves ω where a step is long for the changes of ω, as with few steps in the period of an oscillator.
 //!
 //! The map is not symplectic: that needs [`InTransformedTime`](super::InTransformedTime) and a `time_scale`, which
 //! [`Adaptive`] takes too. Terms that are linear in the velocities, friction and inputs break the symmetry; the steps
 //! still follow the motion.
-//!
-//! A step to a given time, a change of parameters or of the state begins a new ρ there, with the same ε.
-//!
-//! The law holds while a step resolves the changes of ω. Where it does not, as at a wall in the way of a free flight or
-//! with a few steps in a period, ρ would wander from ω: such a step is refused, [`StepError::LengthsLost`].
 
-mod frequency;
+mod phase;
 
 use super::gauss::{Solver, StageSolver, solver};
 use super::{Gauss, Memory, Method, Problem, Report, check_step, step_from};
@@ -34,13 +32,13 @@ use crate::state::State;
 use crate::stepping::Convertible;
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
-use frequency::{Frequency, frequency};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
+use phase::{Phase, Place, phase};
 
 /// A method whose steps follow the motion: `Gauss::<8>.adaptive()`. See the [module](self).
 ///
-/// The step of a run is about the first one, or is found from a [`Tolerance`](crate::Tolerance) of all steps of the first
+/// The step of a run is the first one, or is found from a [`Tolerance`](crate::Tolerance) of all steps of the first
 /// stretch. Its sign is the direction of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Adaptive<M>(M);
@@ -53,11 +51,16 @@ impl<const STAGES: usize> Gauss<STAGES> {
     }
 }
 
-/// The frequency has at least this part of the reciprocal of the first step: without forces, steps grow no further.
+/// Ω has at least this part of the reciprocal of the first step: without forces, steps grow no further.
 const SLOWEST: f64 = 1e-4;
-/// Largest ratio of the mean of ρ₋ and ρ₊ to ω, and its reciprocal. It is 1 + O(ε²) along the motion; with steps too long for
-/// the changes of ω, ρ loses it.
-const STRAY: f64 = 1.25;
+/// A first step whose phase to the power of its order is smaller feels no force that could set the lengths of others.
+/// These are then no longer, and of the phase [`USUAL`] for each stage.
+const FREE: f64 = 1e-12;
+const USUAL: f64 = 0.1;
+/// The largest deviation of ln h Ω from ln ε of an accepted step.
+const NEAR: f64 = 1e-10;
+/// Lengths tried for a step at most.
+const TRIALS: usize = 60;
 
 /// Memory of steps that follow the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,12 +70,16 @@ pub struct Following<Y> {
     steps: Y,
     /// Length of the last step, or of the next one before the first.
     h: f64,
-    /// ε, with the sign of the steps.
-    scale: f64,
-    /// ρ of the last step; before the first one, that half a step earlier.
-    density: f64,
-    /// The floor of the frequency.
+    /// ε, with the sign of the steps; `None` before the first step.
+    phase: Option<f64>,
+    /// The floor of Ω.
     floor: f64,
+    /// The guess of the next length, divided by the last one.
+    ahead: f64,
+    /// Ratio of the last two lengths.
+    ratio: f64,
+    /// Logarithmic slope of the phase of the last step in its length.
+    slope: f64,
 }
 
 impl<Y: Memory> Memory for Following<Y> {
@@ -81,57 +88,138 @@ impl<Y: Memory> Memory for Following<Y> {
     }
 }
 
-/// The next step: the memory from which it is solved, its length and its density.
-#[derive(Clone, Debug)]
-pub struct Next<Y> {
-    steps: Y,
-    h: f64,
-    density: f64,
-}
-
 /// The memory of the solver of a system.
 type Steps<S, const N: usize, const STAGES: usize> = <Solver<S, N, STAGES> as Method<S, N>>::Memory;
 
-/// The density half a step earlier, by the rate of ln ω.
-fn half_a_step_before(found: &Frequency, scale: f64) -> f64 {
-    found.value * (-0.5 * scale / found.value * found.rate).exp()
-}
+/// The end of a step, and the memory there.
+type End<S, const N: usize, const STAGES: usize> = (Node<N>, Following<Steps<S, N, STAGES>>);
 
-/// The memory with a new density at a node.
+/// The problem of the solver of a system.
+type Of<'a, S, const N: usize, const STAGES: usize> =
+    Problem<'a, S, <Solver<S, N, STAGES> as Method<S, N>>::Prepared, N>;
+
+/// The step of the length `at.h` from a node.
 ///
 /// # Errors
-/// As [`frequency`].
-fn anew<S: Convertible<N>, Y, const N: usize>(
-    system: &S,
-    node: &Node<N>,
-    memory: Following<Y>,
-) -> Result<Following<Y>, StepError> {
-    let Some(found) = frequency(system, node, [memory.floor, memory.h])? else { return Ok(memory) };
-    Ok(Following { density: half_a_step_before(&found, memory.scale), ..memory })
+/// Those of the solver.
+fn solved<S: Convertible<N>, const N: usize, const STAGES: usize>(
+    at: Of<'_, S, N, STAGES>,
+    guess: &Steps<S, N, STAGES>,
+    cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
+) -> Result<(Node<N>, Steps<S, N, STAGES>), StepError> {
+    let (solver, Problem { system, node, h, .. }) = (solver::<S, N, STAGES>(), at);
+    let step = match solver.attempt(at, guess, cache) {
+        Ok(step) => step,
+        Err(left) => solver.recover(at, guess, cache, left)?,
+    };
+    let (mut end, mut steps) = (*node, guess.clone());
+    solver.take(system, h, (&mut end, &mut steps), cache, step);
+    Ok((end, steps))
 }
 
-/// The next step from a node.
-///
-/// # Errors
-/// [`StepError::LengthsLost`] if ρ has left ω. As [`frequency`], and those of a start.
-fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
-    system: &S,
-    node: &Node<N>,
+/// The first step: its phase is that of all others.
+fn first<S: Convertible<N>, const N: usize, const STAGES: usize>(
+    at: Of<'_, S, N, STAGES>,
     memory: &Following<Steps<S, N, STAGES>>,
-) -> Result<Next<Steps<S, N, STAGES>>, StepError> {
-    let Following { steps, h: last, scale, density: before, floor, .. } = memory;
-    // Where the stiffness has no value, the steps keep their length.
-    let found = frequency(system, node, [*floor, *last])?;
-    let density = before + scale * found.map_or(0.0, |found| found.rate);
-    let ratio = found.map_or(1.0, |found| 0.5 * (before + density) / found.value);
-    // False for NaN.
-    if !(density > 0.0 && ratio < STRAY && ratio > 1.0 / STRAY) {
-        return Err(StepError::LengthsLost { t: node.t, h: *last });
+    cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
+) -> Result<End<S, N, STAGES>, StepError> {
+    let Following { steps, h, .. } = memory;
+    let at = Problem { h: *h, ..at };
+    let (end, steps) = solved(at, steps, cache)?;
+    let [here, there] = [at.node, &end].map(|node| Place::of(at.system, node));
+    #[allow(clippy::cast_precision_loss)] // 16 stages at most
+    let stages = STAGES as f64;
+    let is_felt = |found: &Phase| found.value.powf(2.0 * stages) > FREE;
+    let found = phase(at.system, [&here?, &there?], [h.abs(), 0.0])?.filter(is_felt);
+    let usual = USUAL * stages;
+    let Phase { value, slope, .. } = found.unwrap_or(Phase { value: usual, slope: 1.0, ratio: 1.0 });
+    let floor = if found.is_some() { SLOWEST } else { usual } / h.abs();
+    Ok((end, Following { steps, h: *h, phase: Some(value.copysign(*h)), floor, ahead: 1.0, ratio: 1.0, slope }))
+}
+
+/// The search for the length of a step.
+struct Search {
+    /// A length that is too short, and one that is too long or has no step.
+    between: [f64; 2],
+    /// The last length tried, and the logarithm of its phase over ε.
+    last: Option<[f64; 2]>,
+    /// Logarithmic slope of the phase in the length.
+    slope: f64,
+}
+
+impl Search {
+    /// The length to try after one without a step.
+    fn shorter(&mut self, h: f64) -> f64 {
+        self.between[1] = h;
+        0.5 * (self.between[0] + h)
     }
-    let h = scale / density;
-    check_step(h)?;
-    let steps = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
-    Ok(Next { steps, h, density })
+
+    /// The slope by the last two lengths.
+    fn learn(&mut self, h: f64, off: f64) {
+        if let Some([before, off_before]) = self.last.replace([h, off]) {
+            self.slope = ((off - off_before) / (h / before).ln()).max(0.25);
+        }
+    }
+
+    /// The length to try after this one, by the slope, or halfway between those that are too short and too long.
+    fn beside(&mut self, h: f64, off: f64) -> f64 {
+        self.between[usize::from(off > 0.0)] = h;
+        let next = h * (-off / self.slope).clamp(-1.0, 1.0).exp();
+        let [short, long] = self.between;
+        // False for NaN.
+        if (next - short) / (long - short) > 0.0 && (long - next) / (long - short) > 0.0 {
+            next
+        } else {
+            0.5 * (short + long)
+        }
+    }
+}
+
+/// The step whose phase is that of the first one.
+///
+/// # Errors
+/// Those of the solver for the shortest length tried; [`StepError::LengthsLost`] if no length has this phase.
+fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
+    at: Of<'_, S, N, STAGES>,
+    memory: &Following<Steps<S, N, STAGES>>,
+    wanted: f64,
+    cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
+) -> Result<End<S, N, STAGES>, StepError> {
+    let Problem { system, node, .. } = at;
+    let Following { steps, h: last, floor, ahead, ratio: before, slope, .. } = memory;
+    let start = Place::of(system, node)?;
+    let mut search = Search { between: [0.0, wanted / floor], last: None, slope: *slope };
+    let mut h = last * ahead;
+    let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
+    let mut failure = StepError::LengthsLost { t: node.t, h: *last };
+    for _ in 0..TRIALS {
+        check_step(h)?;
+        let tried = solved(Problem { h, ..at }, &guess, cache)
+            .and_then(|(end, steps)| Ok((Place::of(system, &end)?, end, steps)));
+        let (there, end, steps) = match tried {
+            Ok(found) => found,
+            Err(error) => {
+                failure = error;
+                h = search.shorter(h);
+                guess = Solver::<S, N, STAGES>::resized(system, &memory.steps, node, h)?;
+                continue;
+            }
+        };
+        // Where the stiffness has no value, the length is taken.
+        let found = phase(system, [&start, &there], [h.abs(), *floor])?;
+        let found = found.unwrap_or(Phase { value: wanted.abs(), slope: 1.0, ratio: 1.0 });
+        let off = (found.value / wanted.abs()).ln();
+        search.learn(h, off);
+        if off.abs() < NEAR {
+            let ratio = h / last;
+            // Ratios change by nearly equal factors, until the forces turn.
+            let ahead = found.ratio.min(ratio * (ratio / before).clamp(0.7, 1.4));
+            return Ok((end, Following { steps, h, ahead, ratio, slope: search.slope, ..memory.clone() }));
+        }
+        h = search.beside(h, off);
+        guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
+    }
+    Err(failure)
 }
 
 impl<S, const N: usize, const STAGES: usize> Method<S, N> for Adaptive<Gauss<STAGES>>
@@ -141,8 +229,8 @@ where
     type Prepared = <Solver<S, N, STAGES> as Method<S, N>>::Prepared;
     type Memory = Following<Steps<S, N, STAGES>>;
     type Cache = <Solver<S, N, STAGES> as Method<S, N>>::Cache;
-    type Step = (Next<Steps<S, N, STAGES>>, <Solver<S, N, STAGES> as Method<S, N>>::Step);
-    type Left = Result<(Next<Steps<S, N, STAGES>>, <Solver<S, N, STAGES> as Method<S, N>>::Left), StepError>;
+    type Step = End<S, N, STAGES>;
+    type Left = StepError;
     type DenseOutput = <Solver<S, N, STAGES> as Method<S, N>>::DenseOutput;
 
     fn finds_length(&self) -> bool {
@@ -163,10 +251,7 @@ where
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
         let steps = solver::<S, N, STAGES>().begin(system, node, h)?;
-        let floor = SLOWEST / h.abs();
-        let found = frequency(system, node, [floor, h])?.unwrap_or(Frequency { value: floor, rate: 0.0 });
-        let scale = h * found.value;
-        Ok(Following { steps, h, scale, density: half_a_step_before(&found, scale), floor })
+        Ok(Following { steps, h, phase: None, floor: SLOWEST / h.abs(), ahead: 1.0, ratio: 1.0, slope: 1.0 })
     }
 
     fn attempt(
@@ -175,35 +260,31 @@ where
         memory: &Self::Memory,
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, Self::Left> {
-        let next = next::<S, N, STAGES>(at.system, at.node, memory).map_err(Err)?;
-        match solver::<S, N, STAGES>().attempt(Problem { h: next.h, ..at }, &next.steps, cache) {
-            Ok(step) => Ok((next, step)),
-            Err(left) => Err(Ok((next, left))),
+        match memory.phase {
+            None => first(at, memory, cache),
+            Some(wanted) => next(at, memory, wanted, cache),
         }
     }
 
     fn recover(
         &self,
-        at: Problem<'_, S, Self::Prepared, N>,
+        _at: Problem<'_, S, Self::Prepared, N>,
         _memory: &Self::Memory,
-        cache: &mut Self::Cache,
+        _cache: &mut Self::Cache,
         left: Self::Left,
     ) -> Result<Self::Step, StepError> {
-        let (next, left) = left?;
-        let step = solver::<S, N, STAGES>().recover(Problem { h: next.h, ..at }, &next.steps, cache, left)?;
-        Ok((next, step))
+        Err(left)
     }
 
     fn take(
         &self,
-        system: &S,
+        _system: &S,
         _h: f64,
         (node, memory): (&mut Node<N>, &mut Self::Memory),
-        cache: &mut Self::Cache,
-        (Next { steps, h, density }, step): Self::Step,
+        _cache: &mut Self::Cache,
+        (end, after): Self::Step,
     ) {
-        *memory = Following { steps, h, density, ..*memory };
-        solver::<S, N, STAGES>().take(system, h, (node, &mut memory.steps), cache, step);
+        (*node, *memory) = (end, after);
     }
 
     fn step_of(
@@ -216,8 +297,7 @@ where
         let before = Solver::<S, N, STAGES>::resized(system, &memory.steps, node, h)?;
         let solver = &solver::<S, N, STAGES>();
         let (node, steps) = step_from(solver, system, (node, before), [h, memory.h])?;
-        let memory = anew(system, &node, Following { steps, ..*memory })?;
-        Ok((node, memory))
+        Ok((node, Following { steps, ..*memory }))
     }
 
     fn with_length(
@@ -238,7 +318,7 @@ where
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
         let steps = solver::<S, N, STAGES>().with_system(systems, node, memory.h, &memory.steps)?;
-        anew(systems[1], node, Following { steps, ..*memory })
+        Ok(Following { steps, ahead: 1.0, ratio: 1.0, ..*memory })
     }
 
     fn with_state(
@@ -250,7 +330,7 @@ where
         state: State<N>,
     ) -> Result<Self::Memory, StepError> {
         let steps = solver::<S, N, STAGES>().with_state(systems, node, memory.h, &memory.steps, state)?;
-        anew(systems[1], node, Following { steps, ..*memory })
+        Ok(Following { steps, ahead: 1.0, ratio: 1.0, ..*memory })
     }
 
     fn dense_output(
@@ -268,7 +348,7 @@ where
         memory.h
     }
 
-    // The next density needs the frequency at the node.
+    // The next length is known after its step.
     fn longest(&self, h: f64, _memory: &Self::Memory) -> f64 {
         f64::INFINITY.copysign(h)
     }
@@ -282,11 +362,12 @@ where
     }
 
     fn check(&self, system: &S, (node, memory): (&Node<N>, &Self::Memory), h: f64) -> Result<(), StepError> {
-        let Following { steps, h: last, scale, density, floor } = memory;
+        let Following { steps, h: last, phase, floor, ahead, ratio, slope } = memory;
         let are_positive =
-            [last * h.signum(), scale * h.signum(), *density, *floor].map(|number| number > 0.0 && number.is_normal());
-        if are_positive != [true; 4] {
-            return Err(StepError::NonFinite { t: node.t, quantity: "step density", expression: None });
+            [last * h.signum(), phase.map_or(1.0, |phase| phase * h.signum()), *floor, *ahead, *ratio, *slope]
+                .map(|number| number > 0.0 && number.is_normal());
+        if are_positive != [true; 6] {
+            return Err(StepError::NonFinite { t: node.t, quantity: "length of the last step", expression: None });
         }
         solver::<S, N, STAGES>().check(system, (node, steps), *last)
     }

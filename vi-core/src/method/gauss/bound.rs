@@ -290,6 +290,28 @@ where
     }
 }
 
+/// The memory for a step of the length h, with the velocities of the polynomials of the last step. The step begins at the
+/// part `since` of the last one. The impulses are those of the node.
+fn continued<S: Convertible<N>, const N: usize, const STAGES: usize>(
+    system: &S,
+    memory: &ConstrainedSteps<N>,
+    node: &Node<N>,
+    (h, since): (f64, f64),
+) -> Result<ConstrainedSteps<N>, StepError> {
+    let fresh = BoundGauss::<STAGES>.with_length(system, memory, node, h)?;
+    let last = memory.unknowns.newest();
+    let mut stages = [[0.0; STAGES]; N];
+    for i in 0..STAGES {
+        set(&mut stages, i, &stage_velocity::<N, f64>(last, i));
+    }
+    let of_last = coefficients(&stages);
+    let mut guess = fresh.unknowns.newest().to_vec();
+    for (velocity, c) in guess.chunks_exact_mut(N).zip(const { Tableau::<STAGES>::VALUES.c }) {
+        velocity.copy_from_slice(sum(&of_last, &polynomials::<STAGES>(since + h / memory.h * c)).as_slice());
+    }
+    Ok(ConstrainedSteps { unknowns: Extrapolation::new(&guess), ..fresh })
+}
+
 impl<S, const N: usize, const STAGES: usize> StageSolver<S, N, STAGES> for BoundGauss<STAGES>
 where
     S: Convertible<N>,
@@ -300,23 +322,19 @@ where
         node: &Node<N>,
         h: f64,
     ) -> Result<ConstrainedSteps<N>, StepError> {
-        let fresh = Self.with_length(system, memory, node, h)?;
-        let ratio = h / memory.h;
-        if !(memory.has_step(node) && ratio > 0.0) {
-            return Ok(fresh);
+        if !(memory.has_step(node) && h / memory.h > 0.0) {
+            return Self.with_length(system, memory, node, h);
         }
-        // The velocities continue the polynomials of the last step, the impulses are those of the node.
-        let last = memory.unknowns.newest();
-        let mut stages = [[0.0; STAGES]; N];
-        for i in 0..STAGES {
-            set(&mut stages, i, &stage_velocity::<N, f64>(last, i));
-        }
-        let of_last = coefficients(&stages);
-        let mut guess = fresh.unknowns.newest().to_vec();
-        for (velocity, c) in guess.chunks_exact_mut(N).zip(const { Tableau::<STAGES>::VALUES.c }) {
-            velocity.copy_from_slice(sum(&of_last, &polynomials::<STAGES>(1.0 + ratio * c)).as_slice());
-        }
-        Ok(ConstrainedSteps { unknowns: Extrapolation::new(&guess), ..fresh })
+        continued::<S, N, STAGES>(system, memory, node, (h, 1.0))
+    }
+
+    fn again(
+        system: &S,
+        memory: &ConstrainedSteps<N>,
+        node: &Node<N>,
+        h: f64,
+    ) -> Result<ConstrainedSteps<N>, StepError> {
+        continued::<S, N, STAGES>(system, memory, node, (h, 0.0))
     }
 
     /// Allocates the matrix of the step.

@@ -348,6 +348,21 @@ where
         memory.resized(system, node, h)
     }
 
+    fn again(
+        _system: &S,
+        memory: &LastStages<N, STAGES>,
+        node: &Node<N>,
+        h: f64,
+    ) -> Result<LastStages<N, STAGES>, StepError> {
+        let of_step = coefficients(&memory.stages.data.0);
+        let mut stages = [[0.0; STAGES]; N];
+        for (i, c) in const { Tableau::<STAGES>::VALUES.c }.iter().enumerate() {
+            set(&mut stages, i, &sum(&of_step, &polynomials(h / memory.h * c)));
+        }
+        let stages = SMatrix::from_array_storage(ArrayStorage(stages));
+        Ok(LastStages { stages, before: *node, h, convergence: Convergence::NONE, linearization: None, ..*memory })
+    }
+
     #[cfg(feature = "alloc")]
     fn vary(
         system: &S,

@@ -40,6 +40,13 @@ pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memo
     #[doc(hidden)]
     fn resized(system: &S, memory: &Self::Memory, node: &Node<N>, h: f64) -> Result<Self::Memory, StepError>;
 
+    /// The memory for the last step again, from its start with another length.
+    ///
+    /// # Errors
+    /// The reason why no step can start there.
+    #[doc(hidden)]
+    fn again(system: &S, memory: &Self::Memory, node: &Node<N>, h: f64) -> Result<Self::Memory, StepError>;
+
     /// Maps tangent vectors at `before`, the start of the step that led to the node, to those at its end.
     ///
     /// # Errors
