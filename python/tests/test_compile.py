@@ -45,6 +45,36 @@ def test_a_double_pendulum(warm_cache):
         double.integrate([1.0, 0.5], h=50.0).steps(100)
 
 
+def test_a_text_changes_to_compiled_steps(warm_cache):
+    Spring = vi.compile(SPRING.format(2.25), wait=False)
+    slow = Spring(k=3.0).integrate([1.0], h=0.1)
+    assert type(slow.system) is Spring and Spring.native(wait=False) is Spring
+    Compiled = Spring.native()
+    assert Spring._compiled.result(timeout=200.0) is Compiled
+    spring = Spring(k=3.0)
+    fast = spring.integrate([1.0], h=0.1)
+    assert type(fast.system) is Compiled and fast.system.k == 3.0
+    assert np.abs(fast.until(5.0).q - slow.until(5.0).q).max() < 1e-14  # 0
+    # Four stages are not built.
+    assert type(spring.integrate([1.0], h=0.1, stages=4).system) is Spring
+    assert len(spring.ensemble([[1.0], [2.0]], h=0.1, until=1.0)) == 2
+    assert np.array_equal(pickle.loads(pickle.dumps(fast)).step().q, fast.step().q)
+
+
+def test_a_text_that_cannot_be_compiled_goes_on(tmp_path, monkeypatch, capfd):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("VARIATIONAL_CACHE", str(tmp_path / "cache"))
+    Spring = vi.compile(SPRING.format(2.375), wait=False)
+    assert isinstance(Spring._compiled.exception(timeout=60.0), vi.CompileError)
+    assert type(Spring().integrate([1.0], h=0.1).system) is Spring
+    for _ in range(100):
+        if said := capfd.readouterr().err:
+            break
+        time.sleep(0.05)
+    assert "Spring was not compiled, and runs by its text: cargo was not found" in said
+
+
 CHAIN = """
 struct Chain {
     param m[3] = 1.0;

@@ -65,7 +65,7 @@ def class_of(kind: Any, module: str, metaclass: type = type) -> type[System]:
     return metaclass(kind.name, (System,), members)
 
 
-_RESERVED = {"self", "_defaults", "_kind", "_source", "_text", "_values"}
+_RESERVED = {"self", "_compiled", "_defaults", "_kind", "_source", "_text", "_values"}
 """Names that a class has for itself."""
 
 

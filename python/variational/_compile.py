@@ -94,6 +94,7 @@ def cache() -> Path:
 
 
 _loaded: dict[str, type[System]] = {}
+_loading = threading.RLock()
 
 
 class _Compiled(SystemType):
@@ -125,7 +126,7 @@ copyreg.pickle(_Compiled, _pickled)
 
 
 @checked_call
-def compile(definition: str, *, methods: str | None = None, verbose: bool = False) -> type[System]:
+def compile(definition: str, *, methods: str | None = None, verbose: bool = False, wait: bool = True) -> type[System]:
     """The class of the system that a text in the language of `lagrangian!` declares.
 
     >>> Spring = compile('''
@@ -142,7 +143,8 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
     with a `time_scale`, and "gauss 3" for one with constraints, which has "gauss" and "energy" with stages.
 
     It needs cargo, https://rustup.rs. The first build takes about a minute and later ones seconds; a system that was
-    compiled before is loaded in milliseconds.
+    compiled before is loaded in milliseconds. With `wait=False` the class of `System` is returned at once, and changes
+    to compiled steps when these are built, as `System.native` says.
 
     Raises CompileError.
     """
@@ -150,6 +152,10 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
         raise TypeError(f"the definition must be a text, not {type(definition).__name__}")
     if methods is not None and not isinstance(methods, str):
         raise TypeError(f'methods must be a text such as "fixed; gauss 8", not {type(methods).__name__}')
+    if not wait:
+        from ._text import of_text
+
+        return of_text(definition).native(methods=methods, verbose=verbose, wait=False)
     definition, tables = _located(definition)
     return _class(definition, _methods(methods, _without_comments(definition)), tables, verbose)
 
@@ -157,17 +163,19 @@ def compile(definition: str, *, methods: str | None = None, verbose: bool = Fals
 def _class(definition: str, methods: str, tables: str, verbose: bool) -> type[System]:
     """The class of a definition with absolute paths, whose tables have this digest."""
     digest = _digest(definition, methods, tables)
-    if digest not in _loaded:
-        built = _built(digest)
-        if not built.exists():
-            name = _checked(definition)
-            _suitable(definition, methods)
-            _build(definition, name, built, methods, tables, verbose)
-        _check_private(built)
-        cls = _load(_library(digest), built)
-        cls._source = (definition, methods, tables)  # type: ignore[attr-defined]
-        cls.definition = inspect.cleandoc(definition)
-        _loaded[digest] = cls
+    # A library is loaded once.
+    with _loading:
+        if digest not in _loaded:
+            built = _built(digest)
+            if not built.exists():
+                name = _checked(definition)
+                _suitable(definition, methods)
+                _build(definition, name, built, methods, tables, verbose)
+            _check_private(built)
+            cls = _load(_library(digest), built)
+            cls._source = (definition, methods, tables)  # type: ignore[attr-defined]
+            cls.definition = inspect.cleandoc(definition)
+            _loaded[digest] = cls
     return _loaded[digest]
 
 

@@ -164,7 +164,8 @@ def ensemble(
     end = None if until is None else number(until, "until")
     listed_times = None if times is None else ordered(times, request.h or request.dtau or 1.0).tolist()
     limit = _threads(threads)
-    (ts, qs, ps), errors = system._kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit)
+    kind = system._for(request)._kind
+    (ts, qs, ps), errors = kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit)
     errors = [advised(error, cls) for error in errors]
     shape = (many,) if listed_times is None else (many, len(listed_times))
     differing = {

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import inspect
 import math
-from collections.abc import Mapping
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from typing import Any, ClassVar
 
 import numpy as np
@@ -19,7 +23,7 @@ from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble, states
 from ._explanation import Explanation
 from ._names import among, meant
-from ._request import checked
+from ._request import Request, checked, usual_stages
 from ._run import Run
 
 
@@ -111,6 +115,7 @@ class System(metaclass=SystemType):
     _kind: ClassVar[Any] = None
     _defaults: ClassVar[Array]
     _methods: ClassVar[tuple[str, ...]] = ()
+    _compiled: ClassVar[Future[type[System]] | None] = None
     coordinates: ClassVar[tuple[str, ...]] = ()
     """Names of the coordinates."""
     constraints: ClassVar[tuple[str, ...]] = ()
@@ -151,9 +156,14 @@ class System(metaclass=SystemType):
             raise no_attribute(self, name) from None
 
     @classmethod
-    def native(cls, *, methods: str | None = None, verbose: bool = False) -> type[System]:
+    def native(cls, *, methods: str | None = None, verbose: bool = False, wait: bool = True) -> type[System]:
         """The same system, compiled by `compile`: its steps are two to five times faster. A compiled class returns
-        itself, without `methods`."""
+        itself, without `methods`.
+
+        With `wait=False` cargo builds in the background, and the class itself is returned. Runs and ensembles that begin
+        when the compiled class is ready are its own, if it has their method: their steps differ by rounding, and their
+        `system` is of that class. Which one a run is depends on the time it begins: wait, if results have to be the same
+        bit for bit."""
         if not hasattr(cls, "_text") and methods is None:
             return cls
         from ._compile import CompileError, compile
@@ -167,7 +177,22 @@ class System(metaclass=SystemType):
                 raise CompileError(f"{cls.__name__} is without {left_out}: delete these from its text to compile it")
             for path, _ in set(files) - set(files_of(definition)):
                 raise CompileError(f"the file {path} of a table changed or is missing: make the system again from its text")
-        return compile(cls.definition, methods=methods, verbose=verbose)
+        if wait or not of_text:
+            return compile(cls.definition, methods=methods, verbose=verbose)
+        if cls._compiled is None:
+            cls._compiled = Future()
+            build = functools.partial(compile, cls.definition, methods=methods, verbose=verbose)
+            threading.Thread(target=_build, args=(cls._compiled, build, cls.__name__), daemon=True).start()
+        return cls
+
+    def _for(self, request: Request) -> System:
+        """The system that takes the steps of a run: a compiled one, if it is ready and has the method."""
+        building = self._compiled
+        if building is None or not building.done() or building.exception() is not None:
+            return self
+        compiled = building.result()
+        wanted = (request.method, request.stages or usual_stages(type(self), request.method), request.dtau is not None)
+        return compiled._of(self._values) if wanted in compiled.integrators else self
 
     @classmethod
     def _parameter(cls, name: str) -> Parameter:
@@ -443,7 +468,8 @@ class System(metaclass=SystemType):
             plain = dataclasses.replace(request, shift_from=None)
             h = self._kind.begin(self._values, plain, number(t, "t"), q, v, p).h
             request = checked(type(self), h, None, None, method, stages, None, shift_from, fallback)
-        return Run(type(self), self._kind.begin(self._values, request, number(t, "t"), q, v, p))
+        system = self._for(request)
+        return Run(type(system), system._kind.begin(system._values, request, number(t, "t"), q, v, p))
 
     def ensemble(
         self,
@@ -494,3 +520,12 @@ def _unpickled(cls: type[System], definition: str, values: list[float]) -> Syste
 
 def _shown(value: Any) -> str:
     return f"{value:g}" if np.ndim(value) == 0 else np.array2string(np.asarray(value), separator=", ")
+
+
+def _build(building: Future[type[System]], build: Callable[[], type[System]], name: str) -> None:
+    """Builds a class in the background. Without it, runs go on by the text."""
+    try:
+        building.set_result(build())
+    except BaseException as error:  # noqa: BLE001 # a thread has nobody to tell
+        building.set_exception(error)
+        print(f"variational: {name} was not compiled, and runs by its text: {error}", file=sys.stderr, flush=True)
