@@ -18,7 +18,7 @@ macro_rules! systems {
 /// The compiled systems with their default parameters.
 #[must_use]
 pub fn systems() -> Vec<Box<dyn System>> {
-    let mut systems = systems!(DoublePendulum, OuterSolarSystem);
+    let mut systems = systems!(DoublePendulum);
     // Steps in transformed time are built only for the system that declares a time scale.
     systems
         .push(kind!(Kepler, { fixed; splitting; gauss 4, 8; adaptive 4, 8; transformed 4, 8; energy; energy 1, 2, 3 }));
@@ -46,6 +46,7 @@ pub fn texts() -> Vec<(&'static str, &'static str)> {
         HeavyTop,
         HenonHeiles,
         NPendulum,
+        OuterSolarSystem,
         ParametricPendulum,
         Pendulum,
         RodChain,

@@ -102,6 +102,7 @@ type Of<'a, S, const N: usize, const STAGES: usize> =
 ///
 /// # Errors
 /// Those of the solver.
+#[inline(never)] // two callers, and a large function
 fn solved<S: Convertible<N>, const N: usize, const STAGES: usize>(
     at: Of<'_, S, N, STAGES>,
     guess: &Steps<S, N, STAGES>,
