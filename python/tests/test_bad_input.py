@@ -12,10 +12,20 @@ def begun(**options):
     return vi.Kepler().integrate(**{**START, **options})
 
 
+def rod():
+    return vi.RodPendulum().integrate([0.6, -0.8], h=0.05).steps(1)
+
+
+def chain():
+    text = "struct Chain { coord x[3]; L = sum(i in 0..3, dot(x[i])^2) / 2; }"
+    return vi.System(text)().integrate([0.0, 0.0, 0.0], h=0.05).steps(1)
+
+
 TABLE = [
     # Names.
     (lambda: vi.Pendulum(lenght=1.0), TypeError, "no parameter 'lenght'"),
-    (lambda: vi.Pendulum(1.0), TypeError, "positional"),
+    (lambda: vi.Pendulum(1.0), TypeError, "takes no positional arguments: give its parameters by name, m=…, l=…, g=…"),
+    (lambda: vi.System(2.0), TypeError, r"must be a text, not float: System\('struct Spring"),
     (lambda: setattr(vi.Pendulum(), "lenght", 1.0), AttributeError, "lenght"),
     (lambda: vi.System(), TypeError, "vi.systems"),
     (lambda: begun(method="gaus"), ValueError, "did you mean 'gauss'"),
@@ -23,6 +33,15 @@ TABLE = [
     (lambda: begun(method="lanes"), ValueError, "no method 'lanes'"),
     (lambda: begun().until(1.0)["z"], KeyError, "it has x, y"),
     (lambda: begun().until(1.0)[0], TypeError, "name of a coordinate"),
+    (lambda: begun().until(1.0)["vx"], KeyError, r'the velocity of x is \\?"dot\(x\)'),
+    (lambda: begun().until(1.0)["x_dot"], KeyError, r'the velocity of x is \\?"dot\(x\)'),
+    (lambda: begun().until(1.0)["ẏ"], KeyError, r'the velocity of y is \\?"dot\(y\)'),
+    (lambda: begun().events("dx", 1.0), KeyError, r'the velocity of x is \\?"dot\(x\)'),
+    (lambda: begun().until(1.0)["energy"], KeyError, "it is the attribute .energy"),
+    (lambda: rod()["rod"], KeyError, r"rod is a constraint: its reaction is reactions\[..., 0\]"),
+    (lambda: rod()["Λ_rod"], KeyError, r"its reaction is reactions\[..., 0\]"),
+    (lambda: chain()["x[20]"], KeyError, r"the entries of x are x\[0\] to x\[2\]"),
+    (lambda: chain()["dot(x)"], KeyError, r"the entries of x are x\[0\] to x\[2\]"),
     (lambda: begun().events("z", 1.0), KeyError, "no coordinate 'z'"),
     (lambda: begun().tangent(3, ["nothing"]), TypeError, "no parameter 'nothing'"),
     (lambda: begun().until(1.0, on_error="ignore"), ValueError, "on_error"),
@@ -140,6 +159,10 @@ TABLE = [
     (lambda: begun(args=(1.0,)), TypeError, "the parameters belong to the system"),
     (lambda: begun(metod="gauss"), TypeError, r"'metod' \(did you mean 'method'\?\); it has q, v, p, t, h"),
     (lambda: begun().until(1.0, dense_output=True), TypeError, "until has no argument 'dense_output': write dense=…"),
+    (lambda: begun().lyapunov(until=1.0), TypeError, r"'until': it takes a number of steps.*round\(time / run\.h\)"),
+    (lambda: begun().gradient(until=1.0), TypeError, "'until': it takes a number of steps"),
+    (lambda: begun().steps(until=1.0), TypeError, r"'until': call until\(…\) in its place"),
+    (lambda: begun().until(steps=3), TypeError, r"'steps': call steps\(…\) in its place"),
     (lambda: begun().events("x", t_end=1.0), TypeError, "'t_end': write until=…"),
     (lambda: vi.Kepler().ensemble([0.4, 0.0], h=0.1, t_span=1.0), TypeError, "ensemble has no .* write until=…"),
     (lambda: vi.Kepler().ensemble([0.4, 0.0], h=0.1, until=1.0, events="x"), TypeError, "an ensemble finds no events"),

@@ -370,3 +370,19 @@ def test_ends_of_derivatives():
     with pytest.raises(ValueError, match="no event before t = 0.1"):
         run.tangent(until=0.1, event="x")
     assert run.t == 0.0
+
+
+def test_one_of_many_states_is_named():
+    rod = vi.RodPendulum()
+    q = [[0.6, -0.8], [3.0, 4.0], [0.0, 0.0]]
+    with pytest.raises(vi.Singular, match="^state 2: ") as caught:
+        rod.project(q)
+    assert not caught.value.reason.startswith("state")
+    with pytest.raises(vi.InconsistentStart, match="^state 1: "):
+        rod.acceleration(0.0, q, [0.0, 0.0])
+    with pytest.raises(vi.InconsistentStart, match=r"^state \(0, 1\): "):
+        rod.acceleration(0.0, [q], [0.0, 0.0])
+    with pytest.raises(vi.InconsistentStart, match="^the state does not"):
+        rod.acceleration(0.0, q[1], [0.0, 0.0])
+    for none in (rod.project(np.zeros((0, 2))), rod.assemble(np.zeros((0, 2)))):
+        assert [of.shape for of in none] == [(0, 2)] * 4

@@ -155,4 +155,8 @@ def _unknown(method: str, wrong: str, known: list[str], owner: Any) -> str:
         return f"{what}: an ensemble finds no events; call next_event(…) of single runs"
     if ours in _OF_A_RUN and method == "integrate":
         return f"{what}: call {_OF_A_RUN[ours]} of the run that it returns"
+    if ours == "until" and "steps" in known:
+        return f"{what}: it takes a number of steps, those of a time are round(time / run.h)"
+    if ours in _OF_A_RUN and ours != method and method in ("until", "steps", "at"):
+        return f"{what}: call {_OF_A_RUN[ours]} in its place"
     return f"{what}{meant(wrong, known)}; it has {', '.join(known)}"

@@ -215,6 +215,12 @@ def _message(
     return f"{reason}; {ADVICE[variant].format_map(numbers)}"
 
 
+def at_row(error: Any, row: str) -> Any:
+    """The exception of a failure among many states, which names this one."""
+    error.args = (f"{row}: {error.args[0]}",)
+    return error
+
+
 def _invalid(input: str, allowed: str, value: float) -> StepError:
     """The exception of an input that this package finds wrong."""
     message = f"{input} must be {allowed}, not {value!r}"

@@ -50,8 +50,25 @@ def course(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, 
     found = among((inner[1] if inner else name).strip(), coordinates)
     if found not in coordinates:
         known = ", ".join([*coordinates, *(f"dot({name})" for name in coordinates)])
-        raise KeyError(f"{system} has no coordinate {found!r}{meant(found, coordinates)}; it has {known}")
+        hint = _velocity(name, coordinates) or _entry(found, coordinates) or meant(found, coordinates)
+        raise KeyError(f"{system} has no coordinate {found!r}{hint}; it has {known}")
     return inner is not None, coordinates.index(found)
+
+
+def _velocity(name: str, coordinates: tuple[str, ...]) -> str:
+    """The velocity that a name of other tools means: `vx`, `x_dot`, `xdot`, `dx`, `ẋ`."""
+    plain = unicodedata.normalize("NFD", name).replace("\u0307", "")
+    inner = re.fullmatch(r"(?:v_?|d)(.+)|(.+?)_?(?:dot|')", name)
+    has_dot = plain != unicodedata.normalize("NFD", name)
+    found = among(plain if has_dot else (inner[1] or inner[2]) if inner else "", coordinates)
+    return f' (the velocity of {found} is "dot({found})")' if found in coordinates else ""
+
+
+def _entry(name: str, coordinates: tuple[str, ...]) -> str:
+    """The entries of an array of coordinates of which a name gives none: `x`, `x[20]`."""
+    array = name.partition("[")[0]
+    entries = [other for other in coordinates if other.startswith(array + "[")]
+    return f" (the entries of {array} are {entries[0]} to {entries[-1]})" if entries else ""
 
 
 def meant(name: str, known: Iterable[str]) -> str:

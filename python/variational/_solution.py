@@ -32,7 +32,14 @@ class ByName:
 
     def __getitem__(self, name: str) -> Array:
         """A coordinate, `sol["x"]`, or its velocity, `sol["dot(x)"]`."""
-        is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
+        coordinates, constraints = self.system.coordinates, self.system.constraints
+        if isinstance(name, str) and name not in coordinates:
+            if (constraint := name.removeprefix("Λ_")) in constraints:
+                column = constraints.index(constraint)
+                raise KeyError(f"{constraint} is a constraint: its reaction is reactions[..., {column}]")
+            if name in ("t", "q", "v", "p", "energy", "reactions"):
+                raise KeyError(f"{name!r} is no coordinate: it is the attribute .{name}")
+        is_velocity, index = course(name, coordinates, type(self.system).__name__)
         return (self.v if is_velocity else self.q)[..., index]
 
     def __getattr__(self, name: str) -> Any:

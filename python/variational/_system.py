@@ -21,6 +21,7 @@ from ._calls import check_arguments, no_attribute
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble, states
+from ._errors import StepError, at_row
 from ._explanation import Explanation
 from ._names import among, meant
 from ._request import Request, checked, usual_stages
@@ -75,7 +76,11 @@ class SystemType(type):
 
     def __call__(cls, /, *arguments: Any, **parameters: Any) -> Any:
         if cls is not System:
-            return type.__call__(cls, *arguments, **parameters)
+            if arguments:
+                names = ", ".join(f"{name}=…" for name in cls.parameters)
+                hint = f": give its parameters by name, {names}" if names else ""
+                raise TypeError(f"{cls.__name__} takes no positional arguments{hint}")
+            return type.__call__(cls, **parameters)
         from ._text import of_text
 
         if "methods" in parameters:
@@ -336,8 +341,13 @@ class System(metaclass=SystemType):
             q, v = vector(q, n, "q", names), vector(v, n, "v", names)
             return Projected(*self._kind.project(self._values, t, q, v, is_far))
         rows = np.broadcast_arrays(states(q, "q", type(self)), states(v, "v", type(self)))
-        found = [self._moved(*row, t, is_far) for row in zip(*rows, strict=True)]
-        return Projected(*(np.array(column).reshape(-1, n) for column in zip(*found, strict=True)))
+        found = np.empty((len(rows[0]), 4, n))
+        for index, row in enumerate(zip(*rows, strict=True)):
+            try:
+                found[index] = self._moved(*row, t, is_far)
+            except StepError as error:
+                raise at_row(error, f"state {index}") from None
+        return Projected(*(np.ascontiguousarray(column) for column in found.transpose(1, 0, 2)))
 
     def mass_matrix(self, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Array:
         """The mass matrix M = ∂²L/∂v² at (t, q, v): (..., N, N)."""
@@ -412,9 +422,22 @@ class System(metaclass=SystemType):
                 ) from None
             times = np.ascontiguousarray(np.broadcast_to(t, shape)).reshape(-1)
             points = (times, *(np.ascontiguousarray(np.broadcast_to(x, (*shape, n))).reshape(-1, n) for x in (q, v)))
-        out = self._kind.evaluate(self._values, of, *points)
+        try:
+            out = self._kind.evaluate(self._values, of, *points)
+        except StepError as error:
+            raise self._first_failure(of, points, shape) or error from None
         shape += each
         return out.reshape(shape) if shape else float(out[0])
+
+    def _first_failure(self, of: str, points: tuple[Array, ...], shape: tuple[int, ...]) -> StepError | None:
+        """The exception of the first of many points without a value, which names it; None for a single point."""
+        for index in np.ndindex(shape) if shape else ():
+            place = int(np.ravel_multi_index(index, shape))
+            try:
+                self._kind.evaluate(self._values, of, *(values[place : place + 1] for values in points))
+            except StepError as error:
+                return at_row(error, f"state {index[0] if len(index) == 1 else index}")
+        return None
 
     def integrate(
         self,

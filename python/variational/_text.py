@@ -34,7 +34,9 @@ def of_text(
     Raises CompileError.
     """
     if not isinstance(definition, str):
-        raise TypeError(f"the definition must be a text, not {type(definition).__name__}")
+        raise TypeError(
+            f"the definition must be a text, not {type(definition).__name__}: System('struct Spring {{ coord x; L = …; }}')"
+        )
     if files is None:
         files = files_of(definition)
     key = (definition, files, dropped)
