@@ -366,22 +366,44 @@ class Run:
             return self._run.lyapunov(steps, _count(count, "the number of exponents", 1))
 
     def gradient(
-        self, steps: int, *, q: ArrayLike | None = None, p: ArrayLike | None = None, wrt: Sequence[str] = ()
+        self,
+        steps: int,
+        *,
+        q: ArrayLike | None = None,
+        p: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        wrt: Sequence[str] = (),
+        velocities: bool = False,
     ) -> dict[str, Array]:
         """Takes steps, and returns the gradient of a function of their end by one backward pass.
 
         q and p are the derivatives of that function with respect to (q, p) at the end. The result has its gradients
-        with respect to "q" and "p" at the start, and to each parameter in `wrt`. With constraints the start is the
-        nearest state on them.
+        with respect to "q" and "p" at the start, and to each parameter in `wrt`. With `velocities` all are in (q, v):
+        v takes the place of p, the result has "q" and "v", and velocities are constant where a parameter changes. With
+        constraints the start is the nearest state on them.
         """
         names_of, n = self._cls.coordinates, len(self._cls.coordinates)
-        if q is None and p is None:
-            raise TypeError("give q or p: the derivatives of the function at the end")
-        slope = [np.zeros(n) if x is None else vector(x, n, name, names_of) for x, name in ((q, "q"), (p, "p"))]
+        second, of_second, other = ("v", v, p) if velocities else ("p", p, v)
+        if other is not None:
+            raise TypeError("v and velocities=True go together: p has derivatives with respect to momenta")
+        if q is None and of_second is None:
+            raise TypeError(f"give q or {second}: the derivatives of the function at the end")
+        given = ((q, "q"), (of_second, second))
+        slope = np.concatenate([np.zeros(n) if x is None else vector(x, n, name, names_of) for x, name in given])
         names, indices = self._wrt(wrt)
+        steps = _count(steps, "the number of steps")
+        own, start = np.zeros(len(indices)), None
+        if velocities:
+            # (q, p) by (q, v) at the start, and (q, v) by (q, p) at the end, with their parameters.
+            start, end = self._tangent(indices, velocities=[True, False])[: 2 * n], self.copy()
+            end.steps(steps, max(steps, 1))
+            at_end = slope @ end._tangent(indices, velocities=[False, True])[: 2 * n]
+            slope, own = np.ascontiguousarray(at_end[: 2 * n]), at_end[2 * n :]
         with self._advising():
-            found = self._run.gradient(_count(steps, "the number of steps"), np.concatenate(slope), indices)
-        return {"q": found[:n].copy(), "p": found[n : 2 * n].copy(), **self._split(found[2 * n :], names)}
+            found = self._run.gradient(steps, slope, indices)
+        if start is not None:
+            found = np.concatenate([np.zeros(2 * n), found[2 * n :] + own]) + found[: 2 * n] @ start
+        return {"q": found[:n].copy(), second: found[n : 2 * n].copy(), **self._split(found[2 * n :], names)}
 
     @contextlib.contextmanager
     def _advising(self) -> Iterator[None]:
