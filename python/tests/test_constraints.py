@@ -404,3 +404,27 @@ def test_gradients_have_velocities(system):
             run.gradient(3, **wrong)
     with pytest.raises(TypeError, match="give q or v"):
         run.gradient(3, velocities=True)
+
+
+PARALLEL = """
+struct Parallel {
+    param b = 2.0, c = 1.0, g = 9.81;
+    coord x1, y1, x2, y2;
+    L = (dot(x1)^2 + dot(y1)^2 + dot(x2)^2 + dot(y2)^2) / 2 - g * (y1 + y2);
+    constraint left = x1^2 + y1^2 - 1;
+    constraint right = (x2 - b)^2 + y2^2 - 1;
+    constraint coupler = (x2 - x1)^2 + (y2 - y1)^2 - b^2;
+    constraint middle = ((x1 + x2) / 2 - b / 2)^2 + ((y1 + y2) / 2)^2 - c^2;
+}
+"""
+
+
+def test_dropped_constraints_are_shown():
+    parallel, q = vi.System(PARALLEL)(), [0.6, -0.8, 2.6, -0.8]
+    kept = parallel.independent(q)
+    assert parallel.dropped == () and "without" not in repr(parallel) + type(parallel).__doc__
+    assert kept.dropped == ("middle",) and repr(kept) == "Parallel(b=2, c=1, g=9.81) without middle"
+    assert "Dropped, since they follow from the others: middle." in type(kept).__doc__
+    assert pickle.loads(pickle.dumps(kept)).dropped == ("middle",)
+    run = kept.integrate(q, h=0.01)
+    assert "without middle" in repr(run)

@@ -38,8 +38,8 @@ def _bind(
     return sorted(cls.__name__ for cls in classes)
 
 
-def class_of(kind: Any, module: str, metaclass: type = type) -> type[System]:
-    """The class of a system."""
+def class_of(kind: Any, module: str, metaclass: type = type, dropped: tuple[str, ...] = ()) -> type[System]:
+    """The class of a system, of which these constraints are dropped."""
     fields = _parameters(kind)
     signature = [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=field.default, annotation=_type(field))
@@ -48,13 +48,14 @@ def class_of(kind: Any, module: str, metaclass: type = type) -> type[System]:
     coordinates = _distinct(kind.coordinates)
     members = {
         "__slots__": (),
-        "__doc__": _documentation(kind, coordinates, fields),
+        "__doc__": _documentation(kind, coordinates, fields, dropped),
         "__module__": module,
         "__signature__": inspect.Signature(signature),
         "_kind": kind,
         "_defaults": np.array([default for _, default, _ in kind.parameters]),
         "coordinates": coordinates,
         "constraints": tuple(spelled(name) for name in kind.constraints),
+        "dropped": tuple(spelled(name) for name in dropped),
         "parameters": tuple(fields),
         "inputs": tuple(name for name, field in fields.items() if field.start in kind.inputs),
         "integrators": tuple(kind.integrators),
@@ -98,11 +99,15 @@ def _distinct(names: list[str]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _documentation(kind: Any, coordinates: tuple[str, ...], fields: dict[str, Parameter]) -> str:
+def _documentation(
+    kind: Any, coordinates: tuple[str, ...], fields: dict[str, Parameter], dropped: tuple[str, ...]
+) -> str:
     about = inspect.cleandoc(kind.about) or f"The system {kind.name}."
     lines = [about, "", f"Coordinates: {', '.join(coordinates)}."]
     if kind.constraints:
         lines += ["", f"Constraints: {', '.join(kind.constraints)}."]
+    if dropped:
+        lines += ["", f"Dropped, since they follow from the others: {', '.join(dropped)}."]
     if fields:
         lines += ["", "Parameters", "----------"]
     for name, field in fields.items():

@@ -125,6 +125,8 @@ class System(metaclass=SystemType):
     """Names of the coordinates."""
     constraints: ClassVar[tuple[str, ...]] = ()
     """Names of the constraints, holonomic ones first."""
+    dropped: ClassVar[tuple[str, ...]] = ()
+    """Names of those constraints that follow from the others and have no reaction; see `independent`."""
     parameters: ClassVar[tuple[str, ...]] = ()
     """Names of the parameters."""
     inputs: ClassVar[tuple[str, ...]] = ()
@@ -212,7 +214,8 @@ class System(metaclass=SystemType):
 
     def __repr__(self) -> str:
         values = (f"{name}={_shown(getattr(self, name))}" for name in self.parameters)
-        return f"{type(self).__name__}({', '.join(values)})"
+        dropped = f" without {', '.join(self.dropped)}" if self.dropped else ""
+        return f"{type(self).__name__}({', '.join(values)}){dropped}"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, System):

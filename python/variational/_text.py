@@ -50,7 +50,7 @@ def of_text(
             if or_compiled:
                 return compile(definition)
             raise CompileError(str(reason)) from None
-        cls = class_of(kind, module, _OfText)
+        cls = class_of(kind, module, _OfText, dropped)
         cls.definition = inspect.cleandoc(definition)
         cls._text = (definition, False, module, files, dropped)
         # Another thread may have made it meanwhile.
