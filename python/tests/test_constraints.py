@@ -235,6 +235,8 @@ def test_a_text_with_constraints(warm_cache):
     assert (caught.value.constraint, caught.value.of, caught.value.rank) == ("bowl", 2, 1)
     assert "that follow from the others, here 1 of 2, such as `bowl`" in str(caught.value)
     assert Twice().redundant([1.0, 0.0, 0.0]) == ("bowl",)
+    # A compiled system keeps all, and is projected as one of its text.
+    assert np.array_equal(Twice().project([1.0, 0.0, 0.0]).q, [1.0, 0.0, 0.0])
     assert Twice().redundant([0.6, 0.0, 0.8]) == () and bead.redundant([1.0, 1.0]) == ()
     with pytest.raises(ValueError, match="q"):
         Twice().redundant([1.0, 0.0])
@@ -428,3 +430,24 @@ def test_dropped_constraints_are_shown():
     assert pickle.loads(pickle.dumps(kept)).dropped == ("middle",)
     run = kept.integrate(q, h=0.01)
     assert "without middle" in repr(run)
+
+
+def test_redundant_constraints_are_chosen_on_all_of_them():
+    parallel, guess = vi.System(PARALLEL)(), [0.5, -0.7, 2.7, -0.9]
+    for of in (parallel.redundant, parallel.independent):
+        with pytest.raises(vi.InconsistentStart, match=r"system\.project\(q, v\)") as caught:
+            of(guess)
+        assert caught.value.constraint == "left" and caught.value.residual == pytest.approx(-0.26, rel=1e-14)
+    for find in (parallel.project, parallel.assemble):
+        start = find(guess)
+        assert parallel.redundant(start.q) == ("middle",)
+        kept = parallel.independent(start.q)
+        # Measured: equal.
+        assert start.q == pytest.approx(kept.project(guess).q, abs=1e-15)
+        assert np.abs(parallel.residuals(0.0, start.q, start.v)).max() < 1e-15
+    # A state on the constraints stays, and lengths that contradict each other have none.
+    assert np.abs(parallel.project([0.6, -0.8, 2.6, -0.8]).moved_q).max() < 1e-15
+    with pytest.raises((vi.NotAssembled, vi.Singular)):
+        parallel.copy().set(c=1.1).project(guess)
+    with pytest.raises(vi.Singular, match=r"moves as system\.independent\(q, t=…\)"):
+        parallel.acceleration(0.0, start.q, start.v)

@@ -201,7 +201,8 @@ def _message(
         return (
             f"{reason}; there the constraints depend on each other, as at a dead point with bars in one line, or a "
             "motion along them has no mass: a step may pass such a place, but none ends there; take another length or "
-            "time, or run.events(…), which passes it"
+            "time, or run.events(…), which passes it; a mechanism with more constraints than it needs moves as "
+            "system.independent(q, t=…), and system.project(q) finds such q"
         )
     if variant == "Tolerance" and not fields.get("estimate"):
         return f"{reason}; give a step length h"

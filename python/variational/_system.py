@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import functools
 import inspect
@@ -21,7 +22,7 @@ from ._calls import check_arguments, no_attribute
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
 from ._ensemble import Ensemble, ensemble, states
-from ._errors import StepError, at_row
+from ._errors import NotAssembled, Singular, StepError, at_row  # type: ignore[attr-defined]
 from ._explanation import Explanation
 from ._names import among, meant
 from ._request import Request, checked, usual_stages
@@ -316,7 +317,7 @@ class System(metaclass=SystemType):
         """The names of the constraints that follow from the others at coordinates q, which satisfy all of them.
 
         A run does not start from such a place, because the reactions are not unique: `independent` returns a system
-        that does.
+        that does. Raises InconsistentStart for q off the constraints, where others are redundant: `project` moves it.
         """
         q = vector(q, len(self.coordinates), "q", self.coordinates)
         return tuple(self._kind.redundant(self._values, number(t, "t"), q))
@@ -324,13 +325,19 @@ class System(metaclass=SystemType):
     def independent(self, q: ArrayLike, *, t: float = 0.0) -> System:
         """The same system without the constraints that `redundant` names at coordinates q, which satisfy all of them.
 
-        Its motion is the same. Dropped constraints have the reaction 0, and every step checks that they hold:
-        DroppedConstraint is raised where they do not follow from the others any more, and Singular where the others
-        become dependent: there another subset may be independent. A compiled system becomes one of its text.
+        Its motion is the same. Its attribute `dropped` has their names, which `constraints` lists too: they have the
+        reaction 0, and every step checks that they hold. DroppedConstraint is raised where they do not follow from the
+        others any more, and Singular where the others become dependent: there another subset may be independent.
+        InconsistentStart is raised for q off the constraints: `project` moves it. A compiled system becomes one of its
+        text.
         """
         dropped = self.redundant(q, t=t)
         if not dropped:
             return self.copy()
+        return self._as_text(dropped)
+
+    def _as_text(self, dropped: tuple[str, ...] = ()) -> System:
+        """The system of its text, without these constraints."""
         from ._text import of_text
 
         own: Any = getattr(self, "_text", None)
@@ -342,7 +349,17 @@ class System(metaclass=SystemType):
         v = np.zeros(n) if v is None else v
         if np.ndim(q) == np.ndim(v) == 1:
             q, v = vector(q, n, "q", names), vector(v, n, "v", names)
-            return Projected(*self._kind.project(self._values, t, q, v, is_far))
+            try:
+                return Projected(*self._kind.project(self._values, t, q, v, is_far))
+            except (NotAssembled, Singular):
+                if hasattr(type(self), "_text"):
+                    raise
+                from ._compile import CompileError
+
+                # A compiled system keeps redundant constraints; one with Rust functions has no text alone.
+                with contextlib.suppress(CompileError):
+                    return self._as_text()._moved(q, v, t, is_far)
+                raise
         rows = np.broadcast_arrays(states(q, "q", type(self)), states(v, "v", type(self)))
         found = np.empty((len(rows[0]), 4, n))
         for index, row in enumerate(zip(*rows, strict=True)):

@@ -625,7 +625,8 @@ impl fmt::Display for StepError {
             ),
             Self::Singular { matrix: BORDERED_MASS, .. } => f.write_str(
                 "; there the constraints depend on each other, as at a dead point with bars in one line, or a motion along them has no mass: \
-                 a step may pass such a place, but none ends there; take another length or time, or the iterator `events`, which passes it",
+                 a step may pass such a place, but none ends there; take another length or time, or the iterator `events`, which passes it; \
+                 a mechanism with more constraints than it needs moves as `Independent::at(system, t, q)`",
             ),
             Self::Singular { .. }
             | Self::NonFinite { .. }

@@ -64,19 +64,14 @@ impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
     /// As [`State::assembled`].
     pub fn assembled(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Projected<N>, StepError> {
         let (q, v) = (q.vector(), v.vector());
-        self.explained((t, &q, &v), || {
-            let place = (t, &q, &v);
-            let x = match self.nearest(place, &q, None) {
-                Ok(Some(x)) => x,
-                Err(failure @ StepError::NonFinite { .. }) => return Err(failure),
-                _ => self.continued(place).or_else(|failure| self.relaxed(place).ok_or(failure))?,
-            };
-            self.with_velocities(t, [&q, &x], &v)
-        })
+        self.explained((t, &q, &v), || self.found((t, &q, &v), true))
     }
 
     /// The end of the continuation from q.
-    fn continued(&self, (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>)) -> Result<SVector<f64, N>, StepError> {
+    pub(super) fn continued(
+        &self,
+        (t, q, v): (f64, &SVector<f64, N>, &SVector<f64, N>),
+    ) -> Result<SVector<f64, N>, StepError> {
         let initial = self.system.constraints(t, q);
         let (mut x, mut passed, mut step) = (*q, 0.0_f64, FIRST);
         for _ in 0..STEPS {
@@ -101,6 +96,21 @@ impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
     /// The place on the constraints that damped Gauss–Newton iteration finds from q. `None` if they come no nearer to
     /// holding.
     pub(super) fn relaxed(&self, place: (f64, &SVector<f64, N>, &SVector<f64, N>)) -> Option<SVector<f64, N>> {
+        self.least_squares(
+            place,
+            |x, left| {
+                if left < CLOSE { self.nearest(place, x, None).ok().flatten() } else { None }
+            },
+        )
+    }
+
+    /// What `end` returns first of the places of damped Gauss–Newton iteration from q, with the norm of the residuals over
+    /// their sizes. `None` if they come no nearer to holding.
+    pub(super) fn least_squares<R>(
+        &self,
+        place: (f64, &SVector<f64, N>, &SVector<f64, N>),
+        end: impl Fn(&SVector<f64, N>, f64) -> Option<R>,
+    ) -> Option<R> {
         let (t, q, _) = place;
         let weights = weights(&self.metric(place).diagonal());
         let fixed = self.fixed(&self.gradients(t, q).0);
@@ -128,6 +138,10 @@ impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
         };
         let (mut x, mut damping) = (*q, DAMPING);
         let (mut g, mut a) = over((g, a));
+        let found = end(&x, g.norm());
+        if found.is_some() {
+            return found;
+        }
         for _ in 0..TRIALS {
             // Over the largest entry: products of tiny ones underflow.
             let largest = a.amax();
@@ -146,10 +160,9 @@ impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
                 continue;
             };
             (x, g, a, damping) = (there, g_there, a_there, (damping / HARDER).min(1.0));
-            if g.norm() < CLOSE
-                && let Ok(Some(found)) = self.nearest(place, &x, None)
-            {
-                return Some(found);
+            let found = end(&x, g.norm());
+            if found.is_some() {
+                return found;
             }
         }
         None

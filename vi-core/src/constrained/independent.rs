@@ -3,16 +3,17 @@
 //! A dropped constraint has no gradient and no multiplier: the motion is unique, and the reaction of the others is that
 //! of all. Every step measures the dropped constraints at its end, because elsewhere they may become independent.
 
-use super::start::independent_rows;
-use super::{constrained_acceleration, constrained_flow};
+use super::start::{STORED, independent_rows};
+use super::{constrained_acceleration, constrained_flow, spread};
 use crate::error::StepError;
 use crate::forward;
 use crate::kind::{Gradients, Multipliers, ReactionMatrix};
 use crate::lagrangian::{Described, Flow, Lagrangian, Parameters};
 use crate::linear::{Bordered, Rectangular};
 use crate::motion::Motion;
+use crate::newton::roundings;
 use crate::node::Node;
-use crate::real::Real;
+use crate::real::{Real, Rounded};
 use crate::state::{Numbers, State};
 use crate::stepping::Convertible;
 use alloc::vec::Vec;
@@ -36,13 +37,14 @@ impl<S> Independent<S> {
     ///
     /// Every step checks that the dropped constraints hold at its end. It fails with [`StepError::DroppedConstraint`] if
     /// one does not: its lengths contradict those of the others, or it follows from them at this place only, as in a
-    /// linkage that is flat.
+    /// linkage that is flat. `State::projected(&Independent::of(system), t, q, v)` finds coordinates that satisfy all.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for more than 512 constraints, [`StepError::Singular`], [`StepError::NonFinite`].
+    /// [`StepError::InconsistentStart`] for coordinates that do not satisfy the constraints: there others are redundant.
+    /// [`StepError::InvalidInput`] for more than 512 constraints, [`StepError::NonFinite`].
     pub fn at<const N: usize>(system: S, t: f64, q: impl Numbers<N>) -> Result<Self, StepError>
     where
-        S: Motion<N>,
+        S: Convertible<N>,
     {
         let of = system.constraint_names().len();
         if of > 64 * WORDS {
@@ -56,6 +58,15 @@ impl<S> Independent<S> {
         Node::new(State { t, q, p: rest }, 0.0).check_finite(0.0)?;
         let mass = system.point(t, &q, &rest).mass;
         let (gradients, _) = system.constraint_gradients(t, &q);
+        let [_, positions] = spread(&mass, &q, &rest);
+        let values = system.convert::<Rounded>().constraints(Rounded::exact(t), &q.map(Rounded::nearest));
+        for (r, value) in values.as_ref().iter().enumerate().take(system.holonomic()) {
+            let residual = value.to_f64();
+            if roundings(residual, value.ulps() + gradients.row(r).terms(&positions)) > STORED {
+                let constraint = system.constraint_names()[r];
+                return Err(StepError::InconsistentStart { constraint, residual, rate: 0.0 });
+            }
+        }
         let is_regular = Bordered::new(N, 0, system.blocks()).factor(&mass, &gradients).is_ok();
         let all: Vec<usize> = (0..of).collect();
         let kept = independent_rows(&gradients, &all, &mass, is_regular);

@@ -8,7 +8,7 @@
 //! Held coordinates and their velocities do not change: they have no gradients here. A constraint on held coordinates
 //! alone has to hold already, and has no multiplier.
 
-use super::start::CONSISTENT;
+use super::start::{CONSISTENT, independent_rows};
 use super::{is_shortened, reaction_of, spread, unsolvable, with_idle};
 use crate::error::{BORDERED_MASS, StepError};
 use crate::kind::{Gradients, Multipliers};
@@ -36,6 +36,8 @@ const LAST: f64 = 4.0 * f64::EPSILON;
 /// to each other are equal to rounding.
 const SLIDES: u32 = 500;
 const ROUGH: f64 = 1e-6;
+/// Residuals over their sizes at a place whose gradients show which constraints are redundant.
+const HOLDS: f64 = 1e-14;
 
 /// A state on the constraints, and how far it is from the given one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +66,8 @@ impl<const N: usize> State<N> {
     /// the energy lost with the velocities. From beyond a centre of curvature of the constraints it may be another state
     /// whose distance is stationary.
     ///
-    /// [`Projection::holding`] holds coordinates. [`State::assembled`] starts from far guesses.
+    /// [`Projection::holding`] holds coordinates. [`State::assembled`] starts from far guesses. Redundant constraints need
+    /// [`Independent`](super::Independent): `State::projected(&Independent::of(system), …)`.
     ///
     /// # Errors
     /// [`StepError::NotAssembled`] if no coordinates near q satisfy the constraints, [`StepError::Singular`] if the
@@ -107,18 +110,67 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
     /// a constraint on them alone; [`StepError::InconsistentStart`] if their velocities do not.
     pub fn projected(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Projected<N>, StepError> {
         let (q, v) = (q.vector(), v.vector());
-        self.explained((t, &q, &v), || {
-            let place = (t, &q, &v);
-            let x = match self.nearest(place, &q, None) {
-                Ok(Some(x)) => x,
-                Err(failure @ StepError::NonFinite { .. }) => return Err(failure),
-                failure => {
-                    let failure = failure.err().unwrap_or_else(|| self.open(t, &q, 0.0));
-                    self.slid(place).ok_or(failure)?
-                }
-            };
-            self.with_velocities(t, [&q, &x], &v)
-        })
+        self.explained((t, &q, &v), || self.found((t, &q, &v), false))
+    }
+
+    /// The nearest state, or one from a far guess. If there is none with all constraints and some follow from the others,
+    /// that without these, if they hold there.
+    pub(super) fn found(
+        &self,
+        place: (f64, &SVector<f64, N>, &SVector<f64, N>),
+        is_far: bool,
+    ) -> Result<Projected<N>, StepError> {
+        let failure = match self.found_by_all(place, is_far) {
+            Err(failure @ (StepError::Singular { .. } | StepError::NotAssembled { .. })) => failure,
+            found => return found,
+        };
+        let Some(kept) = self.without_redundant(place) else { return Err(failure) };
+        let found = Projection { system: &kept, held: self.held }.found_by_all(place, is_far)?;
+        let State { t, q, .. } = found.state;
+        match kept.broken(t, &q, &(place.2 + found.moved_v)) {
+            Some(_) => Err(failure),
+            None => Ok(found),
+        }
+    }
+
+    /// [`Projection::found`] with all constraints.
+    fn found_by_all(
+        &self,
+        place: (f64, &SVector<f64, N>, &SVector<f64, N>),
+        is_far: bool,
+    ) -> Result<Projected<N>, StepError> {
+        let (t, q, v) = place;
+        let x = match self.nearest(place, q, None) {
+            Ok(Some(x)) => x,
+            Err(failure @ StepError::NonFinite { .. }) => return Err(failure),
+            _ if is_far => self.continued(place).or_else(|failure| self.relaxed(place).ok_or(failure))?,
+            failure => {
+                let failure = failure.err().unwrap_or_else(|| self.open(t, q, 0.0));
+                self.slid(place).ok_or(failure)?
+            }
+        };
+        self.with_velocities(t, [q, &x], v)
+    }
+
+    /// The system without the constraints that follow from the others at the place of least squares. `None` if there are
+    /// none, or if its type keeps all.
+    fn without_redundant(&self, place: (f64, &SVector<f64, N>, &SVector<f64, N>)) -> Option<S> {
+        // With held coordinates constraints may depend on each other that are independent in the mechanism.
+        if self.held.contains(&true) {
+            return None;
+        }
+        self.system.without(&[])?;
+        let (t, _, v) = place;
+        let x = self.least_squares(place, |x, left| (left < HOLDS).then_some(*x))?;
+        let mass = self.system.point(t, &x, v).mass;
+        let (gradients, _) = self.system.constraint_gradients(t, &x);
+        let is_regular = Bordered::new(N, 0, self.system.blocks()).factor(&mass, &gradients).is_ok();
+        let given: Vec<usize> =
+            (0..self.system.constraint_names().len()).filter(|r| !self.system.is_dropped(*r)).collect();
+        let kept = independent_rows(&gradients, &given, &mass, is_regular);
+        let redundant: Vec<usize> =
+            given.iter().enumerate().filter(|(place, _)| !kept.contains(place)).map(|(_, r)| *r).collect();
+        if redundant.is_empty() { None } else { self.system.without(&redundant) }
     }
 
     /// The result of `find` for a finite place; its failure names the expression that is not finite.

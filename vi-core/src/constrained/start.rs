@@ -17,8 +17,9 @@ use num_traits::Float as _;
 
 /// Largest g and `A v + a` of a start, in roundings of their terms.
 pub(super) const CONSISTENT: f64 = 16.0;
-/// The same of a stored node: its run measured them with bounds of its own.
-const STORED: f64 = 1024.0;
+/// The same of a stored node, whose run measured them with bounds of its own, and of a place whose independent
+/// constraints are found.
+pub(super) const STORED: f64 = 1024.0;
 /// Rows of A, scaled to 1, whose part across the others is below this are redundant.
 const INDEPENDENT: f64 = 1e-10;
 

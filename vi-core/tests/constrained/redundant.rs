@@ -255,3 +255,51 @@ fn bricards_linkage_moves() {
     assert!(most - least > 1.4, "{least} {most}");
     assert!(worst[0] < 5e-15 && worst[1] < 3e-13 && worst[2] < 4e-15, "{worst:?}");
 }
+
+#[test]
+fn redundant_constraints_are_chosen_where_all_hold() {
+    let system = Bars::default();
+    let ([x, y, u, w, _], _) = place(0.5, 1.0);
+    // All four are independent there.
+    let off = [x + 0.1, y - 0.1, u - 0.2, w + 0.1];
+    let refused = Independent::at(system, 0.0, off).err();
+    let Some(StepError::InconsistentStart { constraint: "left", residual, .. }) = refused else {
+        panic!("{refused:?}")
+    };
+    assert!((residual - ((x + 0.1).powi(2) + (y - 0.1).powi(2) - 1.0)).abs() < 1e-15, "{residual}");
+    let singular = State::projected(&system, 0.0, [x, y, u, w], [0.0; 4]).expect_err("redundant");
+    assert!(singular.to_string().contains("Independent::at(system, t, q)"), "{singular}");
+}
+
+#[test]
+fn redundant_mechanisms_are_projected_and_assembled() {
+    let all = Independent::of(Bars::default());
+    let ([x, y, u, w, _], [a, b, c, d, _]) = place(0.5, 1.0);
+    let on = State::projected(&all, 0.0, [x, y, u, w], [a, b, c, d]).unwrap_or_else(|failure| panic!("{failure}"));
+    assert!(on.moved_q.amax() < 1e-15 && on.moved_v.amax() < 1e-15, "{on:?}");
+    // The same place as with the constraints that a run keeps.
+    let kept = Independent::at(Bars::default(), 0.0, [x, y, u, w]).expect("a subset");
+    for (far, change) in [(false, 1e-6), (false, 0.1), (true, 0.1), (true, 0.3)] {
+        let q = [x + change, y - change, u - 2.0 * change, w + change];
+        let find = if far { State::assembled } else { State::projected };
+        let found = find(&all, 0.0, q, [a, b, c, d]).unwrap_or_else(|failure| panic!("{change}: {failure}"));
+        let by_kept = State::projected(&kept, 0.0, q, [a, b, c, d]).expect("a state");
+        assert!((found.state.q - by_kept.state.q).amax() < 1e-14, "{change}: {found:?} {by_kept:?}");
+        assert!((found.moved_v - by_kept.moved_v).amax() < 1e-14, "{change}: {found:?} {by_kept:?}");
+        let again = Independent::at(Bars::default(), 0.0, found.state.q).unwrap_or_else(|failure| panic!("{failure}"));
+        assert_eq!(again.dropped_names().count(), 1);
+        again.at_state(found.state).integrate(Gauss::<2>, 0.02).unwrap_or_else(|failure| panic!("{failure}"));
+    }
+    // Constraints that contradict the others have no such place.
+    let contradicting = Independent::of(Parallelogram { third: 1.1, ..Parallelogram::default() });
+    let refused = State::projected(&contradicting, 0.0, place(0.5, 1.0).0, [0.0; 5]);
+    assert!(matches!(refused, Err(StepError::NotAssembled { .. } | StepError::Singular { .. })), "{refused:?}");
+
+    let system = Bricard::default();
+    let q = SVector::<f64, 24>::from_column_slice(&ring()[12..]);
+    let near = q + SVector::<f64, 24>::from_fn(|i, _| if i % 2 == 0 { 0.01 } else { -0.02 });
+    let found = State::projected(&Independent::of(system), 0.0, near, SVector::<f64, 24>::zeros());
+    let found = found.unwrap_or_else(|failure| panic!("{failure}")).state;
+    assert!(system.constraints(0.0, &found.q).iter().all(|value| value.abs() < 1e-14), "{found:?}");
+    assert_eq!(Independent::at(system, 0.0, found.q).expect("a subset").dropped_names().count(), 1);
+}
