@@ -451,3 +451,15 @@ def test_redundant_constraints_are_chosen_on_all_of_them():
         parallel.copy().set(c=1.1).project(guess)
     with pytest.raises(vi.Singular, match=r"moves as system\.independent\(q, t=…\)"):
         parallel.acceleration(0.0, start.q, start.v)
+
+
+def test_dropped_constraints_leave_exponents():
+    q = [0.6, -0.8, 2.6, -0.8]
+    kept = vi.System(PARALLEL)().independent(q)
+    exponents = kept.integrate(q, h=0.01).lyapunov(500, 2)
+    text = PARALLEL.replace(", c = 1.0", "").replace(PARALLEL[PARALLEL.index("    constraint middle") : -2], "")
+    two = vi.System(text)().integrate(q, h=0.01)
+    # The same rows, and volumes stay.
+    assert exponents == pytest.approx(two.lyapunov(500, 2), abs=1e-12) and abs(exponents.sum()) < 1e-2
+    with pytest.raises(vi.InvalidInput, match="number of Lyapunov exponents"):
+        kept.integrate(q, h=0.01).lyapunov(1, 3)

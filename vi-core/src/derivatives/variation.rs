@@ -272,7 +272,8 @@ where
 
 /// The number of independent admissible tangent vectors at a node, with fixed time and parameters.
 pub(crate) fn dimension<S: Motion<N>, const N: usize>(system: &S) -> usize {
-    2 * N - system.holonomic() - system.constraint_names().len()
+    let kept = |rows: core::ops::Range<usize>| rows.filter(|r| !system.is_dropped(*r)).count();
+    2 * N - kept(0..system.holonomic()) - kept(0..system.constraint_names().len())
 }
 
 /// The derivative of the velocity v of a state, whose momenta are `state.p`, along a tangent vector.

@@ -2,7 +2,7 @@
 
 use super::systems::{Auto, Twice};
 use vi_core::constrained::{Independent, Projection};
-use vi_core::derivatives::{Tangent, Variation};
+use vi_core::derivatives::{Lyapunov, Tangent, Variation};
 use vi_core::motion::Motion as _;
 use vi_core::nalgebra::SVector;
 use vi_core::{Gauss, Starts, State, StepError, lagrangian};
@@ -302,4 +302,26 @@ fn redundant_mechanisms_are_projected_and_assembled() {
     let found = found.unwrap_or_else(|failure| panic!("{failure}")).state;
     assert!(system.constraints(0.0, &found.q).iter().all(|value| value.abs() < 1e-14), "{found:?}");
     assert_eq!(Independent::at(system, 0.0, found.q).expect("a subset").dropped_names().count(), 1);
+}
+
+#[test]
+fn dropped_constraints_leave_exponents() {
+    let (q, v) = place(0.5, 1.0);
+    let kept = Independent::at(Parallelogram::default(), 0.0, q).expect("a subset");
+    let exponents = |kept: Result<Vec<f64>, StepError>| kept.unwrap_or_else(|failure| panic!("{failure}"));
+    let all = kept.at(0.0, q, v).integrate(Gauss::<3>, 0.02).and_then(|run| {
+        let mut lyapunov = Lyapunov::new(run, 4)?;
+        lyapunov.advance(200)?;
+        Ok(lyapunov.exponents())
+    });
+    let two = TwoCranks::default().at(0.0, q, v).integrate(Gauss::<3>, 0.02).and_then(|run| {
+        let mut lyapunov = Lyapunov::new(run, 4)?;
+        lyapunov.advance(200)?;
+        Ok(lyapunov.exponents())
+    });
+    for (one, other) in exponents(all).iter().zip(exponents(two)) {
+        assert!((one - other).abs() < 1e-12, "{one} {other}");
+    }
+    let run = kept.at(0.0, q, v).integrate(Gauss::<3>, 0.02).expect("a start");
+    assert!(matches!(Lyapunov::new(run, 5), Err(StepError::InvalidInput { .. })));
 }
