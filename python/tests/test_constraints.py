@@ -1,6 +1,7 @@
 """Systems with constraints."""
 
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -185,7 +186,7 @@ def test_energies_kept_on_constraints():
     # Another method of the same system, another order of it.
     with pytest.raises(ValueError, match='no .* method="energy", stages=3; it has .*, method="energy", stages=2'):
         pendulum.integrate([0.6, -0.8], h=0.05, method="energy", stages=3)
-    with pytest.raises(vi.NoDerivative, match="no linearization"):
+    with pytest.raises(vi.NoDerivative, match="use Gauss steps"):
         run.linearization()
 
 
@@ -463,3 +464,21 @@ def test_dropped_constraints_leave_exponents():
     assert exponents == pytest.approx(two.lyapunov(500, 2), abs=1e-12) and abs(exponents.sum()) < 1e-2
     with pytest.raises(vi.InvalidInput, match="number of Lyapunov exponents"):
         kept.integrate(q, h=0.01).lyapunov(1, 3)
+
+
+def test_energies_kept_with_constraints_name_steps_with_derivatives():
+    run = vi.RodPendulum().integrate([0.6, -0.8], h=0.05, method="energy", shift_from=3.0)
+    with pytest.raises(vi.NoDerivative, match="use Gauss steps"):
+        run.tangent(1)
+    kept = vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.05, method="energy", fallback=True)
+    with pytest.raises(vi.NoDerivative, match="take steps without one"):
+        kept.tangent(1)
+
+
+def test_a_stored_state_off_the_constraints_is_refused_in_words_of_python():
+    run = vi.RodPendulum().integrate([0.6, -0.8], h=0.01)
+    restart, (system, integrator, stored) = run.__reduce__()
+    assert stored.count("[0.6,-0.8]") >= 1
+    with pytest.raises(ValueError, match="does not satisfy the constraint `rod`: residual 1.7") as caught:
+        restart(system, integrator, stored.replace("[0.6,-0.8]", "[0.6,-0.9]"))
+    assert not re.search("::|&", str(caught.value))

@@ -64,7 +64,11 @@ fn restarted<S: Runnable<N>, const N: usize>(
 ) -> Result<Box<dyn Simulation>, String> {
     let stored: Checkpoint<Box<RawValue>, N> = serde_json::from_str(stored).map_err(|error| error.to_string())?;
     let stored = stored.try_map(|memory| method.memory(memory.get()))?;
-    let run = Run::restart(system, method, stored).map_err(|error| error.to_string())?;
+    let run = Run::restart(system, method, stored).map_err(|error| match error {
+        StepError::OtherSystem { .. } => error.to_string(),
+        // Other advice is for programmers.
+        _ => error.reason().to_string(),
+    })?;
     Ok(erased(run, false))
 }
 

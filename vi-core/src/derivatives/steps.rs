@@ -75,7 +75,7 @@ pub(crate) enum Sought {
 /// # Errors
 /// [`StepError::NoDerivative`] for the step from the time `t`.
 pub(crate) fn check_fallback(fallback: Fallback, t: f64) -> Result<(), StepError> {
-    let because = "with a fallback the energy of the run may jump; use `Fallback::Stop`";
+    let because = "with a fallback the energy of the run may jump; take steps without one";
     if fallback == Fallback::Stop { Ok(()) } else { Err(StepError::NoDerivative { t, because }) }
 }
 

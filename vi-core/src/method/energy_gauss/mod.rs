@@ -84,7 +84,7 @@ pub struct EnergyPreservingGauss<const STAGES: usize>;
 
 /// The reason why energy-preserving steps with constraints have no derivatives.
 #[cfg(feature = "alloc")]
-const NOT_DERIVED: &str = "steps that keep constraints and an energy have no linearization; use fixed steps";
+const NOT_DERIVED: &str = "steps that keep constraints and an energy have no linearization; use Gauss steps";
 
 /// A solver of Gauss steps of any length.
 pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
