@@ -29,7 +29,7 @@ use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::{Derived, derive_own, sizes, syntax};
 use vi_core::linear::Block;
 use vi_dispatch::Instructions;
-use vi_expr::{Expr, Node};
+use vi_expr::{Expr, Node, Pool};
 
 /// Characters of an expression in a message.
 const CHARACTERS: usize = 400;
@@ -71,7 +71,7 @@ pub(crate) fn code(file: &str, text: &str, Parsed { system, definition }: Parsed
     let files = system.files.clone();
     let mut system = with_rest(system, &definition, rest).map_err(wrong)?;
     let rule = system.take_named_rules();
-    of_derived(&derive_own(&system).map_err(wrong)?, (definition, files), (declared, rule))
+    of_derived(&mut derive_own(&system).map_err(wrong)?, (definition, files), (declared, rule))
 }
 
 /// A system with coordinates at rest.
@@ -129,20 +129,38 @@ fn declaration(text: &str) -> syn::Result<Option<TokenStream>> {
     }
 }
 
+/// The watched expressions as texts, without coordinates at rest.
+fn watched(of: &mut Derived, declared: usize) -> Box<[&'static str]> {
+    let Derived { pool, model, system, .. } = of;
+    let mut at_rest = |pool: &mut Pool<Symbol>, symbol: &Symbol| match symbol {
+        Symbol::Continuous(Variable::Velocity(index)) if *index >= declared => Some(pool.zero()),
+        _ => None,
+    };
+    let watched = system.continuous.watched.iter();
+    // Only L itself has their energy.
+    let exprs: Vec<Expr> = watched
+        .map(|expr| match pool.node(*expr) {
+            Node::Sum(_) => pool.substitute(*expr, &mut at_rest),
+            _ => *expr,
+        })
+        .collect();
+    let name = |symbol: &Symbol| system.spell(model, symbol);
+    exprs.into_iter().map(|expr| &*pool.render_within(CHARACTERS, expr, &name).leak()).collect()
+}
+
 /// The code of a system, whose rule has yet to be derived if there is one here.
 fn of_derived(
-    of: &Derived,
+    of: &mut Derived,
     (definition, files): (String, BTreeMap<PathBuf, String>),
     (declared, rule): (usize, Option<&'static NamedRule>),
 ) -> Result<Code, Mistakes> {
-    let Derived { pool, model, system, findings, .. } = of;
+    let watched = watched(of, declared);
+    let Derived { pool, model, system, findings, .. } = &*of;
     let compiled = |what: &str| Mistakes::compiled(&model.name.to_string(), what);
     let too_many = |of: TooMany| compiled(&format!("too many {of}"));
     let tables = Tables::of(model).ok_or_else(|| compiled("Rust functions"))?;
     let size = model.dimension();
     let continuous = &system.continuous;
-    let name = |symbol: &Symbol| system.spell(model, symbol);
-    let watched = continuous.watched.iter();
     let inputs = (0..).zip(&model.parameters).filter(|(_, parameter)| parameter.is_input);
     let parameters = names(model, Parameter::text);
     let constraints = constraints(of);
@@ -160,7 +178,7 @@ fn of_derived(
         angles: model.coordinates.iter().map(|of| of.is_angle).collect(),
         cyclic: continuous.cyclic.clone().into(),
         start: model.check_state.as_ref().map(|state| start(state, parameters, declared)),
-        watched: watched.map(|expr| &*pool.render_within(CHARACTERS, *expr, &name).leak()).collect(),
+        watched,
         calls: continuous
             .calls
             .iter()

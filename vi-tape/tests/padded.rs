@@ -87,3 +87,13 @@ fn further_coordinates_are_at_rest() {
     }
     assert!(met > 10, "{met}");
 }
+
+#[test]
+fn messages_name_no_coordinate_at_rest() {
+    let text = "struct Steep { coord x; L = dot(x)^2 / 2 - x^2; }";
+    let system = System::parse(text).expect("a system");
+    let point = PhasePoint { t: 0.0, q: vec![0.0], v: vec![1e300] };
+    let refused = system.begin(&Plan { stages: Some(4), ..Plan::new(Method::Gauss, 0.1, point) });
+    let failure = refused.and_then(|mut run| run.advance_by(1)).expect_err("an overflow").to_string();
+    assert!(failure.ends_with("because `dot(x)^2/2 - x^2` is not"), "{failure}");
+}
