@@ -445,7 +445,7 @@ const OF_RULES: [(&[&str], &str); 2] = [
 ];
 
 /// Help on the order of the method.
-pub(crate) const GAUSS: &str = "Gauss methods need no clause: `integrate(Gauss::<S>, h)` uses S stages, order 2 S";
+pub(crate) const GAUSS: &str = "Gauss methods need no clause: every system has their steps, of order 2 S with S stages";
 
 /// Help on the step and the initial state.
 pub(crate) const RUN: &str = "set the step and the initial state of a run: `system.at(t, q, v).integrate(FixedStep, h)`; set those of checks in \

@@ -434,14 +434,16 @@ impl Message {
             Self::Wrapped => "a system begins inside of `lagrangian! { … }`".to_owned(),
             Self::Habit(habit) => habit.what(),
             Self::NotDecimal => "not a decimal number".to_owned(),
-            Self::NumberRange => "this number is outside the range of `f64`".to_owned(),
+            Self::NumberRange => "this number is outside the range of double precision".to_owned(),
             Self::NoDerivative { expression, by } => {
                 format!("`{expression}` has no derivative with respect to `{by}`")
             }
             Self::NotPeriodic { what, angle, .. } => {
                 format!("{what} is not periodic in the angle `{angle}`: it changes when `{angle}` makes a turn of 2π")
             }
-            Self::CoefficientRange => "the equations have a coefficient outside the range of `f64`".to_owned(),
+            Self::CoefficientRange => {
+                "the equations have a coefficient outside the range of double precision".to_owned()
+            }
             Self::TooDeep { limit } => format!("this expression is nested deeper than {limit} levels"),
             Self::TooLong { limit } => format!("the system is longer than {limit} tokens"),
             Self::LongName { limit } => format!("this name is longer than {limit} letters"),

@@ -267,7 +267,7 @@ fn constants() {
     );
     case("coord x; L = dot(x)^2 - «sin»(10^2000) * x; discretize midpoint;", "more than 4096 bits are needed to round");
     case("coord x; L = dot(x)^2 - sin(1 + «cos»(10^10^6)) * x; discretize midpoint;", "more than 4096 bits are needed");
-    let beyond = "this number is outside the range of `f64`\nhelp: choose other units";
+    let beyond = "this number is outside the range of double precision\nhelp: choose other units";
     case("coord x; L = dot(x)^2 - 1 / «exp»(exp(exp(10))) * x; discretize midpoint;", beyond);
     case("coord x; L = dot(x)^2 - «exp»(-exp(exp(10))) * x; discretize midpoint;", beyond);
     case("param a = «exp»(-800); coord x; L = a * dot(x)^2; discretize midpoint;", beyond);
@@ -299,7 +299,10 @@ fn constants() {
     );
     case("coord x; L = dot(x)^2 * «0x10»; discretize midpoint;", "not a decimal number");
     case("coord x; L = dot(x)^2 * «\"a\"»; discretize midpoint;", "a text is no number");
-    case("coord x; L = dot(x)^2 * «1e400»; discretize midpoint;", "this number is outside the range of `f64`");
+    case(
+        "coord x; L = dot(x)^2 * «1e400»; discretize midpoint;",
+        "this number is outside the range of double precision",
+    );
 }
 
 #[test]
@@ -333,7 +336,7 @@ fn clauses() {
     );
     case("coord x; L = dot(x)^2; discretize midpoint, «,»;", "expected a name");
     case("coord x; L = dot(x)^2; discretize midpoint «trapezoidal»;", "expected `,` or `;`");
-    let gauss = "Gauss methods need no clause: `integrate(Gauss::<S>, h)` uses S stages, order 2 S";
+    let gauss = "Gauss methods need no clause: every system has their steps, of order 2 S with S stages";
     for rule in ["Gauss", "gauss_legendre", "collocation"] {
         case(&format!("coord x; L = dot(x)^2; discretize «{rule}»;"), &format!("unknown rule `{rule}`\nhelp: {gauss}"));
     }
@@ -1259,7 +1262,7 @@ fn numbers_of_any_length_are_read() {
         assert!(found[0].1.starts_with(wanted), "{}", found[0].1);
     }
     for number in ["1e999999999", "1e-999999999", "1e99999999999999999999999", "1e-310", "1e309"] {
-        case(&format!("{rest} «{number}» * x;"), "this number is outside the range of `f64`");
+        case(&format!("{rest} «{number}» * x;"), "this number is outside the range of double precision");
     }
     case(&format!("{rest} «1_000kg» * x;"), "the number `1000` is followed directly by `kg`");
     case(&format!("{rest} «1.5e3kg» * x;"), "the number `1.5e3` is followed directly by `kg`");
