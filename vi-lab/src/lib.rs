@@ -91,7 +91,7 @@ enum Action {
 /// ```
 ///
 /// A system needs `Default`, which every parameter with a value provides. A system without a rule runs with Gauss
-/// methods only, a system with constraints with `gauss-lobatto`. `q`, `v` and `h` are the default initial coordinates, initial velocities and step.
+/// methods only, as does a system with constraints. `q`, `v` and `h` are the default initial coordinates, initial velocities and step.
 #[macro_export]
 macro_rules! main {
     (

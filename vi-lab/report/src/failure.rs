@@ -161,8 +161,8 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
             | StepError::DegenerateStep { .. },
             _,
         ) => {
-            "start with a shorter --h, or use steps of given length: --method fixed or gauss, with constraints \
-                  gauss-lobatto; another --q or --v may avoid this state"
+            "start with a shorter --h, or use steps of given length: --method gauss, or fixed without constraints; \
+                  another --q or --v may avoid this state"
         }
         (StepError::NotConverged { .. }, Method::Energy) => {
             "use shorter steps with --h, or fixed steps with --method fixed"
@@ -174,6 +174,10 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
             "use shorter steps with --dtau, or steps in time with --h, or write a `time_scale` that is positive there"
         }
         (StepError::NotAssembled { .. }, _) => "start from another guess with --q, or set other lengths with --set",
+        (StepError::Singular { matrix: "mass matrix bordered by the constraints", .. }, _) => {
+            "start elsewhere with --q; of a file with more constraints than its mechanism needs, leave those out that \
+                  follow from the others with --drop NAME"
+        }
         (StepError::Redundant { rank: 0, .. }, _) => "set another length with --set, or start elsewhere with --q",
         (StepError::Redundant { constraint, .. }, _) => {
             return Some(format!(

@@ -116,14 +116,14 @@ pub(crate) struct Arguments {
     /// One run of a scene with [sweep], by number
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub(crate) item: Option<u64>,
-    /// Integrator [default: fixed; gauss without a rule; gauss-lobatto with constraints]
+    /// Integrator [default: fixed; gauss without a rule and with constraints]
     #[arg(long, value_parser = named::<Method>())]
     pub(crate) method: Option<Method>,
     /// First interval of energy-preserving steps without --stages and --shift [default: state]
     #[arg(long, value_parser = named::<Start>())]
     pub(crate) start: Option<Start>,
-    /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3 (order 2, 4 or 6), 2 with constraints; of
-    /// --method gauss-lobatto: 1, 2 or 3 [default: 3]
+    /// Stages of a step of --method gauss: 4 or 8 [default: 8], with constraints 1, 2 or 3 [default: 3]; of --method energy: 1, 2 or 3
+    /// (order 2, 4 or 6), 2 with constraints
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = count)]
     pub(crate) stages: Option<u64>,
     /// Shift of the step density of --method energy, for steps across its sign changes: a number, or auto

@@ -51,7 +51,7 @@ pub(super) fn of(request: &Request, error: &StepError, node: &Row) -> Option<Str
     }
     ways.push("--fallback continues with fixed steps".to_owned());
     ways.push(if request.system.has_constraints() {
-        "--method gauss-lobatto needs no step density".to_owned()
+        "--method gauss needs no step density".to_owned()
     } else {
         "--method fixed and --method gauss need no step density".to_owned()
     });
