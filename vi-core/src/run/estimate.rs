@@ -21,8 +21,11 @@
 //! [`VISIBLE`] ulps of its own value, and if its `|p_i v_i|` exceeds `(4096 ε)²` of the largest one. Smaller excursions are
 //! rounding errors that the other coordinates cause.
 //!
-//! Two further measurements only add to this. A step that changes a conserved H by more than [`GROSS`] of the energy has
+//! Three further measurements only add to this. A step that changes a conserved H by more than [`GROSS`] of the energy has
 //! at least that error. A half step whose dense output does not begin with the velocity of its node misses the motion.
+//! At the end of each window a conserved H is compared with that at the start, relative to the energies on the way
+//! ([`EnergyPath`]): small parts of the large energies of a near collision, or rounding there, may be all that the orbit
+//! has.
 //!
 //! The first stretch ends when every counted coordinate with a turning point has covered four times its excursion, or,
 //! if none turns back, its force that of its range, or after [`STRETCH`] steps. Until then the scales grow, so the largest
@@ -45,7 +48,7 @@ use super::events::Crossings;
 use super::{DenseOutput as _, Run};
 use crate::angles::{self, Turns};
 use crate::error::StepError;
-use crate::lagrangian::Lagrangian;
+use crate::lagrangian::{Flow, Lagrangian};
 use crate::method::Method;
 use crate::node::Node;
 use crate::real::Scalar;
@@ -65,6 +68,11 @@ const WINDOW: u64 = 200;
 /// Relative energy error from which on it counts as an error of the step. Smaller ones may be rounding of a large
 /// constant in H.
 const GROSS: f64 = 1e-3;
+/// Relative change of H since the start from which on the motion counts as lost. The energy errors of steps that resolve a
+/// motion oscillate below it.
+const DRIFTED: f64 = 0.01;
+/// `Σ |p v|` of a motion that only gathers speed, relative to its mean, is larger.
+const RISEN: f64 = 2.0;
 /// A step is measured at once if its indicator exceeds the largest one before its window by this factor.
 const SUSPICIOUS: f64 = 1.25;
 /// Part of the largest change of `h v` that the scale of an error has at least.
@@ -205,6 +213,75 @@ fn energy_error<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
     if error > GROSS { error } else { 0.0 }
 }
 
+/// A conserved H along a run, and the energies that it is compared with.
+#[derive(Clone, Copy, Debug)]
+struct EnergyPath {
+    /// H at the start.
+    start: f64,
+    /// Start, and end of the last window.
+    from: f64,
+    until: f64,
+    /// `Σ |p v|` there.
+    action: f64,
+    /// The time integral of `Σ |p v|`, by the smaller value of each window: a near collision counts for its own time only.
+    integral: f64,
+    /// Whether `Σ |p v|` has a mean: it does not only rise.
+    has_mean: bool,
+}
+
+impl EnergyPath {
+    /// The path from the current node of a run. `None` if H changes along the motion, or has no value.
+    fn from<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
+        run: &Run<M, S, N, T>,
+    ) -> Option<Self> {
+        let Energies { energy, action, .. } = Energies::at(run)?;
+        let t = run.node.t.to_f64();
+        Some(Self { start: energy, from: t, until: t, action, integral: 0.0, has_mean: false })
+    }
+
+    /// `|H − H(start)|` at the current node of a run, relative to the mean of `Σ |p v|` so far, or to its value there if that
+    /// is larger. Zero unless it exceeds [`DRIFTED`] and rounding. Zero too in the first rise of `Σ |p v|`, which has no mean
+    /// to compare with: a fall from rest.
+    fn drift<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
+        &mut self,
+        run: &Run<M, S, N, T>,
+    ) -> f64 {
+        let Some(Energies { energy, action, terms }) = Energies::at(run) else { return 0.0 };
+        let t = run.node.t.to_f64();
+        self.integral += self.action.min(action) * (t - self.until).abs();
+        (self.until, self.action) = (t, action);
+        let mean = self.integral / (t - self.from).abs();
+        self.has_mean |= action <= RISEN * mean;
+        let size = if mean < action { action } else { mean };
+        let change = (energy - self.start).abs();
+        let is_visible = change > FAINT * T::EPSILON * (self.start.abs() + terms);
+        if self.has_mean && is_visible && change > DRIFTED * size { change / size } else { 0.0 }
+    }
+}
+
+/// Energies at a node: H, `Σ |p v|`, and the size of the terms whose rounding errors H has.
+struct Energies {
+    energy: f64,
+    action: f64,
+    terms: f64,
+}
+
+impl Energies {
+    fn at<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
+        Run { method, system, node, .. }: &Run<M, S, N, T>,
+    ) -> Option<Self> {
+        if !system.conserves_energy() || method.has_reactions() {
+            return None;
+        }
+        let Flow { v, force, .. } = system.flow(node.t, &node.q, &node.p).ok()?;
+        let energy = system.energy(node.t, &node.q, &v).to_f64();
+        let sum = |a: &SVector<T, N>, b: &SVector<T, N>| (0..N).map(|i| (a[i] * b[i]).to_f64().abs()).sum::<f64>();
+        let action = sum(&node.p, &v);
+        let terms = energy.abs() + action + sum(&force, &node.q);
+        terms.is_finite().then_some(Self { energy, action, terms })
+    }
+}
+
 /// `|∂(L_q + f)_i/∂q_i|` of each coordinate at a node, by central differences over small parts of a displacement.
 fn stiffness<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
     system: &S,
@@ -265,7 +342,8 @@ struct Candidate<M, const N: usize, T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
     /// Error of q and h·v in one step, relative to the scale of the motion of the coordinate: the largest entry. Infinite
-    /// if the half steps of a step have no solution.
+    /// if the half steps of a step have no solution. If H has changed by more than a hundredth since the start although it
+    /// is conserved, at least that part.
     pub estimate: f64,
     /// Time at which the step began.
     pub t: f64,
@@ -316,7 +394,8 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     first_hv: Option<SVector<f64, N>>,
     deflection: SVector<f64, N>,
     largest: ErrorEstimate,
-    /// The largest energy error of a step.
+    /// H along the run, and its largest error.
+    energy: Option<EnergyPath>,
     of_energy: ErrorEstimate,
     measurements: u64,
 }
@@ -358,9 +437,15 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             first_hv: None,
             deflection: none,
             largest: nothing,
+            energy: EnergyPath::from(run),
             of_energy: nothing,
             measurements: 0,
         }
+    }
+
+    /// The same for errors of single steps alone.
+    pub(super) fn of_steps(run: &Run<M, S, N, T>) -> Self {
+        Self { energy: None, ..Self::new(run) }
     }
 
     /// Records the step that the run has just taken.
@@ -438,6 +523,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.start.p += run.node.p - self.last.p;
         (self.last, self.turns) = (run.node, run.turns);
         self.is_first = true;
+        self.energy = EnergyPath::from(run);
     }
 
     /// The largest relative error of a step so far, and its time. Also measures the candidate of the open window, so
@@ -528,7 +614,9 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.add(&found);
         let t = before.t.to_f64();
         let coordinate = found.action.imax();
-        self.of_energy = self.of_energy.or_larger(ErrorEstimate { estimate: found.energy, t, coordinate });
+        let drift = self.energy.as_mut().map_or(0.0, |energy| energy.drift(run));
+        let estimate = found.energy.max(drift);
+        self.of_energy = self.of_energy.or_larger(ErrorEstimate { estimate, t, coordinate });
         if let Some(stretch) = &mut self.stretch {
             for i in 0..N {
                 if found.error[i] > stretch.errors[i] {
@@ -540,7 +628,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
                 self.stretch = None;
             }
         } else {
-            self.largest = self.largest.or_larger(self.relative(&found.error, &SVector::repeat(t)));
+            let of_step = self.relative(&found.error, &SVector::repeat(t));
+            self.largest = self.largest.or_larger(of_step).or_larger(self.of_energy);
         }
         self.weights = self.peak.map(|peak| T::one() / peak);
     }

@@ -161,7 +161,7 @@ fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
     tolerance: f64,
 ) -> Result<Option<f64>, StepError> {
     let mut run = start.integrate(method.clone(), h)?;
-    let mut monitor = ErrorMonitor::new(&run);
+    let mut monitor = ErrorMonitor::of_steps(&run);
     while !monitor.is_over() {
         match run.single_step() {
             Ok(_) => monitor.watch(&run),
