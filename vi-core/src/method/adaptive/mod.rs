@@ -57,8 +57,11 @@ const SLOWEST: f64 = 1e-4;
 /// These are then no longer, and of the phase [`USUAL`] for each stage.
 const FREE: f64 = 1e-12;
 const USUAL: f64 = 0.1;
-/// The largest deviation of ln h Ω from ln ε of an accepted step.
+/// The largest deviation of ln h Ω from ln ε of an accepted step; after [`FEW`] lengths that of positions which are rounded
+/// to parts of the distance over which forces change.
 const NEAR: f64 = 1e-10;
+const ROUGH: f64 = 1e-8;
+const FEW: usize = 15;
 /// Lengths tried for a step at most.
 const TRIALS: usize = 60;
 
@@ -193,7 +196,7 @@ fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
     let mut h = last * ahead;
     let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
     let mut failure = StepError::LengthsLost { t: node.t, h: *last };
-    for _ in 0..TRIALS {
+    for trial in 0..TRIALS {
         check_step(h)?;
         let tried = solved(Problem { h, ..at }, &guess, cache)
             .and_then(|(end, steps)| Ok((Place::of(system, &end)?, end, steps)));
@@ -211,7 +214,7 @@ fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
         let found = found.unwrap_or(Phase { value: wanted.abs(), slope: 1.0, ratio: 1.0 });
         let off = (found.value / wanted.abs()).ln();
         search.learn(h, off);
-        if off.abs() < NEAR {
+        if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
             let ratio = h / last;
             // Ratios change by nearly equal factors, until the forces turn.
             let ahead = found.ratio.min(ratio * (ratio / before).clamp(0.7, 1.4));
