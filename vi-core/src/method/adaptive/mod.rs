@@ -53,12 +53,12 @@ impl<const STAGES: usize> Gauss<STAGES> {
 
 /// Ω has at least this part of the reciprocal of the first step: without forces, steps grow no further.
 const SLOWEST: f64 = 1e-4;
-/// A first step whose phase to the power of its order is smaller feels no force that could set the lengths of others.
-/// These are then no longer, and of the phase [`USUAL`] for each stage.
+/// A first step feels no force that could set the lengths of the others, if its phase to the power of its order is smaller.
+/// The others then have the phase [`USUAL`] for each stage, and are no longer than the first one.
 const FREE: f64 = 1e-12;
 const USUAL: f64 = 0.1;
-/// The largest deviation of ln h Ω from ln ε of an accepted step; after [`FEW`] lengths that of positions which are rounded
-/// to parts of the distance over which forces change.
+/// The largest deviation of ln h Ω from ln ε of an accepted step. After [`FEW`] lengths it is [`ROUGH`]: then rounding of
+/// the positions changes the phase, as near a collision.
 const NEAR: f64 = 1e-10;
 const ROUGH: f64 = 1e-8;
 const FEW: usize = 15;
@@ -69,7 +69,7 @@ const TRIALS: usize = 60;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Following<Y> {
-    /// That of the last step; before the first one, of a step of the length `h`.
+    /// Memory of the solver after the last step; before the first one, for a step of the length `h`.
     steps: Y,
     /// Length of the last step, or of the next one before the first.
     h: f64,
