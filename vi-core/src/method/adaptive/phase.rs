@@ -17,6 +17,7 @@
 use crate::constrained::{accelerations, border, bordered};
 use crate::error::StepError;
 use crate::gauss::transformed::check_time_scale;
+#[cfg(feature = "alloc")]
 use crate::kind::Kind;
 #[cfg(feature = "alloc")]
 use crate::linear::Rectangular;
