@@ -9,7 +9,7 @@ use super::{FunctionKind, Model, Outside, Parameter, TableKind, probe};
 use crate::symbol::Symbol;
 use num_traits::Signed;
 use std::collections::BTreeMap;
-use vi_expr::{Expr, Function, Node, Pool};
+use vi_expr::{Expr, Function, Node, Pool, Rational};
 
 /// Pairs of points between which a border is sought.
 const PAIRS: u32 = 40;
@@ -138,11 +138,40 @@ pub(super) fn with_conditions(
     expr
 }
 
-/// A condition at whose border L jumps: of an `if`, of a `sign`, or of an `abs` that is divided by what it vanishes
-/// with. Other absolute values are continuous.
+/// An expression with absolute values in place of the roots of squares, `abs(x)` for `sqrt(x^2)`.
+fn with_absolute_values(pool: &mut Pool<Symbol>, mut expr: Expr) -> Expr {
+    let is_even = |(_, exponent): &(Expr, Rational)| (exponent / Rational::from_integer(2.into())).is_integer();
+    let of_root = |pool: &Pool<Symbol>, node: Expr| {
+        let Node::Product(product) = pool.node(node) else { return None };
+        product.factors.iter().enumerate().find_map(|(place, (base, root))| match pool.node(*base) {
+            Node::Product(squares) if squares.factors.iter().all(is_even) => {
+                let mut others = product.factors.clone();
+                others.remove(place);
+                Some((others, squares.factors.clone(), root.clone()))
+            }
+            _ => None,
+        })
+    };
+    while let Some((node, (others, squares, root))) =
+        pool.reachable(&[expr]).into_iter().find_map(|node| Some((node, of_root(pool, node)?)))
+    {
+        let mut factors: Vec<Expr> = others.iter().map(|(base, exponent)| pool.power(*base, exponent)).collect();
+        for (base, exponent) in squares {
+            let size = pool.call(Function::Abs, &[base]);
+            factors.push(pool.power(size, &(exponent * &root)));
+        }
+        let by = pool.product(&factors);
+        expr = pool.replace(expr, node, by);
+    }
+    expr
+}
+
+/// A condition at whose border L jumps: of an `if`, of a `sign`, or of an `abs` or a root of a square that is divided by
+/// what it vanishes with. Other absolute values are continuous.
 pub(super) fn jump_of_lagrangian(pool: &mut Pool<Symbol>, model: &Model) -> Option<Expr> {
+    let lagrangian = with_absolute_values(pool, model.lagrangian);
     let mut divided: Vec<Expr> = Vec::new();
-    for node in pool.reachable(&[model.lagrangian]) {
+    for node in pool.reachable(&[lagrangian]) {
         let Node::Product(product) = pool.node(node) else { continue };
         if product.factors.iter().any(|(_, exponent)| exponent.is_negative()) {
             let is_absolute = |base: &Expr| matches!(pool.node(*base), Node::Call(Function::Abs, _));
@@ -152,7 +181,7 @@ pub(super) fn jump_of_lagrangian(pool: &mut Pool<Symbol>, model: &Model) -> Opti
     let is_replaced = |pool: &Pool<Symbol>, node: Expr| {
         matches!(pool.node(node), Node::Call(Function::Sign, _)) || divided.contains(&node)
     };
-    let lagrangian = with_conditions(pool, model.lagrangian, &is_replaced);
+    let lagrangian = with_conditions(pool, lagrangian, &is_replaced);
     jump(pool, lagrangian, &model.parameters)
 }
 
