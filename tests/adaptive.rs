@@ -331,6 +331,19 @@ fn a_length_that_no_step_has_is_refused() {
 }
 
 #[test]
+fn a_fall_into_the_centre_ends() {
+    // From rest at the distance 1 it arrives after π/√(8 mu).
+    let arrival = TAU / 2.0 / (8.0 * 1.6_f64).sqrt();
+    let start = Planet { mu: 1.6 }.at(0.0, [1.0, 0.0], [0.0, 0.0]);
+    let mut run = start.integrate(Gauss::<4>.adaptive(), 0.1).expect("a start");
+    let energy = run.energy().expect("an energy");
+    let failure = run.until(1.0).expect_err("a collision");
+    let off = (run.energy().expect("an energy") - energy).abs();
+    println!("t off by {:.1e}, H by {off:.1e}: {failure}", run.t() - arrival);
+    assert!(matches!(failure, StepError::LengthsLost { .. }) && (run.t() - arrival).abs() < 1e-6, "{failure}");
+}
+
+#[test]
 fn stored_numbers_are_checked() {
     let mut run = planet(0.03);
     run.step().expect("a step");

@@ -198,6 +198,10 @@ fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
     let mut failure = StepError::LengthsLost { t: node.t, h: *last };
     for trial in 0..TRIALS {
         check_step(h)?;
+        // Below the rounding of the time, as in a fall into a centre, time stands still.
+        if h.abs() < f64::EPSILON * node.t.abs() {
+            break;
+        }
         let tried = solved(Problem { h, ..at }, &guess, cache)
             .and_then(|(end, steps)| Ok((Place::of(system, &end)?, end, steps)));
         let (there, end, steps) = match tried {
