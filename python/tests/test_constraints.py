@@ -238,7 +238,9 @@ def test_a_text_with_constraints(warm_cache):
     assert Twice().redundant([1.0, 0.0, 0.0]) == ("bowl",)
     # A compiled system keeps all, and is projected as one of its text.
     assert np.array_equal(Twice().project([1.0, 0.0, 0.0]).q, [1.0, 0.0, 0.0])
-    assert Twice().redundant([0.6, 0.0, 0.8]) == () and bead.redundant([1.0, 1.0]) == ()
+    with pytest.raises(vi.InconsistentStart, match="bowl"):
+        Twice().redundant([0.6, 0.0, 0.8])
+    assert bead.redundant([1.0, 1.0]) == ()
     with pytest.raises(ValueError, match="q"):
         Twice().redundant([1.0, 0.0])
 
@@ -457,11 +459,11 @@ def test_redundant_constraints_are_chosen_on_all_of_them():
 def test_dropped_constraints_leave_exponents():
     q = [0.6, -0.8, 2.6, -0.8]
     kept = vi.System(PARALLEL)().independent(q)
-    exponents = kept.integrate(q, h=0.01).lyapunov(500, 2)
+    exponents = kept.integrate(q, h=0.01).lyapunov(5000, 2)
     text = PARALLEL.replace(", c = 1.0", "").replace(PARALLEL[PARALLEL.index("    constraint middle") : -2], "")
     two = vi.System(text)().integrate(q, h=0.01)
-    # The same rows, and volumes stay.
-    assert exponents == pytest.approx(two.lyapunov(500, 2), abs=1e-12) and abs(exponents.sum()) < 1e-2
+    # The same rows, and volumes stay: over the time 50 the sum is 0.016.
+    assert exponents == pytest.approx(two.lyapunov(5000, 2), abs=1e-12) and abs(exponents.sum()) < 2e-2
     with pytest.raises(vi.InvalidInput, match="number of Lyapunov exponents"):
         kept.integrate(q, h=0.01).lyapunov(1, 3)
 
