@@ -15,8 +15,8 @@
 //! But ρ leaves ω where a step is long for the changes of ω, as with few steps in the period of an oscillator.
 //!
 //! The map is not symplectic: that needs [`InTransformedTime`](super::InTransformedTime) and a `time_scale`, which
-//! [`Adaptive`] takes too. Terms that are linear in the velocities, friction and inputs break the symmetry; the steps
-//! still follow the motion.
+//! [`Adaptive`] takes too. With terms that are linear in the velocities, friction or inputs a motion is not reversible: steps
+//! back still return, but no law bounds the energy error.
 
 mod phase;
 
