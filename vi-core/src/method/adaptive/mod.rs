@@ -105,17 +105,13 @@ type Of<'a, S, const N: usize, const STAGES: usize> =
 ///
 /// # Errors
 /// Those of the solver.
-#[inline(never)] // two callers, and a large function
 fn solved<S: Convertible<N>, const N: usize, const STAGES: usize>(
     at: Of<'_, S, N, STAGES>,
     guess: &Steps<S, N, STAGES>,
     cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
 ) -> Result<(Node<N>, Steps<S, N, STAGES>), StepError> {
     let (solver, Problem { system, node, h, .. }) = (solver::<S, N, STAGES>(), at);
-    let step = match solver.attempt(at, guess, cache) {
-        Ok(step) => step,
-        Err(left) => solver.recover(at, guess, cache, left)?,
-    };
+    let step = solver.solve(at, guess, cache)?;
     let (mut end, mut steps) = (*node, guess.clone());
     solver.take(system, h, (&mut end, &mut steps), cache, step);
     Ok((end, steps))

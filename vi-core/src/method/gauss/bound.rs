@@ -29,9 +29,7 @@ use crate::constrained::variation::vary;
 use crate::constrained::{bordered, discrete_energy, impulses, stage_velocity, start, unknowns};
 use crate::derivatives::{Variation, not_last};
 use crate::error::StepError;
-use crate::gauss::polynomial::{coefficients, polynomials, sum};
-use crate::gauss::stages::set;
-use crate::gauss::tableau::Tableau;
+use crate::gauss::stages::{at, set, stage};
 use crate::kind::{Bound, Form, Multipliers};
 use crate::linear::Bordered;
 use crate::method::{Memory, Method, Problem, Report};
@@ -304,10 +302,11 @@ fn continued<S: Convertible<N>, const N: usize, const STAGES: usize>(
     for i in 0..STAGES {
         set(&mut stages, i, &stage_velocity::<N, f64>(last, i));
     }
-    let of_last = coefficients(&stages);
+    let ratio = h / memory.h;
+    let stages = at(&stages, |c| since + ratio * c);
     let mut guess = fresh.unknowns.newest().to_vec();
-    for (velocity, c) in guess.chunks_exact_mut(N).zip(const { Tableau::<STAGES>::VALUES.c }) {
-        velocity.copy_from_slice(sum(&of_last, &polynomials::<STAGES>(since + h / memory.h * c)).as_slice());
+    for (i, velocity) in guess.chunks_exact_mut(N).take(STAGES).enumerate() {
+        velocity.copy_from_slice(stage(&stages, i).as_slice());
     }
     Ok(ConstrainedSteps { unknowns: Extrapolation::new(&guess), ..fresh })
 }

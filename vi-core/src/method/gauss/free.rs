@@ -21,10 +21,8 @@ use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
 use crate::gauss::linearization::Linearization;
 use crate::gauss::newton::Buffer;
 use crate::gauss::points::ErasedSystem;
-use crate::gauss::polynomial::{coefficients, polynomials, sum};
 use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
-use crate::gauss::stages::{LOOPED, set};
-use crate::gauss::tableau::Tableau;
+use crate::gauss::stages::{LOOPED, at};
 #[cfg(feature = "alloc")]
 use crate::gauss::variation::vary;
 use crate::gauss::{CollocationPolynomial, Slots};
@@ -80,11 +78,7 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         if !(self.has_step(node) && ratio > 0.0) {
             return Self::constant(system, node, h);
         }
-        let of_last = coefficients(&self.stages.data.0);
-        let mut stages = [[0.0; S]; N];
-        for (i, c) in const { Tableau::<S>::VALUES.c }.iter().enumerate() {
-            set(&mut stages, i, &sum(&of_last, &polynomials(1.0 - ratio * (1.0 - c))));
-        }
+        let stages = at(&self.stages.data.0, |c| 1.0 - ratio * (1.0 - c));
         Ok(Self { stages: SMatrix::from_array_storage(ArrayStorage(stages)), h, linearization: None, ..*self })
     }
 
@@ -354,12 +348,8 @@ where
         node: &Node<N>,
         h: f64,
     ) -> Result<LastStages<N, STAGES>, StepError> {
-        let of_step = coefficients(&memory.stages.data.0);
-        let mut stages = [[0.0; STAGES]; N];
-        for (i, c) in const { Tableau::<STAGES>::VALUES.c }.iter().enumerate() {
-            set(&mut stages, i, &sum(&of_step, &polynomials(h / memory.h * c)));
-        }
-        let stages = SMatrix::from_array_storage(ArrayStorage(stages));
+        let ratio = h / memory.h;
+        let stages = SMatrix::from_array_storage(ArrayStorage(at(&memory.stages.data.0, |c| ratio * c)));
         Ok(LastStages { stages, before: *node, h, convergence: Convergence::NONE, linearization: None, ..*memory })
     }
 
