@@ -3,7 +3,7 @@
 //! A dropped constraint has no gradient and no multiplier: the motion is unique, and the reaction of the others is that
 //! of all. Every step measures the dropped constraints at its end, because elsewhere they may become independent.
 
-use super::start::{STORED, independent_rows};
+use super::start::{STORED, redundant_rows};
 use super::{constrained_acceleration, constrained_flow, spread};
 use crate::error::StepError;
 use crate::forward;
@@ -69,8 +69,8 @@ impl<S> Independent<S> {
         }
         let is_regular = Bordered::new(N, 0, system.blocks()).factor(&mass, &gradients).is_ok();
         let all: Vec<usize> = (0..of).collect();
-        let kept = independent_rows(&gradients, &all, &mass, is_regular);
-        Ok(Self::of(system).dropping((0..of).filter(|r| !kept.contains(r))))
+        let redundant = redundant_rows(&gradients, &all, &mass, is_regular);
+        Ok(Self::of(system).dropping(redundant))
     }
 
     /// Keeps all constraints; [`Motion::without`] drops some.

@@ -8,7 +8,7 @@
 //! Held coordinates and their velocities do not change: they have no gradients here. A constraint on held coordinates
 //! alone has to hold already, and has no multiplier.
 
-use super::start::{CONSISTENT, independent_rows};
+use super::start::{CONSISTENT, redundant_rows};
 use super::{is_shortened, reaction_of, spread, unsolvable, with_idle};
 use crate::error::{BORDERED_MASS, StepError};
 use crate::kind::{Gradients, Multipliers};
@@ -167,9 +167,7 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
         let is_regular = Bordered::new(N, 0, self.system.blocks()).factor(&mass, &gradients).is_ok();
         let given: Vec<usize> =
             (0..self.system.constraint_names().len()).filter(|r| !self.system.is_dropped(*r)).collect();
-        let kept = independent_rows(&gradients, &given, &mass, is_regular);
-        let redundant: Vec<usize> =
-            given.iter().enumerate().filter(|(place, _)| !kept.contains(place)).map(|(_, r)| *r).collect();
+        let redundant = redundant_rows(&gradients, &given, &mass, is_regular);
         if redundant.is_empty() { None } else { self.system.without(&redundant) }
     }
 

@@ -46,11 +46,11 @@ where
     let inverse = &mut Bordered::new(N, 0, system.blocks());
     let is_regular = inverse.factor(&mass, &gradients).is_ok();
     let given: Vec<usize> = (0..system.constraint_names().len()).filter(|r| !system.is_dropped(*r)).collect();
-    let kept = independent_rows(&gradients, &given, &mass, is_regular);
-    if kept.len() < given.len() {
-        // The last declared of those that follow from the others.
-        let last = (0..given.len()).rfind(|index| !kept.contains(index)).unwrap_or(0);
-        let (constraint, of, rank) = (system.constraint_names()[given[last]], given.len(), kept.len());
+    let redundant = redundant_rows(&gradients, &given, &mass, is_regular);
+    // The last declared of those that follow from the others.
+    if let Some(last) = redundant.last() {
+        let (constraint, of) = (system.constraint_names()[*last], given.len());
+        let rank = of - redundant.len();
         return Err(StepError::Redundant { constraint, of, rank });
     }
     let Velocity { mu, .. } = found?;
@@ -137,10 +137,22 @@ where
     }
 }
 
+/// The constraints among `given` that follow from the others, in the order of `given`: those that [`independent_rows`]
+/// does not find.
+pub(super) fn redundant_rows<const N: usize>(
+    gradients: &impl Rectangular<N, f64>,
+    given: &[usize],
+    mass: &impl Matrix<N, f64>,
+    is_regular: bool,
+) -> Vec<usize> {
+    let kept = independent_rows(gradients, given, mass, is_regular);
+    given.iter().enumerate().filter(|(place, _)| !kept.contains(place)).map(|(_, r)| *r).collect()
+}
+
 /// The places among `given` of independent constraints, by orthogonalization with column pivoting in the metric of the
 /// inverse mass matrix, or of its diagonal if it is singular or not positive definite. Gradients are compared at length
 /// 1; one without length is never independent.
-pub(super) fn independent_rows<const N: usize>(
+fn independent_rows<const N: usize>(
     gradients: &impl Rectangular<N, f64>,
     given: &[usize],
     mass: &impl Matrix<N, f64>,
