@@ -414,6 +414,11 @@ struct Stretch<const N: usize, T> {
 impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> ErrorMonitor<M, S, N, T> {
     /// A monitor that starts at the current node of a run.
     pub fn new(run: &Run<M, S, N, T>) -> Self {
+        Self { energy: EnergyPath::from(run), ..Self::of_steps(run) }
+    }
+
+    /// The same for errors of single steps alone.
+    pub(super) fn of_steps(run: &Run<M, S, N, T>) -> Self {
         let nothing = ErrorEstimate { estimate: 0.0, t: run.node.t.to_f64(), coordinate: 0 };
         let (node, zeros, none) = (run.node, SVector::zeros(), SVector::zeros());
         Self {
@@ -437,15 +442,10 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             first_hv: None,
             deflection: none,
             largest: nothing,
-            energy: EnergyPath::from(run),
+            energy: None,
             of_energy: nothing,
             measurements: 0,
         }
-    }
-
-    /// The same for errors of single steps alone.
-    pub(super) fn of_steps(run: &Run<M, S, N, T>) -> Self {
-        Self { energy: None, ..Self::new(run) }
     }
 
     /// Records the step that the run has just taken.
