@@ -117,50 +117,51 @@ fn directional(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
 /// An expression with conditions in place of those of its `abs` and `sign` that satisfy `is_replaced`.
 pub(super) fn with_conditions(
     pool: &mut Pool<Symbol>,
-    mut expr: Expr,
+    expr: Expr,
     is_replaced: &dyn Fn(&Pool<Symbol>, Expr) -> bool,
 ) -> Expr {
-    let of_sign = |pool: &Pool<Symbol>, node: Expr| match pool.node(node) {
-        Node::Call(function @ (Function::Abs | Function::Sign), arguments) if is_replaced(pool, node) => {
-            Some((*function, *arguments.first()?))
-        }
-        _ => None,
-    };
-    while let Some((node, (function, argument))) =
-        pool.reachable(&[expr]).into_iter().find_map(|node| Some((node, of_sign(pool, node)?)))
-    {
+    rewritten(pool, expr, |pool, node| {
+        let (function, argument) = match pool.node(node) {
+            Node::Call(function @ (Function::Abs | Function::Sign), arguments) if is_replaced(pool, node) => {
+                (*function, *arguments.first()?)
+            }
+            _ => return None,
+        };
         let one = pool.integer(1);
         let then = if function == Function::Abs { argument } else { one };
         let otherwise = pool.neg(then);
-        let condition = pool.select(argument, then, otherwise);
-        expr = pool.replace(expr, node, condition);
-    }
-    expr
+        Some(pool.select(argument, then, otherwise))
+    })
 }
 
 /// An expression with absolute values in place of the roots of squares, `abs(x)` for `sqrt(x^2)`.
-fn with_absolute_values(pool: &mut Pool<Symbol>, mut expr: Expr) -> Expr {
+fn with_absolute_values(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
     let is_even = |(_, exponent): &(Expr, Rational)| (exponent / Rational::from_integer(2.into())).is_integer();
-    let of_root = |pool: &Pool<Symbol>, node: Expr| {
+    rewritten(pool, expr, |pool, node| {
         let Node::Product(product) = pool.node(node) else { return None };
-        product.factors.iter().enumerate().find_map(|(place, (base, root))| match pool.node(*base) {
-            Node::Product(squares) if squares.factors.iter().all(is_even) => {
-                let mut others = product.factors.clone();
-                others.remove(place);
-                Some((others, squares.factors.clone(), root.clone()))
-            }
+        let mut others = product.factors.clone();
+        let (place, squares) = others.iter().enumerate().find_map(|(place, (base, _))| match pool.node(*base) {
+            Node::Product(squares) if squares.factors.iter().all(is_even) => Some((place, squares.factors.clone())),
             _ => None,
-        })
-    };
-    while let Some((node, (others, squares, root))) =
-        pool.reachable(&[expr]).into_iter().find_map(|node| Some((node, of_root(pool, node)?)))
-    {
+        })?;
+        let (_, root) = others.remove(place);
         let mut factors: Vec<Expr> = others.iter().map(|(base, exponent)| pool.power(*base, exponent)).collect();
         for (base, exponent) in squares {
             let size = pool.call(Function::Abs, &[base]);
             factors.push(pool.power(size, &(exponent * &root)));
         }
-        let by = pool.product(&factors);
+        Some(pool.product(&factors))
+    })
+}
+
+/// An expression in which `rewrite` replaces nodes until it returns `None` for all.
+fn rewritten(
+    pool: &mut Pool<Symbol>,
+    mut expr: Expr,
+    rewrite: impl Fn(&mut Pool<Symbol>, Expr) -> Option<Expr>,
+) -> Expr {
+    while let Some((node, by)) = pool.reachable(&[expr]).into_iter().find_map(|node| Some((node, rewrite(pool, node)?)))
+    {
         expr = pool.replace(expr, node, by);
     }
     expr
