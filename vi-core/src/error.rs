@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// Name of the bordered mass matrix in errors.
-pub(crate) const BORDERED_MASS: &str = "mass matrix bordered by the constraints";
+/// Name of the bordered mass matrix in [`StepError::Singular`].
+pub const BORDERED_MASS: &str = "mass matrix bordered by the constraints";
 
 /// A gap that is this many times as large as its residual belongs to a gradient that almost vanishes.
 const STEEP: f64 = 1e4;

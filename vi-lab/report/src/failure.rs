@@ -8,6 +8,7 @@ use core::fmt;
 use std::io;
 use std::path::Path;
 use vi_core::StepError;
+use vi_core::error::BORDERED_MASS;
 use vi_erased::plan::{Method, Plan};
 
 /// The exit status for a closed standard output: that of a command ended by SIGPIPE.
@@ -174,7 +175,7 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
             "use shorter steps with --dtau, or steps in time with --h, or write a `time_scale` that is positive there"
         }
         (StepError::NotAssembled { .. }, _) => "start from another guess with --q, or set other lengths with --set",
-        (StepError::Singular { matrix: "mass matrix bordered by the constraints", .. }, _) => {
+        (StepError::Singular { matrix: BORDERED_MASS, .. }, _) => {
             "start elsewhere with --q; of a file with more constraints than its mechanism needs, leave those out that \
                   follow from the others with --drop NAME"
         }
