@@ -56,7 +56,7 @@ impl<const N: usize, const B: usize, T: Real> Matrix<N, T> for Blocks<N, B, T> {
     fn inverse(&self) -> Self {
         let mut inverse = *self;
         for members in self.members {
-            let block = dense::eliminate(self.block(members), SMatrix::<T, B, B>::identity());
+            let block = dense::eliminate([B, B], self.block(members), SMatrix::<T, B, B>::identity());
             for (i, row) in members.iter().enumerate() {
                 inverse.rows[*row] = core::array::from_fn(|j| block[(i, j)]);
             }

@@ -1,5 +1,5 @@
-//! Dense matrices: branch-free closed forms up to N = 3, elimination beyond. N is a constant, so that the program
-//! contains only one of these.
+//! Dense matrices: branch-free closed forms up to three rows, elimination beyond. The number of rows is a constant, so that
+//! the program contains only one of these, unless it is known at run time only ([`AnyMatrix`](super::AnyMatrix)).
 
 use super::{Matrix, is_kept};
 use crate::real::Real;
@@ -13,33 +13,17 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
 
     #[inline(always)]
     fn quotient<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> (SMatrix<T, N, M>, T) {
-        match N {
-            1 => (*rhs, self[(0, 0)]),
-            2 => cramer_2(self, rhs),
-            3 => cramer_3(self, rhs),
-            _ => (eliminate(*self, *rhs), T::one()),
-        }
+        quotient([N, M], self, rhs)
     }
 
     #[inline(always)]
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-        let (mut x, determinant) = self.quotient(rhs);
-        if const { N <= 3 } {
-            let reciprocal = determinant.recip();
-            // NaN if the determinant overflowed, or is too small to hold all its digits.
-            let lost = determinant * reciprocal * T::zero();
-            for column in 0..M {
-                for row in 0..N {
-                    x[(row, column)] = x[(row, column)] * reciprocal + lost;
-                }
-            }
-        }
-        x
+        solve([N, M], self, rhs)
     }
 
     #[inline]
     fn inverse(&self) -> Self {
-        eliminate(*self, Self::identity())
+        eliminate([N, N], *self, Self::identity())
     }
 
     #[inline(always)]
@@ -49,17 +33,7 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
 
     #[inline(always)]
     fn apply_to_rows<const S: usize>(inverse: &Self, rows: &mut [[T; S]; N]) {
-        let known = *rows;
-        for i in 0..N {
-            for column in 0..S {
-                rows[i][column] = inverse[(i, 0)] * known[0][column];
-            }
-            for j in 1..N {
-                for column in 0..S {
-                    rows[i][column] += inverse[(i, j)] * known[j][column];
-                }
-            }
-        }
+        multiply_rows(N, inverse, rows);
     }
 
     #[inline(always)]
@@ -78,14 +52,71 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     }
 }
 
+/// [`Matrix::quotient`] for the first n rows and columns, and the first m right-hand sides.
+#[inline(always)]
+pub(super) fn quotient<T: Real, const N: usize, const M: usize>(
+    [n, m]: [usize; 2],
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+) -> (SMatrix<T, N, M>, T) {
+    match n {
+        1 => (*b, a[(0, 0)]),
+        2 => cramer_2(m, a, b),
+        3 => cramer_3(m, a, b),
+        _ => (eliminate([n, m], *a, *b), T::one()),
+    }
+}
+
+/// [`Matrix::solve`] for the same.
+#[inline(always)]
+pub(super) fn solve<T: Real, const N: usize, const M: usize>(
+    [n, m]: [usize; 2],
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+) -> SMatrix<T, N, M> {
+    let (mut x, determinant) = quotient([n, m], a, b);
+    if n <= 3 {
+        let reciprocal = determinant.recip();
+        // NaN if the determinant overflowed, or is too small to hold all its digits.
+        let lost = determinant * reciprocal * T::zero();
+        for column in 0..m {
+            for row in 0..n {
+                x[(row, column)] = x[(row, column)] * reciprocal + lost;
+            }
+        }
+    }
+    x
+}
+
+/// Multiplies the first n rows by the first n rows and columns of a matrix.
+#[inline(always)]
+pub(super) fn multiply_rows<T: Real, const N: usize, const S: usize>(
+    n: usize,
+    matrix: &SMatrix<T, N, N>,
+    rows: &mut [[T; S]; N],
+) {
+    let known = *rows;
+    for i in 0..n {
+        for column in 0..S {
+            rows[i][column] = matrix[(i, 0)] * known[0][column];
+        }
+        for j in 1..n {
+            for column in 0..S {
+                rows[i][column] += matrix[(i, j)] * known[j][column];
+            }
+        }
+    }
+}
+
 /// Numerators and determinant of Cramer's rule for two unknowns.
 #[inline(always)]
 fn cramer_2<T: Real, const N: usize, const M: usize>(
+    m: usize,
     a: &SMatrix<T, N, N>,
     b: &SMatrix<T, N, M>,
 ) -> (SMatrix<T, N, M>, T) {
     let mut x = *b;
-    for column in 0..M {
+    for column in 0..m {
         let (b0, b1) = (b[(0, column)], b[(1, column)]);
         x[(0, column)] = a[(1, 1)] * b0 - a[(0, 1)] * b1;
         x[(1, column)] = a[(0, 0)] * b1 - a[(1, 0)] * b0;
@@ -96,6 +127,7 @@ fn cramer_2<T: Real, const N: usize, const M: usize>(
 /// The same for three unknowns, by cofactors.
 #[inline(always)]
 fn cramer_3<T: Real, const N: usize, const M: usize>(
+    m: usize,
     a: &SMatrix<T, N, N>,
     b: &SMatrix<T, N, M>,
 ) -> (SMatrix<T, N, M>, T) {
@@ -108,7 +140,7 @@ fn cramer_3<T: Real, const N: usize, const M: usize>(
         }
     }
     let mut x = *b;
-    for column in 0..M {
+    for column in 0..m {
         for row in 0..3 {
             let [c0, c1, c2] = [0, 1, 2].map(|i| cofactors[i][row]);
             x[(row, column)] = c0 * b[(0, column)] + c1 * b[(1, column)] + c2 * b[(2, column)];
@@ -118,69 +150,73 @@ fn cramer_3<T: Real, const N: usize, const M: usize>(
     (x, a[(0, 0)] * c0 + a[(0, 1)] * c1 + a[(0, 2)] * c2)
 }
 
-/// Gaussian elimination in the order of the rows; with pivoting if digits would be lost.
+/// Gaussian elimination of the first n rows in their order; with pivoting if digits would be lost.
 #[inline]
 pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
+    [n, m]: [usize; 2],
     a: SMatrix<T, N, N>,
     b: SMatrix<T, N, M>,
 ) -> SMatrix<T, N, M> {
-    in_order(a, b).unwrap_or_else(|| pivoted(a, b))
+    in_order([n, m], a, b).unwrap_or_else(|| pivoted([n, m], a, b))
 }
 
 /// `None` if a pivot is lost.
 #[inline]
 fn in_order<T: Real, const N: usize, const M: usize>(
+    [n, m]: [usize; 2],
     mut a: SMatrix<T, N, N>,
     mut b: SMatrix<T, N, M>,
 ) -> Option<SMatrix<T, N, M>> {
-    if const { N > LARGEST_UNBLOCKED } {
-        return by_blocks(&mut a, &mut b, None).then_some(b);
+    if const { N > LARGEST_UNBLOCKED } && n > LARGEST_UNBLOCKED {
+        return by_blocks([n, m], &mut a, &mut b, None).then_some(b);
     }
     let mut kept = true;
-    for column in 0..N {
-        for row in column + 1..N {
+    for column in 0..n {
+        for row in column + 1..n {
             let eliminated = a[(row, column)] / a[(column, column)] * a[(column, row)];
             kept &= is_kept(a[(row, row)], eliminated);
         }
-        eliminate_column(&mut a, &mut b, column);
+        eliminate_column([n, m], &mut a, &mut b, column);
     }
-    kept.then(|| substitute(&a, b))
+    kept.then(|| substitute([n, m], &a, b))
 }
 
 /// With partial pivoting of scaled rows.
 #[cold]
 pub(super) fn pivoted<T: Real, const N: usize, const M: usize>(
+    [n, m]: [usize; 2],
     mut a: SMatrix<T, N, N>,
     mut b: SMatrix<T, N, M>,
 ) -> SMatrix<T, N, M> {
     let mut weights = weights(&a);
-    if const { N > LARGEST_UNBLOCKED } {
-        by_blocks(&mut a, &mut b, Some(&mut weights));
+    if const { N > LARGEST_UNBLOCKED } && n > LARGEST_UNBLOCKED {
+        by_blocks([n, m], &mut a, &mut b, Some(&mut weights));
         return b;
     }
-    for column in 0..N {
+    for column in 0..n {
         if let Some(row) = pivot(&mut a, &mut weights, column) {
             b.swap_rows(column, row);
         }
-        eliminate_column(&mut a, &mut b, column);
+        eliminate_column([n, m], &mut a, &mut b, column);
     }
-    substitute(&a, b)
+    substitute([n, m], &a, b)
 }
 
 /// Subtracts multiples of the pivot's row from those below it.
 #[inline]
 fn eliminate_column<T: Real, const N: usize, const M: usize>(
+    [n, m]: [usize; 2],
     a: &mut SMatrix<T, N, N>,
     b: &mut SMatrix<T, N, M>,
     column: usize,
 ) {
-    for row in column + 1..N {
+    for row in column + 1..n {
         let factor = a[(row, column)] / a[(column, column)];
-        for k in column + 1..N {
+        for k in column + 1..n {
             let eliminated = factor * a[(column, k)];
             a[(row, k)] -= eliminated;
         }
-        for k in 0..M {
+        for k in 0..m {
             let eliminated = factor * b[(column, k)];
             b[(row, k)] -= eliminated;
         }
@@ -190,12 +226,13 @@ fn eliminate_column<T: Real, const N: usize, const M: usize>(
 /// Back substitution in the upper triangle.
 #[inline]
 fn substitute<T: Real, const N: usize, const M: usize>(
+    [n, m]: [usize; 2],
     a: &SMatrix<T, N, N>,
     mut b: SMatrix<T, N, M>,
 ) -> SMatrix<T, N, M> {
-    for row in (0..N).rev() {
-        for k in 0..M {
-            let known = (row + 1..N).fold(T::zero(), |sum, column| sum + a[(row, column)] * b[(column, k)]);
+    for row in (0..n).rev() {
+        for k in 0..m {
+            let known = (row + 1..n).fold(T::zero(), |sum, column| sum + a[(row, column)] * b[(column, k)]);
             b[(row, k)] = (b[(row, k)] - known) / a[(row, row)];
         }
     }
@@ -213,11 +250,12 @@ const TOGETHER: usize = 8;
 /// without, it returns `false` if a pivot is lost. Not inlined: one copy per instruction set.
 #[inline(never)]
 fn by_blocks<T: Real, const N: usize, const M: usize>(
+    [n, m]: [usize; 2],
     a: &mut SMatrix<T, N, N>,
     b: &mut SMatrix<T, N, M>,
     weights: Option<&mut [f64; N]>,
 ) -> bool {
-    let elimination = Elimination { a, b, weights };
+    let elimination = Elimination { n, m, a, b, weights };
     // Other numbers do not gain from wide vectors.
     if const { size_of::<T>() <= size_of::<f64>() } {
         Instructions::detected().run(elimination)
@@ -228,6 +266,8 @@ fn by_blocks<T: Real, const N: usize, const M: usize>(
 
 /// Elimination along the columns, which are contiguous in memory.
 struct Elimination<'a, T, const N: usize, const M: usize> {
+    n: usize,
+    m: usize,
     a: &'a mut SMatrix<T, N, N>,
     b: &'a mut SMatrix<T, N, M>,
     weights: Option<&'a mut [f64; N]>,
@@ -238,16 +278,16 @@ impl<T: Real, const N: usize, const M: usize> Loop for Elimination<'_, T, N, M> 
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> bool {
-        let Self { a, b, mut weights } = self;
-        for start in (0..N).step_by(BLOCK) {
-            let end = (start + BLOCK).min(N);
+        let Self { n, m, a, b, mut weights } = self;
+        for start in (0..n).step_by(BLOCK) {
+            let end = (start + BLOCK).min(n);
             let mut kept = true;
             for column in start..end {
                 let (factors, columns) = a.data.0.split_at_mut(column);
                 let entries = &mut columns[0];
                 for pivot in start..column {
                     kept &= is_kept(entries[column], factors[pivot][column] * entries[pivot]);
-                    subtract_row(&factors[pivot], pivot, entries);
+                    subtract_row(n, &factors[pivot], pivot, entries);
                 }
                 // Columns beyond the block are swapped before their subtractions instead of between them.
                 if let Some(weights) = &mut weights
@@ -257,27 +297,27 @@ impl<T: Real, const N: usize, const M: usize> Loop for Elimination<'_, T, N, M> 
                 }
                 let entries = &mut a.data.0[column];
                 let pivot = entries[column];
-                for entry in &mut entries[column + 1..] {
+                for entry in &mut entries[column + 1..n] {
                     *entry = *entry / pivot;
                 }
             }
             let diagonal = core::array::from_fn(|i| a[(i, i)]);
             let (factors, columns) = a.data.0.split_at_mut(end);
-            let factors = &factors[start..];
+            let (factors, columns) = (&factors[start..], &mut columns[..n - end]);
             if let Ok(factors) = <&[_; BLOCK]>::try_from(factors) {
                 // Two columns share the loads of the factors.
                 let (pairs, last) = columns.as_chunks_mut::<2>();
                 for pair in pairs {
-                    subtract_rows(factors, start, pair);
+                    subtract_rows(n, factors, start, pair);
                 }
-                for column in last.iter_mut().chain(&mut b.data.0) {
-                    subtract_rows(factors, start, core::array::from_mut(column));
+                for column in last.iter_mut().chain(&mut b.data.0[..m]) {
+                    subtract_rows(n, factors, start, core::array::from_mut(column));
                 }
-                kept &= weights.is_some() || are_kept(&diagonal, factors, columns, start);
+                kept &= weights.is_some() || are_kept(n, &diagonal, factors, columns, start);
             } else {
-                for column in &mut b.data.0 {
+                for column in &mut b.data.0[..m] {
                     for (pivot, factors) in (start..).zip(factors) {
-                        subtract_row(factors, pivot, column);
+                        subtract_row(n, factors, pivot, column);
                     }
                 }
             }
@@ -286,14 +326,14 @@ impl<T: Real, const N: usize, const M: usize> Loop for Elimination<'_, T, N, M> 
             }
         }
         if const { M <= TOGETHER } {
-            substitute_together(a, &mut b.data.0);
+            substitute_together(n, a, &mut b.data.0);
         } else {
-            let (groups, rest) = b.data.0.as_chunks_mut::<TOGETHER>();
+            let (groups, rest) = b.data.0[..m].as_chunks_mut::<TOGETHER>();
             for group in groups {
-                substitute_together(a, group);
+                substitute_together(n, a, group);
             }
             for column in rest {
-                substitute_together(a, core::array::from_mut(column));
+                substitute_together(n, a, core::array::from_mut(column));
             }
         }
         true
@@ -302,9 +342,9 @@ impl<T: Real, const N: usize, const M: usize> Loop for Elimination<'_, T, N, M> 
 
 /// Subtracts multiples of the row `pivot` from those below it, in one column.
 #[inline(always)]
-fn subtract_row<T: Real, const N: usize>(factors: &[T; N], pivot: usize, column: &mut [T; N]) {
+fn subtract_row<T: Real, const N: usize>(n: usize, factors: &[T; N], pivot: usize, column: &mut [T; N]) {
     let entry = column[pivot];
-    for row in pivot + 1..N {
+    for row in pivot + 1..n {
         let eliminated = factors[row] * entry;
         column[row] -= eliminated;
     }
@@ -313,6 +353,7 @@ fn subtract_row<T: Real, const N: usize>(factors: &[T; N], pivot: usize, column:
 /// [`subtract_row`] for the rows of a block from `start` on, one after the other, in C columns.
 #[inline(always)]
 fn subtract_rows<T: Real, const N: usize, const C: usize>(
+    n: usize,
     factors: &[[T; N]; BLOCK],
     start: usize,
     columns: &mut [[T; N]; C],
@@ -327,7 +368,7 @@ fn subtract_rows<T: Real, const N: usize, const C: usize>(
             }
         }
     }
-    for row in start + BLOCK..N {
+    for row in start + BLOCK..n {
         let mut entries = [T::zero(); C];
         for k in 0..C {
             entries[k] = columns[k][row];
@@ -348,6 +389,7 @@ fn subtract_rows<T: Real, const N: usize, const C: usize>(
 /// `columns` those after it.
 #[inline(always)]
 fn are_kept<T: Real, const N: usize>(
+    n: usize,
     diagonal: &[T; N],
     factors: &[[T; N]; BLOCK],
     columns: &[[T; N]],
@@ -355,13 +397,13 @@ fn are_kept<T: Real, const N: usize>(
 ) -> bool {
     // By rows, so that the comparison is vectorized.
     let mut pivots = [[T::zero(); N]; BLOCK];
-    for (column, entries) in (start + BLOCK..N).zip(columns) {
+    for (column, entries) in (start + BLOCK..n).zip(columns) {
         for i in 0..BLOCK {
             pivots[i][column] = entries[start + i];
         }
     }
     let mut kept = true;
-    for row in start + BLOCK..N {
+    for row in start + BLOCK..n {
         let mut entry = diagonal[row];
         for i in 0..BLOCK {
             let eliminated = factors[i][row] * pivots[i][row];
@@ -374,11 +416,15 @@ fn are_kept<T: Real, const N: usize>(
 
 /// [`substitute`] for C right-hand sides, whose sums are independent of each other.
 #[inline(always)]
-fn substitute_together<T: Real, const N: usize, const C: usize>(a: &SMatrix<T, N, N>, columns: &mut [[T; N]; C]) {
+fn substitute_together<T: Real, const N: usize, const C: usize>(
+    n: usize,
+    a: &SMatrix<T, N, N>,
+    columns: &mut [[T; N]; C],
+) {
     let mut x = [[T::zero(); C]; N];
-    for row in (0..N).rev() {
+    for row in (0..n).rev() {
         let mut known = [T::zero(); C];
-        for column in row + 1..N {
+        for column in row + 1..n {
             for k in 0..C {
                 known[k] += a[(row, column)] * x[column][k];
             }

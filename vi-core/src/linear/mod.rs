@@ -19,6 +19,7 @@
 //! of them, in any units of their rows and columns. If it loses a pivot, the solution by [`Tridiagonal`] and [`Banded`]
 //! is NaN, as is the closed form if the determinant is out of range; [`solve`] then pivots.
 
+mod any;
 mod banded;
 mod blocks;
 #[cfg(feature = "alloc")]
@@ -32,6 +33,7 @@ mod rectangular;
 mod symmetric;
 mod tridiagonal;
 
+pub use any::{AnyForm, AnyInverse, AnyMatrix};
 pub use banded::Banded;
 pub use blocks::Blocks;
 #[cfg(feature = "alloc")]
@@ -73,6 +75,11 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Send + Sync + Debug + PartialE
     fn solve_unchecked<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
         let (numerators, determinant) = self.quotient(rhs);
         numerators * determinant.recip()
+    }
+    /// The inverse of A, with the conditions of [`Matrix::solve_unchecked`].
+    #[inline(always)]
+    fn inverse_unchecked(&self) -> SMatrix<T, N, N> {
+        self.solve_unchecked(&SMatrix::identity())
     }
     /// Factors A for repeated solves.
     fn inverse(&self) -> Self::Inverse;
@@ -117,7 +124,11 @@ pub fn solve<T: Real, const N: usize, const M: usize>(
     rhs: &SMatrix<T, N, M>,
 ) -> Option<SMatrix<T, N, M>> {
     let solution = matrix.solve(rhs);
-    if is_finite(&solution) { Some(solution) } else { Some(dense::pivoted(matrix.dense(), *rhs)).filter(is_finite) }
+    if is_finite(&solution) {
+        Some(solution)
+    } else {
+        Some(dense::pivoted([N, M], matrix.dense(), *rhs)).filter(is_finite)
+    }
 }
 
 fn is_finite<T: Real, const N: usize, const M: usize>(solution: &SMatrix<T, N, M>) -> bool {

@@ -169,11 +169,11 @@ macro_rules! sparse_matrix {
             type Inverse = SMatrix<T, N, N>;
 
             fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-                dense::pivoted(self.dense(), *rhs)
+                dense::pivoted([N, M], self.dense(), *rhs)
             }
 
             fn inverse(&self) -> Self::Inverse {
-                dense::pivoted(self.dense(), SMatrix::identity())
+                dense::pivoted([N, N], self.dense(), SMatrix::identity())
             }
 
             fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N> {

@@ -12,24 +12,24 @@ pub struct Symmetric<const N: usize, T>(pub SMatrix<T, N, N>);
 type Factors<const N: usize, T> = SMatrix<T, N, N>;
 
 impl<const N: usize, T: Real> Symmetric<N, T> {
-    /// The factors; `None` if a pivot is not positive, so that elimination without pivoting is unstable.
+    /// The factors of the first n rows and columns; `None` if a pivot is not positive, so that elimination without pivoting is unstable.
     #[inline]
-    fn factors(&self) -> Option<Factors<N, T>> {
+    fn factors(&self, n: usize) -> Option<Factors<N, T>> {
         let mut a = self.0;
         let mut positive = true;
-        for column in 0..N {
+        for column in 0..n {
             let pivot = a[(column, column)];
             positive &= pivot.is_positive();
             let reciprocal = pivot.recip();
             a[(column, column)] = reciprocal;
-            for row in column + 1..N {
+            for row in column + 1..n {
                 a[(column, row)] = a[(row, column)];
                 a[(row, column)] *= reciprocal;
             }
             // Column by column, so that the rows inside one column are independent.
-            for k in column + 1..N {
+            for k in column + 1..n {
                 let above = a[(column, k)];
-                for row in k..N {
+                for row in k..n {
                     let eliminated = a[(row, column)] * above;
                     a[(row, k)] -= eliminated;
                 }
@@ -37,24 +37,34 @@ impl<const N: usize, T: Real> Symmetric<N, T> {
         }
         positive.then_some(a)
     }
+
+    /// [`Matrix::solve`] for the first n rows and columns, and the first m right-hand sides.
+    #[inline(always)]
+    pub(super) fn solve_first<const M: usize>(&self, [n, m]: [usize; 2], rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        match self.factors(n) {
+            Some(factors) => substitute([n, m], &factors, *rhs),
+            None => dense::eliminate([n, m], self.0, *rhs),
+        }
+    }
 }
 
 /// Solves with the factors.
 #[inline]
 fn substitute<const N: usize, const M: usize, T: Real>(
+    [n, m]: [usize; 2],
     factors: &Factors<N, T>,
     mut x: SMatrix<T, N, M>,
 ) -> SMatrix<T, N, M> {
-    for k in 0..M {
-        for column in 0..N {
+    for k in 0..m {
+        for column in 0..n {
             let known = x[(column, k)];
-            for row in column + 1..N {
+            for row in column + 1..n {
                 let eliminated = factors[(row, column)] * known;
                 x[(row, k)] -= eliminated;
             }
         }
-        for row in (0..N).rev() {
-            let below = (row + 1..N).fold(T::zero(), |sum, below| sum + factors[(below, row)] * x[(below, k)]);
+        for row in (0..n).rev() {
+            let below = (row + 1..n).fold(T::zero(), |sum, below| sum + factors[(below, row)] * x[(below, k)]);
             x[(row, k)] = x[(row, k)] * factors[(row, row)] - below;
         }
     }
@@ -66,10 +76,7 @@ impl<const N: usize, T: Real> Matrix<N, T> for Symmetric<N, T> {
 
     #[inline]
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-        match self.factors() {
-            Some(factors) => substitute(&factors, *rhs),
-            None => dense::eliminate(self.0, *rhs),
-        }
+        self.solve_first([N, M], rhs)
     }
 
     fn inverse(&self) -> Self::Inverse {

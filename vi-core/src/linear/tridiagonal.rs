@@ -54,20 +54,34 @@ impl<const M: usize, T: Real> Front<M, T> {
     }
 }
 
-impl<const N: usize, T: Real> Tridiagonal<N, T> {
+/// The order in which n rows are eliminated.
+#[derive(Clone, Copy)]
+struct Order {
+    n: usize,
     /// Pairs of rows outside the middle: those from above, and those from below, which may be one more.
-    const PAIRS: usize = N.saturating_sub(1) / 2;
-    const ABOVE: usize = Self::PAIRS / 2;
-    const BELOW: usize = Self::PAIRS - Self::ABOVE;
+    above: usize,
+    below: usize,
     /// The middle rows, which may be one row twice.
-    const MIDDLE: [usize; 2] = [2 * Self::ABOVE, N - 1 - 2 * Self::BELOW];
+    middle: [usize; 2],
+}
+
+impl Order {
+    #[inline(always)]
+    const fn of(n: usize) -> Self {
+        let pairs = n.saturating_sub(1) / 2;
+        let above = pairs / 2;
+        let below = pairs - above;
+        Self { n, above, below, middle: [2 * above, n - 1 - 2 * below] }
+    }
 
     /// The rows of a pair.
     #[inline(always)]
-    fn rows<const FROM_ABOVE: bool>(step: usize) -> [usize; 2] {
-        if FROM_ABOVE { [2 * step, 2 * step + 1] } else { [N - 1 - 2 * step, N - 2 - 2 * step] }
+    fn rows<const FROM_ABOVE: bool>(self, step: usize) -> [usize; 2] {
+        if FROM_ABOVE { [2 * step, 2 * step + 1] } else { [self.n - 1 - 2 * step, self.n - 2 - 2 * step] }
     }
+}
 
+impl<const N: usize, T: Real> Tridiagonal<N, T> {
     /// The coefficients of the previous and of the next row, in the order of elimination.
     #[inline(always)]
     fn beside<const FROM_ABOVE: bool>(&self, row: usize) -> [T; 2] {
@@ -115,7 +129,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
 
     /// Factors the matrix and eliminates right-hand sides at once: they finish soon after the pivots.
     #[inline]
-    fn eliminate<const M: usize>(&self, x: &mut SMatrix<T, N, M>) -> ([T; N], [T; N]) {
+    fn eliminate<const M: usize>(&self, order: Order, x: &mut SMatrix<T, N, M>) -> ([T; N], [T; N]) {
         let (mut pivots, mut weights) = ([T::zero(); N], [T::zero(); N]);
         let (mut above, mut below, mut all_kept) = (Front::start(), Front::start(), true);
         let mut enter = |[i, j]: [usize; 2], pivot: [T; 2], [near, far]: [T; 2], kept: bool| {
@@ -123,19 +137,19 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
             (weights[i], weights[j]) = (near, far);
             all_kept &= kept;
         };
-        for step in 0..Self::BELOW {
-            if step < Self::ABOVE {
-                let rows = Self::rows::<true>(step);
+        for step in 0..order.below {
+            if step < order.above {
+                let rows = order.rows::<true>(step);
                 let (pivot, weight, kept) = self.pivot::<true, M>(rows, &mut above);
                 enter(rows, pivot, weight, kept);
                 self.forward::<true, M>(rows, pivot, &mut above, x);
             }
-            let rows = Self::rows::<false>(step);
+            let rows = order.rows::<false>(step);
             let (pivot, weight, kept) = self.pivot::<false, M>(rows, &mut below);
             enter(rows, pivot, weight, kept);
             self.forward::<false, M>(rows, pivot, &mut below, x);
         }
-        let [first, last] = Self::MIDDLE;
+        let [first, last] = order.middle;
         let eliminated = self.lower[first] * above.beyond * above.corner;
         let mut kept = is_kept(self.diagonal[first], eliminated);
         let mut pivot = self.diagonal[first] - eliminated;
@@ -158,14 +172,14 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
 
     /// Solves for the middle, and from there for all others.
     #[inline]
-    fn outward<const M: usize>(&self, (pivots, weights): (&[T; N], &[T; N]), x: &mut SMatrix<T, N, M>) {
-        let [first, last] = Self::MIDDLE;
+    fn outward<const M: usize>(&self, order: Order, (pivots, weights): (&[T; N], &[T; N]), x: &mut SMatrix<T, N, M>) {
+        let [first, last] = order.middle;
         for mut x in x.column_iter_mut() {
             if first > 0 {
                 let known = self.lower[first] * x[first - 1];
                 x[first] -= known;
             }
-            if last + 1 < N {
+            if last + 1 < order.n {
                 let known = self.upper[last] * x[last + 1];
                 x[last] -= known;
             }
@@ -180,19 +194,52 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
                 x[first] += after;
             }
             let [mut above, mut below] = [x[first], x[last]];
-            for step in (0..Self::BELOW).rev() {
-                if step < Self::ABOVE {
-                    let [i, j] = Self::rows::<true>(step);
+            for step in (0..order.below).rev() {
+                if step < order.above {
+                    let [i, j] = order.rows::<true>(step);
                     x[j] += weights[j] * above;
                     x[i] += weights[i] * above;
                     above = x[i];
                 }
-                let [i, j] = Self::rows::<false>(step);
+                let [i, j] = order.rows::<false>(step);
                 x[j] += weights[j] * below;
                 x[i] += weights[i] * below;
                 below = x[i];
             }
         }
+    }
+
+    /// [`Matrix::solve`] for the first n rows and columns.
+    #[inline(always)]
+    pub(super) fn solve_first<const M: usize>(&self, n: usize, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        let (order, mut x) = (Order::of(n), *rhs);
+        let (pivots, weights) = self.eliminate(order, &mut x);
+        self.outward(order, (&pivots, &weights), &mut x);
+        x
+    }
+
+    /// [`Matrix::inverse`] for the first n rows and columns.
+    #[inline(always)]
+    pub(super) fn inverse_of_first(&self, n: usize) -> Factors<N, T> {
+        let (pivots, weights) = self.eliminate(Order::of(n), &mut SMatrix::<T, N, 0>::zeros());
+        Factors { matrix: *self, pivots, weights }
+    }
+
+    /// [`Matrix::apply`] for the first n rows and columns.
+    #[inline(always)]
+    pub(super) fn apply_first(n: usize, inverse: &Factors<N, T>, rhs: &SVector<T, N>) -> SVector<T, N> {
+        let (order, Factors { matrix, pivots, weights }, mut x) = (Order::of(n), inverse, *rhs);
+        let (mut above, mut below) = (Front::start(), Front::start());
+        for step in 0..order.below {
+            if step < order.above {
+                let [i, j] = order.rows::<true>(step);
+                matrix.forward::<true, 1>([i, j], [pivots[i], pivots[j]], &mut above, &mut x);
+            }
+            let [i, j] = order.rows::<false>(step);
+            matrix.forward::<false, 1>([i, j], [pivots[i], pivots[j]], &mut below, &mut x);
+        }
+        matrix.outward(order, (pivots, weights), &mut x);
+        x
     }
 }
 
@@ -201,31 +248,16 @@ impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
 
     #[inline]
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-        let mut x = *rhs;
-        let (pivots, weights) = self.eliminate(&mut x);
-        self.outward((&pivots, &weights), &mut x);
-        x
+        self.solve_first(N, rhs)
     }
 
     fn inverse(&self) -> Self::Inverse {
-        let (pivots, weights) = self.eliminate(&mut SMatrix::<T, N, 0>::zeros());
-        Factors { matrix: *self, pivots, weights }
+        self.inverse_of_first(N)
     }
 
     #[inline]
     fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N> {
-        let (Factors { matrix, pivots, weights }, mut x) = (inverse, *rhs);
-        let (mut above, mut below) = (Front::start(), Front::start());
-        for step in 0..Self::BELOW {
-            if step < Self::ABOVE {
-                let [i, j] = Self::rows::<true>(step);
-                matrix.forward::<true, 1>([i, j], [pivots[i], pivots[j]], &mut above, &mut x);
-            }
-            let [i, j] = Self::rows::<false>(step);
-            matrix.forward::<false, 1>([i, j], [pivots[i], pivots[j]], &mut below, &mut x);
-        }
-        matrix.outward((pivots, weights), &mut x);
-        x
+        Self::apply_first(N, inverse, rhs)
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 mod large;
 
-use super::super::{Banded, Blocks, Matrix, Symmetric, Tridiagonal, dense::eliminate, solve};
+use super::super::{AnyForm, AnyMatrix, Banded, Blocks, Matrix, Symmetric, Tridiagonal, dense, solve};
 
 use nalgebra::{SMatrix, SVector};
 
@@ -65,7 +65,7 @@ fn off<const N: usize, F: Matrix<N, f64>>(a: &SMatrix<f64, N, N>, form: &F, seed
     let by_inverse = F::apply(&form.inverse(), &one);
     assert_eq!(by_two.column(1), by_one, "a right-hand side is solved for itself");
     assert!(by_two.iter().chain(by_inverse.iter()).all(|entry| entry.is_finite()), "{form:?}");
-    let wanted = eliminate(*a, two);
+    let wanted = dense::eliminate([N, 2], *a, two);
     // An error that both share would show here: A x is nalgebra's.
     let defect = (a * by_two - two).amax();
     let mut rows: [[f64; 2]; N] = core::array::from_fn(|i| [two[(i, 0)], two[(i, 1)]]);
@@ -122,7 +122,7 @@ fn what_stands_outside_a_tridiagonal_matrix_is_not_taken() {
         let rhs = SMatrix::<f64, N, 2>::from_fn(|_, _| next(&mut seed));
         let mut form = tridiagonal(&a);
         (form.lower[0], form.upper[N - 1]) = (outside, -outside);
-        (solve(&form, &rhs).expect("regular") - eliminate(a, rhs)).amax()
+        (solve(&form, &rhs).expect("regular") - dense::eliminate([N, 2], a, rhs)).amax()
     }
     for outside in [7.0, f64::INFINITY, f64::NAN] {
         for off in [off::<2>(outside), off::<4>(outside), off::<5>(outside), off::<16>(outside)] {
@@ -241,7 +241,7 @@ fn an_indefinite_symmetric_matrix_is_solved_with_pivoting() {
         let mut a = SMatrix::<f64, 5, 5>::from_fn(|_, _| next(&mut seed));
         a += a.transpose();
         a[(0, 0)] = corner;
-        assert_eq!(Symmetric(a).solve(&rhs), eliminate(a, rhs));
+        assert_eq!(Symmetric(a).solve(&rhs), dense::eliminate([5, 2], a, rhs));
         let defect = (a * Symmetric(a).solve(&rhs) - rhs).amax();
         println!("corner {corner:e}: off by {defect:.1e}");
         // Measured: at most 4.4e-16.
@@ -274,4 +274,45 @@ fn digits_lost_without_pivoting_are_found_with_it() {
         // Measured: at most 1.8e-15; the first pivots by elimination alone 4.5e-5 and more.
         assert!(of_one <= 2e-15 && of_two <= 2e-15, "{small:e}: {of_one:e}, {of_two:e}");
     }
+}
+
+/// These rows among N, the others zero.
+fn among<const N: usize, const M: usize, const C: usize>(of: &SMatrix<f64, M, C>) -> SMatrix<f64, N, C> {
+    SMatrix::from_fn(|row, column| of.get((row, column)).copied().unwrap_or(0.0))
+}
+
+/// Solves a matrix as the first M rows of N, with the bits of its form of M rows.
+fn is_solved_among<const N: usize, const M: usize, F: Matrix<M, f64>>(seed: &mut u32, of: AnyForm, exact: &F) {
+    let mut part = AnyMatrix::<N, f64>::zeros(of, M, 1.0);
+    exact.each_entry(|row, column, value| part.put(row, column, value));
+    let rhs = SMatrix::<f64, M, 2>::from_fn(|_, _| next(seed));
+    assert_eq!(part.solve(&among(&rhs)), among::<N, M, 2>(&exact.solve(&rhs)), "{of:?} {M}");
+    assert_eq!(part.solve_unchecked(&among(&rhs)), among::<N, M, 2>(&exact.solve_unchecked(&rhs)), "{of:?} {M}");
+    let x = rhs.column(1).clone_owned();
+    assert_eq!(
+        AnyMatrix::apply(&part.inverse(), &among(&x)),
+        among::<N, M, 1>(&F::apply(&exact.inverse(), &x)),
+        "{of:?} {M}"
+    );
+    assert_eq!(part.multiply(&among(&x)), among::<N, M, 1>(&exact.multiply(&x)), "{of:?} {M}");
+    let (found, dense) = (part.inverse_unchecked(), exact.dense());
+    assert_eq!(SMatrix::<f64, M, M>::from_fn(|i, j| found[(i, j)]), exact.inverse_unchecked(), "{of:?} {M}");
+    let wanted = |i: usize, j: usize| dense.get((i, j)).copied().unwrap_or(if i == j { 1.0 } else { 0.0 });
+    assert_eq!(part.dense(), SMatrix::<f64, N, N>::from_fn(wanted), "{of:?} {M}");
+}
+
+#[test]
+fn the_first_rows_are_solved_with_the_bits_of_their_number() {
+    let seed = &mut 1;
+    macro_rules! each {
+        ($($rows:literal),*) => {$(
+            let a = dominant::<$rows>(seed, true, |_, _| true);
+            is_solved_among::<24, $rows, _>(seed, AnyForm::Diagonal, &banded::<$rows, 1>(&a));
+            is_solved_among::<24, $rows, _>(seed, AnyForm::Tridiagonal, &tridiagonal(&a));
+            is_solved_among::<24, $rows, _>(seed, AnyForm::Symmetric, &Symmetric(a));
+            let a = dominant::<$rows>(seed, false, |_, _| true);
+            is_solved_among::<24, $rows, _>(seed, AnyForm::Dense, &a);
+        )*};
+    }
+    each!(1, 2, 3, 4, 5, 8, 16, 17, 19, 24);
 }
