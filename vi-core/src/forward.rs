@@ -112,7 +112,7 @@ macro_rules! forward {
     (@motion_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
         $crate::forward! { @facts ($this) ($to) $crate::motion::Motion<$n, $t>, $s,
             has_constant_mass -> bool, is_separable -> bool, scales_time -> bool, has_point_masses -> bool,
-            constraint_names -> &'static [&'static str], holonomic -> usize,
+            moving -> usize, constraint_names -> &'static [&'static str], holonomic -> usize,
             blocks -> &'static [$crate::linear::Block] }
     };
     (@point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {

@@ -81,6 +81,12 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn has_point_masses(&self) -> bool {
         Self::POINT_MASSES
     }
+    /// The number of coordinates that move: the first ones. Those after them are at rest at 0, with the mass 1 and without
+    /// forces; only systems that are known at run time have any. Steps leave them out where they take time.
+    #[inline(always)]
+    fn moving(&self) -> usize {
+        N
+    }
     /// [`Motion::CONSTRAINTS`].
     #[inline(always)]
     fn constraint_names(&self) -> &'static [&'static str] {
@@ -102,6 +108,25 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     #[inline(always)]
     fn sides(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T> {
         self.point(t, q, v).sides()
+    }
+    /// [`Motion::sides`]; calls `put` with row, column and value of each entry of M⁻¹, which is unspecified where M is
+    /// singular.
+    #[inline(always)]
+    fn sides_and_inverse(
+        &self,
+        t: T,
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
+        mut put: impl FnMut(usize, usize, T),
+    ) -> Sides<N, T> {
+        let point = self.point(t, q, v);
+        let inverse = point.mass.inverse_unchecked();
+        for row in 0..N {
+            for column in 0..N {
+                put(row, column, inverse[(row, column)]);
+            }
+        }
+        point.sides()
     }
     /// `L_q + f` alone.
     #[inline(always)]

@@ -13,7 +13,7 @@
 
 use super::fixed_point::{Convergence, Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
-use super::points::{ErasedSystem, Form, MANY, Points};
+use super::points::{ErasedSystem, Form, Points};
 use super::stages::{
     AtStages, Roundings, Stages, add_products, change, constant_mass, gathered, growth, maximum, product, roundings,
     scaled, scatter, sum, times, weights,
@@ -29,6 +29,9 @@ const FAST: f64 = 1.0 / 8.0;
 /// Change below which masses are kept: a part of 256 of the velocities. After a larger one they belong to other positions.
 const NEAR: f64 = VELOCITY / (256.0 * f64::EPSILON);
 
+/// The inverse of M at each stage, of the last iteration with new masses.
+pub(crate) type Masses<const N: usize, const S: usize> = Option<[Stages<N, S>; N]>;
+
 /// The equations of a step; see the [module](self).
 pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
     system: &'a Y,
@@ -36,8 +39,8 @@ pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     h: f64,
     /// M, factored, if it is constant.
     inverse: Option<M::Inverse>,
-    /// The inverse of M at each stage, of the last iteration with new masses; for many coordinates.
-    kept: Option<[Stages<N, S>; N]>,
+    /// For many coordinates. Not a value, because a move of the equations would copy it.
+    kept: Option<&'a mut Masses<N, S>>,
     /// The linearized equations, if fixed-point iteration does not contract.
     newton: Option<&'a Newton<N, S>>,
     /// Velocities that determine the positions.
@@ -62,7 +65,7 @@ pub(crate) fn equations<'a, const N: usize, const S: usize>(
     stages: Stages<N, S>,
 ) -> General<'a, f64, ErasedSystem<'a, N>, SMatrix<f64, N, N>, N, S, false> {
     let mass = constant_mass::<N, f64, _>(system, node);
-    General::new(system, mass.as_ref(), node, h, stages, None)
+    General::new(system, mass.as_ref(), (node, h), stages, None, None)
 }
 
 impl<'a, T, Y, M, const N: usize, const S: usize, const FUSED: bool> General<'a, T, Y, M, N, S, FUSED>
@@ -77,10 +80,10 @@ where
     pub(crate) fn new(
         system: &'a Y,
         mass: Option<&M>,
-        node: &'a Node<N>,
-        h: f64,
+        (node, h): (&'a Node<N>, f64),
         guess: Stages<N, S>,
         newton: Option<&'a Newton<N, S>>,
+        kept: Option<&'a mut Masses<N, S>>,
     ) -> Self {
         let inverse = mass.map(Matrix::inverse);
         let [velocity, force] = [guess; 2];
@@ -90,7 +93,7 @@ where
             node,
             h,
             inverse,
-            kept: None,
+            kept,
             newton,
             velocity,
             evaluated: velocity,
@@ -116,10 +119,11 @@ where
     /// `low + Σ_j first_ij h b_j X_j` at the stages i.
     #[inline(always)]
     fn integrals(&self, of: &Stages<N, S>, low: &SVector<f64, N>) -> Stages<N, S> {
+        let n = self.system.moving();
         let first = const { &Tableau::<S>::VALUES.first };
         let weights = weights(self.h);
         let mut integrals = [[0.0; S]; N];
-        for k in 0..N {
+        for k in 0..n {
             integrals[k] = product::<S, FUSED>(first, &scaled(&weights, &of[k]), &[low[k]; S]);
         }
         integrals
@@ -128,8 +132,9 @@ where
     /// The positions by the current velocities.
     #[inline(always)]
     fn positions(&self) -> Stages<N, S> {
+        let n = self.system.moving();
         let mut x = self.integrals(&self.velocity, &self.node.q_low);
-        for k in 0..N {
+        for k in 0..n {
             for i in 0..S {
                 x[k][i] += self.node.q[k];
             }
@@ -140,8 +145,9 @@ where
     /// The momenta by the current forces minus `momentum`, the L_v of the velocities.
     #[inline(always)]
     fn missing(&self, momentum: &Stages<N, S>) -> Stages<N, S> {
+        let n = self.system.moving();
         let mut missing = self.integrals(&self.force, &self.node.p_low);
-        for k in 0..N {
+        for k in 0..n {
             for i in 0..S {
                 missing[k][i] += self.node.p[k] - momentum[k][i];
             }
@@ -160,12 +166,14 @@ where
     /// Time, coordinates and velocities of a stage.
     #[inline(always)]
     fn place(&self, i: usize, x: &Stages<N, S>, velocity: &Stages<N, S>) -> (T, SVector<T, N>, SVector<T, N>) {
-        (T::of(&times::<N, S, FUSED>(self.node, self.h), i), gathered(x, i), gathered(velocity, i))
+        let n = self.system.moving();
+        (T::of(&times::<N, S, FUSED>(self.node, self.h), i), gathered(n, x, i), gathered(n, velocity, i))
     }
 
     /// Evaluates the equations at the positions x, and returns the residuals of the momenta.
     #[inline(always)]
     fn evaluate(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        let n = self.system.moving();
         // Local arrays cannot alias, so that the compiler vectorizes their loops.
         let velocity = self.velocity;
         let x = *x;
@@ -174,8 +182,8 @@ where
         for i in 0..T::EVALUATIONS {
             let (t, q, v) = self.place(i, &x, &velocity);
             let sides = self.system.sides_at(t, &q, &v);
-            scatter(&mut force, i, &sides.force);
-            scatter(&mut momentum, i, &sides.momentum);
+            scatter(n, &mut force, i, &sides.force);
+            scatter(n, &mut momentum, i, &sides.momentum);
         }
         self.evaluated = velocity;
         self.force = force;
@@ -184,41 +192,40 @@ where
 
     /// The same, and the inverse of the mass matrix of each stage.
     #[inline(always)]
-    fn evaluate_with_masses(&mut self, x: &Stages<N, S>) -> (Stages<N, S>, [Stages<N, S>; N]) {
+    fn evaluate_with_masses(&mut self, x: &Stages<N, S>, inverse: &mut [Stages<N, S>; N]) -> Stages<N, S> {
+        let n = self.system.moving();
         let velocity = self.velocity;
         let x = *x;
         let mut force = [[0.0; S]; N];
         let mut momentum = [[0.0; S]; N];
-        let mut inverse = [[[0.0; S]; N]; N];
         let mut terms = [[0.0; S]; N];
         for i in 0..T::EVALUATIONS {
             let (t, q, v) = self.place(i, &x, &velocity);
-            let point = self.system.at(t, &q, &v);
-            scatter(&mut force, i, &point.force);
-            scatter(&mut momentum, i, &point.momentum);
-            let columns = point.mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
-            for k in 0..N {
-                let mut sum = T::zero();
-                for l in 0..N {
-                    columns[(k, l)].put(&mut inverse[k][l], i);
-                    sum += (columns[(k, l)] * point.momentum[l]).abs();
+            let sides = self.system.sides_and_inverse_at(t, &q, &v, |k, l, value| value.put(&mut inverse[k][l], i));
+            scatter(n, &mut force, i, &sides.force);
+            scatter(n, &mut momentum, i, &sides.momentum);
+        }
+        for k in 0..n {
+            for l in 0..n {
+                for i in 0..S {
+                    terms[k][i] += (inverse[k][l][i] * momentum[l][i]).abs();
                 }
-                sum.put(&mut terms[k], i);
             }
         }
         self.evaluated = velocity;
         self.force = force;
-        for k in 0..N {
+        for k in 0..n {
             let largest = maximum(&terms[k]);
             self.terms[k] = if largest < f64::INFINITY { largest } else { 0.0 };
         }
-        (self.missing(&momentum), inverse)
+        self.missing(&momentum)
     }
 
     /// Adds corrections to the velocities.
     #[inline(always)]
     fn correct(&mut self, correction: &Stages<N, S>) {
-        for k in 0..N {
+        let n = self.system.moving();
+        for k in 0..n {
             for i in 0..S {
                 self.velocity[k][i] += correction[k][i];
             }
@@ -236,20 +243,22 @@ where
     /// An iteration with the mass matrix of each stage, whose inverse waits for the momenta of all stages.
     #[inline(always)]
     fn iterate_varying(&mut self, x: &Stages<N, S>, before: &Convergence) {
-        if const { N < MANY } {
-            let (missing, inverse) = self.evaluate_with_masses(x);
-            return add_products::<N, S, FUSED>(&mut self.velocity, &inverse, &missing);
-        }
-        let missing = if before.change < NEAR && before.contraction <= FAST {
-            self.evaluate(x)
-        } else {
-            let (missing, inverse) = self.evaluate_with_masses(x);
-            self.kept = Some(inverse);
-            missing
+        let n = self.system.moving();
+        let zeros = [[[0.0; S]; N]; N];
+        let Some(kept) = self.kept.take() else {
+            let mut inverse = zeros;
+            let missing = self.evaluate_with_masses(x, &mut inverse);
+            return add_products::<N, S, FUSED>(n, &mut self.velocity, &inverse, &missing);
         };
-        if let Some(inverse) = &self.kept {
-            add_products::<N, S, FUSED>(&mut self.velocity, inverse, &missing);
+        let are_near = before.change < NEAR && before.contraction <= FAST;
+        let missing = match kept {
+            Some(_) if are_near => self.evaluate(x),
+            _ => self.evaluate_with_masses(x, kept.insert(zeros)),
+        };
+        if let Some(inverse) = kept {
+            add_products::<N, S, FUSED>(n, &mut self.velocity, inverse, &missing);
         }
+        self.kept = Some(kept);
     }
 }
 
@@ -286,10 +295,11 @@ where
 
     #[inline(always)]
     fn increment(&self) -> StageIncrement<N> {
+        let n = self.system.moving();
         let b = const { &Tableau::<S>::VALUES.b };
         let weights = weights::<S>(self.h);
         let mut increment = StageIncrement { velocity: SVector::zeros(), momentum: SVector::zeros() };
-        for k in 0..N {
+        for k in 0..n {
             increment.velocity[k] = sum(&scaled(b, &self.velocity[k]));
             increment.momentum[k] = sum(&scaled(&weights, &self.force[k]));
         }
@@ -308,11 +318,12 @@ where
 
     #[inline(always)]
     fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
-        let before = core::mem::replace(&mut self.of_velocity, roundings(&self.velocity, &self.terms));
-        let of_velocities = growth(&before, &self.of_velocity);
+        let n = self.system.moving();
+        let before = core::mem::replace(&mut self.of_velocity, roundings(n, &self.velocity, &self.terms));
+        let of_velocities = growth(n, &before, &self.of_velocity);
         if self.newton.is_some() {
-            let before = core::mem::replace(&mut self.of_position, roundings(x, &self.node.q));
-            return growth(&before, &self.of_position).max(of_velocities);
+            let before = core::mem::replace(&mut self.of_position, roundings(n, x, &self.node.q));
+            return growth(n, &before, &self.of_position).max(of_velocities);
         }
         of_velocities
     }
@@ -321,10 +332,11 @@ where
     /// depend on them strongly.
     #[inline(always)]
     fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64 {
+        let n = self.system.moving();
         let mut evaluated = self.evaluated;
-        let of_velocities = change(&mut evaluated, &self.velocity, &self.of_velocity) * VELOCITY;
+        let of_velocities = change(n, &mut evaluated, &self.velocity, &self.of_velocity) * VELOCITY;
         if self.newton.is_some() {
-            return change(x, y, &self.of_position).max(of_velocities);
+            return change(n, x, y, &self.of_position).max(of_velocities);
         }
         *x = *y;
         of_velocities

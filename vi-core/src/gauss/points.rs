@@ -61,10 +61,20 @@ pub(crate) trait Points<const N: usize, T: Real> {
 
     /// The form of the equations.
     fn form(&self) -> Form;
+    /// [`Motion::moving`].
+    fn moving(&self) -> usize;
     /// [`Motion::point`].
     fn at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
     /// [`Motion::sides`].
     fn sides_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T>;
+    /// [`Motion::sides_and_inverse`].
+    fn sides_and_inverse_at(
+        &self,
+        t: T,
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
+        put: impl FnMut(usize, usize, T),
+    ) -> Sides<N, T>;
     /// [`Motion::applied_force`].
     #[inline(always)]
     fn force_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
@@ -83,6 +93,11 @@ impl<Y: Motion<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     }
 
     #[inline(always)]
+    fn moving(&self) -> usize {
+        Motion::moving(self)
+    }
+
+    #[inline(always)]
     fn at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Y::Mass> {
         self.point(t, q, v)
     }
@@ -90,6 +105,17 @@ impl<Y: Motion<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     #[inline(always)]
     fn sides_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T> {
         self.sides(t, q, v)
+    }
+
+    #[inline(always)]
+    fn sides_and_inverse_at(
+        &self,
+        t: T,
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
+        put: impl FnMut(usize, usize, T),
+    ) -> Sides<N, T> {
+        self.sides_and_inverse(t, q, v, put)
     }
 
     #[inline(always)]
@@ -107,6 +133,7 @@ pub(crate) type AnyDerivatives<const N: usize> = PointDerivatives<SMatrix<f64, N
 /// A type-erased system.
 trait Erased<const N: usize> {
     fn form(&self) -> Form;
+    fn moving(&self) -> usize;
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64>;
     fn sides(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Sides<N, f64>;
     fn derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyDerivatives<N>;
@@ -116,6 +143,10 @@ trait Erased<const N: usize> {
 impl<S: Convertible<N>, const N: usize> Erased<N> for S {
     fn form(&self) -> Form {
         Form::of(self)
+    }
+
+    fn moving(&self) -> usize {
+        Motion::moving(self)
     }
 
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64> {
@@ -181,8 +212,27 @@ macro_rules! rare {
                 self.0.form()
             }
 
+            fn moving(&self) -> usize {
+                self.0.moving()
+            }
+
             fn at(&self, t: $number, q: &SVector<$number, N>, v: &SVector<$number, N>) -> AnyPoint<N, $number> {
                 self.0.$point(t, q, v)
+            }
+
+            fn sides_and_inverse_at(
+                &self,
+                t: $number,
+                q: &SVector<$number, N>,
+                v: &SVector<$number, N>,
+                mut put: impl FnMut(usize, usize, $number),
+            ) -> Sides<N, $number> {
+                let point = self.at(t, q, v);
+                let inverse = point.mass.inverse_unchecked();
+                inverse.column_iter().enumerate().for_each(|(column, of)| {
+                    of.iter().enumerate().for_each(|(row, value)| put(row, column, *value));
+                });
+                point.sides()
             }
 
             fn sides_at(&self, t: $number, q: &SVector<$number, N>, v: &SVector<$number, N>) -> Sides<N, $number> {

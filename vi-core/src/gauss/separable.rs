@@ -58,8 +58,12 @@ pub(crate) struct Separable<
     numbers: PhantomData<T>,
 }
 
-impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool, const CORRECTED: bool>
+impl<'a, T, Y, M, const N: usize, const S: usize, const FUSED: bool, const CORRECTED: bool>
     Separable<'a, T, Y, M, N, S, FUSED, CORRECTED>
+where
+    T: AtStages<S>,
+    Y: Points<N, T>,
+    M: Matrix<N, f64>,
 {
     /// The equations of the step of length h from `node`, with the mass matrix and the stage forces of the last step or
     /// a guess of them.
@@ -72,11 +76,12 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
         (force, are_last): (Stages<N, S>, bool),
         newton: Option<&'a Newton<N, S>>,
     ) -> Self {
+        let n = system.moving();
         let c = const { &Tableau::<S>::VALUES.c };
         let inverse = mass.inverse();
         let velocity = M::apply(&inverse, &(node.p + node.p_low));
         let mut drift = [[0.0; S]; N];
-        for k in 0..N {
+        for k in 0..n {
             let moved = h * velocity[k];
             for i in 0..S {
                 drift[k][i] = Lane::<FUSED>::multiply_add(c[i], moved, node.q_low[k]);
@@ -90,17 +95,18 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
     /// previous step.
     #[inline(always)]
     fn set_positions(&self, x: &mut Stages<N, S>, coefficients: &[[f64; S]; S]) {
+        let n = self.system.moving();
         let weights = weights(self.h);
         let mut impulses = [[0.0; S]; N];
-        for k in 0..N {
+        for k in 0..n {
             row_by_row();
             impulses[k] = scaled(&weights, &self.force[k]);
         }
-        for k in 0..N {
+        for k in 0..n {
             x[k] = product::<S, FUSED>(coefficients, &impulses[k], &[0.0; S]);
         }
         M::apply_to_rows(&self.inverse, x);
-        for k in 0..N {
+        for k in 0..n {
             x[k] = self.moved(k, &x[k]);
         }
     }
@@ -140,15 +146,16 @@ where
 
     #[inline(always)]
     fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, _before: &Convergence) {
+        let n = self.system.moving();
         let rest = SVector::zeros();
         let times = times::<N, S, FUSED>(self.node, self.h);
         for i in 0..T::EVALUATIONS {
-            let force = self.system.force_at(T::of(&times, i), &gathered(x, i), &rest);
-            scatter(&mut self.force, i, &force);
+            let force = self.system.force_at(T::of(&times, i), &gathered(n, x, i), &rest);
+            scatter(n, &mut self.force, i, &force);
         }
         self.set_positions(y, const { &Tableau::<S>::VALUES.second });
         if CORRECTED && let Some(newton) = self.newton {
-            self.uncorrected = change(&mut x.clone(), y, &self.roundings) * BY_FORCES;
+            self.uncorrected = change(n, &mut x.clone(), y, &self.roundings) * BY_FORCES;
             newton.correct_positions(x, y);
             // The forces are finite even if the matrix is singular, and NaN is no change. Nor are changes known before the
             // first roundings.
@@ -161,11 +168,12 @@ where
 
     #[inline(always)]
     fn increment(&self) -> StageIncrement<N> {
+        let n = self.system.moving();
         let c = const { &Tableau::<S>::VALUES.c };
         let weights = weights::<S>(self.h);
         let mut momentum = SVector::zeros();
         let mut mean = SVector::zeros();
-        for k in 0..N {
+        for k in 0..n {
             let impulses = scaled(&weights, &self.force[k]);
             let mut ahead = [0.0; S];
             for i in 0..S {
@@ -189,13 +197,15 @@ where
 
     #[inline(always)]
     fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
-        let before = core::mem::replace(&mut self.roundings, roundings(x, &self.node.q));
-        growth(&before, &self.roundings)
+        let n = self.system.moving();
+        let before = core::mem::replace(&mut self.roundings, roundings(n, x, &self.node.q));
+        growth(n, &before, &self.roundings)
     }
 
     #[inline(always)]
     fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64 {
-        let change = change(x, y, &self.roundings);
+        let n = self.system.moving();
+        let change = change(n, x, y, &self.roundings);
         if CORRECTED && self.newton.is_some() { change.max(self.uncorrected) } else { change }
     }
 

@@ -8,7 +8,7 @@ use super::fixed_point::{self, Convergence, Equations, FixedPointResult, NOISE, 
 use super::general::{General, equations};
 use super::linearization::Linearization;
 use super::newton::{Buffer, Newton};
-use super::points::{ErasedSystem, Form, Points};
+use super::points::{ErasedSystem, Form, MANY, Points};
 use super::rounding;
 use super::separable::Separable;
 use super::stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
@@ -87,7 +87,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// Velocities at the stages, or forces there for a separable system.
     #[inline(always)]
     fn guess<const FUSED: bool>(&self) -> Stages<N, S> {
-        if self.are_last { extrapolated::<N, S, FUSED>(self.stages) } else { *self.stages }
+        if self.are_last { extrapolated::<N, S, FUSED>(N, self.stages) } else { *self.stages }
     }
 
     /// The step, if its stages satisfy their equations to rounding.
@@ -413,7 +413,11 @@ where
     } else {
         let mass = constant_mass(plain, node);
         let guess = start.guess::<FUSED>();
-        finished(General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), node, h, guess, newton), start)
+        let mut masses = None;
+        let kept = (system.moving() >= MANY).then_some(&mut masses);
+        let equations =
+            General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), (node, h), guess, newton, kept);
+        finished(equations, start)
     }
 }
 

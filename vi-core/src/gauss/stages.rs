@@ -1,6 +1,7 @@
 //! Arrays of stage values: N rows, one per coordinate, of S numbers, one per stage.
 //!
-//! A loop over the stages of a row, or over all stages of a point, vectorizes.
+//! A loop over the stages of a row, or over all stages of a point, vectorizes. Functions that take `n` leave out the rows
+//! of coordinates at rest ([`Motion::moving`](crate::motion::Motion::moving)).
 
 use super::points::{Form, Points};
 use super::tableau::Tableau;
@@ -55,11 +56,12 @@ impl<const S: usize, const FUSED: bool> AtStages<S> for Lanes<S, FUSED> {
 /// Loads the vector of an evaluation.
 #[inline(always)]
 pub(crate) fn gathered<const N: usize, const S: usize, T: AtStages<S>>(
+    n: usize,
     of: &Stages<N, S>,
     evaluation: usize,
 ) -> SVector<T, N> {
     let mut vector = [T::zero(); N];
-    for k in 0..N {
+    for k in 0..n {
         vector[k] = T::of(&of[k], evaluation);
     }
     vector.into()
@@ -68,11 +70,12 @@ pub(crate) fn gathered<const N: usize, const S: usize, T: AtStages<S>>(
 /// Stores the vector of an evaluation.
 #[inline(always)]
 pub(crate) fn scatter<const N: usize, const S: usize, T: AtStages<S>>(
+    n: usize,
     stages: &mut Stages<N, S>,
     evaluation: usize,
     vector: &SVector<T, N>,
 ) {
-    for k in 0..N {
+    for k in 0..n {
         vector[k].put(&mut stages[k], evaluation);
     }
 }
@@ -153,12 +156,13 @@ pub(crate) fn product<const S: usize, const FUSED: bool>(
 /// Adds `matrix_i x_i` at the stages i.
 #[inline(always)]
 pub(crate) fn add_products<const N: usize, const S: usize, const FUSED: bool>(
+    n: usize,
     to: &mut Stages<N, S>,
     matrix: &[Stages<N, S>; N],
     x: &Stages<N, S>,
 ) {
-    for k in 0..N {
-        for l in 0..N {
+    for k in 0..n {
+        for l in 0..n {
             for i in 0..S {
                 to[k][i] = Lane::<FUSED>::multiply_add(matrix[k][l][i], x[l][i], to[k][i]);
             }
@@ -168,10 +172,13 @@ pub(crate) fn add_products<const N: usize, const S: usize, const FUSED: bool>(
 
 /// Extrapolates the polynomials through the stages of a step to the stages of the next one.
 #[inline(always)]
-pub(crate) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(of: &Stages<N, S>) -> Stages<N, S> {
+pub(crate) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(
+    n: usize,
+    of: &Stages<N, S>,
+) -> Stages<N, S> {
     let next = const { &Tableau::<S>::VALUES.next };
     let mut stages = [[0.0; S]; N];
-    for k in 0..N {
+    for k in 0..n {
         stages[k] = product::<S, FUSED>(next, &of[k], &[0.0; S]);
     }
     stages
@@ -203,9 +210,13 @@ pub(crate) type Roundings<const N: usize> = [f64; N];
 
 /// The inverse of the largest entry of each row, and of `start`.
 #[inline(always)]
-pub(crate) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start: &SVector<f64, N>) -> Roundings<N> {
+pub(crate) fn roundings<const N: usize, const S: usize>(
+    n: usize,
+    of: &Stages<N, S>,
+    start: &SVector<f64, N>,
+) -> Roundings<N> {
     let mut scales = [0.0; N];
-    for k in 0..N {
+    for k in 0..n {
         row_by_row();
         let mut sizes = [0.0; S];
         for i in 0..S {
@@ -215,7 +226,7 @@ pub(crate) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start
     }
     // Vector divisions.
     let mut roundings = [0.0; N];
-    for k in 0..N {
+    for k in 0..n {
         // Never zero, so that an infinite change stays infinite.
         roundings[k] = 1.0 / (scales[k] + f64::MIN_POSITIVE).min(f64::MAX);
     }
@@ -224,9 +235,9 @@ pub(crate) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start
 
 /// Largest growth of a change in the units `after` relative to those `before`.
 #[inline(always)]
-pub(crate) fn growth<const N: usize>(before: &Roundings<N>, after: &Roundings<N>) -> f64 {
+pub(crate) fn growth<const N: usize>(n: usize, before: &Roundings<N>, after: &Roundings<N>) -> f64 {
     let mut growths = [0.0; N];
-    for k in 0..N {
+    for k in 0..n {
         growths[k] = after[k] / before[k];
     }
     maximum(&growths)
@@ -238,15 +249,16 @@ pub(crate) fn growth<const N: usize>(before: &Roundings<N>, after: &Roundings<N>
 /// either.
 #[inline(always)]
 pub(crate) fn change<const N: usize, const S: usize>(
+    n: usize,
     before: &mut Stages<N, S>,
     after: &Stages<N, S>,
     roundings: &Roundings<N>,
 ) -> f64 {
     if const { N > LOOPED } {
-        return change_of_many(before, after, roundings);
+        return change_of_many(n, before, after, roundings);
     }
     let mut changes = [0.0; N];
-    for k in 0..N {
+    for k in 0..n {
         let mut distances = [0.0; S];
         for i in 0..S {
             distances[i] = (after[k][i] - before[k][i]).abs();
@@ -260,12 +272,13 @@ pub(crate) fn change<const N: usize, const S: usize>(
 /// The same for many rows: the largest change of each stage, then of all.
 #[inline(always)]
 fn change_of_many<const N: usize, const S: usize>(
+    n: usize,
     before: &mut Stages<N, S>,
     after: &Stages<N, S>,
     roundings: &Roundings<N>,
 ) -> f64 {
     let mut changes = [0.0; S];
-    for k in 0..N {
+    for k in 0..n {
         row_by_row();
         for i in 0..S {
             changes[i] = larger((after[k][i] - before[k][i]).abs() * roundings[k], changes[i]);

@@ -288,7 +288,7 @@ fn put_all<const N: usize, const S: usize, T: AtStages<S>, Y: Motion<N, T>>(
     at: &Solution<N, S>,
 ) {
     for i in 0..T::EVALUATIONS {
-        let [q, v] = [&at.positions, &at.velocities].map(|stages| gathered(stages, i));
+        let [q, v] = [&at.positions, &at.velocities].map(|stages| gathered(N, stages, i));
         put(derivatives, i, &system.point_derivatives(T::of(&at.times, i), &q, &v));
     }
 }
@@ -391,8 +391,8 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
                     }
                 }
             }
-            add_products::<N, S, FUSED>(&mut momentum, momentum_dq, &position);
-            add_products::<N, S, FUSED>(&mut force, force_dq, &position);
+            add_products::<N, S, FUSED>(N, &mut momentum, momentum_dq, &position);
+            add_products::<N, S, FUSED>(N, &mut force, force_dq, &position);
             right[direction] = missing::<N, S, FUSED>(&variation.p, &momentum, &force, &weights);
             forces[direction] = force;
         }
@@ -400,8 +400,8 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
         for (direction, variation) in variations.iter_mut().enumerate() {
             let velocities = &equations[N * S + direction];
             let force = &mut forces[direction];
-            add_products::<N, S, FUSED>(force, force_dq, &integrals::<N, S, FUSED>(velocities, &weights));
-            add_products::<N, S, FUSED>(force, force_dv, velocities);
+            add_products::<N, S, FUSED>(N, force, force_dq, &integrals::<N, S, FUSED>(velocities, &weights));
+            add_products::<N, S, FUSED>(N, force, force_dv, velocities);
             for k in 0..N {
                 variation.q[k] += sum(&scaled(&weights, &velocities[k]));
                 variation.p[k] += sum(&scaled(&weights, &force[k]));

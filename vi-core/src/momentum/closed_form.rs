@@ -19,6 +19,11 @@ use nalgebra::SVector;
 /// Largest number of coordinates with a closed form.
 const LARGEST: usize = 3;
 
+/// The number of coordinates that move; the others are at rest.
+const fn moving(coordinates: usize) -> usize {
+    if coordinates < LARGEST { coordinates } else { LARGEST }
+}
+
 /// The matrix of a linear step, with the size of the largest one: a matrix of N × N would be large if it is not used.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosedForm<T> {
@@ -42,10 +47,10 @@ impl<T: Real> Affine<T> {
 
     #[inline(always)]
     fn at<const N: usize>(&self, node: &Node<N, T>) -> SVector<T, N> {
-        let mut sums = node.q;
-        for i in 0..N {
+        let mut sums = SVector::zeros();
+        for i in 0..const { moving(N) } {
             let (mut by_q, mut by_p) = (self.constant[i], T::zero());
-            for j in 0..N {
+            for j in 0..const { moving(N) } {
                 by_q += self.by_q[i][j] * node.q[j];
                 by_p += self.by_p[i][j] * node.p[j];
             }
@@ -72,11 +77,11 @@ impl<T: Scalar> ClosedForm<T> {
         // A power of two that is so large that the constant is below the rounding of the rest.
         let large = T::real(f64::from(1_u32 << 30)) * T::real(f64::from(1_u32 << 30));
         let mut form = [Affine::zeros(); 2];
-        for j in 0..N {
+        for j in 0..moving(N) {
             let unit = SVector::from_fn(|i, _| if i == j { large } else { T::zero() });
             let (by_q, by_p) = (answer(unit, zeros), answer(zeros, unit));
             for (part, affine) in form.iter_mut().enumerate() {
-                for i in 0..N {
+                for i in 0..moving(N) {
                     affine.constant[i] = constant[part][i];
                     affine.by_q[i][j] = (by_q[part][i] - constant[part][i]) * large.recip();
                     affine.by_p[i][j] = (by_p[part][i] - constant[part][i]) * large.recip();

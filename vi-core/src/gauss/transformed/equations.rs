@@ -22,7 +22,7 @@ use crate::linear::Matrix;
 use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::{Lane, Real};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// The unknowns of a step: velocities, and the rates of time and energy at its stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -228,7 +228,7 @@ where
     fn by_varying_mass(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
         let mut inverse = [[[0.0; S]; N]; N];
         let missing = self.evaluate(x, |i, mass| {
-            let columns = mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
+            let columns = mass.inverse_unchecked();
             for k in 0..N {
                 for l in 0..N {
                     inverse[k][l][i] = columns[(k, l)].to_f64();
@@ -236,7 +236,7 @@ where
             }
         });
         let mut correction = [[0.0; S]; N];
-        add_products::<N, S, FUSED>(&mut correction, &inverse, &missing);
+        add_products::<N, S, FUSED>(N, &mut correction, &inverse, &missing);
         correction
     }
 
@@ -338,15 +338,15 @@ where
     #[inline(always)]
     fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
         let after = AllRoundings {
-            position: roundings(x, &self.node.q),
-            velocity: roundings(&self.rates.velocity, &SVector::zeros()),
-            time: roundings(&[self.clock.time], &SVector::from([self.node.t])),
-            energy: roundings(&[self.clock.energy], &SVector::from([self.energy_scale])),
+            position: roundings(N, x, &self.node.q),
+            velocity: roundings(N, &self.rates.velocity, &SVector::zeros()),
+            time: roundings(1, &[self.clock.time], &SVector::from([self.node.t])),
+            energy: roundings(1, &[self.clock.energy], &SVector::from([self.energy_scale])),
         };
         let before = core::mem::replace(&mut self.roundings, after);
         let now = &self.roundings;
-        let of_motion = growth(&before.position, &now.position).max(growth(&before.velocity, &now.velocity));
-        of_motion.max(growth(&before.time, &now.time)).max(growth(&before.energy, &now.energy))
+        let of_motion = growth(N, &before.position, &now.position).max(growth(N, &before.velocity, &now.velocity));
+        of_motion.max(growth(1, &before.time, &now.time)).max(growth(1, &before.energy, &now.energy))
     }
 
     #[inline(always)]
@@ -354,10 +354,10 @@ where
         let roundings = &self.roundings;
         let mut evaluated = self.velocity;
         let Clock { time, energy } = self.evaluated;
-        let velocity = change(&mut evaluated, &self.rates.velocity, &roundings.velocity);
-        let time = change(&mut [time], &[self.clock.time], &roundings.time);
-        let energy = change(&mut [energy], &[self.clock.energy], &roundings.energy);
-        change(x, y, &roundings.position).max(time).max(velocity.max(energy) * VELOCITY)
+        let velocity = change(N, &mut evaluated, &self.rates.velocity, &roundings.velocity);
+        let time = change(1, &mut [time], &[self.clock.time], &roundings.time);
+        let energy = change(1, &mut [energy], &[self.clock.energy], &roundings.energy);
+        change(N, x, y, &roundings.position).max(time).max(velocity.max(energy) * VELOCITY)
     }
 
     #[inline(always)]

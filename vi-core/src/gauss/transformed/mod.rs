@@ -125,8 +125,9 @@ where
         if let Some(failure) = lost_force(system, node, last.h) {
             return failure;
         }
-        if after.rates.convergence.is_at_floor() && !after.can_continue((node, last), solved) {
-            return StepError::TimeScale { t: node.t, g: solved.rates.g[0] };
+        let g = solved.rates.g[0];
+        if g.is_finite() && after.rates.convergence.is_at_floor() && !after.can_continue((node, last), solved) {
+            return StepError::TimeScale { t: node.t, g };
         }
         let h = time_scale(system, node.t, &node.q) * dtau;
         solved.iteration.convergence.not_converged(&solved.increment, [node.t, h], stiffness)

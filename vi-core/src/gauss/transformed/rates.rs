@@ -81,8 +81,8 @@ impl<const N: usize, const S: usize> LastRates<N, S> {
             return self.guess_of_another_length(dtau);
         }
         let Rates { velocity, g, energy } = self.rates();
-        let [g, energy] = extrapolated::<2, S, FUSED>(&[g, energy]);
-        Rates { velocity: extrapolated::<N, S, FUSED>(&velocity), g, energy }
+        let [g, energy] = extrapolated::<2, S, FUSED>(2, &[g, energy]);
+        Rates { velocity: extrapolated::<N, S, FUSED>(N, &velocity), g, energy }
     }
 
     /// The same for a next step of another length: extrapolated up to a limited distance; beyond, the rates of the last
