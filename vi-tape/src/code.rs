@@ -5,19 +5,9 @@ use crate::tables::Tables;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::OnceLock;
-use vi_core::linear::Block;
+use vi_core::linear::{AnyForm, Block};
 use vi_core::table::AnyTable;
 use vi_dispatch::Instructions;
-
-/// The form of a matrix.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Form {
-    Diagonal,
-    Tridiagonal,
-    Symmetric,
-    #[default]
-    Dense,
-}
 
 macro_rules! functions {
     ($(#[$about:meta])* $all:ident { $($name:ident),* $(,)? }) => {
@@ -76,7 +66,7 @@ functions!(
 #[derive(Clone, Debug, Default)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub(crate) struct ByRule {
-    pub(crate) jacobian: Form,
+    pub(crate) jacobian: AnyForm,
     pub(crate) has_constant_jacobian: bool,
     pub(crate) has_closed_form: bool,
     pub(crate) is_inlined: bool,
@@ -135,12 +125,13 @@ pub struct Start {
 #[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub(crate) struct Code {
     pub(crate) name: &'static str,
-    /// The number of declared coordinates; the others are at rest.
-    pub(crate) declared: usize,
+    /// The number of coordinates that are built. Those after the declared ones are at rest.
+    pub(crate) size: usize,
     pub(crate) about: &'static str,
     pub(crate) definition: &'static str,
     /// The texts of the files of tables, by their paths.
     pub(crate) files: BTreeMap<PathBuf, String>,
+    /// The declared coordinates.
     pub(crate) coordinates: Box<[&'static str]>,
     pub(crate) parameters: &'static [&'static str],
     pub(crate) parameters_about: &'static [&'static str],
@@ -171,8 +162,8 @@ pub(crate) struct Code {
     pub(crate) has_step_density: bool,
     /// None of a free system.
     pub(crate) constraints: Option<Constraints>,
-    pub(crate) mass: Form,
-    pub(crate) point_matrix: Form,
+    pub(crate) mass: AnyForm,
+    pub(crate) point_matrix: AnyForm,
     pub(crate) functions: Functions,
     pub(crate) instructions: Instructions,
     /// The equations of a step by the rule: most of a code, and needed by few methods.

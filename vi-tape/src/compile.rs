@@ -8,7 +8,7 @@ mod instructions;
 mod order;
 mod registers;
 
-use crate::code::{ByRule, Call, Code, Columns, Constraints, Form, Functions, Start, StepFunctions};
+use crate::code::{ByRule, Call, Code, Columns, Constraints, Functions, Start, StepFunctions};
 use crate::lines::{Entry, Input, Kind, Lines, Source};
 use crate::mistakes::Mistakes;
 use crate::sizes::size;
@@ -27,9 +27,9 @@ use vi_codegen::program::{Function, FunctionId, Operation, OperationId, Output};
 use vi_codegen::rules::NamedRule;
 use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::{Derived, derive_own, sizes, syntax};
-use vi_core::linear::Block;
+use vi_core::linear::{AnyForm, Block};
 use vi_dispatch::Instructions;
-use vi_expr::{Expr, Node, Pool};
+use vi_expr::{Expr, Node};
 
 /// Characters of an expression in a message.
 const CHARACTERS: usize = 400;
@@ -62,31 +62,21 @@ pub(crate) struct Parsed {
 ///
 /// # Errors
 /// The mistakes of the text, or what only the macro compiles.
-pub(crate) fn code(file: &str, text: &str, Parsed { system, definition }: Parsed) -> Result<Code, Mistakes> {
+pub(crate) fn code(file: &str, text: &str, Parsed { mut system, definition }: Parsed) -> Result<Code, Mistakes> {
     let wrong = |error: syn::Error| Mistakes::wrong(file, text, &error);
     let [declared, constraints] = sizes(&system).map_err(wrong)?;
     // Without coordinates the check says so.
-    let all = if declared == 0 { 0 } else { size(&system.name.to_string(), [declared, constraints])? };
-    let rest = all - declared;
+    let size = if declared == 0 { 0 } else { size(&system.name.to_string(), [declared, constraints])? };
     let files = system.files.clone();
-    let mut system = with_rest(system, &definition, rest).map_err(wrong)?;
     let rule = system.take_named_rules();
-    of_derived(&mut derive_own(&system).map_err(wrong)?, (definition, files), (declared, rule))
-}
-
-/// A system with coordinates at rest.
-///
-/// # Errors
-/// None with a name that is a name.
-fn with_rest(system: syntax::System, definition: &str, count: usize) -> syn::Result<syntax::System> {
-    if count == 0 { Ok(system) } else { system.with_rest(&unused(definition), count) }
+    of_derived(&derive_own(&system).map_err(wrong)?, (definition, files), (size, rule))
 }
 
 /// The equations of a step by the rule of a code, whose text is right.
 fn by_rule(code: &Code) -> ByRule {
     let derived = code.definition.parse().map_err(Into::into).and_then(syntax::parse::system).and_then(|mut system| {
         system.files.clone_from(&code.files);
-        derive_own(&with_rest(system, code.definition, code.coordinates.len() - code.declared)?)
+        derive_own(&system)
     });
     let found = derived.ok().and_then(|of| steps(&of, &code.tables).ok());
     found.unwrap_or_else(|| ByRule { is_too_large: true, ..ByRule::default() })
@@ -106,15 +96,6 @@ fn steps(of: &Derived, tables: &Tables) -> Result<ByRule, TooMany> {
     })
 }
 
-/// A name that a definition does not contain.
-fn unused(definition: &str) -> String {
-    let mut name = "rest".to_owned();
-    while definition.contains(&name) {
-        name.push('_');
-    }
-    name
-}
-
 /// What to do about several declarations.
 const ONE: &str =
     "error: the text declares several systems\n = help: write one `struct … { … }`, or one `lagrangian! { … }`";
@@ -129,44 +110,30 @@ fn declaration(text: &str) -> syn::Result<Option<TokenStream>> {
     }
 }
 
-/// The watched expressions as texts, without coordinates at rest.
-fn watched(of: &mut Derived, declared: usize) -> Box<[&'static str]> {
-    let Derived { pool, model, system, .. } = of;
-    let mut at_rest = |pool: &mut Pool<Symbol>, symbol: &Symbol| match symbol {
-        Symbol::Continuous(Variable::Velocity(index)) if *index >= declared => Some(pool.zero()),
-        _ => None,
-    };
-    let watched = system.continuous.watched.iter();
-    // Only L itself has their energy.
-    let exprs: Vec<Expr> = watched
-        .map(|expr| match pool.node(*expr) {
-            Node::Sum(_) => pool.substitute(*expr, &mut at_rest),
-            _ => *expr,
-        })
-        .collect();
+/// The watched expressions as texts.
+fn watched(Derived { pool, model, system, .. }: &Derived) -> Box<[&'static str]> {
     let name = |symbol: &Symbol| system.spell(model, symbol);
-    exprs.into_iter().map(|expr| &*pool.render_within(CHARACTERS, expr, &name).leak()).collect()
+    let text = |expr: &Expr| &*pool.render_within(CHARACTERS, *expr, &name).leak();
+    system.continuous.watched.iter().map(text).collect()
 }
 
 /// The code of a system, whose rule has yet to be derived if there is one here.
 fn of_derived(
-    of: &mut Derived,
+    of: &Derived,
     (definition, files): (String, BTreeMap<PathBuf, String>),
-    (declared, rule): (usize, Option<&'static NamedRule>),
+    (size, rule): (usize, Option<&'static NamedRule>),
 ) -> Result<Code, Mistakes> {
-    let watched = watched(of, declared);
-    let Derived { pool, model, system, findings, .. } = &*of;
+    let Derived { pool, model, system, findings, .. } = of;
     let compiled = |what: &str| Mistakes::compiled(&model.name.to_string(), what);
     let too_many = |of: TooMany| compiled(&format!("too many {of}"));
     let tables = Tables::of(model).ok_or_else(|| compiled("Rust functions"))?;
-    let size = model.dimension();
     let continuous = &system.continuous;
     let inputs = (0..).zip(&model.parameters).filter(|(_, parameter)| parameter.is_input);
     let parameters = names(model, Parameter::text);
-    let constraints = constraints(of);
+    let constraints = constraints(of, size);
     Ok(Code {
         name: model.name.to_string().leak(),
-        declared,
+        size,
         about: model.about().leak(),
         definition: definition.leak(),
         files,
@@ -177,8 +144,8 @@ fn of_derived(
         inputs: inputs.map(|(index, _)| index).collect::<Vec<_>>().leak(),
         angles: model.coordinates.iter().map(|of| of.is_angle).collect(),
         cyclic: continuous.cyclic.clone().into(),
-        start: model.check_state.as_ref().map(|state| start(state, parameters, declared)),
-        watched,
+        start: model.check_state.as_ref().map(|state| start(state, parameters)),
+        watched: watched(of),
         calls: continuous
             .calls
             .iter()
@@ -195,8 +162,8 @@ fn of_derived(
         has_rule: rule.is_some() || system.by_rule.is_some(),
         has_step_density: rule.map_or(system.has_energy_steps(), |rule| rule.step_density),
         constraints,
-        mass: form(&findings.mass, true, size),
-        point_matrix: form(&findings.point_derivatives, false, size),
+        mass: form(&findings.mass, true, model.dimension()),
+        point_matrix: form(&findings.point_derivatives, false, model.dimension()),
         functions: functions(of, constraints, &tables).map_err(too_many)?,
         instructions: Instructions::detected(),
         by_rule: if rule.is_some() { OnceLock::new() } else { steps(of, &tables).map_err(too_many)?.into() },
@@ -212,11 +179,10 @@ fn called(of: &Derived, tables: &Tables, call: Expr, arguments: usize) -> Option
     Some(Call { text: text.leak(), table: &tables.all[usize::from(tables.place(&function.name)?)], arguments })
 }
 
-/// The state of the checks, for these parameters and this number of declared coordinates.
-fn start(state: &CheckState, parameters: &[&'static str], declared: usize) -> Start {
-    let [q, v] = [&state.q, &state.v].map(|of| of[..declared].to_vec());
+/// The state of the checks, for these parameters.
+fn start(state: &CheckState, parameters: &[&'static str]) -> Start {
     let set = state.parameters.iter().map(|(index, value)| (parameters[*index], *value));
-    Start { t: state.t, q, v, h: state.h, parameters: set.collect() }
+    Start { t: state.t, q: state.q.clone(), v: state.v.clone(), h: state.h, parameters: set.collect() }
 }
 
 /// A text of each parameter.
@@ -224,37 +190,44 @@ fn names(model: &Model, of: impl Fn(&Parameter) -> String) -> &'static [&'static
     model.parameters.iter().map(|parameter| &*of(parameter).leak()).collect::<Vec<_>>().leak()
 }
 
-/// The constraints of a system, if it has any.
-fn constraints(of: &Derived) -> Option<Constraints> {
+/// The constraints of a system of this size, if it has any.
+fn constraints(of: &Derived, size: usize) -> Option<Constraints> {
     let Derived { model, findings, .. } = of;
     let Elimination { gradients, rates_dq, reaction_dq, blocks, .. } = findings.elimination.as_ref()?;
-    let size = model.dimension();
+    let declared = model.dimension();
     let names = model.constraints.iter().map(|constraint| &*constraint.text().leak()).collect::<Vec<_>>();
-    let block = |of: &findings::Block| Block { own: of.own.clone().leak(), border: of.border.clone().leak() };
+    // Multipliers follow all coordinates.
+    let unknowns = |of: &[usize]| -> &'static [usize] {
+        let moved = |unknown: &usize| if *unknown < declared { *unknown } else { *unknown + (size - declared) };
+        of.iter().map(moved).collect::<Vec<_>>().leak()
+    };
+    let block = |of: &findings::Block| Block { own: unknowns(&of.own), border: unknowns(&of.border) };
+    let at_rest = (declared..size).map(|coordinate| Block { own: vec![coordinate].leak(), border: &[] });
+    let blocks: Vec<Block> = blocks.iter().map(block).chain(at_rest).collect();
     Some(Constraints {
         names: names.leak(),
         holonomic: model.constraints.iter().filter(|constraint| constraint.is_holonomic).count(),
         has_point_masses: findings.point_masses,
         // One block is the elimination of a dense matrix.
-        blocks: if blocks.len() > 1 { blocks.iter().map(block).collect::<Vec<_>>().leak() } else { &[] },
-        mass: leaked(&columns(&findings.mass, size)),
-        point_matrix: leaked(&columns(&findings.point_derivatives, size)),
+        blocks: if blocks.len() > 1 { blocks.leak() } else { &[] },
+        mass: leaked(&columns(&findings.mass, declared, size)),
+        point_matrix: leaked(&columns(&findings.point_derivatives, declared, size)),
         gradients: leaked(gradients),
         rate_derivatives: leaked(rates_dq),
         reaction_derivatives: leaked(reaction_dq),
     })
 }
 
-/// The columns of the nonzeros of each row of a square matrix with this pattern.
-fn columns(pattern: &Pattern, size: usize) -> Vec<Vec<usize>> {
+/// The columns of the nonzeros of each row of a square matrix with this pattern; the diagonal for coordinates at rest.
+fn columns(pattern: &Pattern, declared: usize, size: usize) -> Vec<Vec<usize>> {
     let block = |row: usize, blocks: &[Vec<usize>]| blocks.iter().find(|of| of.contains(&row)).cloned();
     let of = |row: usize| match pattern {
         Pattern::Diagonal => vec![row],
         Pattern::Blocks(blocks) => block(row, blocks).unwrap_or_default(),
         Pattern::Sparse(columns) => columns.get(row).cloned().unwrap_or_default(),
-        _ => (0..size).collect(),
+        _ => (0..declared).collect(),
     };
-    (0..size).map(of).collect()
+    (0..declared).map(of).chain((declared..size).map(|row| vec![row])).collect()
 }
 
 fn leaked(rows: &[Vec<usize>]) -> Columns {
@@ -273,13 +246,13 @@ fn in_places(lines: &mut Lines, quantities: &[usize], columns: Columns) -> Resul
 }
 
 /// The form of a matrix with this pattern; those of few entries in a row are dense.
-fn form(pattern: &Pattern, is_symmetric: bool, size: usize) -> Form {
+fn form(pattern: &Pattern, is_symmetric: bool, size: usize) -> AnyForm {
     match pattern {
-        Pattern::Diagonal => Form::Diagonal,
-        _ if size <= CLOSED => Form::Dense,
-        Pattern::Tridiagonal => Form::Tridiagonal,
-        _ if is_symmetric => Form::Symmetric,
-        _ => Form::Dense,
+        Pattern::Diagonal => AnyForm::Diagonal,
+        _ if size <= CLOSED => AnyForm::Dense,
+        Pattern::Tridiagonal => AnyForm::Tridiagonal,
+        _ if is_symmetric => AnyForm::Symmetric,
+        _ => AnyForm::Dense,
     }
 }
 

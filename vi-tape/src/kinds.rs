@@ -2,10 +2,10 @@
 
 use crate::code::{Code, Columns};
 use crate::lines::Results;
-use crate::matrix::AnyMatrix;
 use core::fmt::Debug;
 use vi_core::kind::{Bound, Counted, Free, Kind};
-use vi_core::linear::{AtMost, Matrix, Rectangular, Rows};
+use vi_core::linear::{AnyForm, AnyMatrix, AtMost, Matrix, Rectangular, Rows};
+use vi_core::nalgebra::SMatrix;
 use vi_core::real::Real;
 
 /// The kind of a system whose functions are instructions.
@@ -21,8 +21,22 @@ pub(crate) trait Interpreted: Kind {
     fn parameters<T: Real>() -> Self::Parameters<T>;
     /// The mass matrix among the results of a function.
     fn mass<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Self::Matrix<N, T>;
-    /// A derivative of the equations of motion.
-    fn point_matrix<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Self::Matrix<N, T>;
+    /// Calls `put` with row, column and value of each entry of the inverse of the mass matrix among the results of a
+    /// function.
+    fn inverse_mass<const N: usize, T: Real>(
+        code: &Code,
+        of: Results<'_, T>,
+        quantity: usize,
+        put: impl FnMut(usize, usize, T),
+    ) {
+        each_entry(code, &Self::mass::<N, T>(code, of, quantity).inverse_unchecked(), put);
+    }
+    /// A derivative of the equations of motion, with these entries on the diagonal of coordinates at rest.
+    fn point_matrix<const N: usize, T: Real>(
+        code: &Code,
+        of: Results<'_, T>,
+        quantity: (usize, f64),
+    ) -> Self::Matrix<N, T>;
     /// One number for each constraint.
     fn multipliers<T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Self::Multipliers<T>;
     /// A row in these columns for each constraint.
@@ -51,12 +65,30 @@ impl Interpreted for Free {
 
     #[inline(always)]
     fn mass<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> AnyMatrix<N, T> {
-        AnyMatrix::of(code.mass, of, quantity)
+        matrix(code, code.mass, of, (quantity, 1.0))
     }
 
     #[inline(always)]
-    fn point_matrix<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> AnyMatrix<N, T> {
-        AnyMatrix::of(code.point_matrix, of, quantity)
+    fn inverse_mass<const N: usize, T: Real>(
+        code: &Code,
+        of: Results<'_, T>,
+        quantity: usize,
+        put: impl FnMut(usize, usize, T),
+    ) {
+        // To copy a matrix of N rows takes longer than the rest of an iteration.
+        match code.coordinates.len() {
+            0..=2 => each_entry(code, &Self::mass::<2, T>(code, of, quantity).inverse_unchecked(), put),
+            3..=4 => each_entry(code, &Self::mass::<4, T>(code, of, quantity).inverse_unchecked(), put),
+            _ => each_entry(code, &Self::mass::<N, T>(code, of, quantity).inverse_unchecked(), put),
+        }
+    }
+    #[inline(always)]
+    fn point_matrix<const N: usize, T: Real>(
+        code: &Code,
+        of: Results<'_, T>,
+        (quantity, at_rest): (usize, f64),
+    ) -> AnyMatrix<N, T> {
+        matrix(code, code.point_matrix, of, (quantity, at_rest))
     }
 
     fn multipliers<T: Real>(_code: &Code, _of: Results<'_, T>, _quantity: usize) -> [T; 0] {
@@ -91,11 +123,15 @@ impl<const K: usize> Interpreted for Bound<K, Counted> {
     }
 
     fn mass<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Rows<N, N, T> {
-        rows::<N, N, N, T>(code.constraints.map_or(&[], |of| of.mass), of, quantity)
+        square(code, code.constraints.map_or(&[], |of| of.mass), of, (quantity, 1.0))
     }
 
-    fn point_matrix<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Rows<N, N, T> {
-        rows::<N, N, N, T>(code.constraints.map_or(&[], |of| of.point_matrix), of, quantity)
+    fn point_matrix<const N: usize, T: Real>(
+        code: &Code,
+        of: Results<'_, T>,
+        (quantity, at_rest): (usize, f64),
+    ) -> Rows<N, N, T> {
+        square(code, code.constraints.map_or(&[], |of| of.point_matrix), of, (quantity, at_rest))
     }
 
     fn multipliers<T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> AtMost<K, T> {
@@ -111,6 +147,43 @@ impl<const K: usize> Interpreted for Bound<K, Counted> {
     fn reaction<const N: usize, T: Real>(columns: Columns, of: Results<'_, T>, quantity: usize) -> Rows<N, N, T> {
         rows::<N, N, N, T>(columns, of, quantity)
     }
+}
+
+/// The matrix of this form among the results of a function, with these entries on the diagonal of coordinates at rest.
+#[inline(always)]
+pub(crate) fn matrix<const N: usize, T: Real>(
+    code: &Code,
+    form: AnyForm,
+    of: Results<'_, T>,
+    (quantity, at_rest): (usize, f64),
+) -> AnyMatrix<N, T> {
+    let mut matrix = AnyMatrix::zeros(form, code.coordinates.len(), T::real(at_rest));
+    of.each(quantity, |row, column, value| matrix.put(row, column, value));
+    matrix
+}
+
+/// Calls `put` with row, column and value of each entry of the coordinates that move.
+#[inline(always)]
+fn each_entry<const N: usize, T: Real>(code: &Code, of: &SMatrix<T, N, N>, mut put: impl FnMut(usize, usize, T)) {
+    for row in 0..code.coordinates.len() {
+        for column in 0..code.coordinates.len() {
+            put(row, column, of[(row, column)]);
+        }
+    }
+}
+
+/// The rows in these columns, which have the diagonal for coordinates at rest, with these entries there.
+fn square<const N: usize, T: Real>(
+    code: &Code,
+    columns: Columns,
+    of: Results<'_, T>,
+    (quantity, at_rest): (usize, f64),
+) -> Rows<N, N, T> {
+    let mut matrix = rows::<N, N, N, T>(columns, of, quantity);
+    for row in code.coordinates.len()..N {
+        Rectangular::<N, T>::row_mut(&mut matrix, row).1[0] = T::real(at_rest);
+    }
+    matrix
 }
 
 /// The rows in these columns, for vectors of N numbers.

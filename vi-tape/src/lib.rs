@@ -24,7 +24,6 @@ mod compile;
 pub mod expressions;
 mod kinds;
 mod lines;
-mod matrix;
 mod mistakes;
 mod sizes;
 mod tables;

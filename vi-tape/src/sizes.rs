@@ -21,7 +21,7 @@ macro_rules! sizes {
 
         /// The system of a code, which has a number of coordinates that is built.
         fn built(code: &'static Code) -> Option<Box<dyn System>> {
-            match code.coordinates.len() {
+            match code.size {
                 $(#[cfg(feature = "complete")]
                 $size if code.constraints.is_some() => Some(bound::<$size>(code)),
                 $size => Some(free::<$size>(code)),)*
@@ -32,9 +32,9 @@ macro_rules! sizes {
 }
 
 #[cfg(not(feature = "wide"))]
-sizes!(2, 4, 8);
+sizes!(2, 8);
 #[cfg(feature = "wide")]
-sizes!(2, 4, 8, 16, 32);
+sizes!(2, 8, 32);
 
 /// The smallest number of coordinates that is built and is at least that of a system of this name, and that of its
 /// constraints.
@@ -57,7 +57,8 @@ pub(crate) fn system(code: &'static Code) -> Result<Box<dyn System>, Mistakes> {
     check(code)?;
     let system =
         built(code).ok_or_else(|| Mistakes::compiled(code.name, "a number of coordinates that is not built"))?;
-    Ok(if code.declared < code.coordinates.len() { without_rest(system, code.declared) } else { system })
+    let declared = code.coordinates.len();
+    Ok(if declared < code.size { without_rest(system, declared) } else { system })
 }
 
 fn check(code: &Code) -> Result<(), Mistakes> {

@@ -1,13 +1,12 @@
 //! A system whose functions are instructions.
 
-use crate::code::{Code, Form};
-use crate::kinds::Interpreted;
+use crate::code::Code;
+use crate::kinds::{Interpreted, matrix};
 use crate::lines::{Lines, Results};
-use crate::matrix::AnyMatrix;
 use core::array;
 use vi_core::kind::{Free, Gradients, Multipliers, ReactionMatrix};
 use vi_core::lagrangian::{Described, Flow, Parameters, Undefined};
-use vi_core::linear::Block;
+use vi_core::linear::{AnyForm, AnyMatrix, Block};
 use vi_core::motion::{Motion, Point, PointDerivatives, ScaledPoint, Separable, Sides};
 use vi_core::node::Node;
 use vi_core::real::{Real, Rounded};
@@ -25,7 +24,7 @@ pub(crate) struct Tape<const N: usize, K: Interpreted = Free, T: Real = f64> {
 }
 
 impl<const N: usize, K: Interpreted> Tape<N, K> {
-    /// The system with its default parameters. Its code has N coordinates, and at most as many parameters as a tape has
+    /// The system with its default parameters. Its code has the size N, and at most as many parameters as a tape has
     /// room for.
     pub(crate) fn new(code: &'static Code) -> Self {
         let mut parameters = K::parameters();
@@ -55,6 +54,16 @@ impl<const N: usize, K: Interpreted, T: Real> Tape<N, K, T> {
         read: impl FnOnce(Results<'_, T>) -> Y,
     ) -> Y {
         lines.evaluated(self.code.instructions, &[&[t], q.as_slice(), v.as_slice(), self.parameters.as_ref()], read)
+    }
+
+    /// The momentum, the first result of a function. Coordinates at rest have the mass 1.
+    #[inline(always)]
+    fn momentum_of(&self, of: Results<'_, T>, v: &SVector<T, N>) -> SVector<T, N> {
+        let mut momentum = of.vector(0);
+        for k in self.code.coordinates.len()..N {
+            momentum[k] = v[k];
+        }
+        momentum
     }
 
     /// Evaluates a function of a node, a step and a velocity.
@@ -136,7 +145,7 @@ impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T>
     }
 
     fn coordinates(&self) -> [&'static str; N] {
-        array::from_fn(|i| self.code.coordinates[i])
+        array::from_fn(|i| self.code.coordinates.get(i).copied().unwrap_or_default())
     }
 
     fn is_autonomous(&self) -> bool {
@@ -148,12 +157,12 @@ impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T>
     }
 
     fn cyclic(&self) -> [bool; N] {
-        array::from_fn(|i| self.code.cyclic[i])
+        array::from_fn(|i| self.code.cyclic.get(i).copied().unwrap_or(true))
     }
 
     #[inline]
     fn angles(&self) -> [bool; N] {
-        array::from_fn(|i| self.code.angles[i])
+        array::from_fn(|i| self.code.angles.get(i).copied().unwrap_or_default())
     }
 
     fn parameters(&self) -> &'static [&'static str] {
@@ -176,7 +185,12 @@ impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T>
         self.parameters.as_ref()[index]
     }
 
-    of_state!(lagrangian number -> T, energy number -> T, momentum vector -> SVector<T, N>, force vector -> SVector<T, N>);
+    of_state!(lagrangian number -> T, energy number -> T, force vector -> SVector<T, N>);
+
+    #[inline]
+    fn momentum(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        self.at(&self.code.functions.momentum, (t, q, v), |r| self.momentum_of(r, v))
+    }
 
     #[inline]
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
@@ -254,6 +268,10 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
         self.code.constraints.is_some_and(|of| of.has_point_masses)
     }
 
+    fn moving(&self) -> usize {
+        self.code.coordinates.len()
+    }
+
     fn constraint_names(&self) -> &'static [&'static str] {
         self.code.constraints.map_or(&[], |of| of.names)
     }
@@ -270,7 +288,7 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass> {
         let lines = &self.code.functions.point;
         self.at(lines, (t, q, v), |r| Point {
-            momentum: r.vector(0),
+            momentum: self.momentum_of(r, v),
             force: r.vector(1),
             mass: K::mass(self.code, r, 2),
         })
@@ -279,7 +297,22 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
     #[inline(always)]
     fn sides(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T> {
         let lines = &self.code.functions.sides;
-        self.at(lines, (t, q, v), |r| Sides { momentum: r.vector(0), force: r.vector(1) })
+        self.at(lines, (t, q, v), |r| Sides { momentum: self.momentum_of(r, v), force: r.vector(1) })
+    }
+
+    #[inline(always)]
+    fn sides_and_inverse(
+        &self,
+        t: T,
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
+        put: impl FnMut(usize, usize, T),
+    ) -> Sides<N, T> {
+        let lines = &self.code.functions.point;
+        self.at(lines, (t, q, v), |r| {
+            K::inverse_mass::<N, T>(self.code, r, 2, put);
+            Sides { momentum: self.momentum_of(r, v), force: r.vector(1) }
+        })
     }
 
     #[inline(always)]
@@ -292,10 +325,10 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
     fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix> {
         let lines = &self.code.functions.point_derivatives;
         self.at(lines, (t, q, v), |r| PointDerivatives {
-            momentum_dq: K::point_matrix(self.code, r, 0),
-            mass: K::point_matrix(self.code, r, 1),
-            force_dq: K::point_matrix(self.code, r, 2),
-            force_dv: K::point_matrix(self.code, r, 3),
+            momentum_dq: K::point_matrix(self.code, r, (0, 0.0)),
+            mass: K::point_matrix(self.code, r, (1, 1.0)),
+            force_dq: K::point_matrix(self.code, r, (2, 0.0)),
+            force_dv: K::point_matrix(self.code, r, (3, 0.0)),
         })
     }
 
@@ -304,7 +337,7 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
     fn scaled_point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> ScaledPoint<N, T, Self::Mass> {
         let lines = &self.code.functions.scaled_point;
         self.at(lines, (t, q, v), |r| ScaledPoint {
-            point: Point { momentum: r.vector(0), force: r.vector(1), mass: K::mass(self.code, r, 2) },
+            point: Point { momentum: self.momentum_of(r, v), force: r.vector(1), mass: K::mass(self.code, r, 2) },
             energy: r.number(3),
             power: r.number(4),
             g: r.number(5),
@@ -413,7 +446,7 @@ impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, Free, T> {
         let lines = &self.code.by_rule().functions.momentum_equation;
         self.in_step(lines, (node, h, v), |r| MomentumEquation {
             residual: r.vector(0),
-            jacobian: AnyMatrix::of(self.code.by_rule().jacobian, r, 1),
+            jacobian: jacobian(self.code, r, 1),
         })
     }
 
@@ -450,16 +483,23 @@ impl<const N: usize, T: Real> FixedStepping<N, T> for Tape<N, Free, T> {
     }
 }
 
+/// The derivative of the momentum equation with respect to the velocities.
+#[inline(always)]
+fn jacobian<const N: usize, T: Real>(code: &Code, r: Results<'_, T>, quantity: usize) -> AnyMatrix<N, T> {
+    matrix(code, code.by_rule().jacobian, r, (quantity, 1.0))
+}
+
 #[inline(always)]
 fn derivatives<const N: usize, T: Real>(
     code: &Code,
     r: Results<'_, T>,
 ) -> MomentumDerivatives<AnyMatrix<N, T>, AnyMatrix<N, T>> {
+    let dense = |quantity| matrix(code, AnyForm::Dense, r, (quantity, 0.0));
     MomentumDerivatives {
-        residual_dv: AnyMatrix::of(code.by_rule().jacobian, r, 0),
-        residual_dq: AnyMatrix::of(Form::Dense, r, 1),
-        increment_dq: AnyMatrix::of(Form::Dense, r, 2),
-        increment_dv: AnyMatrix::of(Form::Dense, r, 3),
+        residual_dv: jacobian(code, r, 0),
+        residual_dq: dense(1),
+        increment_dq: dense(2),
+        increment_dv: dense(3),
     }
 }
 
@@ -476,10 +516,7 @@ impl<const N: usize, T: Real> EnergyStepping<N, T> for Tape<N, Free, T> {
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, AnyMatrix<N, T>> {
         let lines = &self.code.by_rule().functions.extended_system;
         self.in_step(lines, (node, h, v), |r| ExtendedSystem {
-            momentum: MomentumEquation {
-                residual: r.vector(0),
-                jacobian: AnyMatrix::of(self.code.by_rule().jacobian, r, 1),
-            },
+            momentum: MomentumEquation { residual: r.vector(0), jacobian: jacobian(self.code, r, 1) },
             residual_dh: r.vector(2),
             energy_residual: r.number(3),
             energy_dv: r.vector(4),

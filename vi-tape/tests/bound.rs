@@ -59,11 +59,16 @@ fn every_method_takes_the_steps_of_the_compiled_system() {
         assert_eq!(tape.constraints(), system.constraints());
         assert_eq!(tape.coordinates(), system.coordinates());
         assert_eq!(tape.parameters(), system.parameters());
-        // The slider crank has three coordinates and one at rest, by which its blocks are merged in another way.
-        let allowed = if tape.name() == "SliderCrank" { 1e-13 } else { 0.0 }; // 7.1e-15
+        // One block is a dense matrix, but not beside coordinates at rest: roundings differ, and lengths multiply them.
+        let is_one_block = ["FourBar", "SliderCrank"].contains(&tape.name());
         let at = PhasePoint { t: 0.0, q: q.clone(), v: v.clone() };
         for (method, stages, _) in system.integrators() {
             let of = format!("{} {method:?} {stages:?}", system.name());
+            let allowed = match method {
+                _ if !is_one_block => 0.0,
+                Method::Energy => 1e-8, // 7.6e-10
+                _ => 1e-13,             // 7.1e-15
+            };
             let plan = Plan { stages, ..Plan::new(method, h, at.clone()) };
             let [mut compiled, mut taped] =
                 [&*system, &*tape].map(|system| system.begin(&plan).unwrap_or_else(|error| panic!("{of}: {error}")));

@@ -118,22 +118,6 @@ impl System {
         Some(first)
     }
 
-    /// The system with an array of coordinates at rest: of this length and this name, free, with the mass 1.
-    ///
-    /// # Errors
-    /// A name that is no name.
-    pub fn with_rest(mut self, name: &str, count: usize) -> syn::Result<Self> {
-        let text = format!("struct Rest {{ coord {name}[{count}]; L = sum(i in 0..{count}, dot({name}[i])^2) / 2; }}");
-        let rest = parse::system(text.parse()?)?;
-        self.coordinates.extend(rest.coordinates);
-        for (of, rest) in self.lagrangians.iter_mut().zip(rest.lagrangians) {
-            let span = of.value.span;
-            let own = core::mem::replace(&mut of.value, Expression { span, kind: Kind::List(Vec::new()) });
-            of.value.kind = Kind::Chain(Box::new(own), vec![(Operator::Plus, rest.value)]);
-        }
-        Ok(self)
-    }
-
     /// Reads the files of tables that are not known. The check reports those that cannot be read.
     pub fn read_files(&mut self) {
         for table in &self.tables {
