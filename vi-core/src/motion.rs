@@ -26,7 +26,7 @@ use crate::kind::{Gradients, Kind, Multipliers, ReactionMatrix};
 use crate::lagrangian::Lagrangian;
 use crate::linear::{Block, Matrix};
 use crate::real::Real;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// The motion of a system with or without constraints; see the [module](self).
 ///
@@ -109,23 +109,16 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn sides(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T> {
         self.point(t, q, v).sides()
     }
-    /// [`Motion::sides`]; calls `put` with row, column and value of each entry of M⁻¹, which is unspecified where M is
-    /// singular.
+    /// [`Motion::sides`]; sets the entries of M⁻¹ among the coordinates that move, unspecified where M is singular.
     #[inline(always)]
     fn sides_and_inverse(
         &self,
         t: T,
-        q: &SVector<T, N>,
-        v: &SVector<T, N>,
-        mut put: impl FnMut(usize, usize, T),
+        (q, v): (&SVector<T, N>, &SVector<T, N>),
+        inverse: &mut SMatrix<T, N, N>,
     ) -> Sides<N, T> {
         let point = self.point(t, q, v);
-        let inverse = point.mass.inverse_unchecked();
-        for row in 0..N {
-            for column in 0..N {
-                put(row, column, inverse[(row, column)]);
-            }
-        }
+        *inverse = point.mass.inverse_unchecked();
         point.sides()
     }
     /// `L_q + f` alone.

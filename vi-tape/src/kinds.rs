@@ -8,6 +8,9 @@ use vi_core::linear::{AnyForm, AnyMatrix, AtMost, Matrix, Rectangular, Rows};
 use vi_core::nalgebra::SMatrix;
 use vi_core::real::Real;
 
+/// The number of coordinates up to which mass matrices are inverted in matrices of this size.
+const FEW: usize = 4;
+
 /// The kind of a system whose functions are instructions.
 pub(crate) trait Interpreted: Kind {
     /// The largest number of parameters.
@@ -21,15 +24,14 @@ pub(crate) trait Interpreted: Kind {
     fn parameters<T: Real>() -> Self::Parameters<T>;
     /// The mass matrix among the results of a function.
     fn mass<const N: usize, T: Real>(code: &Code, of: Results<'_, T>, quantity: usize) -> Self::Matrix<N, T>;
-    /// Calls `put` with row, column and value of each entry of the inverse of the mass matrix among the results of a
-    /// function.
-    fn inverse_mass<const N: usize, T: Real>(
+    /// Sets the entries of the inverse of the mass matrix among the results of a function.
+    fn set_inverse_mass<const N: usize, T: Real>(
         code: &Code,
         of: Results<'_, T>,
         quantity: usize,
-        put: impl FnMut(usize, usize, T),
+        inverse: &mut SMatrix<T, N, N>,
     ) {
-        each_entry(code, &Self::mass::<N, T>(code, of, quantity).inverse_unchecked(), put);
+        *inverse = Self::mass::<N, T>(code, of, quantity).inverse_unchecked();
     }
     /// A derivative of the equations of motion, with these entries on the diagonal of coordinates at rest.
     fn point_matrix<const N: usize, T: Real>(
@@ -69,19 +71,26 @@ impl Interpreted for Free {
     }
 
     #[inline(always)]
-    fn inverse_mass<const N: usize, T: Real>(
+    fn set_inverse_mass<const N: usize, T: Real>(
         code: &Code,
         of: Results<'_, T>,
         quantity: usize,
-        put: impl FnMut(usize, usize, T),
+        inverse: &mut SMatrix<T, N, N>,
     ) {
-        // To copy a matrix of N rows takes longer than the rest of an iteration.
-        match code.coordinates.len() {
-            0..=2 => each_entry(code, &Self::mass::<2, T>(code, of, quantity).inverse_unchecked(), put),
-            3..=4 => each_entry(code, &Self::mass::<4, T>(code, of, quantity).inverse_unchecked(), put),
-            _ => each_entry(code, &Self::mass::<N, T>(code, of, quantity).inverse_unchecked(), put),
+        let n = code.coordinates.len();
+        if n > FEW || const { N <= FEW } {
+            *inverse = Self::mass::<N, T>(code, of, quantity).inverse_unchecked();
+            return;
+        }
+        // To copy a matrix of N rows a few times takes longer than the rest of an iteration.
+        let few = Self::mass::<FEW, T>(code, of, quantity).inverse_unchecked();
+        for column in 0..n {
+            for row in 0..n {
+                inverse[(row, column)] = few[(row, column)];
+            }
         }
     }
+
     #[inline(always)]
     fn point_matrix<const N: usize, T: Real>(
         code: &Code,
@@ -160,16 +169,6 @@ pub(crate) fn matrix<const N: usize, T: Real>(
     let mut matrix = AnyMatrix::zeros(form, code.coordinates.len(), T::real(at_rest));
     of.each(quantity, |row, column, value| matrix.put(row, column, value));
     matrix
-}
-
-/// Calls `put` with row, column and value of each entry of the coordinates that move.
-#[inline(always)]
-fn each_entry<const N: usize, T: Real>(code: &Code, of: &SMatrix<T, N, N>, mut put: impl FnMut(usize, usize, T)) {
-    for row in 0..code.coordinates.len() {
-        for column in 0..code.coordinates.len() {
-            put(row, column, of[(row, column)]);
-        }
-    }
 }
 
 /// The rows in these columns, which have the diagonal for coordinates at rest, with these entries there.

@@ -8,6 +8,7 @@ use vi_core::kind::{Free, Gradients, Multipliers, ReactionMatrix};
 use vi_core::lagrangian::{Described, Flow, Parameters, Undefined};
 use vi_core::linear::{AnyForm, AnyMatrix, Block};
 use vi_core::motion::{Motion, Point, PointDerivatives, ScaledPoint, Separable, Sides};
+use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::real::{Real, Rounded};
 use vi_core::stepping::{
@@ -304,13 +305,12 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
     fn sides_and_inverse(
         &self,
         t: T,
-        q: &SVector<T, N>,
-        v: &SVector<T, N>,
-        put: impl FnMut(usize, usize, T),
+        (q, v): (&SVector<T, N>, &SVector<T, N>),
+        inverse: &mut SMatrix<T, N, N>,
     ) -> Sides<N, T> {
         let lines = &self.code.functions.point;
         self.at(lines, (t, q, v), |r| {
-            K::inverse_mass::<N, T>(self.code, r, 2, put);
+            K::set_inverse_mass(self.code, r, 2, inverse);
             Sides { momentum: self.momentum_of(r, v), force: r.vector(1) }
         })
     }

@@ -13,7 +13,7 @@
 
 use super::fixed_point::{Convergence, Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
-use super::points::{ErasedSystem, Form, Points};
+use super::points::{ErasedSystem, Form, MANY, Points};
 use super::stages::{
     AtStages, Roundings, Stages, add_products, change, constant_mass, gathered, growth, maximum, product, roundings,
     scaled, scatter, sum, times, weights,
@@ -199,17 +199,19 @@ where
         let mut force = [[0.0; S]; N];
         let mut momentum = [[0.0; S]; N];
         let mut terms = [[0.0; S]; N];
+        let mut columns = SMatrix::<T, N, N>::zeros();
         for i in 0..T::EVALUATIONS {
             let (t, q, v) = self.place(i, &x, &velocity);
-            let sides = self.system.sides_and_inverse_at(t, &q, &v, |k, l, value| value.put(&mut inverse[k][l], i));
+            let sides = self.system.sides_and_inverse_at(t, (&q, &v), &mut columns);
             scatter(n, &mut force, i, &sides.force);
             scatter(n, &mut momentum, i, &sides.momentum);
-        }
-        for k in 0..n {
-            for l in 0..n {
-                for i in 0..S {
-                    terms[k][i] += (inverse[k][l][i] * momentum[l][i]).abs();
+            for k in 0..n {
+                let mut sum = T::zero();
+                for l in 0..n {
+                    columns[(k, l)].put(&mut inverse[k][l], i);
+                    sum += (columns[(k, l)] * sides.momentum[l]).abs();
                 }
+                sum.put(&mut terms[k], i);
             }
         }
         self.evaluated = velocity;
@@ -245,7 +247,8 @@ where
     fn iterate_varying(&mut self, x: &Stages<N, S>, before: &Convergence) {
         let n = self.system.moving();
         let zeros = [[[0.0; S]; N]; N];
-        let Some(kept) = self.kept.take() else {
+        let kept = if const { N < MANY } { None } else { self.kept.take() };
+        let Some(kept) = kept else {
             let mut inverse = zeros;
             let missing = self.evaluate_with_masses(x, &mut inverse);
             return add_products::<N, S, FUSED>(n, &mut self.velocity, &inverse, &missing);

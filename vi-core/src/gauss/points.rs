@@ -68,13 +68,17 @@ pub(crate) trait Points<const N: usize, T: Real> {
     /// [`Motion::sides`].
     fn sides_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T>;
     /// [`Motion::sides_and_inverse`].
+    #[inline(always)]
     fn sides_and_inverse_at(
         &self,
         t: T,
-        q: &SVector<T, N>,
-        v: &SVector<T, N>,
-        put: impl FnMut(usize, usize, T),
-    ) -> Sides<N, T>;
+        (q, v): (&SVector<T, N>, &SVector<T, N>),
+        inverse: &mut SMatrix<T, N, N>,
+    ) -> Sides<N, T> {
+        let point = self.at(t, q, v);
+        *inverse = point.mass.inverse_unchecked();
+        point.sides()
+    }
     /// [`Motion::applied_force`].
     #[inline(always)]
     fn force_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
@@ -111,11 +115,10 @@ impl<Y: Motion<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     fn sides_and_inverse_at(
         &self,
         t: T,
-        q: &SVector<T, N>,
-        v: &SVector<T, N>,
-        put: impl FnMut(usize, usize, T),
+        at: (&SVector<T, N>, &SVector<T, N>),
+        inverse: &mut SMatrix<T, N, N>,
     ) -> Sides<N, T> {
-        self.sides_and_inverse(t, q, v, put)
+        self.sides_and_inverse(t, at, inverse)
     }
 
     #[inline(always)]
@@ -218,21 +221,6 @@ macro_rules! rare {
 
             fn at(&self, t: $number, q: &SVector<$number, N>, v: &SVector<$number, N>) -> AnyPoint<N, $number> {
                 self.0.$point(t, q, v)
-            }
-
-            fn sides_and_inverse_at(
-                &self,
-                t: $number,
-                q: &SVector<$number, N>,
-                v: &SVector<$number, N>,
-                mut put: impl FnMut(usize, usize, $number),
-            ) -> Sides<N, $number> {
-                let point = self.at(t, q, v);
-                let inverse = point.mass.inverse_unchecked();
-                inverse.column_iter().enumerate().for_each(|(column, of)| {
-                    of.iter().enumerate().for_each(|(row, value)| put(row, column, *value));
-                });
-                point.sides()
             }
 
             fn sides_at(&self, t: $number, q: &SVector<$number, N>, v: &SVector<$number, N>) -> Sides<N, $number> {
