@@ -133,9 +133,9 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     }
     let ltt = fields.lagrangian(pool, &[Variable::Time, Variable::Time]);
     density.push(pool.neg(ltt));
-    let momentum_is_mass_times_velocity = is_product(pool, &momentum, &mass)?;
+    let quadratic = !mass.iter().flatten().any(|entry| pool.depends_on(*entry, &is_velocity));
+    let momentum_is_mass_times_velocity = is_product(pool, &momentum, &mass, quadratic)?;
     let (forced_time, autonomous) = dependence(pool, model);
-    let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     Ok(Continuous {
         lagrangian: model.lagrangian,
         energy: energy(pool, model.lagrangian, dimension),
@@ -143,7 +143,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         watched: watched(pool, model),
         calls: calls(pool, model),
         force: model.forces.clone(),
-        quadratic: !mass.iter().flatten().any(|entry| pool.depends_on(*entry, &moves)),
+        quadratic,
         applied_force,
         power: pool.sum(&power),
         momentum,
@@ -231,19 +231,34 @@ fn calls(pool: &Pool<Symbol>, model: &Model) -> Vec<(Expr, Vec<Expr>)> {
     nodes.filter_map(call).collect()
 }
 
+fn is_velocity(symbol: &Symbol) -> bool {
+    matches!(symbol, Symbol::Continuous(Variable::Velocity(_)))
+}
+
 fn moving(pool: &mut Pool<Symbol>, index: usize) -> Expr {
     pool.symbol(Symbol::Continuous(Variable::Velocity(index)))
 }
 
-/// Whether `vector = matrix · v`.
-fn is_product(pool: &mut Pool<Symbol>, vector: &[Expr], matrix: &[Vec<Expr>]) -> Result<bool, TooLarge> {
-    for (entry, row) in vector.iter().zip(matrix) {
-        let mut terms = vec![pool.neg(*entry)];
-        for (index, factor) in row.iter().enumerate() {
-            let v = moving(pool, index);
-            terms.push(pool.mul(*factor, v));
-        }
-        let rest = pool.sum(&terms);
+/// Whether `momentum = mass · v`. Without a velocity in the masses, their difference is the momentum at rest, so that
+/// the product is not multiplied out.
+fn is_product(
+    pool: &mut Pool<Symbol>,
+    momentum: &[Expr],
+    mass: &[Vec<Expr>],
+    is_quadratic: bool,
+) -> Result<bool, TooLarge> {
+    let zero = pool.zero();
+    for (entry, row) in momentum.iter().zip(mass) {
+        let rest = if is_quadratic {
+            pool.substitute(*entry, &mut |_, symbol| is_velocity(symbol).then_some(zero))
+        } else {
+            let mut terms = vec![pool.neg(*entry)];
+            for (index, factor) in row.iter().enumerate() {
+                let v = moving(pool, index);
+                terms.push(pool.mul(*factor, v));
+            }
+            pool.sum(&terms)
+        };
         let rest = pool.expand(rest)?;
         if !pool.is_zero(rest) {
             return Ok(false);
@@ -263,9 +278,9 @@ pub(crate) fn summands(pool: &mut Pool<Symbol>, expr: Expr) -> Vec<Expr> {
 
 /// v·L_v − L, term by term. A term without velocities only changes its sign and keeps the form in which it was written.
 pub(crate) fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Expr {
-    let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     let terms = summands(pool, lagrangian);
-    let (moving_terms, still): (Vec<Expr>, Vec<Expr>) = terms.into_iter().partition(|t| pool.depends_on(*t, &moves));
+    let (moving_terms, still): (Vec<Expr>, Vec<Expr>) =
+        terms.into_iter().partition(|term| pool.depends_on(*term, &is_velocity));
     let (kinetic, still) = (pool.sum(&moving_terms), pool.sum(&still));
     let mut gains = vec![pool.neg(kinetic)];
     for index in 0..dimension {
