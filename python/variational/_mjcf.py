@@ -1,0 +1,570 @@
+"""Reads MJCF, the files of MuJoCo."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from ._arrays import Array
+from ._mechanism import (
+    Attitude,
+    Body,
+    Coupling,
+    Inertia,
+    Joint,
+    Mechanism,
+    Motor,
+    Place,
+    Point,
+    about,
+    about_z_to,
+    numbers,
+    of_quaternion,
+    unit,
+)  # fmt: skip
+
+Element = ElementTree.Element
+Attributes = dict[str, str]
+
+ACTUATORS = {"general", "motor", "position", "velocity"}
+WRITTEN_OUT = {"composite", "flexcomp", "replicate", "attach"}
+TURNS = {"quat": 4, "axisangle": 4, "xyaxes": 6, "zaxis": 3, "euler": 3}
+
+
+def read_mjcf(root: Element, folder: Path) -> Mechanism:
+    """The mechanism of the element `mujoco`; files that it includes are relative to the folder."""
+    return _Reader(root, folder).mechanism
+
+
+def _included(parent: Element, folder: Path, own: Path, files: tuple[Path, ...]) -> None:
+    """Replaces each `include` by the elements of its file, which is relative to the main file, or to its own."""
+    children = list(parent)
+    for child in children:
+        parent.remove(child)
+    for child in children:
+        if child.tag != "include":
+            _included(child, folder, own, files)
+            parent.append(child)
+            continue
+        name = child.get("file")
+        if name is None:
+            raise ValueError("an include has no file: write <include file=…/>")
+        path = next((base / name for base in (folder, own) if (base / name).is_file()), None)
+        if path is None:
+            raise FileNotFoundError(f"the included file {name} is not in {folder.resolve()}")
+        if path.resolve() in files:
+            raise ValueError(f"the file {name} includes itself: remove one of its includes")
+        try:
+            inner = ElementTree.parse(path).getroot()
+        except ElementTree.ParseError as error:
+            raise ValueError(f"{path} is not XML: {error}") from None
+        _included(inner, folder, path.parent, (*files, path.resolve()))
+        parent.extend(inner)
+
+
+class _Reader:
+    def __init__(self, root: Element, folder: Path):
+        root = copy.deepcopy(root)
+        _included(root, folder, folder, ())
+        self.root = root
+        self.mechanism = Mechanism(root.get("model", "Robot"))
+        self.compiler: Attributes = {}
+        for element in root.findall("compiler"):
+            self.compiler |= element.attrib
+        if self.compiler.get("coordinate", "local") != "local":
+            raise ValueError('the compiler has coordinate="global": write the file with local coordinates')
+        self.radian = math.pi / 180.0 if self.compiler.get("angle", "degree") == "degree" else 1.0
+        self.classes: dict[str, dict[str, Attributes]] = {"main": {}}
+        for element in root.findall("default"):
+            self._default(element, "main", self.classes["main"])
+        self.names: dict[str, int] = {}
+        self.sites: dict[str, tuple[int | None, Place]] = {}
+        self.flags: dict[str, str] = {}
+        self.limited: list[str] = []
+        self.clamped: list[str] = []
+        self.rubbing: list[str] = []
+        self.has_contact = False
+        self._options()
+        for world in root.findall("worldbody"):
+            for child, place, cls in self._children(world, Place(), None):
+                self._world(child, place, cls)
+        self._bounds()
+        self._actuators()
+        self._equalities()
+        self._others()
+
+    # Attributes.
+
+    def _default(self, element: Element, name: str, inherited: dict[str, Attributes]) -> None:
+        own = {tag: dict(attributes) for tag, attributes in inherited.items()}
+        for child in element:
+            if child.tag != "default":
+                own.setdefault(_kind(child.tag), {}).update(child.attrib)
+        self.classes[name] = own
+        for child in element.findall("default"):
+            inner = child.get("class")
+            if inner is None:
+                raise ValueError("a default inside another one has no name: write <default class=…>")
+            self._default(child, inner, own)
+
+    def _attributes(self, element: Element, cls: str | None) -> Attributes:
+        name = element.get("class") or cls or "main"
+        if name not in self.classes:
+            known = ", ".join(self.classes)
+            raise ValueError(f"{_called(element)} has the class {name!r}, which no default declares; there are {known}")
+        return {**self.classes[name].get(_kind(element.tag), {}), **element.attrib}
+
+    def _place(self, of: Element | Attributes, name: str) -> Place:
+        pos = numbers(of, "pos", 3, name)
+        return Place(np.zeros(3) if pos is None else np.array(pos), self._axes(of, name))
+
+    def _axes(self, of: Element | Attributes, name: str) -> Array:
+        given = [word for word in TURNS if of.get(word) is not None]
+        if len(given) > 1:
+            raise ValueError(f"{name} has {' and '.join(given)}: write one of them")
+        if not given:
+            return np.eye(3)
+        values = np.array(numbers(of, given[0], TURNS[given[0]], name))
+        if given == ["quat"]:
+            return of_quaternion(values, name)
+        if given == ["axisangle"]:
+            return about(unit(values[:3], f"the axis of {name}"), values[3] * self.radian)
+        if given == ["zaxis"]:
+            return about_z_to(unit(values, f"zaxis of {name}"))
+        if given == ["xyaxes"]:
+            x = unit(values[:3], f"xyaxes of {name}")
+            y = unit(values[3:] - (values[3:] @ x) * x, f"xyaxes of {name}")
+            return np.column_stack([x, y, np.cross(x, y)])
+        found = np.eye(3)
+        for letter, angle in zip(self.compiler.get("eulerseq", "xyz"), values, strict=True):
+            turn = about(np.eye(3)["xyz".index(letter.lower())], angle * self.radian)
+            # Small letters turn about the moving axes, capital letters about the fixed ones.
+            found = found @ turn if letter.islower() else turn @ found
+        return found
+
+    # Bodies.
+
+    def _options(self) -> None:
+        for option in self.root.findall("option"):
+            gravity = numbers(option, "gravity", 3, "the option")
+            if gravity is not None:
+                self.mechanism.gravity = np.array(gravity)
+            if any(
+                np.any(numbers(option, name, 1, "the option"))
+                for name in ("density", "viscosity")
+                if name in option.attrib
+            ):
+                self._left_out("forces of the fluid")
+            for flag in option.findall("flag"):
+                self.flags |= flag.attrib
+        if self.flags.get("gravity") == "disable":
+            self.mechanism.gravity = np.zeros(3)
+
+    def _is_on(self, *flags: str) -> bool:
+        return all(self.flags.get(flag) != "disable" for flag in flags)
+
+    def _children(self, element: Element, place: Place, cls: str | None) -> Iterator[tuple[Element, Place, str | None]]:
+        """The elements of a body, with the place and the class of the frames around them."""
+        for child in element:
+            if child.tag in WRITTEN_OUT:
+                raise ValueError(f"{_called(child)} has to be written out: mujoco.mj_saveLastXML writes such a file")
+            if child.tag == "frame":
+                inner = place.then(self._place(child, _called(child)))
+                yield from self._children(child, inner, child.get("childclass") or cls)
+            else:
+                yield child, place, cls
+
+    def _world(self, child: Element, place: Place, cls: str | None) -> None:
+        if child.tag == "body":
+            self._body(child, None, place, cls)
+        elif child.tag == "site":
+            self._site(child, None, place, cls)
+        elif child.tag == "geom":
+            self._collides(self._attributes(child, cls))
+
+    def _body(self, element: Element, parent: int | None, frame: Place, cls: str | None) -> None:
+        index = len(self.mechanism.bodies)
+        name = element.get("name") or f"body{index + 1}"
+        of = f"the body {name!r}"
+        cls = element.get("childclass") or cls
+        body = Body(name, parent, frame.then(self._place(element, of)))
+        body.carried = (numbers(element, "gravcomp", 1, of) or [0.0])[0]
+        if element.get("mocap") == "true":
+            self._left_out(f"the motion of {of}, which rests in the world")
+        self.mechanism.bodies.append(body)
+        if name in self.names:
+            raise ValueError(f"two bodies have the name {name!r}")
+        self.names[name] = index
+        children = list(self._children(element, Place(), cls))
+        joints = [found for found in children if found[0].tag in ("joint", "freejoint")]
+        for place, found in enumerate(joints, 1):
+            unnamed = f"{name}_joint" + (str(place) if len(joints) > 1 else "")
+            body.joints.append(self._joint(*found, unnamed))
+        if any(joint.kind == "free" for joint in body.joints) and (self._moves(parent) or len(joints) > 1):
+            raise ValueError(
+                f"{of} has a free joint, which must be alone: neither {name!r} nor a body above has others"
+            )
+        self._mass(body, element, children)
+        for child, place, inner in children:
+            if child.tag == "body":
+                self._body(child, index, place, inner)
+            elif child.tag == "site":
+                self._site(child, index, place, inner)
+            elif child.tag == "plugin":
+                self._left_out(f"a plugin of {of}")
+
+    def _moves(self, body: int | None) -> bool:
+        bodies = self.mechanism.bodies
+        return body is not None and (bool(bodies[body].joints) or self._moves(bodies[body].parent))
+
+    def _joint(self, element: Element, frame: Place, cls: str | None, unnamed: str) -> Joint:
+        name = element.get("name") or unnamed
+        of = f"the joint {name!r}"
+        if element.tag == "freejoint":
+            return Joint(name, "free")
+        given = self._attributes(element, cls)
+
+        def value(attribute: str, unit: float = 1.0) -> float:
+            found = numbers(given, attribute, range(1, 4), of) or [0.0]
+            if np.any(found[1:]):
+                self._left_out(f"the nonlinear {attribute} of {of}")
+            return found[0] * unit
+
+        kind = given.get("type", "hinge")
+        if kind not in ("hinge", "slide", "ball", "free"):
+            raise ValueError(f'{of} has the type "{kind}": the types are hinge, slide, ball and free')
+        radian = self.radian if kind == "hinge" else 1.0
+        joint = Joint(name, kind, damping=value("damping"), armature=value("armature"), stiffness=value("stiffness"))
+        axis = numbers(given, "axis", 3, of) or [0.0, 0.0, 1.0]
+        joint.axis = frame.axes @ unit(axis, f"the axis of {of}")
+        joint.pos = frame.point(np.array(numbers(given, "pos", 3, of) or [0.0, 0.0, 0.0]))
+        joint.ref, joint.spring_ref = value("ref", radian), value("springref", radian)
+        if not self._is_on("passive", "spring"):
+            joint.stiffness = 0.0
+        if not self._is_on("passive", "damper"):
+            joint.damping = 0.0
+        if "springdamper" in given:
+            self._left_out(f"springdamper of {of}")
+        if kind in ("ball", "free") and joint.stiffness:
+            self._left_out(f"the stiffness of {of}, which is of the type {kind}")
+            joint.stiffness = 0.0
+        joint.is_limited = given.get("limited", "auto") == "true" or (
+            "range" in given and given.get("limited") != "false"
+        )
+        if joint.is_limited:
+            self.limited.append(name)
+        if value("frictionloss"):
+            self.rubbing.append(name)
+        return joint
+
+    def _site(self, element: Element, body: int | None, frame: Place, cls: str | None) -> None:
+        if "name" in element.attrib:
+            given = self._attributes(element, cls)
+            of = _called(element)
+            place = self._place(given, of) if "fromto" not in given else self._fromto(given, of)[0]
+            self.sites[element.attrib["name"]] = (body, frame.then(place))
+
+    # Inertia.
+
+    def _mass(self, body: Body, element: Element, children: list[tuple[Element, Place, str | None]]) -> None:
+        way = self.compiler.get("inertiafromgeom", "auto")
+        stated = element.find("inertial")
+        geoms = Inertia()
+        unknown: list[str] = []
+        is_from_geoms = way == "true" or (way == "auto" and stated is None)
+        for child, place, cls in children:
+            if child.tag != "geom":
+                continue
+            given = self._attributes(child, cls)
+            self._collides(given)
+            first, last = numbers(self.compiler, "inertiagrouprange", 2, "the compiler") or (0.0, 5.0)
+            if is_from_geoms and first <= int(given.get("group", "0")) <= last:
+                found = self._geom(given, child, body.name)
+                if found is None:
+                    unknown.append(_called(child))
+                elif found.mass > 0.0:
+                    geoms += found.moved(place)
+        if is_from_geoms:
+            body.inertia = geoms
+            if unknown:
+                body.without_inertia = ", ".join(unknown)
+        elif stated is not None:
+            body.inertia = self._stated(stated, f"the inertial of the body {body.name!r}")
+
+    def _stated(self, element: Element, of: str) -> Inertia:
+        mass = numbers(element, "mass", 1, of)
+        if mass is None:
+            raise ValueError(f"{of} has no mass")
+        diagonal, full = numbers(element, "diaginertia", 3, of), numbers(element, "fullinertia", 6, of)
+        moments = np.diag(diagonal) if diagonal is not None else np.zeros((3, 3))
+        if full is not None:
+            xx, yy, zz, xy, xz, yz = full
+            moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        return Inertia(mass[0], np.zeros(3), moments).moved(self._place(element, of))
+
+    def _geom(self, given: Attributes, element: Element, body: str) -> Inertia | None:
+        """The inertia of a geom, in the axes of its body; None if it has one that the file does not state."""
+        of = f"{_called(element)} of the body {body!r}"
+        kind = given.get("type", "sphere")
+        mass = numbers(given, "mass", 1, of)
+        density = (numbers(given, "density", 1, of) or [1000.0])[0]
+        if kind in ("plane", "hfield") or (mass[0] if mass is not None else density) == 0.0:
+            return Inertia()
+        if kind in ("mesh", "sdf") or "mesh" in given:
+            return None
+        if given.get("shellinertia") == "true":
+            self._left_out(f"shellinertia of {of}, which is solid")
+        size = [*(numbers(given, "size", range(1, 4), of) or []), 0.0, 0.0, 0.0][:3]
+        place = self._place({name: text for name, text in given.items() if name != "fromto"}, of)
+        if "fromto" in given:
+            place, half = self._fromto(given, of)
+            size = [size[0], half, 0.0] if kind in ("capsule", "cylinder") else [size[0], size[0], half]
+        try:
+            volume, moments = SOLIDS[kind](*size)
+        except KeyError:
+            raise ValueError(f'{of} has the type "{kind}": known are {", ".join(SOLIDS)}, plane and mesh') from None
+        if volume <= 0.0:
+            raise ValueError(f"{of} has no volume: write its size")
+        amount = mass[0] if mass is not None else density * volume
+        return Inertia(amount, np.zeros(3), amount * np.diag(moments)).moved(place)
+
+    def _fromto(self, given: Attributes, of: str) -> tuple[Place, float]:
+        """The place of a solid along a segment, and half its length."""
+        ends = np.array(numbers(given, "fromto", 6, of))
+        along = ends[:3] - ends[3:]
+        return Place((ends[:3] + ends[3:]) / 2.0, about_z_to(unit(along, f"fromto of {of}"))), float(
+            np.linalg.norm(along)
+        ) / 2.0
+
+    def _bounds(self) -> None:
+        """The changes of masses and moments that the compiler is asked for."""
+
+        def bound(name: str) -> float:
+            return (numbers(self.compiler, name, 1, "the compiler") or [0.0])[0]
+
+        bodies = [body for body in self.mechanism.bodies if not body.without_inertia]
+        for body in bodies:
+            inertia = body.inertia
+            inertia.mass = max(inertia.mass, bound("boundmass"))
+            if bound("boundinertia") or self.compiler.get("balanceinertia") == "true":
+                moments, axes = np.linalg.eigh(inertia.moments)
+                if self.compiler.get("balanceinertia") == "true" and moments[0] + moments[1] < moments[2]:
+                    moments[:] = moments.mean()
+                inertia.moments = axes @ np.diag(np.maximum(moments, bound("boundinertia"))) @ axes.T
+        total = bound("settotalmass")
+        if total > 0.0:
+            factor = total / sum(body.inertia.mass for body in bodies)
+            for body in bodies:
+                body.inertia = body.inertia.scaled(factor)
+
+    # Motors and constraints.
+
+    def _actuators(self) -> None:
+        joints = self.mechanism.joints()
+        for section in self.root.findall("actuator"):
+            for element in section:
+                name = element.get("name") or f"{element.get('joint', 'actuator')}_{element.tag}"
+                of = f"the actuator {name!r}"
+                given = self._attributes(element, None)
+                reason = _left_out(element, given)
+                if reason or not self._is_on("actuation"):
+                    self._left_out(f"{of} ({reason or 'disabled'})")
+                    continue
+                joint = joints.get(given["joint"])
+                if joint is None:
+                    raise ValueError(f"{of} moves the joint {given['joint']!r}, which is not there")
+                gear = [*(numbers(given, "gear", range(1, 7), of) or [1.0]), *[0.0] * 5]
+                gain, bias = self._law(element.tag, given, of)
+                count = {"ball": 3, "free": 6}.get(joint.kind, 1)
+                motor = Motor(name, joint.name, tuple(gear[:count]), gain, bias)
+                if count > 1 and (gain[1:] != (0.0, 0.0) or bias != (0.0, 0.0, 0.0)):
+                    self._left_out(f"{of} (its force depends on the motion of a joint of the type {joint.kind})")
+                    continue
+                self.mechanism.motors.append(motor)
+                for what in ("damping", "armature"):
+                    if np.any(numbers(given, what, range(1, 4), of)):
+                        self._left_out(f"{what} of {of}")
+                if any(f"{of}range" in given or given.get(f"{of}limited") == "true" for of in ("ctrl", "force", "act")):
+                    self.clamped.append(name)
+
+    def _law(self, tag: str, given: Attributes, of: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Gain and bias."""
+
+        def value(name: str, usual: float) -> float:
+            return (numbers(given, name, 1, of) or [usual])[0]
+
+        if tag == "motor":
+            return (1.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        if tag == "position":
+            kp = value("kp", 1.0)
+            return (kp, 0.0, 0.0), (0.0, -kp, -value("kv", 0.0))
+        if tag == "velocity":
+            kv = value("kv", 1.0)
+            return (kv, 0.0, 0.0), (0.0, 0.0, -kv)
+        gain, bias = (
+            [*(numbers(given, name, range(1, 11), of) or usual), 0.0, 0.0][:3]
+            for name, usual in (("gainprm", [1.0]), ("biasprm", [0.0]))
+        )
+        if given.get("gaintype", "fixed") == "fixed":
+            gain[1:] = [0.0, 0.0]
+        if given.get("biastype", "none") == "none":
+            bias = [0.0, 0.0, 0.0]
+        return tuple(gain), tuple(bias)
+
+    def _equalities(self) -> None:
+        places = self.mechanism.places()
+        joints = self.mechanism.joints()
+
+        def body_of(name: str | None, of: str) -> int | None:
+            if name in (None, "world"):
+                return None
+            if name not in self.names:
+                raise ValueError(f"{of} names the body {name!r}, which is not there")
+            return self.names[name]
+
+        def there(index: int | None) -> Place:
+            return Place() if index is None else places[index]
+
+        for section in self.root.findall("equality"):
+            for index, element in enumerate(section, 1):
+                name = element.get("name") or f"{element.tag}{index}"
+                of = f"the {element.tag} {name!r}"
+                given = self._attributes(element, None)
+                if element.tag not in ("connect", "weld", "joint"):
+                    self._left_out(f"the equality {name!r} ({element.tag})")
+                    continue
+                if given.get("active") == "false" or not self._is_on("constraint", "equality"):
+                    self._left_out(f"{of}, which is not active")
+                    continue
+                if element.tag == "joint":
+                    pair = (given.get("joint1"), given.get("joint2"))
+                    for joint in pair:
+                        if (joint is not None and joint not in joints) or joint is pair[0] is None:
+                            raise ValueError(f"{of} names the joint {joint!r}, which is not there")
+                        if joint is not None and joints[joint].kind not in ("hinge", "slide"):
+                            raise ValueError(f"{of} names the joint {joint!r}: it must be a hinge or a slide")
+                    polynomial = numbers(given, "polycoef", range(1, 6), of) or [0.0, 1.0]
+                    self.mechanism.constraints.append(Coupling(name, pair, tuple(polynomial)))
+                    continue
+                if "site1" in given:
+                    for site in (given["site1"], given.get("site2")):
+                        if site not in self.sites:
+                            raise ValueError(f"{of} names the site {site!r}, which is not there")
+                    (first, at_first), (second, at_second) = (self.sites[given[site]] for site in ("site1", "site2"))
+                    points, axes = (at_first.origin, at_second.origin), at_first.axes @ at_second.axes.T
+                else:
+                    first, second = (body_of(given.get(key), of) for key in ("body1", "body2"))
+                    relative = there(first).inverse().then(there(second))
+                    anchor = np.array(numbers(given, "anchor", 3, of) or [0.0, 0.0, 0.0])
+                    if element.tag == "connect":
+                        points = (anchor, relative.inverse().point(anchor))
+                    else:
+                        pose = numbers(given, "relpose", 7, of)
+                        if pose is not None and np.any(pose[3:]):
+                            relative = Place(np.array(pose[:3]), of_quaternion(pose[3:], of))
+                        points = (relative.point(anchor), anchor)
+                    axes = relative.axes
+                self.mechanism.constraints.append(Point(name, (first, second), points))
+                if element.tag == "weld":
+                    self.mechanism.constraints.append(Attitude(name, (first, second), axes))
+
+    # What is left out.
+
+    def _left_out(self, what: str) -> None:
+        if what not in self.mechanism.left_out:
+            self.mechanism.left_out.append(what)
+
+    def _collides(self, given: Attributes) -> None:
+        if any(int(given.get(mask, "1")) for mask in ("contype", "conaffinity")) and self._is_on(
+            "contact", "constraint"
+        ):
+            self.has_contact = True
+
+    def _others(self) -> None:
+        for tag in ("tendon", "deformable"):
+            for section in self.root.findall(tag):
+                for element in section:
+                    self._left_out(f"the {tag} {element.get('name') or element.tag!r}")
+        for body in self.mechanism.bodies:
+            if body.without_inertia:
+                self._left_out(f"the inertia of {body.without_inertia} of the body {body.name!r}")
+        for what, names in (
+            ("limits of", self.limited),
+            ("limits of the motors", self.clamped),
+            ("friction of", self.rubbing),
+        ):
+            if names:
+                self._left_out(f"{what} {', '.join(names)}")
+        if self.has_contact:
+            self._left_out("contact")
+
+
+def _kind(tag: str) -> str:
+    """Actuators share their defaults, whatever their kind."""
+    return "general" if tag in ACTUATORS else tag
+
+
+def _called(element: Element) -> str:
+    name = element.get("name") or element.get("file")
+    return f"the {element.tag} {name!r}" if name else f"a {element.tag}"
+
+
+def _left_out(element: Element, given: Attributes) -> str:
+    """Why an actuator is left out; an empty text if it is not."""
+    if element.tag not in ACTUATORS:
+        return element.tag
+    if "joint" not in given:
+        return next(
+            (f"it moves a {word}" for word in ("tendon", "site", "body", "jointinparent") if word in given), "a crank"
+        )
+    if element.tag == "general":
+        kinds = (
+            ("dyntype", "none"),
+            ("gaintype", "fixed"),
+            ("gaintype", "affine"),
+            ("biastype", "none"),
+            ("biastype", "affine"),
+        )
+        for name in ("dyntype", "gaintype", "biastype"):
+            kind = given.get(name)
+            if kind is not None and (name, kind) not in kinds:
+                return f"{name} {kind}"
+    elif np.any(numbers(given, "timeconst", 1, "an actuator")) or np.any(numbers(given, "dampratio", 1, "an actuator")):
+        return "timeconst or dampratio"
+    if np.any(numbers(given, "delay", 1, "an actuator")):
+        return "delay"
+    return ""
+
+
+def _sphere(r: float, *_: float) -> tuple[float, list[float]]:
+    return 4.0 / 3.0 * math.pi * r**3, [0.4 * r * r] * 3
+
+
+def _capsule(r: float, half: float, _: float) -> tuple[float, list[float]]:
+    balls, cylinder = 4.0 / 3.0 * math.pi * r**3, 2.0 * math.pi * r * r * half
+    across = cylinder * (r * r / 4.0 + half * half / 3.0) + balls * (0.4 * r * r + half * half + 0.75 * half * r)
+    along = cylinder * r * r / 2.0 + balls * 0.4 * r * r
+    volume = balls + cylinder
+    return volume, [across / volume, across / volume, along / volume] if volume else [0.0] * 3
+
+
+def _cylinder(r: float, half: float, _: float) -> tuple[float, list[float]]:
+    across = r * r / 4.0 + half * half / 3.0
+    return 2.0 * math.pi * r * r * half, [across, across, r * r / 2.0]
+
+
+def _box(a: float, b: float, c: float) -> tuple[float, list[float]]:
+    return 8.0 * a * b * c, [(b * b + c * c) / 3.0, (a * a + c * c) / 3.0, (a * a + b * b) / 3.0]
+
+
+def _ellipsoid(a: float, b: float, c: float) -> tuple[float, list[float]]:
+    return 4.0 / 3.0 * math.pi * a * b * c, [(b * b + c * c) / 5.0, (a * a + c * c) / 5.0, (a * a + b * b) / 5.0]
+
+
+SOLIDS = {"sphere": _sphere, "capsule": _capsule, "cylinder": _cylinder, "box": _box, "ellipsoid": _ellipsoid}
+"""Volume, and moments of inertia of the mass 1, by the numbers of `size`."""
