@@ -170,7 +170,12 @@ TABLE = [
     (lambda: vi.Kepler.integrate([0.4, 0.0], [0.0, 2.0], h=0.1), TypeError, r"write the parentheses.*\.integrate\(…\)"),
     (lambda: vi.Kepler.integrate(q=[0.4, 0.0], h=0.1), TypeError, "needs a system, not its class"),
     (lambda: vi.Kepler.energy(0.0, [1.0, 0.0], [0.0, 1.0]), TypeError, "energy needs a system, not its class"),
+    (lambda: vi.Kepler.set(mu=2.0), TypeError, r"needs a system, not its class.*vi\.Pendulum\(\)\.set\(…\)"),
+    (lambda: vi.Kepler.copy(), TypeError, "copy needs a system, not its class"),
+    (lambda: vi.Kepler.explain(), TypeError, "explain needs a system, not its class"),
     (lambda: setattr(vi.Kepler, "mu", 2.0), AttributeError, r"write Kepler\(mu=…\)"),
+    (lambda: setattr(vi.Kepler, "k", 2.0), AttributeError, r"no attribute 'k'; its parameters are mu.*Kepler\(…\)"),
+    (lambda: setattr(type("Mine", (vi.Kepler,), {}), "mu", 2.0), AttributeError, r"write Mine\(mu=…\)"),
     # Ensembles.
     (lambda: vi.Kepler().ensemble([0.4, 0.0], h=0.1), TypeError, "one of until and times"),
     (lambda: vi.Kepler().ensemble([0.4], h=0.1, until=1.0), ValueError, r"q must have the shape \(M, 2\)"),

@@ -109,3 +109,12 @@ def test_latex_of_all_formulas(name):
     parser = mathtext.MathTextParser("path")
     for left, right in formulas:
         parser.parse(f"${left} = {right}$")
+
+
+def test_a_derived_class_has_attributes_of_its_own():
+    class Planet(vi.Kepler):
+        pass
+
+    Planet.name = "Mars"
+    assert Planet().name == "Mars" and not hasattr(vi.Kepler, "name")
+    assert Planet(mu=2.0).set(mu=3.0).copy().mu == 3.0

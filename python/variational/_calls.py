@@ -122,7 +122,9 @@ def checked_call(function: _Function) -> _Function:
 
 
 def _checking(function: Callable[..., Any], cls: type | None) -> Callable[..., Any]:
-    listed = list(inspect.signature(function).parameters)[0 if cls is None else 1 :]
+    parameters = inspect.signature(function).parameters
+    takes_any = any(of.kind is of.VAR_KEYWORD for of in parameters.values())
+    listed = list(parameters)[0 if cls is None else 1 :]
     known = frozenset(listed)
     title = function.__name__ if cls is None or function.__name__ != "__init__" else cls.__name__
 
@@ -133,7 +135,7 @@ def _checking(function: Callable[..., Any], cls: type | None) -> Callable[..., A
                 f"{title} needs a system, not its class: write the parentheses, as in "
                 f"vi.Pendulum().{title}(…), with parameters between them"
             )
-        if not options.keys() <= known:
+        if not takes_any and not options.keys() <= known:
             wrong = next(name for name in options if name not in known)
             raise TypeError(_unknown(title, wrong, listed, None if cls is None else arguments[0]))
         return function(*arguments, **options)

@@ -91,8 +91,15 @@ class SystemType(type):
         return of_text(arguments[0])
 
     def __setattr__(cls, name: str, value: Any) -> None:
-        if name in cls.__dict__.get("parameters", ()):
+        if name in getattr(cls, "parameters", ()):
             raise AttributeError(f"{name} is a parameter of a system, not of its class: write {cls.__name__}({name}=…)")
+        # A class that users derive may have attributes of its own.
+        if "_kind" in vars(cls) and not name.startswith("_") and not hasattr(cls, name):
+            known = ", ".join(cls.parameters) or "none"
+            raise AttributeError(
+                f"{cls.__name__} has no attribute {name!r}{meant(name, cls.parameters)}; its parameters are {known}, "
+                f"which belong to a system: write {cls.__name__}(…)"
+            )
         super().__setattr__(name, value)
 
 
@@ -551,8 +558,7 @@ class System(metaclass=SystemType):
         return self.explain().equations()
 
 
-_ANSWERS = [name for name, of in vars(System).items() if inspect.isfunction(of) and not name.startswith("_")]
-check_arguments(System, [name for name in _ANSWERS if name not in ("set", "copy")])
+check_arguments(System, [name for name, of in vars(System).items() if inspect.isfunction(of) and name[0] != "_"])
 
 
 def _unpickled(cls: type[System], definition: str, values: list[float]) -> System:
