@@ -35,6 +35,8 @@ def test_a_dropped_term_shows():
     assert 2.0 < off < 6.0 and np.abs(found.difference[found.t < off]).max() <= 0.01
     assert found.operations[0] > found.operations[1]
     assert len(found.plot().lines) == 1
+    with pytest.raises(AttributeError, match=r"Comparison\.t cannot be assigned"):
+        found.t = found.t + 1.0
 
 
 def test_wrong_arguments_are_named():

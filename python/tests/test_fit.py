@@ -232,3 +232,5 @@ def test_a_fit_is_pickled_and_read():
         found["m"]
     with pytest.raises(ValueError, match="read-only"):
         found.residuals[0] = 0.0
+    with pytest.raises(AttributeError, match=r"Fit\.errors cannot be assigned"):
+        found.errors = {}

@@ -244,6 +244,20 @@ REFUSED = [
     (lambda run: setattr(run, "x", 0.1), AttributeError, r"run\.x cannot be assigned"),
     (lambda run: setattr(vi.Event("θ"), "terminal", True), AttributeError, r"run\.next_event"),
     (lambda run: setattr(vi.Event("θ"), "direction", 1), AttributeError, r"write Event\(…\) with it"),
+    (lambda run: setattr(vi.Event("θ"), "label", "a"), AttributeError, r"write Event\(…\) with it"),
+    (lambda run: setattr(run.local_error(), "q", [1.0]), AttributeError, r"LocalError\.q cannot be assigned"),
+    (lambda run: setattr(run.monitor() and run.steps(99) and run.error_estimate, "t", 1.0), AttributeError, "copy()"),
+    (lambda run: setattr(run.linearization(), "A", 1.0), AttributeError, r"Linearization\.A cannot"),
+    (lambda run: setattr(run.until(1.0), "t", 1.0), AttributeError, r"Solution\.t cannot be assigned.*copy\(\)"),
+    (lambda run: setattr(run.until(1.0), "v", 1.0), AttributeError, r"Solution\.v cannot"),
+    (lambda run: setattr(run.until(1.0), "y", 1.0), AttributeError, r"Solution\.y cannot"),
+    (lambda run: setattr(run.until(1.0), "label", "a"), AttributeError, "variable of your own"),
+    (lambda run: setattr(pickle.loads(pickle.dumps(run.until(1.0))), "q", 1.0), AttributeError, r"Solution\.q"),
+    (lambda run: setattr(run.events("θ", 9.0), "which", 1.0), AttributeError, r"Events\.which cannot"),
+    (lambda run: setattr(run.system.ensemble([1.0], h=0.1, until=1.0), "q", 1.0), AttributeError, r"Ensemble\.q"),
+    (lambda run: setattr(run.system.equilibrium([0.1]), "q", 1.0), AttributeError, r"Equilibrium\.q cannot"),
+    (lambda run: setattr(run.system.project([0.1]), "q", 1.0), AttributeError, r"Projected\.q cannot"),
+    (lambda run: setattr(run.system.explain(), "text", ""), AttributeError, r"Explanation\.text cannot"),
     (lambda run: run.events(changed_event("terminal", True), 9.0), ValueError, "event 0, `event`, .*next_event"),
     (lambda run: run.next_event(changed_event("terminal", 3), 9.0), ValueError, "k calls of next_event"),
     (lambda run: run.next_event(changed_event("terminal", False), 9.0), ValueError, r"run\.events"),
@@ -424,7 +438,7 @@ def test_solutions_are_pickled_with_their_dense_output(kepler, begin):
     with pytest.raises(ValueError, match="dense=True"):
         plain(1.5)
     again = pickle.loads(pickle.dumps(sol))
-    again.q = again.q + 1e-12
+    vars(again)["q"] = again.q + 1e-12
     with pytest.raises(ValueError, match="cannot be restored"):
         again(0.5)
 

@@ -93,6 +93,32 @@ def no_attribute(owner: Any, name: str, advice: str = "") -> AttributeError:
     return AttributeError(what + hint, name=name, obj=None)
 
 
+def _of_a_result(owner: Any, name: str) -> str:
+    return (
+        f"{type(owner).__name__}.{name} cannot be assigned, because it is a result: keep another value in a variable "
+        "of your own; a copy() of an array can be written"
+    )
+
+
+_Class = TypeVar("_Class", bound=type)
+
+
+def unassignable(message: Callable[[Any, str], str] = _of_a_result) -> Callable[[_Class], _Class]:
+    """A decorator of classes whose public attributes cannot be assigned: AttributeError has this message for an object
+    and a name. Their `__init__` writes into `vars(self)`, or is that of a frozen dataclass."""
+
+    def decorated(cls: _Class) -> _Class:
+        def assign(self: Any, name: str, value: Any) -> None:
+            if not name.startswith("_"):
+                raise AttributeError(message(self, name), name=name, obj=None)
+            object.__setattr__(self, name, value)
+
+        cls.__setattr__ = assign  # type: ignore[method-assign, assignment]
+        return cls
+
+    return decorated
+
+
 def unfit(function: Callable[..., Any], count: int) -> str | None:
     """The arguments of a user's function that cannot be called with this many; None if it can."""
     try:

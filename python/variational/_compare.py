@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from ._arrays import Array, fixed, number
-from ._calls import checked_call
+from ._calls import checked_call, unassignable
 from ._run import Run
 from ._solution import Solution
 
 
+@unassignable()
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
     """The motions of two models at the same times."""

@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import Array
+from ._calls import unassignable
 
 
+@unassignable()
 @dataclass(frozen=True, eq=False)
 class Linearization:
     """A linearization: `value + A @ dx + B @ du` to first order.
@@ -27,6 +29,7 @@ class Linearization:
     """Derivatives with respect to the inputs, (2N, M), in the order of their declaration."""
 
 
+@unassignable()
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
     """A state of rest.

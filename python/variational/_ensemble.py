@@ -26,6 +26,11 @@ class Ensemble(ByName):
     `errors` has for each run None, or the exception that ended it; `parameters` the parameters that differ.
     """
 
+    t: Array
+    p: Array
+    errors: list[StepError | None]
+    parameters: dict[str, Array]
+
     def __init__(
         self,
         system: System,
@@ -36,12 +41,7 @@ class Ensemble(ByName):
         values: Array,
         parameters: dict[str, Array],
     ):
-        self.system = system
-        self.t = fixed(t)
-        self.q = fixed(q)
-        self.p = fixed(p)
-        self.errors = errors
-        self.parameters = parameters
+        vars(self).update(system=system, t=fixed(t), q=fixed(q), p=fixed(p), errors=errors, parameters=parameters)
         self._values = values
 
     def _evaluate(self, of: str, each: tuple[int, ...] = ()) -> Array:

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import FrozenInstanceError, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ._arrays import Array, _shown, number
-from ._calls import check_arguments, unfit
+from ._calls import check_arguments, unassignable, unfit
 from ._names import course
 
 
+def _refused(event: Any, name: str) -> str:
+    """What to do instead of an assignment to an attribute of an event."""
+    stop = ", and run.next_event(event, until), which stops the run there" if name == "terminal" else ""
+    return f"{name} of an event cannot be assigned: write {type(event).__name__}(…) with it{stop}"
+
+
+@unassignable(_refused)
 @dataclass(frozen=True)
 class Event:
     """A coordinate, or `dot(x)` its velocity, crosses a value: `Event("x", 0.0, direction=+1)`.
@@ -30,6 +37,7 @@ class Event:
     period: float | None = None
 
 
+@unassignable(_refused)
 @dataclass(frozen=True)
 class Period:
     """The time is `start` plus a whole number of periods: a stroboscopic section of a driven motion."""
@@ -37,16 +45,6 @@ class Period:
     period: float
     start: float = 0.0
 
-
-def _refuse(self: Any, name: str, value: Any) -> None:
-    raise FrozenInstanceError(
-        f"{name} of an event cannot be assigned: write {type(self).__name__}(…) with it"
-        + (", and run.next_event(event, until), which stops the run there" if name == "terminal" else "")
-    )
-
-
-for _cls in (Event, Period):
-    _cls.__setattr__ = _refuse  # type: ignore[method-assign, assignment]
 
 check_arguments(Event, ["__init__"])
 check_arguments(Period, ["__init__"])

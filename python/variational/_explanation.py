@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
+
+from ._calls import unassignable
 
 
+@unassignable()
+@dataclass(frozen=True, eq=False, repr=False)
 class Explanation:
-    """The mathematics of a system: `text`, and `sections` of (left, right) in LaTeX; words have an empty left side."""
+    """The mathematics of a system."""
 
-    def __init__(self, title: str, text: str, sections: list[tuple[str, list[tuple[str, str]]]]):
-        self.title = title
-        self.text = text
-        self.sections = sections
+    title: str
+    text: str
+    """All of it as text."""
+    sections: list[tuple[str, list[tuple[str, str]]]]
+    """Titles of sections with their formulas (left, right) in LaTeX; words have an empty left side."""
 
     def __repr__(self) -> str:
         return self.text

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Array, array, finite, fixed, number, ordered, vector
-from ._calls import checked_call
+from ._calls import checked_call, unassignable
 from ._errors import StepError
 from ._names import among, course, meant
 from ._solution import Solution
@@ -38,6 +38,7 @@ class Unidentifiable(ValueError):
         return (type(self), (str(self), self.direction, self.change))
 
 
+@unassignable()
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit:
     """The unknowns for which the sum of the squared residuals is least.

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Array, count, fixed, number, ordered, real, vector
-from ._calls import check_arguments, no_attribute, unfit
+from ._calls import check_arguments, no_attribute, unassignable, unfit
 from ._control import Linearization
 from ._errors import InconsistentStart, StepError, advised  # type: ignore[attr-defined]
 from ._events import Event, Watched, descriptions, periodic
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from ._system import System
 
 
+@unassignable()
 class LocalError(NamedTuple):
     """The error of one step: of the coordinates, and of the velocities times its length."""
 
@@ -30,6 +31,7 @@ class LocalError(NamedTuple):
     hv: Array
 
 
+@unassignable()
 class ErrorEstimate(NamedTuple):
     """The largest error of a step, relative to the scale of its motion."""
 
@@ -38,6 +40,18 @@ class ErrorEstimate(NamedTuple):
     coordinate: str
 
 
+def _change(run: Run, name: str) -> str:
+    """What to do instead of an assignment to an attribute of a run."""
+    if name in ("t", "q", "v", "p"):
+        return f"run.{name} cannot be assigned: run.set_state({name}=…) continues from another state"
+    if name == "h":
+        return "run.h cannot be assigned: run.step(h) takes a step of another length"
+    if name in run._cls.parameters:
+        return f"a run has no attribute {name!r}: run.set({name}=…) changes the parameter"
+    return f"run.{name} cannot be assigned"
+
+
+@unassignable(_change)
 class Run:
     """A run. It holds the last node: time `t`, coordinates `q`, momenta `p`.
 
@@ -50,18 +64,6 @@ class Run:
     def __init__(self, cls: type[System], run: Any):
         self._cls = cls
         self._run = run
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name in Run.__slots__:
-            object.__setattr__(self, name, value)
-        elif name in ("t", "q", "v", "p"):
-            raise AttributeError(f"run.{name} cannot be assigned: run.set_state({name}=…) continues from another state")
-        elif name == "h":
-            raise AttributeError("run.h cannot be assigned: run.step(h) takes a step of another length")
-        elif name in self._cls.parameters:
-            raise AttributeError(f"a run has no attribute {name!r}: run.set({name}=…) changes the parameter")
-        else:
-            raise AttributeError(f"run.{name} cannot be assigned")
 
     def __getattr__(self, name: str) -> Any:
         if hasattr(Run, name):

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._animation import animated
 from ._arrays import Array, array, finite, fixed
-from ._calls import check_arguments, no_attribute
+from ._calls import check_arguments, no_attribute, unassignable
 from ._names import among, course
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ _SMOOTH = 2000
 """Points of a plot with dense output."""
 
 
+@unassignable()
 class ByName:
     """Rows whose coordinates and velocities have names."""
 
@@ -92,6 +93,10 @@ class Solution(ByName):
     `dense=True` the call `sol(t)`. The arrays cannot be written: velocities and energies follow from q and p.
     """
 
+    t: Array
+    p: Array
+    error: StepError | None
+
     def __init__(
         self,
         system: System,
@@ -102,11 +107,7 @@ class Solution(ByName):
         dense: Any = None,
         again: Callable[[], tuple[Any, Any, Any]] | None = None,
     ):
-        self.system = system
-        self.t = fixed(t)
-        self.q = fixed(q)
-        self.p = fixed(p)
-        self.error = error
+        vars(self).update(system=system, t=fixed(t), q=fixed(q), p=fixed(p), error=error)
         self._dense = dense
         self._again = again
 
@@ -269,6 +270,9 @@ check_arguments(Solution, ["plot", "animate"])
 class Events(Solution):
     """The events of a run: a row for each, `which` of the given events it is, and whether its function `rising`."""
 
+    which: NDArray[np.intp]
+    rising: NDArray[np.bool_]
+
     def __init__(
         self,
         system: System,
@@ -280,8 +284,7 @@ class Events(Solution):
         rising: NDArray[np.bool_],
     ):
         super().__init__(system, t, q, p, error)
-        self.which = fixed(which)
-        self.rising = fixed(rising)
+        vars(self).update(which=fixed(which), rising=fixed(rising))
 
     def of(self, index: int) -> Events:
         """The rows of one of the given events."""
