@@ -43,6 +43,7 @@ TABLE = [
     (lambda: chain()["x[20]"], KeyError, r"the entries of x are x\[0\] to x\[2\]"),
     (lambda: chain()["dot(x)"], KeyError, r"the entries of x are x\[0\] to x\[2\]"),
     (lambda: begun().events("z", 1.0), KeyError, "no coordinate 'z'"),
+    (lambda: begun().set(**{"mi[0]": 1.0}), TypeError, r"no parameter 'mi\[0\]'; it has mu"),
     (lambda: begun().tangent(3, ["nothing"]), TypeError, "no parameter 'nothing'"),
     (lambda: begun().until(1.0, on_error="ignore"), ValueError, "on_error"),
     (lambda: begun().until(1.0, on_error="retrun"), ValueError, "did you mean 'return'"),

@@ -547,6 +547,32 @@ def test_an_exception_of_a_callback_has_the_rows_so_far():
     assert len(caught.value.solution.t) == 4
 
 
+ARM = """
+struct Arm {
+    param m[2] = 1.0;
+    input tau[2] = 0.0;
+    coord x, y;
+    L = (m[0] * dot(x)^2 + m[1] * dot(y)^2) / 2;
+    force x = tau[0];
+    force y = tau[1];
+}
+"""
+
+
+def test_entries_of_arrays_have_names():
+    arm = vi.System(ARM)(**{"m[1]": 3.0})
+    assert arm.m.tolist() == [1.0, 3.0]
+    run = arm.integrate([0.0, 0.0], [1.0, 1.0], h=0.1)
+    whole, entry = run.copy().tangent(3, ["m"]), run.copy().tangent(3, ["m[1]"])
+    assert np.array_equal(entry["m[1]"], whole["m"][:, 1])
+    run.set_state([1.0, 2.0], [3.0, 4.0], parameters={"m[0]": 2.0})
+    assert (run.q.tolist(), run.v.tolist(), run.p.tolist()) == ([1.0, 2.0], [3.0, 4.0], [6.0, 12.0])
+    with pytest.raises(TypeError, match=r"m has no entry 'm\[2\]': its entries are m\[0\] to m\[1\]"):
+        run.set(**{"m[2]": 1.0})
+    Matrix = vi.System("struct Matrix { param K[2][2] = 1.0; coord x[2]; L = dot(x) * dot(x) / 2 - x * (K * x) / 2; }")
+    assert Matrix(**{"K[1][0]": 5.0}).K.tolist() == [[1.0, 1.0], [5.0, 1.0]]
+
+
 def test_output_times_that_steps_outgrow():
     start = {"q": [0.1, 0.0], "v": [0.0, 19**0.5], "dtau": 8.368 / 15}
     end = 300 * 2 * np.pi

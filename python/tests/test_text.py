@@ -48,6 +48,11 @@ def test_a_text_is_a_class_at_once():
     assert Spring.explain(Spring()).title == "Spring"
 
 
+def test_the_definition_is_as_it_was_written():
+    text = "\n        struct S {\n            coord x;   // a comment\n            L = dot(x)^2;\n        }\n    "
+    assert vi.System(text).definition == text
+
+
 def test_every_method_agrees():
     Spring = vi.System(SPRING)
     assert {"fixed", "kahan-li-8", "splitting-6", "gauss", "energy"} <= {method for method, *_ in Spring.integrators}

@@ -16,7 +16,6 @@ import contextlib
 import copyreg
 import hashlib
 import importlib.util
-import inspect
 import os
 import re
 import shutil
@@ -174,7 +173,7 @@ def _class(definition: str, methods: str, tables: str, verbose: bool) -> type[Sy
             _check_private(built)
             cls = _load(_library(digest), built)
             cls._source = (definition, methods, tables)  # type: ignore[attr-defined]
-            cls.definition = inspect.cleandoc(definition)
+            cls.definition = definition
             _loaded[digest] = cls
     return _loaded[digest]
 

@@ -284,10 +284,10 @@ class Run:
 
     def set_state(
         self,
-        *,
-        t: float | None = None,
         q: ArrayLike | None = None,
         v: ArrayLike | None = None,
+        *,
+        t: float | None = None,
         p: ArrayLike | None = None,
         parameters: Mapping[str, Any] | None = None,
     ) -> Run:

@@ -48,6 +48,17 @@ class Parameter:
         names = (self.name + "".join(f"[{i}]" for i in index) for index in np.ndindex(self.shape))
         return dict(zip(names, self.indices, strict=True))
 
+    def entry(self, name: str) -> Parameter:
+        """One entry of an array as a parameter of its own. Raises TypeError for another name."""
+        entries = self.entries
+        if self.length is None:
+            raise TypeError(f"{self.name} is one number, which has no entry {name!r}")
+        if name not in entries:
+            names = list(entries)
+            raise TypeError(f"{self.name} has no entry {name!r}: its entries are {names[0]} to {names[-1]}")
+        index = entries[name]
+        return Parameter(name, index, (), self.default[index - self.start], "")
+
     def __get__(self, system: System | None, owner: type | None = None) -> Any:
         if system is None:
             return self
@@ -142,14 +153,15 @@ class System(metaclass=SystemType):
     integrators: ClassVar[tuple[tuple[str, int | None, bool], ...]] = ()
     """Method, stages, and whether in transformed time, of each integrator that is built."""
     definition: ClassVar[str] = ""
-    """The text of the declaration."""
+    """The text of the declaration, as it was written."""
 
     def __init__(self, **parameters: Any):
         self._values = self._defaults.copy()
         self.set(**parameters)
 
     def set(self, **parameters: Any) -> System:
-        """Sets parameters, and returns the system. If one is wrong, none is set."""
+        """Sets parameters, and returns the system. If one is wrong, none is set. `set(**{"m[0]": 2.0})` sets one entry of
+        an array."""
         self._check_writable(", ".join(f"{name}=…" for name in parameters))
         changes = [(self._parameter(name), value) for name, value in parameters.items()]
         for parameter, numbers in [(parameter, parameter.numbers(value)) for parameter, value in changes]:
@@ -211,14 +223,16 @@ class System(metaclass=SystemType):
 
     @classmethod
     def _parameter(cls, name: str) -> Parameter:
-        name = among(name, cls.parameters) if isinstance(name, str) else name
-        if name not in cls.parameters:
-            whole = name.partition("[")[0] if isinstance(name, str) else name
-            if whole != name and whole in cls.parameters:
-                raise TypeError(f"{name!r} is one entry of an array: give all of them, {whole}=[…]")
+        """The parameter of this name, or the entry of an array."""
+        if not isinstance(name, str):
+            raise TypeError(f"the name of a parameter must be a text, not {name!r}")
+        whole, bracket, index = name.partition("[")
+        whole = among(whole, cls.parameters)
+        if whole not in cls.parameters:
             known = ", ".join(cls.parameters) or "none"
-            raise TypeError(f"{cls.__name__} has no parameter {name!r}{meant(name, cls.parameters)}; it has {known}")
-        return getattr(cls, name)
+            raise TypeError(f"{cls.__name__} has no parameter {name!r}{meant(whole, cls.parameters)}; it has {known}")
+        parameter: Parameter = getattr(cls, whole)
+        return parameter.entry(whole + bracket + index) if bracket else parameter
 
     def __repr__(self) -> str:
         values = (f"{name}={_shown(getattr(self, name))}" for name in self.parameters)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import copyreg
-import inspect
 import threading
 import weakref
 from pathlib import Path
@@ -51,7 +50,7 @@ def of_text(
                 return compile(definition)
             raise CompileError(str(reason)) from None
         cls = class_of(kind, module, _OfText, dropped)
-        cls.definition = inspect.cleandoc(definition)
+        cls.definition = definition
         cls._text = (definition, False, module, files, dropped)
         # Another thread may have made it meanwhile.
         with _lock:
