@@ -547,6 +547,44 @@ def test_an_exception_of_a_callback_has_the_rows_so_far():
     assert len(caught.value.solution.t) == 4
 
 
+METHODS_OF_EVENTS = [
+    {"h": 0.05},
+    {"h": 0.05, "method": "fixed"},
+    {"h": 0.01, "method": "energy"},
+    {"h": 0.05, "method": "adaptive"},
+]
+
+
+@pytest.mark.parametrize("options", METHODS_OF_EVENTS, ids=str)
+@pytest.mark.parametrize("every", [1, 7])
+def test_a_callback_does_not_change_events_and_times(options, every):
+    def begun():
+        return vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], **options)
+
+    seen = []
+    events = ["y", vi.Event("dot(x)", 0.1, direction=1), lambda t, q, v: q[0] + 0.3]
+    alone, called = begun(), begun()
+    wanted, found = alone.events(events, 15.0), called.events(events, 15.0, every=every, callback=seen.append)
+    assert np.array_equal(found.which, wanted.which) and np.array_equal(found.rising, wanted.rising)
+    assert len(found) > 8 and isinstance(found, vi.Events) and all(run is called for run in seen)
+    assert np.array_equal(found.t, wanted.t) and np.array_equal(found.q, wanted.q)
+    assert np.array_equal(called.q, alone.q) and called.t == alone.t
+
+    alone, called = begun(), begun()
+    for _ in range(4):
+        wanted, found = alone.next_event("y", 15.0), called.next_event("y", 15.0, every=every, callback=seen.append)
+        assert found.t.tolist() == wanted.t.tolist() == [called.t]
+        assert np.array_equal(found.q, wanted.q) and np.array_equal(called.q, alone.q)
+    assert not len(called.next_event(vi.Event("x", 7.0), 16.0, callback=seen.append)) and called.t == 16.0
+
+    alone, called = begun(), begun()
+    times = [0.0, 0.31, 0.32, 4.0, 4.0, 9.7]
+    wanted, found = alone.at(times), called.at(times, every=every, callback=seen.append)
+    assert found.t.tolist() == times and np.array_equal(found.q, wanted.q)
+    assert (called.t, called.q.tolist()) == (alone.t, alone.q.tolist())
+    assert len(called.at([], callback=seen.append)) == 0 and called.t == alone.t
+
+
 ARM = """
 struct Arm {
     param m[2] = 1.0;
@@ -557,6 +595,35 @@ struct Arm {
     force y = tau[1];
 }
 """
+
+
+def test_a_solution_has_the_inputs_of_its_steps():
+    arm = vi.System(ARM)()
+    run = arm.integrate([0.0, 0.0], h=0.1)
+    sol = run.until(1.0, every=2, callback=lambda run: run.set(**{"tau[1]": run.t}))
+    # Each row has the input of the steps from it on: dot(y) grows by that times 0.2.
+    given = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
+    assert np.abs(sol["tau[1]"] - given).max() < 1e-15  # 1.1e-16
+    assert np.abs(np.diff(sol["dot(y)"]) - 0.2 * given[:-1]).max() < 1e-15  # 2.8e-16
+    assert np.array_equal(sol["tau"], np.column_stack([np.zeros(6), sol["tau[1]"]]))
+    assert sol["m"].tolist() == [[1.0, 1.0]] * 6 and not sol["m"].flags.writeable
+    again = pickle.loads(pickle.dumps(sol))
+    assert np.array_equal(again["tau"], sol["tau"]) and sol.system.tau[1] == 0.0
+    frame = sol.to_dataframe()
+    assert frame.columns[-2:].tolist() == ["tau[0]", "tau[1]"]
+    assert np.array_equal(frame["tau[1]"], sol["tau[1]"])
+    # The columns are measurements for a fit, which reads inputs in the same way.
+    found = vi.fit(arm.copy().set(m=[1.0, 3.0]), frame[["t", "y", "tau[1]"]], ["m[1]"], q=[0.0, 0.0], h=0.1)
+    assert found["m[1]"] == pytest.approx(1.0, abs=1e-12)
+    assert np.array_equal(found.solution["tau[1]"], sol["tau[1]"])
+    # Events have the inputs of the step in which they are.
+    run = arm.integrate([0.0, 0.0], [1.0, 1.0], h=0.1)
+    found = run.events(vi.Event("x", 0.55), 1.0, callback=lambda run: run.set(**{"tau[1]": run.t}))
+    assert found["tau[1]"] == pytest.approx(0.5, abs=1e-15) and found["x"] == pytest.approx(0.55, abs=1e-15)
+    many = arm.ensemble([0.0, 0.0], [1.0, 1.0], h=0.1, times=[0.5, 1.0], parameters={"tau[1]": [0.0, 1.0, 2.0]})
+    assert many["tau"].shape == (3, 2, 2) and many["tau[1]"].tolist() == [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]
+    assert many["y"][:, 1] == pytest.approx([1.0, 1.5, 2.0], abs=1e-14)
+    assert many.to_dataframe()["tau[1]"].loc[2].tolist() == [2.0, 2.0]
 
 
 def test_entries_of_arrays_have_names():

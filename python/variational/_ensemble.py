@@ -26,7 +26,6 @@ class Ensemble(ByName):
     `errors` has for each run None, or the exception that ended it; `parameters` the parameters that differ.
     """
 
-    t: Array
     p: Array
     errors: list[StepError | None]
     parameters: dict[str, Array]

@@ -61,13 +61,14 @@ _PERIOD = 4.0
 
 def descriptions(events: Watched | Iterable[Watched], cls: Any, h: float, is_first: bool) -> list[tuple]:
     """The events as `_core` reads them, for a run with steps of about the length h; `is_first` if it stops at one."""
-    listed = _listed(events)
-    if not listed:
+    watched = listed(events)
+    if not watched:
         raise ValueError("give at least one event")
-    return [_description(event, cls, _PERIOD * h, f"event {index}", is_first) for index, event in enumerate(listed)]
+    return [_description(event, cls, _PERIOD * h, f"event {index}", is_first) for index, event in enumerate(watched)]
 
 
-def _listed(events: Watched | Iterable[Watched]) -> list[Watched]:
+def listed(events: Watched | Iterable[Watched]) -> list[Watched]:
+    """The events as a list."""
     if isinstance(events, (Event, Period, str)) or callable(events):
         return [events]
     try:
@@ -81,7 +82,7 @@ def periodic(events: Watched | Iterable[Watched], cls: Any) -> dict[int, tuple[i
     its function changes its own from one period to the next."""
     return {
         index: (course(event.of, cls.coordinates, cls.__name__)[1], _sign(event.direction))
-        for index, event in enumerate(_listed(events))
+        for index, event in enumerate(listed(events))
         if isinstance(event, Event) and event.period is not None
     }
 

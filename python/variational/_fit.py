@@ -298,6 +298,7 @@ class _Model:
         solution = Solution(self._system(values, 0)._fixed(), t, q, p)
         # With inputs each row has a system of its own.
         solution.__dict__.update(v=fixed(v), energy=fixed(energy))
+        solution._values = np.array([self._system(values, row)._values for row in range(len(self.times))])
         indices = [index + n * is_velocity for (is_velocity, index), _ in self.rows.values()]
         return np.concatenate([q, v], axis=-1)[:, indices], np.array(outputs)[:, indices], solution
 
@@ -338,13 +339,14 @@ def _read(data: Any, cls: Any) -> tuple[Array, dict[str, tuple[tuple[bool, int],
     if times.ndim != 1 or not len(times):
         raise ValueError(f"the times of the data must be a list, not of shape {times.shape}")
     measured, inputs = {}, {}
+    of_inputs = {entry: index for name in cls.inputs for entry, index in cls._parameter(name).entries.items()}
     for name, values in columns.items():
         found = array(values, f"the column {name!r}")
         if found.shape != times.shape:
             raise ValueError(f"the column {name!r} has the shape {found.shape}, and the times {times.shape}")
-        if name in cls.inputs:
+        if name in of_inputs:
             finite(found, name)
-            inputs[name] = (cls._parameter(name).start, found)
+            inputs[name] = (of_inputs[name], found)
             continue
         is_velocity, index = course(name, cls.coordinates, cls.__name__)
         label = cls.coordinates[index]

@@ -15,9 +15,9 @@ from ._arrays import Array, count, fixed, number, ordered, real, vector
 from ._calls import check_arguments, no_attribute, unassignable, unfit
 from ._control import Linearization
 from ._errors import InconsistentStart, StepError, advised  # type: ignore[attr-defined]
-from ._events import Event, Watched, descriptions, periodic
+from ._events import Event, Watched, descriptions, listed, periodic
 from ._names import meant
-from ._solution import Events, Solution
+from ._solution import BY_SYSTEM, Events, Solution
 
 if TYPE_CHECKING:
     from ._system import System
@@ -38,6 +38,10 @@ class ErrorEstimate(NamedTuple):
     estimate: float
     t: float
     coordinate: str
+
+
+Look = Callable[["Run", float], tuple[Solution, bool]]
+"""Finds rows of a run up to a time, where it leaves the run if they are the last ones."""
 
 
 def _change(run: Run, name: str) -> str:
@@ -196,10 +200,6 @@ class Run:
             return _finished(Solution(system, t, q, p, advised(error, self._cls), polynomials, again), on_error)
         if dense:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
-        if not callable(callback):
-            raise TypeError(f"callback must be a function of the run, not {callback!r}")
-        if (arguments := unfit(callback, 1)) is not None:
-            raise TypeError(f"callback must be a function of one argument, the run, not of {arguments}")
         return _finished(self._called(end, steps, every, callback), on_error)
 
     def _repeats(self, end: float | None, steps: int | None, every: int) -> Callable[[], Any] | None:
@@ -211,47 +211,120 @@ class Run:
             return None
         return functools.partial(_advanced, start, end, steps, every)
 
-    def _called(self, end: float | None, left: int | None, every: int, callback: Callable[[Run], Any]) -> Solution:
-        """The rows of a run with a callback, which may move it beyond the end."""
+    def _called(
+        self, end: float | None, left: int | None, every: int, callback: Callable[[Run], Any], look: Look | None = None
+    ) -> Solution:
+        """The rows of a run with a callback, which may move it beyond the end: its nodes, or what `look` finds."""
+        if not callable(callback):
+            raise TypeError(f"callback must be a function of the run, not {callback!r}")
+        if (arguments := unfit(callback, 1)) is not None:
+            raise TypeError(f"callback must be a function of one argument, the run, not of {arguments}")
         system, error = self.system, None
         parts: list[Solution] = []
+        # The numbers of the system from each row of a part on.
+        values: list[Array] = []
         ahead = 1.0 if end is None else float(np.sign(end - self.t))
         try:
             while True:
+                before = self.copy() if look else None
                 # At most `every` steps at a time, so that the callback sees each row.
                 few = every if left is None else min(every, left)
-                (t, q, p), error, _ = self._run.advance(end, few, few or 1, False)
-                parts.append(Solution(self.system, t, q, p))
-                error = advised(error, self._cls)
+                (t, q, p), failed, _ = self._run.advance(end, few, few or 1, False)
+                error = advised(failed, self._cls)
+                if look is None or before is None:
+                    # Each part begins with the row that ends the one before.
+                    fresh = slice(1 if parts else 0, None)
+                    part, is_over = Solution(self.system, t[fresh], q[fresh], p[fresh]), False
+                else:
+                    part, is_over = look(before, self.t)
+                    error = part.error if is_over else part.error or error
+                parts.append(part)
+                values.append(np.tile(part.system._values, (len(part), 1)))
+                if is_over and before is not None:
+                    # It has ended at the last row.
+                    self._run = before._run
                 left = None if left is None else left - few
-                if error is not None or len(t) == 1 or _is_true(callback(self)):
+                if is_over or error is not None or len(t) == 1:
                     break
-                if left == 0 or (end is not None and (end - self.t) * ahead <= 0.0):
+                is_ended = _is_true(callback(self))
+                if look is None:
+                    values[-1][-1] = self._run.parameters
+                if is_ended or left == 0 or (end is not None and (end - self.t) * ahead <= 0.0):
                     break
         except BaseException as raised:
             # The rows so far, as of a failed step.
             with contextlib.suppress(AttributeError):
-                raised.solution = _joined(system, parts, None)  # type: ignore[attr-defined]
+                raised.solution = _joined(system, parts, values, None)  # type: ignore[attr-defined]
             raise
-        return _joined(system, parts, error)
+        return _joined(system, parts, values, error)
 
-    def at(self, times: ArrayLike, *, on_error: str = "raise") -> Solution:
-        """The states at times in the order of the run, as accurate as nodes. The run keeps its own steps."""
+    def at(
+        self,
+        times: ArrayLike,
+        *,
+        every: int = 1,
+        callback: Callable[[Run], Any] | None = None,
+        on_error: str = "raise",
+    ) -> Solution:
+        """The states at times in the order of the run, as accurate as nodes. The run keeps its own steps.
+
+        It calls `callback(run)` after each `every`th step, as `until` does, and a row is the state before it.
+        """
         _check_on_error(on_error)
-        (t, q, p), error, _ = self._run.at(ordered(times, self.h))
-        return _finished(Solution(self.system, t, q, p, advised(error, self._cls)), on_error)
+        wanted = ordered(times, self.h)
+        if callback is None:
+            (t, q, p), error, _ = self._run.at(wanted)
+            return _finished(Solution(self.system, t, q, p, advised(error, self._cls)), on_error)
+        ahead, done = float(np.sign(self.h)), 0
 
-    def events(self, events: Watched | Iterable[Watched], until: float, *, on_error: str = "raise") -> Events:
-        """Takes steps to the time `until`, and returns the events on the way, located to rounding."""
-        return self._events(events, until, False, on_error)
+        def look(before: Run, t: float) -> tuple[Solution, bool]:
+            nonlocal done
+            here = wanted[done:][(wanted[done:] - t) * ahead <= 0.0]
+            done += len(here)
+            return before.at(here, on_error="return"), done == len(wanted)
 
-    def next_event(self, events: Watched | Iterable[Watched], until: float, *, on_error: str = "raise") -> Events:
-        """Takes steps to the first event, where the run stops, or to the time `until`: then no row is returned."""
-        return self._events(events, until, True, on_error)
+        return _finished(self._called(None, None, _count(every, "every", 1), callback, look), on_error)
 
-    def _events(self, events: Any, until: float, is_first: bool, on_error: str) -> Events:
+    def events(
+        self,
+        events: Watched | Iterable[Watched],
+        until: float,
+        *,
+        every: int = 1,
+        callback: Callable[[Run], Any] | None = None,
+        on_error: str = "raise",
+    ) -> Events:
+        """Takes steps to the time `until`, and returns the events on the way, located to rounding.
+
+        It calls `callback(run)` after each `every`th step, as `until` does.
+        """
+        return self._events(events, until, False, every, callback, on_error)
+
+    def next_event(
+        self,
+        events: Watched | Iterable[Watched],
+        until: float,
+        *,
+        every: int = 1,
+        callback: Callable[[Run], Any] | None = None,
+        on_error: str = "raise",
+    ) -> Events:
+        """Takes steps to the first event, where the run stops, or to the time `until`: then no row is returned.
+
+        It calls `callback(run)` after each `every`th step, as `until` does.
+        """
+        return self._events(events, until, True, every, callback, on_error)
+
+    def _events(self, events: Any, until: float, is_first: bool, every: int, callback: Any, on_error: str) -> Events:
         _check_on_error(on_error)
-        end = number(until, "until")
+        end, events = number(until, "until"), listed(events)
+        if callback is not None:
+
+            def look(before: Run, t: float) -> tuple[Solution, bool]:
+                found = before._events(events, t, is_first, 1, None, "return")
+                return found, is_first and len(found) > 0
+
+            return _finished(self._called(end, None, _count(every, "every", 1), callback, look), on_error)
         wanted = descriptions(events, self._cls, abs(self.h), is_first)
         turns = periodic(events, self._cls)
         while True:
@@ -516,20 +589,25 @@ def _is_true(answer: Any) -> bool:
     return isinstance(answer, (bool, np.bool_)) and bool(answer)
 
 
-def _joined(system: System, parts: list[Solution], error: Any) -> Solution:
-    """The rows of all parts. Each part begins with the row that ends the one before."""
+def _joined(system: System, parts: list[Solution], values: list[Array], error: Any) -> Solution:
+    """The rows of all parts, with the numbers of the system from each row on."""
 
-    def all_of(name: str) -> Array:
-        columns = [getattr(part, name) for part in parts]
-        return np.concatenate([*columns[:1], *(column[1:] for column in columns[1:])])
+    def all_of(name: str) -> Any:
+        return np.concatenate([getattr(part, name) for part in parts])
 
     if not parts:
         n = len(system.coordinates)
         return Solution(system, np.zeros(0), np.zeros((0, n)), np.zeros((0, n)), error)
-    joined = Solution(system, all_of("t"), all_of("q"), all_of("p"), error)
+    columns = all_of("t"), all_of("q"), all_of("p"), error
+    if isinstance(parts[0], Events):
+        joined: Solution = Events(system, *columns, all_of("which"), all_of("rising"))
+    else:
+        joined = Solution(system, *columns)
+    numbers = np.concatenate(values)
+    joined._values = None if (numbers == system._values).all() else numbers
     if any(part.system != system for part in parts):
         # Velocity, energy and reactions of each row belong to the parameters of its step.
-        joined.__dict__.update({name: fixed(all_of(name)) for name in ("v", "energy", "reactions")})
+        vars(joined).update({name: fixed(all_of(name)) for name in BY_SYSTEM})
     return joined
 
 

@@ -28,13 +28,19 @@ class ByName:
     """Rows whose coordinates and velocities have names."""
 
     system: System
+    t: Array
     q: Array
     v: Any
+    _values: Array | None
+    """The numbers of the system from each row on, or of each run; None if they are those of `system`."""
 
     def __getitem__(self, name: str) -> Array:
-        """A coordinate, `sol["x"]`, or its velocity, `sol["dot(x)"]`."""
+        """A coordinate, `sol["x"]`, its velocity, `sol["dot(x)"]`, or the value of a parameter or an input from each
+        row on, `sol["k"]`."""
         coordinates, constraints = self.system.coordinates, self.system.constraints
         if isinstance(name, str) and name not in coordinates:
+            if among(name.partition("[")[0], self.system.parameters) in self.system.parameters:
+                return self._of_parameter(self.system._parameter(name))
             if (constraint := name.removeprefix("Λ_")) in constraints:
                 column = constraints.index(constraint)
                 raise KeyError(f"{constraint} is a constraint: its reaction is reactions[..., {column}]")
@@ -42,6 +48,12 @@ class ByName:
                 raise KeyError(f"{name!r} is no coordinate: it is the attribute .{name}")
         is_velocity, index = course(name, coordinates, type(self.system).__name__)
         return (self.v if is_velocity else self.q)[..., index]
+
+    def _of_parameter(self, parameter: Any) -> Array:
+        """The values of a parameter, with the axes of the rows first."""
+        values = self.system._values[None] if self._values is None else self._values
+        found = values[:, parameter.indices].reshape(-1, *[1] * (self.t.ndim - 1), *parameter.shape)
+        return fixed(np.broadcast_to(found, (*self.t.shape, *parameter.shape)))
 
     def __getattr__(self, name: str) -> Any:
         if hasattr(type(self), name):
@@ -66,7 +78,7 @@ class ByName:
 
 
 def columns_of(rows: Any) -> Iterator[tuple[str, Array]]:
-    """The columns of a table of these rows: t, q, dot(q), p_q, Λ of each constraint, and energy."""
+    """The columns of a table of these rows: t, q, dot(q), p_q, Λ of each constraint, energy, and inputs."""
     yield "t", rows.t
     for label, values in (("{}", rows.q), ("dot({})", rows.v), ("p_{}", rows.p)):
         for index, name in enumerate(rows.system.coordinates):
@@ -74,6 +86,9 @@ def columns_of(rows: Any) -> Iterator[tuple[str, Array]]:
     for index, name in enumerate(rows.system.constraints):
         yield f"Λ_{name}", rows.reactions[..., index]
     yield "energy", rows.energy
+    for name in rows.system.inputs:
+        for entry in rows.system._parameter(name).entries:
+            yield entry, rows[entry]
 
 
 def two_axes(axes: Any) -> Any:
@@ -88,12 +103,12 @@ def two_axes(axes: Any) -> Any:
 class Solution(ByName):
     """The rows of a run: `t` (K,), `q`, `p`, `v` (K, N), `energy` (K,), and for C constraints `reactions` (K, C).
 
-    `sol["x"]` and `sol["dot(x)"]` are the values of a coordinate and of its velocity. Names and shapes of
+    `sol["x"]` and `sol["dot(x)"]` are the values of a coordinate and of its velocity, and `sol["u"]` of an input or a
+    parameter: that of the steps from each row on, which a callback may change. Names and shapes of
     `scipy.integrate.solve_ivp` are there too: `y` = (q, v) of shape (2N, K), `success`, `status`, `message`, and with
     `dense=True` the call `sol(t)`. The arrays cannot be written: velocities and energies follow from q and p.
     """
 
-    t: Array
     p: Array
     error: StepError | None
 
@@ -108,6 +123,7 @@ class Solution(ByName):
         again: Callable[[], tuple[Any, Any, Any]] | None = None,
     ):
         vars(self).update(system=system, t=fixed(t), q=fixed(q), p=fixed(p), error=error)
+        self._values = None
         self._dense = dense
         self._again = again
 
@@ -209,7 +225,7 @@ class Solution(ByName):
         return {**self.__dict__, "_dense": None}
 
     def to_dataframe(self) -> Any:
-        """The rows as a pandas DataFrame with the columns t, q, dot(q), p_q, Λ of each constraint, and energy."""
+        """The rows as a DataFrame of pandas: columns t, q, dot(q), p_q, Λ of each constraint, energy, and inputs."""
         try:
             import pandas
         except ImportError:
@@ -267,6 +283,10 @@ class Solution(ByName):
 check_arguments(Solution, ["plot", "animate"])
 
 
+BY_SYSTEM = ("v", "energy", "reactions")
+"""Columns that follow from q, p and the parameters."""
+
+
 class Events(Solution):
     """The events of a run: a row for each, `which` of the given events it is, and whether its function `rising`."""
 
@@ -291,7 +311,12 @@ class Events(Solution):
         return self._only(self.which == index, self.rising)
 
     def _only(self, rows: NDArray[np.bool_], rising: NDArray[np.bool_]) -> Events:
-        return Events(self.system, self.t[rows], self.q[rows], self.p[rows], self.error, self.which[rows], rising[rows])
+        found = Events(
+            self.system, self.t[rows], self.q[rows], self.p[rows], self.error, self.which[rows], rising[rows]
+        )
+        found._values = None if self._values is None else self._values[rows]
+        vars(found).update({name: fixed(vars(self)[name][rows]) for name in BY_SYSTEM if name in vars(self)})
+        return found
 
     def _directed(self, turns: dict[int, tuple[int, int]]) -> Events:
         """The rows without those of the wrong direction, for the coordinate and the direction of these events."""
