@@ -13,7 +13,7 @@ from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
-PAGES = [DOCS.parent / "README.md", DOCS / "choosing.md", DOCS / "benchmarks.md"]
+PAGES = [DOCS.parent / "README.md", DOCS / "choosing.md", DOCS / "benchmarks.md", DOCS / "joss/paper.md"]
 PLACE = re.compile(r"(<!-- number: ([a-z0-9 -]+) -->)(.*?)(<!-- end -->)", re.DOTALL)
 
 
