@@ -1,7 +1,10 @@
 """Ensembles equal single runs."""
 
+import pickle
+
 import numpy as np
 import pytest
+from scipy.special import ellipk
 
 import variational as vi
 
@@ -104,3 +107,23 @@ def test_reactions():
     one = vi.RodPendulum(m=2.0).integrate(starts[1], h=0.02).at([0.5, 1.0])
     np.testing.assert_allclose(many.reactions[1], one.reactions, rtol=1e-13)  # 0
     assert vi.Pendulum().ensemble([1.0], h=0.1, until=1.0).reactions.shape == (1, 0)
+
+
+def test_runs_end_at_their_first_event():
+    lengths = np.array([0.5, 1.0, 2.0, 4.0])
+    events = [vi.Event("θ", 0.0, direction=-1), lambda t, q, v: q[0] + 5.0]
+    many = vi.Pendulum().ensemble([1.0], h=0.1, until=2.0, next_event=events, parameters={"l": lengths})
+    quarter = ellipk(np.sin(0.5) ** 2) * np.sqrt(lengths)
+    is_met = quarter < 2.0
+    assert is_met.tolist() == [True, True, False, False] and many.which.tolist() == [0, 0, -1, -1]
+    assert np.abs(many.t - np.where(is_met, quarter, 2.0)).max() < 1e-15  # 2.2e-16
+    assert np.abs(many["θ"][is_met]).max() < 1e-15 and many.success  # 0
+    single = vi.Pendulum(l=4.0).integrate([1.0], h=0.1).until(2.0)
+    assert many.q[3] == single.q[-1] and many.energy[3] == single.energy[-1]
+    assert pickle.loads(pickle.dumps(many)).which.tolist() == many.which.tolist()
+    assert vi.Pendulum().ensemble([1.0], h=0.1, until=1.0).which is None
+    # A run that fails.
+    wells = vi.DoubleWell().ensemble([[1.001]] * 2, h=0.01, until=50.0, method="energy", next_event=vi.Event("q", 9.0))
+    assert isinstance(wells.errors[1], vi.NoForwardStep) and np.isnan(wells.q).all() and np.isnan(wells.t).all()
+    with pytest.raises(ZeroDivisionError):
+        vi.Pendulum().ensemble([[1.0]] * 3, h=0.1, until=2.0, next_event=lambda t, q, v: 1 / 0)

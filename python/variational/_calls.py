@@ -180,7 +180,7 @@ def _unknown(method: str, wrong: str, known: list[str], owner: Any) -> str:
     if ours == "parameters":
         return f"{what}: the parameters belong to the system, as in vi.Pendulum(l=0.5).{method}(…)"
     if ours == "events" and method == "ensemble":
-        return f"{what}: an ensemble finds no events; call next_event(…) of single runs"
+        return f"{what}: write next_event=…, at which each run ends"
     if ours in _OF_A_RUN and method == "integrate":
         return f"{what}: call {_OF_A_RUN[ours]} of the run that it returns"
     if ours == "until" and "steps" in known:

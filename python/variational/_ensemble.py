@@ -4,31 +4,34 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import Array, array, count, finite, fixed, number, ordered
 from ._calls import check_arguments
-from ._errors import advised
+from ._errors import StepError, advised
+from ._events import listed
 from ._solution import ByName, columns_of, two_axes
 
 if TYPE_CHECKING:
-    from ._errors import StepError
     from ._system import System
 
 
 class Ensemble(ByName):
     """The states of M runs: `t` (M,), `q`, `p`, `v` (M, N), `energy` (M,), or with an axis of K times after M.
 
-    `errors` has for each run None, or the exception that ended it; `parameters` the parameters that differ.
+    `errors` has for each run None, or the exception that ended it; `parameters` the parameters that differ; `which` the
+    index of the event that ended each run, -1 without an event, or None if no event was given.
     """
 
     p: Array
     errors: list[StepError | None]
     parameters: dict[str, Array]
+    which: NDArray[np.intp] | None
 
     def __init__(
         self,
@@ -39,8 +42,10 @@ class Ensemble(ByName):
         errors: list[StepError | None],
         values: Array,
         parameters: dict[str, Array],
+        which: NDArray[np.intp] | None = None,
     ):
         vars(self).update(system=system, t=fixed(t), q=fixed(q), p=fixed(p), errors=errors, parameters=parameters)
+        vars(self)["which"] = None if which is None else fixed(which)
         self._values = values
 
     def _evaluate(self, of: str, each: tuple[int, ...] = ()) -> Array:
@@ -136,6 +141,7 @@ def ensemble(
     v: ArrayLike | None,
     until: float | None,
     times: ArrayLike | None,
+    next_event: Any,
     t: float,
     parameters: Mapping[str, ArrayLike],
     threads: int | None,
@@ -146,6 +152,8 @@ def ensemble(
         raise TypeError(f'parameters must be a dict such as {{"l": lengths}}, not {parameters!r}')
     if (until is None) == (times is None):
         raise TypeError("give one of until and times")
+    if next_event is not None and until is None:
+        raise TypeError("give until with next_event: the time at which a run without an event ends")
     given_states = {"q": states(q, "q", cls), "v": np.zeros(n) if v is None else states(v, "v", cls)}
     given = {}
     for name, value in parameters.items():
@@ -163,9 +171,14 @@ def ensemble(
     end = None if until is None else number(until, "until")
     listed_times = None if times is None else ordered(times, request.h or request.dtau or 1.0).tolist()
     limit = _threads(threads)
-    kind = system._for(request)._kind
-    (ts, qs, ps), errors = kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit)
-    errors = [advised(error, cls) for error in errors]
+    taken, which = system._for(request), None
+    if next_event is None:
+        found = taken._kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit)
+        (ts, qs, ps), errors = found
+        errors = [advised(error, cls) for error in errors]
+    else:
+        starts = (values, rows["q"], rows["v"])
+        (ts, qs, ps), errors, which = _to_events(taken, request, t, starts, end, next_event, limit)
     shape = (many,) if listed_times is None else (many, len(listed_times))
     differing = {
         name: fixed((of[..., 0] if parameter.length is None else of).copy()) for name, (parameter, of) in given.items()
@@ -178,7 +191,41 @@ def ensemble(
         errors,
         values,
         differing,
+        which,
     )
+
+
+def _to_events(
+    system: System, request: Any, t: float, starts: tuple[Array, ...], end: Any, events: Any, threads: int
+) -> tuple[tuple[Array, Array, Array], list[StepError | None], NDArray[np.intp]]:
+    """The end of each run at its first event, or at a time; its exception; and the index of the event, or -1."""
+    from ._run import Run
+
+    many, n = starts[1].shape
+    ts, qs, ps = np.full(many, np.nan), np.full((many, n), np.nan), np.full((many, n), np.nan)
+    errors: list[StepError | None] = [None] * many
+    which = np.full(many, -1, dtype=np.intp)
+    watched = listed(events)
+
+    def one(index: int) -> None:
+        values, q, v = (of[index] for of in starts)
+        try:
+            run = Run(type(system), system._kind.begin(values, request, t, q, v, None))
+            met = run.next_event(watched, end)
+        except StepError as error:
+            errors[index] = advised(error, type(system))
+            return
+        ts[index], qs[index], ps[index] = run.t, run.q, run.p
+        which[index] = met.which[0] if len(met) else -1
+
+    with ThreadPoolExecutor(threads) as pool:
+        try:
+            for _ in pool.map(one, range(many)):
+                pass
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return (ts, qs, ps), errors, which
 
 
 def states(value: ArrayLike, name: str, cls: type[System]) -> Array:

@@ -542,6 +542,7 @@ class System(metaclass=SystemType):
         *,
         until: float | None = None,
         times: ArrayLike | None = None,
+        next_event: Any = None,
         t: float = 0.0,
         h: float | None = None,
         tolerance: float | None = None,
@@ -557,11 +558,12 @@ class System(metaclass=SystemType):
         """Many runs on all cores, with the options of `integrate`.
 
         q and v have the shape (M, N), or (N,) for all runs; `parameters={"l": lengths}` has a value (M,) for each.
-        Returns the states at the time `until`, of shape (M, N), or at K times, of shape (M, K, N). A failed run has
-        NaN from there on, and its exception in `errors`.
+        Returns the states at the time `until`, of shape (M, N), or at K times, of shape (M, K, N). With `next_event`, the
+        events of `run.next_event`, each run ends at the first of them, whose index is in `which`, or at `until`. A failed
+        run has NaN from there on, and its exception in `errors`.
         """
         request = checked(type(self), h, tolerance, dtau, method, stages, shift, shift_from, fallback)
-        return ensemble(self, request, q, v, until, times, number(t, "t"), parameters or {}, threads)
+        return ensemble(self, request, q, v, until, times, next_event, number(t, "t"), parameters or {}, threads)
 
     def explain(self, stages: int | None = None) -> Explanation:
         """The mathematics of the system: L, the discrete Lagrangian, the equations of a step. With stages, those of a
