@@ -98,13 +98,6 @@ def checked(
     return request
 
 
-def usual_stages(cls: type[System], method: str) -> int | None:
-    """The stages of a method if none are given and these are built."""
-    if method in ("gauss", "adaptive"):
-        return 3 if cls.constraints else 8
-    return 2 if method == "energy" and cls.constraints else None
-
-
 def _stages(stages: int | None) -> int | None:
     if stages is None:
         return None

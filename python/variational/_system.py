@@ -25,7 +25,7 @@ from ._ensemble import Ensemble, ensemble, states
 from ._errors import NotAssembled, Singular, StepError, at_row  # type: ignore[attr-defined]
 from ._explanation import Explanation
 from ._names import among, meant
-from ._request import Request, checked, usual_stages
+from ._request import Request, checked
 from ._run import Run
 
 
@@ -218,8 +218,8 @@ class System(metaclass=SystemType):
         if building is None or not building.done() or building.exception() is not None:
             return self
         compiled = building.result()
-        wanted = (request.method, request.stages or usual_stages(type(self), request.method), request.dtau is not None)
-        return compiled._of(self._values) if wanted in compiled.integrators else self
+        is_built = self._kind.integrator(request) in compiled.integrators
+        return compiled._of(self._values) if is_built else self
 
     @classmethod
     def _parameter(cls, name: str) -> Parameter:

@@ -85,6 +85,16 @@ impl Kind {
             .collect()
     }
 
+    /// The integrator of a request, as `integrators` lists it.
+    ///
+    /// Raises ValueError for one that is not built.
+    fn integrator(&self, request: Request) -> PyResult<(&'static str, Option<usize>, bool)> {
+        let system = &*self.of;
+        let plan = request.plan(system, 0.0, Vec::new(), Vec::new())?;
+        let (method, stages, is_transformed) = plan.wanted(!system.constraints().is_empty());
+        Ok((method.name(), stages, is_transformed))
+    }
+
     /// A function at points: t (K,), q and v (K, N). Returns (K,) numbers, (K·N,) for a
     /// vector, (K·N·N,) for the mass matrix, (K·C,) for the reactions of C constraints, (K·2·C,) for their residuals.
     #[allow(clippy::too_many_arguments)] // Python's keywords
