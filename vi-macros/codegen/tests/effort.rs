@@ -143,34 +143,32 @@ fn the_work_of_families_is_pinned() {
 #[test]
 fn the_momenta_of_an_arm_are_not_multiplied_out() {
     let arm = |rest: &str| {
-        let names: Vec<String> = (0..6).map(|joint| format!("q{joint}")).collect();
-        let mut text = format!("struct Arm {{ coord {};", names.join(", "));
-        for joint in 0..6 {
+        let hinge = |joint: usize| {
             let (c, s) = (format!("cos(q{joint})"), format!("sin(q{joint})"));
-            let (turn, rate) = if joint % 2 == 0 {
+            let (turn, rate) = if joint.is_multiple_of(2) {
                 (format!("[[{c}, -{s}, 0], [{s}, {c}, 0], [0, 0, 1]]"), format!("[0, 0, dot(q{joint})]"))
             } else {
                 (format!("[[{c}, 0, {s}], [0, 1, 0], [-{s}, 0, {c}]]"), format!("[0, dot(q{joint}), 0]"))
             };
-            text += &if joint == 0 {
-                format!("let R0 = {turn}; let x0 = R0 * [0.1, 0.2, 0.3]; let w0 = {rate};")
-            } else {
-                let last = joint - 1;
-                format!(
-                    "let E{joint} = {turn}; let R{joint} = R{last} * E{joint};
-                     let x{joint} = x{last} + R{joint} * [0.1, 0.2, 0.3];
-                     let w{joint} = transpose(E{joint}) * w{last} + {rate};"
-                )
+            let Some(last) = joint.checked_sub(1) else {
+                return format!("let R0 = {turn}; let x0 = R0 * [0.1, 0.2, 0.3]; let w0 = {rate};");
             };
-        }
+            format!(
+                "let E{joint} = {turn}; let R{joint} = R{last} * E{joint};
+                 let x{joint} = x{last} + R{joint} * [0.1, 0.2, 0.3];
+                 let w{joint} = transpose(E{joint}) * w{last} + {rate};"
+            )
+        };
         let body = |joint| {
             format!(
                 "dot(x{joint}) * dot(x{joint}) / 2 - x{joint}[2]
                  + w{joint} * [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 4]] * w{joint}"
             )
         };
-        let bodies: Vec<String> = (0..6).map(body).collect();
-        text += &format!("L = {} {rest}; }}", bodies.join(" + "));
+        let names = (0..6).map(|joint| format!("q{joint}")).collect::<Vec<_>>().join(", ");
+        let hinges = (0..6).map(hinge).collect::<String>();
+        let bodies = (0..6).map(body).collect::<Vec<_>>().join(" + ");
+        let text = format!("struct Arm {{ coord {names}; {hinges} L = {bodies} {rest}; }}");
         let system = syntax::parse::system(text.parse().expect("tokens")).expect("a right system");
         vi_codegen::derive(&system).unwrap_or_else(|error| panic!("{error}")).own.system.continuous
     };
