@@ -4,6 +4,8 @@
 //! that ends in that name, but not in arguments of other macros. Spans refer to the text. An explicit stack replaces
 //! recursion, so that any nesting depth works.
 
+use core::iter::Peekable;
+use proc_macro2::token_stream::IntoIter;
 use proc_macro2::{TokenStream, TokenTree};
 use syn::Result;
 
@@ -14,17 +16,17 @@ use syn::Result;
 pub fn declarations(text: &str) -> Result<Vec<TokenStream>> {
     let tokens: TokenStream = without_shebang(text).parse()?;
     let mut found = Vec::new();
-    let mut open = vec![tokens.into_iter()];
+    let mut open = vec![tokens.into_iter().peekable()];
     while let Some(innermost) = open.last_mut() {
         let Some(token) = innermost.next() else {
             open.pop();
             continue;
         };
         match token {
-            TokenTree::Group(group) => open.push(group.stream().into_iter()),
+            TokenTree::Group(group) => open.push(group.stream().into_iter().peekable()),
             TokenTree::Ident(name) => {
-                let arguments = arguments(innermost);
-                found.extend(arguments.filter(|_| name == "lagrangian"));
+                let is_lagrangian = name == "lagrangian";
+                found.extend(arguments(innermost).filter(|_| is_lagrangian));
             }
             _ => {}
         }
@@ -32,17 +34,15 @@ pub fn declarations(text: &str) -> Result<Vec<TokenStream>> {
     Ok(found)
 }
 
-/// The arguments after the name of a macro, `!(…)` or `! name(…)`; consumes them.
-fn arguments(behind: &mut proc_macro2::token_stream::IntoIter) -> Option<TokenStream> {
-    let mut ahead = behind.clone();
-    let is_call = matches!(ahead.next(), Some(TokenTree::Punct(mark)) if mark.as_char() == '!');
-    let argument = match ahead.next().filter(|_| is_call)? {
-        TokenTree::Ident(_) => ahead.next()?,
-        other => other,
-    };
-    let TokenTree::Group(group) = argument else { return None };
-    *behind = ahead;
-    Some(group.stream())
+/// The arguments after the name of a macro, `!(…)` or `! name(…)`; consumes them. A copy of the rest to look ahead would take
+/// a time that is quadratic in the text.
+fn arguments(behind: &mut Peekable<IntoIter>) -> Option<TokenStream> {
+    behind.next_if(|token| matches!(token, TokenTree::Punct(mark) if mark.as_char() == '!'))?;
+    behind.next_if(|token| matches!(token, TokenTree::Ident(_)));
+    match behind.next_if(|token| matches!(token, TokenTree::Group(_)))? {
+        TokenTree::Group(group) => Some(group.stream()),
+        _ => None,
+    }
 }
 
 /// The text after the line `#!…`, if it begins with one.
