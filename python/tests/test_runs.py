@@ -597,6 +597,47 @@ struct Arm {
 """
 
 
+def test_a_solution_has_expressions_of_the_language():
+    text = """struct Arm {
+        param m = 1.3, l[2] = [0.9, 0.4]; input u = 0.0;
+        coord θ; angle ψ;
+        table drag(v) = [(-9, -2.0), (0, 0.0), (9, 2.0)] linear extend;
+        let r = [l[0] * sin(θ), -l[0] * cos(θ)];
+        let w = r + l[1] * [sin(ψ), -cos(ψ)];
+        L = m * (dot(r) * dot(r) + dot(w) * dot(w)) / 2 - 9.81 * m * (r[1] + w[1]);
+        force θ = u - drag(dot(θ));
+    }"""
+    arm = vi.System(text)(m=1.7)
+    run = arm.integrate([0.6, -0.3], [0.4, 1.1], h=0.02)
+    sol = run.until(0.4, every=2, callback=lambda run: run.set(u=run.t))
+    θ, ψ, dθ, dψ = sol["θ"], sol["ψ"], sol["dot(θ)"], sol["dot(ψ)"]
+    w = np.stack([0.9 * np.sin(θ) + 0.4 * np.sin(ψ), -0.9 * np.cos(θ) - 0.4 * np.cos(ψ)], axis=-1)
+    rate = np.stack(
+        [0.9 * np.cos(θ) * dθ + 0.4 * np.cos(ψ) * dψ, 0.9 * np.sin(θ) * dθ + 0.4 * np.sin(ψ) * dψ], axis=-1
+    )
+    assert sol["w"].shape == (11, 2) and np.abs(sol["w"] - w).max() < 1e-15  # 2.3e-16
+    assert np.abs(sol["dot(w)"] - rate).max() < 2e-15  # 8.9e-16
+    # Numbers are those of the run, an input from each row on.
+    assert np.abs(sol["m * w[1] + u * t"] - (1.7 * w[:, 1] + sol["u"] * sol.t)).max() < 2e-15  # 4.5e-16
+    assert np.abs(sol["drag(dot(θ))"] - 2.0 / 9.0 * dθ).max() < 1e-15  # 5.6e-17
+    assert np.abs(sol["[[θ, 1], [0, ψ^2]]"][:, 1, 1] - ψ**2).max() < 1e-15
+    at = arm.evaluate("m * norm(w)", 0.0, sol.q, sol.v)
+    assert np.abs(at - 1.7 * np.linalg.norm(w, axis=1)).max() < 2e-15  # 4.5e-16
+    one = arm.evaluate("norm(w)", 0.0, [0.0, 0.0], [0.0, 0.0])
+    assert isinstance(one, float) and one == pytest.approx(1.3, abs=1e-15)
+    many = arm.ensemble(h=0.02, until=0.1, q=[[0.6, -0.3], [0.1, 0.2], [0.3, 0.3]], parameters={"m": [1.0, 2.0, 3.0]})
+    assert np.abs(many["m * θ"] - np.array([1.0, 2.0, 3.0]) * many["θ"]).max() < 1e-15
+    assert not sol["w"].flags.writeable
+    with pytest.raises(KeyError, match="Arm has no coordinate 'z'"):
+        sol["z"]
+    with pytest.raises(ValueError, match="unknown name `z`\n --> expression:1:7"):
+        sol["w[0] +z"]
+    with pytest.raises(ValueError, match="a vector of 2 and a number cannot be added\\n --> expression:1:5"):
+        arm.evaluate("w + 1", 0.0, [0.0, 0.0], [0.0, 0.0])
+    with pytest.raises(TypeError, match="an expression is a text"):
+        arm.evaluate(1.0, 0.0, [0.0, 0.0], [0.0, 0.0])
+
+
 def test_a_solution_has_the_inputs_of_its_steps():
     arm = vi.System(ARM)()
     run = arm.integrate([0.0, 0.0], h=0.1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -35,8 +36,8 @@ class ByName:
     """The numbers of the system from each row on, or of each run; None if they are those of `system`."""
 
     def __getitem__(self, name: str) -> Array:
-        """A coordinate, `sol["x"]`, its velocity, `sol["dot(x)"]`, or the value of a parameter or an input from each
-        row on, `sol["k"]`."""
+        """A coordinate, `sol["x"]`, its velocity, `sol["dot(x)"]`, the value of a parameter or an input from each row
+        on, `sol["k"]`, or an expression of the language, such as a `let` or `sol["k * x^2 / 2"]`."""
         coordinates, constraints = self.system.coordinates, self.system.constraints
         if isinstance(name, str) and name not in coordinates:
             if among(name.partition("[")[0], self.system.parameters) in self.system.parameters:
@@ -46,8 +47,21 @@ class ByName:
                 raise KeyError(f"{constraint} is a constraint: its reaction is reactions[..., {column}]")
             if name in ("t", "q", "v", "p", "energy", "reactions"):
                 raise KeyError(f"{name!r} is no coordinate: it is the attribute .{name}")
-        is_velocity, index = course(name, coordinates, type(self.system).__name__)
+        try:
+            is_velocity, index = course(name, coordinates, type(self.system).__name__)
+        except KeyError as unknown:
+            return self._of_expression(name, unknown)
         return (self.v if is_velocity else self.q)[..., index]
+
+    def _of_expression(self, text: str, unknown: KeyError) -> Array:
+        """An expression in the names of the system. A wrong one that is a single name is unknown."""
+        values = self.system._values[None] if self._values is None else self._values
+        shape, points = self.system._points(self.t, self.q, self.v)
+        try:
+            found = self.system._evaluated(text, shape, points, np.repeat(values, self.t.size // len(values), axis=0))
+        except ValueError as error:
+            raise (unknown if re.fullmatch(r"[\w.' ]+(\[\w*\])?", text) else error) from None
+        return fixed(found)
 
     def _of_parameter(self, parameter: Any) -> Array:
         """The values of a parameter, with the axes of the rows first."""
@@ -104,7 +118,8 @@ class Solution(ByName):
     """The rows of a run: `t` (K,), `q`, `p`, `v` (K, N), `energy` (K,), and for C constraints `reactions` (K, C).
 
     `sol["x"]` and `sol["dot(x)"]` are the values of a coordinate and of its velocity, and `sol["u"]` of an input or a
-    parameter: that of the steps from each row on, which a callback may change. Names and shapes of
+    parameter: that of the steps from each row on, which a callback may change. `sol["m * x^2"]` is the value of an
+    expression of the language, also of a `let`. Names and shapes of
     `scipy.integrate.solve_ivp` are there too: `y` = (q, v) of shape (2N, K), `success`, `status`, `message`, and with
     `dense=True` the call `sol(t)`. The arrays cannot be written: velocities and energies follow from q and p.
     """

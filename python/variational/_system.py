@@ -302,6 +302,17 @@ class System(metaclass=SystemType):
         """The acceleration at (t, q, v). Raises InconsistentStart if (t, q, v) is off the constraints."""
         return self._at("acceleration", t, q, v, self._shape)
 
+    def evaluate(self, expression: str, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Any:
+        """An expression of the language at (t, q, v), in the names of the system: its coordinates, parameters, `let`s,
+        functions and tables.
+
+        >>> system.evaluate("m * l^2 * dot(θ)", 0.0, [0.3], [1.0])
+
+        A vector or a matrix has its axes last. Along a solution write `sol["m * l^2 * dot(θ)"]`. Raises ValueError for a
+        mistake, with its place.
+        """
+        return self._evaluated(expression, *self._points(t, q, v), self._values[None])
+
     def reaction(self, t: ArrayLike, q: ArrayLike, p: ArrayLike) -> Array:
         """The multiplier Λ of each constraint at (t, q, p), of shape (..., K) in the order of `constraints`."""
         return self._at("reaction", t, q, p, (len(self.constraints),), "p")
@@ -445,6 +456,18 @@ class System(metaclass=SystemType):
         self, of: str, t: ArrayLike, q: ArrayLike, v: ArrayLike, each: tuple[int, ...] = (), second: str = "v"
     ) -> Any:
         """A function at points, of this shape at each."""
+        shape, points = self._points(t, q, v, second)
+        try:
+            out = self._kind.evaluate(self._values, of, *points)
+        except StepError as error:
+            raise self._first_failure(of, points, shape) or error from None
+        shape += each
+        return out.reshape(shape) if shape else float(out[0])
+
+    def _points(
+        self, t: ArrayLike, q: ArrayLike, v: ArrayLike, second: str = "v"
+    ) -> tuple[tuple[int, ...], tuple[Array, Array, Array]]:
+        """The common shape of points, and their times, coordinates and velocities one after the other."""
         n = len(self.coordinates)
         t, q, v = array(t, "t"), array(q, "q"), array(v, second)
         for x, name in ((q, "q"), (v, second)):
@@ -452,23 +475,29 @@ class System(metaclass=SystemType):
                 names = ", ".join(self.coordinates)
                 raise ValueError(f"the last axis of {name} must have length {n} ({names}), not the shape {x.shape}")
         if t.ndim == 0 and q.ndim == 1 and v.ndim == 1:
-            shape: tuple[int, ...] = ()
-            points: tuple[Array, ...] = (t.reshape(1), np.ascontiguousarray(q)[None], np.ascontiguousarray(v)[None])
-        else:
-            try:
-                shape = np.broadcast_shapes(t.shape, q.shape[:-1], v.shape[:-1])
-            except ValueError:
-                raise ValueError(
-                    f"t, q and {second} do not broadcast: their shapes are {t.shape}, {q.shape} and {v.shape}"
-                ) from None
-            times = np.ascontiguousarray(np.broadcast_to(t, shape)).reshape(-1)
-            points = (times, *(np.ascontiguousarray(np.broadcast_to(x, (*shape, n))).reshape(-1, n) for x in (q, v)))
+            return (), (t.reshape(1), np.ascontiguousarray(q)[None], np.ascontiguousarray(v)[None])
         try:
-            out = self._kind.evaluate(self._values, of, *points)
-        except StepError as error:
-            raise self._first_failure(of, points, shape) or error from None
-        shape += each
-        return out.reshape(shape) if shape else float(out[0])
+            shape = np.broadcast_shapes(t.shape, q.shape[:-1], v.shape[:-1])
+        except ValueError:
+            raise ValueError(
+                f"t, q and {second} do not broadcast: their shapes are {t.shape}, {q.shape} and {v.shape}"
+            ) from None
+        times = np.ascontiguousarray(np.broadcast_to(t, shape)).reshape(-1)
+        qs, vs = (np.ascontiguousarray(np.broadcast_to(x, (*shape, n))).reshape(-1, n) for x in (q, v))
+        return shape, (times, qs, vs)
+
+    def _evaluated(
+        self, expression: str, shape: tuple[int, ...], points: tuple[Array, Array, Array], values: Array
+    ) -> Any:
+        """An expression at points, with the numbers of the system at each of them, or at all."""
+        if not isinstance(expression, str):
+            raise TypeError(f"an expression is a text, such as 'm * x^2', not {expression!r}")
+        from ._text import files_of
+
+        own = getattr(type(self), "_text", None)
+        source = (own[0], list(own[3])) if own else (self.definition, list(files_of(self.definition)))
+        lengths, found = _core.evaluate(source, expression, tuple(of.tolist() for of in points), values.tolist())
+        return np.array(found).reshape(*shape, *lengths) if shape or lengths else found[0]
 
     def _first_failure(self, of: str, points: tuple[Array, ...], shape: tuple[int, ...]) -> StepError | None:
         """The exception of the first of many points without a value, which names it; None for a single point."""

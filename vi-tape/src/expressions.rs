@@ -1,6 +1,6 @@
 //! Expressions of a system along a motion.
 //!
-//! In: the text of a system; for [`Expressions`] further expressions in its names, for [`Terms`] the summands of its L. Out:
+//! In: the text of a system; for [`Expressions`] and [`Observable`] further expressions in its names, for [`Terms`] the summands of its L. Out:
 //! their values at one point of a motion after the other. Tables are evaluated as by every method.
 
 use crate::compile::parsed;
@@ -36,8 +36,8 @@ struct Source {
 }
 
 impl Source {
-    fn of(text: &str) -> Result<(Self, syntax::System), Mistakes> {
-        let system = parsed("definition", text, &[])?.system;
+    fn of(text: &str, files: &[(String, String)]) -> Result<(Self, syntax::System), Mistakes> {
+        let system = parsed("definition", text, files)?.system;
         let wrong = |error: syn::Error| Mistakes::wrong("definition", text, &error);
         let (pool, model) = vi_codegen::checked(&system, 0).map_err(wrong)?;
         let compiled = || Mistakes::compiled(&model.name.to_string(), "Rust functions");
@@ -82,7 +82,7 @@ impl Expressions {
     /// # Errors
     /// The mistakes of the text or of the first wrong expression; an expression with velocities.
     pub fn parse(text: &str, written: &[(&str, &str)]) -> Result<Self, Mistakes> {
-        let (mut source, system) = Source::of(text)?;
+        let (mut source, system) = Source::of(text, &[])?;
         let mut values = Vec::with_capacity(written.len());
         for (name, expression) in written {
             let wrong = |error: syn::Error| Mistakes::wrong(name, expression, &error);
@@ -109,6 +109,39 @@ impl Expressions {
     #[must_use]
     pub fn rates(&self, at: &Moment<'_>) -> Vec<f64> {
         self.source.values(&self.rates, at)
+    }
+}
+
+/// A function of the time, the coordinates and the velocities of a system: a number, a vector or a matrix.
+pub struct Observable {
+    source: Source,
+    shape: Vec<usize>,
+    entries: Vec<Expr>,
+}
+
+impl Observable {
+    /// An expression in the names of the system of a text, as for [`Expressions`]; `files` has the texts of files of tables.
+    ///
+    /// # Errors
+    /// The mistakes of the text or of the expression.
+    pub fn parse(text: &str, files: &[(String, String)], expression: &str) -> Result<Self, Mistakes> {
+        let (mut source, system) = Source::of(text, files)?;
+        let wrong = |error: syn::Error| Mistakes::wrong("expression", expression, &error);
+        let written = alone(expression).map_err(wrong)?;
+        let (shape, entries) = check::shaped_expression(&mut source.pool, &system, &written).map_err(wrong)?;
+        Ok(Self { source, shape, entries })
+    }
+
+    /// The lengths of a vector or a matrix; none of a number.
+    #[must_use]
+    pub fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// The entries at a point, row by row; NaN where they have no value.
+    #[must_use]
+    pub fn values(&self, at: &Moment<'_>) -> Vec<f64> {
+        self.source.values(&self.entries, at)
     }
 }
 
@@ -141,7 +174,7 @@ impl Terms {
     /// # Errors
     /// The mistakes of the text; a system that is too large.
     pub fn of(text: &str) -> Result<Self, Mistakes> {
-        let (mut source, _) = Source::of(text)?;
+        let (mut source, _) = Source::of(text, &[])?;
         let wrong = |error: syn::Error| Mistakes::wrong("definition", text, &error);
         let Source { pool, model, .. } = &mut source;
         let operations = terms::operations(pool, model).map_err(wrong)?;
@@ -174,7 +207,7 @@ impl Terms {
 /// # Errors
 /// The mistakes of the text; a system that is too large.
 pub fn operations(text: &str) -> Result<usize, Mistakes> {
-    let (mut source, _) = Source::of(text)?;
+    let (mut source, _) = Source::of(text, &[])?;
     let wrong = |error: syn::Error| Mistakes::wrong("definition", text, &error);
     terms::operations(&mut source.pool, &mut source.model).map_err(wrong)
 }

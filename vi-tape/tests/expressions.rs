@@ -2,7 +2,7 @@
 
 use vi_erased::system::Quantity;
 use vi_tape::System;
-use vi_tape::expressions::{Expressions, Moment, Terms, operations};
+use vi_tape::expressions::{Expressions, Moment, Observable, Terms, operations};
 
 /// A mass with tables of every kind, and terms that mix velocities, coordinates and the time.
 const TEXT: &str = "struct Tabled {
@@ -91,4 +91,20 @@ fn wrong_expressions_are_named() {
         let found = Expressions::parse(TEXT, &[("x", expression)]).err().expect("a mistake").to_string();
         assert!(found.contains(said), "{expression}: {found}");
     }
+}
+
+#[test]
+fn an_observable_has_a_shape_and_velocities() {
+    let of = |expression| Observable::parse(TEXT, &[], expression).unwrap_or_else(|error| panic!("{error}"));
+    let at = Moment { t: 0.4, q: &[0.6, -0.8], v: &[2.0, 0.5], parameters: &PARAMETERS, ..Moment::default() };
+    let rate = of("m * dot(r)");
+    assert!(rate.shape().is_empty());
+    assert!((rate.values(&at)[0] - 1.3 * (0.6 * 2.0 - 0.8 * 0.5)).abs() < 1e-15); // 0
+    let rows = of("[[x, dot(y), 1], [t, c[1], wind(t)]]");
+    assert_eq!(rows.shape(), [2, 3]);
+    for (found, wanted) in rows.values(&at).into_iter().zip([0.6, 0.5, 1.0, 0.4, 0.4, 0.4]) {
+        assert!((found - wanted).abs() < 1e-15, "{found} instead of {wanted}"); // 0
+    }
+    let wrong = Observable::parse(TEXT, &[], "x + [1, 2]").err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(wrong.contains("--> expression:1:"), "{wrong}");
 }

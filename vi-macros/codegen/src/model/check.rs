@@ -51,6 +51,25 @@ pub fn expressions(pool: &mut Pool<Symbol>, system: &System, written: &[Expressi
     context.errors.finish(values)
 }
 
+/// The lengths and the entries, row by row, of an expression in these names; a number has no length.
+///
+/// # Errors
+/// As [`expressions`].
+pub fn shaped_expression(
+    pool: &mut Pool<Symbol>,
+    system: &System,
+    written: &Expression,
+) -> Result<(Vec<usize>, Vec<Expr>)> {
+    let mut context = Context::new(pool);
+    context.names(system);
+    let value = match context.shaped(written) {
+        Some(Value::Tensor(of)) => (of.shape, of.entries),
+        Some(Value::Number(of) | Value::Wrong(of)) => (Vec::new(), vec![of]),
+        None => Default::default(),
+    };
+    context.errors.finish(value)
+}
+
 /// What the names of a system mean, except its `let`s.
 struct Named {
     parameters: Vec<Parameter>,
