@@ -7,9 +7,10 @@ use proc_macro2::{LexError, TokenStream};
 use pyo3::exceptions::{PyNotImplementedError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedStr;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use vi_codegen::inspect::{self, Line, report};
 use vi_python::{Kind, pyo3};
-use vi_tape::expressions::{Moment, Observable};
+use vi_tape::expressions::{self, Moment};
 
 /// The sources of the crates that a compiled system needs, and a number that changes with them.
 mod embedded {
@@ -87,31 +88,50 @@ fn of_text(
     system.without(&names).map(Kind::new).ok_or_else(unknown)
 }
 
-/// Shape and values of an expression in the names of the system of a definition, at points of its motion: times,
-/// coordinates, velocities, and the numbers of the system at each of them or at all.
-///
-/// `files` are paths and texts of the files of its tables. Raises ValueError for a mistake, with its line.
-#[pyfunction]
+/// An expression in the names of the system of a definition.
+#[pyclass(frozen, module = "variational._core", crate = "vi_python::pyo3")]
+struct Observable(Mutex<expressions::Observable>);
+
+/// Times, coordinates and velocities.
+type Points = (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<f64>>);
+
+#[pymethods]
 #[pyo3(crate = "vi_python::pyo3")]
-fn evaluate(
-    py: Python<'_>,
-    source: (PyBackedStr, Vec<(String, String)>),
-    expression: &str,
-    points: (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<f64>>),
-    parameters: Vec<Vec<f64>>,
-) -> PyResult<(Vec<usize>, Vec<f64>)> {
-    py.detach(|| {
-        let ((definition, files), (t, q, v)) = (source, points);
-        let of = Observable::parse(&definition, &files, expression)?;
-        let mut values = Vec::new();
-        for (row, (t, (q, v))) in t.iter().zip(q.iter().zip(&v)).enumerate() {
-            let parameters = parameters.get(row).or(parameters.first()).map_or(&[][..], |of| of);
-            let at = Moment { t: *t, q, v, parameters, ..Moment::default() };
-            values.extend(of.values(&at));
-        }
-        Ok((of.shape().to_vec(), values))
-    })
-    .map_err(|mistakes: vi_tape::Mistakes| PyValueError::new_err(mistakes.to_string()))
+impl Observable {
+    /// `files` are paths and texts of the files of its tables.
+    ///
+    /// Raises ValueError for a mistake, with its line.
+    #[new]
+    fn new(py: Python<'_>, definition: &str, files: Vec<(String, String)>, expression: &str) -> PyResult<Self> {
+        let parsed = py.detach(|| expressions::Observable::parse(definition, &files, expression).map(Mutex::new));
+        parsed.map(Self).map_err(|mistakes| PyValueError::new_err(mistakes.to_string()))
+    }
+
+    /// The lengths of a vector or a matrix; none of a number.
+    #[getter]
+    fn shape(&self) -> Vec<usize> {
+        self.lock().shape().to_vec()
+    }
+
+    /// The entries at points, one point after the other, with the numbers of the system at each of them or at all.
+    fn values(&self, py: Python<'_>, points: Points, parameters: Vec<Vec<f64>>) -> Vec<f64> {
+        let (t, q, v) = points;
+        py.detach(|| {
+            let of = self.lock();
+            let mut values = Vec::new();
+            for (row, (t, (q, v))) in t.iter().zip(q.iter().zip(&v)).enumerate() {
+                let parameters = parameters.get(row).or(parameters.first()).map_or(&[][..], |of| of);
+                values.extend(of.values(&Moment { t: *t, q, v, parameters, ..Moment::default() }));
+            }
+            values
+        })
+    }
+}
+
+impl Observable {
+    fn lock(&self) -> MutexGuard<'_, expressions::Observable> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// Path and text of each source file that a compiled system needs.
@@ -127,7 +147,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(pyo3::wrap_pyfunction!(explain, module)?)?;
     module.add_function(pyo3::wrap_pyfunction!(properties, module)?)?;
     module.add_function(pyo3::wrap_pyfunction!(of_text, module)?)?;
-    module.add_function(pyo3::wrap_pyfunction!(evaluate, module)?)?;
+    module.add_class::<Observable>()?;
     module.add_function(pyo3::wrap_pyfunction!(sources, module)?)?;
     module.add("sources_digest", embedded::DIGEST)?;
     module.add("texts", vi_python_ready::texts())?;

@@ -41,7 +41,6 @@ TABLE = [
     (lambda: rod()["rod"], KeyError, r"rod is a constraint: its reaction is reactions\[..., 0\]"),
     (lambda: rod()["Λ_rod"], KeyError, r"its reaction is reactions\[..., 0\]"),
     (lambda: chain()["x[20]"], KeyError, r"the entries of x are x\[0\] to x\[2\]"),
-    (lambda: chain()["dot(x)"], KeyError, r"the entries of x are x\[0\] to x\[2\]"),
     (lambda: begun().events("z", 1.0), KeyError, "no coordinate 'z'"),
     (lambda: begun().until(1.0)["mu[0]"], TypeError, r"mu is one number, which has no entry 'mu\[0\]'"),
     (lambda: begun().set(**{"mi[0]": 1.0}), TypeError, r"no parameter 'mi\[0\]'; it has mu"),

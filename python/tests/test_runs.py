@@ -628,6 +628,9 @@ def test_a_solution_has_expressions_of_the_language():
     many = arm.ensemble(h=0.02, until=0.1, q=[[0.6, -0.3], [0.1, 0.2], [0.3, 0.3]], parameters={"m": [1.0, 2.0, 3.0]})
     assert np.abs(many["m * θ"] - np.array([1.0, 2.0, 3.0]) * many["θ"]).max() < 1e-15
     assert not sol["w"].flags.writeable
+    chain = vi.System("struct Chain { coord x[3]; L = sum(i in 0..3, dot(x[i])^2 - x[i]^2) / 2; }")()
+    steps = chain.integrate([0.1, 0.2, 0.3], h=0.1).steps(4)
+    assert np.array_equal(steps["x"], steps.q) and np.array_equal(steps["dot(x)"], steps.v)
     with pytest.raises(KeyError, match="Arm has no coordinate 'z'"):
         sol["z"]
     with pytest.raises(ValueError, match="unknown name `z`\n --> expression:1:7"):
@@ -636,6 +639,33 @@ def test_a_solution_has_expressions_of_the_language():
         arm.evaluate("w + 1", 0.0, [0.0, 0.0], [0.0, 0.0])
     with pytest.raises(TypeError, match="an expression is a text"):
         arm.evaluate(1.0, 0.0, [0.0, 0.0], [0.0, 0.0])
+
+
+def test_an_expression_is_an_event():
+    kepler = vi.Kepler(mu=1.2)
+    run = kepler.integrate(q=[0.4, 0.0], v=[0.0, 2.0], h=0.05)
+    by_text, by_function = run.copy(), run.copy()
+    found = by_text.events(vi.Event("norm([x, y])", 0.6, direction=-1), 30.0)
+    wanted = by_function.events(lambda t, q, v: 0.6 - np.hypot(*q), 30.0)
+    assert len(found) > 3 and np.abs(found.t - wanted.t[wanted.rising]).max() < 1e-13  # 1.8e-15
+    assert np.abs(np.hypot(*found.q.T) - 0.6).max() < 1e-14  # 2.2e-16
+    # A text alone crosses zero, in the names of the system and with the numbers of the run.
+    apsis = run.copy().next_event("mu * (x * dot(x) + y * dot(y))", 30.0)
+    assert abs(np.sum(apsis.q * apsis.v)) < 1e-14 and len(apsis) == 1
+    changed = run.copy()
+    changed.set(mu=1.0)
+    at = changed.next_event(vi.Event("mu * x", 0.2), 30.0)
+    assert at["x"] == pytest.approx(0.2, abs=1e-14)
+    with pytest.raises(KeyError, match="Kepler has no coordinate 'z'"):
+        run.next_event("z", 1.0)
+    with pytest.raises(ValueError, match=r"'\[x, y\]' has the shape \(2,\)"):
+        run.next_event("[x, y]", 1.0)
+    with pytest.raises(ValueError, match="unknown name `z`\n --> expression:1:5"):
+        run.events(vi.Event("x + z"), 1.0)
+    with pytest.raises(KeyError, match="no coordinate 'x \\* y'"):
+        run.events(vi.Event("x * y", period=1.0), 1.0)
+    with pytest.raises(KeyError, match="no coordinate 'x \\+ y'"):
+        run.tangent(until=2.0, event="x + y")
 
 
 def test_a_solution_has_the_inputs_of_its_steps():

@@ -175,21 +175,24 @@ def test_coordinates_between_the_built_sizes():
         run = narrow.integrate(q, v, h=0.05, method=method, **options)
         other = wide.integrate(full(q), full(v), h=0.05, method=method, **options)
         one, of_all = run.until(2.0, dense=True), other.until(2.0, dense=True)
-        assert np.array_equal(one.t, of_all.t) and np.array_equal(one.q, of_all.q[:, :5])
-        assert np.array_equal(one.p, of_all.p[:, :5]) and np.array_equal(one.energy, of_all.energy)
+        # The sums of the other text have further terms, which round differently. Lengths of steps multiply
+        # that: 1.6e-7 in a gradient by energy-preserving steps.
+        near = lambda found, wanted, size=1e-6 if method == "energy" else 1e-12: np.abs(found - wanted).max() <= size
+        assert near(one.t, of_all.t) and near(one.q, of_all.q[:, :5])
+        assert near(one.p, of_all.p[:, :5]) and near(one.energy, of_all.energy)
         keep = [0, 1, 2, 3, 4, 8, 9, 10, 11, 12]
-        assert np.array_equal(one(1.03), of_all(1.03)[keep])
-        assert np.array_equal(run.linearization().A, other.linearization().A[np.ix_(keep, keep)])
-        assert np.array_equal(run.linearization().B, other.linearization().B[keep])
-        assert np.array_equal(run.local_error().q, other.local_error().q[:5])
+        assert near(one(1.03), of_all(1.03)[keep])
+        assert near(run.linearization().A, other.linearization().A[np.ix_(keep, keep)])
+        assert near(run.linearization().B, other.linearization().B[keep])
+        assert near(run.local_error().q, other.local_error().q[:5])
         gradient, of_wide = run.gradient(3, q=q, wrt=["k"]), other.gradient(3, q=full(q), wrt=["k"])
         for name, value in gradient.items():
-            assert np.array_equal(np.ravel(value), np.ravel(of_wide[name])[: np.size(value)]), name
+            assert near(np.ravel(value), np.ravel(of_wide[name])[: np.size(value)]), name
     for function in ("momentum", "force", "acceleration", "bias"):
         found, of_wide = (getattr(s, function)(0.0, x, w) for s, x, w in ((narrow, q, v), (wide, full(q), full(v))))
-        assert np.array_equal(found, of_wide[:5]), function
-    assert np.array_equal(narrow.mass_matrix(0.0, q, v), wide.mass_matrix(0.0, full(q), full(v))[:5, :5])
-    assert narrow.energy(0.0, q, v) == wide.energy(0.0, full(q), full(v))
+        assert np.abs(found - of_wide[:5]).max() < 1e-15, function
+    assert np.abs(narrow.mass_matrix(0.0, q, v) - wide.mass_matrix(0.0, full(q), full(v))[:5, :5]).max() < 1e-15
+    assert abs(narrow.energy(0.0, q, v) - wide.energy(0.0, full(q), full(v))) < 1e-15
     rest = narrow.equilibrium(0.1 * np.ones(5))
     assert np.abs(narrow.acceleration(0.0, rest.q, np.zeros(5))).max() < 1e-14
     assert rest.q.shape == (5,) and rest.mass.shape == (5, 5) and len(rest.rates) == 10

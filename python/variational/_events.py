@@ -11,7 +11,7 @@ import numpy as np
 
 from ._arrays import Array, _shown, number
 from ._calls import check_arguments, unassignable, unfit
-from ._names import course
+from ._names import course, is_plain
 
 
 def _refused(event: Any, name: str) -> str:
@@ -26,6 +26,9 @@ class Event:
     """A coordinate, or `dot(x)` its velocity, crosses a value: `Event("x", 0.0, direction=+1)`.
 
     The direction is +1 for rising, -1 for falling, and 0 for both. The search does not call Python.
+
+    Any expression of the language may cross a value too, `Event("norm(r[0] - r[1])", 0.1)`, in the names of the system:
+    coordinates, parameters, `let`s, functions and tables. That search calls Python.
 
     With a period the coordinate crosses the value plus a whole number of periods: `Event("θ", period=2 * np.pi)` is an
     event in each turn of an angle. That search calls Python.
@@ -51,20 +54,20 @@ check_arguments(Period, ["__init__"])
 
 Function = Callable[[float, Array, Array], float]
 Watched = Event | Period | str | Function
-"""An event, the name of a coordinate that crosses zero, or a function g(t, q, v), whose sign changes at the event. As
-in scipy, a function may have an attribute `direction`."""
+"""An event, a coordinate or an expression that crosses zero, or a function g(t, q, v), whose sign changes at the event.
+As in scipy, a function may have an attribute `direction`."""
 
 
 _PERIOD = 4.0
 """Steps in the shortest period: the search looks at eighths of a step."""
 
 
-def descriptions(events: Watched | Iterable[Watched], cls: Any, h: float, is_first: bool) -> list[tuple]:
-    """The events as `_core` reads them, for a run with steps of about the length h; `is_first` if it stops at one."""
+def descriptions(events: Watched | Iterable[Watched], run: Any, is_first: bool) -> list[tuple]:
+    """The events as `_core` reads them, for a run; `is_first` if it stops at one."""
     watched = listed(events)
     if not watched:
         raise ValueError("give at least one event")
-    return [_description(event, cls, _PERIOD * h, f"event {index}", is_first) for index, event in enumerate(watched)]
+    return [_description(event, run, f"event {index}", is_first) for index, event in enumerate(watched)]
 
 
 def listed(events: Watched | Iterable[Watched]) -> list[Watched]:
@@ -87,12 +90,18 @@ def periodic(events: Watched | Iterable[Watched], cls: Any) -> dict[int, tuple[i
     }
 
 
-def _description(event: Watched, cls: Any, least: float, place: str, is_first: bool) -> tuple:
+def _description(event: Watched, run: Any, place: str, is_first: bool) -> tuple:
+    cls = run._cls
     if isinstance(event, str):
         event = Event(event)
     if isinstance(event, Event):
-        is_velocity, index = course(event.of, cls.coordinates, cls.__name__)
         at = number(event.at, "at")
+        try:
+            is_velocity, index = course(event.of, cls.coordinates, cls.__name__)
+        except KeyError as unknown:
+            if event.period is not None:
+                raise
+            return (_difference(event.of, at, run, unknown), _sign(event.direction), place)
         if event.period is None:
             return (is_velocity, index, at, _sign(event.direction))
         period = number(event.period, "period")
@@ -104,7 +113,7 @@ def _description(event: Watched, cls: Any, least: float, place: str, is_first: b
         period = number(event.period, "period")
         if period <= 0.0:
             raise ValueError(f"the period must be positive, not {period!r}")
-        if period < least:
+        if period < (least := _PERIOD * abs(run.h)):
             raise ValueError(f"a period must be at least four steps, here {least:g}: use at(times), or shorter steps")
         return (number(event.start, "start"), period)
     if callable(event):
@@ -121,6 +130,18 @@ def _description(event: Watched, cls: Any, least: float, place: str, is_first: b
             )
         return (event, _sign(getattr(event, "direction", 0)), name)
     raise TypeError(f"an event must be an Event or a function g(t, q, v), not {event!r}")
+
+
+def _difference(expression: str, at: float, run: Any, unknown: KeyError) -> Function:
+    """An expression minus a value, with the numbers of a run. A wrong one that is a single name is unknown."""
+    try:
+        of = run._cls._observable(expression)
+    except ValueError as error:
+        raise (unknown if is_plain(expression) else error) from None
+    if of.shape:
+        raise ValueError(f"{expression!r} has the shape {tuple(of.shape)}: an event needs one number, such as its norm")
+    parameters = [run._run.parameters.tolist()]
+    return lambda t, q, v: of.values(([t], [q.tolist()], [v.tolist()]), parameters)[0] - at
 
 
 def value(found: Any, name: str) -> float:

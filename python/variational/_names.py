@@ -55,6 +55,11 @@ def course(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, 
     return inner is not None, coordinates.index(found)
 
 
+def is_plain(text: str) -> bool:
+    """Whether a text is a name or an entry, and no other expression."""
+    return re.fullmatch(r"[\w.' ]+(\[\w*\])?", text) is not None
+
+
 def _velocity(name: str, coordinates: tuple[str, ...]) -> str:
     """The velocity that a name of other tools means: `vx`, `x_dot`, `xdot`, `dx`, `ẋ`."""
     plain = unicodedata.normalize("NFD", name).replace("\u0307", "")

@@ -16,7 +16,7 @@ from ._calls import check_arguments, no_attribute, unassignable, unfit
 from ._control import Linearization
 from ._errors import InconsistentStart, StepError, advised  # type: ignore[attr-defined]
 from ._events import Event, Watched, descriptions, listed, periodic
-from ._names import meant
+from ._names import course, meant
 from ._solution import BY_SYSTEM, Events, Solution
 
 if TYPE_CHECKING:
@@ -325,7 +325,7 @@ class Run:
                 return found, is_first and len(found) > 0
 
             return _finished(self._called(end, None, _count(every, "every", 1), callback, look), on_error)
-        wanted = descriptions(events, self._cls, abs(self.h), is_first)
+        wanted = descriptions(events, self, is_first)
         turns = periodic(events, self._cls)
         while True:
             (t, q, p), error, met = self._run.events(wanted, end, is_first)
@@ -415,10 +415,12 @@ class Run:
                     f"an event of a derivative must be a coordinate or velocity that crosses a value, such as "
                     f'vi.Event("{self._cls.coordinates[0]}", 0.0), not {event!r}'
                 )
+            # Not an expression.
+            course(event if isinstance(event, str) else event.of, self._cls.coordinates, self._cls.__name__)
             met = self.copy().next_event(event, until)
             if not len(met):
                 raise ValueError(f"there is no event before t = {until:g}")
-            options["t"], (options["event"],) = float(met.t[0]), descriptions(event, self._cls, abs(self.h), True)
+            options["t"], (options["event"],) = float(met.t[0]), descriptions(event, self, True)
         columns = self._tangent(indices, velocities=[velocities, velocities], **options)
         columns = columns if event is not None else columns[: 2 * n]
         second = "v" if velocities else "p"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._animation import animated
 from ._arrays import Array, array, finite, fixed
 from ._calls import check_arguments, no_attribute, unassignable
-from ._names import among, course
+from ._names import among, course, is_plain
 
 if TYPE_CHECKING:
     from ._errors import StepError
@@ -60,7 +59,7 @@ class ByName:
         try:
             found = self.system._evaluated(text, shape, points, np.repeat(values, self.t.size // len(values), axis=0))
         except ValueError as error:
-            raise (unknown if re.fullmatch(r"[\w.' ]+(\[\w*\])?", text) else error) from None
+            raise (unknown if is_plain(text) else error) from None
         return fixed(found)
 
     def _of_parameter(self, parameter: Any) -> Array:

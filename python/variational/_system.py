@@ -490,14 +490,21 @@ class System(metaclass=SystemType):
         self, expression: str, shape: tuple[int, ...], points: tuple[Array, Array, Array], values: Array
     ) -> Any:
         """An expression at points, with the numbers of the system at each of them, or at all."""
+        of = self._observable(expression)
+        t, q, v = (of.tolist() for of in points)
+        found = of.values((t, q, v), values.tolist())
+        return np.array(found).reshape(*shape, *of.shape) if shape or of.shape else found[0]
+
+    @classmethod
+    def _observable(cls, expression: str) -> _core.Observable:
+        """An expression in the names of the system. Raises ValueError for a mistake, with its place."""
         if not isinstance(expression, str):
             raise TypeError(f"an expression is a text, such as 'm * x^2', not {expression!r}")
         from ._text import files_of
 
-        own = getattr(type(self), "_text", None)
-        source = (own[0], list(own[3])) if own else (self.definition, list(files_of(self.definition)))
-        lengths, found = _core.evaluate(source, expression, tuple(of.tolist() for of in points), values.tolist())
-        return np.array(found).reshape(*shape, *lengths) if shape or lengths else found[0]
+        own = getattr(cls, "_text", None)
+        source = (own[0], own[3]) if own else (cls.definition, files_of(cls.definition))
+        return _core.Observable(source[0], list(source[1]), expression)
 
     def _first_failure(self, of: str, points: tuple[Array, ...], shape: tuple[int, ...]) -> StepError | None:
         """The exception of the first of many points without a value, which names it; None for a single point."""

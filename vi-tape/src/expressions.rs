@@ -28,23 +28,31 @@ pub struct Moment<'a> {
     pub parameters: &'a [f64],
 }
 
-/// A text with its expressions.
+/// A text that was read, and its expressions.
 struct Source {
-    pool: Pool<Symbol>,
+    system: syntax::System,
     model: Model,
+    of: Pooled,
+}
+
+/// Expressions with the tables that they call.
+struct Pooled {
+    pool: Pool<Symbol>,
     tables: Tables,
 }
 
 impl Source {
-    fn of(text: &str, files: &[(String, String)]) -> Result<(Self, syntax::System), Mistakes> {
+    fn of(text: &str, files: &[(String, String)]) -> Result<Self, Mistakes> {
         let system = parsed("definition", text, files)?.system;
         let wrong = |error: syn::Error| Mistakes::wrong("definition", text, &error);
         let (pool, model) = vi_codegen::checked(&system, 0).map_err(wrong)?;
         let compiled = || Mistakes::compiled(&model.name.to_string(), "Rust functions");
         let tables = Tables::of(&model).ok_or_else(compiled)?;
-        Ok((Self { pool, model, tables }, system))
+        Ok(Self { system, model, of: Pooled { pool, tables } })
     }
+}
 
+impl Pooled {
     fn values(&self, exprs: &[Expr], at: &Moment<'_>) -> Vec<f64> {
         let entry = |of: &[f64], index: usize| of.get(index).copied().unwrap_or(f64::NAN);
         let mut symbol = |symbol: &Symbol| match symbol {
@@ -70,7 +78,7 @@ impl Source {
 
 /// Expressions of the time and the coordinates of a system.
 pub struct Expressions {
-    source: Source,
+    of: Pooled,
     values: Vec<Expr>,
     rates: Vec<Expr>,
 }
@@ -82,39 +90,40 @@ impl Expressions {
     /// # Errors
     /// The mistakes of the text or of the first wrong expression; an expression with velocities.
     pub fn parse(text: &str, written: &[(&str, &str)]) -> Result<Self, Mistakes> {
-        let (mut source, system) = Source::of(text, &[])?;
+        let Source { system, mut of, .. } = Source::of(text, &[])?;
         let mut values = Vec::with_capacity(written.len());
         for (name, expression) in written {
             let wrong = |error: syn::Error| Mistakes::wrong(name, expression, &error);
             let written = alone(expression).map_err(wrong)?;
-            values.extend(check::expressions(&mut source.pool, &system, &[written]).map_err(wrong)?);
+            values.extend(check::expressions(&mut of.pool, &system, &[written]).map_err(wrong)?);
         }
         let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
-        if let Some((_, (name, _))) = values.iter().zip(written).find(|(of, _)| source.pool.depends_on(**of, &moves)) {
+        if let Some((_, (name, _))) = values.iter().zip(written).find(|(value, _)| of.pool.depends_on(**value, &moves))
+        {
             let text =
                 format!("error: the expression of `{name}` has velocities\n = help: write it by coordinates alone");
             return Err(Mistakes::of(&text));
         }
-        let rates = values.iter().map(|value| rate(&mut source.pool, *value)).collect();
-        Ok(Self { source, values, rates })
+        let rates = values.iter().map(|value| rate(&mut of.pool, *value)).collect();
+        Ok(Self { of, values, rates })
     }
 
     /// The values at a point.
     #[must_use]
     pub fn values(&self, at: &Moment<'_>) -> Vec<f64> {
-        self.source.values(&self.values, at)
+        self.of.values(&self.values, at)
     }
 
     /// The rates of change at a point, by its velocities.
     #[must_use]
     pub fn rates(&self, at: &Moment<'_>) -> Vec<f64> {
-        self.source.values(&self.rates, at)
+        self.of.values(&self.rates, at)
     }
 }
 
 /// A function of the time, the coordinates and the velocities of a system: a number, a vector or a matrix.
 pub struct Observable {
-    source: Source,
+    of: Pooled,
     shape: Vec<usize>,
     entries: Vec<Expr>,
 }
@@ -125,11 +134,11 @@ impl Observable {
     /// # Errors
     /// The mistakes of the text or of the expression.
     pub fn parse(text: &str, files: &[(String, String)], expression: &str) -> Result<Self, Mistakes> {
-        let (mut source, system) = Source::of(text, files)?;
+        let Source { system, mut of, .. } = Source::of(text, files)?;
         let wrong = |error: syn::Error| Mistakes::wrong("expression", expression, &error);
         let written = alone(expression).map_err(wrong)?;
-        let (shape, entries) = check::shaped_expression(&mut source.pool, &system, &written).map_err(wrong)?;
-        Ok(Self { source, shape, entries })
+        let (shape, entries) = check::shaped_expression(&mut of.pool, &system, &written).map_err(wrong)?;
+        Ok(Self { of, shape, entries })
     }
 
     /// The lengths of a vector or a matrix; none of a number.
@@ -141,7 +150,7 @@ impl Observable {
     /// The entries at a point, row by row; NaN where they have no value.
     #[must_use]
     pub fn values(&self, at: &Moment<'_>) -> Vec<f64> {
-        self.source.values(&self.entries, at)
+        self.of.values(&self.entries, at)
     }
 }
 
@@ -163,7 +172,8 @@ fn alone(text: &str) -> syn::Result<syntax::Expression> {
 
 /// The summands of L.
 pub struct Terms {
-    source: Source,
+    of: Pooled,
+    model: Model,
     summands: Vec<Term>,
     operations: usize,
 }
@@ -174,19 +184,17 @@ impl Terms {
     /// # Errors
     /// The mistakes of the text; a system that is too large.
     pub fn of(text: &str) -> Result<Self, Mistakes> {
-        let (mut source, _) = Source::of(text, &[])?;
+        let Source { mut model, mut of, .. } = Source::of(text, &[])?;
         let wrong = |error: syn::Error| Mistakes::wrong("definition", text, &error);
-        let Source { pool, model, .. } = &mut source;
-        let operations = terms::operations(pool, model).map_err(wrong)?;
-        let summands = terms::terms(pool, model).map_err(wrong)?;
-        Ok(Self { source, summands, operations })
+        let operations = terms::operations(&mut of.pool, &mut model).map_err(wrong)?;
+        let summands = terms::terms(&mut of.pool, &mut model).map_err(wrong)?;
+        Ok(Self { of, model, summands, operations })
     }
 
     /// Each summand as text, and the operations of the equations of motion at one point that it costs.
     pub fn costs(&self) -> impl Iterator<Item = (String, Option<usize>)> {
-        let Source { pool, model, .. } = &self.source;
         self.summands.iter().map(|term| {
-            let text = pool.render(term.value, &|symbol| model.spell(symbol));
+            let text = self.of.pool.render(term.value, &|symbol| self.model.spell(symbol));
             (text, term.operations_without.map(|without| self.operations.saturating_sub(without)))
         })
     }
@@ -196,8 +204,8 @@ impl Terms {
     pub fn at(&self, at: &Moment<'_>) -> Vec<(Vec<f64>, f64)> {
         let exprs: Vec<Expr> =
             self.summands.iter().flat_map(|of| of.force.iter().copied().chain([of.energy])).collect();
-        let values = self.source.values(&exprs, at);
-        let each = values.chunks_exact(self.source.model.dimension() + 1);
+        let values = self.of.values(&exprs, at);
+        let each = values.chunks_exact(self.model.dimension() + 1);
         each.map(|of| (of[..of.len() - 1].to_vec(), of[of.len() - 1])).collect()
     }
 }
@@ -207,7 +215,7 @@ impl Terms {
 /// # Errors
 /// The mistakes of the text; a system that is too large.
 pub fn operations(text: &str) -> Result<usize, Mistakes> {
-    let (mut source, _) = Source::of(text, &[])?;
+    let Source { mut model, mut of, .. } = Source::of(text, &[])?;
     let wrong = |error: syn::Error| Mistakes::wrong("definition", text, &error);
-    terms::operations(&mut source.pool, &mut source.model).map_err(wrong)
+    terms::operations(&mut of.pool, &mut model).map_err(wrong)
 }
