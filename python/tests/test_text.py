@@ -177,7 +177,11 @@ def test_coordinates_between_the_built_sizes():
         one, of_all = run.until(2.0, dense=True), other.until(2.0, dense=True)
         # The sums of the other text have further terms, which round differently. Lengths of steps multiply
         # that: 1.6e-7 in a gradient by energy-preserving steps.
-        near = lambda found, wanted, size=1e-6 if method == "energy" else 1e-12: np.abs(found - wanted).max() <= size
+        size = 1e-6 if method == "energy" else 1e-12
+
+        def near(found, wanted, size=size):
+            return np.abs(found - wanted).max() <= size
+
         assert near(one.t, of_all.t) and near(one.q, of_all.q[:, :5])
         assert near(one.p, of_all.p[:, :5]) and near(one.energy, of_all.energy)
         keep = [0, 1, 2, 3, 4, 8, 9, 10, 11, 12]

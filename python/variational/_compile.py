@@ -393,7 +393,6 @@ def _build(definition: str, name: str, built: Path, methods: str, tables: str, v
             # Another process may have built it meanwhile.
             if not built.exists():
                 workspace = _workspace(folder)
-                has_constraints = _CONSTRAINT.search(_without_comments(definition)) is not None
                 words = _words(methods)
                 library = built.name.removesuffix(_SUFFIX)
                 text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=words)

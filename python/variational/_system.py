@@ -308,8 +308,8 @@ class System(metaclass=SystemType):
 
         >>> system.evaluate("m * l^2 * dot(θ)", 0.0, [0.3], [1.0])
 
-        A vector or a matrix has its axes last. Along a solution write `sol["m * l^2 * dot(θ)"]`. Raises ValueError for a
-        mistake, with its place.
+        A vector or a matrix has its axes last. Along a solution write `sol["m * l^2 * dot(θ)"]`. Raises ValueError for
+        a mistake, with its place.
         """
         return self._evaluated(expression, *self._points(t, q, v), self._values[None])
 
