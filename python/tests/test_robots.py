@@ -234,6 +234,28 @@ SINGLE = {
         <geom type="capsule" fromto="0 0 0 .3 0 0" size=".03"/><default class="stiff"><joint stiffness="2"/></default>
         </default></default>""",
     ),
+    # Shorter lists keep the last numbers of their default; an orientation replaces the one of its default.
+    "overlays": model(
+        """<body><joint axis="0 1 0"/><geom size=".1" pos=".3 0 0" quat="1 0 0.3 0"/><body><joint axis="1 0 0"/>
+        <geom class="a" zaxis="1 2 3" pos="0 .2 0"/></body></body>""",
+        """<default><geom type="capsule" size=".3 .4" euler="0 20 0"/><default class="a">
+        <geom type="box" size=".1 .2 .3"/></default></default>""",
+    ),
+    # A servo inherits from its own kind or from general, also of an outer class; general from the last one.
+    "servos": model(
+        """<body><joint name="a" axis="0 1 0"/><geom size="0.1" pos=".3 0 0"/></body>""",
+        """<default><position kp="5" kv=".2"/><default class="b"><velocity kv="3"/></default><default class="c">
+        <general gaintype="affine" gainprm="5 6 7" biastype="affine" biasprm="3 4 6"/></default></default>
+        <actuator><general name="1" joint="a"/><position name="2" joint="a"/><velocity name="3" joint="a"/>
+        <motor name="4" joint="a"/><general name="5" joint="a" class="b" gainprm="2"/><position name="6" joint="a"
+        class="b"/><position name="7" joint="a" kp="2"/><general name="8" joint="a" class="c" gainprm="1 2"/>
+        <position name="9" joint="a" class="c"/></actuator>""",
+    ),
+    "a name that is taken": model(
+        """<body name="body2"><joint axis="0 1 0"/><geom size="1" pos="1 0 0"/><body pos="1 0 0"><joint axis="0 1 0"/>
+        <geom size="1" pos="1 0 0"/><body pos="1 0 0"><joint name="body2_joint" axis="1 0 0"/>
+        <geom size="1" pos="0 1 0"/></body></body></body>"""
+    ),
 }
 
 
@@ -282,6 +304,14 @@ LOOPS = {
             '<equality><joint joint1="b" joint2="c" polycoef="0.1 0.5 0.3 0 0.2"/></equality>',
         ),
         lambda on: on.coupled([0.1, 0.5, 0.3, 0.0, 0.2], "b", "c"),
+    ),
+    # The other coefficients keep their default: 1 for the linear one.
+    "offset": (
+        model(
+            ARM.format("0 1 0", '<joint name="c" axis="0 1 0"/>'),
+            '<equality><joint joint1="b" joint2="c" polycoef="0.1"/></equality>',
+        ),
+        lambda on: on.coupled([0.1, 1.0], "b", "c"),
     ),
 }
 
@@ -366,6 +396,13 @@ def test_a_floating_root_and_its_joints():
     assert state.q[1] == pytest.approx(0.1 - 2.0 * state.q[0], abs=1e-14)
 
 
+def test_a_floating_joint_of_a_urdf_with_damping():
+    text = """<robot name="r"><link name="a"/><link name="b"><inertial><origin xyz=".1 .2 0"/><mass value="2"/>
+    <inertia ixx=".1" iyy=".2" izz=".25" ixy=".01" ixz="0" iyz="0"/></inertial></link>
+    <joint name="j" type="floating"><parent link="a"/><child link="b"/><dynamics damping=".3"/></joint></robot>"""
+    assert Reference(text).error(quietly(vi.from_urdf, text)) < 1e-14  # 4.5e-16
+
+
 def test_the_text_is_read_by_people():
     robot = quietly(vi.from_mjcf, MODELS / "acrobot.xml")
     for line in (
@@ -398,6 +435,17 @@ def test_names_become_names_of_the_language():
     assert vi.System(robot).coordinates == robot.coordinates
 
 
+@pytest.mark.parametrize(
+    ("name", "coordinate"),
+    [("_", "q__"), ("a\u00b2", "a2"), ("e\u0301", "\u00e9"), ("\ufb01", "fi"), ("i", "i_2"), ("\u03c9", "\u03c9"),
+     ("x&#10;param z = 1;", "x_param_z___1_"), ("a" * 300, "a" * 100)],
+)  # fmt: skip
+def test_any_name_is_written(name, coordinate):
+    inner = f'<body name="{name}"><joint name="{name}"/><geom size="1" pos="1 0 0"/></body>'
+    robot = quietly(vi.from_mjcf, f'<mujoco model="{name}"><worldbody>{inner}</worldbody></mujoco>')
+    assert robot.coordinates == vi.System(robot).coordinates == (coordinate,)
+
+
 def test_parameters_beyond_the_limit_are_constants():
     inner = ""
     for k in range(14):
@@ -416,8 +464,12 @@ def test_includes_are_relative(tmp_path):
     (tmp_path / "parts/arm.xml").write_text('<mujoco><body><joint name="q"/><geom size="1"/></body></mujoco>')
     assert quietly(vi.from_mjcf, tmp_path / "main.xml").coordinates == ("q",)
     (tmp_path / "parts/arm.xml").write_text('<mujoco><include file="all.xml"/></mujoco>')
-    with pytest.raises(ValueError, match="includes itself: remove one"):
+    with pytest.raises(ValueError, match="is included twice: remove one"):
         vi.from_mjcf(tmp_path / "main.xml")
+    (tmp_path / "twice.xml").write_text('<mujoco><include file="parts/no.xml"/><include file="parts/no.xml"/></mujoco>')
+    (tmp_path / "parts/no.xml").write_text("<mujoco/>")
+    with pytest.raises(ValueError, match=r"the file parts/no\.xml is included twice"):
+        vi.from_mjcf(tmp_path / "twice.xml")
     (tmp_path / "parts/arm.xml").unlink()
     with pytest.raises(FileNotFoundError, match=r"included file arm\.xml is not in"):
         vi.from_mjcf(tmp_path / "main.xml")
@@ -438,7 +490,7 @@ def test_what_is_left_out_is_listed():
         "the stiffness of the joint 'r', which is of the type ball",
         "the actuator 'm' (muscle)",
         "the actuator 'n' (it moves a site)",
-        "the actuator 'p' (timeconst or dampratio)",
+        "the actuator 'p' (timeconst)",
         "the equality 'e' (tendon)",
         "the connect 'f', which is not active",
         "the tendon 't'",
@@ -450,6 +502,50 @@ def test_what_is_left_out_is_listed():
     with pytest.warns(UserWarning, match=re.escape("; ".join(expected))):
         robot = vi.from_mjcf(text)
     assert robot.left_out == expected
+
+
+def test_what_is_unknown_or_off_is_listed():
+    robot = quietly(
+        vi.from_mjcf,
+        model(
+            """<body><joint name="q" axis="0 1 0" dampng="1" actuatorfrcrange="-1 1"/><gemo/>
+            <geom size="1" pos="1 0 0" contype="0" conaffinity="0"/></body>""",
+            """<option actuatorgroupdisable="1 2"/><actuators/><default><equality active="false"/></default>
+            <actuator><motor name="m" joint="q" group="2"/><motor name="n" joint="q" gear="0"/>
+            <position name="p" joint="q" dampratio="1"/></actuator>
+            <equality><joint name="e" joint1="q"/></equality>""",
+        ),
+    )
+    assert robot.left_out == (
+        "the element <gemo>, which is unknown",
+        "dampng of the joint 'q', which is unknown",
+        "the limits of the forces of motors on the joint 'q'",
+        "the actuator 'm' (disabled)",
+        "the actuator 'n' (its force is zero)",
+        "the actuator 'p' (dampratio)",
+        "the joint 'e', which is not active",
+        "the element <actuators>, which is unknown",
+    )
+
+
+def test_a_gap_that_no_joint_closes_is_listed():
+    text = model(
+        ARM.format("0 1 0", '<joint name="c" axis="0 1 0"/><site name="t" pos=".3 .2 1.5"/>').replace(
+            "</body></body>", '<site name="s" pos="1.5 0 .5"/></body></body>'
+        ),
+        '<equality><connect name="k" site1="s" site2="t"/></equality>',
+    )
+    robot = quietly(vi.from_mjcf, text)
+    assert "a part of the constraint 'k', a gap of 0.2 that no joint closes" in robot.left_out
+    assert "a part of the constraint 'k'" not in " ".join(quietly(vi.from_mjcf, LOOPS["connect"][0]).left_out)
+    # A hinge about y cannot turn a body about x and z.
+    turned = model(
+        '<body name="b"><joint axis="0 1 0"/><geom size=".1" pos=".3 0 0"/><body><joint axis="0 1 0"/><geom size=".1" '
+        'pos=".3 0 .1"/></body></body>',
+        '<equality><weld name="w" body1="b" relpose="0 0 0 1 .2 .3 .4"/></equality>',
+    )
+    notes = [note for note in quietly(vi.from_mjcf, turned).left_out if "constraint 'w'" in note]
+    assert len(notes) == 2, notes
 
 
 def test_a_robot_with_many_joints_is_announced():
@@ -468,7 +564,7 @@ MISTAKES = [
     (
         model('<body><joint name="q" type="screw"/><geom size="1"/></body>'),
         ValueError,
-        'type "screw": the types are hinge',
+        'type "screw": write hinge',
     ),
     (
         model('<body name="b"><joint name="q"/></body>'),
@@ -508,6 +604,55 @@ MISTAKES = [
         ValueError,
         "the weld 'w' names the body 'z', which is not there",
     ),
+    (
+        model('<body><joint name="q"/><joint name="q"/><geom size="1"/></body>'),
+        ValueError,
+        "two joints have the name 'q'",
+    ),
+    (model('<joint name="q"/>'), ValueError, "the world has the joint 'q'"),
+    (
+        model("", '<default><default class="a"/><default class="a"/></default>'),
+        ValueError,
+        "two defaults have the class",
+    ),
+    (model("", '<compiler eulerseq="xy"/>'), ValueError, 'eulerseq="xy": write three of the letters'),
+    (model("", '<compiler angle="deg"/>'), ValueError, 'the angle "deg": write degree or radian'),
+    (model('<body><joint/><geom size="1" contype="x"/></body>'), ValueError, 'contype="x", which are not numbers'),
+    (model('<body><joint/><geom size="1" group="1.5"/></body>'), ValueError, 'group="1.5": write a whole number'),
+    (model('<body><joint/><geom size="1" density="-1"/></body>'), ValueError, "has a negative mass"),
+    (model('<body><joint/><geom type="box" size="-1 -1 1"/></body>'), ValueError, "has no volume"),
+    (model('<body><joint/><geom size="1" fromto="0 0 0 1 0 0"/></body>'), ValueError, "fromto, and is a sphere"),
+    (model('<body><joint/><geom size="1e200"/></body>'), ValueError, "too large: write"),
+    (model('<body><joint/><geom size="1" mass="1e308" pos="1e200 0 0"/></body>'), ValueError, "too large: write"),
+    (model('<body><joint armature="-1"/><geom size="1"/></body>'), ValueError, "a negative armature"),
+    (
+        model('<body name="b"><joint/><inertial pos="0 0 0" mass="-1"/></body>'),
+        ValueError,
+        "'b' has a negative mass",
+    ),
+    (
+        model('<body name="b"><joint/><inertial pos="0 0 0" mass="1" fullinertia="1 1 1 2 0 0"/></body>'),
+        ValueError,
+        "'b' has the mass 1 and the principal moments of inertia -1, 1, 3: they must not be negative",
+    ),
+    (
+        model('<body><joint/><inertial pos="0 0 0" mass="1" euler="1 2 3" fullinertia="1 1 1 0 0 0"/></body>'),
+        ValueError,
+        "write no other inertia or axes",
+    ),
+    (
+        model('<body><joint axis="1 0 0"/><inertial pos="1 0 0" mass="1"/></body>'),
+        ValueError,
+        "turn masses on their axes: write moments of inertia",
+    ),
+    (
+        model("", '<compiler settotalmass="3"/>').replace("<worldbody>", "<worldbody><body><joint/></body>"),
+        ValueError,
+        "which has no mass",
+    ),
+    (model("<body>" * 3000 + "</body>" * 3000), ValueError, "inside each other too often"),
+    ('<?xml version="1.0"?><robot/>', ValueError, "root element <robot>"),
+    ("\ufeff<mujoco/>", ValueError, "no body moves"),
 ]
 
 
@@ -534,6 +679,13 @@ URDF_MISTAKES = [
         f'<robot>{LINKS}<joint name="j" type="fixed"><parent link="z"/></joint></robot>',
         "the link 'z', which is not there",
     ),
+    ('<robot><link name="a"/><link name="a"/></robot>', "two links have the name 'a'"),
+    (
+        f"""<robot>{LINKS}<link name="c"/><joint name="j" type="continuous">{ENDS}</joint>
+        <joint name="j" type="continuous"><parent link="b"/><child link="c"/></joint></robot>""",
+        "two joints have the name 'j'",
+    ),
+    ('<robot xmlns:xacro="http://x/xacro"><xacro:macro/></robot>', "has macros: write it out by `xacro FILE"),
     (f"<robot>{LINKS}</robot>", "one link without a parent, not a, b"),
     (f'<robot>{LINKS}<joint name="j" type="fixed">{ENDS}</joint></robot>', "no body moves"),
 ]

@@ -147,7 +147,12 @@ class Mechanism:
     """What the text does not have."""
 
     def joints(self) -> dict[str, Joint]:
-        return {joint.name: joint for body in self.bodies for joint in body.joints}
+        found: dict[str, Joint] = {}
+        for joint in (joint for body in self.bodies for joint in body.joints):
+            if joint.name in found:
+                raise ValueError(f"two joints have the name {joint.name!r}")
+            found[joint.name] = joint
+        return found
 
     def places(self) -> list[Place]:
         """The places of the bodies in the configuration of the file."""
@@ -178,10 +183,12 @@ def numbers(
 def unit(vector: Sequence[float] | Array, of: str) -> Array:
     """The vector divided by its length."""
     found = np.asarray(vector, dtype=float)
-    length = float(np.linalg.norm(found))
-    if length < 1e-14:
+    # Squares of large numbers are not finite.
+    size = max(1.0, float(np.abs(found).max()))
+    length = float(np.linalg.norm(found / size))
+    if length * size < 1e-14:
         raise ValueError(f"{of} has the length 0: write a vector with a direction")
-    return found / length
+    return found / size / length
 
 
 def of_quaternion(q: Sequence[float] | Array, of: str) -> Array:

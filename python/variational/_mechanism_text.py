@@ -6,9 +6,12 @@ most axes of joints are coordinate axes. Below a ball or a free joint they are t
 
 from __future__ import annotations
 
+import math
 import re
+import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -28,7 +31,7 @@ from ._mechanism import (
 )  # fmt: skip
 
 WORDS = """
-t pi L f self dot sum sqrt exp ln abs sign sin cos tan asin acos atan atan2 sinh cosh tanh hypot pow max min clamp
+t i pi L f self dot sum sqrt exp ln abs sign sin cos tan asin acos atan atan2 sinh cosh tanh hypot pow max min clamp
 cross norm transpose rate spin turn about about_x about_y about_z g T W f64 bool str usize
 param coord angle rotation input table force torque space_torque dissipation constraint time_scale discretize check
 as async await break const continue crate dyn else enum extern false fn for if impl in let loop match mod move mut pub
@@ -40,11 +43,17 @@ priv try typeof unsized virtual yield union Self
 PARAMETERS, PARAMETERS_WITH_CONSTRAINTS = 32, 64
 """The most parameters of a text."""
 
+LONGEST = 100
+"""The most letters that a name keeps."""
+
 Coordinates = dict[str, Array]
 """The coordinates of each joint, by its name."""
 
 TRIALS = 3
 """Configurations at which zeros are looked for."""
+
+NEWTON = 30
+"""The most iterations that close the loops of a mechanism."""
 
 EXPLICIT = '<compiler saveinertial="true"/> and mujoco.mj_saveLastXML write such a file from any model'
 
@@ -59,8 +68,8 @@ class Names:
         self.taken = set(WORDS.split())
 
     def new(self, wanted: str, prefix: str = "") -> str:
-        name = prefix + _letters(wanted)
-        if not re.match(r"[^\W\d]|_\w", name):
+        name = prefix + _letters(wanted)[:LONGEST]
+        if not re.match(r"(?!_$)[^\W\d]", name):
             name = f"q_{name}"
         found, count = name, 1
         while found in self.taken:
@@ -348,19 +357,21 @@ class Writer:
         kinetic, potential = self.energies(draws)
         springs, damping, armatures = self.springs()
         kinetic, potential = kinetic + armatures, potential + springs
+        if not kinetic:
+            raise ValueError("the joints turn masses on their axes: write moments of inertia")
         forces, constraints = self.forces(inputs), self.constraints(draws[0])
         is_constrained = bool(constraints) or any(frame.rotation for frame in self.frames)
-        lines = [f"/// {self.mechanism.name}", f"struct {self.title} {{"]
+        lines = [f"/// {_line(self.mechanism.name)}", f"struct {self.title} {{"]
         most = PARAMETERS_WITH_CONSTRAINTS if is_constrained else PARAMETERS
         kept = max(most - len(inputs), 0)
         for place, (name, value, meaning) in enumerate(self.parameters):
             if place == kept:
                 lines.append(f"    // Constants: a text has at most {most} parameters.")
             is_kept = place < kept
-            lines.append(f"    {'///' if is_kept else '//'} {meaning}")
+            lines.append(f"    {'///' if is_kept else '//'} {_line(meaning)}")
             lines.append(f"    {'param' if is_kept else 'const'} {name} = {_number(value)};")
         for name, motor in inputs:
-            lines += [f"    /// Input of {motor.name}.", f"    input {name} = 0;"]
+            lines += [f"    /// Input of {_line(motor.name)}.", f"    input {name} = 0;"]
         lines += [f"    {clause}" for clause in self.coordinates()]
         lines += [f"    fn {TURNS[name]};" for name in sorted(self.functions, reverse=True)]
         lines += [f"    {let}" for let in self.lets]
@@ -437,7 +448,16 @@ class Writer:
         return [body.name for body, (of, _) in pairs if of is frame and body.inertia.mass > 0.0]
 
     def check_inertia(self) -> None:
-        """Raises ValueError for a joint that moves no mass."""
+        """Raises ValueError for a joint that moves no mass, and for a mass or a moment of inertia below zero."""
+        for body in self.mechanism.bodies:
+            if not np.isfinite([body.inertia.mass, *body.inertia.moments.flat]).all():
+                raise ValueError(f"the inertia of the body {body.name!r} is too large: write it in other units")
+            moments = np.linalg.eigvalsh(body.inertia.moments)
+            if body.inertia.mass < 0.0 or moments[0] < -1e-12 * np.abs(moments).max():
+                raise ValueError(
+                    f"the body {body.name!r} has the mass {body.inertia.mass:.6g} and the principal moments of inertia "
+                    f"{', '.join(f'{moment:.6g}' for moment in moments)}: they must not be negative"
+                )
         moved = {frame for frame in self.frames if frame.joint.armature > 0.0}
         for frame, inertia in self.inertias.items():
             if inertia.mass > 0.0 or np.any(inertia.moments):
@@ -530,24 +550,64 @@ class Writer:
         """The constraints, without entries that follow from those before: a planar loop has two."""
         lines = []
         known = np.empty((0, len(_slopes(lambda _: np.zeros(1), draw, self.frames))))
+        values: list[Callable[[Coordinates], Array]] = []
+        dropped: list[tuple[str, Callable[[Coordinates], Array]]] = []
         for constraint in self.mechanism.constraints:
             if isinstance(constraint, Coupling):
                 lines.append(f"constraint {self.names.new(constraint.name)} = {self.coupling(constraint)};")
                 continue
             gap, entries, value = self.gap(constraint)
             kept = []
-            for entry, row in zip(entries, _slopes(value, draw, self.frames).T, strict=True):
+            for place, row in enumerate(_slopes(value, draw, self.frames).T):
                 trial = np.vstack([known, row])
-                if np.linalg.matrix_rank(trial, tol=1e-9 * max(1.0, np.abs(trial).max())) == len(trial):
+                is_kept = np.linalg.matrix_rank(trial, tol=1e-9 * max(1.0, np.abs(trial).max())) == len(trial)
+                entry = partial(lambda q, value, place: value(q)[place : place + 1], value=value, place=place)
+                if is_kept:
                     known = trial
-                    kept.append(entry)
+                    kept.append(entries[place])
+                    values.append(entry)
+                else:
+                    dropped.append((constraint.name, entry))
             if kept:
                 name = f"{constraint.name}_axes" if isinstance(constraint, Attitude) else constraint.name
                 let = self.let(name, "gap_", gap)
                 kept = [entry.replace("gap", let) for entry in kept]
                 whole = f"[{', '.join(kept)}]" if len(kept) > 1 else kept[0]
                 lines.append(f"constraint {self.names.new(name)} = {whole};")
+        closed = self.closed(values) if dropped else None
+        for name, entry in dropped:
+            if closed is None:
+                what = "which may not close"
+            elif (apart := float(np.abs(entry(closed)).max())) > 1e-6:
+                what = f"a gap of {apart:.3g} that no joint closes"
+            else:
+                continue
+            self.mechanism.left_out.append(f"a part of the constraint {name!r}, {what}")
         return lines
+
+    def closed(self, values: list[Callable[[Coordinates], Array]]) -> Coordinates | None:
+        """Coordinates near those of the file at which the values are zero; None if Newton's method finds none."""
+        start = self.start()
+        q: Coordinates = {}
+        for frame in self.frames:
+            names = [frame.coordinate]
+            if frame.rotation:
+                names = [f"{frame.coordinate}[{k}]" for k in range(3)] if frame.joint.kind == "free" else []
+                names += [f"{frame.rotation}[{k}]" for k in range(4)]
+            q[frame.joint.name] = np.array([start[name] for name in names], dtype=complex)
+        for _ in range(NEWTON):
+            gaps = np.concatenate([np.empty(0), *(value(q).real for value in values)])
+            if not np.any(np.abs(gaps) > 1e-9):
+                return q
+            slopes = np.hstack([_slopes(value, q, self.frames) for value in values])
+            change = np.linalg.lstsq(slopes.T, -gaps, rcond=1e-9)[0]
+            for frame in self.frames:
+                directions = _directions(frame, q[frame.joint.name])
+                q[frame.joint.name] = q[frame.joint.name] + change[: len(directions)] @ directions
+                change = change[len(directions) :]
+                if frame.rotation:
+                    q[frame.joint.name][-4:] /= np.linalg.norm(q[frame.joint.name][-4:])
+        return None
 
     def coupling(self, constraint: Coupling) -> str:
         frames = {frame.joint.name: frame for frame in self.frames}
@@ -591,19 +651,25 @@ def _slopes(value: Callable[[Coordinates], Array], q: Coordinates, frames: Seque
     rows = []
     for frame in frames:
         at = q[frame.joint.name]
-        directions = np.eye(len(at))
-        if frame.rotation:
-            w, x, y, z = at[-4:].real
-            turns = np.array([[-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]]) / 2.0
-            directions = np.vstack([directions[:-4], np.pad(turns, ((0, 0), (len(at) - 4, 0)))])
-        for direction in directions:
+        for direction in _directions(frame, at):
             rows.append(np.imag(value({**q, frame.joint.name: at + 1j * STEP * direction})) / STEP)
     return np.array(rows)
 
 
+def _directions(frame: Frame, at: Array) -> Array:
+    """The rates of the coordinates of a frame at each of its unit velocities."""
+    directions = np.eye(len(at))
+    if frame.rotation:
+        w, x, y, z = at[-4:].real
+        turns = np.array([[-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]]) / 2.0
+        directions = np.vstack([directions[:-4], np.pad(turns, ((0, 0), (len(at) - 4, 0)))])
+    return directions
+
+
 def _is_moved(frame: Frame, value: Callable[[Place, Array], Array], point: Array, draws: list[Coordinates]) -> bool:
     """Whether a value of a point of a frame changes with a coordinate."""
-    slopes = (_slopes(lambda q: value(frame.place(q), point), q, frame.line()) for q in draws)
+    # One frame at a time, since the first one mostly decides.
+    slopes = (_slopes(lambda q: value(frame.place(q), point), q, [one]) for q in draws for one in frame.line())
     return any(np.abs(found).max() > 1e-13 for found in slopes)
 
 
@@ -621,7 +687,13 @@ def _law(motor: Motor, name: str, q: str) -> list[str]:
 
 
 def _letters(name: str) -> str:
-    return re.sub(r"\W", "_", name)
+    # The language reads one form of letters that look alike.
+    return "".join(c if f"_{c}".isidentifier() and c != "·" else "_" for c in unicodedata.normalize("NFKC", name))
+
+
+def _line(text: str) -> str:
+    """A text without ends of lines, for a comment."""
+    return " ".join(text.split())
 
 
 def _clean(values: Array, size: float = 1.0) -> Array:
@@ -631,6 +703,8 @@ def _clean(values: Array, size: float = 1.0) -> Array:
 
 
 def _number(value: float) -> str:
+    if not math.isfinite(value):
+        raise ValueError("its numbers are too large: write them in other units")
     text = f"{value:.15g}"
     return "0" if float(text) == 0.0 else text.removesuffix(".0")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
@@ -31,7 +32,22 @@ from ._mechanism import (
 Element = ElementTree.Element
 Attributes = dict[str, str]
 
-ACTUATORS = {"general", "motor", "position", "velocity"}
+ACTUATORS = {
+    "general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion", "plugin"
+}  # fmt: skip
+LISTS = {"size", "gear", "gainprm", "biasprm", "damping", "stiffness"}
+"""Attributes that may have fewer numbers than those of their default, and then have its last ones."""
+SECTIONS = {
+    "compiler", "option", "size", "visual", "statistic", "default", "custom", "extension", "asset", "worldbody",
+    "contact", "deformable", "equality", "tendon", "actuator", "sensor", "keyframe"
+}  # fmt: skip
+OF_A_BODY = {"body", "inertial", "joint", "freejoint", "geom", "site", "camera", "light", "plugin"}
+JOINT = {
+    "name", "class", "type", "group", "pos", "axis", "springdamper", "limited", "actuatorfrclimited", "solreflimit",
+    "solimplimit", "solreffriction", "solimpfriction", "stiffness", "range", "actuatorfrcrange", "actuatorgravcomp",
+    "margin", "ref", "springref", "armature", "damping", "frictionloss", "user"
+}  # fmt: skip
+"""Attributes of joints. Others, and elements that are in none of these sets, are listed as unknown."""
 WRITTEN_OUT = {"composite", "flexcomp", "replicate", "attach"}
 TURNS = {"quat": 4, "axisangle": 4, "xyaxes": 6, "zaxis": 3, "euler": 3}
 
@@ -41,8 +57,9 @@ def read_mjcf(root: Element, folder: Path) -> Mechanism:
     return _Reader(root, folder).mechanism
 
 
-def _included(parent: Element, folder: Path, own: Path, files: tuple[Path, ...]) -> None:
-    """Replaces each `include` by the elements of its file, which is relative to the main file, or to its own."""
+def _included(parent: Element, folder: Path, own: Path, files: set[Path]) -> None:
+    """Replaces each `include` by the elements of its file, which is relative to the main file, or to its own. As in
+    MuJoCo, a file is included once."""
     children = list(parent)
     for child in children:
         parent.remove(child)
@@ -58,19 +75,20 @@ def _included(parent: Element, folder: Path, own: Path, files: tuple[Path, ...])
         if path is None:
             raise FileNotFoundError(f"the included file {name} is not in {folder.resolve()}")
         if path.resolve() in files:
-            raise ValueError(f"the file {name} includes itself: remove one of its includes")
+            raise ValueError(f"the file {name} is included twice: remove one of its includes")
+        files.add(path.resolve())
         try:
             inner = ElementTree.parse(path).getroot()
         except ElementTree.ParseError as error:
             raise ValueError(f"{path} is not XML: {error}") from None
-        _included(inner, folder, path.parent, (*files, path.resolve()))
+        _included(inner, folder, path.parent, files)
         parent.extend(inner)
 
 
 class _Reader:
     def __init__(self, root: Element, folder: Path):
         root = copy.deepcopy(root)
-        _included(root, folder, folder, ())
+        _included(root, folder, folder, set())
         self.root = root
         self.mechanism = Mechanism(root.get("model", "Robot"))
         self.compiler: Attributes = {}
@@ -78,16 +96,25 @@ class _Reader:
             self.compiler |= element.attrib
         if self.compiler.get("coordinate", "local") != "local":
             raise ValueError('the compiler has coordinate="global": write the file with local coordinates')
-        self.radian = math.pi / 180.0 if self.compiler.get("angle", "degree") == "degree" else 1.0
+        in_degrees = _word(self.compiler, "angle", ("degree", "radian"), "the compiler") == "degree"
+        self.radian = math.pi / 180.0 if in_degrees else 1.0
+        self.sequence = self.compiler.get("eulerseq", "xyz")
+        if not re.fullmatch("[xyzXYZ]{3}", self.sequence):
+            raise ValueError(
+                f'the compiler has eulerseq="{self.sequence}": write three of the letters x, y, z, X, Y, Z'
+            )
         self.classes: dict[str, dict[str, Attributes]] = {"main": {}}
         for element in root.findall("default"):
             self._default(element, "main", self.classes["main"])
         self.names: dict[str, int] = {}
+        # Names that bodies and joints without one do not get.
+        self.given = {found.get("name") for found in root.iter() if found.tag in ("body", "joint", "freejoint")}
         self.sites: dict[str, tuple[int | None, Place]] = {}
         self.flags: dict[str, str] = {}
         self.limited: list[str] = []
         self.clamped: list[str] = []
         self.rubbing: list[str] = []
+        self.groups_off: set[float] = set()
         self.has_contact = False
         self._options()
         for world in root.findall("worldbody"):
@@ -104,20 +131,25 @@ class _Reader:
         own = {tag: dict(attributes) for tag, attributes in inherited.items()}
         for child in element:
             if child.tag != "default":
-                own.setdefault(_kind(child.tag), {}).update(child.attrib)
+                own[_kind(child.tag)] = _over(child.tag, own, child.attrib)
+        for servo in ("position", "velocity"):
+            if _is_servo(own.get("general", {}), servo):
+                own[servo] = own["general"]
         self.classes[name] = own
         for child in element.findall("default"):
             inner = child.get("class")
             if inner is None:
                 raise ValueError("a default inside another one has no name: write <default class=…>")
+            if inner in self.classes:
+                raise ValueError(f"two defaults have the class {inner!r}")
             self._default(child, inner, own)
 
-    def _attributes(self, element: Element, cls: str | None) -> Attributes:
+    def _attributes(self, element: Element, cls: str | None, kind: str = "") -> Attributes:
         name = element.get("class") or cls or "main"
         if name not in self.classes:
             known = ", ".join(self.classes)
             raise ValueError(f"{_called(element)} has the class {name!r}, which no default declares; there are {known}")
-        return {**self.classes[name].get(_kind(element.tag), {}), **element.attrib}
+        return _over(element.tag, self.classes[name], element.attrib, kind)
 
     def _place(self, of: Element | Attributes, name: str) -> Place:
         pos = numbers(of, "pos", 3, name)
@@ -141,7 +173,7 @@ class _Reader:
             y = unit(values[3:] - (values[3:] @ x) * x, f"xyaxes of {name}")
             return np.column_stack([x, y, np.cross(x, y)])
         found = np.eye(3)
-        for letter, angle in zip(self.compiler.get("eulerseq", "xyz"), values, strict=True):
+        for letter, angle in zip(self.sequence, values, strict=True):
             turn = about(np.eye(3)["xyz".index(letter.lower())], angle * self.radian)
             # Small letters turn about the moving axes, capital letters about the fixed ones.
             found = found @ turn if letter.islower() else turn @ found
@@ -160,6 +192,7 @@ class _Reader:
                 if name in option.attrib
             ):
                 self._left_out("forces of the fluid")
+            self.groups_off.update(numbers(option, "actuatorgroupdisable", range(32), "the option") or [])
             for flag in option.findall("flag"):
                 self.flags |= flag.attrib
         if self.flags.get("gravity") == "disable":
@@ -176,8 +209,10 @@ class _Reader:
             if child.tag == "frame":
                 inner = place.then(self._place(child, _called(child)))
                 yield from self._children(child, inner, child.get("childclass") or cls)
-            else:
+            elif child.tag in OF_A_BODY:
                 yield child, place, cls
+            else:
+                self._left_out(f"the element <{child.tag}>, which is unknown")
 
     def _world(self, child: Element, place: Place, cls: str | None) -> None:
         if child.tag == "body":
@@ -186,10 +221,21 @@ class _Reader:
             self._site(child, None, place, cls)
         elif child.tag == "geom":
             self._collides(self._attributes(child, cls))
+        elif child.tag in ("joint", "freejoint", "inertial"):
+            raise ValueError(f"the world has {_called(child)}, and does not move: put it into a body")
+
+    def _unnamed(self, wanted: str) -> str:
+        """A name for a body or a joint that has none."""
+        found, count = wanted, 1
+        while found in self.given:
+            count += 1
+            found = f"{wanted}_{count}"
+        self.given.add(found)
+        return found
 
     def _body(self, element: Element, parent: int | None, frame: Place, cls: str | None) -> None:
         index = len(self.mechanism.bodies)
-        name = element.get("name") or f"body{index + 1}"
+        name = element.get("name") or self._unnamed(f"body{index + 1}")
         of = f"the body {name!r}"
         cls = element.get("childclass") or cls
         body = Body(name, parent, frame.then(self._place(element, of)))
@@ -223,11 +269,13 @@ class _Reader:
         return body is not None and (bool(bodies[body].joints) or self._moves(bodies[body].parent))
 
     def _joint(self, element: Element, frame: Place, cls: str | None, unnamed: str) -> Joint:
-        name = element.get("name") or unnamed
+        name = element.get("name") or self._unnamed(unnamed)
         of = f"the joint {name!r}"
         if element.tag == "freejoint":
             return Joint(name, "free")
         given = self._attributes(element, cls)
+        for attribute in sorted(element.attrib.keys() - JOINT):
+            self._left_out(f"{attribute} of {of}, which is unknown")
 
         def value(attribute: str, unit: float = 1.0) -> float:
             found = numbers(given, attribute, range(1, 4), of) or [0.0]
@@ -235,9 +283,7 @@ class _Reader:
                 self._left_out(f"the nonlinear {attribute} of {of}")
             return found[0] * unit
 
-        kind = given.get("type", "hinge")
-        if kind not in ("hinge", "slide", "ball", "free"):
-            raise ValueError(f'{of} has the type "{kind}": the types are hinge, slide, ball and free')
+        kind = _word(given, "type", ("hinge", "slide", "ball", "free"), of)
         radian = self.radian if kind == "hinge" else 1.0
         joint = Joint(name, kind, damping=value("damping"), armature=value("armature"), stiffness=value("stiffness"))
         axis = numbers(given, "axis", 3, of) or [0.0, 0.0, 1.0]
@@ -250,6 +296,10 @@ class _Reader:
             joint.damping = 0.0
         if "springdamper" in given:
             self._left_out(f"springdamper of {of}")
+        if "actuatorfrcrange" in given:
+            self._left_out(f"the limits of the forces of motors on {of}")
+        if joint.armature < 0.0:
+            raise ValueError(f"{of} has a negative armature")
         if kind in ("ball", "free") and joint.stiffness:
             self._left_out(f"the stiffness of {of}, which is of the type {kind}")
             joint.stiffness = 0.0
@@ -272,7 +322,7 @@ class _Reader:
     # Inertia.
 
     def _mass(self, body: Body, element: Element, children: list[tuple[Element, Place, str | None]]) -> None:
-        way = self.compiler.get("inertiafromgeom", "auto")
+        way = _word(self.compiler, "inertiafromgeom", ("auto", "true", "false"), "the compiler")
         stated = element.find("inertial")
         geoms = Inertia()
         unknown: list[str] = []
@@ -283,7 +333,7 @@ class _Reader:
             given = self._attributes(child, cls)
             self._collides(given)
             first, last = numbers(self.compiler, "inertiagrouprange", 2, "the compiler") or (0.0, 5.0)
-            if is_from_geoms and first <= int(given.get("group", "0")) <= last:
+            if is_from_geoms and first <= _whole(given, "group", 0, _called(child)) <= last:
                 found = self._geom(given, child, body.name)
                 if found is None:
                     unknown.append(_called(child))
@@ -300,7 +350,11 @@ class _Reader:
         mass = numbers(element, "mass", 1, of)
         if mass is None:
             raise ValueError(f"{of} has no mass")
+        if mass[0] < 0.0:
+            raise ValueError(f"{of} has a negative mass")
         diagonal, full = numbers(element, "diaginertia", 3, of), numbers(element, "fullinertia", 6, of)
+        if full is not None and any(word in element.attrib for word in ("diaginertia", *TURNS)):
+            raise ValueError(f"{of} has fullinertia, which is in the axes of the body: write no other inertia or axes")
         moments = np.diag(diagonal) if diagonal is not None else np.zeros((3, 3))
         if full is not None:
             xx, yy, zz, xy, xz, yz = full
@@ -317,20 +371,23 @@ class _Reader:
             return Inertia()
         if kind in ("mesh", "sdf") or "mesh" in given:
             return None
+        if kind not in SOLIDS:
+            raise ValueError(f'{of} has the type "{kind}": known are {", ".join(SOLIDS)}, plane and mesh')
         if given.get("shellinertia") == "true":
             self._left_out(f"shellinertia of {of}, which is solid")
         size = [*(numbers(given, "size", range(1, 4), of) or []), 0.0, 0.0, 0.0][:3]
         place = self._place({name: text for name, text in given.items() if name != "fromto"}, of)
         if "fromto" in given:
+            if kind == "sphere":
+                raise ValueError(f"{of} has fromto, and is a sphere: write its type, such as capsule")
             place, half = self._fromto(given, of)
             size = [size[0], half, 0.0] if kind in ("capsule", "cylinder") else [size[0], size[0], half]
-        try:
-            volume, moments = SOLIDS[kind](*size)
-        except KeyError:
-            raise ValueError(f'{of} has the type "{kind}": known are {", ".join(SOLIDS)}, plane and mesh') from None
-        if volume <= 0.0:
+        volume, moments = SOLIDS[kind](*size)
+        if volume <= 0.0 or min(size) < 0.0:
             raise ValueError(f"{of} has no volume: write its size")
         amount = mass[0] if mass is not None else density * volume
+        if amount < 0.0:
+            raise ValueError(f"{of} has a negative mass")
         return Inertia(amount, np.zeros(3), amount * np.diag(moments)).moved(place)
 
     def _fromto(self, given: Attributes, of: str) -> tuple[Place, float]:
@@ -356,9 +413,9 @@ class _Reader:
                 if self.compiler.get("balanceinertia") == "true" and moments[0] + moments[1] < moments[2]:
                     moments[:] = moments.mean()
                 inertia.moments = axes @ np.diag(np.maximum(moments, bound("boundinertia"))) @ axes.T
-        total = bound("settotalmass")
-        if total > 0.0:
-            factor = total / sum(body.inertia.mass for body in bodies)
+        total, now = bound("settotalmass"), sum(body.inertia.mass for body in bodies)
+        if total > 0.0 and now > 0.0:
+            factor = total / now
             for body in bodies:
                 body.inertia = body.inertia.scaled(factor)
 
@@ -371,17 +428,21 @@ class _Reader:
                 name = element.get("name") or f"{element.get('joint', 'actuator')}_{element.tag}"
                 of = f"the actuator {name!r}"
                 given = self._attributes(element, None)
-                reason = _left_out(element, given)
-                if reason or not self._is_on("actuation"):
+                reason = _left_out(element, given, of)
+                is_off = not self._is_on("actuation") or _whole(given, "group", 0, of) in self.groups_off
+                if reason or is_off:
                     self._left_out(f"{of} ({reason or 'disabled'})")
                     continue
                 joint = joints.get(given["joint"])
                 if joint is None:
                     raise ValueError(f"{of} moves the joint {given['joint']!r}, which is not there")
                 gear = [*(numbers(given, "gear", range(1, 7), of) or [1.0]), *[0.0] * 5]
-                gain, bias = self._law(element.tag, given, of)
+                gain, bias = _law(given, of)
                 count = {"ball": 3, "free": 6}.get(joint.kind, 1)
                 motor = Motor(name, joint.name, tuple(gear[:count]), gain, bias)
+                if not (np.any(motor.gear) and np.any((*gain, *bias))):
+                    self._left_out(f"{of} (its force is zero)")
+                    continue
                 if count > 1 and (gain[1:] != (0.0, 0.0) or bias != (0.0, 0.0, 0.0)):
                     self._left_out(f"{of} (its force depends on the motion of a joint of the type {joint.kind})")
                     continue
@@ -391,30 +452,6 @@ class _Reader:
                         self._left_out(f"{what} of {of}")
                 if any(f"{of}range" in given or given.get(f"{of}limited") == "true" for of in ("ctrl", "force", "act")):
                     self.clamped.append(name)
-
-    def _law(self, tag: str, given: Attributes, of: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Gain and bias."""
-
-        def value(name: str, usual: float) -> float:
-            return (numbers(given, name, 1, of) or [usual])[0]
-
-        if tag == "motor":
-            return (1.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-        if tag == "position":
-            kp = value("kp", 1.0)
-            return (kp, 0.0, 0.0), (0.0, -kp, -value("kv", 0.0))
-        if tag == "velocity":
-            kv = value("kv", 1.0)
-            return (kv, 0.0, 0.0), (0.0, 0.0, -kv)
-        gain, bias = (
-            [*(numbers(given, name, range(1, 11), of) or usual), 0.0, 0.0][:3]
-            for name, usual in (("gainprm", [1.0]), ("biasprm", [0.0]))
-        )
-        if given.get("gaintype", "fixed") == "fixed":
-            gain[1:] = [0.0, 0.0]
-        if given.get("biastype", "none") == "none":
-            bias = [0.0, 0.0, 0.0]
-        return tuple(gain), tuple(bias)
 
     def _equalities(self) -> None:
         places = self.mechanism.places()
@@ -434,7 +471,7 @@ class _Reader:
             for index, element in enumerate(section, 1):
                 name = element.get("name") or f"{element.tag}{index}"
                 of = f"the {element.tag} {name!r}"
-                given = self._attributes(element, None)
+                given = self._attributes(element, None, "equality")
                 if element.tag not in ("connect", "weld", "joint"):
                     self._left_out(f"the equality {name!r} ({element.tag})")
                     continue
@@ -448,7 +485,9 @@ class _Reader:
                             raise ValueError(f"{of} names the joint {joint!r}, which is not there")
                         if joint is not None and joints[joint].kind not in ("hinge", "slide"):
                             raise ValueError(f"{of} names the joint {joint!r}: it must be a hinge or a slide")
-                    polynomial = numbers(given, "polycoef", range(1, 6), of) or [0.0, 1.0]
+                    polynomial = numbers(given, "polycoef", range(1, 6), of) or [0.0]
+                    if len(polynomial) == 1:
+                        polynomial.append(1.0)
                     self.mechanism.constraints.append(Coupling(name, pair, tuple(polynomial)))
                     continue
                 if "site1" in given:
@@ -480,12 +519,15 @@ class _Reader:
             self.mechanism.left_out.append(what)
 
     def _collides(self, given: Attributes) -> None:
-        if any(int(given.get(mask, "1")) for mask in ("contype", "conaffinity")) and self._is_on(
+        if any(_whole(given, mask, 1, "a geom") for mask in ("contype", "conaffinity")) and self._is_on(
             "contact", "constraint"
         ):
             self.has_contact = True
 
     def _others(self) -> None:
+        for section in self.root:
+            if section.tag not in SECTIONS:
+                self._left_out(f"the element <{section.tag}>, which is unknown")
         for tag in ("tendon", "deformable"):
             for section in self.root.findall(tag):
                 for element in section:
@@ -514,31 +556,92 @@ def _called(element: Element) -> str:
     return f"the {element.tag} {name!r}" if name else f"a {element.tag}"
 
 
-def _left_out(element: Element, given: Attributes) -> str:
+def _over(tag: str, defaults: dict[str, Attributes], own: Attributes, kind: str = "") -> Attributes:
+    """The attributes of an element of a class; those of an actuator become those of `general`."""
+    default = defaults.get(kind or _kind(tag), {})
+    found = {**default, **own}
+    for word in LISTS & default.keys() & own.keys():
+        found[word] = " ".join([*own[word].split(), *default[word].split()[len(own[word].split()) :]])
+    if any(word in own for word in TURNS):
+        found = {word: text for word, text in found.items() if word in own or word not in TURNS}
+    if _kind(tag) != "general":
+        return found
+    return found | {"kind": tag} | _servo(tag, default if _is_servo(default, tag) else defaults.get(tag, {}), own)
+
+
+def _is_servo(default: Attributes, tag: str) -> bool:
+    """Whether a position or velocity servo inherits these numbers; if not, it has those of an outer class."""
+    return default.get("kind") in (tag, "general") and default.get("gaintype", "fixed") == "fixed"
+
+
+def _servo(tag: str, default: Attributes, own: Attributes) -> Attributes:
+    """The law of an actuator in the attributes of `general`."""
+    if tag == "general":
+        return {}
+    law = {"dyntype": "none", "gaintype": "fixed", "biastype": "none", "gainprm": "1 0 0", "biasprm": "0 0 0"}
+    if tag not in ("position", "velocity"):
+        return law if tag == "motor" else {"dyntype": tag}
+    of = f"the {tag} {own['name']!r}" if "name" in own else f"a {tag}"
+    before, after = _law(default | {"biastype": "affine"}, of)
+
+    def value(name: str, usual: float) -> float:
+        return (numbers(own, name, 1, of) or [usual])[0]
+
+    law["biastype"] = "affine"
+    if tag == "velocity":
+        kv = value("kv", before[0])
+        return law | {"gainprm": f"{kv} 0 0", "biasprm": f"0 0 {-kv}"}
+    kp = value("kp", before[0])
+    # As in MuJoCo, a positive number is a ratio of the damping.
+    rate = -value("kv", -value("dampratio", after[2]))
+    law["dyntype"] = "filterexact" if value("timeconst", 0.0) else default.get("dyntype", "none")
+    return law | {"gainprm": f"{kp} 0 0", "biasprm": f"0 {-kp} {rate}"}
+
+
+def _law(given: Attributes, of: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Gain and bias."""
+    gain, bias = (
+        [*(numbers(given, name, range(1, 11), of) or usual), 0.0, 0.0][:3]
+        for name, usual in (("gainprm", [1.0]), ("biasprm", [0.0]))
+    )
+    if given.get("gaintype", "fixed") == "fixed":
+        gain[1:] = [0.0, 0.0]
+    if given.get("biastype", "none") == "none":
+        bias = [0.0, 0.0, 0.0]
+    return tuple(gain), tuple(bias)
+
+
+def _left_out(element: Element, given: Attributes, of: str) -> str:
     """Why an actuator is left out; an empty text if it is not."""
-    if element.tag not in ACTUATORS:
+    if element.tag not in ("general", "motor", "position", "velocity"):
         return element.tag
     if "joint" not in given:
         return next(
             (f"it moves a {word}" for word in ("tendon", "site", "body", "jointinparent") if word in given), "a crank"
         )
-    if element.tag == "general":
-        kinds = (
-            ("dyntype", "none"),
-            ("gaintype", "fixed"),
-            ("gaintype", "affine"),
-            ("biastype", "none"),
-            ("biastype", "affine"),
-        )
-        for name in ("dyntype", "gaintype", "biastype"):
-            kind = given.get(name)
-            if kind is not None and (name, kind) not in kinds:
-                return f"{name} {kind}"
-    elif np.any(numbers(given, "timeconst", 1, "an actuator")) or np.any(numbers(given, "dampratio", 1, "an actuator")):
-        return "timeconst or dampratio"
-    if np.any(numbers(given, "delay", 1, "an actuator")):
-        return "delay"
-    return ""
+    for name, kinds in (("dyntype", ("none",)), ("gaintype", ("fixed", "affine")), ("biastype", ("none", "affine"))):
+        kind = given.get(name, kinds[0])
+        if kind not in kinds:
+            return "timeconst" if kind == "filterexact" else f"{name} {kind}"
+    gain, bias = _law(given, of)
+    if bias[2] > 0.0 and gain[0] == -bias[1]:
+        return "dampratio"
+    return "delay" if np.any(numbers(given, "delay", 1, of)) else ""
+
+
+def _word(given: Attributes, name: str, allowed: tuple[str, ...], of: str) -> str:
+    """A word out of some, of which the first is the default."""
+    found = given.get(name, allowed[0])
+    if found not in allowed:
+        raise ValueError(f'{of} has the {name} "{found}": write {", ".join(allowed[:-1])} or {allowed[-1]}')
+    return found
+
+
+def _whole(given: Attributes, name: str, usual: int, of: str) -> int:
+    found = (numbers(given, name, 1, of) or [usual])[0]
+    if found != int(found):
+        raise ValueError(f'{of} has {name}="{given[name]}": write a whole number')
+    return int(found)
 
 
 def _sphere(r: float, *_: float) -> tuple[float, list[float]]:

@@ -69,8 +69,8 @@ def from_mjcf(file: str | os.PathLike[str]) -> Robot:
 def from_urdf(file: str | os.PathLike[str], *, floating: bool = False) -> Robot:
     """The text of the system that a URDF describes, a file or a text of XML.
 
-    Its root link rests in the world; with `floating` it moves freely, by the joint `NAME_pose`. Joints that mimic others
-    become constraints. A warning lists what the system leaves out. See `from_mjcf`.
+    Its root link rests in the world; with `floating` it moves freely, by the joint `NAME_pose`. Joints that mimic
+    others become constraints. A warning lists what the system leaves out. See `from_mjcf`.
     """
     root, _, called = _opened(file, "robot", "from_mjcf reads the element mujoco")
     return _robot(lambda: read_urdf(root, floating), called)
@@ -78,17 +78,21 @@ def from_urdf(file: str | os.PathLike[str], *, floating: bool = False) -> Robot:
 
 def _opened(file: str | os.PathLike[str], tag: str, other: str) -> tuple[ElementTree.Element, Path, str]:
     """The root of a file, its folder, and what messages call it."""
-    is_text = isinstance(file, str) and file.lstrip().startswith("<")
+    if isinstance(file, str):
+        file = file.strip("\ufeff \t\r\n")
+    is_text = isinstance(file, str) and file.startswith("<")
     called = "the text" if is_text else os.fspath(file)
     try:
         if is_text:
-            root, folder = ElementTree.fromstring(str(file).strip()), Path()
+            root, folder = ElementTree.fromstring(str(file)), Path()
         else:
             root, folder = ElementTree.parse(file).getroot(), Path(file).parent
     except FileNotFoundError:
         raise FileNotFoundError(f"there is no file {called} in {Path().resolve()}") from None
-    except ElementTree.ParseError as error:
+    except (ElementTree.ParseError, LookupError) as error:
         raise ValueError(f"{called} is not XML: {error}") from None
+    if any("xacro" in element.tag for element in root.iter()):
+        raise ValueError(f"{called} has macros: write it out by `xacro FILE > robot.urdf`")
     if root.tag != tag:
         raise ValueError(f"{called} has the root element <{root.tag}>, not <{tag}>: {other}")
     return root, folder, called
@@ -96,11 +100,17 @@ def _opened(file: str | os.PathLike[str], tag: str, other: str) -> tuple[Element
 
 def _robot(read: Any, called: str) -> Robot:
     try:
-        mechanism: Mechanism = read()
+        # Numbers that are too large are found when they are written.
+        with np.errstate(over="ignore", invalid="ignore"):
+            mechanism: Mechanism = read()
         if not mechanism.joints():
             raise ValueError("no body moves, because no joint does")
         writer = Writer(mechanism)
         text = writer.text()
+    except RecursionError:
+        raise ValueError(f"{called}: its elements are inside each other too often") from None
+    except OverflowError:
+        raise ValueError(f"{called}: its numbers are too large: write them in other units") from None
     except ValueError as error:
         raise ValueError(f"{called}: {error}") from None
     start = writer.start()

@@ -16,7 +16,11 @@ KINDS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 def read_urdf(root: Element, floating: bool) -> Mechanism:
     """The mechanism of the element `robot`. Its root link rests in the world, or moves freely."""
     found = Mechanism(root.get("name", "Robot"))
-    links = {_name(link): link for link in root.findall("link")}
+    links: dict[str, Element] = {}
+    for link in root.findall("link"):
+        if _name(link) in links:
+            raise ValueError(f"two links have the name {_name(link)!r}")
+        links[_name(link)] = link
     if not links:
         raise ValueError("the robot has no link")
     joints = root.findall("joint")
@@ -104,12 +108,12 @@ def _joints(element: Element, found: Mechanism) -> list[Joint]:
         raise ValueError(f'{of} has the type "{kind}": the types are {", ".join(KINDS)}')
     if kind == "fixed":
         return []
-    if kind == "floating":
-        return [Joint(name, "free")]
-    given = element.find("axis")
-    axis = unit((None if given is None else numbers(given, "xyz", 3, of)) or [1.0, 0.0, 0.0], f"the axis of {of}")
     dynamics = element.find("dynamics")
     damping = (None if dynamics is None else numbers(dynamics, "damping", 1, of)) or [0.0]
+    if kind == "floating":
+        return [Joint(name, "free", damping=damping[0])]
+    given = element.find("axis")
+    axis = unit((None if given is None else numbers(given, "xyz", 3, of)) or [1.0, 0.0, 0.0], f"the axis of {of}")
     if kind == "planar":
         x, y, _ = about_z_to(axis).T
         kinds = (("x", "slide", x), ("y", "slide", y), ("angle", "hinge", axis))
@@ -148,5 +152,7 @@ def _others(root: Element, joints: list[Element], found: Mechanism) -> None:
             found.left_out.append(f"{what} of {', '.join(names)}")
     if root.findall("transmission"):
         found.left_out.append("transmissions")
+    if root.findall("mujoco"):
+        found.left_out.append("settings for MuJoCo")
     if any(link.find("collision") is not None for link in root.findall("link")):
         found.left_out.append("contact")
