@@ -158,3 +158,12 @@ fn a_rule_is_derived_when_a_method_asks_for_it() {
     let off = by_rule.iter().zip(&by_stages).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
     assert!(off < 1e-12, "{off:e}"); // 5e-15
 }
+
+#[test]
+fn a_coordinate_has_any_name() {
+    // Names of indices, and of coordinates that a tape adds.
+    for name in ["i", "rest", "z"] {
+        let text = format!("struct S {{ coord {name}; L = dot({name})^2 / 2 - {name}^2 / 2; }}");
+        assert_eq!(System::parse(&text).unwrap_or_else(|error| panic!("{error}")).coordinates(), [name]);
+    }
+}
