@@ -151,7 +151,7 @@ fn cramer_3<T: Real, const N: usize, const M: usize>(
 }
 
 /// Gaussian elimination of the first n rows in their order; with pivoting if digits would be lost.
-#[inline]
+#[inline(always)]
 pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
     [n, m]: [usize; 2],
     a: SMatrix<T, N, N>,
@@ -161,7 +161,7 @@ pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
 }
 
 /// `None` if a pivot is lost.
-#[inline]
+#[inline(always)]
 fn in_order<T: Real, const N: usize, const M: usize>(
     [n, m]: [usize; 2],
     mut a: SMatrix<T, N, N>,
@@ -203,7 +203,7 @@ pub(super) fn pivoted<T: Real, const N: usize, const M: usize>(
 }
 
 /// Subtracts multiples of the pivot's row from those below it.
-#[inline]
+#[inline(always)]
 fn eliminate_column<T: Real, const N: usize, const M: usize>(
     [n, m]: [usize; 2],
     a: &mut SMatrix<T, N, N>,
@@ -224,7 +224,7 @@ fn eliminate_column<T: Real, const N: usize, const M: usize>(
 }
 
 /// Back substitution in the upper triangle.
-#[inline]
+#[inline(always)]
 fn substitute<T: Real, const N: usize, const M: usize>(
     [n, m]: [usize; 2],
     a: &SMatrix<T, N, N>,

@@ -13,7 +13,7 @@ type Factors<const N: usize, T> = SMatrix<T, N, N>;
 
 impl<const N: usize, T: Real> Symmetric<N, T> {
     /// The factors of the first n rows and columns; `None` if a pivot is not positive, so that elimination without pivoting is unstable.
-    #[inline]
+    #[inline(always)]
     fn factors(&self, n: usize) -> Option<Factors<N, T>> {
         let mut a = self.0;
         let mut positive = true;
@@ -49,7 +49,7 @@ impl<const N: usize, T: Real> Symmetric<N, T> {
 }
 
 /// Solves with the factors.
-#[inline]
+#[inline(always)]
 fn substitute<const N: usize, const M: usize, T: Real>(
     [n, m]: [usize; 2],
     factors: &Factors<N, T>,

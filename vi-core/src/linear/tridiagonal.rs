@@ -128,7 +128,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
     }
 
     /// Factors the matrix and eliminates right-hand sides at once: they finish soon after the pivots.
-    #[inline]
+    #[inline(always)]
     fn eliminate<const M: usize>(&self, order: Order, x: &mut SMatrix<T, N, M>) -> ([T; N], [T; N]) {
         let (mut pivots, mut weights) = ([T::zero(); N], [T::zero(); N]);
         let (mut above, mut below, mut all_kept) = (Front::start(), Front::start(), true);
@@ -171,7 +171,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
     }
 
     /// Solves for the middle, and from there for all others.
-    #[inline]
+    #[inline(always)]
     fn outward<const M: usize>(&self, order: Order, (pivots, weights): (&[T; N], &[T; N]), x: &mut SMatrix<T, N, M>) {
         let [first, last] = order.middle;
         for mut x in x.column_iter_mut() {
