@@ -95,7 +95,7 @@ impl Expressions {
         for (name, expression) in written {
             let wrong = |error: syn::Error| Mistakes::wrong(name, expression, &error);
             let written = alone(expression).map_err(wrong)?;
-            values.extend(check::expressions(&mut of.pool, &system, &[written]).map_err(wrong)?);
+            values.push(check::number_expression(&mut of.pool, &system, &written).map_err(wrong)?);
         }
         let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
         if let Some((_, (name, _))) = values.iter().zip(written).find(|(value, _)| of.pool.depends_on(**value, &moves))

@@ -40,33 +40,34 @@ pub fn large_model(pool: &mut Pool<Symbol>, system: &System) -> Result<Model> {
     checked(pool, system, 0, true)
 }
 
-/// Expressions in the names of a system, with its `let`s, functions and tables.
+/// A number in the names of a system, with its `let`s, functions and tables.
 ///
 /// # Errors
-/// All mistakes of the names and of the expressions.
-pub fn expressions(pool: &mut Pool<Symbol>, system: &System, written: &[Expression]) -> Result<Vec<Expr>> {
-    let mut context = Context::new(pool);
-    context.names(system);
-    let values = written.iter().map(|of| context.value(of)).collect();
-    context.errors.finish(values)
+/// All mistakes of the names and of the expression.
+pub fn number_expression(pool: &mut Pool<Symbol>, system: &System, written: &Expression) -> Result<Expr> {
+    in_names(pool, system, |context| context.value(written))
 }
 
 /// The lengths and the entries, row by row, of an expression in these names; a number has no length.
 ///
 /// # Errors
-/// As [`expressions`].
+/// As [`number_expression`].
 pub fn shaped_expression(
     pool: &mut Pool<Symbol>,
     system: &System,
     written: &Expression,
 ) -> Result<(Vec<usize>, Vec<Expr>)> {
-    let mut context = Context::new(pool);
-    context.names(system);
-    let value = match context.shaped(written) {
+    in_names(pool, system, |context| match context.shaped(written) {
         Some(Value::Tensor(of)) => (of.shape, of.entries),
         Some(Value::Number(of) | Value::Wrong(of)) => (Vec::new(), vec![of]),
         None => Default::default(),
-    };
+    })
+}
+
+fn in_names<V>(pool: &mut Pool<Symbol>, system: &System, value: impl FnOnce(&mut Context) -> V) -> Result<V> {
+    let mut context = Context::new(pool);
+    context.names(system);
+    let value = value(&mut context);
     context.errors.finish(value)
 }
 
