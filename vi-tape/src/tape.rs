@@ -17,9 +17,6 @@ use vi_core::stepping::{
 };
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError, support};
 
-/// Up to this number of coordinates all of them are taken to move.
-const FEW_ROWS: usize = 2;
-
 /// A system of N coordinates over the numbers T, free or with constraints.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tape<const N: usize, K: Interpreted = Free, T: Real = f64> {
@@ -272,10 +269,8 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
         self.code.constraints.is_some_and(|of| of.has_point_masses)
     }
 
-    #[inline(always)]
     fn moving(&self) -> usize {
-        // Loops over few rows are faster if their number is known.
-        if const { N <= FEW_ROWS } { N } else { self.code.coordinates.len() }
+        self.code.coordinates.len()
     }
 
     fn constraint_names(&self) -> &'static [&'static str] {
