@@ -12,7 +12,8 @@ pub struct Symmetric<const N: usize, T>(pub SMatrix<T, N, N>);
 type Factors<const N: usize, T> = SMatrix<T, N, N>;
 
 impl<const N: usize, T: Real> Symmetric<N, T> {
-    /// The factors of the first n rows and columns; `None` if a pivot is not positive, so that elimination without pivoting is unstable.
+    /// The factors of the first n rows and columns; `None` if a pivot is not positive, so that elimination without
+    /// pivoting is unstable.
     #[inline(always)]
     fn factors(&self, n: usize) -> Option<Factors<N, T>> {
         let mut a = self.0;
