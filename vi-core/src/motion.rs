@@ -114,12 +114,11 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn sides_and_inverse(
         &self,
         t: T,
-        (q, v): (&SVector<T, N>, &SVector<T, N>),
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
         inverse: &mut SMatrix<T, N, N>,
     ) -> Sides<N, T> {
-        let point = self.point(t, q, v);
-        *inverse = point.mass.inverse_unchecked();
-        point.sides()
+        self.point(t, q, v).sides_and_inverse(inverse)
     }
     /// `L_q + f` alone.
     #[inline(always)]
@@ -245,6 +244,17 @@ impl<const N: usize, T, M> Point<N, T, M> {
     #[inline(always)]
     pub fn sides(self) -> Sides<N, T> {
         Sides { momentum: self.momentum, force: self.force }
+    }
+
+    /// [`Motion::sides_and_inverse`].
+    #[inline(always)]
+    pub(crate) fn sides_and_inverse(self, inverse: &mut SMatrix<T, N, N>) -> Sides<N, T>
+    where
+        T: Real,
+        M: Matrix<N, T>,
+    {
+        *inverse = self.mass.inverse_unchecked();
+        self.sides()
     }
 }
 

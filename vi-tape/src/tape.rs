@@ -305,7 +305,8 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
     fn sides_and_inverse(
         &self,
         t: T,
-        (q, v): (&SVector<T, N>, &SVector<T, N>),
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
         inverse: &mut SMatrix<T, N, N>,
     ) -> Sides<N, T> {
         let lines = &self.code.functions.point;

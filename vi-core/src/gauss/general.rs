@@ -202,7 +202,7 @@ where
         let mut columns = SMatrix::<T, N, N>::zeros();
         for i in 0..T::EVALUATIONS {
             let (t, q, v) = self.place(i, &x, &velocity);
-            let sides = self.system.sides_and_inverse_at(t, (&q, &v), &mut columns);
+            let sides = self.system.sides_and_inverse_at(t, &q, &v, &mut columns);
             scatter(n, &mut force, i, &sides.force);
             scatter(n, &mut momentum, i, &sides.momentum);
             for k in 0..n {

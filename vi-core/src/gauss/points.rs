@@ -72,12 +72,11 @@ pub(crate) trait Points<const N: usize, T: Real> {
     fn sides_and_inverse_at(
         &self,
         t: T,
-        (q, v): (&SVector<T, N>, &SVector<T, N>),
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
         inverse: &mut SMatrix<T, N, N>,
     ) -> Sides<N, T> {
-        let point = self.at(t, q, v);
-        *inverse = point.mass.inverse_unchecked();
-        point.sides()
+        self.at(t, q, v).sides_and_inverse(inverse)
     }
     /// [`Motion::applied_force`].
     #[inline(always)]
@@ -115,10 +114,11 @@ impl<Y: Motion<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     fn sides_and_inverse_at(
         &self,
         t: T,
-        at: (&SVector<T, N>, &SVector<T, N>),
+        q: &SVector<T, N>,
+        v: &SVector<T, N>,
         inverse: &mut SMatrix<T, N, N>,
     ) -> Sides<N, T> {
-        self.sides_and_inverse(t, at, inverse)
+        self.sides_and_inverse(t, q, v, inverse)
     }
 
     #[inline(always)]
