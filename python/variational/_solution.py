@@ -54,10 +54,13 @@ class ByName:
 
     def _of_expression(self, text: str, unknown: KeyError) -> Array:
         """An expression in the names of the system. A wrong one that is a single name is unknown."""
-        values = self.system._values[None] if self._values is None else self._values
+        if self._values is None:
+            values = self.system._values[None]
+        else:
+            values = np.repeat(self._values, self.t.size // max(len(self._values), 1), axis=0)
         shape, points = self.system._points(self.t, self.q, self.v)
         try:
-            found = self.system._evaluated(text, shape, points, np.repeat(values, self.t.size // len(values), axis=0))
+            found = self.system._evaluated(text, shape, points, values)
         except ValueError as error:
             raise (unknown if is_plain(text) else error) from None
         return fixed(found)

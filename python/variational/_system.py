@@ -372,9 +372,8 @@ class System(metaclass=SystemType):
         """The system of its text, without these constraints."""
         from ._text import of_text
 
-        own: Any = getattr(self, "_text", None)
-        cls = of_text(own[0], files=own[3], dropped=dropped) if own else of_text(self.definition, dropped=dropped)
-        return cls._of(self._values)
+        definition, files = self._read()
+        return of_text(definition, files=files, dropped=dropped)._of(self._values)
 
     def _moved(self, q: ArrayLike, v: ArrayLike | None, t: float, is_far: bool) -> Projected:
         (n,), names, t = self._shape, self.coordinates, number(t, "t")
@@ -490,21 +489,27 @@ class System(metaclass=SystemType):
         self, expression: str, shape: tuple[int, ...], points: tuple[Array, Array, Array], values: Array
     ) -> Any:
         """An expression at points, with the numbers of the system at each of them, or at all."""
-        of = self._observable(expression)
-        t, q, v = (of.tolist() for of in points)
-        found = of.values((t, q, v), values.tolist())
-        return np.array(found).reshape(*shape, *of.shape) if shape or of.shape else found[0]
+        observable = self._observable(expression)
+        t, q, v = (numbers.tolist() for numbers in points)
+        found = observable.values((t, q, v), values.tolist())
+        shape += tuple(observable.shape)
+        return np.array(found).reshape(shape) if shape else found[0]
 
     @classmethod
     def _observable(cls, expression: str) -> _core.Observable:
         """An expression in the names of the system. Raises ValueError for a mistake, with its place."""
         if not isinstance(expression, str):
             raise TypeError(f"an expression is a text, such as 'm * x^2', not {expression!r}")
+        definition, files = cls._read()
+        return _core.Observable(definition, list(files), expression)
+
+    @classmethod
+    def _read(cls) -> tuple[str, tuple[tuple[str, str], ...]]:
+        """The text, with the paths and the texts of the files of its tables."""
         from ._text import files_of
 
-        own = getattr(cls, "_text", None)
-        source = (own[0], own[3]) if own else (cls.definition, files_of(cls.definition))
-        return _core.Observable(source[0], list(source[1]), expression)
+        own: Any = getattr(cls, "_text", None)
+        return (own[0], own[3]) if own else (cls.definition, files_of(cls.definition))
 
     def _first_failure(self, of: str, points: tuple[Array, ...], shape: tuple[int, ...]) -> StepError | None:
         """The exception of the first of many points without a value, which names it; None for a single point."""
