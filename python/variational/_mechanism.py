@@ -154,6 +154,11 @@ class Mechanism:
             found[joint.name] = joint
         return found
 
+    def leave_out(self, what: str) -> None:
+        """Lists what the text does not have, once."""
+        if what not in self.left_out:
+            self.left_out.append(what)
+
     def places(self) -> list[Place]:
         """The places of the bodies in the configuration of the file."""
         found: list[Place] = []
@@ -178,6 +183,16 @@ def numbers(
         wanted = f"{allowed[0]}" if len(allowed) == 1 else f"{allowed[0]} to {allowed[-1]}"
         raise ValueError(f'{of} has {name}="{text}": write {wanted} finite numbers')
     return found
+
+
+def single(element: ElementTree.Element | dict[str, str], name: str, of: str, usual: float = 0.0) -> float:
+    """The one number of an attribute, `usual` without it."""
+    return (numbers(element, name, 1, of) or [usual])[0]
+
+
+def symmetric(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float) -> Array:
+    """The symmetric matrix of these entries."""
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
 def unit(vector: Sequence[float] | Array, of: str) -> Array:

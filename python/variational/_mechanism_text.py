@@ -18,6 +18,7 @@ import numpy as np
 from ._arrays import Array
 from ._mechanism import (
     Attitude,
+    Body,
     Coupling,
     Inertia,
     Joint,
@@ -164,6 +165,7 @@ class Writer:
                 name = body.name if joint is body.joints[-1] else joint.name
                 frame, at = self._moved(frame, at, joint, name)
             self.bodies.append((frame, at))
+        self.by_joint = {frame.joint.name: frame for frame in self.frames}
         self.inertias: dict[Frame, Inertia] = {}
         self.weights: dict[Frame, Inertia] = {}
         for body, (frame, at) in zip(self.mechanism.bodies, self.bodies, strict=True):
@@ -397,9 +399,8 @@ class Writer:
             if moves or is_lifted:
                 if is_lifted and not any(name == "g" for name, *_ in self.parameters):
                     self.parameter("g", gravity, "Gravity.")
-                mass = self.parameter(
-                    self.names.new(frame.name, "m_"), inertia.mass, f"Mass of {', '.join(self.massive(frame))}."
-                )
+                massive = ", ".join(body.name for body in self.carried(frame) if body.inertia.mass > 0.0)
+                mass = self.parameter(self.names.new(frame.name, "m_"), inertia.mass, f"Mass of {massive}.")
             if moves:
                 centre = self.centre(frame, inertia.center)
                 kinetic.append(f"{mass} * dot({centre}) * dot({centre}) / 2")
@@ -442,10 +443,10 @@ class Writer:
                 springs.append(f"{name} * {_less(q, joint.spring_ref)}^2 / 2")
         return springs, damping, armatures
 
-    def massive(self, frame: Frame) -> list[str]:
-        """The bodies of a frame that have a mass."""
+    def carried(self, frame: Frame) -> list[Body]:
+        """The bodies that move with a frame."""
         pairs = zip(self.mechanism.bodies, self.bodies, strict=True)
-        return [body.name for body, (of, _) in pairs if of is frame and body.inertia.mass > 0.0]
+        return [body for body, (of, _) in pairs if of is frame]
 
     def check_inertia(self) -> None:
         """Raises ValueError for a joint that moves no mass, and for a mass or a moment of inertia below zero."""
@@ -465,8 +466,7 @@ class Writer:
         for frame in self.frames:
             if frame in moved:
                 continue
-            inner = [body for body, (of, _) in zip(self.mechanism.bodies, self.bodies, strict=True) if of is frame]
-            unknown = ", ".join(body.without_inertia for body in inner if body.without_inertia)
+            unknown = ", ".join(body.without_inertia for body in self.carried(frame) if body.without_inertia)
             message = f"the joint {frame.joint.name!r} moves the body {frame.name!r}, which has no mass"
             if unknown:
                 message += f": the inertia of {unknown} is not in the file"
@@ -493,10 +493,9 @@ class Writer:
         return [(self.names.new(of.name, "u_" if _letters(of.name) in taken else ""), of) for of in motors]
 
     def forces(self, inputs: list[tuple[str, Motor]]) -> list[str]:
-        frames = {frame.joint.name: frame for frame in self.frames}
         on: dict[str, list[str]] = {}
         for name, motor in inputs:
-            frame, gear = frames[motor.joint], np.array(motor.gear)
+            frame, gear = self.by_joint[motor.joint], np.array(motor.gear)
             if not frame.rotation:
                 on.setdefault(f"force {frame.coordinate}", []).extend(_law(motor, name, frame.coordinate))
                 continue
@@ -533,10 +532,9 @@ class Writer:
         def enter(name: str, values: Array) -> None:
             found.update({f"{name}[{index}]": value for index, value in enumerate(values.tolist())})
 
-        frames = {frame.joint.name: frame for frame in self.frames}
         for body, place in zip(self.mechanism.bodies, self.mechanism.places(), strict=True):
             for joint in body.joints:
-                frame = frames[joint.name]
+                frame = self.by_joint[joint.name]
                 if joint.kind == "free":
                     enter(frame.coordinate, place.origin)
                     enter(frame.rotation, quaternion_of(place.axes))
@@ -582,7 +580,7 @@ class Writer:
                 what = f"a gap of {apart:.3g} that no joint closes"
             else:
                 continue
-            self.mechanism.left_out.append(f"a part of the constraint {name!r}, {what}")
+            self.mechanism.leave_out(f"a part of the constraint {name!r}, {what}")
         return lines
 
     def closed(self, values: list[Callable[[Coordinates], Array]]) -> Coordinates | None:
@@ -610,12 +608,11 @@ class Writer:
         return None
 
     def coupling(self, constraint: Coupling) -> str:
-        frames = {frame.joint.name: frame for frame in self.frames}
         first, second = constraint.joints
-        one = frames[first]
+        one = self.by_joint[first]
         parts = [one.coordinate, _number(-one.joint.ref - constraint.coefficients[0])]
         if second is not None:
-            other = frames[second]
+            other = self.by_joint[second]
             base = _less(other.coordinate, other.joint.ref)
             for power, factor in enumerate(constraint.coefficients[1:], 1):
                 if factor:

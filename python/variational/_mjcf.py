@@ -26,11 +26,15 @@ from ._mechanism import (
     about_z_to,
     numbers,
     of_quaternion,
+    single,
+    symmetric,
     unit,
 )  # fmt: skip
 
 Element = ElementTree.Element
 Attributes = dict[str, str]
+Joined = tuple[tuple[int | None, int | None], tuple[Array, Array], Array]
+"""Two bodies, the points of them that are one, and the axes of the second in those of the first."""
 
 ACTUATORS = {
     "general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion", "plugin"
@@ -186,12 +190,8 @@ class _Reader:
             gravity = numbers(option, "gravity", 3, "the option")
             if gravity is not None:
                 self.mechanism.gravity = np.array(gravity)
-            if any(
-                np.any(numbers(option, name, 1, "the option"))
-                for name in ("density", "viscosity")
-                if name in option.attrib
-            ):
-                self._left_out("forces of the fluid")
+            if any(single(option, name, "the option") for name in ("density", "viscosity")):
+                self.mechanism.leave_out("forces of the fluid")
             self.groups_off.update(numbers(option, "actuatorgroupdisable", range(32), "the option") or [])
             for flag in option.findall("flag"):
                 self.flags |= flag.attrib
@@ -212,7 +212,7 @@ class _Reader:
             elif child.tag in OF_A_BODY:
                 yield child, place, cls
             else:
-                self._left_out(f"the element <{child.tag}>, which is unknown")
+                self.mechanism.leave_out(f"the element <{child.tag}>, which is unknown")
 
     def _world(self, child: Element, place: Place, cls: str | None) -> None:
         if child.tag == "body":
@@ -239,9 +239,9 @@ class _Reader:
         of = f"the body {name!r}"
         cls = element.get("childclass") or cls
         body = Body(name, parent, frame.then(self._place(element, of)))
-        body.carried = (numbers(element, "gravcomp", 1, of) or [0.0])[0]
+        body.carried = single(element, "gravcomp", of)
         if element.get("mocap") == "true":
-            self._left_out(f"the motion of {of}, which rests in the world")
+            self.mechanism.leave_out(f"the motion of {of}, which rests in the world")
         self.mechanism.bodies.append(body)
         if name in self.names:
             raise ValueError(f"two bodies have the name {name!r}")
@@ -262,7 +262,7 @@ class _Reader:
             elif child.tag == "site":
                 self._site(child, index, place, inner)
             elif child.tag == "plugin":
-                self._left_out(f"a plugin of {of}")
+                self.mechanism.leave_out(f"a plugin of {of}")
 
     def _moves(self, body: int | None) -> bool:
         bodies = self.mechanism.bodies
@@ -275,12 +275,12 @@ class _Reader:
             return Joint(name, "free")
         given = self._attributes(element, cls)
         for attribute in sorted(element.attrib.keys() - JOINT):
-            self._left_out(f"{attribute} of {of}, which is unknown")
+            self.mechanism.leave_out(f"{attribute} of {of}, which is unknown")
 
         def value(attribute: str, unit: float = 1.0) -> float:
             found = numbers(given, attribute, range(1, 4), of) or [0.0]
             if np.any(found[1:]):
-                self._left_out(f"the nonlinear {attribute} of {of}")
+                self.mechanism.leave_out(f"the nonlinear {attribute} of {of}")
             return found[0] * unit
 
         kind = _word(given, "type", ("hinge", "slide", "ball", "free"), of)
@@ -295,13 +295,13 @@ class _Reader:
         if not self._is_on("passive", "damper"):
             joint.damping = 0.0
         if "springdamper" in given:
-            self._left_out(f"springdamper of {of}")
+            self.mechanism.leave_out(f"springdamper of {of}")
         if "actuatorfrcrange" in given:
-            self._left_out(f"the limits of the forces of motors on {of}")
+            self.mechanism.leave_out(f"the limits of the forces of motors on {of}")
         if joint.armature < 0.0:
             raise ValueError(f"{of} has a negative armature")
         if kind in ("ball", "free") and joint.stiffness:
-            self._left_out(f"the stiffness of {of}, which is of the type {kind}")
+            self.mechanism.leave_out(f"the stiffness of {of}, which is of the type {kind}")
             joint.stiffness = 0.0
         joint.is_limited = given.get("limited", "auto") == "true" or (
             "range" in given and given.get("limited") != "false"
@@ -357,8 +357,7 @@ class _Reader:
             raise ValueError(f"{of} has fullinertia, which is in the axes of the body: write no other inertia or axes")
         moments = np.diag(diagonal) if diagonal is not None else np.zeros((3, 3))
         if full is not None:
-            xx, yy, zz, xy, xz, yz = full
-            moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+            moments = symmetric(*full)
         return Inertia(mass[0], np.zeros(3), moments).moved(self._place(element, of))
 
     def _geom(self, given: Attributes, element: Element, body: str) -> Inertia | None:
@@ -366,7 +365,7 @@ class _Reader:
         of = f"{_called(element)} of the body {body!r}"
         kind = given.get("type", "sphere")
         mass = numbers(given, "mass", 1, of)
-        density = (numbers(given, "density", 1, of) or [1000.0])[0]
+        density = single(given, "density", of, 1000.0)
         if kind in ("plane", "hfield") or (mass[0] if mass is not None else density) == 0.0:
             return Inertia()
         if kind in ("mesh", "sdf") or "mesh" in given:
@@ -374,7 +373,7 @@ class _Reader:
         if kind not in SOLIDS:
             raise ValueError(f'{of} has the type "{kind}": known are {", ".join(SOLIDS)}, plane and mesh')
         if given.get("shellinertia") == "true":
-            self._left_out(f"shellinertia of {of}, which is solid")
+            self.mechanism.leave_out(f"shellinertia of {of}, which is solid")
         size = [*(numbers(given, "size", range(1, 4), of) or []), 0.0, 0.0, 0.0][:3]
         place = self._place({name: text for name, text in given.items() if name != "fromto"}, of)
         if "fromto" in given:
@@ -400,20 +399,20 @@ class _Reader:
 
     def _bounds(self) -> None:
         """The changes of masses and moments that the compiler is asked for."""
-
-        def bound(name: str) -> float:
-            return (numbers(self.compiler, name, 1, "the compiler") or [0.0])[0]
-
+        least_mass, least_moment, total = (
+            single(self.compiler, name, "the compiler") for name in ("boundmass", "boundinertia", "settotalmass")
+        )
+        is_balanced = self.compiler.get("balanceinertia") == "true"
         bodies = [body for body in self.mechanism.bodies if not body.without_inertia]
         for body in bodies:
             inertia = body.inertia
-            inertia.mass = max(inertia.mass, bound("boundmass"))
-            if bound("boundinertia") or self.compiler.get("balanceinertia") == "true":
+            inertia.mass = max(inertia.mass, least_mass)
+            if least_moment or is_balanced:
                 moments, axes = np.linalg.eigh(inertia.moments)
-                if self.compiler.get("balanceinertia") == "true" and moments[0] + moments[1] < moments[2]:
+                if is_balanced and moments[0] + moments[1] < moments[2]:
                     moments[:] = moments.mean()
-                inertia.moments = axes @ np.diag(np.maximum(moments, bound("boundinertia"))) @ axes.T
-        total, now = bound("settotalmass"), sum(body.inertia.mass for body in bodies)
+                inertia.moments = axes @ np.diag(np.maximum(moments, least_moment)) @ axes.T
+        now = sum(body.inertia.mass for body in bodies)
         if total > 0.0 and now > 0.0:
             factor = total / now
             for body in bodies:
@@ -431,7 +430,7 @@ class _Reader:
                 reason = _left_out(element, given, of)
                 is_off = not self._is_on("actuation") or _whole(given, "group", 0, of) in self.groups_off
                 if reason or is_off:
-                    self._left_out(f"{of} ({reason or 'disabled'})")
+                    self.mechanism.leave_out(f"{of} ({reason or 'disabled'})")
                     continue
                 joint = joints.get(given["joint"])
                 if joint is None:
@@ -441,82 +440,84 @@ class _Reader:
                 count = {"ball": 3, "free": 6}.get(joint.kind, 1)
                 motor = Motor(name, joint.name, tuple(gear[:count]), gain, bias)
                 if not (np.any(motor.gear) and np.any((*gain, *bias))):
-                    self._left_out(f"{of} (its force is zero)")
+                    self.mechanism.leave_out(f"{of} (its force is zero)")
                     continue
                 if count > 1 and (gain[1:] != (0.0, 0.0) or bias != (0.0, 0.0, 0.0)):
-                    self._left_out(f"{of} (its force depends on the motion of a joint of the type {joint.kind})")
+                    self.mechanism.leave_out(
+                        f"{of} (its force depends on the motion of a joint of the type {joint.kind})"
+                    )
                     continue
                 self.mechanism.motors.append(motor)
                 for what in ("damping", "armature"):
                     if np.any(numbers(given, what, range(1, 4), of)):
-                        self._left_out(f"{what} of {of}")
+                        self.mechanism.leave_out(f"{what} of {of}")
                 if any(f"{of}range" in given or given.get(f"{of}limited") == "true" for of in ("ctrl", "force", "act")):
                     self.clamped.append(name)
 
     def _equalities(self) -> None:
-        places = self.mechanism.places()
-        joints = self.mechanism.joints()
-
-        def body_of(name: str | None, of: str) -> int | None:
-            if name in (None, "world"):
-                return None
-            if name not in self.names:
-                raise ValueError(f"{of} names the body {name!r}, which is not there")
-            return self.names[name]
-
-        def there(index: int | None) -> Place:
-            return Place() if index is None else places[index]
-
+        self.places = self.mechanism.places()
         for section in self.root.findall("equality"):
             for index, element in enumerate(section, 1):
                 name = element.get("name") or f"{element.tag}{index}"
                 of = f"the {element.tag} {name!r}"
                 given = self._attributes(element, None, "equality")
                 if element.tag not in ("connect", "weld", "joint"):
-                    self._left_out(f"the equality {name!r} ({element.tag})")
-                    continue
-                if given.get("active") == "false" or not self._is_on("constraint", "equality"):
-                    self._left_out(f"{of}, which is not active")
-                    continue
-                if element.tag == "joint":
-                    pair = (given.get("joint1"), given.get("joint2"))
-                    for joint in pair:
-                        if (joint is not None and joint not in joints) or joint is pair[0] is None:
-                            raise ValueError(f"{of} names the joint {joint!r}, which is not there")
-                        if joint is not None and joints[joint].kind not in ("hinge", "slide"):
-                            raise ValueError(f"{of} names the joint {joint!r}: it must be a hinge or a slide")
-                    polynomial = numbers(given, "polycoef", range(1, 6), of) or [0.0]
-                    if len(polynomial) == 1:
-                        polynomial.append(1.0)
-                    self.mechanism.constraints.append(Coupling(name, pair, tuple(polynomial)))
-                    continue
-                if "site1" in given:
-                    for site in (given["site1"], given.get("site2")):
-                        if site not in self.sites:
-                            raise ValueError(f"{of} names the site {site!r}, which is not there")
-                    (first, at_first), (second, at_second) = (self.sites[given[site]] for site in ("site1", "site2"))
-                    points, axes = (at_first.origin, at_second.origin), at_first.axes @ at_second.axes.T
+                    self.mechanism.leave_out(f"the equality {name!r} ({element.tag})")
+                elif given.get("active") == "false" or not self._is_on("constraint", "equality"):
+                    self.mechanism.leave_out(f"{of}, which is not active")
+                elif element.tag == "joint":
+                    self.mechanism.constraints.append(self._coupling(given, name, of))
                 else:
-                    first, second = (body_of(given.get(key), of) for key in ("body1", "body2"))
-                    relative = there(first).inverse().then(there(second))
-                    anchor = np.array(numbers(given, "anchor", 3, of) or [0.0, 0.0, 0.0])
-                    if element.tag == "connect":
-                        points = (anchor, relative.inverse().point(anchor))
-                    else:
-                        pose = numbers(given, "relpose", 7, of)
-                        if pose is not None and np.any(pose[3:]):
-                            relative = Place(np.array(pose[:3]), of_quaternion(pose[3:], of))
-                        points = (relative.point(anchor), anchor)
-                    axes = relative.axes
-                self.mechanism.constraints.append(Point(name, (first, second), points))
-                if element.tag == "weld":
-                    self.mechanism.constraints.append(Attitude(name, (first, second), axes))
+                    self._connect(given, name, of, element.tag == "weld")
+
+    def _coupling(self, given: Attributes, name: str, of: str) -> Coupling:
+        joints = self.mechanism.joints()
+        pair = (given.get("joint1"), given.get("joint2"))
+        for joint in pair:
+            if (joint is not None and joint not in joints) or joint is pair[0] is None:
+                raise ValueError(f"{of} names the joint {joint!r}, which is not there")
+            if joint is not None and joints[joint].kind not in ("hinge", "slide"):
+                raise ValueError(f"{of} names the joint {joint!r}: it must be a hinge or a slide")
+        polynomial = numbers(given, "polycoef", range(1, 6), of) or [0.0]
+        return Coupling(name, pair, tuple(polynomial if len(polynomial) > 1 else [*polynomial, 1.0]))
+
+    def _connect(self, given: Attributes, name: str, of: str, is_weld: bool) -> None:
+        """Joins a point of two bodies, and for a weld their axes."""
+        if "site1" in given:
+            bodies, points, axes = self._at_sites(given, of)
+        else:
+            bodies, points, axes = self._at_bodies(given, of, is_weld)
+        self.mechanism.constraints.append(Point(name, bodies, points))
+        if is_weld:
+            self.mechanism.constraints.append(Attitude(name, bodies, axes))
+
+    def _at_sites(self, given: Attributes, of: str) -> Joined:
+        for site in (given["site1"], given.get("site2")):
+            if site not in self.sites:
+                raise ValueError(f"{of} names the site {site!r}, which is not there")
+        (first, at_first), (second, at_second) = (self.sites[given[site]] for site in ("site1", "site2"))
+        return (first, second), (at_first.origin, at_second.origin), at_first.axes @ at_second.axes.T
+
+    def _at_bodies(self, given: Attributes, of: str, is_weld: bool) -> Joined:
+        first, second = (self._body_of(given.get(key), of) for key in ("body1", "body2"))
+        at_first, at_second = (Place() if body is None else self.places[body] for body in (first, second))
+        relative = at_first.inverse().then(at_second)
+        anchor = np.array(numbers(given, "anchor", 3, of) or [0.0, 0.0, 0.0])
+        if not is_weld:
+            return (first, second), (anchor, relative.inverse().point(anchor)), relative.axes
+        pose = numbers(given, "relpose", 7, of)
+        if pose is not None and np.any(pose[3:]):
+            relative = Place(np.array(pose[:3]), of_quaternion(pose[3:], of))
+        return (first, second), (relative.point(anchor), anchor), relative.axes
+
+    def _body_of(self, name: str | None, of: str) -> int | None:
+        if name in (None, "world"):
+            return None
+        if name not in self.names:
+            raise ValueError(f"{of} names the body {name!r}, which is not there")
+        return self.names[name]
 
     # What is left out.
-
-    def _left_out(self, what: str) -> None:
-        if what not in self.mechanism.left_out:
-            self.mechanism.left_out.append(what)
 
     def _collides(self, given: Attributes) -> None:
         if any(_whole(given, mask, 1, "a geom") for mask in ("contype", "conaffinity")) and self._is_on(
@@ -527,23 +528,23 @@ class _Reader:
     def _others(self) -> None:
         for section in self.root:
             if section.tag not in SECTIONS:
-                self._left_out(f"the element <{section.tag}>, which is unknown")
+                self.mechanism.leave_out(f"the element <{section.tag}>, which is unknown")
         for tag in ("tendon", "deformable"):
             for section in self.root.findall(tag):
                 for element in section:
-                    self._left_out(f"the {tag} {element.get('name') or element.tag!r}")
+                    self.mechanism.leave_out(f"the {tag} {element.get('name') or element.tag!r}")
         for body in self.mechanism.bodies:
             if body.without_inertia:
-                self._left_out(f"the inertia of {body.without_inertia} of the body {body.name!r}")
+                self.mechanism.leave_out(f"the inertia of {body.without_inertia} of the body {body.name!r}")
         for what, names in (
             ("limits of", self.limited),
             ("limits of the motors", self.clamped),
             ("friction of", self.rubbing),
         ):
             if names:
-                self._left_out(f"{what} {', '.join(names)}")
+                self.mechanism.leave_out(f"{what} {', '.join(names)}")
         if self.has_contact:
-            self._left_out("contact")
+            self.mechanism.leave_out("contact")
 
 
 def _kind(tag: str) -> str:
@@ -584,17 +585,14 @@ def _servo(tag: str, default: Attributes, own: Attributes) -> Attributes:
     of = f"the {tag} {own['name']!r}" if "name" in own else f"a {tag}"
     before, after = _law(default | {"biastype": "affine"}, of)
 
-    def value(name: str, usual: float) -> float:
-        return (numbers(own, name, 1, of) or [usual])[0]
-
     law["biastype"] = "affine"
     if tag == "velocity":
-        kv = value("kv", before[0])
+        kv = single(own, "kv", of, before[0])
         return law | {"gainprm": f"{kv} 0 0", "biasprm": f"0 0 {-kv}"}
-    kp = value("kp", before[0])
+    kp = single(own, "kp", of, before[0])
     # As in MuJoCo, a positive number is a ratio of the damping.
-    rate = -value("kv", -value("dampratio", after[2]))
-    law["dyntype"] = "filterexact" if value("timeconst", 0.0) else default.get("dyntype", "none")
+    rate = -single(own, "kv", of, -single(own, "dampratio", of, after[2]))
+    law["dyntype"] = "filterexact" if single(own, "timeconst", of) else default.get("dyntype", "none")
     return law | {"gainprm": f"{kp} 0 0", "biasprm": f"0 {-kp} {rate}"}
 
 
@@ -626,7 +624,7 @@ def _left_out(element: Element, given: Attributes, of: str) -> str:
     gain, bias = _law(given, of)
     if bias[2] > 0.0 and gain[0] == -bias[1]:
         return "dampratio"
-    return "delay" if np.any(numbers(given, "delay", 1, of)) else ""
+    return "delay" if single(given, "delay", of) else ""
 
 
 def _word(given: Attributes, name: str, allowed: tuple[str, ...], of: str) -> str:
@@ -638,7 +636,7 @@ def _word(given: Attributes, name: str, allowed: tuple[str, ...], of: str) -> st
 
 
 def _whole(given: Attributes, name: str, usual: int, of: str) -> int:
-    found = (numbers(given, name, 1, of) or [usual])[0]
+    found = single(given, name, of, usual)
     if found != int(found):
         raise ValueError(f'{of} has {name}="{given[name]}": write a whole number')
     return int(found)

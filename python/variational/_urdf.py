@@ -6,7 +6,20 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ._mechanism import Body, Coupling, Inertia, Joint, Mechanism, Place, about, about_z_to, numbers, unit
+from ._mechanism import (
+    Body,
+    Coupling,
+    Inertia,
+    Joint,
+    Mechanism,
+    Place,
+    about,
+    about_z_to,
+    numbers,
+    single,
+    symmetric,
+    unit,
+)  # fmt: skip
 
 Element = ElementTree.Element
 
@@ -95,9 +108,8 @@ def _inertia(link: Element, name: str) -> Inertia:
     if value is None:
         raise ValueError(f"{of} has no mass")
     keys = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-    entries = [0.0 if moments is None else (numbers(moments, key, 1, of) or [0.0])[0] for key in keys]
-    xx, yy, zz, xy, xz, yz = entries
-    own = Inertia(value[0], np.zeros(3), np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+    entries = [0.0 if moments is None else single(moments, key, of) for key in keys]
+    own = Inertia(value[0], np.zeros(3), symmetric(*entries))
     return own.moved(_origin(element.find("origin"), of))
 
 
@@ -109,16 +121,16 @@ def _joints(element: Element, found: Mechanism) -> list[Joint]:
     if kind == "fixed":
         return []
     dynamics = element.find("dynamics")
-    damping = (None if dynamics is None else numbers(dynamics, "damping", 1, of)) or [0.0]
+    damping = 0.0 if dynamics is None else single(dynamics, "damping", of)
     if kind == "floating":
-        return [Joint(name, "free", damping=damping[0])]
+        return [Joint(name, "free", damping=damping)]
     given = element.find("axis")
     axis = unit((None if given is None else numbers(given, "xyz", 3, of)) or [1.0, 0.0, 0.0], f"the axis of {of}")
     if kind == "planar":
         x, y, _ = about_z_to(axis).T
         kinds = (("x", "slide", x), ("y", "slide", y), ("angle", "hinge", axis))
-        return [Joint(f"{name}_{end}", kind, axis, damping=damping[0]) for end, kind, axis in kinds]
-    joint = Joint(name, "slide" if kind == "prismatic" else "hinge", axis, damping=damping[0])
+        return [Joint(f"{name}_{end}", kind, axis, damping=damping) for end, kind, axis in kinds]
+    joint = Joint(name, "slide" if kind == "prismatic" else "hinge", axis, damping=damping)
     joint.is_limited = kind == "revolute"
     return [joint]
 
@@ -133,9 +145,8 @@ def _mimics(joints: list[Element], found: Mechanism) -> None:
         other = mimic.get("joint")
         if other not in known or name not in known:
             raise ValueError(f"{of} names the joint {other!r}, which is not there or does not move")
-        multiplier = (numbers(mimic, "multiplier", 1, of) or [1.0])[0]
-        offset = (numbers(mimic, "offset", 1, of) or [0.0])[0]
-        found.constraints.append(Coupling(f"{name}_mimic", (name, other), (offset, multiplier)))
+        polynomial = single(mimic, "offset", of), single(mimic, "multiplier", of, 1.0)
+        found.constraints.append(Coupling(f"{name}_mimic", (name, other), polynomial))
 
 
 def _others(root: Element, joints: list[Element], found: Mechanism) -> None:
@@ -145,14 +156,14 @@ def _others(root: Element, joints: list[Element], found: Mechanism) -> None:
     rubbing = []
     for joint in joints:
         dynamics = joint.find("dynamics")
-        if dynamics is not None and np.any(numbers(dynamics, "friction", 1, f"the joint {_name(joint)!r}")):
+        if dynamics is not None and single(dynamics, "friction", f"the joint {_name(joint)!r}"):
             rubbing.append(_name(joint))
     for what, names in (("limits", limited), ("friction", rubbing)):
         if names:
-            found.left_out.append(f"{what} of {', '.join(names)}")
+            found.leave_out(f"{what} of {', '.join(names)}")
     if root.findall("transmission"):
-        found.left_out.append("transmissions")
+        found.leave_out("transmissions")
     if root.findall("mujoco"):
-        found.left_out.append("settings for MuJoCo")
+        found.leave_out("settings for MuJoCo")
     if any(link.find("collision") is not None for link in root.findall("link")):
-        found.left_out.append("contact")
+        found.leave_out("contact")
