@@ -260,3 +260,26 @@ fn beyond_a_limit_the_run_ends_with_a_typed_error() {
     assert!(t > 5.0 && estimate > tolerance && estimate < 1e-4 && tolerance.to_bits() == 1e-5_f64.to_bits(), "{error}");
     assert!(error.to_string().ends_with("; take shorter steps, a method of higher order, or allow a larger error"));
 }
+
+lagrangian! {
+    /// A ball that falls onto a steep wall.
+    struct Dropped {
+        param c = 0.3, d = 0.002;
+        coord y;
+        L = dot(y)^2 / 2 - y - 0.01 * exp(-y / d);
+        force y = -c * dot(y) * exp(-y / d);
+    }
+}
+
+#[test]
+fn a_tolerance_holds_after_a_free_flight() {
+    // Until the ball meets the wall, its force is constant but for rounding.
+    let start = Dropped::default().at(0.0, [1.0], [0.0]);
+    for tolerance in [1e-8, 1e-9, 1e-10] {
+        let mut run = start.integrate(Gauss::<4>, Tolerance(tolerance)).expect("a length").monitored();
+        run.until(3.0).expect("a motion");
+        let found = run.largest();
+        // Once 1.8e-8 for the two smaller ones.
+        assert!(found.estimate < tolerance && found.estimate > 0.2 * tolerance, "{tolerance:e}: {found:?}");
+    }
+}

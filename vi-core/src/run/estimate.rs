@@ -478,7 +478,10 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             let peak = (change + T::real(0.25) * if size < change { size } else { change }) * unit;
             self.peak[i] = larger(self.peak[i], peak);
             indicator = larger(indicator, peak * self.weights[i]);
-            if let Some(stretch) = &mut self.stretch {
+            // In free flight rounding would add up to the way of a force.
+            if let Some(stretch) = &mut self.stretch
+                && change > T::real(4.0 * T::EPSILON) * (node.p[i] * rate).abs()
+            {
                 stretch.force_way[i] += change;
             }
         }
