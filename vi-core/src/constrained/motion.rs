@@ -33,6 +33,9 @@ const GOOD: f64 = 1e-3;
 /// such points are computed outside, to fewer digits than nodes.
 const SATISFIED: f64 = 1e-9;
 
+/// The same at a state whose reaction is asked: a cubic between two nodes is off the constraints by O(h⁴).
+const NEAR: f64 = 1e-2;
+
 /// A velocity of momenta.
 pub(crate) struct Velocity<const N: usize, T, M> {
     pub(crate) v: SVector<T, N>,
@@ -185,6 +188,25 @@ fn satisfied<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
 ) -> Result<(), StepError> {
+    near(system, (t, q, v), SATISFIED)?;
+    match system.broken(t, q, v) {
+        Some((r, residual)) if residual.is_finite() => {
+            let (t, residual) = (t.to_f64(), residual.to_f64());
+            Err(StepError::DroppedConstraint { t, constraint: system.constraint_names()[r], residual })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Checks that a point is off no constraint by more than this part of the terms of its row.
+///
+/// # Errors
+/// [`StepError::InconsistentStart`].
+fn near<S: Motion<N, T>, const N: usize, T: Real>(
+    system: &S,
+    (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
+    part: f64,
+) -> Result<(), StepError> {
     let point = system.point(t, q, v);
     let [_, positions] = spread(&point.mass, q, &SVector::zeros());
     let [_, velocities] = spread(&point.mass, v, &point.momentum);
@@ -196,7 +218,7 @@ fn satisfied<S: Motion<N, T>, const N: usize, T: Real>(
     });
     let values = system.constraints(t, q);
     let (gradients, offsets) = system.constraint_gradients(t, q);
-    let is_off = |value: T, terms: T| value.to_f64().abs() > SATISFIED * terms.to_f64();
+    let is_off = |value: T, terms: T| value.to_f64().abs() > part * terms.to_f64();
     for (r, constraint) in system.constraint_names().iter().enumerate().filter(|(r, _)| !system.is_dropped(*r)) {
         let (value, offset, row) = (values.as_ref()[r], offsets.as_ref()[r], gradients.row(r));
         let rate = row.dot(v) + offset;
@@ -207,13 +229,7 @@ fn satisfied<S: Motion<N, T>, const N: usize, T: Real>(
             return Err(StepError::InconsistentStart { constraint, residual, rate });
         }
     }
-    match system.broken(t, q, v) {
-        Some((r, residual)) if residual.is_finite() => {
-            let (t, residual) = (t.to_f64(), residual.to_f64());
-            Err(StepError::DroppedConstraint { t, constraint: system.constraint_names()[r], residual })
-        }
-        _ => Ok(()),
-    }
+    Ok(())
 }
 
 /// The flow of a system with constraints at (t, q, p): the force is `L_q + f + AᵀΛ`, the power `f·v − L_t − Λ·a`.
@@ -255,16 +271,20 @@ pub(crate) fn from_rest<S: Motion<N, T>, const N: usize, T: Real>(
 
 impl<const N: usize, T: Scalar> State<N, T> {
     /// The multipliers Λ of the motion at this state, one for each constraint, in the order of
-    /// [`Motion::CONSTRAINTS`]. They are as accurate as the state. Their unit is that of energy over that of the
-    /// constraint; for a nonholonomic constraint, of power over that of the constraint.
+    /// [`Motion::CONSTRAINTS`]. They are as accurate as the state: dense output leaves it a little off the constraints.
+    /// Their unit is that of energy over that of the constraint; for a nonholonomic constraint, of power over that of the constraint.
     ///
     /// # Errors
-    /// As [`State::velocity`]; [`StepError::Singular`] if the constraints are redundant here.
+    /// As [`State::velocity`]; [`StepError::Singular`] if the constraints are redundant here;
+    /// [`StepError::InconsistentStart`] for coordinates off a constraint by more than a hundredth of its terms.
     pub fn reaction<S: Motion<N, T>>(&self, system: &S) -> Result<Multipliers<S, N, T>, StepError> {
         let node = Node::new(*self, T::zero());
         let bordered = &mut bordered(system);
         let found = node.check_finite(T::zero()).and_then(|()| from_rest(system, (self.t, &self.q, &self.p), bordered));
-        let found = found.and_then(|Velocity { v, .. }| accelerations(system, (self.t, &self.q, &v), bordered));
+        let found = found.and_then(|Velocity { v, .. }| {
+            near(system, (self.t, &self.q, &v), NEAR)?;
+            accelerations(system, (self.t, &self.q, &v), bordered)
+        });
         found.map(|(_, multipliers)| multipliers).map_err(|failure| failure.explained_at(system, &node, T::zero()))
     }
 

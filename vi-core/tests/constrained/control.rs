@@ -221,6 +221,22 @@ fn accelerations_and_linearizations_off_the_constraints_are_errors() {
 }
 
 #[test]
+fn a_reaction_far_off_the_constraints_is_an_error() {
+    let rods = Rods::default();
+    let state = State::projected(&rods, 0.0, [0.6, -0.9, 1.1, -1.7], [0.5, 0.4, 0.3, 0.2]).expect("nearest").state;
+    let on = state.reaction(&rods).expect("a reaction");
+    // As far off as dense output: the reaction is as accurate.
+    let close = State { q: state.q * 1.0001, ..state }.reaction(&rods).expect("a reaction");
+    let off = (close[0] / on[0] - 1.0).abs();
+    // Measured: 1.04e-4.
+    assert!(off > 1e-6 && off < 2e-4, "{off:e}");
+    let far = State { q: state.q * 1.1, ..state };
+    for failure in [far.reaction(&rods).err(), far.reaction_force(&rods).err()] {
+        assert!(matches!(failure, Some(StepError::InconsistentStart { constraint: "upper", .. })), "{failure:?}");
+    }
+}
+
+#[test]
 fn a_blade_carries_what_it_forbids() {
     let rest = Blade::default().equilibrium(0.0, [0.5, 0.3, 0.0]).unwrap_or_else(|failure| panic!("{failure}"));
     assert!((rest.q - SVector::from([0.0, 0.3, 0.0])).amax() < 1e-15, "{rest:?}");
