@@ -174,6 +174,11 @@ macro_rules! ensure {
 use ensure;
 
 impl Case {
+    /// Whether the lengths of the steps follow an error: those of a motion without a conserved energy.
+    fn follows_error(&self) -> bool {
+        self.method.follows_motion() && !self.system.conserves_energy()
+    }
+
     /// The cases of a system.
     fn of(scene: &'static Scene, fault: Option<Fault>) -> Vec<Self> {
         let mut system = (scene.system)();

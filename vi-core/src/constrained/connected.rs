@@ -109,7 +109,7 @@ where
 }
 
 /// The velocities of the unknowns of a step.
-fn velocities<const N: usize, const STAGES: usize>(u: &[f64]) -> Stages<N, STAGES> {
+pub(crate) fn velocities<const N: usize, const STAGES: usize>(u: &[f64]) -> Stages<N, STAGES> {
     let mut stages = [[0.0; STAGES]; N];
     (0..STAGES).for_each(|i| set(&mut stages, i, &stage_velocity(u, i)));
     stages

@@ -53,7 +53,7 @@ pub(crate) mod start;
 pub(crate) mod variation;
 
 pub use density::step_density;
-pub(crate) use equations::{discrete_energy, impulses, stage_velocity, unknowns};
+pub(crate) use equations::{discrete_energy, impulses, unknowns};
 pub use extended::Extended;
 pub use independent::Independent;
 pub(crate) use motion::{accelerations, unsolvable};

@@ -36,7 +36,7 @@ pub(crate) mod energies;
 #[cfg(feature = "alloc")]
 mod factors;
 pub(crate) mod fixed_point;
-mod general;
+pub(crate) mod general;
 pub(crate) mod history;
 pub mod linearization;
 pub(crate) mod lobatto;

@@ -1,24 +1,16 @@
 //! Gauss steps whose length follows the motion.
 //!
-//! The length h of a step solves
+//! | law | motions | |
+//! |---|---|---|
+//! | `reversible` | that conserve energy, or have a `time_scale` | the length depends on the step alone, and not on its direction: no drift |
+//! | `decaying` | with friction, inputs or a dependence on time | the length keeps the error: fast modes that have died out do not count |
 //!
-//! ```text
-//! h Ω = ε
-//! ```
-//!
-//! with the frequency Ω of the forces along the step (`phase.rs`), which does not change when the step is reversed. The map
-//! is time-symmetric: a reversible motion keeps its energy without drift, which steps that follow a measured error lose.
-//! Source: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, VIII.3.1.
-//!
-//! The equation is solved by secants: each length tried is a step from the stages of the one before. The explicit law of
-//! Hairer and Söderlind (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of four.
-//! But ρ leaves ω where a step is long for the changes of ω, as with few steps in the period of an oscillator.
-//!
-//! The map is not symplectic: that needs [`InTransformedTime`](super::InTransformedTime) and a `time_scale`, which
-//! [`Adaptive`] takes too. With terms that are linear in the velocities, friction or inputs a motion is not reversible: steps
-//! back still return, but no law bounds the energy error.
+//! No map of them is symplectic: that needs [`InTransformedTime`](super::InTransformedTime) and a `time_scale`, which
+//! [`Adaptive`] takes too.
 
+mod decaying;
 mod phase;
+mod reversible;
 
 use super::gauss::{Solver, StageSolver, solver};
 use super::{Gauss, Memory, Method, Problem, Report, check_step, step_from};
@@ -32,9 +24,8 @@ use crate::state::State;
 use crate::stepping::Convertible;
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
-use phase::{Phase, Place, phase};
+use decaying::Decaying;
+use reversible::Reversible;
 
 /// A method whose steps follow the motion: `Gauss::<8>.adaptive()`. See the [module](self).
 ///
@@ -51,17 +42,8 @@ impl<const STAGES: usize> Gauss<STAGES> {
     }
 }
 
-/// Ω has at least this part of the reciprocal of the first step: without forces, steps grow no further.
-const SLOWEST: f64 = 1e-4;
-/// A first step feels no force that could set the lengths of the others, if its phase to the power of its order is smaller.
-/// The others then have the phase [`USUAL`] for each stage, and are no longer than the first one.
-const FREE: f64 = 1e-12;
-const USUAL: f64 = 0.1;
-/// The largest deviation of ln h Ω from ln ε of an accepted step. After [`FEW`] lengths it is [`ROUGH`]: then rounding of
-/// the positions changes the phase, as near a collision.
-const NEAR: f64 = 1e-10;
-const ROUGH: f64 = 1e-8;
-const FEW: usize = 15;
+/// The longest step, in units of the first one: without forces, steps grow no further.
+const LONGEST: f64 = 1e4;
 /// Lengths tried for a step at most.
 const TRIALS: usize = 60;
 
@@ -73,16 +55,29 @@ pub struct Following<Y> {
     steps: Y,
     /// Length of the last step, or of the next one before the first.
     h: f64,
-    /// ε, with the sign of the steps; `None` before the first step.
-    phase: Option<f64>,
-    /// The floor of Ω.
-    floor: f64,
-    /// The guess of the next length, divided by the last one.
-    ahead: f64,
-    /// Ratio of the last two lengths.
-    ratio: f64,
-    /// Logarithmic slope of the phase of the last step in its length.
-    slope: f64,
+    /// The law of the lengths, with what the first step has set; `None` before it.
+    law: Option<Law>,
+}
+
+/// A law of the lengths of steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[doc(hidden)]
+pub enum Law {
+    /// That of motions that may be reversed.
+    Reversible(Reversible),
+    /// That of all others.
+    Decaying(Decaying),
+}
+
+impl Law {
+    /// After a change of the system or of the state: the next length is the last one.
+    fn resumed(self) -> Self {
+        match self {
+            Self::Reversible(law) => Self::Reversible(law.resumed()),
+            Self::Decaying(law) => Self::Decaying(law.resumed()),
+        }
+    }
 }
 
 impl<Y: Memory> Memory for Following<Y> {
@@ -117,113 +112,22 @@ fn solved<S: Convertible<N>, const N: usize, const STAGES: usize>(
     Ok((end, steps))
 }
 
-/// The first step: its phase is that of all others.
+/// The first step, which sets the law of all others.
 fn first<S: Convertible<N>, const N: usize, const STAGES: usize>(
     at: Of<'_, S, N, STAGES>,
     memory: &Following<Steps<S, N, STAGES>>,
     cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
 ) -> Result<End<S, N, STAGES>, StepError> {
     let Following { steps, h, .. } = memory;
-    let at = Problem { h: *h, ..at };
+    let (system, at) = (at.system, Problem { h: *h, ..at });
     let (end, steps) = solved(at, steps, cache)?;
-    let [here, there] = [at.node, &end].map(|node| Place::of(at.system, node));
-    #[allow(clippy::cast_precision_loss)] // 16 stages at most
-    let stages = STAGES as f64;
-    let is_felt = |found: &Phase| found.value.powf(2.0 * stages) > FREE;
-    let found = phase(at.system, [&here?, &there?], [h.abs(), 0.0])?.filter(is_felt);
-    let usual = USUAL * stages;
-    let Phase { value, slope, .. } = found.unwrap_or(Phase { value: usual, slope: 1.0, ratio: 1.0 });
-    let floor = if found.is_some() { SLOWEST } else { usual } / h.abs();
-    Ok((end, Following { steps, h: *h, phase: Some(value.copysign(*h)), floor, ahead: 1.0, ratio: 1.0, slope }))
-}
-
-/// The search for the length of a step.
-struct Search {
-    /// A length that is too short, and one that is too long or has no step.
-    between: [f64; 2],
-    /// The last length tried, and the logarithm of its phase over ε.
-    last: Option<[f64; 2]>,
-    /// Logarithmic slope of the phase in the length.
-    slope: f64,
-}
-
-impl Search {
-    /// The length to try after one without a step.
-    fn shorter(&mut self, h: f64) -> f64 {
-        self.between[1] = h;
-        0.5 * (self.between[0] + h)
-    }
-
-    /// The slope by the last two lengths.
-    fn learn(&mut self, h: f64, off: f64) {
-        if let Some([before, off_before]) = self.last.replace([h, off]) {
-            self.slope = ((off - off_before) / (h / before).ln()).max(0.25);
-        }
-    }
-
-    /// The length to try after this one, by the slope, or halfway between those that are too short and too long.
-    fn beside(&mut self, h: f64, off: f64) -> f64 {
-        self.between[usize::from(off > 0.0)] = h;
-        let next = h * (-off / self.slope).clamp(-1.0, 1.0).exp();
-        let [short, long] = self.between;
-        // False for NaN.
-        if (next - short) / (long - short) > 0.0 && (long - next) / (long - short) > 0.0 {
-            next
-        } else {
-            0.5 * (short + long)
-        }
-    }
-}
-
-/// The step whose phase is that of the first one.
-///
-/// # Errors
-/// Those of the solver for the shortest length tried; [`StepError::LengthsLost`] if no length has this phase.
-fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
-    at: Of<'_, S, N, STAGES>,
-    memory: &Following<Steps<S, N, STAGES>>,
-    wanted: f64,
-    cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
-) -> Result<End<S, N, STAGES>, StepError> {
-    let Problem { system, node, .. } = at;
-    let Following { steps, h: last, floor, ahead, ratio: before, slope, .. } = memory;
-    let start = Place::of(system, node)?;
-    let mut search = Search { between: [0.0, wanted / floor], last: None, slope: *slope };
-    let mut h = last * ahead;
-    let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
-    let mut failure = StepError::LengthsLost { t: node.t, h: *last };
-    for trial in 0..TRIALS {
-        check_step(h)?;
-        // Below the rounding of the time, as in a fall into a centre, time stands still.
-        if h.abs() < f64::EPSILON * node.t.abs() {
-            break;
-        }
-        let tried = solved(Problem { h, ..at }, &guess, cache)
-            .and_then(|(end, steps)| Ok((Place::of(system, &end)?, end, steps)));
-        let (there, end, steps) = match tried {
-            Ok(found) => found,
-            Err(error) => {
-                failure = error;
-                h = search.shorter(h);
-                guess = Solver::<S, N, STAGES>::resized(system, &memory.steps, node, h)?;
-                continue;
-            }
-        };
-        // Where the stiffness has no value, the length is taken.
-        let found = phase(system, [&start, &there], [h.abs(), *floor])?;
-        let found = found.unwrap_or(Phase { value: wanted.abs(), slope: 1.0, ratio: 1.0 });
-        let off = (found.value / wanted.abs()).ln();
-        search.learn(h, off);
-        if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
-            let ratio = h / last;
-            // Ratios change by nearly equal factors, until the forces turn.
-            let ahead = found.ratio.min(ratio * (ratio / before).clamp(0.7, 1.4));
-            return Ok((end, Following { steps, h, ahead, ratio, slope: search.slope, ..memory.clone() }));
-        }
-        h = search.beside(h, off);
-        guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
-    }
-    Err(failure)
+    let is_reversible = system.conserves_energy() || system.scales_time() || STAGES < decaying::FEWEST;
+    let law = if is_reversible {
+        Law::Reversible(Reversible::of_first::<S, N, STAGES>(system, [at.node, &end], *h)?)
+    } else {
+        Law::Decaying(Decaying::of_first::<S, N, STAGES>(system, (&end, &steps), *h)?)
+    };
+    Ok((end, Following { steps, h: *h, law: Some(law) }))
 }
 
 impl<S, const N: usize, const STAGES: usize> Method<S, N> for Adaptive<Gauss<STAGES>>
@@ -255,7 +159,7 @@ where
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
         let steps = solver::<S, N, STAGES>().begin(system, node, h)?;
-        Ok(Following { steps, h, phase: None, floor: SLOWEST / h.abs(), ahead: 1.0, ratio: 1.0, slope: 1.0 })
+        Ok(Following { steps, h, law: None })
     }
 
     fn attempt(
@@ -264,9 +168,10 @@ where
         memory: &Self::Memory,
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, Self::Left> {
-        match memory.phase {
+        match &memory.law {
             None => first(at, memory, cache),
-            Some(wanted) => next(at, memory, wanted, cache),
+            Some(Law::Reversible(law)) => law.next(at, memory, cache),
+            Some(Law::Decaying(law)) => law.next(at, memory, cache),
         }
     }
 
@@ -322,7 +227,7 @@ where
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
         let steps = solver::<S, N, STAGES>().with_system(systems, node, memory.h, &memory.steps)?;
-        Ok(Following { steps, ahead: 1.0, ratio: 1.0, ..*memory })
+        Ok(Following { steps, h: memory.h, law: memory.law.map(Law::resumed) })
     }
 
     fn with_state(
@@ -334,7 +239,7 @@ where
         state: State<N>,
     ) -> Result<Self::Memory, StepError> {
         let steps = solver::<S, N, STAGES>().with_state(systems, node, memory.h, &memory.steps, state)?;
-        Ok(Following { steps, ahead: 1.0, ratio: 1.0, ..*memory })
+        Ok(Following { steps, h: memory.h, law: memory.law.map(Law::resumed) })
     }
 
     fn dense_output(
@@ -366,11 +271,14 @@ where
     }
 
     fn check(&self, system: &S, (node, memory): (&Node<N>, &Self::Memory), h: f64) -> Result<(), StepError> {
-        let Following { steps, h: last, phase, floor, ahead, ratio, slope } = memory;
-        let are_positive =
-            [last * h.signum(), phase.map_or(1.0, |phase| phase * h.signum()), *floor, *ahead, *ratio, *slope]
-                .map(|number| number > 0.0 && number.is_normal());
-        if are_positive != [true; 6] {
+        let Following { steps, h: last, law } = memory;
+        let is_length = last * h.signum() > 0.0 && last.is_normal();
+        let is_law = match law {
+            None => true,
+            Some(Law::Reversible(law)) => law.is_valid(h),
+            Some(Law::Decaying(law)) => law.is_valid(),
+        };
+        if !(is_length && is_law) {
             return Err(StepError::NonFinite { t: node.t, quantity: "length of the last step", expression: None });
         }
         solver::<S, N, STAGES>().check(system, (node, steps), *last)

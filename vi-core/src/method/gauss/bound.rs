@@ -21,15 +21,15 @@
 //! [`StepError::TooLong`].
 
 use super::{Gauss, StageSolver};
-use crate::constrained::connected;
+use crate::constrained::connected::{self, velocities};
 use crate::constrained::guess::{Extrapolation, from_node};
 use crate::constrained::solve::Workspace;
 use crate::constrained::solved::Solved;
 use crate::constrained::variation::vary;
-use crate::constrained::{bordered, discrete_energy, impulses, stage_velocity, start, unknowns};
+use crate::constrained::{bordered, discrete_energy, impulses, start, unknowns};
 use crate::derivatives::{Variation, not_last};
 use crate::error::StepError;
-use crate::gauss::stages::{at, set, stage};
+use crate::gauss::stages::{Stages, at, stage};
 use crate::kind::{Bound, Form, Multipliers};
 use crate::linear::Bordered;
 use crate::method::{Memory, Method, Problem, Report};
@@ -297,13 +297,8 @@ fn continued<S: Convertible<N>, const N: usize, const STAGES: usize>(
     (h, since): (f64, f64),
 ) -> Result<ConstrainedSteps<N>, StepError> {
     let fresh = BoundGauss::<STAGES>.with_length(system, memory, node, h)?;
-    let last = memory.unknowns.newest();
-    let mut stages = [[0.0; STAGES]; N];
-    for i in 0..STAGES {
-        set(&mut stages, i, &stage_velocity::<N, f64>(last, i));
-    }
     let ratio = h / memory.h;
-    let stages = at(&stages, |c| since + ratio * c);
+    let stages = at(&velocities::<N, STAGES>(memory.unknowns.newest()), |c| since + ratio * c);
     let mut guess = fresh.unknowns.newest().to_vec();
     for (i, velocity) in guess.chunks_exact_mut(N).take(STAGES).enumerate() {
         velocity.copy_from_slice(stage(&stages, i).as_slice());
@@ -334,6 +329,10 @@ where
         h: f64,
     ) -> Result<ConstrainedSteps<N>, StepError> {
         continued::<S, N, STAGES>(system, memory, node, (h, 0.0))
+    }
+
+    fn velocities(_system: &S, memory: &ConstrainedSteps<N>) -> Stages<N, STAGES> {
+        velocities(memory.unknowns.newest())
     }
 
     /// Allocates the matrix of the step.

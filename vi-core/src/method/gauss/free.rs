@@ -18,11 +18,12 @@ use crate::derivatives::{Variation, not_last};
 use crate::error::StepError;
 use crate::gauss::energies::energies;
 use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
+use crate::gauss::general::equations;
 use crate::gauss::linearization::Linearization;
 use crate::gauss::newton::Buffer;
 use crate::gauss::points::ErasedSystem;
 use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
-use crate::gauss::stages::{LOOPED, at};
+use crate::gauss::stages::{LOOPED, Stages, at};
 #[cfg(feature = "alloc")]
 use crate::gauss::variation::vary;
 use crate::gauss::{CollocationPolynomial, Slots};
@@ -351,6 +352,11 @@ where
         let ratio = h / memory.h;
         let stages = SMatrix::from_array_storage(ArrayStorage(at(&memory.stages.data.0, |c| ratio * c)));
         Ok(LastStages { stages, before: *node, h, convergence: Convergence::NONE, linearization: None, ..*memory })
+    }
+
+    fn velocities(system: &S, memory: &LastStages<N, STAGES>) -> Stages<N, STAGES> {
+        let LastStages { before, h, stages, .. } = memory;
+        equations(&ErasedSystem::of(system), before, *h, stages.data.0).velocity()
     }
 
     #[cfg(feature = "alloc")]

@@ -16,6 +16,7 @@ use super::{Method, Problem, Report, Storable};
 #[cfg(feature = "alloc")]
 use crate::derivatives::Variation;
 use crate::error::StepError;
+use crate::gauss::stages::Stages;
 use crate::kind::Kind;
 use crate::motion::Motion;
 use crate::node::Node;
@@ -46,6 +47,10 @@ pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memo
     /// The reason why no step can start there.
     #[doc(hidden)]
     fn again(system: &S, memory: &Self::Memory, node: &Node<N>, h: f64) -> Result<Self::Memory, StepError>;
+
+    /// The velocities at the stages of the last step.
+    #[doc(hidden)]
+    fn velocities(system: &S, memory: &Self::Memory) -> Stages<N, STAGES>;
 
     /// Maps tangent vectors at `before`, the start of the step that led to the node, to those at its end.
     ///

@@ -1,0 +1,194 @@
+//! The law of motions that no law can reverse: with friction, inputs, or a dependence on time.
+//!
+//! The velocities of a step are a polynomial. At its end the slope differs from the acceleration there:
+//!
+//! ```text
+//! δ = h |v̇(1) − a| = O(h^(S+1))        |x|² = Σ M_ij x_i x_j
+//! ```
+//!
+//! which also sees a force that no stage meets. The first steps have equal lengths until δ falls; the largest δ so far is
+//! then that of all others, whose lengths follow from δ of the last two steps (K. Gustafsson's PI controller: E. Hairer,
+//! G. Wanner, *Solving Ordinary Differential Equations II*, IV.2). A step whose δ is too large is taken again, shorter. A
+//! length stays as it is while it is nearly right: then the next step starts from the stages of the last one, and from
+//! its linearization.
+//!
+//! A mode that has died out has no acceleration, and does not count.
+
+use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, check_step, solved};
+use crate::error::StepError;
+use crate::gauss::polynomial::coefficients;
+use crate::linear::Matrix;
+use crate::method::gauss::StageSolver as _;
+use crate::method::{Method, Problem};
+use crate::node::Node;
+use crate::stepping::Convertible;
+use nalgebra::SVector;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+/// With fewer stages δ is too rough.
+pub(super) const FEWEST: usize = 3;
+/// δ of a step that feels a force, and of a resolved one, in units of its velocity.
+const FELT: f64 = 1e-12;
+const RESOLVED: f64 = 0.1;
+/// The largest δ of a step that is taken, in units of that of the first ones.
+const LARGEST: f64 = 2.0;
+/// The length aimed at, in units of that with the δ of the first ones.
+const AIM: f64 = 0.9;
+/// Exponents of the last δ and of the one before, in units of 1/(S + 1).
+const OF_LAST: f64 = 0.7;
+const OF_BEFORE: f64 = 0.4;
+/// The range of the ratio of two lengths, and that in which the length stays.
+const RATIOS: [f64; 2] = [0.2, 2.0];
+const KEPT: [f64; 2] = [0.99, 1.2];
+
+/// What the law keeps between steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[doc(hidden)]
+pub struct Decaying {
+    /// The largest δ of the first steps.
+    wanted: f64,
+    /// Whether δ has fallen since.
+    is_set: bool,
+    /// δ of the last step, in units of the largest one.
+    off: f64,
+    /// The next length, divided by the last one.
+    ahead: f64,
+    /// The longest length.
+    longest: f64,
+}
+
+/// δ of the step of the length h that led to a node, and its velocity.
+///
+/// # Errors
+/// As [`State::velocity`](crate::State::velocity), and that of the acceleration.
+fn defect<S: Convertible<N>, const N: usize, const STAGES: usize>(
+    system: &S,
+    (end, steps): (&Node<N>, &Steps<S, N, STAGES>),
+    h: f64,
+) -> Result<[f64; 2], StepError> {
+    let state = end.state();
+    let v = state.velocity(system)?;
+    let acceleration = system.acceleration(state.t, &state.q, &v)?;
+    let mass = system.point(state.t, &state.q, &v).mass;
+    let size = |x: &SVector<f64, N>| {
+        let mut sum = 0.0;
+        mass.each_entry(|i, j, value| sum += x[i] * value * x[j]);
+        sum.abs().sqrt()
+    };
+    // P_k' at the end is k (k + 1)/2 for x, twice that for θ.
+    let mut slope = SVector::<f64, N>::zeros();
+    for (entry, row) in slope.iter_mut().zip(coefficients(&Solver::<S, N, STAGES>::velocities(system, steps))) {
+        let mut factor = 0.0;
+        for (k, coefficient) in (0_u32..).zip(row) {
+            factor += f64::from(2 * k);
+            *entry += factor * coefficient;
+        }
+    }
+    Ok([size(&(slope - acceleration * h)), size(&v).max(size(&(acceleration * h)))])
+}
+
+impl Decaying {
+    /// The law of the first step, of the length h.
+    ///
+    /// # Errors
+    /// As [`defect`].
+    pub(super) fn of_first<S: Convertible<N>, const N: usize, const STAGES: usize>(
+        system: &S,
+        step: (&Node<N>, &Steps<S, N, STAGES>),
+        h: f64,
+    ) -> Result<Self, StepError> {
+        let [wanted, _] = defect::<S, N, STAGES>(system, step, h)?;
+        Ok(Self { wanted, is_set: false, off: 1.0, ahead: 1.0, longest: LONGEST * h.abs() })
+    }
+
+    /// The law after a step with this δ and this velocity.
+    ///
+    /// # Errors
+    /// δ in units of the largest one, if it is too large.
+    fn after<const STAGES: usize>(self, [defect, v]: [f64; 2]) -> Result<Self, f64> {
+        let least = FELT * v;
+        if !self.is_set && (defect >= self.wanted || self.wanted < least) {
+            return Ok(Self { wanted: self.wanted.max(defect), ..self });
+        }
+        let wanted = if self.is_set { self.wanted } else { self.wanted.min(RESOLVED * v) };
+        // A faster motion has larger roundings.
+        let off = defect / wanted.max(least);
+        let law = Self { wanted, is_set: true, off, ahead: self.ahead::<STAGES>(off), ..self };
+        // False for NaN.
+        if off <= LARGEST { Ok(law) } else { Err(off) }
+    }
+
+    /// The law after a change of the system or of the state.
+    pub(super) fn resumed(self) -> Self {
+        Self { off: 1.0, ahead: 1.0, ..self }
+    }
+
+    /// Whether the numbers of a checkpoint are those of a law.
+    pub(super) fn is_valid(&self) -> bool {
+        let Self { wanted, is_set: _, off, ahead, longest } = *self;
+        let are_positive = [ahead, longest].iter().all(|number| *number > 0.0 && number.is_normal());
+        are_positive && [wanted, off].iter().all(|number| *number >= 0.0 && number.is_finite())
+    }
+
+    /// The next length by δ of the last step and of the one before, divided by the last one.
+    fn ahead<const STAGES: usize>(&self, off: f64) -> f64 {
+        #[allow(clippy::cast_precision_loss)] // 16 stages at most
+        let power = ((STAGES + 1) as f64).recip();
+        let ratio = AIM * off.powf(-OF_LAST * power) * self.off.powf(OF_BEFORE * power);
+        // Infinite, or NaN, for a step without coefficients.
+        let ratio = if off > 0.0 && self.off > 0.0 { ratio } else { f64::INFINITY };
+        let [short, long] = KEPT;
+        if ratio > short && ratio < long { 1.0 } else { ratio.clamp(RATIOS[0], RATIOS[1]) }
+    }
+
+    /// The next step.
+    ///
+    /// # Errors
+    /// Those of the solver for the shortest length tried; [`StepError::LengthsLost`] if all are too long.
+    pub(super) fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
+        &self,
+        at: Of<'_, S, N, STAGES>,
+        memory: &Following<Steps<S, N, STAGES>>,
+        cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
+    ) -> Result<End<S, N, STAGES>, StepError> {
+        let Problem { system, node, .. } = at;
+        let Following { steps, h: last, .. } = memory;
+        let mut h = (last.abs() * self.ahead).min(self.longest).copysign(*last);
+        let mut guess = None;
+        let mut failure = StepError::LengthsLost { t: node.t, h: *last };
+        #[allow(clippy::cast_precision_loss)] // 16 stages at most
+        let power = ((STAGES + 1) as f64).recip();
+        for _ in 0..TRIALS {
+            check_step(h)?;
+            // Below the rounding of the time, time stands still.
+            if h.abs() < f64::EPSILON * node.t.abs() {
+                break;
+            }
+            #[allow(clippy::float_cmp)] // the same length
+            let from = match &guess {
+                Some(guess) => guess,
+                None if h == *last => steps,
+                None => guess.insert(Solver::<S, N, STAGES>::resized(system, steps, node, h)?),
+            };
+            let tried = solved(Problem { h, ..at }, from, cache)
+                .and_then(|(end, steps)| Ok((defect::<S, N, STAGES>(system, (&end, &steps), h)?, end, steps)));
+            match tried {
+                Ok((found, end, steps)) => match self.after::<STAGES>(found) {
+                    Ok(law) => return Ok((end, Following { steps, h, law: Some(Law::Decaying(law)) })),
+                    Err(off) => {
+                        h *= (AIM * off.powf(-power)).max(RATIOS[0]);
+                        guess = Some(Solver::<S, N, STAGES>::again(system, &steps, node, h)?);
+                    }
+                },
+                Err(error) => {
+                    failure = error;
+                    h *= 0.5;
+                    guess = Some(Solver::<S, N, STAGES>::resized(system, steps, node, h)?);
+                }
+            }
+        }
+        Err(failure)
+    }
+}

@@ -1,0 +1,179 @@
+//! The law of motions that may be reversed.
+//!
+//! The length h of a step solves
+//!
+//! ```text
+//! h Ω = ε
+//! ```
+//!
+//! with the frequency Ω of the forces along the step (`phase.rs`), which does not change when the step is reversed. The map
+//! is time-symmetric: a reversible motion keeps its energy without drift, which steps that follow a measured error lose.
+//! Source: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, VIII.3.1.
+//!
+//! The equation is solved by secants: each length tried is a step from the stages of the one before. The explicit law of
+//! Hairer and Söderlind (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of four.
+//! But ρ leaves ω where a step is long for the changes of ω, as with few steps in the period of an oscillator.
+//!
+//! With terms that are linear in the velocities a motion is not reversible: steps back still return, but no law bounds
+//! the energy error.
+
+use super::phase::{Phase, Place, phase};
+use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, check_step, solved};
+use crate::error::StepError;
+use crate::method::gauss::StageSolver as _;
+use crate::method::{Method, Problem};
+use crate::node::Node;
+use crate::stepping::Convertible;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+/// A first step feels no force that could set the lengths of the others, if its phase to the power of its order is smaller.
+/// The others then have the phase [`USUAL`] for each stage, and are no longer than the first one.
+const FREE: f64 = 1e-12;
+const USUAL: f64 = 0.1;
+/// The largest deviation of ln h Ω from ln ε of an accepted step. After [`FEW`] lengths it is [`ROUGH`]: then rounding of
+/// the positions changes the phase, as near a collision.
+const NEAR: f64 = 1e-10;
+const ROUGH: f64 = 1e-8;
+const FEW: usize = 15;
+
+/// What the law keeps between steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[doc(hidden)]
+pub struct Reversible {
+    /// ε, with the sign of the steps.
+    phase: f64,
+    /// The floor of Ω.
+    floor: f64,
+    /// The guess of the next length, divided by the last one.
+    ahead: f64,
+    /// Ratio of the last two lengths.
+    ratio: f64,
+    /// Logarithmic slope of the phase of the last step in its length.
+    slope: f64,
+}
+
+/// The search for the length of a step.
+struct Search {
+    /// A length that is too short, and one that is too long or has no step.
+    between: [f64; 2],
+    /// The last length tried, and the logarithm of its phase over ε.
+    last: Option<[f64; 2]>,
+    /// Logarithmic slope of the phase in the length.
+    slope: f64,
+}
+
+impl Search {
+    /// The length to try after one without a step.
+    fn shorter(&mut self, h: f64) -> f64 {
+        self.between[1] = h;
+        0.5 * (self.between[0] + h)
+    }
+
+    /// The slope by the last two lengths.
+    fn learn(&mut self, h: f64, off: f64) {
+        if let Some([before, off_before]) = self.last.replace([h, off]) {
+            self.slope = ((off - off_before) / (h / before).ln()).max(0.25);
+        }
+    }
+
+    /// The length to try after this one, by the slope, or halfway between those that are too short and too long.
+    fn beside(&mut self, h: f64, off: f64) -> f64 {
+        self.between[usize::from(off > 0.0)] = h;
+        let next = h * (-off / self.slope).clamp(-1.0, 1.0).exp();
+        let [short, long] = self.between;
+        // False for NaN.
+        if (next - short) / (long - short) > 0.0 && (long - next) / (long - short) > 0.0 {
+            next
+        } else {
+            0.5 * (short + long)
+        }
+    }
+}
+
+impl Reversible {
+    /// The law of the first step, of the length h between two nodes: its phase is that of all others.
+    ///
+    /// # Errors
+    /// As [`State::velocity`](crate::State::velocity); [`StepError::TimeScale`].
+    pub(super) fn of_first<S: Convertible<N>, const N: usize, const STAGES: usize>(
+        system: &S,
+        [start, end]: [&Node<N>; 2],
+        h: f64,
+    ) -> Result<Self, StepError> {
+        let [start, end] = [Place::of(system, start)?, Place::of(system, end)?];
+        #[allow(clippy::cast_precision_loss)] // 16 stages at most
+        let stages = STAGES as f64;
+        let is_felt = |found: &Phase| found.value.powf(2.0 * stages) > FREE;
+        let found = phase(system, [&start, &end], [h.abs(), 0.0])?.filter(is_felt);
+        let usual = USUAL * stages;
+        let Phase { value, slope, .. } = found.unwrap_or(Phase { value: usual, slope: 1.0, ratio: 1.0 });
+        let floor = if found.is_some() { LONGEST.recip() } else { usual } / h.abs();
+        Ok(Self { phase: value.copysign(h), floor, ahead: 1.0, ratio: 1.0, slope })
+    }
+
+    /// The law after a change of the system or of the state.
+    pub(super) fn resumed(self) -> Self {
+        Self { ahead: 1.0, ratio: 1.0, ..self }
+    }
+
+    /// Whether the numbers of a checkpoint with steps of the sign of h are those of a law.
+    pub(super) fn is_valid(&self, h: f64) -> bool {
+        let Self { phase, floor, ahead, ratio, slope } = *self;
+        [phase * h.signum(), floor, ahead, ratio, slope].iter().all(|number| *number > 0.0 && number.is_normal())
+    }
+
+    /// The step whose phase is that of the first one.
+    ///
+    /// # Errors
+    /// Those of the solver for the shortest length tried; [`StepError::LengthsLost`] if no length has this phase.
+    pub(super) fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
+        &self,
+        at: Of<'_, S, N, STAGES>,
+        memory: &Following<Steps<S, N, STAGES>>,
+        cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
+    ) -> Result<End<S, N, STAGES>, StepError> {
+        let Problem { system, node, .. } = at;
+        let Self { phase: wanted, floor, ahead, ratio: before, slope } = *self;
+        let Following { steps, h: last, .. } = memory;
+        let start = Place::of(system, node)?;
+        let mut search = Search { between: [0.0, wanted / floor], last: None, slope };
+        let mut h = last * ahead;
+        let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
+        let mut failure = StepError::LengthsLost { t: node.t, h: *last };
+        for trial in 0..TRIALS {
+            check_step(h)?;
+            // Below the rounding of the time, as in a fall into a centre, time stands still.
+            if h.abs() < f64::EPSILON * node.t.abs() {
+                break;
+            }
+            let tried = solved(Problem { h, ..at }, &guess, cache)
+                .and_then(|(end, steps)| Ok((Place::of(system, &end)?, end, steps)));
+            let (there, end, steps) = match tried {
+                Ok(found) => found,
+                Err(error) => {
+                    failure = error;
+                    h = search.shorter(h);
+                    guess = Solver::<S, N, STAGES>::resized(system, &memory.steps, node, h)?;
+                    continue;
+                }
+            };
+            // Where the stiffness has no value, the length is taken.
+            let found = phase(system, [&start, &there], [h.abs(), floor])?;
+            let found = found.unwrap_or(Phase { value: wanted.abs(), slope: 1.0, ratio: 1.0 });
+            let off = (found.value / wanted.abs()).ln();
+            search.learn(h, off);
+            if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
+                let ratio = h / last;
+                // Ratios change by nearly equal factors, until the forces turn.
+                let ahead = found.ratio.min(ratio * (ratio / before).clamp(0.7, 1.4));
+                let law = Law::Reversible(Self { ahead, ratio, slope: search.slope, ..*self });
+                return Ok((end, Following { steps, h, law: Some(law) }));
+            }
+            h = search.beside(h, off);
+            guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
+        }
+        Err(failure)
+    }
+}
