@@ -438,7 +438,9 @@ fn stored_numbers_are_checked() {
 fn stored_numbers_of_a_driven_motion_are_checked() {
     let start = Driven::default().at(0.0, [1.2], [0.4]);
     let mut run = start.integrate(Gauss::<4>.adaptive(), 0.1).expect("a start");
-    (0..30).for_each(|_| drop(run.step().expect("a step")));
+    for _ in 0..30 {
+        run.step().expect("a step");
+    }
     let stored = serde_json::to_value(run.checkpoint()).expect("numbers");
     for (name, value) in [("wanted", -1.0), ("off", -1.0), ("ahead", 0.0), ("longest", 0.0)] {
         let mut changed = stored.clone();
