@@ -12,7 +12,7 @@
 //! length stays as it is while it is nearly right: then the next step starts from the stages of the last one, and from
 //! its linearization.
 //!
-//! A mode that has died out has no acceleration, and does not count.
+//! A mode that has died out has no acceleration, and does not count. If nothing else is left, its steps are resolved.
 
 use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, check_step, solved};
 use crate::error::StepError;
@@ -112,10 +112,10 @@ impl Decaying {
         if !self.is_set && (defect >= self.wanted || self.wanted < least) {
             return Ok(Self { wanted: self.wanted.max(defect), ..self });
         }
-        let wanted = if self.is_set { self.wanted } else { self.wanted.min(RESOLVED * v) };
-        // A faster motion has larger roundings.
-        let off = defect / wanted.max(least);
-        let law = Self { wanted, is_set: true, off, ahead: self.ahead::<STAGES>(off), ..self };
+        // A faster motion has larger roundings, and what is left of one that has died out is resolved.
+        let most = self.wanted.max(least).min(RESOLVED * v);
+        let off = if defect == 0.0 { 0.0 } else { defect / most };
+        let law = Self { is_set: true, off, ahead: self.ahead::<STAGES>(off), ..self };
         // False for NaN.
         if off <= LARGEST { Ok(law) } else { Err(off) }
     }
