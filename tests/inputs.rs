@@ -11,7 +11,7 @@ use vi_core::{Lagrangian, SVector};
 
 lagrangian! {
     /// Two masses between three springs that grow stiffer. One input is a force, one a field in the potential, and one
-    /// acts on nothing.
+    /// has no effect.
     struct Springs {
         param m = 1.3, k = 2.1;
         input push = 0.0;

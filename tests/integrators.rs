@@ -74,7 +74,7 @@ fn times_behind_or_beyond_all_are_typed_errors() {
 fn rising<M: Method<S, 1>, S: Lagrangian<1> + Copy>(mut run: Run<M, S, 1>, end: f64) -> Vec<f64> {
     let events = Event::rising(|s| s.q[0]);
     let found: Vec<_> = run.events(&events, end).map(|crossing| crossing.expect("solvable")).collect();
-    assert_eq!(run.t().to_bits(), end.to_bits(), "the run ends where it is told to");
+    assert_eq!(run.t().to_bits(), end.to_bits(), "the run ends at the given time");
     for crossing in &found {
         assert!(crossing.events == [Met { event: 0, is_rising: true }] && crossing.v[0] > 0.0);
         // 5.6e-17.

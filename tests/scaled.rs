@@ -141,7 +141,7 @@ fn order<const S: usize>(longest: f64, tolerance: f64) {
             (dtau, (reached.q - exact.q).amax().max((reached.p - exact.p).amax()))
         })
         .collect();
-    assert_order_of(S, "scaled time", &points, tolerance);
+    assert_order_of(S, "transformed time", &points, tolerance);
 }
 
 #[test]

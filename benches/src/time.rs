@@ -2,7 +2,7 @@
 //!
 //! In: a contest. Out: nanoseconds per step and the ratio to the generated stepper, as medians with quartiles. In every round
 //! each entry runs once from its start, so that a slower machine slows all of them; ratios are taken inside
-//! a round. Time is that of the thread where the system tells it.
+//! a round. Time is thread time if the system reports it.
 
 use crate::contest::{Contest, Entry};
 use std::hint::black_box;

@@ -375,7 +375,7 @@ fn hunt_scaled<Y: Convertible<N> + FixedStepping<N> + TimeScale<N>, const N: usi
     fn by<Y: Convertible<N> + FixedStepping<N> + TimeScale<N>, const N: usize, const S: usize>(scene: &Scene<Y, N>) {
         let judge = Judge { system: &scene.system, tableau: Tableau::<S>::new(), is_scaled: true, shift: None };
         let begin = |state, dtau| scene.system.at_state(state).integrate(Gauss::<S>.in_transformed_time(), dtau);
-        hunted(scene, "steps in scaled time", &judge, begin, |run| (run.dtau(), run.residual()));
+        hunted(scene, "steps in transformed time", &judge, begin, |run| (run.dtau(), run.residual()));
     }
     by::<_, N, 2>(scene);
     by::<_, N, 5>(scene);

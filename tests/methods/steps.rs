@@ -24,7 +24,8 @@ fn failing(case: &Case) -> Result<Box<dyn Simulation>, String> {
     found.next().ok_or_else(|| "every step has a solution".into())
 }
 
-/// After a failed step the node is that before, and the error repeats until a single step or another state leads on.
+/// After a failed step the node is the one before it, and the error repeats until a single step or another
+/// state ends it.
 fn latched_error(case: &Case) -> Result<(), String> {
     let mut run = failing(case)?;
     let before = Node::of(&*run);

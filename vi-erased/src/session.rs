@@ -1,4 +1,4 @@
-//! A run in the hands of a program: the functions of a [`Session`].
+//! A run that a program controls: the functions of a [`Session`].
 
 #[cfg(feature = "derivatives")]
 use crate::control::Linear;

@@ -375,7 +375,7 @@ impl<T: Scalar> Phase<T> {
         let numbers = [self.law_density, self.density_next, self.gap];
         match numbers.iter().find(|number| !number.is_finite()) {
             Some(number) => {
-                let (input, allowed) = ("a number of the fixed steps under way", "finite");
+                let (input, allowed) = ("a number of the current fallback", "finite");
                 Err(StepError::InvalidInput { input, allowed, value: number.to_f64() })
             }
             None => Ok(()),

@@ -124,7 +124,7 @@ impl Splitting {
     /// All splittings, by order and number of forces.
     pub const ALL: [Self; 4] = [Self::VERLET, Self::BLANES_MOAN_4, Self::BLANES_MOAN_6_SHORT, Self::BLANES_MOAN_6];
 
-    /// A number that tells weights apart.
+    /// A number that differs between sets of weights.
     fn fingerprint(&self) -> f64 {
         self.kicks.iter().chain(&[1.0]).chain(self.drifts).fold(0.0, |sum, weight| 0.7 * sum + weight)
     }

@@ -115,7 +115,7 @@ fn a_linkage_that_is_too_short_stays_open() {
     assert!(gap > 0.1 && gap < 0.5 && residual > 0.0, "{failure}");
     let text = failure.to_string();
     assert!(text.contains(constraint) && text.contains("gap") && text.contains("anchors"), "{text}");
-    // All links in line: nothing tells them where to bend.
+    // All links in line: no side to bend to is preferred.
     let flat = State::assembled(&FourBar::default(), 0.0, [0.5, 0.0, 1.0, 0.0], [0.0; 4]);
     assert!(matches!(flat, Err(StepError::Singular { .. })), "{flat:?}");
     let lost = State::assembled(&FourBar::default(), 0.0, [f64::NAN, 0.0, 1.0, 0.0], [0.0; 4]);

@@ -45,7 +45,7 @@ fn a_run_without_a_shift_ends_where_the_density_vanishes() {
     assert!(before * after < 0.0, "{before} {after}");
     // The same error again, and the state stays.
     assert_eq!((run.step(), run.state()), (Err(failure), last));
-    // Its advice leads on.
+    // The run continues with the shift that the error names.
     let measured = pendulum::<1>(0.01).with_shift_from(2.1).unwrap_or_else(|error| panic!("{error}"));
     // Twice the largest |D|, at the turning points. Measured: 241.4.
     assert!(measured.shift() > 240.0 && measured.shift() < 243.0, "{}", measured.shift());

@@ -36,7 +36,8 @@ pub(super) fn section(atlas: &mut Atlas, catalogue: &Catalogue) -> Result<(), Fa
     let caption = "Two stages: up to π/2.";
     let labels = Labels { name: "orders-2", title: "Pendulum, order 4", caption };
     atlas.map(labels, &grid, line("a = π/2", FRAC_PI_2), |angle, h| class(2, None, angle, h))?;
-    let caption = "Three stages: up to 0.81. Of the shortest steps the energy tells no length: degenerate.";
+    let caption =
+        "Three stages: up to 0.81. For the shortest steps rounding would dominate the computed length: degenerate.";
     let labels = Labels { name: "orders-3", title: "Pendulum, order 6", caption };
     atlas.map(labels, &grid, line("a = 0.81", 0.81), |angle, h| class(3, None, angle, h))?;
     let caption = "Two stages with a shift of twice the largest |<i>D</i><sub>2</sub>| of the first 25 units of time: the step exists \

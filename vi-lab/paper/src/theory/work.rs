@@ -17,8 +17,8 @@ use vi_systems::Kepler;
 
 /// Periods of a run; the error is that of the last.
 const PERIODS: f64 = 10.0;
-/// The longest step of a ladder, for orders 2, 4 and 6, and the rungs, each half of the one above: of shorter steps of order 6 the energy
-/// tells no length.
+/// The longest step of a ladder, for orders 2, 4 and 6, and the rungs, each half of the one above: for shorter steps of
+/// order 6 rounding would dominate the computed length.
 const LONGEST: [f64; 3] = [0.02, 0.16, 0.48];
 const RUNGS: [i32; 3] = [5, 5, 4];
 /// The error at which work is compared.

@@ -297,9 +297,9 @@ fn narrow_change(pool: &Pool<Symbol>, condition: Expr, pair: u32, parameters: &[
     Some(symbols.into_iter().zip(start.into_iter().zip(end).map(|(start, end)| [start, end])).collect())
 }
 
-/// The absolute difference of two expressions at a point where a condition changes its sign, the largest one around it,
-/// and the size of both; `None` if the condition does not change its sign between the two points of this pair, or if a
-/// value is not finite. Symbols without `ends` have those of the pair.
+/// Two expressions where a condition changes its sign: their absolute difference there, their largest absolute
+/// difference around that point, and the size of both. `None` if the condition does not change its sign between the two
+/// points of this pair, or if a value is not finite. Symbols without `ends` have those of the pair.
 fn border(
     pool: &Pool<Symbol>,
     condition: Expr,
