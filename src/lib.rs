@@ -4,6 +4,9 @@
 #[doc = include_str!("../docs/dsl.md")]
 pub mod dsl {}
 
+#[doc = include_str!("../docs/reference.md")]
+pub mod reference {}
+
 #[doc = include_str!("../docs/choosing.md")]
 pub mod choosing {}
 

@@ -1,14 +1,14 @@
-//! The mistakes in the language reference `docs/dsl.md`: each block that must not compile fails with the error and on
+//! The mistakes in `docs/dsl.md` and `docs/reference.md`: each block that must not compile fails with the error and on
 //! the line of its comment. (Doctests check that the other blocks run, and that these fail.)
 
 use proc_macro2::TokenStream;
 use vi_codegen::syntax;
 
-const REFERENCE: &str = include_str!("../../../docs/dsl.md");
+const PAGES: [&str; 2] = [include_str!("../../../docs/dsl.md"), include_str!("../../../docs/reference.md")];
 
 /// The errors of a system: (line, error, help).
 fn errors(body: &str) -> Vec<(usize, String, String)> {
-    let tokens: TokenStream = body.parse().expect("a block of the reference is made of Rust tokens");
+    let tokens: TokenStream = body.parse().expect("a block is made of Rust tokens");
     let result = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).map(|_| ());
     let errors = result.expect_err("a block that is marked so does not compile");
     let split = |error: syn::Error| {
@@ -21,7 +21,7 @@ fn errors(body: &str) -> Vec<(usize, String, String)> {
 
 #[test]
 fn every_shown_mistake_is_reported_at_its_comment() {
-    let blocks: Vec<&str> = REFERENCE.split("```rust,compile_fail\n").skip(1).collect();
+    let blocks: Vec<&str> = PAGES.iter().flat_map(|page| page.split("```rust,compile_fail\n").skip(1)).collect();
     assert!(blocks.len() >= 7, "{} blocks", blocks.len());
     for block in blocks {
         let block = block.split("```").next().expect("a block");

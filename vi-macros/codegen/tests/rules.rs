@@ -111,7 +111,7 @@ fn names_and_markers_of_the_table_are_distinct() {
 /// The language reference names every built-in rule with its line.
 #[test]
 fn the_reference_lists_the_table() {
-    let reference = include_str!("../../../docs/dsl.md");
+    let reference = include_str!("../../../docs/reference.md");
     for rule in &RULES {
         assert!(reference.contains(&format!("| `{}` |", rule.name)), "{}", rule.name);
     }
