@@ -92,10 +92,6 @@ def places():
         "cost of energy": times([ns[energy[name]][generated] / ns[fixed[name]][generated] for name in energy]),
         "cost of an ensemble": f"1/{math.floor(max(gains) + 0.5)} to 1/{math.floor(min(gains) + 0.5)}",
         "gain of an ensemble": f"{math.floor(min(gains) + 0.5)} to {math.floor(max(gains) + 0.5)}",
-        "ensembles": table(
-            ["", "double well", "Kepler", "double pendulum", "triple pendulum"],
-            [["ns", *(short(ns[contest][ensemble]) for contest in fixed.values())]],
-        ),
         **{f"cost of {name}": times(methods[name]) for name in ("gauss", "transformed gauss", "energy gauss")},
         "cost of a force": f"{min(methods['force']):.1f} to {max(methods['force']):.1f}",
         "links 40": micro(links["40"]),
