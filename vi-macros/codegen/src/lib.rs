@@ -11,15 +11,11 @@
 //! parsing run once for each declared rule. A large system takes another path: [`indexed`] replaces the stages from
 //! `discrete` to `program`.
 
-mod arrays;
-mod constraints;
 mod derived;
 pub mod discrete;
 pub mod emit;
 pub mod file;
 pub mod findings;
-pub mod functions;
-mod habits;
 mod header;
 pub mod indexed;
 #[cfg(feature = "inspect")]

@@ -41,7 +41,7 @@ pub fn terms(pool: &mut Pool<Symbol>, model: &mut Model) -> Result<Vec<Term>> {
         terms.push(Term { value, force, energy, operations_without });
     }
     model.lagrangian = whole;
-    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge(found)))?;
+    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge { size: found }))?;
     Ok(terms)
 }
 

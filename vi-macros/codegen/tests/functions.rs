@@ -1,5 +1,6 @@
 //! Functions, tables and conditions: what they become, and the messages for mistakes.
 
+use crate::messages::{case, errors};
 use proc_macro2::TokenStream;
 use vi_codegen::syntax;
 
@@ -16,25 +17,11 @@ fn lagrangian(body: &str) -> String {
     derived.pool.render(derived.model.lagrangian, &|symbol| derived.model.spell(symbol))
 }
 
-/// The only error of a body: its token and its text.
-fn mistake(body: &str) -> (String, String) {
-    let plain = format!("struct System {{ {} }}", body.replace(['«', '»'], ""));
-    let tokens: TokenStream = plain.parse().unwrap_or_else(|error| panic!("{plain}: {error}"));
-    let result = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).map(|_| ());
-    let Err(error) = result else { panic!("no mistake in {plain}") };
-    let found: Vec<_> = error.into_iter().map(|error| (error.span().source_text(), error.to_string())).collect();
-    assert_eq!(found.len(), 1, "{plain}\n{found:#?}");
-    let (token, text) = found.into_iter().next().unwrap_or_default();
-    (token.unwrap_or_default(), text)
-}
-
-/// The marked token is underlined, and the message starts with this text.
-fn case(body: &str, message: &str) {
-    let marked = body.split_once('«').and_then(|(_, rest)| rest.split_once('»')).map_or("System", |(token, _)| token);
-    let (token, text) = mistake(body);
-    assert_eq!(token, marked, "{body}\n{text}");
-    assert!(text.starts_with(message), "{body}\nsays: {text}\nnot:  {message}");
-    println!("{body}\n    at `{token}`: {text}\n");
+/// The text of the only error of a body.
+fn mistake(body: &str) -> String {
+    let found = errors(&format!("struct System {{ {body} }}"));
+    let [(_, text)] = &found[..] else { panic!("one mistake in {body}: {found:#?}") };
+    text.clone()
 }
 
 #[test]
@@ -116,46 +103,6 @@ fn functions_of_rust_and_tables_are_opaque() {
     assert_eq!(lagrangian(body), "cl(1)*dot(x)^2");
 }
 
-#[test]
-fn mistakes_in_functions() {
-    let rest = "coord x; L = dot(x)^2 / 2 - g(x);";
-    case(&format!("fn «g»() = 1; {rest}"), "`g` is declared without arguments\nhelp: write its arguments");
-    case(&format!("fn «g» = 1; {rest}"), "`g` is declared without arguments\nhelp: write its arguments");
-    case("fn g(a, «a») = a; coord x; L = dot(x)^2 / 2 - g(x, 1);", "the name `a` is declared twice");
-    case("fn g(a) = a * «b»; coord x; L = dot(x)^2 / 2 - g(x);", "unknown name `b`\nhelp: declare it");
-    case(
-        "fn g(a, b) = a * b; coord x; L = dot(x)^2 / 2 - «g»(x);",
-        "`g` takes 2 arguments, not 1\nhelp: write `g(a, b)`",
-    );
-    case(
-        "fn g(a, b) = crate::g; coord x; L = dot(x)^2 / 2 - «g»(x);",
-        "`g` takes 2 arguments, not 1\nhelp: write `g(a, b)`",
-    );
-    case(
-        "fn «g»(a, b, c, d) = crate::g; coord x; L = dot(x)^2 / 2 - g(x, 1, 2, 3);",
-        "`g` has more than 3 arguments\nhelp: declare several",
-    );
-    case(
-        "fn g(a) = «g»(a - 1) * a; coord x; L = dot(x)^2 / 2 - g(x);",
-        "`g` calls itself\nhelp: write the expression without recursion",
-    );
-    case("fn g(a) = k(a); fn k(a) = «g»(a); coord x; L = dot(x)^2 / 2 - g(x);", "`g` calls itself");
-    case("fn «g»(a) = a; coord x; L = dot(x)^2 / 2;", "`g` is never used\nhelp: use it in `L`");
-    case("fn g(a) = a; coord x; L = dot(x)^2 / 2 - «g» * x;", "`g` is a function\nhelp: write its argument: `g(…)`");
-    case("fn g(a) = a; coord «g», x; L = dot(x)^2 / 2 - x;", "the name `g` is declared twice");
-    case("coord x; fn a(u) = u * «w»; fn b(w) = a(3) * w; L = dot(x)^2 / 2 - b(x);", "unknown name `w`");
-    case("fn g(a) = a * «i»; coord q[2]; L = sum(i in 0..2, dot(q[i])^2 / 2 - g(q[i]));", "unknown name `i`");
-    case(
-        "«extern» fn cl(a); coord x; L = dot(x)^2 / 2;",
-        "unknown clause `extern`\nhelp: write `fn cl(a) = crate::aero::cl;`",
-    );
-    let typed = "`g` is declared with types or braces\nhelp: write `fn g(a) = …;`: arguments and values are numbers";
-    case("fn g(a«:» f64) -> f64 { a } coord x; L = dot(x)^2 / 2;", typed);
-    case("fn g(a) «-»> f64 { a } coord x; L = dot(x)^2 / 2;", typed);
-    case("fn g(a) «{» a } coord x; L = dot(x)^2 / 2;", typed);
-    case("fn «g»: (a) = a; coord x; L = dot(x)^2 / 2;", "`g` is declared without arguments");
-}
-
 /// A comparison of indices is decided where it stands: the other value need not exist.
 #[test]
 fn conditions_on_indices_are_decided_at_once() {
@@ -166,28 +113,6 @@ fn conditions_on_indices_are_decided_at_once() {
     assert_eq!(first, system("(q[0]^2 + sum(i in 1..N, (q[i] - q[i - 1])^2))"));
     assert_eq!(system("if 2 <= 1 { q[7] } else { q[0] }"), system("q[0]"));
     assert_eq!(system("if pi > 3 { q[1] } else { q[0] }"), system("q[1]"));
-}
-
-#[test]
-fn mistakes_in_conditions() {
-    let potential = |written: &str, message: &str| case(&format!("coord x; L = dot(x)^2 / 2 - {written};"), message);
-    potential("«if» x > 0 { x }", "`if` needs two values in braces\nhelp: write `if a > b { x } else { y }`");
-    potential("if x «=»= 0 { x } else { 0 }", "`if` needs one comparison by `>`, `>=`, `<` or `<=`");
-    potential(
-        "if x > 0 «&»& x < 1 { x } else { 0 }",
-        "`if` needs one comparison by `>`, `>=`, `<` or `<=`\nhelp: write `if a > b { x } else { y }`",
-    );
-    potential("«if» (x) { x } else { 0 }", "`if` needs one comparison by `>`, `>=`, `<` or `<=`");
-    potential("if (x > 0 «&»& x < 1) { x } else { 0 }", "`if` needs one comparison by `>`, `>=`, `<` or `<=`");
-    potential("if (x > 0) «&»& (x < 1) { x } else { 0 }", "`if` needs one comparison by `>`, `>=`, `<` or `<=`");
-    potential("«max»(x)", "`max` takes two arguments or more, not 1\nhelp: write `max(a, b)`");
-    potential("«clamp»(x, 1)", "`clamp` takes 3 arguments, not 2\nhelp: write `clamp(x, a, b)`");
-    potential("«max» * x", "unknown name `max`");
-    potential("(x^2 «if» x > 0 else 0)", "`if` needs two values in braces\nhelp: write `if a > b { x } else { y }`");
-    let piecewise = "unknown function `Piecewise`\nhelp: write `if a > b { x } else { y }`";
-    potential("«Piecewise»((x^2, x > 0), (0, 1))", piecewise);
-    potential("«select»(x > 0, x, 0)", "unknown function `select`\nhelp: write `if a > b { x } else { y }`");
-    potential("«\"x\"»", "a text is no number\nhelp: write `table drag(v) = \"drag.csv\";`");
 }
 
 /// An L that jumps is refused; a kink, and a jump of a force, are not.
@@ -348,13 +273,13 @@ fn files_of_tables() {
         ("j.csv", "\u{0}PNG", "the table `g` has no numbers in its file"),
         ("k.csv", "0,1\n0,2\n", "the table `g` has the place 0 after 0"),
     ] {
-        let (_, text) = mistake(&table("a", name, content));
+        let text = mistake(&table("a", name, content));
         assert!(text.starts_with(message), "{name}: {text}");
     }
     // What is in a file that is no table stays in it.
-    let secret = mistake(&table("a", "secret.csv", "root:x:0\ntoken=hidden\n")).1;
+    let secret = mistake(&table("a", "secret.csv", "root:x:0\ntoken=hidden\n"));
     assert!(!secret.contains("hidden") && !secret.contains("root"), "{secret}");
-    let grid = mistake(&table("a, b", "corner.csv", "x/y,0,one\n0,1,2\n")).1;
+    let grid = mistake(&table("a, b", "corner.csv", "x/y,0,one\n0,1,2\n"));
     assert!(grid.starts_with("the table `g` has no finite number in column 3 of line 1"), "{grid}");
 }
 
@@ -453,7 +378,7 @@ fn a_text_alone_has_the_language_only() {
 
 #[test]
 fn a_missing_file_is_sought_where_its_path_starts() {
-    let said = |path: &str| mistake(&format!("coord x; table g(a) = \"{path}\"; L = dot(x)^2 / 2 - g(x);")).1;
+    let said = |path: &str| mistake(&format!("coord x; table g(a) = \"{path}\"; L = dot(x)^2 / 2 - g(x);"));
     assert!(said("none.csv").ends_with("write a path that starts at the folder of `Cargo.toml`"));
     let absolute = std::env::temp_dir().join("none.csv");
     assert!(said(&absolute.display().to_string()).ends_with("write a path of a file that exists"));

@@ -2,9 +2,7 @@
 
 mod angles;
 mod arbitrary;
-mod array_messages;
 mod constants;
-mod constraint_messages;
 mod constraints;
 mod effort;
 mod families;

@@ -26,7 +26,7 @@ const CHARACTERS: usize = 100;
 /// name.
 pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> {
     let mut fields = Fields::new(pool, model);
-    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
+    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { size: found });
     let continuous = continuous::continuous(pool, &mut fields, model).map_err(too_large)?;
     check_derivatives(pool, &fields, &continuous, model)?;
     let constraints = constraints::constraints(pool, model).map_err(too_large)?;
@@ -43,7 +43,7 @@ pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> 
 
 /// Discretizes a model with a rule.
 fn by_rule(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model, rule: &Rule) -> Result<ByRule> {
-    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
+    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { size: found });
     let known = known_rule(pool, model, rule)?;
     let slots = slots::slots(pool, fields, model, rule).map_err(too_large)?;
     bounded(pool).map_err(too_large)?;
@@ -61,7 +61,7 @@ fn check_derivatives(pool: &mut Pool<Symbol>, fields: &Fields, continuous: &Cont
         (None, Some((whole, by))) => (model.name.span(), whole, by),
         (None, None) => return Ok(()),
     };
-    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge(found)))?;
+    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge { size: found }))?;
     let by = Symbol::Continuous(by);
     let part = pool.reachable(&[whole]).into_iter().find(|part| {
         let slope = pool.derivative(*part, &mut |pool, symbol| if *symbol == by { pool.one() } else { pool.zero() });
@@ -76,7 +76,7 @@ fn check_constraints(pool: &mut Pool<Symbol>, found: Option<&Constraints>, model
     let Some(constraint) = found.and_then(|found| found.undefined(pool)).map(|index| &model.constraints[index]) else {
         return Ok(());
     };
-    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge(found)))?;
+    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge { size: found }))?;
     let expression = pool.render_within(CHARACTERS, constraint.value, &|symbol| model.spell(symbol));
     let by = "a coordinate or the time".to_owned();
     Err(error(constraint.name.span(), &Message::NoDerivative { expression, by }))

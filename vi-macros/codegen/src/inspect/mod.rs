@@ -30,7 +30,7 @@ mod program;
 pub mod report;
 pub mod source;
 mod syntax;
-mod unreadable;
+pub(crate) mod unreadable;
 
 pub use explanation::{Explanation, Line, Section};
 

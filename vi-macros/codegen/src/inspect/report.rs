@@ -3,7 +3,7 @@
 //! In: the text of a file and its mistakes. Out: per mistake the message, file:line:column, the line with carets under
 //! the token, and the help.
 
-use super::unreadable::{self, Unreadable};
+use super::unreadable;
 use proc_macro2::LineColumn;
 use std::fmt::Write as _;
 
@@ -34,7 +34,7 @@ pub fn mistakes(error: &syn::Error) -> Vec<Mistake> {
 #[must_use]
 pub fn first_unreadable(text: &str, error: &syn::Error) -> Mistake {
     match unreadable::unreadable(text) {
-        Some(Unreadable { place, message }) => Mistake::new(&message, [place, place]),
+        Some((place, message)) => Mistake::new(&message.text(), [place, place]),
         None => Mistake::of(error),
     }
 }

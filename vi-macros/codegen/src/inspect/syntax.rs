@@ -2,7 +2,7 @@
 //!
 //! In: a [`System`] as written. Out: its clauses by kind, with exact numbers and the necessary parentheses.
 
-use crate::arrays::bracketed;
+use crate::messages::bracketed;
 use crate::syntax::{
     Body, Comparison, Constant, Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range,
     System, Table, TableArgument, TableData,

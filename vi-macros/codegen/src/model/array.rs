@@ -3,8 +3,7 @@
 //! In: entries, one by one and in order. Out: an entry, a row, or the whole array as a vector or a matrix.
 
 use super::value::{Tensor, Value};
-use crate::arrays::{ArrayMistake, bracketed};
-use crate::messages::{Message, error};
+use crate::messages::{ArrayMistake, Message, bracketed, error};
 use core::ops::Range;
 use proc_macro2::Span;
 use syn::Result;

@@ -10,10 +10,8 @@ use super::{
     Coordinate, Function, Model, Parameter, Rule, angles, check_state, constraint, force, function, indices, lets,
     mass, rule, smoothness, time_scale, timeless,
 };
-use crate::arrays::ArrayMistake;
-use crate::functions::FunctionMistake;
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
-use crate::messages::{Absence, Message, error};
+use crate::messages::{Absence, ArrayMistake, FunctionMistake, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{self, Constant, Definition, Expression, System};
 use proc_macro2::Ident;
@@ -125,7 +123,7 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
         mass::check(pool, (&coordinates, &parameters), (lagrangian, lagrangian_span), &rows)
     };
     // Values from an exhausted pool are meaningless.
-    bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
+    bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge { size: found }))?;
     let mut model = Model {
         attributes: system.attributes.clone(),
         visibility: system.visibility.clone(),
@@ -146,7 +144,7 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
         check_state,
     };
     let dependent = constraint::check(pool, &model);
-    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge(found)))?;
+    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge { size: found }))?;
     // A derivative with a jump is no derivative.
     constraint::check_smoothness(pool, &model)?;
     dependent?;

@@ -5,9 +5,7 @@
 
 use super::scope::Scope;
 use super::value::Value;
-use crate::arrays::ArrayMistake;
-use crate::functions::FunctionMistake;
-use crate::messages::{Message, error};
+use crate::messages::{ArrayMistake, FunctionMistake, Message, error};
 use crate::symbol::Symbol;
 use crate::syntax::{Comparison, Expression};
 use core::cmp::Ordering;

@@ -22,10 +22,8 @@ use super::scope::{Meaning, Scope};
 use super::smoothness::{jump, with_conditions};
 use super::value::Value;
 use super::{Constraint, Coordinate, FunctionKind, Model, Parameter, TableKind, indices, mobility};
-use crate::arrays::bracketed;
-use crate::constraints::ConstraintMistake;
 use crate::limits::bounded;
-use crate::messages::{Errors, Message, error};
+use crate::messages::{ConstraintMistake, Errors, Message, bracketed, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Expression, Kind, Operator, System};
 use num_integer::Integer;
@@ -472,7 +470,7 @@ pub(super) fn check_smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Result
                 return Err(mistake(ConstraintMistake::Jump { name, condition }));
             }
         }
-        bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge(found)))?;
+        bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge { size: found }))?;
     }
     Ok(())
 }

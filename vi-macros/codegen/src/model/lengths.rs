@@ -4,8 +4,7 @@
 
 use super::context::Context;
 use super::value::Value;
-use crate::arrays::{ArrayMistake, bracketed};
-use crate::messages::Message;
+use crate::messages::{ArrayMistake, Message, bracketed};
 use crate::syntax::{self, Expression, Kind};
 use proc_macro2::{Ident, Span};
 use vi_expr::{Expr, NoConstant};

@@ -11,7 +11,7 @@ use super::array::{Array, Entry};
 use super::context::Context;
 use super::scope::{Growing, Meaning, Scope};
 use super::value::{Value, index_text};
-use crate::arrays::bracketed;
+use crate::messages::bracketed;
 use crate::symbol::{LetEntry, Symbol, Variable};
 use crate::syntax::{Definition, Indices};
 use proc_macro2::Span;

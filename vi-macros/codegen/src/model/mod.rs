@@ -42,7 +42,7 @@ pub use rule::{DiscreteForces, Rule};
 pub use smoothness::Smoothness;
 pub use table::{Outside, Table, TableKind, Values};
 
-use crate::arrays::bracketed;
+use crate::messages::bracketed;
 use crate::symbol::{LetEntry, Symbol};
 use proc_macro2::{Ident, Span};
 use vi_expr::{Expr, Node, Pool};

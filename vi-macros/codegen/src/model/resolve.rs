@@ -10,11 +10,8 @@ use super::point::Point;
 use super::scope::{Meaning, Scope};
 use super::value::{Value, brackets, not_a_number, spelled};
 use super::vector;
-use crate::arrays::ArrayMistake;
-use crate::constraints::ConstraintMistake;
-use crate::habits::Habit;
 use crate::limits::bounded;
-use crate::messages::{Errors, Message, error, nearest};
+use crate::messages::{ArrayMistake, ConstraintMistake, Errors, Habit, Message, error, nearest};
 use crate::symbol::{Field, Quantity, Symbol, Variable};
 use crate::syntax::{Expression, Kind, Operator, Range};
 use core::cmp::Ordering;
@@ -481,7 +478,7 @@ fn decided(pool: &Pool<Symbol>, written: &Expression, value: Value) -> Result<Va
             entry
         })
     });
-    bounded(pool).map_err(|found| error(written.span, &Message::TooLarge(found)))?;
+    bounded(pool).map_err(|found| error(written.span, &Message::TooLarge { size: found }))?;
     if value.entries().iter().any(|entry| pool.is_undefined(*entry)) {
         return Err(error(written.span, &Message::NoValue));
     }

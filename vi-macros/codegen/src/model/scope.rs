@@ -8,9 +8,7 @@ use super::function::Called;
 use super::lets::LetArray;
 use super::point::Point;
 use super::vector;
-use crate::functions::FunctionMistake;
-use crate::habits::{self, Habit};
-use crate::messages::{Absence, Message, error, nearest};
+use crate::messages::{Absence, FunctionMistake, Habit, Message, error, nearest, words};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::{Ident, Span};
 use std::cell::RefCell;
@@ -355,7 +353,7 @@ impl Scope {
     /// The coordinate in the name of a velocity: `x` of `xdot`, `x_dot`, `dot_x`, `v_x`, `vx`, `dx` and `ẋ`; `q[…]` of
     /// an array.
     pub(super) fn coordinate_of_velocity(&self, name: &str) -> Option<String> {
-        let undotted = habits::without_dots(name, 1);
+        let undotted = words::without_dots(name, 1);
         let behind = ["_dot", "dot"].into_iter().filter_map(|ending| name.strip_suffix(ending));
         let before = ["dot_", "dot", "v_", "v", "d_", "d"];
         let before = before.into_iter().filter_map(|beginning| name.strip_prefix(beginning));
@@ -364,14 +362,14 @@ impl Scope {
 
     /// The coordinate in the name of an acceleration: `x` of `xddot`, `x_ddot`, `x_tt` and `ẍ`.
     pub(super) fn coordinate_of_acceleration(&self, name: &str) -> Option<String> {
-        let undotted = habits::without_dots(name, 2);
+        let undotted = words::without_dots(name, 2);
         let behind = ["_ddot", "ddot", "_tt"].into_iter().filter_map(|ending| name.strip_suffix(ending));
         behind.chain(undotted.as_deref()).find_map(|stem| self.coordinate(stem))
     }
 
     /// The coordinate with this name, Greek letters as such or spelt out; `q[…]` of an array.
     fn coordinate(&self, name: &str) -> Option<String> {
-        let other = habits::other_alphabet(name);
+        let other = words::other_alphabet(name);
         [Some(name), other.as_deref()].into_iter().flatten().find_map(|name| match self.meaning(name) {
             Some(Meaning::Coordinate(_)) => Some(name.to_owned()),
             Some(Meaning::Coordinates { .. }) => Some(format!("{name}[…]")),
@@ -425,7 +423,7 @@ impl Scope {
             matches!(meaning, Meaning::OfState | Meaning::Moving | Meaning::Dot | Meaning::Constraint)
         };
         let is_meant = |known: &str| !self.meaning(known).is_some_and(is_no_value);
-        let other = habits::other_alphabet(name).filter(|other| self.names.contains_key(other) && is_meant(other));
+        let other = words::other_alphabet(name).filter(|other| self.names.contains_key(other) && is_meant(other));
         other.or_else(|| self.near_of(pool, name, is_meant))
     }
 

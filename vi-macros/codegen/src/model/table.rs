@@ -6,8 +6,7 @@
 use super::Parameter;
 use super::context::Context;
 use super::scope::Meaning;
-use crate::functions::FunctionMistake;
-use crate::messages::{Message, nearest};
+use crate::messages::{FunctionMistake, Message, nearest};
 use crate::symbol::Symbol;
 use crate::syntax::{self, Expression, TableArgument, TableData};
 use proc_macro2::{Ident, Span};

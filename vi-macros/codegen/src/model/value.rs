@@ -2,10 +2,8 @@
 //!
 //! In: expressions of the pool with their shapes. Out: one expression for each entry. No later stage sees a shape.
 
-use crate::arrays::{ArrayMistake, bracketed};
-use crate::habits::Habit;
 use crate::limits::bounded;
-use crate::messages::{Message, error};
+use crate::messages::{ArrayMistake, Habit, Message, bracketed, error};
 use crate::symbol::Symbol;
 use crate::syntax::{Expression, Kind};
 use proc_macro2::Span;
@@ -189,7 +187,7 @@ fn contraction(pool: &mut Pool<Symbol>, left: &Tensor, right: &Tensor, span: Spa
     let shape: Vec<usize> = rows.iter().chain(columns).copied().collect();
     let (height, width) = (rows.iter().product::<usize>(), columns.iter().product::<usize>());
     pool.spend(height.saturating_mul(width).saturating_mul(*inner));
-    bounded(pool).map_err(|found| error(span, &Message::TooLarge(found)))?;
+    bounded(pool).map_err(|found| error(span, &Message::TooLarge { size: found }))?;
     let mut entries = Vec::with_capacity(height * width);
     for start in (0..height).map(|row| row * inner) {
         let row = left.entries.get(start..start + inner).unwrap_or_default();

@@ -24,7 +24,7 @@ use vi_expr::{Expr, Node, Pool, TooLarge};
 /// A coefficient outside the range of `f64`, at the name of the system.
 /// Operations that do not reproduce their expressions: a bug of this compiler, reported and not emitted.
 pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) -> Result<Program> {
-    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
+    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { size: found });
     let continuous = continuous(&mut Assembly::new(pool, system, &[]), system).map_err(too_large)?;
     let (mut of_slots, mut of_steps) = (Vec::new(), Vec::new());
     if let Some(rule) = &system.by_rule {

@@ -5,8 +5,7 @@
 //! comments hide nothing.
 
 use super::{Body, parse};
-use crate::functions::FunctionMistake;
-use crate::messages::{Errors, Message};
+use crate::messages::{Errors, FunctionMistake, Message};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use syn::Result;
 

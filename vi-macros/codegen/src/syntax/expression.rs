@@ -19,9 +19,7 @@
 
 use super::tokens::{DEPTH, has_bracket};
 use super::{INSIDE_BRACKETS, INSIDE_LIST, unexpected};
-use crate::functions::FunctionMistake;
-use crate::habits::Habit;
-use crate::messages::{Message, error};
+use crate::messages::{FunctionMistake, Habit, Message, error};
 use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 use proc_macro2::{Ident, Literal, Span, TokenTree};
@@ -40,7 +38,7 @@ const FIVES: u32 = 27;
 pub struct Expression {
     /// The smallest token that names it.
     pub span: Span,
-    /// What it is.
+    /// Its kind, with its parts.
     pub kind: Kind,
 }
 

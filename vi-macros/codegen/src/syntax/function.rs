@@ -11,8 +11,7 @@
 use super::expression::Expression;
 use super::tokens::{check_rust, name};
 use super::{INSIDE_LIST, unexpected};
-use crate::functions::FunctionMistake;
-use crate::messages::{Message, error};
+use crate::messages::{FunctionMistake, Message, error};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use syn::parse::ParseStream;
 use syn::{LitStr, Path, Result, Token};

@@ -10,9 +10,7 @@ use super::{
     CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression, INSIDE_BRACKETS, Indices,
     Kind, Parameter, Rule, System, clause_of,
 };
-use crate::constraints::ConstraintMistake;
-use crate::habits::{self, Habit};
-use crate::messages::{Errors, Message, bounded, error, nearest};
+use crate::messages::{ConstraintMistake, Errors, Habit, Message, bounded, error, nearest, words};
 use num_traits::Zero;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use std::collections::BTreeMap;
@@ -304,7 +302,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
                 // Or its `fn` would start another clause.
                 input.parse::<Option<Token![fn]>>()?;
             }
-            if let (true, Some(sign)) = (habits::is_constraint(found), inequality(input)) {
+            if let (true, Some(sign)) = (words::is_constraint(found), inequality(input)) {
                 return Err(error(sign, &Message::Constraint(ConstraintMistake::Inequality)));
             }
             let near = nearest(found, CLAUSES);

@@ -1,9 +1,7 @@
 //! What every clause reads: names, brackets, and tokens of Rust.
 
 use super::BRACKETS;
-use crate::arrays::ArrayMistake;
-use crate::habits::Habit;
-use crate::messages::{Message, error};
+use crate::messages::{ArrayMistake, Habit, Message, error};
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use syn::Result;
 use syn::ext::IdentExt;

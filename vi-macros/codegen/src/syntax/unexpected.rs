@@ -4,10 +4,7 @@
 //! known habit of notation, otherwise what the grammar expects.
 
 use super::{CLAUSES, INSIDE_BRACKETS, INSIDE_LIST};
-use crate::arrays::ArrayMistake;
-use crate::functions::FunctionMistake;
-use crate::habits::{self, Habit};
-use crate::messages::{Message, error};
+use crate::messages::{ArrayMistake, FunctionMistake, Habit, Message, error, words};
 use proc_macro2::{Delimiter, Span, TokenTree};
 use syn::buffer::Cursor;
 use syn::parse::ParseStream;
@@ -49,7 +46,7 @@ pub(super) fn operand(input: ParseStream) -> Error {
 /// The error for a call of a function that other languages have and this one writes without a function.
 pub(super) fn call(name: &Ident) -> Option<Error> {
     let name_of = name.to_string();
-    habits::is_condition(&name_of).then(|| error(name.span(), &Message::UnknownFunction { name: name_of, near: None }))
+    words::is_condition(&name_of).then(|| error(name.span(), &Message::UnknownFunction { name: name_of, near: None }))
 }
 
 /// The error after an expression that starts at `start`: neither an operator nor its end, which `what` names.
