@@ -35,7 +35,7 @@ pub(super) fn work(study: Study, chunks: &Arc<Chunks>, numbers: &Range<u64>) -> 
             if number >= end {
                 break;
             }
-            let follow = |item, tables: &mut [Vec<f64>]| study.follow(item, tables);
+            let follow = |item, text: &mut String| study.follow(item, text);
             let result = if shared.is_made(number) { Ok(()) } else { shared.write(number, follow) };
             if sender.send(result).is_err() {
                 break;

@@ -7,11 +7,13 @@
 use super::axis::Axis;
 use super::random::bits;
 use super::scene::Sweep;
-use super::schema::MOST;
 use crate::run::placement::Placement;
 use vi_erased::System;
 use vi_erased::plan::Plan;
 use vi_report::failure::Failure;
+
+/// Counts are below this number, so that float64 represents them exactly.
+const MOST: u64 = 1 << 53;
 
 /// All runs of a sweep.
 #[derive(Clone, Debug)]

@@ -1,15 +1,15 @@
 //! The results kept of each run, and their columns.
 //!
-//! In: the entries `keep` and `section` of a scene. Out: a [`Kept`], and the [`Schema`]s of its tables.
+//! In: the entries `keep` and `section` of a scene. Out: a [`Kept`], and the headings of its tables.
 
-use super::ending::Ending;
+use super::chunks::TABLES;
 use super::scene::{Cut, Keep, Passing, Sweep};
-use super::schema::{Column, Schema};
 use vi_erased::Row;
 use vi_erased::plan::Plan;
 use vi_erased::section::{Direction, Section};
 use vi_report::failure::Failure;
 use vi_report::numbers::short;
+use vi_report::table::csv_field;
 
 /// Minimum number of steps in a period, so that no crossing is missed.
 pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;
@@ -50,38 +50,41 @@ impl Kept {
         self.kinds.contains(&keep)
     }
 
-    /// The tables: the one with a row per run, then the others in alphabetical order.
-    pub(super) fn schemas<'a>(&self, swept: impl Iterator<Item = &'a str>, coordinates: &[&str]) -> Vec<Schema> {
-        let item = || Column::count("item");
-        let mut runs: Vec<Column> = core::iter::once(item()).chain(swept.map(Column::number)).collect();
+    /// The heading of each of [`TABLES`] that is kept.
+    pub(super) fn headings<'a>(
+        &self,
+        swept: impl Iterator<Item = &'a str>,
+        coordinates: &[&str],
+    ) -> [Option<String>; TABLES.len()] {
+        let nodes = Row::columns(coordinates, self.constraints, self.is_shifted);
+        let mut runs: Vec<String> = swept.map(str::to_owned).collect();
         if self.has(Keep::Ending) {
-            runs.extend([Column::words("ending", &Ending::WORDS), Column::count("steps")]);
+            runs.extend(["ending", "steps"].map(str::to_owned));
         }
         if self.has(Keep::Accuracy) {
-            runs.push(Column::number(STEP_ERROR));
+            runs.push(STEP_ERROR.to_owned());
         }
-        let rows = Row::columns(coordinates, self.constraints, self.is_shifted);
         if self.has(Keep::End) {
-            runs.extend(rows.iter().map(|name| Column::number(format!("end_{name}"))));
+            runs.extend(nodes.iter().map(|name| format!("end_{name}")));
         }
         if self.has(Keep::Extremes) {
             let ranged = coordinates.iter().copied().chain(["H"]);
-            runs.extend(ranged.flat_map(|name| ["min", "max"].map(|which| Column::number(format!("{which}_{name}")))));
+            runs.extend(ranged.flat_map(|name| ["min", "max"].map(|which| format!("{which}_{name}"))));
         }
         if self.has(Keep::Energy) {
-            runs.extend(["error_H", "error_E"].map(Column::number));
+            runs.extend(["error_H", "error_E"].map(str::to_owned));
         }
-        let mut schemas = vec![Schema { table: "runs".to_owned(), columns: runs }];
-        let nodes: Vec<Column> = core::iter::once(item()).chain(rows.into_iter().map(Column::number)).collect();
-        if self.section.is_some() {
-            // A crossing is not a node: it has no discrete energies and no h.
-            let columns = nodes[..nodes.len() - if self.is_shifted { 3 } else { 2 }].to_vec();
-            schemas.push(Schema { table: "section".to_owned(), columns });
-        }
-        if self.has(Keep::Series) {
-            schemas.push(Schema { table: "series".to_owned(), columns: nodes });
-        }
-        schemas
+        // A crossing is not a node: it has no discrete energies and no h.
+        let crossings = &nodes[..nodes.len() - if self.is_shifted { 3 } else { 2 }];
+        let heading = |columns: &[String]| {
+            let columns = columns.iter().map(|column| csv_field(column));
+            core::iter::once("item".to_owned()).chain(columns).collect::<Vec<_>>().join(",")
+        };
+        [
+            Some(heading(&runs)),
+            self.section.as_ref().map(|_| heading(crossings)),
+            self.has(Keep::Series).then(|| heading(&nodes)),
+        ]
     }
 
     /// A description in words.

@@ -1,12 +1,15 @@
-//! Merges the chunks of a sweep into tables.
+//! Merges the chunks of a sweep into tables, CSV files with the facts of the sweep as comments at the start.
 //!
-//! The rows are in the order of the runs. So the tables have the same bytes for any division of the sweep.
+//! The rows are in the order of the runs. So the tables have the same bytes for any division of the sweep. Rows go to
+//! temporary files, which replace the targets when all are complete. After a failure the previous files remain.
 
-use super::chunks::{Chunks, Description};
+use super::chunks::{Chunks, Description, TABLES, Tally};
 use super::keep::STEP_ERROR;
-use super::sink::{self, Target};
+use crate::place::{self, Temporary};
 use crate::run::POOR;
 use clap::Args;
+use std::fs::File;
+use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use vi_report::failure::Failure;
 
@@ -29,7 +32,7 @@ pub(crate) struct Arguments {
 /// [`Failure::Input`] if they do not contain all runs of one sweep, [`Failure::File`] if a file cannot be read or
 /// written.
 pub(crate) fn merge(arguments: &Arguments) -> Result<String, Failure> {
-    sink::check(&arguments.output)?;
+    check_output(&arguments.output)?;
     let folders = arguments.folders.iter().map(|folder| Chunks::open(folder)).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = folders.first() else { return Ok(String::new()) };
     for other in &folders {
@@ -57,68 +60,91 @@ pub(super) fn write(first: &Chunks, folders: &[Chunks], output: &Path) -> Result
         )));
     }
     let mut targets = Vec::new();
-    for schema in &description.schemas {
-        targets.push(Target::create(output, description, schema)?);
+    for (table, heading) in TABLES.into_iter().zip(&description.headings) {
+        targets
+            .extend(heading.as_ref().map(|heading| Target::create(output, description, table, heading)).transpose()?);
     }
-    let mut tally = Tally::of(description, description.items);
+    let mut tally = Tally::default();
     for number in 0..chunks {
-        let chunk = source(&number).unwrap_or(first);
-        tally.failed += chunk.read(number, &mut |table, row| {
-            tally.inaccurate.count(table, row);
-            targets[table].write(row)
+        tally += source(&number).unwrap_or(first).read(number, &mut |table, row| {
+            // A file without this table has been changed, which its checksum will show.
+            targets.iter_mut().find(|target| target.table == table).map_or(Ok(()), |target| target.write(row))
         })?;
     }
-    // All or none: no table is replaced before all are on disk.
     let files = targets.into_iter().map(Target::finish).collect::<Result<Vec<_>, _>>()?;
     for (path, file) in files {
         file.finish().map_err(|error| Failure::file(path, error))?;
     }
-    Ok(tally.summary(output))
+    Ok(summary(output, description.items, tally))
 }
 
-/// The numbers of runs, of failed runs and of inaccurate runs.
-pub(super) struct Tally {
-    runs: u64,
-    /// Those that did not reach their end.
-    pub(super) failed: u64,
-    pub(super) inaccurate: Inaccurate,
+/// The last line of output.
+pub(super) fn summary(path: &Path, runs: u64, Tally { failed, inaccurate }: Tally) -> String {
+    let runs = if runs == 1 { "1 run".to_owned() } else { format!("{runs} runs") };
+    let ended = match failed {
+        0 => "all reached their end".to_owned(),
+        _ => format!("{failed} did not reach their end"),
+    };
+    let warning = match inaccurate {
+        0 => String::new(),
+        poor => format!("; warning: {poor} have a step with an error above {POOR}, see `{STEP_ERROR}`"),
+    };
+    format!("{}: {runs}, {ended}{warning}", path.display())
 }
 
-/// Runs with a step whose error exceeds [`POOR`].
-pub(super) struct Inaccurate {
-    /// The column with the largest error of a step.
-    column: Option<usize>,
-    runs: u64,
-}
-
-impl Inaccurate {
-    /// Counts the row of a run.
-    pub(super) fn count(&mut self, table: usize, row: &[f64]) {
-        let error = self.column.filter(|_| table == 0).and_then(|column| row.get(column));
-        self.runs += u64::from(error.is_some_and(|error| *error > POOR));
+/// Checks that tables can be created at a path.
+///
+/// # Errors
+/// [`Failure::Input`] if it does not end in .csv, or no file can be created.
+pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
+    place::check_csv(path)?;
+    if path.exists() && !path.is_file() {
+        let shown = path.display();
+        return Err(Failure::Input(format!("the output `{shown}` is a pipe or a device; name a file")));
     }
+    Ok(())
 }
 
-impl Tally {
-    /// No failed runs yet, of this number.
-    pub(super) fn of(description: &Description, runs: u64) -> Self {
-        let columns = description.schemas.first().map(|schema| &schema.columns);
-        let column = columns.and_then(|columns| columns.iter().position(|column| column.name == STEP_ERROR));
-        Self { runs, failed: 0, inaccurate: Inaccurate { column, runs: 0 } }
+/// A table during writing.
+struct Target {
+    table: &'static str,
+    path: PathBuf,
+    file: BufWriter<File>,
+    temporary: Temporary,
+}
+
+impl Target {
+    /// A new table: `study.csv` for the runs, `study.series.csv` beside it for their series.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if no file can be created there, [`Failure::File`] if creating it fails.
+    fn create(output: &Path, description: &Description, table: &'static str, heading: &str) -> Result<Self, Failure> {
+        let extension = output.extension().unwrap_or_default().to_string_lossy();
+        let beside_it = || output.with_extension(format!("{table}.{extension}"));
+        let path = if table == TABLES[0] { output.to_owned() } else { beside_it() };
+        check_output(&path)?;
+        let created = Temporary::create(&path).and_then(|(temporary, file)| {
+            let mut file = BufWriter::with_capacity(1 << 16, file);
+            for (name, fact) in &description.facts {
+                writeln!(file, "# {name}: {fact}")?;
+            }
+            writeln!(file, "# runs: {}\n{heading}", description.items)?;
+            Ok((temporary, file))
+        });
+        let (temporary, file) = created.map_err(|error| Failure::file(&path, error))?;
+        Ok(Self { table, path, file, temporary })
     }
 
-    /// The last line of output.
-    pub(super) fn summary(&self, path: &Path) -> String {
-        let Self { runs, failed, inaccurate, .. } = self;
-        let ended = match failed {
-            0 => "all reached their end".to_owned(),
-            _ => format!("{failed} did not reach their end"),
-        };
-        let warning = match inaccurate.runs {
-            0 => String::new(),
-            poor => format!("; warning: {poor} have a step with an error above {POOR}, see `{STEP_ERROR}`"),
-        };
-        let runs = if *runs == 1 { "1 run".to_owned() } else { format!("{runs} runs") };
-        format!("{}: {runs}, {ended}{warning}", path.display())
+    /// Adds a row, with its line end.
+    fn write(&mut self, row: &str) -> Result<(), Failure> {
+        self.file.write_all(row.as_bytes()).map_err(|error| Failure::file(&self.path, error))
+    }
+
+    /// Completes the file, which [`Temporary::finish`] then moves to its target.
+    fn finish(self) -> Result<(PathBuf, Temporary), Failure> {
+        let Self { path, file, temporary, .. } = self;
+        let written = file.into_inner().map_err(io::IntoInnerError::into_error).and_then(|file| file.sync_all());
+        written.map_err(|error| Failure::file(&path, error))?;
+        Ok((path, temporary))
     }
 }

@@ -9,30 +9,26 @@
 //! |---|---|
 //! | [`scene`] | the table in the scene file |
 //! | [`axis`], [`random`], [`items`] | the runs |
-//! | [`keep`], [`schema`], [`ending`] | results of each run, and their columns |
+//! | [`keep`] | results of each run, and their columns |
 //! | [`study`], [`outcome`] | from a run to rows |
 //! | [`shard`], [`crew`], [`chunks`] | the chunks of this process, its threads, their files |
-//! | [`merge`], [`sink`] | from chunks to tables |
+//! | [`merge`] | from chunks to tables |
 
 mod axis;
 mod chunks;
 mod crew;
-mod ending;
 pub(crate) mod items;
 mod keep;
 pub(crate) mod merge;
 mod outcome;
 mod random;
 pub(crate) mod scene;
-mod schema;
 mod shard;
-mod sink;
 mod study;
 
 use crate::place::{sync_folder, with_extension};
-use chunks::Chunks;
+use chunks::{Chunks, Tally};
 use clap::Args;
-use merge::Tally;
 use shard::Shard;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -78,7 +74,7 @@ pub(crate) fn sweep(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     let Arguments { scene, output, shard } = arguments;
     let shard = Shard::of(shard.as_deref(), |name| env::var(name).ok())?;
     let study = Study::read(scene, catalogue)?;
-    sink::check(output)?;
+    merge::check_output(output)?;
     let folder = with_extension(output, "part");
     let chunks = Arc::new(Chunks::resume(&folder, study.description(), shard.is_none())?);
     let numbers = shard.unwrap_or(Shard::WHOLE).chunks(chunks.description.chunks());
@@ -86,14 +82,11 @@ pub(crate) fn sweep(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     if shard.is_some() {
         sync_folder(&folder);
         let runs = chunks.description.runs(&numbers);
-        let mut tally = Tally::of(&chunks.description, runs.end - runs.start);
+        let mut tally = Tally::default();
         for number in numbers {
-            tally.failed += chunks.read(number, &mut |table, row| {
-                tally.inaccurate.count(table, row);
-                Ok(())
-            })?;
+            tally += chunks.read(number, &mut |_, _| Ok(()))?;
         }
-        return Ok(tally.summary(&folder));
+        return Ok(merge::summary(&folder, runs.end - runs.start, tally));
     }
     let summary = merge::write(&chunks, slice::from_ref(&*chunks), output)?;
     // Chunks are removed after the tables are on disk.

@@ -1,6 +1,5 @@
-//! One run of a sweep. A failed start or step is not an error: the [`Outcome`] has an [`Ending`].
+//! One run of a sweep. A failed start or step is not an error: the [`Outcome`] has an ending.
 
-use super::ending::Ending;
 use super::keep::STEPS_OF_A_PERIOD;
 use crate::run::{self, Length};
 use vi_core::StepError;
@@ -12,6 +11,35 @@ use vi_erased::{Row, Steps};
 
 /// Maximum ratio of steps to the predicted number, for runs that solve for their steps.
 const PATIENCE: f64 = 1000.0;
+
+/// The ending of a complete run.
+pub(super) const REACHED: &str = "reached its end";
+/// That of a run that reached its end, but some of whose crossings could not be located.
+pub(super) const NO_SECTION: &str = "section not found";
+/// That of a run that no input of this kind can have.
+const WRONG_INPUT: &str = "wrong input";
+/// That of a run whose steps became too short to reach its end.
+const TOO_SHORT: &str = "steps became too short";
+
+/// The ending of a run whose step failed.
+fn ending(error: StepError) -> &'static str {
+    match error {
+        StepError::NoForwardStep { .. } | StepError::NoForwardGaussStep { .. } => "no forward step",
+        StepError::DegenerateStep { .. } => "degenerate step",
+        StepError::StepRatio { .. } => "step ratio",
+        StepError::StepBounds { .. } => "step bounds",
+        StepError::NotConverged { .. } => "not converged",
+        StepError::StagesUnsettled { .. } => "stages unsettled",
+        StepError::TimeScale { .. } => "time scale",
+        StepError::Singular { .. } => "singular matrix",
+        StepError::NonFinite { .. } | StepError::Undefined { .. } => "not finite",
+        StepError::InvalidInput { .. } => WRONG_INPUT,
+        StepError::InconsistentStart { .. } => "inconsistent start",
+        StepError::Redundant { .. } => "redundant constraints",
+        StepError::TooLong { .. } => "step too long",
+        _ => "another failure",
+    }
+}
 
 /// A run to be computed.
 pub(super) struct Member {
@@ -28,7 +56,8 @@ pub(super) struct Member {
 
 /// The result of a run.
 pub(super) struct Outcome {
-    pub(super) ending: Ending,
+    /// How it ended, in words.
+    pub(super) ending: &'static str,
     pub(super) steps: u64,
     /// The last node; `None` if the run did not start.
     last: Option<Row>,
@@ -60,8 +89,7 @@ fn extreme(of: f64, value: f64, choose: impl Fn(f64, f64) -> f64) -> f64 {
 
 impl Outcome {
     /// Of a run that did not start.
-    const NONE: Self =
-        Self { ending: Ending::WRONG_INPUT, steps: 0, last: None, ranges: Vec::new(), step_error: f64::NAN };
+    const NONE: Self = Self { ending: WRONG_INPUT, steps: 0, last: None, ranges: Vec::new(), step_error: f64::NAN };
 
     /// Computes a run. Shows its first node, every `every`-th, and the last.
     pub(super) fn of(member: &Member, show: &mut dyn FnMut(&dyn Steps)) -> Self {
@@ -80,13 +108,13 @@ impl Outcome {
                 outcome.last = Some(simulation.row());
                 outcome.step_error = simulation.largest_error().map_or(f64::NAN, |largest| largest.estimate);
             }
-            Err(error) => outcome.ending = Ending::of(error),
+            Err(error) => outcome.ending = ending(error),
         }
         outcome
     }
 
     /// Steps to the end.
-    fn follow(&mut self, member: &Member, run: &mut dyn Steps, show: &mut dyn FnMut(&dyn Steps)) -> Ending {
+    fn follow(&mut self, member: &Member, run: &mut dyn Steps, show: &mut dyn FnMut(&dyn Steps)) -> &'static str {
         let Member { plan, length, every, is_watched, .. } = member;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a limit
         let most = (PATIENCE * (length.steps(plan) + 1.0)) as u64;
@@ -95,16 +123,16 @@ impl Outcome {
         if *is_watched {
             self.watch(run);
         }
-        let ending = loop {
+        let ended = loop {
             let t = run.t();
             if length.is_reached(t, run.h(), self.steps) {
-                break Ending::REACHED;
+                break REACHED;
             }
             if self.steps == most {
-                break Ending::TOO_SHORT;
+                break TOO_SHORT;
             }
             if let Err(error) = length.advance(run) {
-                break Ending::of(error);
+                break ending(error);
             }
             self.steps += 1;
             if *is_watched {
@@ -116,13 +144,13 @@ impl Outcome {
             }
             #[allow(clippy::float_cmp)] // exactly
             if run.t() == t {
-                break Ending::TOO_SHORT;
+                break TOO_SHORT;
             }
         };
         if shown < self.steps {
             show(run);
         }
-        ending
+        ended
     }
 
     /// Adds the last node to the ranges.

@@ -1,12 +1,14 @@
 //! A sweep ready to run: the common part of its runs, the varied quantities, and the results kept.
 
-use super::chunks::{Description, fingerprint};
-use super::ending::Ending;
+use super::chunks::{Description, Tally, fingerprint};
 use super::items::Items;
 use super::keep::Kept;
-use super::outcome::{Member, Outcome};
+use super::outcome::{Member, NO_SECTION, Outcome, REACHED};
 use super::scene::Keep;
-use crate::run::{Length, Request, method};
+use crate::run::{Length, POOR, Request, method};
+use core::fmt::Write as _;
+use core::num::NonZeroU64;
+use vi_erased::Row;
 use vi_report::catalogue::Catalogue;
 use vi_report::failure::Failure;
 use vi_report::machine::VERSION;
@@ -19,7 +21,9 @@ const MOST_ITEMS: u64 = 1 << 14;
 /// Minimum number of chunks, if there are enough runs, so that all cores have work.
 const FEWEST_CHUNKS: u64 = 256;
 /// Maximum bytes of the series of one run, which is held in memory.
-const MOST_BYTES: f64 = 1.6e7;
+const MOST_BYTES: f64 = 3.8e7;
+/// Bytes of a number with its comma, measured.
+const BYTES: f64 = 19.0;
 
 /// A sweep.
 pub(super) struct Study {
@@ -52,7 +56,7 @@ impl Study {
     fn check_series(&self) -> Result<(), Failure> {
         let columns = self.request.columns().len() + 1;
         let rows = self.request.length.steps(&self.request.plan) / self.request.every as f64;
-        let bytes = 8.0 * rows * columns as f64;
+        let bytes = BYTES * rows * columns as f64;
         if !self.kept.has(Keep::Series) || bytes <= MOST_BYTES {
             return Ok(());
         }
@@ -89,55 +93,51 @@ impl Study {
             ("keep", self.kept.words(&system.coordinates())),
         ];
         let facts = facts.map(|(name, fact)| (name.to_owned(), fact)).to_vec();
-        let schemas = self.kept.schemas(self.items.names(), &system.coordinates());
-        Description { facts, items, chunk, schemas }
+        let headings = self.kept.headings(self.items.names(), &system.coordinates());
+        let chunk = NonZeroU64::MIN.saturating_add(chunk - 1);
+        Description { facts, items, chunk, headings }
     }
 
-    /// Computes a run, adds its rows to the tables, and returns whether it failed.
-    #[allow(clippy::cast_precision_loss)] // items are fewer than 2^53, and so are steps
-    pub(super) fn follow(&self, item: u64, tables: &mut [Vec<f64>]) -> bool {
-        let number = item as f64;
-        let mut tables = tables.iter_mut();
-        let Some(runs) = tables.next() else { return false };
-        let section = self.kept.section.as_ref().and_then(|section| Some((section, tables.next()?)));
-        let mut series = if self.kept.has(Keep::Series) { tables.next() } else { None };
-
+    /// Computes a run and adds its rows to a text, each after the name of its table.
+    pub(super) fn follow(&self, item: u64, text: &mut String) -> Tally {
         let member = self.member(item);
+        let has_series = self.kept.has(Keep::Series);
+        // Writing to a string cannot fail.
         let mut outcome = Outcome::of(&member, &mut |simulation| {
-            if let Some(series) = &mut series {
-                series.push(number);
-                series.extend(simulation.row().entries().map(|entry| entry.unwrap_or(f64::NAN)));
+            if has_series {
+                let _ = writeln!(text, "series,{item}{}", entries(numbers(&simulation.row())));
             }
         });
-        if let Some((section, crossings)) = section {
+        if let Some(section) = &self.kept.section {
             let crossed = outcome.cross(&member, section, &mut |row| {
                 // As a node, but for E, E' and h.
                 let columns = row.entries().count() - 2;
-                crossings.push(number);
-                crossings.extend(row.entries().take(columns).map(|entry| entry.unwrap_or(f64::NAN)));
+                let _ = writeln!(text, "section,{item}{}", entries(numbers(&row).take(columns)));
             });
-            if outcome.ending == Ending::REACHED && crossed.is_err() {
-                outcome.ending = Ending::NO_SECTION;
+            if outcome.ending == REACHED && crossed.is_err() {
+                outcome.ending = NO_SECTION;
             }
         }
-        runs.push(number);
-        runs.extend(self.items.values(item));
+        let _ = write!(text, "runs,{item}{}", entries(self.items.values(item)));
         if self.kept.has(Keep::Ending) {
-            runs.extend([outcome.ending.number(), outcome.steps as f64]);
+            let _ = write!(text, ",{},{}", outcome.ending, outcome.steps);
         }
         if self.kept.has(Keep::Accuracy) {
-            runs.push(outcome.step_error);
+            text.push_str(&entries([outcome.step_error]));
         }
         if self.kept.has(Keep::End) {
-            runs.extend(outcome.end(self.request.columns().len()));
+            text.push_str(&entries(outcome.end(self.request.columns().len())));
         }
         if self.kept.has(Keep::Extremes) {
-            runs.extend(outcome.extremes());
+            text.push_str(&entries(outcome.extremes()));
         }
         if self.kept.has(Keep::Energy) {
-            runs.extend(outcome.errors());
+            text.push_str(&entries(outcome.errors()));
         }
-        outcome.ending != Ending::REACHED
+        text.push('\n');
+        // NaN, if no error was measured, is not above it.
+        let is_inaccurate = outcome.step_error > POOR;
+        Tally { failed: u64::from(outcome.ending != REACHED), inaccurate: u64::from(is_inaccurate) }
     }
 
     /// The run of an item.
@@ -149,5 +149,31 @@ impl Study {
         let is_watched = self.kept.has(Keep::Extremes) || self.kept.has(Keep::Energy);
         let is_measured = self.kept.has(Keep::Accuracy);
         Member { system, plan, length: *length, every: *every, is_watched, is_measured }
+    }
+}
+
+/// The numbers of a row; NaN where it has none.
+fn numbers(row: &Row) -> impl Iterator<Item = f64> + '_ {
+    row.entries().map(|entry| entry.unwrap_or(f64::NAN))
+}
+
+/// Numbers as entries of a row, each after a comma, with the fewest digits that read back to the same bits. NaN is an
+/// empty entry.
+fn entries(numbers: impl IntoIterator<Item = f64>) -> String {
+    let entry = |number: f64| if number.is_nan() { ",".to_owned() } else { format!(",{number:?}") };
+    numbers.into_iter().map(entry).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::entries;
+
+    #[test]
+    fn an_entry_reads_back_to_the_same_bits() {
+        let numbers = [0.1, -0.0, 5e-324, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, 1e16];
+        let text = entries(numbers);
+        let read = text.split(',').skip(1).map(|entry| entry.parse().expect("a number"));
+        assert!(read.map(f64::to_bits).eq(numbers.map(f64::to_bits)), "{text}");
+        assert_eq!(entries([1.0, f64::NAN, 2.5]), ",1.0,,2.5");
     }
 }
