@@ -11,7 +11,7 @@ mod conservative;
 mod equations;
 mod forced;
 mod law;
-pub mod raw;
+mod raw;
 mod theory;
 
 use book::Book;

@@ -7,7 +7,7 @@
 //!
 //! | module | what it makes |
 //! |---|---|
-//! | `linear` … `tradeoff` | the sections of the page, one file each |
+//! | `linear` … `chain` | the sections of the page, one file each |
 //! | `system` | the maps of one system |
 //! | `atlas`, `contour`, `ending` | maps as they grow, curves D = 0, ends of runs and their colours |
 //! | `trial` | systems that only the charts need |
@@ -16,7 +16,6 @@ mod atlas;
 mod chain;
 mod composed;
 mod contour;
-mod damping;
 mod ending;
 mod kepler;
 mod linear;
@@ -27,7 +26,6 @@ mod separatrix;
 mod span;
 mod stiff;
 mod system;
-mod tradeoff;
 #[allow(dead_code, unreachable_pub)] // generated for users; the charts need a part
 mod trial;
 
@@ -110,13 +108,11 @@ fn whole(arguments: &Arguments, catalogue: &Catalogue) -> Result<Report, Failure
     resonance::section(&mut atlas)?;
     roots::section(&mut atlas)?;
     stiff::section(&mut atlas)?;
-    damping::section(&mut atlas)?;
     composed::section(&mut atlas)?;
     kepler::section(&mut atlas)?;
     separatrix::section(&mut atlas, catalogue)?;
     orders::section(&mut atlas, catalogue)?;
     chain::section(&mut atlas)?;
-    tradeoff::section(&mut atlas)?;
     Ok(atlas.into_report())
 }
 
@@ -143,8 +139,8 @@ pub(crate) mod tests {
             .filter_map(|rest| rest.split('"').next())
             .filter(|name| !name.starts_with('#'))
             .collect();
-        // 27 maps and 4 charts, in two forms each, and a table.
-        assert_eq!(files.len(), 2 * 31 + 1);
+        // 27 maps and a chart, in two forms each, and a table.
+        assert_eq!(files.len(), 2 * 28 + 1);
         for name in files {
             let text = fs::read_to_string(out.join(name)).unwrap_or_default();
             assert!(text.len() > 100 && !text.contains("NaN"), "{name}");

@@ -62,7 +62,8 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     atlas.advice(
         "With the trapezoidal rule keep <i>h</i> below 2/<i>ω</i><sub>max</sub>, and for accuracy far below. With the \
          midpoint rule stability sets no limit; <i>hω</i> around 0.1 is a good start. Use the energy-preserving integrator \
-         where damping is weak, and expect about 1/(<i>ζωh</i><sub>0</sub>) steps of it.",
+         where damping is weak, and expect about 1/(<i>ζωh</i><sub>0</sub>) steps of it: take it over times well below \
+         ln(1/<i>ζωh</i><sub>0</sub>)/(<i>ζω</i>), where the step has grown to 1/(<i>ζω</i>), and the fixed step beyond.",
     );
     Ok(())
 }

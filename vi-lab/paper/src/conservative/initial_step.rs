@@ -5,7 +5,7 @@ use super::super::{Study, unexpected};
 use super::CASES;
 use super::plain::{Plain, Seen, Solver, density, magnitude};
 use super::runs::Case;
-use crate::raw::{RawNode, Unknowns};
+use crate::raw::RawNode;
 use vi_core::{FixedStep, SVector, Starts, StepError};
 use vi_erased::start::motion;
 use vi_report::chart::{Axis, Chart, Look, Series};
@@ -160,7 +160,7 @@ fn by_points(case: Case, most: u32) -> Result<Outcome, StepError> {
     let mut node = RawNode::first(&integrator);
     Ok(Outcome::of(first, most, || {
         let before = node.state;
-        node = node.next(&system, Unknowns::Points)?;
+        node = node.next(&system)?;
         let h = node.state.t - before.t;
         let way = node.state.q.x - before.q.x;
         Some(Seen { q: before.q.x + way / 2.0, v: way / h, h, energy: node.energy })
