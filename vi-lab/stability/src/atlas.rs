@@ -1,11 +1,11 @@
-//! The maps of the page as they are made: cells in parallel, files at once.
+//! The sections and the maps of the page, as data; their cells are made in parallel.
 //!
-//! In: axes with ranges, and what a cell shows. Out: maps and charts in the report. A cell depends on its place alone, so
-//! the same columns give the same map on any number of threads.
+//! In: words, axes with ranges, what a cell shows, and theory, a quantity that vanishes on the boundary. Out: figures in
+//! a report. A cell depends on its place alone, so the same columns give the same map on any number of threads.
 
 use super::contour;
 use rayon::prelude::*;
-use vi_report::chart::{Axis, Chart, Class, Map, Series, middles};
+use vi_report::chart::{Axis, Chart, Class, Figure, Series, boundary, middles};
 use vi_report::failure::Failure;
 use vi_report::page::Report;
 use vi_report::progress::Progress;
@@ -16,202 +16,298 @@ const ROWS: usize = 11;
 /// Columns of a map for every [`ROWS`].
 const COLUMNS: usize = 20;
 
-/// The report, and how fine its maps are.
-#[derive(Debug)]
-pub(super) struct Atlas {
-    report: Report,
-    progress: Progress,
-    columns: usize,
+/// A section of the page.
+pub(super) struct Section<'a> {
+    pub(super) heading: &'static str,
+    /// HTML; may be empty.
+    pub(super) prose: String,
+    pub(super) parts: Vec<Part<'a>>,
+    /// What to do, as HTML; may be empty.
+    pub(super) advice: &'static str,
 }
 
-/// The two axes of a map, with their ranges.
-#[derive(Clone, Debug)]
-pub(super) struct Axes {
-    /// Horizontal axis.
-    pub(super) x: Axis,
-    /// Vertical axis.
-    pub(super) y: Axis,
+/// A figure or a table, with its caption as HTML.
+pub(super) enum Part<'a> {
+    Map(Map<'a>),
+    Chart(Chart, &'static str),
+    Table(Table, &'static str),
 }
 
-/// What is written about a map.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Labels<'a> {
+/// What a cell shows.
+type Cell<'a> = dyn Fn(f64, f64) -> Class + Sync + 'a;
+/// A quantity at a place.
+type Quantity<'a> = dyn Fn(f64, f64) -> f64 + Sync + 'a;
+
+/// A map: a coloured cell for each pair of values.
+pub(super) struct Map<'a> {
     /// Stem of the file names.
-    pub(super) name: &'static str,
-    /// Line above the map, as text.
-    pub(super) title: &'a str,
-    /// What the map shows, as HTML.
-    pub(super) caption: &'a str,
+    name: &'static str,
+    title: String,
+    caption: &'static str,
+    axes: [Axis; 2],
+    /// The page has this many times the columns of the map: more than one for long runs.
+    times: usize,
+    /// As many rows as columns; a unit has the same length on both axes.
+    is_square: bool,
+    class: Box<Cell<'a>>,
+    /// Vanishes on the boundary that theory gives, with its entry in the legend. Where it is not finite there is none.
+    theory: Option<(&'static str, Box<Quantity<'a>>)>,
+    marks: Vec<Series>,
 }
 
-/// Axes of a map, and its cells in a row and in a column.
-#[derive(Clone, Debug)]
-pub(super) struct Grid {
-    /// The axes.
-    pub(super) axes: Axes,
-    columns: usize,
-    rows: usize,
-    equal_aspect: bool,
-}
+/// Columns and rows.
+type Size = [usize; 2];
 
-/// Rows of a map, from the number of its columns.
-fn rows(columns: usize) -> usize {
-    (columns * ROWS).div_ceil(COLUMNS)
-}
+impl<'a> Map<'a> {
+    /// A map over two axes with ranges. `name` is the stem of its file names, `caption` is HTML.
+    pub(super) fn new(
+        name: &'static str,
+        title: impl Into<String>,
+        caption: &'static str,
+        axes: [Axis; 2],
+        class: impl Fn(f64, f64) -> Class + Sync + 'a,
+    ) -> Self {
+        let class = Box::new(class);
+        Self {
+            name,
+            title: title.into(),
+            caption,
+            axes,
+            times: 1,
+            is_square: false,
+            class,
+            theory: None,
+            marks: vec![],
+        }
+    }
 
-impl Grid {
-    /// A grid of the given number of columns over two axes with ranges.
-    pub(super) fn new(axes: Axes, columns: usize) -> Self {
-        Self { axes, columns, rows: rows(columns), equal_aspect: false }
+    /// The same with the boundary on which a quantity vanishes.
+    pub(super) fn with_theory(self, label: &'static str, quantity: impl Fn(f64, f64) -> f64 + Sync + 'a) -> Self {
+        Self { theory: Some((label, Box::new(quantity))), ..self }
+    }
+
+    /// The same with points over the cells.
+    pub(super) fn with_marks(self, marks: Vec<Series>) -> Self {
+        Self { marks, ..self }
+    }
+
+    /// The same with fewer columns, by this factor.
+    pub(super) fn coarser(self, times: usize) -> Self {
+        Self { times: times.max(1), ..self }
     }
 
     /// The same with as many rows as columns, a unit having the same length on both axes.
     pub(super) fn square(self) -> Self {
-        Self { rows: self.columns, equal_aspect: true, ..self }
+        Self { is_square: true, ..self }
     }
 
-    /// The class of every cell, row by row; `done` gets the number of cells after every row. A cell is a call: one copy of the loop serves all maps.
-    pub(super) fn cells(&self, class: &(dyn Fn(f64, f64) -> Class + Sync), mut done: impl FnMut(usize)) -> Vec<Class> {
-        let abscissas: Vec<f64> = middles(&self.axes.x, self.columns).collect();
-        let mut cells = Vec::with_capacity(self.columns * self.rows);
-        for y in middles(&self.axes.y, self.rows) {
-            cells.par_extend(abscissas.par_iter().map(|&x| class(x, y)));
-            done(self.columns);
+    /// Its size on a page of this many columns.
+    fn size(&self, columns: usize) -> Size {
+        let columns = columns.div_ceil(self.times);
+        [columns, if self.is_square { columns } else { (columns * ROWS).div_ceil(COLUMNS) }]
+    }
+
+    /// The class of every cell, row by row; `done` gets the number of cells after every row.
+    fn cells(&self, [columns, rows]: Size, mut done: impl FnMut(usize)) -> Vec<Class> {
+        let [x, y] = &self.axes;
+        let abscissas: Vec<f64> = middles(x, columns).collect();
+        let mut cells = Vec::with_capacity(columns * rows);
+        for y in middles(y, rows) {
+            cells.par_extend(abscissas.par_iter().map(|&x| (self.class)(x, y)));
+            done(columns);
         }
         cells
     }
 
-    /// The curves on which `quantity` vanishes, in the values of the axes.
-    pub(super) fn zeros(&self, quantity: &(dyn Fn(f64, f64) -> f64 + Sync)) -> Vec<Vec<(f64, f64)>> {
-        let part = |index: f64, count: usize| {
-            #[allow(clippy::cast_precision_loss)] // some hundred cells
-            let count = count as f64;
-            index / count
+    /// The curves on which a quantity vanishes, in the values of the axes.
+    #[allow(clippy::cast_precision_loss)] // some hundred cells
+    fn zeros(&self, [columns, rows]: Size, quantity: &Quantity) -> Vec<Vec<(f64, f64)>> {
+        let [x, y] = &self.axes;
+        let place = |(column, row): (f64, f64)| (x.at(column / columns as f64), y.at(row / rows as f64));
+        let width = columns + 1;
+        let value = |index: usize| {
+            let (x, y) = place(((index % width) as f64, (index / width) as f64));
+            quantity(x, y)
         };
-        let place = |(column, row): (f64, f64)| {
-            (self.axes.x.at(part(column, self.columns)), self.axes.y.at(part(row, self.rows)))
-        };
-        let width = self.columns + 1;
-        let values: Vec<f64> = (0..width * (self.rows + 1))
-            .into_par_iter()
-            .map(|index| {
-                #[allow(clippy::cast_precision_loss)]
-                let (x, y) = place(((index % width) as f64, (index / width) as f64));
-                quantity(x, y)
-            })
-            .collect();
+        let values: Vec<f64> = (0..width * (rows + 1)).into_par_iter().map(value).collect();
         let curves = contour::zeros(&values, width);
         curves.into_iter().map(|curve| curve.into_iter().map(place).collect()).collect()
     }
+
+    /// The figure on a page of this many columns.
+    fn figure(self, columns: usize, done: impl FnMut(usize)) -> Figure {
+        let size = self.size(columns);
+        let cells = self.cells(size, done);
+        let theory = self.theory.as_ref();
+        let mut series = theory.map_or_else(Vec::new, |(label, of)| boundary(label, self.zeros(size, of.as_ref())));
+        series.extend(self.marks);
+        let [x, y] = self.axes;
+        let chart = Chart { name: self.name, title: self.title, x, y, equal_aspect: self.is_square, series };
+        vi_report::chart::Map { chart, columns: size[0], cells }.figure()
+    }
 }
 
-impl Atlas {
-    /// An empty atlas for `maps` maps with the given number of columns.
-    pub(super) fn new(report: Report, columns: u16, maps: u32) -> Self {
-        let columns = usize::from(columns);
-        let cells = columns * rows(columns);
-        let progress = Progress::new(u64::from(maps) * u64::try_from(cells).unwrap_or(u64::MAX));
-        Self { report, progress, columns }
+/// Adds sections to a report, with maps of this many columns.
+///
+/// # Errors
+/// [`Failure::File`] if a file cannot be written.
+pub(super) fn write(report: &mut Report, columns: u16, sections: Vec<Section>) -> Result<(), Failure> {
+    let columns = usize::from(columns);
+    let cells = sections.iter().flat_map(|section| &section.parts).map(|part| match part {
+        Part::Map(map) => map.size(columns).iter().product::<usize>(),
+        Part::Chart(..) | Part::Table(..) => 0,
+    });
+    let count = |cells: usize| u64::try_from(cells).unwrap_or(u64::MAX);
+    let mut progress = Progress::new(count(cells.sum()));
+    for Section { heading, prose, parts, advice } in sections {
+        progress.message(heading.to_owned());
+        report.section(heading);
+        if !prose.is_empty() {
+            report.prose(&prose);
+        }
+        for part in parts {
+            match part {
+                Part::Map(map) => {
+                    let caption = map.caption;
+                    report.figure(&map.figure(columns, |cells| progress.advance_by(count(cells))), caption)?;
+                }
+                Part::Chart(chart, caption) => report.figure(&chart.figure(), caption)?,
+                Part::Table(table, caption) => report.table(&table, caption)?,
+            }
+        }
+        if !advice.is_empty() {
+            report.prose(&format!("<b>What to do.</b> {advice}"));
+        }
     }
-
-    /// A grid over two axes with ranges, as fine as the page's maps are.
-    pub(super) fn grid(&self, axes: Axes) -> Grid {
-        Grid::new(axes, self.columns)
-    }
-
-    /// A grid with fewer columns, by this factor, for long runs.
-    pub(super) fn coarse_grid(&self, axes: Axes, times: usize) -> Grid {
-        Grid::new(axes, self.columns.div_ceil(times.max(1)))
-    }
-
-    /// Starts a section.
-    pub(super) fn section(&mut self, heading: &str) {
-        self.progress.message(heading.to_owned());
-        self.report.section(heading);
-    }
-
-    /// A paragraph of HTML.
-    pub(super) fn prose(&mut self, html: &str) {
-        self.report.prose(html);
-    }
-
-    /// What to do, after a chart.
-    pub(super) fn advice(&mut self, html: &str) {
-        self.report.prose(&format!("<b>What to do.</b> {html}"));
-    }
-
-    /// A map with the curves over it, and its caption; returns its cells.
-    pub(super) fn map(
-        &mut self,
-        labels: Labels<'_>,
-        grid: &Grid,
-        curves: Vec<Series>,
-        class: impl Fn(f64, f64) -> Class + Sync,
-    ) -> Result<Vec<Class>, Failure> {
-        let cells = grid.cells(&class, |count| self.progress.advance_by(u64::try_from(count).unwrap_or(0)));
-        let Axes { x, y } = grid.axes.clone();
-        let title = labels.title.to_owned();
-        let chart = Chart { name: labels.name, title, x, y, equal_aspect: grid.equal_aspect, series: curves };
-        let map = Map { chart, columns: grid.columns, cells };
-        self.report.figure(&map.figure(), labels.caption)?;
-        Ok(map.cells)
-    }
-
-    /// A chart and its caption.
-    pub(super) fn chart(&mut self, chart: &Chart, caption: &str) -> Result<(), Failure> {
-        self.report.figure(&chart.figure(), caption)
-    }
-
-    /// A table and its caption.
-    pub(super) fn table(&mut self, table: &Table, caption: &str) -> Result<(), Failure> {
-        self.report.table(table, caption)
-    }
-
-    /// The report with all that is in it.
-    pub(super) fn into_report(self) -> Report {
-        self.report
-    }
+    Ok(())
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
+    use super::super::ending::{LASTING, NOT_CONVERGED, UNBOUNDED};
+    use super::super::fixed::SEVERAL;
+    use super::super::tests::catalogue;
+    use super::super::{energy, sections};
     use super::*;
 
-    /// Cells that contradict theory by more than a pixel: those whose being `marked` is neither what theory says there
-    /// nor what it says of one of the eight cells around. Zero of a map that is all alike proves nothing, and is refused.
-    pub(in super::super) fn strays(
-        grid: &Grid,
-        cells: &[Class],
-        marked: Class,
-        theory: impl Fn(f64, f64) -> bool,
-    ) -> usize {
-        let columns = grid.columns;
-        let rows = grid.rows;
-        assert_eq!(cells.len(), columns * rows);
-        let abscissas: Vec<f64> = middles(&grid.axes.x, columns).collect();
-        let expected: Vec<bool> = middles(&grid.axes.y, rows)
-            .flat_map(|y| abscissas.iter().map(move |&x| (x, y)))
-            .map(|(x, y)| theory(x, y))
-            .collect();
-        let share = expected.iter().filter(|inside| **inside).count();
-        assert!(share * 20 > cells.len() && share * 20 < 19 * cells.len(), "{share} of {} cells", cells.len());
-        let around = |index: usize| {
-            let row = index / columns;
-            let column = index % columns;
-            let near = (row.saturating_sub(1)..=(row + 1).min(rows - 1)).flat_map(move |row| {
-                (column.saturating_sub(1)..=(column + 1).min(columns - 1)).map(move |column| (row, column))
-            });
-            near.map(|(row, column)| expected[row * columns + column]).collect::<Vec<_>>()
-        };
-        (0..cells.len()).filter(|&index| !around(index).contains(&(cells[index] == marked))).count()
+    impl Map<'_> {
+        /// Makes the map finer, with ordinates in this range.
+        fn narrow(&mut self, ordinates: Option<(f64, f64)>) {
+            self.times = 1;
+            if let Some((low, high)) = ordinates {
+                self.axes[1] = self.axes[1].clone().over(low, high);
+            }
+        }
+
+        /// Cells that contradict theory by more than a pixel: those whose being `marked` is neither what the sign of
+        /// theory says there nor what it says of one of the eight cells around. A map that is all alike proves nothing,
+        /// and is refused.
+        fn strays(&self, columns: usize, marked: Class, is_below: bool) -> usize {
+            let size @ [columns, rows] = self.size(columns);
+            let cells = self.cells(size, |_| ());
+            let (_, theory) = self.theory.as_ref().expect("a boundary");
+            let abscissas: Vec<f64> = middles(&self.axes[0], columns).collect();
+            let expected: Vec<bool> = middles(&self.axes[1], rows)
+                .flat_map(|y| abscissas.iter().map(move |&x| (theory(x, y) < 0.0) == is_below))
+                .collect();
+            let share = expected.iter().filter(|inside| **inside).count();
+            let [cells_of_one, all] = [share.min(cells.len() - share), cells.len()];
+            assert!(cells_of_one * 20 > all, "{}: {share} of {all} cells", self.name);
+            let around = |index: usize| {
+                let (row, column) = (index / columns, index % columns);
+                let near = (row.saturating_sub(1)..=(row + 1).min(rows - 1)).flat_map(move |row| {
+                    (column.saturating_sub(1)..=(column + 1).min(columns - 1)).map(move |column| (row, column))
+                });
+                near.map(|(row, column)| expected[row * columns + column]).collect::<Vec<_>>()
+            };
+            (0..all).filter(|&index| !around(index).contains(&(cells[index] == marked))).count()
+        }
+    }
+
+    /// A map of the page, the class of the cells where its theory is negative or, if not `is_below`, positive; with this
+    /// many columns, and with ordinates in this range.
+    type Claim = (&'static str, Class, bool, usize, Option<(f64, f64)>);
+
+    fn assert_theory(claims: &[Claim]) {
+        let [well, pendulum] = ["double-well", "pendulum"].map(|name| catalogue().find(name).expect("a system"));
+        let mut maps = maps(sections(&well, &pendulum).expect("sections"));
+        for (name, marked, is_below, columns, ordinates) in claims {
+            let map = maps.iter_mut().find(|map| map.name == *name).expect("a map");
+            map.narrow(*ordinates);
+            assert_eq!(map.strays(*columns, *marked, *is_below), 0, "{name}");
+        }
+    }
+
+    fn maps(sections: Vec<Section>) -> Vec<Map> {
+        let parts = sections.into_iter().flat_map(|section| section.parts);
+        parts.filter_map(|part| if let Part::Map(map) = part { Some(map) } else { None }).collect()
+    }
+
+    /// With a shift every motion runs.
+    fn assert_shifted(columns: usize) {
+        let pendulum = catalogue().find("pendulum").expect("a system");
+        let mut maps = maps(vec![energy::orders(pendulum.system.as_ref())]);
+        let map = maps.last_mut().expect("a map");
+        map.narrow(Some((0.03, 0.06)));
+        assert_eq!((map.name, map.times), ("orders-2-shifted", 1));
+        assert!(map.cells(map.size(columns), |_| ()).iter().all(|class| class.number == LASTING.number));
+    }
+
+    #[test]
+    fn runs_end_where_theory_says() {
+        assert_theory(&[
+            ("linear-trapezoidal", UNBOUNDED, false, 30, None),
+            ("roots-well", SEVERAL, true, 60, None),
+            ("roots-pendulum", SEVERAL, true, 60, None),
+            ("roots-kepler", NOT_CONVERGED, true, 50, None),
+            ("composed-triple", UNBOUNDED, false, 16, None),
+            ("composed-suzuki", UNBOUNDED, false, 16, None),
+            ("composed-kl6", UNBOUNDED, false, 16, None),
+            ("composed-kl8", UNBOUNDED, false, 16, None),
+            ("kepler-energy", LASTING, true, 25, Some((0.01, 0.02))),
+            ("separatrix-well", LASTING, true, 30, Some((0.01, 0.02))),
+            ("separatrix-pendulum", LASTING, true, 30, Some((0.01, 0.02))),
+            ("orders-2", LASTING, true, 8, Some((0.03, 0.06))),
+            ("orders-3", LASTING, true, 8, Some((0.1, 0.15))),
+        ]);
+        assert_shifted(6);
+    }
+
+    #[test]
+    #[ignore = "many steps: `.ci/run nightly`"]
+    fn runs_of_high_orders_end_where_theory_says_in_detail() {
+        assert_theory(&[
+            ("orders-2", LASTING, true, 20, Some((0.03, 0.06))),
+            ("orders-3", LASTING, true, 20, Some((0.1, 0.15))),
+        ]);
+        assert_shifted(20);
     }
 
     #[test]
     fn a_shifted_boundary_is_noticed() {
         let class = |number| Class { number, label: "", colour: "" };
-        let grid = Grid::new(Axes { x: Axis::linear("x").over(0.0, 1.0), y: Axis::linear("y").over(0.0, 1.0) }, 40);
-        let cells = grid.cells(&|x, _| class(u8::from(x > 0.5)), |_| ());
-        assert_eq!(strays(&grid, &cells, class(1), |x, _| x > 0.52), 0);
-        assert!(strays(&grid, &cells, class(1), |x, _| x > 0.56) > 0);
+        let map = |edge: f64| {
+            let axes = [Axis::linear("x").over(0.0, 1.0), Axis::linear("y").over(0.0, 1.0)];
+            let map = Map::new("test", "", "", axes, move |x, _| class(u8::from(x > 0.5)));
+            map.with_theory("edge", move |x, _| x - edge)
+        };
+        assert_eq!(map(0.52).strays(40, class(1), false), 0);
+        assert!(map(0.56).strays(40, class(1), false) > 0);
+    }
+
+    #[test]
+    fn the_curve_drawn_is_that_of_the_formula() {
+        let system = vi_systems::DoubleWell::default();
+        let density = |q: f64, v: f64| {
+            vi_core::stepping::EnergyStepping::step_density(&system, 0.0, &[q].into(), &[v].into()).unwrap_or(f64::NAN)
+        };
+        let axes = [Axis::linear("q").over(-1.5, 1.5), Axis::linear("v").over(-1.2, 1.2)];
+        let map = Map::new("test", "", "", axes, |_, _| LASTING);
+        let curve = map.zeros([60, 33], &density).concat();
+        // D = (2q³ − q)² + (6q² − 1) v² vanishes at v = ±|2q³ − q|/√(1 − 6q²).
+        let exact = |q: f64| (2.0 * q.powi(3) - q).abs() / (1.0 - 6.0 * q * q).sqrt();
+        let worst = curve.iter().map(|(q, v)| (v.abs() - exact(*q)).abs()).filter(|gap| gap.is_finite());
+        let far = worst.fold(0.0, f64::max);
+        assert!(curve.len() > 80 && far < 0.05, "{} points, off by {far}", curve.len());
     }
 }

@@ -9,76 +9,60 @@
 //!
 //! A damped mode has `Re z < 0`; a negative weight then has its pole at `z = 2/γ`, on the side of damping.
 
-use super::atlas::{Atlas, Axes, Labels};
-use super::ending::{Course, Ending, LASTING, Limit, UNBOUNDED};
+use super::atlas::{Map, Part, Section};
+use super::ending::{Ending, LASTING, Limit, oscillation};
 use vi_core::{Composition, Starts, State};
-use vi_report::chart::{Axis, Chart, Class, Look, Series, boundary};
-use vi_report::failure::Failure;
+use vi_report::chart::{Axis, Chart, Class, Look, Series};
 use vi_report::table::Table;
 use vi_systems::DampedOscillator;
 
-/// Whole steps of a run.
-const STEPS: u32 = 500;
-/// Growth that counts as instability: none is allowed to a motion that decays.
-const BOUND: f64 = 10.0;
-/// Amplitude of a motion that has come to rest: far above the smallest numbers, where rounding is no longer relative.
-const REST: f64 = 1e-200;
 const DECAYS: Class = Class { label: "decays, as the motion", ..LASTING };
 /// What the chart shows of `c h`.
 const WIDEST: f64 = 6.0;
-/// What the map of a scheme shows. The instability is a band beside a pole; the map shows the widest band.
-#[derive(Clone, Copy)]
-struct Band {
-    scheme: Composition,
-    /// Stem of the file names.
-    name: &'static str,
-    /// The least `c h`.
-    least: f64,
-    /// The largest `c h`.
-    largest: f64,
-    /// The largest `h ω`; the least is 0.
-    fastest: f64,
-}
-
-const BANDS: [Band; 4] = [
-    Band { scheme: Composition::TRIPLE_JUMP_4, name: "composed-triple", least: 1.1, largest: 1.4, fastest: 0.6 },
-    Band { scheme: Composition::SUZUKI_4, name: "composed-suzuki", least: 3.0, largest: 3.2, fastest: 0.6 },
-    Band { scheme: Composition::KAHAN_LI_6, name: "composed-kl6", least: 2.5, largest: 4.0, fastest: 2.0 },
-    Band { scheme: Composition::KAHAN_LI_8, name: "composed-kl8", least: 4.5, largest: 7.0, fastest: 3.0 },
+/// What the map of each scheme shows: the instability is a band beside a pole; the map shows the widest band. Stem of the
+/// file names, the range of `c h`, the largest `h ω`.
+const BANDS: [(Composition, &str, (f64, f64), f64); 4] = [
+    (Composition::TRIPLE_JUMP_4, "composed-triple", (1.1, 1.4), 0.6),
+    (Composition::SUZUKI_4, "composed-suzuki", (3.0, 3.2), 0.6),
+    (Composition::KAHAN_LI_6, "composed-kl6", (2.5, 4.0), 2.0),
+    (Composition::KAHAN_LI_8, "composed-kl8", (4.5, 7.0), 3.0),
 ];
 
 /// The section: the factor of a whole step, the largest stable steps, and a map for each scheme.
-pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
-    atlas.section("Compositions and damping");
-    atlas.prose(
-        "Steps of order 4 and more are composed of fixed steps, some of which go backwards in time. There damping feeds: \
-         for the force −<i>cv</i> a substep <i>γh</i> multiplies the speed by (1 − <i>z</i>/2)/(1 + <i>z</i>/2), <i>z</i> = \
-         <i>cγh</i>, which has a pole where <i>γ</i> is negative.",
-    );
-    factors(atlas)?;
-    let head = ["scheme", "order", "c h from the product", "c h of runs"];
-    let mut table = Table::new("composed-limits", head);
+pub(super) fn section() -> Section<'static> {
+    let mut table = Table::new("composed-limits", ["scheme", "order", "c h from the product", "c h of runs"]);
     for scheme in Composition::ALL {
         let theory = limit(|ch| factor(scheme, -ch, 0.0) <= 1.0);
         let runs = limit(|ch| slows_down(scheme, ch));
         table.row([scheme.name.to_owned(), scheme.order.to_string(), format!("{theory:.4}"), format!("{runs:.4}")]);
     }
-    atlas.table(
-        &table,
+    let maps = BANDS.into_iter().map(|(scheme, name, (least, largest), fastest)| {
+        let axes = [Axis::linear("c h").over(least, largest), Axis::linear("h ω").over(0.0, fastest)];
+        let caption = "Runs of the composition on an oscillator: pale decays, as it should; orange grows. The band follows the \
+                       faster of the two modes of an overdamped oscillator, <i>c</i> > 2<i>ω</i>.";
+        let title = format!("Damped oscillator: {}", scheme.name);
+        let map = Map::new(name, title, caption, axes, move |ch, h_omega| class(scheme, ch, h_omega)).coarser(2);
+        Part::Map(map.with_theory("|R| = 1", move |ch, h_omega| radius(scheme, ch, h_omega) - 1.0 - 1e-9))
+    });
+    let table = Part::Table(
+        table,
         "The <i>ch</i> up to which each composition is stable, from the product and from runs of its steps.",
-    )?;
-    for band in BANDS {
-        map(atlas, band)?;
-    }
-    atlas.advice(
-        "Keep <i>ch</i>, the damping rate of the fastest decay times the whole step, below the limit of the scheme, and for \
-         accuracy far below. Where damping is stronger than that, take fixed steps of order 2: they damp whatever is damped.",
     );
-    Ok(())
+    Section {
+        heading: "Compositions and damping",
+        prose: "Steps of order 4 and more are composed of fixed steps, some of which go backwards in time. There damping feeds: \
+                for the force −<i>cv</i> a substep <i>γh</i> multiplies the speed by (1 − <i>z</i>/2)/(1 + <i>z</i>/2), \
+                <i>z</i> = <i>cγh</i>, which has a pole where <i>γ</i> is negative."
+            .to_owned(),
+        parts: [factors(), table].into_iter().chain(maps).collect(),
+        advice: "Keep <i>ch</i>, the damping rate of the fastest decay times the whole step, below the limit of the scheme, and \
+                 for accuracy far below. Where damping is stronger than that, take fixed steps of order 2: they damp whatever \
+                 is damped.",
+    }
 }
 
 /// The factor of a whole step for `a = −c v`, by the product, and by one step of each composition as dots.
-fn factors(atlas: &mut Atlas) -> Result<(), Failure> {
+fn factors() -> Part<'static> {
     // Each scheme has the look that it has in work-precision charts, where there is no triple jump.
     let [suzuki, six, eight, jump] = Look::OTHERS;
     let looks = Composition::ALL.into_iter().zip([jump, suzuki, six, eight]);
@@ -98,31 +82,12 @@ fn factors(atlas: &mut Atlas) -> Result<(), Failure> {
         equal_aspect: false,
         series,
     };
-    atlas.chart(
-        &chart,
+    Part::Chart(
+        chart,
         "Lines: the product of the substeps’ factors. Dots: one step of each composition as it runs. Above the dashed line \
          the speed grows although the force only brakes: in a band beside each pole. Beyond it the step is stable again, but \
          no approximation of e<sup>−<i>ch</i></sup>.",
     )
-}
-
-impl Band {
-    /// `c h` across, `h ω` upwards.
-    fn axes(&self) -> Axes {
-        Axes { x: Axis::linear("c h").over(self.least, self.largest), y: Axis::linear("h ω").over(0.0, self.fastest) }
-    }
-}
-
-/// How runs of the damped oscillator end over `c h` and `h ω`, with the boundary of the product over them.
-fn map(atlas: &mut Atlas, band: Band) -> Result<(), Failure> {
-    let Band { scheme, name, .. } = band;
-    let grid = atlas.coarse_grid(band.axes(), 2);
-    let theory = boundary("|R| = 1", grid.zeros(&|ch, h_omega| radius(scheme, ch, h_omega) - 1.0 - 1e-9));
-    let title = format!("Damped oscillator: {}", scheme.name);
-    let caption = "Runs of the composition on an oscillator: pale decays, as it should; orange grows. The band follows the \
-                   faster of the two modes of an overdamped oscillator, <i>c</i> > 2<i>ω</i>.";
-    atlas.map(Labels { name, title: &title, caption }, &grid, theory, |ch, h_omega| class(scheme, ch, h_omega))?;
-    Ok(())
 }
 
 /// `|R(z)|`, `z` by its real and its imaginary part.
@@ -171,31 +136,18 @@ fn slows_down(scheme: Composition, ch: f64) -> bool {
     after_one_step(scheme, ch).is_some_and(|factor| factor <= 1.0)
 }
 
-/// How a run of the oscillator with the whole step 1 ends.
+/// How a run of the oscillator with the whole step 1 ends. No growth is allowed to a motion that decays.
 fn class(scheme: Composition, ch: f64, h_omega: f64) -> Class {
     let system = DampedOscillator { m: 1.0, k: h_omega * h_omega, c: ch };
-    let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND };
-    let state = State::at(&system, 0.0, [1.0], [0.0]);
-    let course = system.at_state(state).integrate(scheme, 1.0).map(|mut run| {
-        // Displacement and momentum both: at an extreme one of them vanishes.
-        Course::of(limit, || {
-            run.step().map(|state| {
-                let size = state.q.x.hypot(state.p.x);
-                (if size < REST { f64::INFINITY } else { state.t }, size)
-            })
-        })
-    });
-    match course.map_or_else(Ending::Failing, |course| course.ending) {
+    let limit = Limit { steps: 500, until: f64::INFINITY, bound: 10.0 };
+    match oscillation(system, scheme, 1.0, limit, 0.0) {
         Ending::Lasting => DECAYS,
-        Ending::Unbounded => UNBOUNDED,
-        ending @ Ending::Failing(_) => ending.class(),
+        ending => ending.class(),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::atlas::Grid;
-    use super::super::atlas::tests::strays;
     use super::*;
 
     #[test]
@@ -218,17 +170,6 @@ mod tests {
                 let product = factor(scheme, -ch, 0.0);
                 assert!((run / product - 1.0).abs() < 1e-13, "{} at {ch}: {run}, {product}", scheme.name);
             }
-        }
-    }
-
-    #[test]
-    fn the_maps_agree_with_the_product() {
-        for band in BANDS {
-            let Band { scheme, name, .. } = band;
-            let grid = Grid::new(band.axes(), 16);
-            let cells = grid.cells(&|ch, h_omega| class(scheme, ch, h_omega), |_| ());
-            assert!(cells.iter().all(|cell| [DECAYS, UNBOUNDED].contains(cell)), "{name}");
-            assert_eq!(strays(&grid, &cells, UNBOUNDED, |ch, h_omega| radius(scheme, ch, h_omega) > 1.0), 0, "{name}");
         }
     }
 }

@@ -7,38 +7,30 @@
 //!
 //! | module | what it makes |
 //! |---|---|
-//! | `linear` … `chain` | the sections of the page, one file each |
-//! | `system` | the maps of one system |
-//! | `atlas`, `contour`, `ending` | maps as they grow, curves D = 0, ends of runs and their colours |
+//! | `fixed`, `composed`, `energy` | the sections of the page, as data |
+//! | `system`, `span` | the maps of one system, and their axes |
+//! | `atlas`, `contour`, `ending` | sections and maps, curves D = 0, ends of runs and their colours |
 //! | `trial` | systems that only the charts need |
 
 mod atlas;
-mod chain;
 mod composed;
 mod contour;
 mod ending;
-mod kepler;
-mod linear;
-mod orders;
-mod resonance;
-mod roots;
-mod separatrix;
+mod energy;
+mod fixed;
 mod span;
-mod stiff;
 mod system;
 #[allow(dead_code, unreachable_pub)] // generated for users; the charts need a part
 mod trial;
 
-use atlas::Atlas;
+use atlas::Section;
 use clap::Args;
 use std::path::PathBuf;
 use vi_report::catalogue::{Catalogue, kebab, with_rule};
+use vi_report::entry::Entry;
 use vi_report::failure::Failure;
 use vi_report::machine::Machine;
 use vi_report::page::{Page, Report};
-
-/// Maps on the whole page.
-const MAPS: u32 = 27;
 
 /// `vi-lab stability [SYSTEM]`.
 #[derive(Debug, Args)]
@@ -72,48 +64,49 @@ pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Fai
     if entry.is_none() && (arguments.x.is_some() || arguments.y.is_some()) {
         return Err(Failure::Input("--x and --y are axes of the map of one system: name it".to_owned()));
     }
-    let report = match entry {
+    let mut report;
+    match entry {
         Some(entry) => {
             let entry = with_rule(entry, "stability")?;
             let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
             let title = format!("Where runs of the system {} end", kebab(entry.name));
-            let report = Report::new(&arguments.out, Page::new(&title, entry.about))?;
-            let mut atlas = Atlas::new(report, arguments.columns, 2);
-            system::maps(&mut atlas, &entry, &axes)?;
-            atlas.into_report()
+            report = Report::new(&arguments.out, Page::new(&title, entry.about))?;
+            atlas::write(&mut report, arguments.columns, system::sections(&entry, &axes))?;
         }
-        None => whole(arguments, catalogue)?,
-    };
+        None => {
+            report = Report::new(&arguments.out, Page::new("Where methods fail", SUBTITLE))?;
+            report.prose(INTRODUCTION);
+            let [well, pendulum] = ["double-well", "pendulum"].map(|name| catalogue.find(name));
+            let (well, pendulum) = (well?, pendulum?);
+            atlas::write(&mut report, arguments.columns, sections(&well, &pendulum)?)?;
+        }
+    }
     Ok(report.finish(&machine)?.display().to_string())
 }
 
-/// The page of all ways of failing.
-fn whole(arguments: &Arguments, catalogue: &Catalogue) -> Result<Report, Failure> {
-    let page = Page::new(
-        "Where methods fail",
-        "Variational integrators with fixed and with energy-preserving steps: before, at, and after the step that does not \
-         exist",
-    );
-    let mut atlas = Atlas::new(Report::new(&arguments.out, page)?, arguments.columns, MAPS);
-    atlas.prose(
-        "Every method fails somewhere. Each chart shows how runs end over two quantities, and the dashed line where theory \
-         says that they should. Colours mean the same in all maps: <b style=\"background:#E3ECF4\">pale</b> runs to the \
-         end; <b style=\"background:#E69F00\">orange</b> grows without bound, the method being unstable; the others are \
-         steps that the solver reports as not existing, each typed error in a colour of its own, first of all <b \
-         style=\"background:#CC79A7\">no forward step</b> of the energy-preserving integrator and <b \
-         style=\"background:#3A3A3A;color:#FFFFFF\">no solution</b> of the momentum equation. None of them is ever a NaN \
-         or a silent wrong answer.",
-    );
-    linear::section(&mut atlas)?;
-    resonance::section(&mut atlas)?;
-    roots::section(&mut atlas)?;
-    stiff::section(&mut atlas)?;
-    composed::section(&mut atlas)?;
-    kepler::section(&mut atlas)?;
-    separatrix::section(&mut atlas, catalogue)?;
-    orders::section(&mut atlas, catalogue)?;
-    chain::section(&mut atlas)?;
-    Ok(atlas.into_report())
+const SUBTITLE: &str = "Variational integrators with fixed and with energy-preserving steps: before, at, and after the step that \
+                        does not exist";
+const INTRODUCTION: &str = "Every method fails somewhere. Each chart shows how runs end over two quantities, and the dashed line where theory \
+     says that they should. Colours mean the same in all maps: <b style=\"background:#E3ECF4\">pale</b> runs to the \
+     end; <b style=\"background:#E69F00\">orange</b> grows without bound, the method being unstable; the others are \
+     steps that the solver reports as not existing, each typed error in a colour of its own, first of all <b \
+     style=\"background:#CC79A7\">no forward step</b> of the energy-preserving integrator and <b \
+     style=\"background:#3A3A3A;color:#FFFFFF\">no solution</b> of the momentum equation. None of them is ever a NaN \
+     or a silent wrong answer.";
+
+/// All ways of failing.
+fn sections<'a>(well: &'a Entry, pendulum: &'a Entry) -> Result<Vec<Section<'a>>, Failure> {
+    Ok(vec![
+        fixed::linear(),
+        fixed::resonance(),
+        fixed::roots(),
+        fixed::stiff(),
+        composed::section(),
+        energy::kepler(),
+        energy::separatrix(well, pendulum)?,
+        energy::orders(pendulum.system.as_ref()),
+        fixed::chain(),
+    ])
 }
 
 #[cfg(test)]

@@ -3,14 +3,14 @@
 //! In: an entry of the catalogue and two axes. Out: a map for the energy-preserving integrator, with the curve D = 0 of
 //! the initial states over it, and one for the fixed step. What an axis does not vary is as the catalogue has it.
 
-use super::atlas::{Atlas, Axes, Grid, Labels};
+use super::atlas::{Map, Part, Section};
 use super::ending::{Course, Limit, size};
 use super::span::Span;
 use vi_erased::System;
 use vi_erased::plan::{Method, PhasePoint, Plan, Start};
 use vi_erased::simulation::Simulation;
 use vi_report::catalogue::kebab;
-use vi_report::chart::{Class, Look, Series, boundary, middles};
+use vi_report::chart::{Class, Look, Series, middles};
 use vi_report::entry::Entry;
 use vi_report::failure::Failure;
 use vi_report::quantity::Quantity;
@@ -54,67 +54,94 @@ fn usual(entry: &Entry) -> [Span; 2] {
     [span(quantity, name, 0.0, reach), span(Quantity::Step, "h".to_owned(), entry.h / 5.0, entry.h * 50.0)]
 }
 
-/// Two maps and what they mean.
-pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result<(), Failure> {
-    let grid = grid(atlas, entry, axes);
+/// Two sections, each a map.
+pub(super) fn sections<'a>(entry: &'a Entry, axes: &[Span; 2]) -> Vec<Section<'a>> {
     let name = kebab(entry.name);
     let fixed: Vec<String> =
         entry.system.parameters().iter().map(|(parameter, value)| format!("{parameter} = {value}")).collect();
-    atlas.section("The energy-preserving integrator");
-    atlas.prose(&format!(
-        "Each cell is a run of {STEPS} steps at most, from the midpoint start. What the axes do not vary: {}, q = {:?}, v = \
-         {:?}, h = {}.",
-        if fixed.is_empty() { "no parameters".to_owned() } else { fixed.join(", ") },
-        entry.q,
-        entry.v,
-        entry.h
-    ));
-    let title = format!("{name}: energy-preserving");
-    let caption = "How runs end. Dashed, where it lies in the picture: the initial states with <i>D</i> = 0. Steps exist while \
-                   <i>D</i> keeps its sign; a run ends where its orbit meets <i>D</i> = 0.";
-    energy(atlas, Labels { name: "energy", title: &title, caption }, entry, axes)?;
-    atlas.section("Fixed steps");
+    let energy = energy(
+        "energy",
+        format!("{name}: energy-preserving"),
+        "How runs end. Dashed, where it lies in the picture: the initial states with <i>D</i> = 0. Steps exist while \
+         <i>D</i> keeps its sign; a run ends where its orbit meets <i>D</i> = 0.",
+        entry,
+        axes.clone(),
+    );
     let caption = "The same with fixed steps: no step density limits them, but the equation may have no solution, and a \
                    motion may grow without bound.";
-    let title = format!("{name}: fixed step");
-    atlas.map(Labels { name: "fixed", title: &title, caption }, &grid, Vec::new(), |a, b| {
-        class(entry, axes, (a, b), Method::Fixed)
-    })?;
-    atlas.advice(
-        "Start where both maps are pale, and away from the dashed curve. Where only the second is, take fixed steps. Where \
-         neither is, shorten the step: <code>--y h=LOW:HIGH</code> shows how far.",
-    );
-    Ok(())
+    vec![
+        Section {
+            heading: "The energy-preserving integrator",
+            prose: format!(
+                "Each cell is a run of {STEPS} steps at most, from the midpoint start. What the axes do not vary: {}, q = {:?}, \
+                 v = {:?}, h = {}.",
+                if fixed.is_empty() { "no parameters".to_owned() } else { fixed.join(", ") },
+                entry.q,
+                entry.v,
+                entry.h
+            ),
+            parts: vec![Part::Map(energy)],
+            advice: "",
+        },
+        Section {
+            heading: "Fixed steps",
+            prose: String::new(),
+            parts: vec![Part::Map(map(
+                "fixed",
+                format!("{name}: fixed step"),
+                caption,
+                entry,
+                axes.clone(),
+                Method::Fixed,
+            ))],
+            advice: "Start where both maps are pale, and away from the dashed curve. Where only the second is, take fixed \
+                     steps. Where neither is, shorten the step: <code>--y h=LOW:HIGH</code> shows how far.",
+        },
+    ]
 }
 
-/// The grid of a system's maps: coarser for many degrees of freedom, whose steps take long.
-fn grid(atlas: &Atlas, entry: &Entry, [x, y]: &[Span; 2]) -> Grid {
-    atlas.coarse_grid(Axes { x: x.axis(), y: y.axis() }, entry.q.len() / 2)
+/// A map of the ends of runs: coarser for many degrees of freedom, whose steps take long.
+fn map<'a>(
+    name: &'static str,
+    title: impl Into<String>,
+    caption: &'static str,
+    entry: &'a Entry,
+    axes: [Span; 2],
+    method: Method,
+) -> Map<'a> {
+    let shown = axes.each_ref().map(Span::axis);
+    let class = move |a, b| class(entry, &axes, (a, b), method);
+    Map::new(name, title, caption, shown, class).coarser(entry.q.len() / 2)
 }
 
 /// The map of the energy-preserving integrator: how runs end, the curve D = 0, and in the phase plane of one degree of
 /// freedom the middles of the last steps of some runs.
-pub(super) fn energy(atlas: &mut Atlas, labels: Labels<'_>, entry: &Entry, axes: &[Span; 2]) -> Result<(), Failure> {
-    let [x, y] = axes;
-    let grid = grid(atlas, entry, axes);
-    let zeros = grid.zeros(&|a, b| {
-        let (system, plan) = varied(entry, axes, (a, b), Method::Energy);
-        let at = PhasePoint { t: 0.0, q: plan.q, v: plan.v };
-        system.studies().step_density(&at).unwrap_or(f64::NAN)
-    });
-    let mut curves = boundary("D = 0", zeros);
+pub(super) fn energy<'a>(
+    name: &'static str,
+    title: impl Into<String>,
+    caption: &'static str,
+    entry: &'a Entry,
+    axes: [Span; 2],
+) -> Map<'a> {
+    let mut marks = Vec::new();
+    let [x, y] = &axes;
     if entry.q.len() == 1 && (&x.quantity, &y.quantity) == (&Quantity::Coordinate(0), &Quantity::Velocity(0)) {
-        let ends: Vec<(f64, f64)> = middles(&grid.axes.y, ENDS.1)
-            .flat_map(|v| middles(&grid.axes.x, ENDS.0).map(move |q| (q, v)))
-            .filter_map(|place| last_middle(entry, axes, place))
+        let [across, upwards] = axes.each_ref().map(Span::axis);
+        let ends: Vec<(f64, f64)> = middles(&upwards, ENDS.1)
+            .flat_map(|v| middles(&across, ENDS.0).map(move |q| (q, v)))
+            .filter_map(|place| last_middle(entry, &axes, place))
             .filter(|(q, v)| x.contains(*q) && y.contains(*v))
             .collect();
         if !ends.is_empty() {
-            curves.push(Series::scatter("last steps of some runs", Look::EXACT.dots(2.5), ends));
+            marks.push(Series::scatter("last steps of some runs", Look::EXACT.dots(2.5), ends));
         }
     }
-    atlas.map(labels, &grid, curves, |a, b| class(entry, axes, (a, b), Method::Energy))?;
-    Ok(())
+    let map = map(name, title, caption, entry, axes.clone(), Method::Energy);
+    map.with_marks(marks).with_theory("D = 0", move |a, b| {
+        let (system, plan) = varied(entry, &axes, (a, b), Method::Energy);
+        let at = PhasePoint { t: 0.0, q: plan.q, v: plan.v };
+        system.studies().step_density(&at).unwrap_or(f64::NAN)
+    })
 }
 
 /// Coordinate and velocity in the middle of the last step of a run that failed; none where it did not.
