@@ -12,7 +12,6 @@ mod equations;
 mod forced;
 mod law;
 mod raw;
-mod theory;
 
 use book::Book;
 use clap::Parser;
@@ -65,7 +64,6 @@ pub fn write(study: &Study) -> Result<String, Failure> {
         forced::chapter(&mut book, &mut progress)?;
         progress.message("step law");
         law::section(&mut book)?;
-        theory::chapter(&mut book, &mut progress)?;
     }
     book.finish(&machine)
 }
@@ -111,8 +109,8 @@ mod tests {
         let files: Vec<String> =
             page.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next()).map(String::from).collect();
         let named: Vec<&String> = files.iter().filter(|name| !name.starts_with('#')).collect();
-        // 39 figures in two forms, 14 tables.
-        assert_eq!(named.len(), 2 * 39 + 14);
+        // 34 figures in two forms, 12 tables.
+        assert_eq!(named.len(), 2 * 34 + 12);
         for target in files.iter().filter_map(|name| name.strip_prefix('#')) {
             assert!(page.contains(&format!("id=\"{target}\"")), "no part of the page is named {target}");
         }
