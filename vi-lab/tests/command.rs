@@ -29,6 +29,13 @@ fn lab(arguments: &[&str]) -> (Option<i32>, String, String) {
     (status.code(), text(stdout), errors)
 }
 
+/// Standard output of a command that succeeds without a message.
+fn success(arguments: &[&str]) -> String {
+    let (status, output, errors) = lab(arguments);
+    assert_eq!((status, errors.as_str()), (Some(0), ""), "{arguments:?}");
+    output
+}
+
 /// A file of this test in the temporary folder.
 fn temporary(name: &str) -> PathBuf {
     std::env::temp_dir().join(format!("vi-lab-{}-{name}", std::process::id()))
@@ -74,8 +81,7 @@ fn path(path: &Path) -> &str {
 
 #[test]
 fn exponents_of_chaos_and_of_an_oscillation() {
-    let (status, text, errors) = lab(&["lyapunov", "double-well-duffing", "--set", "amplitude=0.5", "--steps", "5000"]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let text = success(&["lyapunov", "double-well-duffing", "--set", "amplitude=0.5", "--steps", "5000"]);
     let last = rows(&text).pop().expect("a row");
     // The sum is minus the damping, 0.3, to the printed digits.
     assert!(last[1] > 0.05 && (last[1] + last[2] + 0.3).abs() < 2e-6, "{text}");
@@ -91,58 +97,27 @@ fn exponents_of_chaos_and_of_an_oscillation() {
 
 #[test]
 fn the_list_names_every_system_with_its_parameters() {
-    let (status, list, errors) = lab(&["list"]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
-    for name in SYSTEMS {
-        assert!(list.contains(name), "{name} is missing");
-    }
-    for name in WITH_CONSTRAINTS {
+    let list = success(&["list"]);
+    for name in [SYSTEMS, WITH_CONSTRAINTS].iter().flat_map(|names| names.split(' ')) {
         assert!(list.contains(name), "{name} is missing");
     }
     assert!(list.contains("m = 1, k = 4, c = 0.04"), "{list}");
 }
 
 /// The names of all predefined systems.
-const SYSTEMS: [&str; 17] = [
-    "double-well",
-    "damped-oscillator",
-    "pendulum",
-    "kepler",
-    "double-pendulum",
-    "harmonic-oscillator",
-    "hard-duffing",
-    "double-well-duffing",
-    "parametric-pendulum",
-    "rotating-hoop",
-    "spherical-pendulum",
-    "henon-heiles",
-    "charged-particle",
-    "n-pendulum",
-    "three-body",
-    "fpu-chain",
-    "outer-solar-system",
-];
+const SYSTEMS: &str = "double-well damped-oscillator pendulum kepler double-pendulum harmonic-oscillator hard-duffing \
+                       double-well-duffing parametric-pendulum rotating-hoop spherical-pendulum henon-heiles \
+                       charged-particle n-pendulum three-body fpu-chain outer-solar-system";
 
 /// The names of all predefined systems with constraints.
-const WITH_CONSTRAINTS: [&str; 10] = [
-    "rod-pendulum",
-    "double-rod-pendulum",
-    "rod-chain",
-    "four-bar",
-    "slider-crank",
-    "andrews-squeezer",
-    "heavy-top",
-    "chaplygin-sleigh",
-    "rolling-disk",
-    "rolling-ball",
-];
+const WITH_CONSTRAINTS: &str = "rod-pendulum double-rod-pendulum rod-chain four-bar slider-crank andrews-squeezer heavy-top \
+                                chaplygin-sleigh rolling-disk rolling-ball";
 
 #[test]
 fn every_system_with_constraints_runs_and_is_explained() {
-    for name in WITH_CONSTRAINTS {
+    for name in WITH_CONSTRAINTS.split(' ') {
         for stages in ["1", "2", "3"] {
-            let (status, csv, errors) = lab(&["run", name, "--stages", stages, "--steps", "10"]);
-            assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}, {stages} stages");
+            let csv = success(&["run", name, "--stages", stages, "--steps", "10"]);
             let rows = rows(&csv);
             assert_eq!(rows.len(), 11, "{name}, {stages} stages");
             let columns = csv.lines().find(|line| line.starts_with("t,")).expect("a head");
@@ -154,16 +129,14 @@ fn every_system_with_constraints_runs_and_is_explained() {
             }
         }
         let energy = ["run", name, "--method", "energy", "--shift", "auto", "--steps", "10"];
-        let (status, csv, errors) = lab(&energy);
-        assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}");
+        let csv = success(&energy);
         let rows = rows(&csv);
         let column = rows[0].len() - 2;
         assert!(rows.len() == 11 && csv.contains(",H,E,E',h\n"), "{name}: {csv}");
         // A motor, and a turntable, do work.
         let is_kept = rows.iter().all(|row| row[column].to_bits() == rows[0][column].to_bits());
         assert_eq!(is_kept, !["andrews-squeezer", "rolling-ball"].contains(&name), "{name}: {csv}");
-        let (status, text, errors) = lab(&["explain", name]);
-        assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}");
+        let text = success(&["explain", name]);
         assert!(text.contains("constraint"), "{name}: {text}");
     }
 }
@@ -171,8 +144,7 @@ fn every_system_with_constraints_runs_and_is_explained() {
 #[test]
 fn initial_states_keep_or_meet_the_constraints() {
     // The default initial state follows the parameters; a given one is refused with both residuals, or moved.
-    let (status, csv, errors) = lab(&["run", "rod-pendulum", "--set", "l=0.5", "--steps", "1"]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let csv = success(&["run", "rod-pendulum", "--set", "l=0.5", "--steps", "1"]);
     let first = &rows(&csv)[0];
     assert!((first[1].hypot(first[2]) - 0.5).abs() < 1e-15, "{csv}");
     // Λ of a rod at rest: the tension m g cos 1 is −2 Λ l.
@@ -232,16 +204,14 @@ fn initial_states_keep_or_meet_the_constraints() {
 
 #[test]
 fn every_system_runs_by_every_method_and_is_explained() {
-    for name in SYSTEMS {
+    for name in SYSTEMS.split(' ') {
         for method in ["fixed", "kahan-li-6", "gauss", "energy"] {
-            let (status, csv, errors) = lab(&["run", name, "--method", method, "--steps", "10"]);
-            assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}, {method}");
+            let csv = success(&["run", name, "--method", method, "--steps", "10"]);
             let rows = rows(&csv);
             assert_eq!(rows.len(), 11, "{name}, {method}");
             assert!(rows.windows(2).all(|pair| pair[0][0] < pair[1][0]), "{name}, {method}: {csv}");
         }
-        let (status, text, errors) = lab(&["explain", name]);
-        assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}");
+        let text = success(&["explain", name]);
         assert!(text.contains("D1 L_d"), "{name}: {text}");
     }
 }
@@ -253,8 +223,7 @@ fn both_methods_write_csv_to_standard_output() {
     {
         let of_start: &[&str] = if start == "state" { &[] } else { &["--start", start] };
         let run = ["run", "double-well", "--method", method, "--steps", "500"];
-        let (status, csv, errors) = lab(&[run.as_slice(), of_start].concat());
-        assert_eq!((status, errors.as_str()), (Some(0), ""), "{method}, {start}");
+        let csv = success(&[run.as_slice(), of_start].concat());
         assert!(
             csv.starts_with("# vi-lab ")
                 && csv.contains(&format!("# command: vi-lab run double-well --method {method}"))
@@ -273,8 +242,7 @@ fn both_methods_write_csv_to_standard_output() {
 fn parameters_and_initial_values_are_set() {
     let run = ["run", "harmonic-oscillator", "--h", "0.001", "--until", "0.5"];
     let set = ["--set", "k=9", "--set", "m=4", "--q", "-2", "--v", "0.75"];
-    let (status, csv, errors) = lab(&[run.as_slice(), &set].concat());
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let csv = success(&[run.as_slice(), &set].concat());
     let last = rows(&csv).pop().expect("rows");
     let omega = 1.5_f64;
     let t = 0.5;
@@ -339,18 +307,11 @@ fn a_plot_shows_the_rows_however_the_run_ends() {
 
 #[test]
 fn wrong_input_is_one_line_and_status_2() {
-    let cases: [(&[&str], &str); 31] = [
+    assert_refused(&[
         (&["explain"], "name a system of `vi-lab list`"),
         (&["work-precision"], "name a system of `vi-lab list`"),
         (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
         (&["run"], "name a system of `vi-lab list`"),
-        (&["run", "double-well", "--steps", "1", "--until", "2"], "give either --steps or --until, not both"),
-        (&["run", "double-well", "--steps", "1", "--set", "k=1"], "double-well has no parameter `k`; it has `m`"),
-        (
-            &["run", "double-well", "--steps", "1", "--set", "m=1", "--set", "m=2"],
-            "the parameter `m` is set twice; use --set once per parameter",
-        ),
-        (&["run", "double-well", "--steps", "1", "--h", "0"], "the step (--h) must not be zero"),
         (
             &["run", "double-well", "--steps", "one"],
             "invalid value 'one' for '--steps <N>': write a whole number from 0 to 1.8e19, such as 1000 or 1e6",
@@ -358,14 +319,6 @@ fn wrong_input_is_one_line_and_status_2() {
         (
             &["run", "double-well", "--steps", "1.5e0"],
             "invalid value '1.5e0' for '--steps <N>': write a whole number from 0 to 1.8e19, such as 1000 or 1e6",
-        ),
-        (
-            &["run", "double-well", "--steps", "-3"],
-            "invalid value '-3' for '--steps <N>': write a whole number from 0 to 1.8e19, such as 1000 or 1e6",
-        ),
-        (
-            &["run", "double-well", "--steps", "1", "--every", "0"],
-            "--every must be at least 1: 1 writes every node, 10 every tenth",
         ),
         (
             &["run", "double-well", "--steps", "1", "--q", "−1"],
@@ -376,23 +329,7 @@ fn wrong_input_is_one_line_and_status_2() {
             &["run", "double-well", "--steps", "1", "--method", "euler"],
             "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, splitting-4, splitting-6, gauss, adaptive, energy]",
         ),
-        (
-            &["run", "double-well", "--steps", "1", "--method", "gauss", "--stages", "5"],
-            "Gauss steps of 5 stages are not built into the command; --stages may be 4 or 8",
-        ),
-        (
-            &["run", "double-well", "--steps", "1", "--stages", "4"],
-            "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it",
-        ),
         (&["work-precision", "kepler", "--q", "1"], "give 2 finite coordinates (--q), not [1.0]"),
-        (
-            &["run", "double-well", "--steps", "1", "--start", "points"],
-            "only energy-preserving steps have a --start; add --method energy, or remove it",
-        ),
-        (
-            &["run", "double-well", "--steps", "1", "--q", "1,2"],
-            "double-well has the coordinates q: give as many coordinates (--q), not 2",
-        ),
         (
             &["run", "double-well", "--steps", "1", "-o", "x.npy"],
             "the output `x.npy` must end in .csv; pandas reads it with `read_csv(FILE, comment=\"#\")`",
@@ -415,20 +352,15 @@ fn wrong_input_is_one_line_and_status_2() {
         (&["fly"], "unrecognized subcommand 'fly'; `vi-lab help` lists the commands"),
         (&["run", "kepler", "--stepz", "1"], "unexpected argument '--stepz' found; did you mean `--steps`?"),
         (
-            &["run", "kepler", "--steps", "1", "--param", "mu=2"],
-            "unexpected argument '--param' found; --set NAME=VALUE sets a parameter, `vi-lab run --help` lists the options",
-        ),
-        (
             &["run", "kepler", "--steps", "1", "--parameter", "mu=2"],
             "unexpected argument '--parameter' found; --set NAME=VALUE sets a parameter, `vi-lab run --help` lists the options",
         ),
-    ];
-    assert_refused(&cases);
+    ]);
 }
 
 #[test]
 fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
-    let cases: [(&[&str], &str); 9] = [
+    assert_refused(&[
         // Steps below rounding.
         (
             &["run", "pendulum", "--h", "1e-300", "--until", "1"],
@@ -476,46 +408,33 @@ fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
             &["run", "pendulum", "--method", "energy", "--until", "1e30"],
             "the output would have about 1e32 rows, 1.14e25 GB; shorten the run, or allow more than 1 GB with --large-output",
         ),
-    ];
-    assert_refused(&cases);
+    ]);
 }
 
 #[test]
 fn a_mistake_in_a_scene_is_one_line_and_status_2() {
     let file = temporary("mistaken.toml");
-    for (text, message) in [
-        ("system = \"kepler\"\nq = [0.4 0.0]\n", "entries are such as `method = \"energy\"`, `h = 0.01`"),
-        ("", "the scene names no system; add a line such as `system = \"kepler\"`"),
-        (
-            "system = \"kepler\"\nmethod = 3\n",
-            "line 2: wanted string or table; entries are such as `method = \"energy\"`",
-        ),
-        ("system = \"kepler\"\ncolour = 1\n", "line 2: unknown field `colour`, expected one of `system`, `method`"),
-        ("steps = 1\n", "the scene names no system; add a line such as `system = \"kepler\"`"),
-    ] {
+    let refused = |text: &str, start: &str, message: &str| {
         fs::write(&file, text).expect("the scene");
         let (status, output, errors) = lab(&["run", path(&file)]);
         assert_eq!((status, output.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
-        assert!(errors.starts_with(&format!("error: {}: ", path(&file))) && errors.contains(message), "{errors}");
-    }
+        assert!(errors.starts_with(&format!("error: {start}")) && errors.contains(message), "{errors}");
+    };
+    let of_file = format!("{}: line 2: ", path(&file));
+    refused(
+        "system = \"kepler\"\ncolour = 1\n",
+        &of_file,
+        "unknown field `colour`, expected one of `system`, `method`",
+    );
     // Wrong values are reported as for the command line, which may have replaced them.
     for (text, message) in [
-        ("system = \"keple\"\n", "there is no system `keple`; did you mean `kepler`?"),
-        (
-            "system = \"kepler\"\nmethod = \"gauss\"\nstages = 5\n",
-            "Gauss steps of 5 stages are not built into the command",
-        ),
-        ("system = \"kepler\"\nq = [0.4]\n", "kepler has the coordinates x, y: give as many coordinates (--q), not 1"),
-        ("system = \"kepler\"\nq = [nan, 0]\n", "the coordinates (--q) must be finite, not NaN"),
-        ("system = \"kepler\"\nh = 0.0\n", "the step (--h) must not be zero"),
-        ("system = \"kepler\"\nuntil = -1.0\n", "steps of 0.005 from t = 0 do not reach --until -1"),
-        ("system = \"kepler\"\n[parameters]\nm = 1\n", "kepler has no parameter `m`; it has `mu`"),
-        ("system = \"kepler\"\n[parameters]\nmu = inf\n", "the parameter `mu` must be finite, not inf"),
+        ("method = \"gauss\"\nstages = 5\n", "Gauss steps of 5 stages are not built into the command"),
+        ("q = [nan, 0]\n", "the coordinates (--q) must be finite, not NaN"),
+        ("until = -1.0\n", "steps of 0.005 from t = 0 do not reach --until -1"),
+        ("[parameters]\nm = 1\n", "kepler has no parameter `m`; it has `mu`"),
+        ("[parameters]\nmu = inf\n", "the parameter `mu` must be finite, not inf"),
     ] {
-        fs::write(&file, text).expect("the scene");
-        let (status, output, errors) = lab(&["run", path(&file)]);
-        assert_eq!((status, output.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
-        assert!(errors.starts_with(&format!("error: {message}")), "{errors}");
+        refused(&format!("system = \"kepler\"\n{text}"), message, "");
     }
     fs::remove_file(file).expect("the file can be removed");
 }
@@ -531,8 +450,7 @@ fn every_nth_node_and_the_last_are_those_of_the_whole_run() {
     for method in ["fixed", "energy"] {
         let run = ["run", "kepler", "--method", method, "--steps", "25"];
         let (_, all, _) = lab(&run);
-        let (status, some, errors) = lab(&[run.as_slice(), &["--every", "10"]].concat());
-        assert_eq!((status, errors.as_str()), (Some(0), ""));
+        let some = success(&[run.as_slice(), &["--every", "10"]].concat());
         let all = rows(&all);
         let expected: Vec<Vec<f64>> = [0, 10, 20, 25].map(|index: usize| all[index].clone()).to_vec();
         assert_eq!(bits(&rows(&some)), bits(&expected), "{method}");
@@ -541,8 +459,7 @@ fn every_nth_node_and_the_last_are_those_of_the_whole_run() {
 
 #[test]
 fn the_two_energies_have_columns_of_their_own() {
-    let (status, csv, errors) = lab(&["run", "double-well", "--h", "0.01", "--steps", "1000"]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let csv = success(&["run", "double-well", "--h", "0.01", "--steps", "1000"]);
     let fixed = rows(&csv);
     assert!(csv.contains(",,0.01\n") && fixed[0][4].is_nan(), "no interval ends in the first row");
     let largest = |values: &dyn Fn(&[f64]) -> f64| fixed[1..].iter().map(|row| values(row).abs()).fold(0.0, f64::max);
@@ -579,8 +496,7 @@ fn without_a_step_the_advice_continues_the_run() {
         lines[2].to_owned()
     };
     let leads_on = |options: &[&str]| {
-        let (status, _, errors) = lab(&[run.as_slice(), options].concat());
-        assert_eq!((status, errors.as_str()), (Some(0), ""), "{options:?}");
+        success(&[run.as_slice(), options].concat());
     };
     let shift =
         |advice: &str| advice.split("--shift ").nth(1).and_then(|rest| rest.split(' ').next()).map(str::to_owned);
@@ -611,8 +527,7 @@ fn steps_too_short_for_their_length_get_a_longer_one_as_advice() {
     assert!(errors.starts_with("error: the step length is not determined at t = 0"), "{errors}");
     let longer = errors.split("what to do: --h ").nth(1).and_then(|rest| rest.split(':').next()).expect("a length");
     for options in [["--h", longer].as_slice(), &[]] {
-        let (status, _, errors) = lab(&[run.as_slice(), options].concat());
-        assert_eq!((status, errors.as_str()), (Some(0), ""), "{options:?}");
+        success(&[run.as_slice(), options].concat());
     }
 }
 
@@ -620,8 +535,7 @@ fn steps_too_short_for_their_length_get_a_longer_one_as_advice() {
 fn steps_with_a_shift_keep_an_energy_of_their_own() {
     let pendulum =
         ["run", "pendulum", "--set", "g=1", "--q", "2", "--h", "0.05", "--steps", "340", "--method", "energy"];
-    let (status, csv, errors) = lab(&[pendulum.as_slice(), &["--stages", "2", "--shift", "auto"]].concat());
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let csv = success(&[pendulum.as_slice(), &["--stages", "2", "--shift", "auto"]].concat());
     assert!(csv.contains("\nt,θ,p_θ,H,E,E',h\n"), "{csv}");
     let kept = "E': E − C h^4 D*, which is conserved, with C = 1/864 and the shift D* = 18.";
     assert!(csv.contains("\n# method: energy, 2 stages, shift 18.") && csv.contains(kept), "{csv}");
@@ -671,8 +585,7 @@ fn steps_with_a_shift_keep_an_energy_of_their_own() {
 fn gauss_steps_in_scaled_time_follow_an_eccentric_orbit() {
     // Eccentricity 0.9: three periods of fifteen steps, as in the cookbook.
     let orbit = ["run", "kepler", "--q", "0.1,0", "--v", "0,4.358898943540674", "--method", "gauss"];
-    let (status, csv, errors) = lab(&[orbit.as_slice(), &["--dtau", "0.5578667", "--steps", "45"]].concat());
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let csv = success(&[orbit.as_slice(), &["--dtau", "0.5578667", "--steps", "45"]].concat());
     assert!(csv.contains("# method: gauss, 8 stages, dtau = 0.5578667, h = 0.0176"), "{csv}");
     let rows = rows(&csv);
     let last = rows.last().expect("rows");
@@ -823,8 +736,7 @@ fn a_run_of_days_is_announced() {
 #[test]
 fn a_scene_is_run_and_the_command_line_overrides_it() {
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/damped-oscillator.toml");
-    let (status, csv, errors) = lab(&["run", scene]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let csv = success(&["run", scene]);
     assert!(csv.contains("# parameters: m = 1, k = 4, c = 0.02\n"));
     let rows_to_end = rows(&csv);
     let [.., before, last] = &rows_to_end[..] else { panic!("{csv}") };
@@ -845,8 +757,7 @@ fn every_scene_runs() {
         if file.extension().is_some_and(|extension| extension == "toml") {
             let is_sweep = fs::read_to_string(&file).expect("a scene").contains("[sweep]");
             let item: &[&str] = if is_sweep { &["--item", "7"] } else { &[] };
-            let (status, _, errors) = lab(&[&["run", path(&file), "--steps", "5"], item].concat());
-            assert_eq!((status, errors.as_str()), (Some(0), ""), "{}", file.display());
+            success(&[&["run", path(&file), "--steps", "5"], item].concat());
             scenes += 1;
         }
     }
@@ -856,7 +767,7 @@ fn every_scene_runs() {
 #[test]
 fn the_map_of_a_system_is_a_page_with_its_files() {
     let out = temporary("stability");
-    let (status, output, errors) = lab(&[
+    let output = success(&[
         "stability",
         "double-well",
         "--columns",
@@ -868,7 +779,6 @@ fn the_map_of_a_system_is_a_page_with_its_files() {
         "--out",
         path(&out),
     ]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
     assert_eq!(output.trim(), out.join("index.html").display().to_string());
     for name in ["index.html", "energy.svg", "energy.csv", "fixed.svg", "fixed.csv"] {
         assert!(fs::metadata(out.join(name)).is_ok_and(|file| file.len() > 500), "{name}");
@@ -889,8 +799,7 @@ fn the_map_of_a_system_is_a_page_with_its_files() {
 fn every_method_is_compared_and_early_ends_have_a_reason() {
     let out = temporary("work-precision");
     // A driven double well: its energy-preserving runs end, the others reach the end.
-    let (status, output, errors) = lab(&["work-precision", "double-well-duffing", "--quick", "--out", path(&out)]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let output = success(&["work-precision", "double-well-duffing", "--quick", "--out", path(&out)]);
     let methods =
         ["fixed step", "Suzuki 4", "Kahan–Li 6", "Kahan–Li 8", "\"Gauss, 8 stages\"", "energy-preserving", "DOP853"];
     assert!(methods.iter().all(|method| output.contains(method.trim_matches('"'))), "{output}");
@@ -929,7 +838,7 @@ fn without_a_comparison_the_command_reports_why() {
 
 #[test]
 fn wrong_axes_are_status_2() {
-    let cases: [(&[&str], &str); 5] = [
+    assert_refused(&[
         (&["stability", "double-wel"], "there is no system `double-wel`; did you mean `double-well`?"),
         (
             &["stability", "kepler", "--x", "z=0:1"],
@@ -938,8 +847,7 @@ fn wrong_axes_are_status_2() {
         (&["stability", "kepler", "--x", "x=1"], "an axis is given as NAME=LOW:HIGH, with LOW below HIGH, not `x=1`"),
         (&["stability", "kepler", "--x", "h=1:2"], "both axes vary `h`; give two different ones with --x and --y"),
         (&["stability", "--columns", "5"], "invalid value '5' for '--columns <N>': 5 is not in 10..=596"),
-    ];
-    assert_refused(&cases);
+    ]);
     let missing = temporary("stability-file");
     fs::write(&missing, "a file").expect("a file");
     let (status, _, errors) = lab(&["stability", "double-well", "--columns", "10", "--out", path(&missing)]);
@@ -950,8 +858,7 @@ fn wrong_axes_are_status_2() {
 #[test]
 fn a_composition_runs_and_has_no_discrete_energy() {
     for (method, error) in [("suzuki-4", 1e-4), ("kahan-li-6", 1e-5), ("kahan-li-8", 1e-5)] {
-        let (status, output, errors) = lab(&["run", "kepler", "--method", method, "--h", "0.02", "--steps", "300"]);
-        assert_eq!((status, errors.as_str()), (Some(0), ""), "{method}");
+        let output = success(&["run", "kepler", "--method", method, "--h", "0.02", "--steps", "300"]);
         let rows: Vec<Vec<&str>> =
             output.lines().filter(|line| !line.starts_with(['#', 't'])).map(|line| line.split(',').collect()).collect();
         assert_eq!(rows.len(), 301, "{method}");
@@ -968,8 +875,7 @@ fn gauss_steps_run_and_have_both_energies() {
     fs::write(&scene, "system = \"kepler\"\nmethod = \"gauss\"\nstages = 4\nh = 0.1\nsteps = 300\n").expect("a scene");
     // Measured: 3.2e-8 and 6.7e-16.
     for (stages, error) in [("4", 1e-7), ("8", 2e-15)] {
-        let (status, output, errors) = lab(&["run", path(&scene), "--stages", stages]);
-        assert_eq!((status, errors.as_str()), (Some(0), ""));
+        let output = success(&["run", path(&scene), "--stages", stages]);
         assert!(output.contains(&format!("# method: gauss, {stages} stages, h = 0.1")), "{output}");
         let rows: Vec<Vec<&str>> =
             output.lines().filter(|line| !line.starts_with(['#', 't'])).map(|line| line.split(',').collect()).collect();
@@ -983,8 +889,7 @@ fn gauss_steps_run_and_have_both_energies() {
         }
     }
     // The command line names another method: the stages of the scene do not apply.
-    let (status, _, errors) = lab(&["run", path(&scene), "--method", "fixed"]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    success(&["run", path(&scene), "--method", "fixed"]);
     fs::remove_file(scene).expect("the file can be removed");
 }
 
@@ -998,8 +903,7 @@ fn a_file_is_expanded_stage_by_stage() {
         ("program", "momentum: 0 operations"),
         ("rust", "    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T>"),
     ] {
-        let (status, output, errors) = lab(&["expand", kepler, "--stage", stage]);
-        assert_eq!((status, errors.as_str()), (Some(0), ""), "{stage}");
+        let output = success(&["expand", kepler, "--stage", stage]);
         assert!(output.lines().any(|shown| shown == line), "{stage}: {output}");
     }
     let (_, rust, _) = lab(&["expand", kepler]);
@@ -1054,20 +958,17 @@ fn mistakes_in_a_file_are_shown_at_their_places() {
 
 #[test]
 fn a_system_is_explained_in_text_and_in_latex() {
-    let (status, text, errors) = lab(&["explain", "damped-oscillator"]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let text = success(&["explain", "damped-oscillator"]);
     for line in ["    f_x = -c*dot(x)", "    A_x,x = m + k*h^2/4 + c*h/2"] {
         assert!(text.lines().any(|shown| shown == line), "{line}: {text}");
     }
     // The columns are as wide as the longest name.
     assert!(text.lines().any(|shown| shown.split_whitespace().eq(["momentum", "1"])), "{text}");
-    let (status, latex, errors) = lab(&["explain", "DampedOscillator", "--latex"]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let latex = success(&["explain", "DampedOscillator", "--latex"]);
     assert!(latex.contains("A_{x,x} &= m + \\frac{k h^{2}}{4} + \\frac{c h}{2}"), "{latex}");
     let own = concat!(env!("CARGO_MANIFEST_DIR"), "/../vi-systems/src/damped_oscillator.rs");
     assert_eq!(lab(&["explain", own]).1, text, "a file is explained as a ready system is");
-    let (status, text, errors) = lab(&["explain", "damped-oscillator", "--rule", "gauss", "--stages", "3"]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let text = success(&["explain", "damped-oscillator", "--rule", "gauss", "--stages", "3"]);
     for line in ["    a_12 = 2/9 - sqrt(15)/15", "    F_x_i = -c*x_dot_i - k*x_i", "    E1 = -D3 L_d - g_d⁺"] {
         assert!(text.lines().any(|shown| shown == line), "{line}: {text}");
     }

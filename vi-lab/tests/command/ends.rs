@@ -1,13 +1,12 @@
 //! Runs that end at a given time.
 
-use super::{assert_refused, bits, lab, path, rows, temporary};
+use super::{assert_refused, bits, lab, path, rows, success, temporary};
 use std::fs;
 
 /// The rows of a run of the harmonic oscillator with ω = 1 from (1, 0).
 fn oscillator(options: &[&str]) -> Vec<Vec<f64>> {
     let run = ["run", "harmonic-oscillator", "--set", "m=1", "--set", "k=1", "--q", "1", "--v", "0"];
-    let (status, csv, errors) = lab(&[run.as_slice(), options].concat());
-    assert_eq!((status, errors.as_str()), (Some(0), ""), "{options:?}");
+    let csv = success(&[run.as_slice(), options].concat());
     rows(&csv)
 }
 
@@ -68,8 +67,7 @@ fn the_last_row_is_the_end_whatever_every_says() {
     assert!(times.len() == 3 && (times[1] - 0.9).abs() < 2e-16 && times[2].to_bits() == 1.0_f64.to_bits(), "{times:?}");
     // Steps in transformed time.
     let run = ["run", "kepler", "--method", "gauss", "--dtau", "0.3", "--until", "1"];
-    let (status, csv, errors) = lab(&run);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let csv = success(&run);
     let rows = super::rows(&csv);
     let [.., before, last] = &rows[..] else { panic!("{csv}") };
     assert_eq!(last[0].to_bits(), 1.0_f64.to_bits());
@@ -89,8 +87,7 @@ fn a_sweep_ends_its_runs_as_a_run_does() {
                 over = [{ name = \"mu\", values = [1.0, 2.0] }]\nkeep = [\"end\"]\n";
     fs::write(&scene, text).expect("the scene");
     let output = folder.join("ends.csv");
-    let (status, _, errors) = lab(&["sweep", path(&scene), "-o", path(&output)]);
-    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    success(&["sweep", path(&scene), "-o", path(&output)]);
     let ends = rows(&fs::read_to_string(&output).expect("the table"));
     for (item, end) in ends.iter().enumerate() {
         let (_, csv, _) = lab(&["run", path(&scene), "--item", &item.to_string()]);
