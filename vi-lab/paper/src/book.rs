@@ -92,9 +92,9 @@ impl Book {
         self.parts.push(Part::Prose(html.to_owned()));
     }
 
-    /// A formula of `MathML` elements.
-    pub(super) fn formula(&mut self, mathml: &str) {
-        self.parts.push(Part::Formula(mathml.to_owned()));
+    /// As [`Page::formula`].
+    pub(super) fn formula(&mut self, formula: &str) {
+        self.parts.push(Part::Formula(formula.to_owned()));
     }
 
     /// A figure with its caption.
@@ -130,7 +130,7 @@ impl Book {
             match part {
                 Part::Section(heading) => report.section(&heading),
                 Part::Prose(html) => report.prose(&html),
-                Part::Formula(mathml) => report.formula(&mathml),
+                Part::Formula(formula) => report.formula(&formula),
                 Part::Figure(figure, caption) => report.figure(&figure, &caption)?,
                 Part::Table(table, caption) => report.table(&table, &caption)?,
                 Part::Items => report.table(

@@ -7,7 +7,6 @@ use vi_core::{EnergyPreserving, SVector, StepError};
 use vi_erased::start::second_point;
 use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, order, scientific};
-use vi_report::page::math::{id, num, op, row, sqrt, sub, sub_sup};
 use vi_report::table::Table;
 use vi_systems::{DampedOscillator, DoubleWell};
 
@@ -26,14 +25,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
          point no solver finds a step. The first law below holds without forces, in any number of degrees of freedom. The second \
          one holds for quadratic Lagrangians, damping included.",
     );
-    let h = sub(&id("h"), &id("k"));
-    let third = row(&[num("1"), op("/"), num("3")]);
-    let conservative = [h.clone(), sub_sup(&id("D"), &id("k"), &third), op("="), row(&[id("const"), op("+"), id("O")])];
-    let square = "<mo>(</mo><msup><mi>h</mi><mn>2</mn></msup><mo>)</mo>";
-    let damped = [h, sqrt(&sub(&id("D"), &id("k"))), op("="), id("const")];
-    book.formula(
-        &[&conservative.concat(), square, &op("&emsp;"), &op("&emsp;"), &damped.concat()].map(String::from).concat(),
-    );
+    book.formula("h_k D_k^{1/3} = \\const + O(h^2) ~ ~ h_k \\sqrt{D_k} = \\const");
     let well = |q0: f64| LADDER.map(|h0| Ok((h0, spread(DoubleWell::default(), q0, h0, f64::cbrt)?)));
     let oscillator = LADDER
         .map(|h0| Ok((h0, spread(DampedOscillator { c: 0.04, ..DampedOscillator::default() }, 1.0, h0, f64::sqrt)?)));

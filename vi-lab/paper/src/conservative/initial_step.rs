@@ -11,7 +11,6 @@ use vi_erased::start::motion;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, order, scientific};
-use vi_report::page::math::{frac, id, num, op, row, sup};
 use vi_report::table::Table;
 use vi_systems::DoubleWell;
 
@@ -355,11 +354,7 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
          the length by δ<i>h</i>, with δ<i>E</i> = −<i>h</i> <i>D</i> δ<i>h</i>/4. Double precision evaluates the energy with an error \
          of about <i>ε</i> times the sum <i>S</i> of the absolute values of its terms. So",
     );
-    let ratio = frac(&row(&[op("δ"), id("h")]), &id("h"));
-    let bound = frac(&row(&[num("4"), id("ε"), id("S")]), &row(&[sup(&id("h"), &num("2")), op("|"), id("D"), op("|")]));
-    book.formula(
-        &[ratio, op("≈"), bound, op(","), op("&emsp;"), id("ε"), op("="), sup(&num("2"), &num("−52"))].concat(),
-    );
+    book.formula("\\frac{δh}{h} ≈ \\frac{4εS}{h^2 |D|}, ~ ε = 2^{−52}");
     let solvers: [(&str, Look, Pick); 3] = [
         ("E recomputed", Look::OTHERS[0], |rung| rung.plain),
         ("E carried", Look::OTHERS[3], |rung| rung.carried),

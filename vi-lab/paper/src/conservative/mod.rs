@@ -16,7 +16,6 @@ use super::book::Book;
 use super::{Study, unexpected};
 use runs::{Case, Pair};
 use vi_report::failure::Failure;
-use vi_report::page::math::{frac, id, num, op, row, sup};
 use vi_report::progress::Progress;
 
 /// The four cases of the paper: amplitude and initial step.
@@ -35,9 +34,7 @@ pub(super) fn chapter(book: &mut Book, study: &Study, progress: &mut Progress) -
         runs.push(Pair::of(case, study.steps, progress).map_err(unexpected("double well"))?);
     }
     book.section("A particle in a double well");
-    let half_v2 = row(&[frac(&num("1"), &num("2")), id("m"), sup(&id("v"), &num("2"))]);
-    let quartic = row(&[sup(&id("q"), &num("4")), op("−"), sup(&id("q"), &num("2"))]);
-    book.formula(&[id("L"), op("="), half_v2, op("−"), frac(&quartic, &num("2"))].concat());
+    book.formula("L = \\frac{1}{2} m v^2 − \\frac{q^4 − q^2}{2}");
     book.prose(
         "The particle of mass <i>m</i> = 1 starts from rest. From <i>q</i><sub>0</sub> = 0.74 it oscillates nearly harmonically in \
          the right well. From <i>q</i><sub>0</sub> = 0.995, just below the barrier, it almost stops near the saddle at the \

@@ -7,7 +7,6 @@ use vi_core::SVector;
 use vi_core::stepping::EnergyStepping;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
-use vi_report::page::math::{frac, id, num, op, row, sub, sup};
 use vi_systems::DoubleWell;
 
 /// The section: h/h0 against the iteration, with the step law over it.
@@ -17,9 +16,9 @@ pub(super) fn section(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
         "The step length is a function of the place on the orbit. The paper observes that it oscillates with the motion. It \
          follows a law. With the acceleration <i>a</i> and derivatives along the motion, the step density is",
     );
-    book.formula(&density());
+    book.formula("D = a·(L_q + f) − v·\\frac{d}{dt} L_q − \\frac{d}{dt} L_t");
     book.prose("Here the force <i>f</i> is zero, and without forces");
-    book.formula(&law());
+    book.formula("h_k = h_0 {(\\frac{D_0}{D_k})}^{1/3} (1 + O(h^2))");
     for run in runs.iter().filter(|run| run.case.h0 < 0.05) {
         let name = if run.case.q0 < 0.9 { "step-length-0.74" } else { "step-length-0.995" };
         let mut series = vec![Series::line("computed", Look::ENERGY.line(), computed(run))];
@@ -50,24 +49,6 @@ pub(super) fn section(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
         );
     }
     Ok(())
-}
-
-/// `D = a·(L_q + f) − v·d/dt L_q − d/dt L_t`.
-fn density() -> String {
-    let by_time = || frac(&id("d"), &row(&[id("d"), id("t")]));
-    let power = [id("a"), op("·"), op("("), sub(&id("L"), &id("q")), op("+"), id("f"), op(")")].concat();
-    let force_change = [id("v"), op("·"), by_time(), sub(&id("L"), &id("q"))].concat();
-    let time_change = [by_time(), sub(&id("L"), &id("t"))].concat();
-    [id("D"), op("="), power, op("−"), force_change, op("−"), time_change].concat()
-}
-
-/// `h_k = h_0 (D_0/D_k)^{1/3} (1 + O(h²))`.
-fn law() -> String {
-    let h = |index: String| sub(&id("h"), &index);
-    let third = row(&[num("1"), op("/"), num("3")]);
-    let ratio = row(&[op("("), frac(&sub(&id("D"), &num("0")), &sub(&id("D"), &id("k"))), op(")")]);
-    let correction = [num("1"), op("+"), id("O"), op("("), sup(&id("h"), &num("2")), op(")")].concat();
-    [h(id("k")), op("="), h(num("0")), sup(&ratio, &third), op("("), correction, op(")")].concat()
 }
 
 fn computed(run: &Pair) -> Vec<(f64, f64)> {

@@ -8,7 +8,6 @@ use vi_core::{Called, EnergyPreservingGauss, Starts as _, StepError};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, scientific};
-use vi_report::page::math::{frac, id, num, op, row, sub, sub_sup, sup};
 use vi_report::table::Table;
 
 /// Time up to which growth is shown.
@@ -29,9 +28,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.prose("The paper observes that the step of the damped oscillator grows monotonically, and leaves open why. The \
                 energy of the motion decays as e<sup>−2<i>ζωt</i></sup>, and so does the step density <i>D</i>. For a \
                 quadratic Lagrangian <i>h</i><sub><i>k</i></sub>√<i>D</i><sub><i>k</i></sub> is constant exactly. Hence");
-    let exponent = row(&[id("ζ"), id("ω"), id("t")]);
-    let law = [sub(&id("h"), &id("k")), op("≈"), sub(&id("h"), &num("0")), sup(&id("e"), &exponent)];
-    book.formula(&law.concat());
+    book.formula("h_k ≈ h_0 e^{ζωt}");
     book.prose(
         "Since <i>t</i> advances by <i>h</i>, the step would be infinite after about 1/(<i>ζωh</i><sub>0</sub>) steps. Near that \
          step no further step exists, or only one many times as long. This is a property of the method. The integrator reports \
@@ -54,17 +51,7 @@ fn proof(book: &mut Book) -> Result<(), Failure> {
         "<b>Why the growth is monotonic.</b> The step density of the oscillator is <i>D</i> = <i>ma</i>² + <i>kv</i>². The \
          derivative of the equation of motion is <i>m</i><i>a</i>′ = −<i>kv</i> − <i>ca</i>. So, exactly and at every state,",
     );
-    let prime = |of: &str| sup(&id(of), &op("′"));
-    book.formula(
-        &[
-            prime("D"),
-            op("="),
-            [num("2"), id("m"), id("a"), prime("a"), op("+"), num("2"), id("k"), id("v"), id("a")].concat(),
-            op("="),
-            [op("−"), num("2"), id("c"), sup(&id("a"), &num("2")), op("≤"), num("0")].concat(),
-        ]
-        .concat(),
-    );
+    book.formula("D^′ = 2 m a a^′ + 2 k v a = −2 c a^2 ≤ 0");
     book.prose(
         "In words: the velocity of a motion is itself a motion of the same linear system, and <i>D</i> is twice its energy. Damping \
          dissipates that energy too. The same proof holds for every linear system <i>Ma</i> + (<i>C</i> + <i>G</i>)<i>v</i> + \
@@ -77,33 +64,10 @@ fn proof(book: &mut Book) -> Result<(), Failure> {
          <i>h</i><sub><i>k</i></sub>²<i>D<sub>k</sub></i> = <i>h</i><sub><i>k</i>+1</sub>²<i>D</i><sub><i>k</i>+1</sub>, with \
          symmetric <i>M</i>, <i>C</i>, <i>K</i>, and from it",
     );
-    let at = |of: &str| sub(&id(of), &id("k"));
-    let next = |of: &str| sub(&id(of), &row(&[id("k"), op("+"), num("1")]));
-    let increment = frac(&row(&[at("h"), id("s"), op("·"), id("C"), id("s")]), &row(&[num("2"), id("B")]));
-    let growth = [next("h"), op("−"), at("h"), op("="), row(&[increment]), op(",")];
-    let sum = [op("&emsp;"), id("s"), op("="), at("a"), op("+"), next("a"), op(",")];
-    let first = frac(
-        &row(&[at("D"), op("("), at("h"), op("+"), next("h"), op(")")]),
-        &sub_sup(&id("h"), &row(&[id("k"), op("+"), num("1")]), &num("2")),
+    book.formula(
+        "h_{k+1} − h_k = \\frac{h_k s·C s}{2B}, ~ s = a_k + a_{k+1}, ~ B = \\frac{D_k (h_k + h_{k+1})}{h_{k+1}^2} \
+         − \\frac{1}{2} a_{k+1}·C s − \\frac{1}{2} (a_k·K v_{k+1} − v_k·K a_{k+1})",
     );
-    let second = [op("−"), frac(&num("1"), &num("2")), next("a"), op("·"), id("C"), id("s")];
-    let third = [
-        op("−"),
-        frac(&num("1"), &num("2")),
-        op("("),
-        at("a"),
-        op("·"),
-        id("K"),
-        next("v"),
-        op("−"),
-        at("v"),
-        op("·"),
-        id("K"),
-        next("a"),
-        op(")"),
-    ];
-    let bracket = [op("&emsp;"), id("B"), op("="), row(&[first]), second.concat(), third.concat()];
-    book.formula(&[growth.concat(), sum.concat(), bracket.concat()].concat());
     let mut worst = 0.0_f64;
     let mut least = f64::INFINITY;
     let mut drop = 0.0_f64;

@@ -12,7 +12,6 @@ mod oscillator;
 
 use super::book::Book;
 use vi_report::failure::Failure;
-use vi_report::page::math::{frac, id, num, op, row, sup};
 use vi_report::progress::Progress;
 
 /// Initial step.
@@ -24,10 +23,7 @@ const DAMPING: [f64; 3] = [0.001, 0.005, 0.01];
 pub(super) fn chapter(book: &mut Book, progress: &mut Progress) -> Result<(), Failure> {
     progress.message("damped oscillator");
     book.section("A damped oscillator");
-    let kinetic = row(&[frac(&num("1"), &num("2")), id("m"), sup(&id("v"), &num("2"))]);
-    let elastic = row(&[frac(&num("1"), &num("2")), id("k"), sup(&id("q"), &num("2"))]);
-    let force = [id("f"), op("="), op("−"), id("c"), id("v")].concat();
-    book.formula(&[id("L"), op("="), kinetic, op("−"), elastic, op(","), op("&emsp;"), force].concat());
+    book.formula("L = \\frac{1}{2} m v^2 − \\frac{1}{2} k q^2, ~ f = −c v");
     book.prose(
         "with <i>m</i> = 1, <i>k</i> = 4, so <i>ω</i> = 2, and <i>c</i> = 4<i>ζ</i>; <i>q</i>(0) = 1, <i>v</i>(0) = 0, \
          <i>h</i><sub>0</sub> = 0.01. The exact motion is known, and all errors are against it.",

@@ -35,9 +35,9 @@ impl Report {
         self.page.prose(html);
     }
 
-    /// A formula of `MathML` elements.
-    pub fn formula(&mut self, mathml: &str) {
-        self.page.formula(mathml);
+    /// As [`Page::formula`].
+    pub fn formula(&mut self, formula: &str) {
+        self.page.formula(formula);
     }
 
     /// Adds a figure with its caption and writes its files.
