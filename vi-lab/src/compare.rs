@@ -327,12 +327,5 @@ fn chart(title: &str, names: &[&'static str], (times, off): (&[f64], &[Vec<f64>]
             series.push(Series::line(*name, look.line(), curve(&|of: &[f64]| of[index].abs())));
         }
     }
-    Chart {
-        name: "difference",
-        title: title.to_owned(),
-        x: Axis::linear("t"),
-        y: Axis::log10("difference"),
-        equal_aspect: false,
-        series,
-    }
+    Chart::new("difference", title, [Axis::linear("t"), Axis::log10("difference")], series)
 }

@@ -119,7 +119,7 @@ impl Coordinate {
 
 fn chart(title: String, axes: [&str; 2], series: Vec<Series>) -> Chart {
     let [x, y] = axes.map(Axis::linear);
-    Chart { name: "plot", title, x, y, equal_aspect: false, series }
+    Chart::new("plot", title, [x, y], series)
 }
 
 /// A curve in the plane; dots if the points are not consecutive.

@@ -62,7 +62,7 @@ impl Findings {
         let floor = self.agreement.floor();
         let known = vec![(floor, low), (floor, high)];
         series.insert(0, Series::curve("reference known to", Look::PUBLISHED, known));
-        Chart { name, title, x: Axis::log10(self.error_label()), y: Axis::log10(label), equal_aspect: false, series }
+        Chart::new(name, title, [Axis::log10(self.error_label()), Axis::log10(label)], series)
     }
 
     /// Error against the step, for the methods with a given step.
@@ -76,14 +76,12 @@ impl Findings {
             );
             Series::curve(label, method.look(), self.shown(method).map(|(h, point)| (h, point.error)).collect())
         });
-        Chart {
-            name: "order",
-            title: format!("{system}: error against step, with the fitted order"),
-            x: Axis::log10("h (energy-preserving: first step)"),
-            y: Axis::log10(self.error_label()),
-            equal_aspect: false,
-            series: series.collect(),
-        }
+        Chart::new(
+            "order",
+            format!("{system}: error against step, with the fitted order"),
+            [Axis::log10("h (energy-preserving: first step)"), Axis::log10(self.error_label())],
+            series.collect(),
+        )
     }
 
     /// Running maximum of the energy error against time.
@@ -100,14 +98,12 @@ impl Findings {
         });
         let label =
             if self.conserved { "max |H − H₀| / |H₀| so far" } else { "max |H − H_ref(t)| / |H₀| so far" };
-        Chart {
-            name: "energy",
-            title: format!("{system}: energy error over a long time"),
-            x: Axis::log10("t"),
-            y: Axis::log10(label),
-            equal_aspect: false,
-            series: series.collect(),
-        }
+        Chart::new(
+            "energy",
+            format!("{system}: energy error over a long time"),
+            [Axis::log10("t"), Axis::log10(label)],
+            series.collect(),
+        )
     }
 
     /// The least time that reaches an error, by method.

@@ -74,14 +74,12 @@ fn factors() -> Part<'static> {
         let dots = places(40).filter_map(|ch| Some((ch, after_one_step(scheme, ch)?))).collect();
         series.push(Series::scatter("", look.dots(3.0), dots).unlabelled());
     }
-    let chart = Chart {
-        name: "composed-factor",
-        title: "Compositions on damping: factor of the speed over a step".to_owned(),
-        x: Axis::linear("c h").over(0.0, WIDEST),
-        y: Axis::log10("|v after a step / v before|").over(1e-3, 1e2),
-        equal_aspect: false,
+    let chart = Chart::new(
+        "composed-factor",
+        "Compositions on damping: factor of the speed over a step",
+        [Axis::linear("c h").over(0.0, WIDEST), Axis::log10("|v after a step / v before|").over(1e-3, 1e2)],
         series,
-    };
+    );
     Part::Chart(
         chart,
         "Lines: the product of the substeps’ factors. Dots: one step of each composition as it runs. Above the dashed line \

@@ -118,14 +118,12 @@ fn figure(book: &mut Book, runs: &[(Case, Along)], name: &'static str) {
         }
     }
     let q0 = runs.first().map_or(0.0, |(case, _)| case.q0);
-    let chart = Chart {
+    let chart = Chart::new(
         name,
-        title: format!("Condition numbers along the orbit, q₀ = {q0}"),
-        x: Axis::linear("t"),
-        y: Axis::log10("condition number"),
-        equal_aspect: false,
+        format!("Condition numbers along the orbit, q₀ = {q0}"),
+        [Axis::linear("t"), Axis::log10("condition number")],
         series,
-    };
+    );
     book.figure(
         &chart,
         "The same equations in three forms, at the same solutions. Lines: <i>h</i><sub>0</sub> = 0.01, dashes: \

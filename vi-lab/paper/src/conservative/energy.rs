@@ -118,17 +118,15 @@ fn items(book: &mut Book, runs: &[Pair]) {
 /// The error over the first oscillations on a linear axis.
 fn oscillation(book: &mut Book, run: &Pair, name: &'static str) {
     let points = |track: &Track| track.samples.iter().map(|sample| (sample.t, sample.error)).collect();
-    let chart = Chart {
+    let chart = Chart::new(
         name,
-        title: format!("Discrete energy error, {}", run.case.label()),
-        x: Axis::linear("t"),
-        y: Axis::linear("Eₖ − E₁"),
-        equal_aspect: false,
-        series: vec![
+        format!("Discrete energy error, {}", run.case.label()),
+        [Axis::linear("t"), Axis::linear("Eₖ − E₁")],
+        vec![
             Series::line("fixed step", Look::FIXED.line(), points(&run.fixed)),
             Series::line("energy-preserving", Look::ENERGY.line(), points(&run.energy)),
         ],
-    };
+    );
     let caption = format!(
         "The energy of the fixed step oscillates by {} and returns. The energy-preserving one deviates by at most {} over the \
          whole run.",
@@ -155,14 +153,12 @@ fn growth(book: &mut Book, runs: &[Pair]) {
         for (label, value) in [("the paper, energy", PUBLISHED), ("the paper, fixed", fixed)] {
             series.push(Series::line(format!("{label}, h₀ = 0.01"), Look::PUBLISHED, vec![(1.0, value), (end, value)]));
         }
-        let chart = Chart {
+        let chart = Chart::new(
             name,
-            title: format!("Largest energy error so far, q₀ = {q0}"),
-            x: Axis::log10("iteration k"),
-            y: Axis::log10("max |Eₖ − E₁|").over(1e-17, 1e-2),
-            equal_aspect: false,
+            format!("Largest energy error so far, q₀ = {q0}"),
+            [Axis::log10("iteration k"), Axis::log10("max |Eₖ − E₁|").over(1e-17, 1e-2)],
             series,
-        };
+        );
         book.figure(
             &chart,
             "Neither integrator drifts. The energy-preserving one stays at a few units in the last place of <i>E</i>. Dotted: the \

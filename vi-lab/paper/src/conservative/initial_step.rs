@@ -239,14 +239,12 @@ fn energy(book: &mut Book, ladders: &[Ladder]) {
             series.push(Series::line(label, look(solver, ladder.q0), curve(ladder, pick(solver))));
         }
     }
-    let chart = Chart {
-        name: "initial-step-energy",
-        title: "Energy error against the initial step".to_owned(),
-        x: Axis::log10("h₀"),
-        y: Axis::log10("max |Eₖ − E₁|").over(1e-17, 1e-8),
-        equal_aspect: false,
+    let chart = Chart::new(
+        "initial-step-energy",
+        "Energy error against the initial step",
+        [Axis::log10("h₀"), Axis::log10("max |Eₖ − E₁|").over(1e-17, 1e-8)],
         series,
-    };
+    );
     book.figure(
         &chart,
         &format!(
@@ -378,14 +376,12 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
         let look = if ladder.q0 > 0.9 { Look::EXACT.dotted() } else { Look::EXACT };
         series.push(Series::line(format!("4εS/(h²|D|), {}", ladder.q0), look, law));
     }
-    let chart = Chart {
-        name: "initial-step-length",
-        title: "Deviation of the step length from the step law".to_owned(),
-        x: Axis::log10("h₀"),
-        y: Axis::log10("max |δh/h|").over(1e-10, 10.0),
-        equal_aspect: false,
+    let chart = Chart::new(
+        "initial-step-length",
+        "Deviation of the step length from the step law",
+        [Axis::log10("h₀"), Axis::log10("max |δh/h|").over(1e-10, 10.0)],
         series,
-    };
+    );
     let at = |h0: f64| {
         let rung = ladders.first().and_then(|ladder| ladder.rungs.iter().find(|rung| rung.h0.total_cmp(&h0).is_eq()));
         rung.map_or((f64::NAN, f64::NAN), |rung| (rung.ours.lengths.0 / rung.h0, rung.ours.lengths.1 / rung.h0))
@@ -454,14 +450,12 @@ fn trajectory(book: &mut Book, ladders: &[Ladder]) {
         series.push(Series::line(format!("energy, q₀ = {q0}"), look(Look::ENERGY), adaptive));
         series.push(Series::line(format!("fixed, q₀ = {q0}"), look(Look::FIXED), fixed));
     }
-    let chart = Chart {
-        name: "initial-step-trajectory",
-        title: "Error of the trajectory at t = 10 against the initial step".to_owned(),
-        x: Axis::log10("h₀"),
-        y: Axis::log10("|q − q(t)|"),
-        equal_aspect: false,
+    let chart = Chart::new(
+        "initial-step-trajectory",
+        "Error of the trajectory at t = 10 against the initial step",
+        [Axis::log10("h₀"), Axis::log10("|q − q(t)|")],
         series,
-    };
+    );
     let text = if orders.is_empty() {
         vec!["– (a longer study measures it)".to_owned()]
     } else {

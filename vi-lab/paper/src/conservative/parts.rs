@@ -60,18 +60,16 @@ fn figure(book: &mut Book, run: &Pair) {
     };
     let end = run.fixed.samples.last().map_or(0.0, |sample| sample.t);
     let constant = vec![(0.0, run.start.abs()), (end, run.start.abs())];
-    let chart = Chart {
-        name: "energy-parts-figure",
-        title: format!("Both parts of the energy error, {}", run.case.label()),
-        x: Axis::linear("t"),
-        y: Axis::log10("size").over(1e-18, 1e-3),
-        equal_aspect: false,
-        series: vec![
+    let chart = Chart::new(
+        "energy-parts-figure",
+        format!("Both parts of the energy error, {}", run.case.label()),
+        [Axis::linear("t"), Axis::log10("size").over(1e-18, 1e-3)],
+        vec![
             Series::line("|E₁ − H₀|, both", Look::EXACT, constant),
             Series::scatter("|Eₖ − E₁|, fixed", Look::FIXED.dots(1.6), points(&run.fixed)),
             Series::scatter("|Eₖ − E₁|, energy", Look::ENERGY.dots(1.6), points(&run.energy)),
         ],
-    };
+    );
     book.figure(
         &chart,
         "Dashed: the discretization error, constant and the same for both, because both start from the same interval. Points: the \

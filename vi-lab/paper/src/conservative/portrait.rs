@@ -86,12 +86,13 @@ fn figure(book: &mut Book, portrait: &Portrait, run: &Pair) {
         series.push(if index == 0 { branch } else { branch.unlabelled() });
     }
     let chart = Chart {
-        name,
-        title: format!("Phase portrait, {}", run.case.label()),
-        x: Axis::linear("q").over(portrait.q.0, portrait.q.1),
-        y: Axis::linear("v").over(portrait.v.0, portrait.v.1),
         equal_aspect: true,
-        series,
+        ..Chart::new(
+            name,
+            format!("Phase portrait, {}", run.case.label()),
+            [Axis::linear("q").over(portrait.q.0, portrait.q.1), Axis::linear("v").over(portrait.v.0, portrait.v.1)],
+            series,
+        )
     };
     book.figure(&chart, &caption);
     // The widest visible deviation: a hundredth of the depth of the well, 1/8.

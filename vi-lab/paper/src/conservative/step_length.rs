@@ -23,14 +23,12 @@ pub(super) fn section(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
         let name = if run.case.q0 < 0.9 { "step-length-0.74" } else { "step-length-0.995" };
         let mut series = vec![Series::line("computed", Look::ENERGY.line(), computed(run))];
         series.push(Series::line("step law", Look::EXACT, predicted(run)?));
-        let chart = Chart {
+        let chart = Chart::new(
             name,
-            title: format!("Step length, {}", run.case.label()),
-            x: Axis::linear("iteration k"),
-            y: Axis::linear("h / h₀"),
-            equal_aspect: false,
+            format!("Step length, {}", run.case.label()),
+            [Axis::linear("iteration k"), Axis::linear("h / h₀")],
             series,
-        };
+        );
         let caption = format!(
             "The step varies between {:.4} and {:.4} times <i>h</i><sub>0</sub> over the whole run. Dashed: the law, from \
              <i>D</i> at the midpoints.",

@@ -92,17 +92,15 @@ fn curve(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
 
 /// A figure with a line for each integrator.
 fn both(name: &'static str, title: String, y: Axis, [adaptive, constant]: [Vec<(f64, f64)>; 2]) -> Chart {
-    Chart {
+    Chart::new(
         name,
         title,
-        x: Axis::linear("t"),
-        y,
-        equal_aspect: false,
-        series: vec![
+        [Axis::linear("t"), y],
+        vec![
             Series::line("energy-preserving", Look::ENERGY.line(), adaptive),
             Series::line("fixed step", Look::FIXED.line(), constant),
         ],
-    }
+    )
 }
 
 impl Damped {
@@ -129,18 +127,16 @@ impl Damped {
 
 fn trajectory(book: &mut Book, run: &Damped) {
     let [adaptive, constant] = run.each(|sample| sample.q);
-    let chart = Chart {
-        name: run.names.trajectory,
-        title: format!("Damped trajectory, ζ = {}", run.zeta),
-        x: Axis::linear("t"),
-        y: Axis::linear("q"),
-        equal_aspect: false,
-        series: vec![
+    let chart = Chart::new(
+        run.names.trajectory,
+        format!("Damped trajectory, ζ = {}", run.zeta),
+        [Axis::linear("t"), Axis::linear("q")],
+        vec![
             Series::line("fixed step", Look { width: 3.4, ..Look::FIXED.line() }, constant),
             Series::line("energy-preserving", Look::ENERGY.line(), adaptive),
             Series::line("exact", Look { width: 1.0, ..Look::EXACT }, curve(|t| exact(run.zeta, t).0)),
         ],
-    };
+    );
     let [adaptive, constant] = run.each(|sample| (sample.q - exact(run.zeta, sample.t).0).abs()).map(largest);
     book.figure(
         &chart,
@@ -367,14 +363,12 @@ fn figure(book: &mut Book, all: &[Amplitudes]) {
             series.push(if index == 0 && is_adaptive { line } else { line.unlabelled() });
         }
     }
-    let chart = Chart {
-        name: "damped-energy-amplitudes",
-        title: "Amplitude of the energy error".to_owned(),
-        x: Axis::linear("t"),
-        y: Axis::log10("amplitude of Eₖ − E(t)").over(1e-7, 1e-3),
-        equal_aspect: false,
+    let chart = Chart::new(
+        "damped-energy-amplitudes",
+        "Amplitude of the energy error",
+        [Axis::linear("t"), Axis::log10("amplitude of Eₖ − E(t)").over(1e-7, 1e-3)],
         series,
-    };
+    );
     book.figure(
         &chart,
         "Half of the range of <i>E<sub>k</sub></i> − <i>E</i>(<i>t<sub>k</sub></i>) in windows of half a period. Small, middle \

@@ -250,14 +250,7 @@ fn in_time(book: &mut Book, runs: &[(f64, Sampled)], until: f64, name: &'static 
         let law = Series::line("exp(ζωt)", Look::EXACT, law);
         series.push(if index == 0 { law } else { law.unlabelled() });
     }
-    let chart = Chart {
-        name,
-        title: title.to_owned(),
-        x: Axis::linear("t"),
-        y: Axis::linear("h / h₀"),
-        equal_aspect: false,
-        series,
-    };
+    let chart = Chart::new(name, title, [Axis::linear("t"), Axis::linear("h / h₀")], series);
     let worst: Vec<String> = runs.iter().map(|(zeta, run)| scientific(deviation(*zeta, run, until))).collect();
     let caption = format!(
         "Computed, and dashed the law. They differ by at most {} of <i>h</i> for the three damping ratios.",
@@ -273,14 +266,12 @@ fn to_the_end(book: &mut Book, runs: &[(f64, Sampled)]) {
         let points = run.samples.iter().zip(1_u32..).map(|(sample, k)| (f64::from(k), sample.h)).collect();
         series.push(Series::line(format!("ζ = {zeta}"), look.line(), points));
     }
-    let chart = Chart {
-        name: "step-growth-end",
-        title: "Step length to the last step".to_owned(),
-        x: Axis::linear("iteration k"),
-        y: Axis::log10("h"),
-        equal_aspect: false,
+    let chart = Chart::new(
+        "step-growth-end",
+        "Step length to the last step",
+        [Axis::linear("iteration k"), Axis::log10("h")],
         series,
-    };
+    );
     book.figure(
         &chart,
         "Against the iteration the step is <i>h</i><sub>0</sub>/(1 − <i>ζωh</i><sub>0</sub><i>k</i>): each run ends where it \

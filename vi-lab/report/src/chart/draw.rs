@@ -249,7 +249,7 @@ mod tests {
     use super::*;
 
     fn chart(y: Axis, series: Vec<Series>) -> Chart {
-        Chart { name: "test", title: "test".to_owned(), x: Axis::linear("x"), y, equal_aspect: false, series }
+        Chart::new("test", "test", [Axis::linear("x"), y], series)
     }
 
     /// Vertical positions of the circles of an SVG, in order.

@@ -136,14 +136,12 @@ mod tests {
     const TWO: Class = Class { number: 2, label: "two", colour: "#222222" };
 
     fn map(cells: Vec<Class>) -> Map {
-        let chart = Chart {
-            name: "test",
-            title: "test".to_owned(),
-            x: Axis::linear("x").over(0.0, 2.0),
-            y: Axis::log10("y").over(0.01, 100.0),
-            equal_aspect: false,
-            series: boundary("theory", vec![vec![(0.0, 1.0), (2.0, 1.0)]]),
-        };
+        let chart = Chart::new(
+            "test",
+            "test",
+            [Axis::linear("x").over(0.0, 2.0), Axis::log10("y").over(0.01, 100.0)],
+            boundary("theory", vec![vec![(0.0, 1.0), (2.0, 1.0)]]),
+        );
         Map { chart, columns: 2, cells }
     }
 

@@ -63,6 +63,13 @@ pub struct Figure {
     pub csv: String,
 }
 
+impl Chart {
+    /// A figure with a horizontal and a vertical axis, in units of different lengths. `name` is the stem of its file names.
+    pub fn new(name: &'static str, title: impl Into<String>, [x, y]: [Axis; 2], series: Vec<Series>) -> Self {
+        Self { name, title: title.into(), x, y, equal_aspect: false, series }
+    }
+}
+
 impl Series {
     /// A line through a function of the abscissa; thinned to its envelope.
     pub fn line(label: impl Into<String>, look: Look, points: Vec<(f64, f64)>) -> Self {

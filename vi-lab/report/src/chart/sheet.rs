@@ -106,7 +106,7 @@ mod tests {
     fn panel(width: f64, points: Vec<(f64, f64)>) -> Panel {
         let line = Series::curve("line", Look::FIXED.line(), points).unlabelled();
         let [x, y] = ["x", "y"].map(Axis::linear);
-        let chart = Chart { name: "panel", title: String::new(), x, y, equal_aspect: true, series: vec![line] };
+        let chart = Chart { equal_aspect: true, ..Chart::new("panel", String::new(), [x, y], vec![line]) };
         Panel { chart, width, height: 200.0 }
     }
 
