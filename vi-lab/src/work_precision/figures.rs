@@ -145,31 +145,6 @@ impl Findings {
         })
     }
 
-    /// The fastest method for each error, as prose.
-    pub(super) fn winners(&self) -> String {
-        let mut sentences = Vec::new();
-        for error in PRICED {
-            let mut prices: Vec<(f64, Method)> =
-                self.methods().filter_map(|method| Some((self.price(method, error)?, method))).collect();
-            prices.sort_by(|(one, _), (other, _)| one.total_cmp(other));
-            sentences.push(match prices.as_slice() {
-                [] => format!("No run has an error of at most {}.", scientific(error)),
-                [(price, only)] => {
-                    format!("Only {} reaches {}, in {}.", only.name(), scientific(error), duration(*price))
-                }
-                [(best, first), (next, second), ..] => format!(
-                    "For {} the fastest is {} with {}, before {} with {}.",
-                    scientific(error),
-                    first.name(),
-                    duration(*best),
-                    second.name(),
-                    duration(*next)
-                ),
-            });
-        }
-        sentences.join(" ")
-    }
-
     /// Energy errors and their growth.
     pub(super) fn drift_table(&self) -> Table {
         let head = ["method", "setting", "evaluations per time", "error at the end", "grows as", "ended"];
@@ -346,10 +321,5 @@ mod tests {
         );
         let runs = found.run_table().csv();
         assert!(runs.lines().any(|line| line.starts_with("energy-preserving,2e-1,,,,,\"no energy-preserving step")));
-        assert!(
-            found.winners().starts_with("Only energy-preserving reaches 1.00·10⁻³, in 100 µs."),
-            "{}",
-            found.winners()
-        );
     }
 }

@@ -172,19 +172,6 @@ impl Task<'_> {
         if is_finite { Ok(reached) } else { Err(Ended::NonFinite) }
     }
 
-    /// The same run for timing, without its result. Evaluations are counted for all methods: one addition per step,
-    /// for the rival one per evaluation.
-    ///
-    /// # Errors
-    /// The reason why the end was not reached.
-    pub(super) fn timed(&self, system: &dyn System) -> Result<(), Ended> {
-        let evaluations = Cell::new(0);
-        match self.plan() {
-            Some(plan) => self.follow(system.begin(&plan)?.as_mut()),
-            None => system.studies().rival(self.start, self.end, self.setting, &evaluations, None).map(drop),
-        }
-    }
-
     /// Steps to the end.
     fn follow(&self, run: &mut dyn Simulation) -> Result<(), Ended> {
         let steps = self.steps();

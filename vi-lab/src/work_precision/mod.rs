@@ -140,7 +140,6 @@ fn work(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure
         "The lower left is best. Each marker is the fastest repetition of a run; its whisker ends at the median. \
          Runs of all methods alternate.",
     )?;
-    report.prose(&found.winners());
     report.table(&found.prices(), "The least time of a run with at most this error; a dash if no run reaches it.")?;
     report.figure(
         &found.evaluations(name).figure(),
