@@ -3,7 +3,7 @@
 `compile` writes a crate into the user's cache, builds it with cargo, and loads it. The library is kept by a hash of
 everything that it depends on; later it is loaded without cargo.
 
-    <cache>/<version>/workspace   sources of the library, and the crate of the system
+    <cache>/<version>/workspace   sources of the library, and the crate of a system
                       target      what cargo built
                       modules     the libraries of systems
                       lock        held during a build
@@ -39,11 +39,12 @@ from ._names import meant
 from ._system import System, SystemType
 
 _SUFFIX = ".pyd" if os.name == "nt" else ".abi3.so"
-_LIBRARY = {"win32": "compiled.dll", "darwin": "libcompiled.dylib"}.get(sys.platform, "libcompiled.so")
+LIBRARY = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+"""The end of the name of a library that cargo builds."""
 
 _MANIFEST = """\
 [package]
-name = "compiled"
+name = "{crate}"
 version.workspace = true
 edition.workspace = true
 publish = false
@@ -53,8 +54,11 @@ crate-type = ["cdylib"]
 
 [dependencies]
 vi-core.workspace = true
-vi-python = { path = "../python/vi-python" }
+{beside} = {{ path = "../python/{beside}" }}
 """
+
+_CRATES = {"compiled": "vi-python"}
+"""The crates that are written for a system, and the crate that each stands on."""
 
 # The linker of macOS must leave the symbols of Python to the process.
 _CARGO_CONFIG = """\
@@ -63,7 +67,8 @@ rustflags = ["-C", "link-arg=-undefined", "-C", "link-arg=dynamic_lookup"]
 """
 
 _BEFORE = "#![allow(warnings)]\nvi_core::lagrangian! {\n"
-_AFTER = "\n}}\nvi_python::module!(@inner {library}, {name}, {{ {methods} }});\n"
+_AFTER = "\n}\n"
+_MODULE = "vi_python::module!(@inner {library}, {name}, {{ {methods} }});\n"
 
 _SPRING = "struct Spring { param k = 1.0; coord x; L = dot(x)^2 / 2 - k * x^2 / 2; discretize midpoint; }"
 
@@ -169,7 +174,8 @@ def _class(definition: str, methods: str, tables: str, verbose: bool) -> type[Sy
             if not built.exists():
                 name = _checked(definition)
                 _suitable(definition, methods)
-                _build(definition, name, built, methods, tables, verbose)
+                last = _MODULE.format(library=_library(digest), name=name, methods=_words(methods))
+                _build("compiled", definition, last, name, built, tables, verbose)
             _check_private(built)
             cls = _load(_library(digest), built)
             cls._source = (definition, methods, tables)  # type: ignore[attr-defined]
@@ -373,7 +379,8 @@ def _suitable(definition: str, methods: str) -> None:
         )
 
 
-def _build(definition: str, name: str, built: Path, methods: str, tables: str, verbose: bool) -> None:
+def _build(crate: str, definition: str, last: str, name: str, built: Path, tables: str, verbose: bool) -> None:
+    """Builds a crate with this definition and this last line, and keeps its library in the cache."""
     cargo = shutil.which("cargo") or shutil.which("cargo", path=str(Path.home() / ".cargo" / "bin"))
     if cargo is None:
         raise CompileError(
@@ -393,19 +400,18 @@ def _build(definition: str, name: str, built: Path, methods: str, tables: str, v
             # Another process may have built it meanwhile.
             if not built.exists():
                 workspace = _workspace(folder)
-                words = _words(methods)
-                library = built.name.removesuffix(_SUFFIX)
-                text = _BEFORE + definition + _AFTER.format(library=library, name=name, methods=words)
-                (workspace / "compiled" / "src" / "lib.rs").write_text(text, encoding="utf-8")
+                text = _BEFORE + definition + _AFTER + last
+                (workspace / crate / "src" / "lib.rs").write_text(text, encoding="utf-8")
                 shared = "" if (folder / "target" / "release").exists() else ", and once what all systems share: a minute"
                 print(f"variational: cargo builds {name}{shared} …", file=sys.stderr, flush=True)
                 began = time.monotonic()
-                _cargo(cargo, workspace, folder / "target", verbose)
+                _cargo(cargo, crate, workspace, folder / "target", verbose)
                 print(f"variational: {name} took {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
                 if _located(definition)[1] != tables:
                     raise CompileError("a file of a table changed during the build: compile again")
                 part = built.with_suffix(".part")
-                shutil.copyfile(folder / "target" / "release" / _LIBRARY, part)
+                library = ("" if os.name == "nt" else "lib") + crate + LIBRARY
+                shutil.copyfile(folder / "target" / "release" / library, part)
                 part.chmod(0o644)
                 os.replace(part, built)
     except OSError as error:
@@ -421,12 +427,10 @@ def _workspace(folder: Path) -> Path:
         part = folder / "workspace.part"
         shutil.rmtree(part, ignore_errors=True)
         part.mkdir(mode=0o700)
-        files = {
-            **dict(_core.sources()),
-            "compiled/Cargo.toml": _MANIFEST,
-            "compiled/src/lib.rs": "",
-            ".cargo/config.toml": _CARGO_CONFIG,
-        }
+        files = {**dict(_core.sources()), ".cargo/config.toml": _CARGO_CONFIG}
+        for crate, beside in _CRATES.items():
+            files[f"{crate}/Cargo.toml"] = _MANIFEST.format(crate=crate, beside=beside)
+            files[f"{crate}/src/lib.rs"] = ""
         for name, text in files.items():
             path = part / name
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -435,8 +439,8 @@ def _workspace(folder: Path) -> Path:
     return workspace
 
 
-def _cargo(cargo: str, workspace: Path, target: Path, verbose: bool) -> None:
-    """Builds the crate. Its environment is always the same: otherwise all is built again."""
+def _cargo(cargo: str, crate: str, workspace: Path, target: Path, verbose: bool) -> None:
+    """Builds a crate. Its environment is always the same: otherwise all is built again."""
     kept = ("CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_SOURCE_", "CARGO_REGISTRY_")
     environment = {
         name: value
@@ -444,7 +448,7 @@ def _cargo(cargo: str, workspace: Path, target: Path, verbose: bool) -> None:
         if not name.startswith(("CARGO", "PYO3_", "RUSTFLAGS")) or name.startswith(kept)
     }
     environment |= {"CARGO_TERM_COLOR": "never", "PYO3_NO_PYTHON": "1", "PYO3_BUILD_EXTENSION_MODULE": "1"}
-    command = [cargo, "build", "--release", "--package", "compiled", "--target-dir", str(target)]
+    command = [cargo, "build", "--release", "--package", crate, "--target-dir", str(target)]
     process = None
     try:
         # A Ctrl-C during the start waits: otherwise nobody knows what to end.
@@ -511,7 +515,9 @@ def _reason(messages: str) -> str:
         )
     lines_before = _BEFORE.count("\n")
     messages = re.sub(
-        r"compiled[/\\]src[/\\]lib\.rs:(\d+):", lambda found: f"definition:{int(found[1]) - lines_before}:", messages
+        r"compiled[/\\]src[/\\]lib\.rs:(\d+):",
+        lambda found: f"definition:{int(found[1]) - lines_before}:",
+        messages,
     )
     ends = ("error: could not compile", "warning: build failed", "For more information about")
     return "\n".join(line for line in messages.splitlines() if not line.startswith(ends)).strip()

@@ -193,24 +193,30 @@ class System(metaclass=SystemType):
         bit for bit."""
         if not hasattr(cls, "_text") and methods is None:
             return cls
-        from ._compile import CompileError, compile
-        from ._text import files_of
+        from ._compile import compile
 
-        of_text: Any = getattr(cls, "_text", None)
-        if of_text:
-            definition, _, _, files, dropped = of_text
-            if dropped:
-                left_out = ", ".join(dropped)
-                raise CompileError(f"{cls.__name__} is without {left_out}: delete these from its text to compile it")
-            for path, _ in set(files) - set(files_of(definition)):
-                raise CompileError(f"the file {path} of a table changed or is missing: make the system again from its text")
-        if wait or not of_text:
-            return compile(cls.definition, methods=methods, verbose=verbose)
+        definition = cls._to_compile()
+        if wait or not hasattr(cls, "_text"):
+            return compile(definition, methods=methods, verbose=verbose)
         if cls._compiled is None:
             cls._compiled = Future()
-            build = functools.partial(compile, cls.definition, methods=methods, verbose=verbose)
+            build = functools.partial(compile, definition, methods=methods, verbose=verbose)
             threading.Thread(target=_build, args=(cls._compiled, build, cls.__name__), daemon=True).start()
         return cls
+
+    @classmethod
+    def _to_compile(cls) -> str:
+        """The definition, if cargo makes the same system of it. Raises CompileError."""
+        from ._compile import CompileError
+        from ._text import files_of
+
+        _, _, _, files, dropped = getattr(cls, "_text", (None, None, None, (), ()))
+        if dropped:
+            left_out = ", ".join(dropped)
+            raise CompileError(f"{cls.__name__} is without {left_out}: delete these from its text to compile it")
+        for path, _ in set(files) - set(files_of(cls.definition)):
+            raise CompileError(f"the file {path} of a table changed or is missing: make the system again from its text")
+        return cls.definition
 
     def _for(self, request: Request) -> System:
         """The system that takes the steps of a run: a compiled one, if it is ready and has the method."""
