@@ -9,11 +9,19 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// The folders of the crates, in the repository.
-const CRATES: [&str; 7] =
-    ["vi-core", "vi-macros", "vi-macros/expr", "vi-macros/codegen", "vi-dispatch", "vi-erased", "python/vi-python"];
+const CRATES: [&str; 8] = [
+    "vi-core",
+    "vi-macros",
+    "vi-macros/expr",
+    "vi-macros/codegen",
+    "vi-dispatch",
+    "vi-erased",
+    "python/vi-fmi",
+    "python/vi-python",
+];
 
-/// The crate of a compiled system, which `variational.compile` writes.
-const COMPILED: &str = "compiled";
+/// The crates that the package writes: a compiled system, and a unit of FMI.
+const WRITTEN: [&str; 2] = ["compiled", "unit"];
 
 fn main() {
     let here = PathBuf::from(env::var("CARGO_MANIFEST_DIR").expect("cargo sets it"));
@@ -144,7 +152,7 @@ const UNLOCKED: &str = "differential-equations";
 
 /// The workspace of a compiled system: versions and lints of the repository, profiles of this crate.
 fn workspace(repository: &str, this: &str) -> String {
-    let members: Vec<String> = CRATES.iter().chain(&[COMPILED]).map(|name| format!("{name:?}")).collect();
+    let members: Vec<String> = CRATES.iter().chain(&WRITTEN).map(|name| format!("{name:?}")).collect();
     let mut text = format!("[workspace]\nmembers = [{}]\nresolver = \"3\"\n", members.join(", "));
     let of = |manifest: &str, is_kept: fn(&str) -> bool| -> String {
         sections(manifest).into_iter().filter(|(header, _)| is_kept(header)).map(|(_, text)| text).collect()
@@ -158,6 +166,8 @@ fn workspace(repository: &str, this: &str) -> String {
         header.starts_with("[profile.") && !header.contains("-python-ready") && !header.contains(".variational-")
     });
     // One unit is as fast to compile as several, and its steps are faster.
-    write!(text, "[profile.release.package.{COMPILED}]\nopt-level = 3\ncodegen-units = 1\n").expect("a string");
+    for name in WRITTEN {
+        writeln!(text, "[profile.release.package.{name}]\nopt-level = 3\ncodegen-units = 1").expect("a string");
+    }
     text
 }

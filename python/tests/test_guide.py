@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 PAGES = ["docs/python.md", "docs/from_scipy.md", "python/README.md", "README.md"]
 PAGES += sorted(str(page.relative_to(ROOT)) for page in (ROOT / "docs/python").glob("*.md"))
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-OPTIONAL = ["jax", "matplotlib", "pandas", "scipy", "torch"]
+OPTIONAL = ["fmpy", "jax", "matplotlib", "pandas", "scipy", "torch"]
 USES = {"matplotlib": (".plot(", ".animate("), "scipy": ("vi.fit(",)}
 
 
@@ -28,7 +28,7 @@ def test_block(code, request, tmp_path):
     for name in OPTIONAL:
         if any(word in code for word in (name, *USES.get(name, ()))):
             pytest.importorskip(name)
-    if "vi.compile" in code:
+    if "vi.compile" in code or ".fmu(" in code:
         request.getfixturevalue("warm_cache")
     environment = {**os.environ, "MPLBACKEND": "Agg", "PYTHONUTF8": "1"}
     outcome = subprocess.run(

@@ -3,7 +3,7 @@
 `compile` writes a crate into the user's cache, builds it with cargo, and loads it. The library is kept by a hash of
 everything that it depends on; later it is loaded without cargo.
 
-    <cache>/<version>/workspace   sources of the library, and the crate of a system
+    <cache>/<version>/workspace   sources of the library, and the crates of a system and of a unit
                       target      what cargo built
                       modules     the libraries of systems
                       lock        held during a build
@@ -57,8 +57,8 @@ vi-core.workspace = true
 {beside} = {{ path = "../python/{beside}" }}
 """
 
-_CRATES = {"compiled": "vi-python"}
-"""The crates that are written for a system, and the crate that each stands on."""
+_CRATES = {"compiled": "vi-python", "unit": "vi-fmi"}
+"""The crates of a system, as a module of Python and as a unit of FMI, and the crate that each stands on."""
 
 # The linker of macOS must leave the symbols of Python to the process.
 _CARGO_CONFIG = """\
@@ -379,6 +379,19 @@ def _suitable(definition: str, methods: str) -> None:
         )
 
 
+def unit(definition: str, last: str, verbose: bool) -> Path:
+    """The library of the unit that this last line defines for a definition.
+
+    Raises CompileError.
+    """
+    definition, tables = _located(definition)
+    built = _built(_digest(definition, last, tables))
+    if not built.exists():
+        _build("unit", definition, last, _checked(definition), built, tables, verbose)
+    _check_private(built)
+    return built
+
+
 def _build(crate: str, definition: str, last: str, name: str, built: Path, tables: str, verbose: bool) -> None:
     """Builds a crate with this definition and this last line, and keeps its library in the cache."""
     cargo = shutil.which("cargo") or shutil.which("cargo", path=str(Path.home() / ".cargo" / "bin"))
@@ -448,7 +461,9 @@ def _cargo(cargo: str, crate: str, workspace: Path, target: Path, verbose: bool)
         if not name.startswith(("CARGO", "PYO3_", "RUSTFLAGS")) or name.startswith(kept)
     }
     environment |= {"CARGO_TERM_COLOR": "never", "PYO3_NO_PYTHON": "1", "PYO3_BUILD_EXTENSION_MODULE": "1"}
-    command = [cargo, "build", "--release", "--package", crate, "--target-dir", str(target)]
+    # With vi-python all crates get the same features of their dependencies, and share what is built of these.
+    packages = ["--package", crate, "--package", "vi-python"]
+    command = [cargo, "build", "--release", *packages, "--target-dir", str(target)]
     process = None
     try:
         # A Ctrl-C during the start waits: otherwise nobody knows what to end.
@@ -515,7 +530,7 @@ def _reason(messages: str) -> str:
         )
     lines_before = _BEFORE.count("\n")
     messages = re.sub(
-        r"compiled[/\\]src[/\\]lib\.rs:(\d+):",
+        r"(?:compiled|unit)[/\\]src[/\\]lib\.rs:(\d+):",
         lambda found: f"definition:{int(found[1]) - lines_before}:",
         messages,
     )

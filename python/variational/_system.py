@@ -7,10 +7,12 @@ import dataclasses
 import functools
 import inspect
 import math
+import os
 import sys
 import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -581,6 +583,43 @@ class System(metaclass=SystemType):
             request = checked(type(self), h, None, None, method, stages, None, shift_from, fallback)
         system = self._for(request)
         return Run(type(system), system._kind.begin(system._values, request, number(t, "t"), q, v, p))
+
+    def fmu(
+        self,
+        path: str | os.PathLike[str],
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        *,
+        t: float = 0.0,
+        h: float | None = None,
+        tolerance: float | None = None,
+        dtau: float | None = None,
+        method: str | None = None,
+        stages: int | None = None,
+        shift: float | None = None,
+        shift_from: float | None = None,
+        fallback: bool = False,
+        verbose: bool = False,
+    ) -> Path:
+        """Writes the system with its run as an FMU, a co-simulation unit of FMI 3.0, for Simulink, FMPy and other
+        tools. Returns the path.
+
+        The options are those of `integrate`; q and v are zero if they are not given. The unit has the parameters and
+        inputs of the system with their present values, `x(0)` and `dot(x)(0)` as initial coordinates and velocities,
+        and the outputs `x`, `dot(x)`, `p_x`, `Λ_c` for a constraint c, and `energy`. A communication step is a call of
+        `until`: steps of h, of which the last is shortened to its end. Inputs and parameters change between them.
+
+        It needs cargo, as `compile`. The unit runs on the platform where it was built.
+
+        Raises CompileError.
+        """
+        from ._fmu import write
+
+        request = checked(type(self), h, tolerance, dtau, method, stages, shift, shift_from, fallback)
+        n = len(self.coordinates)
+        q = np.zeros(n) if q is None else vector(q, n, "q", self.coordinates)
+        v = np.zeros(n) if v is None else vector(v, n, "v", self.coordinates)
+        return write(self, Path(path), request, number(t, "t"), q, v, verbose)
 
     def ensemble(
         self,
