@@ -470,6 +470,11 @@ class Run:
         names, indices = self._wrt(wrt)
         steps = _count(steps, "the number of steps")
         own, start = np.zeros(len(indices)), None
+        method, _, is_transformed = self._run.integrator
+        if velocities and (method == "energy" or is_transformed):
+            # The time of the end varies, and velocities depend on it too.
+            found = slope @ self._tangent(indices, steps=steps, velocities=[True, True])[: 2 * n]
+            return self._named(found, second, names)
         if velocities:
             # (q, p) by (q, v) at the start, and (q, v) by (q, p) at the end, with their parameters.
             start, end = self._tangent(indices, velocities=[True, False])[: 2 * n], self.copy()
@@ -480,6 +485,11 @@ class Run:
             found = self._run.gradient(steps, slope, indices)
         if start is not None:
             found = np.concatenate([np.zeros(2 * n), found[2 * n :] + own]) + found[: 2 * n] @ start
+        return self._named(found, second, names)
+
+    def _named(self, found: Array, second: str, names: list[str]) -> dict[str, Array]:
+        """A gradient by q, p or v, and parameters."""
+        n = len(self._cls.coordinates)
         return {"q": found[:n].copy(), second: found[n : 2 * n].copy(), **self._split(found[2 * n :], names)}
 
     @contextlib.contextmanager

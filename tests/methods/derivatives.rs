@@ -61,18 +61,8 @@ fn moved(case: &Case, start: &Node, direction: usize, by: f64) -> Result<Vec<f64
     Ok([end.numbers(), vec![end.t]].concat())
 }
 
-/// Whether steps have no derivative: energy-preserving ones with constraints.
-fn has_no_derivative(case: &Case) -> bool {
-    !case.is_free() && case.method.keeps_energy
-}
-
 /// Tangent vectors are differences of runs, with constraints of runs from the nearest states on them.
 fn tangent(case: &Case) -> Result<(), String> {
-    if has_no_derivative(case) {
-        let refused = case.run()?.tangent(Wanted::after(1), &mut || true);
-        ensure!(matches!(refused, Err(StepError::NoDerivative { .. })), "constraints: {refused:?}");
-        return Ok(());
-    }
     if !case.method.has_tangents() {
         return Ok(());
     }
@@ -100,9 +90,6 @@ fn tangent(case: &Case) -> Result<(), String> {
 
 /// A gradient, found by one backward pass, is that of tangent vectors.
 fn gradient(case: &Case) -> Result<(), String> {
-    if has_no_derivative(case) {
-        return Ok(());
-    }
     let n = case.scene.q.len();
     let slope: Vec<f64> = (0..2 * n).map(|k| 1.0 - 0.3 * f64::from(u8::try_from(k).unwrap_or(0))).collect();
     let mut run = case.run()?;
@@ -136,10 +123,6 @@ fn linearization(case: &Case) -> Result<(), String> {
     advance(&mut *run, 1)?;
     let (before, found) = (run.row(), run.linearization());
     ensure!(run.row() == before, "a linearization changes the run");
-    if has_no_derivative(case) {
-        ensure!(matches!(found, Err(StepError::NoDerivative { .. })), "constraints and an energy: {found:?}");
-        return Ok(());
-    }
     let found = found.map_err(|error| error.to_string())?;
     let mut next = run.copy();
     advance(&mut *next, 1)?;

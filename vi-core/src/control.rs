@@ -200,8 +200,10 @@ where
         for input in self.system().inputs() {
             variations.push(Variation::of_index(*input));
         }
-        let mut tangent = Tangent::from_change(self.clone(), variations)?;
-        tangent.project()?;
+        let mut admissible = Tangent::new(self.clone(), variations);
+        admissible.project()?;
+        // The energy changes with the admissible changes of the state.
+        let mut tangent = Tangent::from_change(self.clone(), admissible.variations().to_vec())?;
         let State { q, p, .. } = tangent.step()?;
         let columns = tangent.variations();
         let derivatives = DMatrix::from_fn(2 * N, columns.len(), |row, column| {

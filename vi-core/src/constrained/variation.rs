@@ -12,12 +12,14 @@
 //! Admissible tangent vectors satisfy the derivatives of the constraints and of their rates. A step maps any vector to
 //! an admissible one, but the derivative of a run along any other has no meaning.
 
+use super::energies::{energies as energies_of, power_of};
 use super::equations::{Rows, stage_velocity};
 use super::motion::{Velocity, from_rest, unsolvable, velocity};
 use super::solve::Workspace;
 use super::{border, bordered, reaction_of, with_idle};
 use crate::derivatives::{TOGETHER, Variation, Varied, more_parameters, not_finite, singular};
 use crate::error::StepError;
+use crate::gauss::variation::VariedEnergies;
 use crate::kind::Kind;
 use crate::lagrangian::Lagrangian;
 use crate::linear::{Bordered, Matrix, Rectangular};
@@ -42,12 +44,14 @@ fn along<const N: usize>(of: &SVector<Varied, N>, direction: usize) -> SVector<f
     of.map(|entry| entry.slope.0[direction])
 }
 
-/// Maps admissible tangent vectors at the start of a step to those at its end.
+/// Maps admissible tangent vectors at the start of a step to those at its end, and optionally adds the derivatives of its
+/// energies.
 pub(crate) fn vary<S, const N: usize, const STAGES: usize>(
     system: &S,
     (before, h): (&Node<N>, f64),
     (u, mu): (&[f64], &[f64]),
     variations: &mut [Variation<N>],
+    mut energies: Option<&mut Vec<VariedEnergies>>,
 ) -> Result<(), StepError>
 where
     S: Convertible<N>,
@@ -85,8 +89,8 @@ where
         let p = node.p + (node.p_low + rows.increment);
         let momentum = system.momentum(t, &q, &v.map(Dual::fixed));
         let (varied_gradients, mut rates) = system.constraint_gradients(t, &q);
-        let fixed: Vec<Varied> = mu.iter().map(|entry| Dual::fixed(*entry)).collect();
-        let projected = p + reaction_of(&varied_gradients, &fixed);
+        let mut mu: Vec<Varied> = mu.iter().map(|entry| Dual::fixed(*entry)).collect();
+        let projected = p + reaction_of(&varied_gradients, &mu);
         for (rate, gradient) in rates.as_mut().iter_mut().zip(varied_gradients.rows()) {
             *rate += gradient.dot(&v.map(Dual::fixed));
         }
@@ -98,6 +102,15 @@ where
             variation.t = t.slope.0[direction];
             variation.q = along(&q, direction);
             variation.p = of_p + reaction_of(gradients, &of_mu);
+            mu.iter_mut().zip(of_mu).for_each(|(mu, of_mu)| mu.slope.0[direction] = of_mu);
+        }
+        if let Some(energies) = &mut energies {
+            let base = Dual::fixed(before.energy);
+            let of = energies_of::<S::In<Varied>, N, STAGES, Varied>(&system, (&node, length), &u, base);
+            let work = of.work - power_of::<S::In<Varied>, N, Varied>(&system, (t, &q), &mu);
+            let of_direction =
+                |direction| VariedEnergies { start: of.start.slope.0[direction], work: work.slope.0[direction] };
+            energies.extend((0..variations.len()).map(of_direction));
         }
     }
     let is_singular = change.iter().any(|entry| !entry.is_finite());

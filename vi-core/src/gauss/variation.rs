@@ -55,8 +55,7 @@ where
         true
     }
 
-    /// As for [`EnergyPreserving`](crate::EnergyPreserving). The shift does not vary. With constraints
-    /// [`StepError::NoDerivative`].
+    /// As for [`EnergyPreserving`](crate::EnergyPreserving). The shift does not vary.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         Lengths::<S, N, STAGES>::vary(run, before, variations)
     }
@@ -70,25 +69,22 @@ where
     }
 }
 
-/// Maps tangent vectors at a node to those after an energy-preserving step, or one of a given length, from its stages.
+/// Maps tangent vectors at a node to those after an energy-preserving step of the length h, or one of a given length.
+/// `vary` does so for a step of a length that its vectors vary, and adds the derivatives of its energies.
 ///
-/// The energy equation and the unknown h border the stage equations. These are solved at fixed h and for the direction
-/// of h; one scalar equation gives δh.
-pub(crate) fn vary_length<S, const N: usize, const STAGES: usize>(
-    system: &S,
-    step: (&Node<N>, f64, &Stages<N, STAGES>),
+/// The energy equation and the unknown h border the equations of the step. These are solved at fixed h and for the
+/// direction of h; one scalar equation gives δh.
+pub(crate) fn vary_length<const N: usize, const STAGES: usize>(
+    (t, h): (f64, f64),
     shift: f64,
     sought: Sought,
     variations: &mut [Variation<N>],
-) -> Result<(), StepError>
-where
-    S: Convertible<N>,
-{
-    let (before, h, _) = step;
+    vary: impl FnOnce(&mut [Variation<N>], &mut Vec<VariedEnergies>) -> Result<(), StepError>,
+) -> Result<(), StepError> {
     let mut all: Vec<_> = variations.iter().map(|variation| Variation { h: 0.0, ..variation.clone() }).collect();
     all.push(Variation::of_length());
     let mut energies = Vec::with_capacity(all.len());
-    vary(system, step, &mut all, Some(&mut energies))?;
+    vary(&mut all, &mut energies)?;
     let (Some(along_h), Some(energy_along_h)) = (all.pop(), energies.pop()) else { return Ok(()) };
     #[allow(clippy::cast_precision_loss)] // at most three stages
     let power_slope = 2.0 * STAGES as f64 * power::<STAGES>(h) / h;
@@ -103,24 +99,22 @@ where
             }
         };
         if !of_h.is_finite() {
-            return Err(singular(before.t));
+            return Err(singular(t));
         }
         (own.t, own.q, own.p) = (varied.t, varied.q, varied.p);
         own.add(&along_h, of_h);
-        if !system.conserves_energy() {
-            own.energy += energy.work + energy_along_h.work * of_h;
-        }
+        own.energy += energy.work + energy_along_h.work * of_h;
     }
-    Variation::check_finite(variations, before.t)
+    Variation::check_finite(variations, t)
 }
 
 /// Derivatives of the energies of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VariedEnergies {
     /// E0.
-    start: f64,
+    pub(crate) start: f64,
     /// `E1 − E0`.
-    work: f64,
+    pub(crate) work: f64,
 }
 
 /// Derivatives of the energies of the step of length h along `variations` of its node, with the derivatives of the velocities of its stages.

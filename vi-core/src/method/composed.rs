@@ -228,7 +228,7 @@ where
             for (variation, of_length) in variations.iter_mut().zip(&lengths) {
                 variation.h = of_length * (length / h);
             }
-            vary::<S, N, 1>(system, (start, length), (u, mu), variations)?;
+            vary::<S, N, 1>(system, (start, length), (u, mu), variations, None)?;
         }
         for (variation, of_length) in variations.iter_mut().zip(lengths) {
             variation.h = of_length;

@@ -1,12 +1,15 @@
 //! Energy-preserving Gauss steps of systems with constraints.
 
-use super::{EnergyPreservingGauss, GivenStep, LengthSolver};
+use super::{EnergyPreservingGauss, GivenStep, LengthSolver, Lengths};
 use crate::constrained::guess::from_node;
 use crate::constrained::lengths::{ConstrainedLengths, TakenLength, TriedLength};
 use crate::constrained::solve::Workspace;
+use crate::constrained::variation::vary;
 use crate::constrained::{bordered, energies, start, step_density, unknowns};
+use crate::derivatives::{Sought, Variation, check_fallback, not_last};
 use crate::error::StepError;
 use crate::gauss::history::StepHistory;
+use crate::gauss::variation::vary_length;
 use crate::kind::{Bound, Form, Multipliers};
 use crate::method::Gauss;
 use crate::method::bounds::Alternating;
@@ -16,7 +19,7 @@ use crate::method::preserving::{Preserving, PreservingStep, StepsOfAnyLength};
 use crate::motion::Motion;
 use crate::node::Node;
 use crate::run::{Hermite, Run};
-use crate::state::State;
+use crate::state::{State, StepKind};
 use crate::stepping::Convertible;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -31,6 +34,30 @@ fn lengths<'a, S: Motion<N>, const N: usize, const STAGES: usize>(
 ) -> ConstrainedLengths<'a, S, N> {
     let workspace = cache.get_or_insert_with(|| Box::new(Workspace::new::<S, N, STAGES>(system)));
     ConstrainedLengths { system, last: &steps.unknowns, sign: steps.sign, workspace: RefCell::new(workspace) }
+}
+
+/// Maps tangent vectors at the node of a run to those after a step of the length h, regardless of its energy.
+///
+/// # Errors
+/// Those of a step with constraints and of its derivative.
+fn vary_given<S, const N: usize, const K: usize, F: Form, const STAGES: usize>(
+    Run { system, node, memory: Lengths { steps, course }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+    h: f64,
+    sought: Sought,
+    variations: &mut [Variation<N>],
+) -> Result<(), StepError>
+where
+    S: Convertible<N, Kind = Bound<K, F>>,
+{
+    let (shift, cache) = (course.shift, &mut None);
+    let steps = lengths::<S, N, STAGES>(system, steps, cache);
+    let tried: TriedLength<N, STAGES, Multipliers<S, N>> = steps.tried(node, h, shift, None)?;
+    let TakenLength { mu, .. } = steps.ended(node, &tried)?.taken;
+    let mut u = Vec::new();
+    tried.write(&mut u);
+    vary_length::<N, STAGES>((node.t, h), shift, sought, variations, |all, energies| {
+        vary::<S, N, STAGES>(system, (node, h), (&u, mu.as_ref()), all, Some(energies))
+    })
 }
 
 /// The solver of [`EnergyPreservingGauss`] steps with constraints.
@@ -137,6 +164,38 @@ where
         let found = energies::energies::<S, N, STAGES, f64>(&run.system, (before, *h), unknowns.newest(), base);
         let State { t, q, .. } = run.node.state();
         [found.start, found.end - energies::power_of::<S, N, f64>(&run.system, (t, &q), mu)]
+    }
+
+    fn vary(
+        Run { system, node, memory: Lengths { steps, course }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        before: &Node<N>,
+        variations: &mut [Variation<N>],
+    ) -> Result<(), StepError> {
+        check_fallback(course.control.fallback, before.t)?;
+        let (start, h, u, mu) = steps.last(node).ok_or_else(|| not_last(before.t))?;
+        // The energy differs if `set_parameters` came between `before` and the step.
+        let is_start = Node { energy: before.energy, energy_low: before.energy_low, ..*start } == *before;
+        let (Some((_, u)), true, StepKind::EnergyPreserving) = (u.split_last(), is_start, course.control.kind) else {
+            return Err(not_last(before.t));
+        };
+        vary_length::<N, STAGES>((before.t, h), course.shift, Sought::Length, variations, |all, energies| {
+            vary::<S, N, STAGES>(system, (before, h), (u, mu), all, Some(energies))
+        })
+    }
+
+    fn vary_step_of(
+        run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        length: f64,
+        variations: &mut [Variation<N>],
+    ) -> Result<(), StepError> {
+        vary_given(run, length, Sought::Neither, variations)
+    }
+
+    fn vary_start(
+        run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        variations: &mut [Variation<N>],
+    ) -> Result<(), StepError> {
+        vary_given(run, run.h(), Sought::Energy, variations)
     }
 }
 

@@ -15,7 +15,7 @@ use crate::gauss::newton::Buffer;
 use crate::gauss::solve::{Start, Step};
 use crate::gauss::stages::{Stages, at};
 #[cfg(feature = "alloc")]
-use crate::gauss::variation::vary_length;
+use crate::gauss::variation::{vary, vary_length};
 use crate::kind::Free;
 use crate::method::Gauss;
 use crate::method::bounds::Alternating;
@@ -184,7 +184,9 @@ where
 {
     let Lengths { steps, course } = memory;
     let stages = alone(system, (node, steps), h, course.shift)?.step.stages;
-    vary_length(system, (node, h, &stages), course.shift, sought, variations)
+    vary_length::<N, STAGES>((node.t, h), course.shift, sought, variations, |all, energies| {
+        vary(system, (node, h, &stages), all, Some(energies))
+    })
 }
 
 /// The solver of [`EnergyPreservingGauss`](super::EnergyPreservingGauss) steps without constraints.
@@ -289,7 +291,9 @@ where
         if !last.has_step(&run.node) || !is_start || course.control.kind != StepKind::EnergyPreserving {
             return Err(not_last(before.t));
         }
-        vary_length(&run.system, (before, last.h, &last.stages.data.0), course.shift, Sought::Length, variations)
+        vary_length::<N, STAGES>((before.t, last.h), course.shift, Sought::Length, variations, |all, energies| {
+            vary(&run.system, (before, last.h, &last.stages.data.0), all, Some(energies))
+        })
     }
 
     #[cfg(feature = "alloc")]

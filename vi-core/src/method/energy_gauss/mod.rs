@@ -82,10 +82,6 @@ use vi_dispatch::Instructions;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnergyPreservingGauss<const STAGES: usize>;
 
-/// The reason why energy-preserving steps with constraints have no derivatives.
-#[cfg(feature = "alloc")]
-const NOT_DERIVED: &str = "steps that keep constraints and an energy have no linearization; use Gauss steps";
-
 /// A solver of Gauss steps of any length.
 pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     /// The last steps, from which the next one is guessed.
@@ -169,15 +165,13 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     /// [`Differentiable::vary`](crate::derivatives::Differentiable::vary), here and below.
     ///
     /// # Errors
-    /// As there; [`StepError::NoDerivative`] if these steps have none.
+    /// As there.
     #[cfg(feature = "alloc")]
     fn vary(
-        _run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
         before: &Node<N>,
-        _variations: &mut [Variation<N>],
-    ) -> Result<(), StepError> {
-        Err(StepError::NoDerivative { t: before.t, because: NOT_DERIVED })
-    }
+        variations: &mut [Variation<N>],
+    ) -> Result<(), StepError>;
     /// `vary_step_of`.
     ///
     /// # Errors
@@ -185,11 +179,9 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     #[cfg(feature = "alloc")]
     fn vary_step_of(
         run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
-        _length: f64,
-        _variations: &mut [Variation<N>],
-    ) -> Result<(), StepError> {
-        Err(StepError::NoDerivative { t: run.t(), because: NOT_DERIVED })
-    }
+        length: f64,
+        variations: &mut [Variation<N>],
+    ) -> Result<(), StepError>;
     /// `vary_start`.
     ///
     /// # Errors
@@ -197,10 +189,8 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     #[cfg(feature = "alloc")]
     fn vary_start(
         run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
-        _variations: &mut [Variation<N>],
-    ) -> Result<(), StepError> {
-        Err(StepError::NoDerivative { t: run.t(), because: NOT_DERIVED })
-    }
+        variations: &mut [Variation<N>],
+    ) -> Result<(), StepError>;
 }
 
 /// A step of a given length.

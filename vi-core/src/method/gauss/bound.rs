@@ -346,7 +346,7 @@ where
         if start != before {
             return Err(not_last(before.t));
         }
-        vary::<S, N, STAGES>(system, (before, h), (u, mu), variations)
+        vary::<S, N, STAGES>(system, (before, h), (u, mu), variations, None)
     }
 }
 
