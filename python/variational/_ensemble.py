@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
@@ -15,6 +16,7 @@ from ._arrays import Array, array, count, finite, fixed, number, ordered
 from ._calls import check_arguments
 from ._errors import StepError, advised
 from ._events import listed
+from ._progress import progress
 from ._solution import ByName, columns_of, two_axes
 
 if TYPE_CHECKING:
@@ -24,8 +26,9 @@ if TYPE_CHECKING:
 class Ensemble(ByName):
     """The states of M runs: `t` (M,), `q`, `p`, `v` (M, N), `energy` (M,), or with an axis of K times after M.
 
-    `errors` has for each run None, or the exception that ended it; `parameters` the parameters that differ; `which` the
-    index of the event that ended each run, -1 without an event, or None if no event was given.
+    `errors` has for each run None, or the exception that ended it, which is KeyboardInterrupt after Ctrl-C;
+    `parameters` the parameters that differ; `which` the index of the event that ended each run, -1 without an event, or
+    None if no event was given.
     """
 
     p: Array
@@ -173,17 +176,18 @@ def ensemble(
     limit = _threads(threads)
     taken, which = system._for(request), None
     if next_event is None:
-        found = taken._kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit)
-        (ts, qs, ps), errors = found
+        with progress(cls.__name__) as report:
+            found = taken._kind.ensemble(values, request, t, rows["q"], rows["v"], end, listed_times, limit, report)
+        (ts, qs, ps), errors, stopped = found
         errors = [advised(error, cls) for error in errors]
     else:
         starts = (values, rows["q"], rows["v"])
-        (ts, qs, ps), errors, which = _to_events(taken, request, t, starts, end, next_event, limit)
+        (ts, qs, ps), errors, which, stopped = _to_events(taken, request, t, starts, end, next_event, limit)
     shape = (many,) if listed_times is None else (many, len(listed_times))
     differing = {
         name: fixed((of[..., 0] if parameter.length is None else of).copy()) for name, (parameter, of) in given.items()
     }
-    return Ensemble(
+    found = Ensemble(
         system.copy()._fixed(),
         ts.reshape(shape),
         qs.reshape(*shape, n),
@@ -193,39 +197,55 @@ def ensemble(
         differing,
         which,
     )
+    if stopped is not None:
+        stopped.solution = found
+        raise stopped
+    return found
 
 
 def _to_events(
     system: System, request: Any, t: float, starts: tuple[Array, ...], end: Any, events: Any, threads: int
-) -> tuple[tuple[Array, Array, Array], list[StepError | None], NDArray[np.intp]]:
-    """The end of each run at its first event, or at a time; its exception; and the index of the event, or -1."""
+) -> tuple[tuple[Array, Array, Array], list[StepError | None], NDArray[np.intp], Any]:
+    """The end of each run at its first event, or at a time; its exception; the index of the event, or -1; and the
+    exception of Ctrl-C."""
     from ._run import Run
 
     many, n = starts[1].shape
     ts, qs, ps = np.full(many, np.nan), np.full((many, n), np.nan), np.full((many, n), np.nan)
     errors: list[StepError | None] = [None] * many
     which = np.full(many, -1, dtype=np.intp)
-    watched = listed(events)
+    watched, is_stopped = listed(events), threading.Event()
+
+    def stop(part: float) -> None:
+        if is_stopped.is_set():
+            raise KeyboardInterrupt
 
     def one(index: int) -> None:
         values, q, v = (of[index] for of in starts)
         try:
             run = Run(type(system), system._kind.begin(values, request, t, q, v, None))
-            met = run.next_event(watched, end)
+            met = run._events(watched, end, True, 1, None, "raise", stop)
         except StepError as error:
             errors[index] = advised(error, type(system))
             return
         ts[index], qs[index], ps[index] = run.t, run.q, run.p
         which[index] = met.which[0] if len(met) else -1
 
-    with ThreadPoolExecutor(threads) as pool:
+    stopped: Any = None
+    with progress(type(system).__name__) as report, ThreadPoolExecutor(threads) as pool:
         try:
-            for _ in pool.map(one, range(many)):
-                pass
-        except BaseException:
+            for done, _ in enumerate(pool.map(one, range(many)), 1):
+                if report is not None:
+                    report(done / many)
+        except BaseException as raised:
+            is_stopped.set()
             pool.shutdown(cancel_futures=True)
-            raise
-    return (ts, qs, ps), errors, which
+            if not isinstance(raised, KeyboardInterrupt):
+                raise
+            stopped = raised
+    if stopped is not None:
+        errors = [stopped if error is None and np.isnan(t) else error for error, t in zip(errors, ts, strict=True)]
+    return (ts, qs, ps), errors, which, stopped
 
 
 def states(value: ArrayLike, name: str, cls: type[System]) -> Array:

@@ -14,6 +14,7 @@ from ._arrays import Array, array, finite, fixed, number, ordered, vector
 from ._calls import checked_call, unassignable
 from ._errors import StepError
 from ._names import among, course, meant
+from ._progress import Report, progress
 from ._solution import Solution
 
 if TYPE_CHECKING:
@@ -141,7 +142,8 @@ def fit(
         which is estimated from the residuals.
 
     With constraints, only parameters that keep the start on them can be unknown. Raises Unidentifiable if the
-    measurements do not determine the unknowns, and StepError if the motion of the first guess fails.
+    measurements do not determine the unknowns, and StepError if the motion of the first guess fails. After Ctrl-C the
+    attribute `solution` of KeyboardInterrupt has the last motion.
     """
     try:
         from scipy.optimize import least_squares
@@ -171,7 +173,13 @@ def fit(
         return (model(unknowns)[1] * weights[..., None])[there]
 
     # The test of the gradient alone depends on the units.
-    found = least_squares(residuals, guess, jacobian, limits, x_scale="jac", ftol=1e-13, xtol=1e-13, gtol=None)
+    options: dict[str, Any] = {"x_scale": "jac", "ftol": 1e-13, "xtol": 1e-13, "gtol": None}
+    with progress("motions of the fit", None) as model.report:
+        try:
+            found = least_squares(residuals, guess, jacobian, limits, **options)
+        except KeyboardInterrupt as raised:
+            raised.solution = model.solution  # type: ignore[attr-defined]
+            raise
     values = dict(zip(names, found.x.tolist(), strict=True))
     is_free = found.active_mask == 0
     computed, slopes, end = model(found.x)
@@ -233,6 +241,7 @@ class _Model:
         self.is_parameter = np.array([not is_start for is_start, _ in self.unknowns.values()])
         self.indices = [index for is_start, index in self.unknowns.values() if not is_start]
         self.evaluations = 0
+        self.report: Report | None = None
         self._last: tuple[Array, Any] | None = None
 
     def begin(self, h: float | None, tolerance: float | None, method: str | None, stages: int | None) -> None:
@@ -269,8 +278,15 @@ class _Model:
         """Values (K, C), derivatives (K, C, U) and the motion. The last ones are kept: scipy asks twice."""
         if self._last is None or not np.array_equal(self._last[0], unknowns):
             self.evaluations += 1
+            if self.report is not None:
+                self.report(self.evaluations)
             self._last = (unknowns.copy(), self._computed(unknowns))
         return self._last[1]
+
+    @property
+    def solution(self) -> Solution | None:
+        """The last motion."""
+        return None if self._last is None else self._last[1][2]
 
     def _computed(self, unknowns: Array) -> tuple[Array, Array, Solution]:
         n = len(self.start) // 2

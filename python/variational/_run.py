@@ -17,6 +17,7 @@ from ._control import Linearization
 from ._errors import InconsistentStart, StepError, advised  # type: ignore[attr-defined]
 from ._events import Event, Watched, descriptions, listed, periodic
 from ._names import course, meant
+from ._progress import Report, progress
 from ._solution import BY_SYSTEM, Events, Solution
 
 if TYPE_CHECKING:
@@ -171,7 +172,8 @@ class Run:
         True. A row is the state before its callback, with the velocity and the energy of its step.
 
         A failed step raises StepError, whose attribute `solution` has the rows so far, as has an exception of the
-        callback; with `on_error="return"` the solution is returned, and has the StepError as `error`.
+        callback, and KeyboardInterrupt; with `on_error="return"` the solution is returned, and has the StepError as
+        `error`. A run that takes longer than two seconds shows its progress, if tqdm is installed.
         """
         end = number(t, "t")
         return self._advance(end, None, every, dense, callback, on_error)
@@ -196,11 +198,17 @@ class Run:
         system = self.system
         if callback is None:
             again = self._repeats(end, steps, every) if dense else None
-            (t, q, p), error, polynomials = self._run.advance(end, steps, every, bool(dense))
+            with progress(self._title) as report:
+                (t, q, p), error, polynomials = self._run.advance(end, steps, every, bool(dense), report)
             return _finished(Solution(system, t, q, p, advised(error, self._cls), polynomials, again), on_error)
         if dense:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
         return _finished(self._called(end, steps, every, callback), on_error)
+
+    @property
+    def _title(self) -> str:
+        """The title of a progress bar."""
+        return self._cls.__name__
 
     def _repeats(self, end: float | None, steps: int | None, every: int) -> Callable[[], Any] | None:
         """A function that takes the same steps with dense output from the present state, and that can be pickled; None
@@ -219,7 +227,14 @@ class Run:
             raise TypeError(f"callback must be a function of the run, not {callback!r}")
         if (arguments := unfit(callback, 1)) is not None:
             raise TypeError(f"callback must be a function of one argument, the run, not of {arguments}")
+        with progress(self._title) as report:
+            return self._in_parts(end, left, every, callback, look, report)
+
+    def _in_parts(
+        self, end: float | None, left: int | None, every: int, callback: Any, look: Look | None, report: Report | None
+    ) -> Solution:
         system, error = self.system, None
+        begin, steps = self.t, left
         parts: list[Solution] = []
         # The numbers of the system from each row of a part on.
         values: list[Array] = []
@@ -244,6 +259,10 @@ class Run:
                     # It has ended at the last row.
                     self._run = before._run
                 left = None if left is None else left - few
+                if report is not None and steps:
+                    report(1.0 - (left or 0) / steps)
+                elif report is not None and end is not None and end != begin:
+                    report((self.t - begin) / (end - begin))
                 if is_over or error is not None or len(t) == 1:
                     break
                 is_ended = _is_true(callback(self))
@@ -273,7 +292,8 @@ class Run:
         _check_on_error(on_error)
         wanted = ordered(times, self.h)
         if callback is None:
-            (t, q, p), error, _ = self._run.at(wanted)
+            with progress(self._title) as report:
+                (t, q, p), error, _ = self._run.at(wanted, report)
             return _finished(Solution(self.system, t, q, p, advised(error, self._cls)), on_error)
         ahead, done = float(np.sign(self.h)), 0
 
@@ -315,7 +335,16 @@ class Run:
         """
         return self._events(events, until, True, every, callback, on_error)
 
-    def _events(self, events: Any, until: float, is_first: bool, every: int, callback: Any, on_error: str) -> Events:
+    def _events(
+        self,
+        events: Any,
+        until: float,
+        is_first: bool,
+        every: int,
+        callback: Any,
+        on_error: str,
+        report: Report | None = None,
+    ) -> Events:
         _check_on_error(on_error)
         end, events = number(until, "until"), listed(events)
         if callback is not None:
@@ -328,7 +357,8 @@ class Run:
         wanted = descriptions(events, self, is_first)
         turns = periodic(events, self._cls)
         while True:
-            (t, q, p), error, met = self._run.events(wanted, end, is_first)
+            with progress(self._title) as own:
+                (t, q, p), error, met = self._run.events(wanted, end, is_first, report or own)
             which = np.array([index for index, _ in met], dtype=np.intp)
             rising = np.array([rises for _, rises in met], dtype=np.bool_)
             found = Events(self.system, t, q, p, advised(error, self._cls), which, rising)
@@ -421,7 +451,8 @@ class Run:
             if not len(met):
                 raise ValueError(f"there is no event before t = {until:g}")
             options["t"], (options["event"],) = float(met.t[0]), descriptions(event, self, True)
-        columns = self._tangent(indices, velocities=[velocities, velocities], **options)
+        with progress(self._title) as report:
+            columns = self._tangent(indices, velocities=[velocities, velocities], report=report, **options)
         columns = columns if event is not None else columns[: 2 * n]
         second = "v" if velocities else "p"
         found = {"q": columns[:, :n].copy(), second: columns[:, n : 2 * n].copy()}
@@ -439,8 +470,8 @@ class Run:
         `count` is at most 2N, less 2 for each constraint on positions and 1 for each on velocities.
         """
         steps = _count(steps, "the number of steps", 1)
-        with self._advising():
-            return self._run.lyapunov(steps, _count(count, "the number of exponents", 1))
+        with self._advising(), progress(self._title) as report:
+            return self._run.lyapunov(steps, _count(count, "the number of exponents", 1), report)
 
     def gradient(
         self,
@@ -473,7 +504,9 @@ class Run:
         method, _, is_transformed = self._run.integrator
         if velocities and (method == "energy" or is_transformed):
             # The time of the end varies, and velocities depend on it too.
-            found = slope @ self._tangent(indices, steps=steps, velocities=[True, True])[: 2 * n]
+            with progress(self._title) as report:
+                options: dict[str, Any] = {"steps": steps, "velocities": [True, True], "report": report}
+                found = slope @ self._tangent(indices, **options)[: 2 * n]
             return self._named(found, second, names)
         if velocities:
             # (q, p) by (q, v) at the start, and (q, v) by (q, p) at the end, with their parameters.
@@ -481,8 +514,8 @@ class Run:
             end.steps(steps, max(steps, 1))
             at_end = slope @ end._tangent(indices, velocities=[False, True])[: 2 * n]
             slope, own = np.ascontiguousarray(at_end[: 2 * n]), at_end[2 * n :]
-        with self._advising():
-            found = self._run.gradient(steps, slope, indices)
+        with self._advising(), progress(self._title) as report:
+            found = self._run.gradient(steps, slope, indices, report)
         if start is not None:
             found = np.concatenate([np.zeros(2 * n), found[2 * n :] + own]) + found[: 2 * n] @ start
         return self._named(found, second, names)
@@ -588,12 +621,13 @@ def _advanced(start: bytes, end: float | None, steps: int | None, every: int) ->
 
 
 def _finished(solution: Any, on_error: str) -> Any:
-    """The solution, or its exception."""
+    """The solution, or its exception: that of a failed step, of a function of an event, or of Ctrl-C."""
     error = solution.error
-    if error is not None and on_error == "raise":
+    if error is None or (on_error == "return" and isinstance(error, StepError)):
+        return solution
+    with contextlib.suppress(AttributeError):
         error.solution = solution
-        raise error
-    return solution
+    raise error
 
 
 def _is_true(answer: Any) -> bool:

@@ -1,9 +1,10 @@
 //! Events from Python: coordinates and velocities with values, periods, and Python functions.
 //!
 //! In: their descriptions. Out: the [`Section`]s of a search. A Python function that raises makes its event NaN, which
-//! ends the search; the exception is kept. One more function, of constant value, looks for Ctrl-C.
+//! ends the search; the exception is kept. One more function, of constant value, looks for Ctrl-C and reports progress.
 
 use crate::failure::wrong;
+use crate::report::{Report, part};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyFloat;
@@ -46,11 +47,16 @@ impl Raised {
 const PATIENCE: u32 = 1 << 14;
 
 /// The sections of these events for a system with n coordinates, the one that looks for signals last, and whether
-/// there are Python functions among them.
+/// there are Python functions among them. It reports the part of the way between two times.
 ///
 /// # Errors
 /// `ValueError` for an index beyond the coordinates.
-pub(crate) fn sections(events: Vec<Description>, n: usize, raised: &Raised) -> PyResult<(Vec<Section>, bool)> {
+pub(crate) fn sections(
+    events: Vec<Description>,
+    n: usize,
+    raised: &Raised,
+    (report, way): (Report, [f64; 2]),
+) -> PyResult<(Vec<Section>, bool)> {
     let mut sections = Vec::with_capacity(events.len() + 1);
     let mut has_functions = false;
     for event in events {
@@ -67,7 +73,7 @@ pub(crate) fn sections(events: Vec<Description>, n: usize, raised: &Raised) -> P
             }
         });
     }
-    sections.push(signals(raised.clone()));
+    sections.push(signals(raised.clone(), report, way));
     Ok((sections, has_functions))
 }
 
@@ -105,12 +111,12 @@ fn number(value: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
     }
 }
 
-/// A constant function that looks for signals.
-fn signals(raised: Raised) -> Section {
+/// A constant function that looks for signals, and reports the part of the way between two times.
+fn signals(raised: Raised, report: Report, way: [f64; 2]) -> Section {
     let count = AtomicU32::new(0);
-    let watch = move |_: f64, _: &[f64], _: &[f64]| {
+    let watch = move |t: f64, _: &[f64], _: &[f64]| {
         if count.fetch_add(1, Ordering::Relaxed).is_multiple_of(PATIENCE)
-            && let Err(error) = Python::attach(|py| py.check_signals())
+            && let Err(error) = Python::attach(|py| report.look(py, part(way, t)))
         {
             raised.keep(error);
         }

@@ -30,6 +30,11 @@ pub(crate) fn instance<'py>(py: Python<'py>, error: &StepError) -> PyResult<Boun
     py.import("variational._errors")?.call_method1("_exception", (variant, error.reason().to_string(), fields))
 }
 
+/// A raised exception as an object, to be raised again later.
+pub(crate) fn value(py: Python<'_>, raised: PyErr) -> Bound<'_, PyAny> {
+    raised.into_value(py).into_bound(py).into_any()
+}
+
 /// Turns an error into its exception.
 pub(crate) trait Raise<T> {
     /// The value, or the exception.

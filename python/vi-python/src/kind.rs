@@ -2,9 +2,10 @@
 
 use crate::ensemble::{Ensemble, Output};
 use crate::failure::{Raise as _, wrong};
+use crate::report::{Report, Watch};
 use crate::request::Request;
 use crate::rows::{Linearized, linearized, matrix, rows, vector};
-use crate::run::{Run, Signal};
+use crate::run::Run;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use vi_erased::System;
@@ -235,9 +236,9 @@ impl Kind {
         let p = p.map(|p| vector(&p, self.n, "p")).transpose()?;
         let plan = Plan { p, ..request.plan(&*system, t, q, v)? };
         // A tolerance takes thousands of steps, a measured shift up to billions.
-        let mut signal = Signal::new();
-        let run = py.detach(|| system.begin_while(&plan, &mut || signal.is_silent()));
-        signal.check()?;
+        let mut watch = Watch::new(Report::default(), f64::INFINITY);
+        let run = py.detach(|| system.begin_while(&plan, &mut || watch.goes_on()));
+        watch.check()?;
         Ok(Run::new(run.raise(py)?, plan.wanted(!system.constraints().is_empty())))
     }
 
@@ -256,8 +257,8 @@ impl Kind {
     }
 
     /// Runs from many states over threads: the state at the time `until`, or the states at times, of each. Returns the
-    /// rows of all runs, and for each run `None` or the exception that ended it.
-    #[pyo3(signature = (parameters, request, t, q, v, until=None, times=None, threads=None))]
+    /// rows of all runs, for each run `None` or the exception that ended it, and the one that interrupted all.
+    #[pyo3(signature = (parameters, request, t, q, v, until=None, times=None, threads=None, report=None))]
     #[allow(clippy::too_many_arguments, clippy::type_complexity)] // Python's keywords
     fn ensemble<'py>(
         &self,
@@ -270,7 +271,8 @@ impl Kind {
         until: Option<f64>,
         times: Option<Vec<f64>>,
         threads: Option<usize>,
-    ) -> PyResult<(Bound<'py, PyAny>, Vec<Option<Bound<'py, PyAny>>>)> {
+        report: Option<Py<PyAny>>,
+    ) -> PyResult<(Bound<'py, PyAny>, Vec<Option<Bound<'py, PyAny>>>, Option<Bound<'py, PyAny>>)> {
         let many = q.shape()[0];
         let output = match (until, times) {
             (None, Some(times)) => Output::Times(times),
@@ -288,6 +290,6 @@ impl Kind {
             let plan = request.plan(&*system, t, of(&q), of(&v))?;
             Ok((system, plan))
         };
-        Ensemble { n: self.n, many, output, plan: &plan }.run(py, threads)
+        Ensemble { n: self.n, many, output, plan: &plan }.run(py, threads, &Report::new(report))
     }
 }

@@ -11,6 +11,7 @@
 //! | `ensemble` | many runs on all cores |
 //! | `events` | Python functions as events |
 //! | `dense` | the pyclass of dense output |
+//! | `report` | Ctrl-C and progress of long calls |
 //! | `request` | a plan from Python's arguments |
 //! | `rows` | numpy arrays, and the memory that they need |
 //! | `failure`, `fields` | errors as Python exceptions with their fields |
@@ -27,6 +28,7 @@ mod events;
 mod failure;
 mod fields;
 mod kind;
+mod report;
 mod request;
 mod rows;
 mod run;
@@ -41,7 +43,7 @@ use pyo3::prelude::*;
 use vi_erased::System;
 
 /// The version of the interface between these classes and the Python files of the package `variational`.
-pub const CONTRACT: u32 = 4;
+pub const CONTRACT: u32 = 5;
 
 /// Adds systems to a Python module.
 ///

@@ -2,7 +2,8 @@
 
 use crate::dense::Dense;
 use crate::events::{Description, Raised, sections};
-use crate::failure::{Raise as _, busy, instance, wrong};
+use crate::failure::{Raise as _, busy, instance, value, wrong};
+use crate::report::{Report, Watch, part};
 use crate::rows::{Linearized, check_memory, linearized, record_some, reserved, steps_to, to_python, vector};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -155,7 +156,9 @@ impl Run {
 
     /// Takes steps to a time, or a number of steps. Returns the start, every `every`th node and the end, the exception that
     /// ended the run if any, and dense output if asked for.
-    #[pyo3(signature = (until=None, steps=None, every=1, dense=false))]
+    /// `report` is called with the part that is done.
+    #[pyo3(signature = (until=None, steps=None, every=1, dense=false, report=None))]
+    #[allow(clippy::too_many_arguments)] // Python's keywords
     fn advance<'py>(
         &self,
         py: Python<'py>,
@@ -163,6 +166,7 @@ impl Run {
         steps: Option<u64>,
         every: u64,
         dense: bool,
+        report: Option<Py<PyAny>>,
     ) -> Recorded<'py, Option<Dense>> {
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
@@ -181,6 +185,7 @@ impl Run {
         let mut dense = dense.then(|| Dense::new(self.n));
         self.usual.store(0, Ordering::Relaxed);
         let (mut taken, mut stretch) = (0, Stretch::new());
+        let (report, begin) = (Report::new(report), run.t());
         let error = loop {
             // The time of a node is rounded, so that the run itself may find that it lies behind.
             if until == Some(run.t()) {
@@ -194,7 +199,13 @@ impl Run {
             match outcome {
                 Ok(true) => break None,
                 Ok(false) if taken >= most => break None,
-                Ok(false) => py.check_signals()?,
+                Ok(false) => {
+                    #[allow(clippy::cast_precision_loss)] // of a progress bar
+                    let done = until.map_or(taken as f64 / most as f64, |end| part([begin, end], run.t()));
+                    if let Err(raised) = report.look(py, done) {
+                        break Some(value(py, raised));
+                    }
+                }
                 Err(error) => break Some(instance(py, &error)?),
             }
         };
@@ -205,21 +216,31 @@ impl Run {
     }
 
     /// States at times, which are in the order of the run.
-    fn at<'py>(&self, py: Python<'py>, times: PyReadonlyArray1<'py, f64>) -> Recorded<'py, ()> {
+    #[pyo3(signature = (times, report=None))]
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        times: PyReadonlyArray1<'py, f64>,
+        report: Option<Py<PyAny>>,
+    ) -> Recorded<'py, ()> {
         let times = vector(&times, times.len(), "times")?;
         let mut guard = self.lock()?;
         let run = &mut *guard;
         let h = self.length(&**run);
         let mut rows = Rows::default();
         let mut left = &times[..];
+        let way = [run.t(), times.last().copied().unwrap_or(f64::NAN)];
+        let report = Report::new(report);
         let error = loop {
             if left.is_empty() {
                 break None;
             }
             let outcome = py.detach(|| record_some(run, h, &mut left, &mut rows));
-            py.check_signals()?;
             if let Err(error) = outcome {
                 break Some(instance(py, &error)?);
+            }
+            if let Err(raised) = report.look(py, part(way, run.t())) {
+                break Some(value(py, raised));
             }
         };
         Ok((to_python(py, rows, self.n)?, error, ()))
@@ -227,17 +248,19 @@ impl Run {
 
     /// Events up to a time, or only the first. Returns a row for each, the exception that ended the run if any, and for
     /// each row the index of the event and whether its function rises.
+    #[pyo3(signature = (events, until, is_first, report=None))]
     fn events<'py>(
         &self,
         py: Python<'py>,
         events: Vec<Description>,
         until: f64,
         is_first: bool,
+        report: Option<Py<PyAny>>,
     ) -> Recorded<'py, Vec<(usize, bool)>> {
         let raised = Raised::default();
-        let (sections, has_functions) = sections(events, self.n, &raised)?;
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
+        let (sections, has_functions) = sections(events, self.n, &raised, (Report::new(report), [run.t(), until]))?;
         let (mut rows, mut met) = (Rows::default(), Vec::new());
         let mut take = |of: Met| {
             for event in of.events {
@@ -257,10 +280,11 @@ impl Run {
         };
         // Python functions attach to the interpreter in every call, which is cheap while it is attached.
         let outcome = if has_functions { search() } else { py.detach(search) };
-        if let Some(error) = raised.take() {
-            return Err(error);
-        }
-        let error = outcome.err().map(|error| instance(py, &error)).transpose()?;
+        let error = match (raised.take(), outcome) {
+            (Some(raised), _) => Some(value(py, raised)),
+            (None, Err(error)) => Some(instance(py, &error)?),
+            (None, Ok(())) => None,
+        };
         Ok((to_python(py, rows, self.n)?, error, met))
     }
 
@@ -268,7 +292,8 @@ impl Run {
     /// (q, p, t) at their end: a row for each coordinate, momentum, and parameter of these indices at the start; the
     /// number of parameters is the index of the step length. `velocities` are in place of momenta at the start, at the
     /// end.
-    #[pyo3(signature = (parameters, steps=0, t=None, event=None, velocities=[false, false]))]
+    #[pyo3(signature = (parameters, steps=0, t=None, event=None, velocities=[false, false], report=None))]
+    #[allow(clippy::too_many_arguments)] // Python's keywords
     fn tangent<'py>(
         &self,
         py: Python<'py>,
@@ -277,8 +302,10 @@ impl Run {
         t: Option<f64>,
         event: Option<Description>,
         velocities: [bool; 2],
+        report: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let (sections, _) = sections(event.into_iter().collect(), self.n, &Raised::default())?;
+        let none = (Report::default(), [0.0; 2]);
+        let (sections, _) = sections(event.into_iter().collect(), self.n, &Raised::default(), none)?;
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
         let count = run.parameters().len();
@@ -289,19 +316,29 @@ impl Run {
             (Some(t), _) => End::Time(t),
         };
         let wanted = Wanted { end, parameters: &parameters, has_velocities: velocities };
-        let mut signal = Signal::new();
-        let rows = py.detach(|| run.tangent(wanted, &mut || signal.is_silent())).raise(py)?;
-        let rows = signal.unless_raised(rows)?;
+        #[allow(clippy::cast_precision_loss)] // of a progress bar
+        let total = t.map_or(steps, |end| steps_to(run, self.length(run), end)) as f64;
+        let mut watch = Watch::new(Report::new(report), total);
+        let rows = py.detach(|| run.tangent(wanted, &mut || watch.goes_on())).raise(py)?;
+        let rows = watch.unless_raised(rows)?;
         Ok(PyArray2::from_vec2(py, &rows)?)
     }
 
     /// Takes steps. Returns the largest Lyapunov exponents of them.
-    fn lyapunov<'py>(&self, py: Python<'py>, steps: u64, count: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    #[pyo3(signature = (steps, count, report=None))]
+    fn lyapunov<'py>(
+        &self,
+        py: Python<'py>,
+        steps: u64,
+        count: usize,
+        report: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
-        let mut signal = Signal::new();
-        let found = py.detach(|| run.lyapunov(steps, [count, self.n], &mut || signal.is_silent())).raise(py)?;
-        Ok(PyArray1::from_vec(py, signal.unless_raised(found)?))
+        #[allow(clippy::cast_precision_loss)] // of a progress bar
+        let mut watch = Watch::new(Report::new(report), steps as f64);
+        let found = py.detach(|| run.lyapunov(steps, [count, self.n], &mut || watch.goes_on())).raise(py)?;
+        Ok(PyArray1::from_vec(py, watch.unless_raised(found)?))
     }
 
     /// The linearization of the next step: (q, p) at its end, A and B.
@@ -311,20 +348,24 @@ impl Run {
 
     /// Takes steps. Returns the gradient of slope·(q, p) at their end with respect to the start and the parameters of
     /// these indices.
+    #[pyo3(signature = (steps, slope, parameters, report=None))]
     fn gradient<'py>(
         &self,
         py: Python<'py>,
         steps: u64,
         slope: PyReadonlyArray1<'py, f64>,
         parameters: Vec<usize>,
+        report: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let slope = vector(&slope, 2 * self.n, "the slope")?;
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
         Self::check_parameters(run, parameters.iter().copied())?;
-        let mut signal = Signal::new();
-        let found = py.detach(|| run.gradient(steps, &slope, &parameters, &mut || signal.is_silent())).raise(py)?;
-        Ok(PyArray1::from_vec(py, signal.unless_raised(found)?))
+        // Each step is taken once on the way ahead, and once on the way back.
+        #[allow(clippy::cast_precision_loss)] // of a progress bar
+        let mut watch = Watch::new(Report::new(report), 2.0 * steps as f64);
+        let found = py.detach(|| run.gradient(steps, &slope, &parameters, &mut || watch.goes_on())).raise(py)?;
+        Ok(PyArray1::from_vec(py, watch.unless_raised(found)?))
     }
 
     /// The error of the next step: of q, and of h·v.
@@ -349,44 +390,6 @@ impl Run {
     /// Everything that the run carries, as text.
     fn checkpoint(&self) -> PyResult<String> {
         self.lock()?.checkpoint().map_err(wrong)
-    }
-}
-
-/// Time between two looks at signals.
-const PATIENCE: Duration = Duration::from_millis(50);
-
-/// Looks for Ctrl-C on the way of a derivative or of a measurement, whose steps may take microseconds or milliseconds.
-pub(crate) struct Signal {
-    looked: Instant,
-    raised: Option<PyErr>,
-}
-
-impl Signal {
-    pub(crate) fn new() -> Self {
-        Self { looked: Instant::now(), raised: None }
-    }
-
-    /// Whether none has come so far.
-    pub(crate) fn is_silent(&mut self) -> bool {
-        if self.raised.is_none() && self.looked.elapsed() > PATIENCE {
-            self.looked = Instant::now();
-            self.raised = Python::attach(|py| py.check_signals()).err();
-        }
-        self.raised.is_none()
-    }
-
-    /// The exception of a signal, if one has come.
-    pub(crate) fn check(self) -> PyResult<()> {
-        self.raised.map_or(Ok(()), Err)
-    }
-
-    /// What was found, or the exception.
-    fn unless_raised<T>(self, found: Option<T>) -> PyResult<T> {
-        match (found, self.raised) {
-            (Some(found), None) => Ok(found),
-            (_, Some(raised)) => Err(raised),
-            (None, None) => Err(wrong("the derivative was stopped")),
-        }
     }
 }
 
