@@ -322,9 +322,9 @@ mod tests {
     /// Run k with k rows of series. Run 3 fails.
     fn follow(item: u64, text: &mut String) -> Tally {
         for place in 0..item {
-            *text += &format!("series,{item},{place}.5\n");
+            text.extend([format!("series,{item},{place}.5\n")]);
         }
-        *text += &format!("runs,{item},-0.5\n");
+        text.extend([format!("runs,{item},-0.5\n")]);
         Tally { failed: u64::from(item == 3), inaccurate: u64::from(item < 3) }
     }
 
@@ -368,7 +368,7 @@ mod tests {
         write(&chunks, 1);
         let mut rows = String::new();
         let mut take = |table: &str, row: &str| {
-            rows += &format!("{table}: {row}");
+            rows.extend([format!("{table}: {row}")]);
             Ok(())
         };
         let tallies = [1, 2].map(|number| chunks.read(number, &mut take).ok());

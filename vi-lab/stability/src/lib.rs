@@ -65,21 +65,18 @@ pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Fai
         return Err(Failure::Input("--x and --y are axes of the map of one system: name it".to_owned()));
     }
     let mut report;
-    match entry {
-        Some(entry) => {
-            let entry = with_rule(entry, "stability")?;
-            let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
-            let title = format!("Where runs of the system {} end", kebab(entry.name));
-            report = Report::new(&arguments.out, Page::new(&title, entry.about))?;
-            atlas::write(&mut report, arguments.columns, system::sections(&entry, &axes))?;
-        }
-        None => {
-            report = Report::new(&arguments.out, Page::new("Where methods fail", SUBTITLE))?;
-            report.prose(INTRODUCTION);
-            let [well, pendulum] = ["double-well", "pendulum"].map(|name| catalogue.find(name));
-            let (well, pendulum) = (well?, pendulum?);
-            atlas::write(&mut report, arguments.columns, sections(&well, &pendulum)?)?;
-        }
+    if let Some(entry) = entry {
+        let entry = with_rule(entry, "stability")?;
+        let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
+        let title = format!("Where runs of the system {} end", kebab(entry.name));
+        report = Report::new(&arguments.out, Page::new(&title, entry.about))?;
+        atlas::write(&mut report, arguments.columns, system::sections(&entry, &axes))?;
+    } else {
+        report = Report::new(&arguments.out, Page::new("Where methods fail", SUBTITLE))?;
+        report.prose(INTRODUCTION);
+        let [well, pendulum] = ["double-well", "pendulum"].map(|name| catalogue.find(name));
+        let (well, pendulum) = (well?, pendulum?);
+        atlas::write(&mut report, arguments.columns, sections(&well, &pendulum)?)?;
     }
     Ok(report.finish(&machine)?.display().to_string())
 }

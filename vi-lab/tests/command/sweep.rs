@@ -67,8 +67,7 @@ impl Folder {
     /// A successful sweep of its scene, or of a shard.
     fn sweep(&self, output: &str, shard: &[&str]) -> String {
         let (scene, output) = (self.scene(), self.at(output));
-        let diagnostic = success(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat());
-        diagnostic
+        success(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat())
     }
 
     /// Whether the tables of a sweep of `MIXED` equal those of an undivided one.

@@ -15,18 +15,18 @@ pub(super) fn display(formula: &str) -> String {
 
 /// The parts up to a closing brace or the end, with their indices and exponents.
 fn row(text: &mut Peekable<Chars>) -> String {
-    let mut row = String::new();
-    while let Some(base) = part(text) {
+    let parts = core::iter::from_fn(|| {
+        let base = part(text)?;
         let index = text.next_if_eq(&'_').and_then(|_| part(text));
         let exponent = text.next_if_eq(&'^').and_then(|_| part(text));
-        row += &match (index, exponent) {
+        Some(match (index, exponent) {
             (None, None) => base,
             (Some(index), None) => format!("<msub>{base}{index}</msub>"),
             (None, Some(exponent)) => format!("<msup>{base}{exponent}</msup>"),
             (Some(index), Some(exponent)) => format!("<msubsup>{base}{index}{exponent}</msubsup>"),
-        };
-    }
-    row
+        })
+    });
+    parts.collect()
 }
 
 /// The next part; `None` at a closing brace or the end.
