@@ -14,7 +14,7 @@
 //!
 //! A mode that has died out has no acceleration, and does not count. If nothing else is left, its steps are resolved.
 
-use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, check_step, solved};
+use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, moves_time, solved};
 use crate::error::StepError;
 use crate::gauss::polynomial::coefficients;
 use crate::linear::Matrix;
@@ -47,11 +47,11 @@ const KEPT: [f64; 2] = [0.99, 1.2];
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(hidden)]
 pub struct Decaying {
-    /// The largest δ of the first steps.
+    /// The largest δ of the first steps, at which all later ones aim.
     wanted: f64,
     /// Whether δ has fallen since.
     is_set: bool,
-    /// δ of the last step, in units of the largest one.
+    /// δ of the last step, in units of the one aimed at.
     off: f64,
     /// The next length, divided by the last one.
     ahead: f64,
@@ -89,6 +89,12 @@ fn defect<S: Convertible<N>, const N: usize, const STAGES: usize>(
     Ok([size(&(slope - acceleration * h)), size(&v).max(size(&(acceleration * h)))])
 }
 
+/// The exponent 1/(S + 1): lengths grow by this power of δ.
+#[allow(clippy::cast_precision_loss)] // 16 stages at most
+const fn power<const STAGES: usize>() -> f64 {
+    1.0 / (STAGES + 1) as f64
+}
+
 impl Decaying {
     /// The law of the first step, of the length h.
     ///
@@ -106,13 +112,13 @@ impl Decaying {
     /// The law after a step with this δ and this velocity.
     ///
     /// # Errors
-    /// δ in units of the largest one, if it is too large.
+    /// δ in units of the one aimed at, if it is too large.
     fn after<const STAGES: usize>(self, [defect, v]: [f64; 2]) -> Result<Self, f64> {
         let least = FELT * v;
         if !self.is_set && (defect >= self.wanted || self.wanted < least) {
             return Ok(Self { wanted: self.wanted.max(defect), ..self });
         }
-        // A faster motion has larger roundings, and what is left of one that has died out is resolved.
+        // δ of a fast motion is rounded more. A slow one, when all else has died out, still needs resolved steps.
         let most = self.wanted.max(least).min(RESOLVED * v);
         let off = if defect == 0.0 { 0.0 } else { defect / most };
         let law = Self { is_set: true, off, ahead: self.ahead::<STAGES>(off), ..self };
@@ -134,10 +140,9 @@ impl Decaying {
 
     /// The next length by δ of the last step and of the one before, divided by the last one.
     fn ahead<const STAGES: usize>(&self, off: f64) -> f64 {
-        #[allow(clippy::cast_precision_loss)] // 16 stages at most
-        let power = ((STAGES + 1) as f64).recip();
+        let power = power::<STAGES>();
         let ratio = AIM * off.powf(-OF_LAST * power) * self.off.powf(OF_BEFORE * power);
-        // Infinite, or NaN, for a step without coefficients.
+        // Infinite, or NaN, for a step without a defect.
         let ratio = if off > 0.0 && self.off > 0.0 { ratio } else { f64::INFINITY };
         let [short, long] = KEPT;
         if ratio > short && ratio < long { 1.0 } else { ratio.clamp(RATIOS[0], RATIOS[1]) }
@@ -158,12 +163,8 @@ impl Decaying {
         let mut h = (last.abs() * self.ahead).min(self.longest).copysign(*last);
         let mut guess = None;
         let mut failure = StepError::LengthsLost { t: node.t, h: *last };
-        #[allow(clippy::cast_precision_loss)] // 16 stages at most
-        let power = ((STAGES + 1) as f64).recip();
         for _ in 0..TRIALS {
-            check_step(h)?;
-            // Below the rounding of the time, time stands still.
-            if h.abs() < f64::EPSILON * node.t.abs() {
+            if !moves_time(h, node.t)? {
                 break;
             }
             #[allow(clippy::float_cmp)] // the same length
@@ -178,7 +179,7 @@ impl Decaying {
                 Ok((found, end, steps)) => match self.after::<STAGES>(found) {
                     Ok(law) => return Ok((end, Following { steps, h, law: Some(Law::Decaying(law)) })),
                     Err(off) => {
-                        h *= (AIM * off.powf(-power)).max(RATIOS[0]);
+                        h *= (AIM * off.powf(-power::<STAGES>())).max(RATIOS[0]);
                         guess = Some(Solver::<S, N, STAGES>::again(system, &steps, node, h)?);
                     }
                 },

@@ -96,6 +96,15 @@ type End<S, const N: usize, const STAGES: usize> = (Node<N>, Following<Steps<S, 
 type Of<'a, S, const N: usize, const STAGES: usize> =
     Problem<'a, S, <Solver<S, N, STAGES> as Method<S, N>>::Prepared, N>;
 
+/// Whether a step of the length h from t moves the time. Below its rounding, as in a fall into a centre, it stands still.
+///
+/// # Errors
+/// As [`check_step`].
+fn moves_time(h: f64, t: f64) -> Result<bool, StepError> {
+    check_step(h)?;
+    Ok(h.abs() >= f64::EPSILON * t.abs())
+}
+
 /// The step of the length `at.h` from a node.
 ///
 /// # Errors

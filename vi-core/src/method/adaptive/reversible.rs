@@ -18,7 +18,7 @@
 //! the energy error.
 
 use super::phase::{Phase, Place, phase};
-use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, check_step, solved};
+use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, moves_time, solved};
 use crate::error::StepError;
 use crate::method::gauss::StageSolver as _;
 use crate::method::{Method, Problem};
@@ -143,9 +143,7 @@ impl Reversible {
         let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
         let mut failure = StepError::LengthsLost { t: node.t, h: *last };
         for trial in 0..TRIALS {
-            check_step(h)?;
-            // Below the rounding of the time, as in a fall into a centre, time stands still.
-            if h.abs() < f64::EPSILON * node.t.abs() {
+            if !moves_time(h, node.t)? {
                 break;
             }
             let tried = solved(Problem { h, ..at }, &guess, cache)
