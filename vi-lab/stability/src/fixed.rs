@@ -305,10 +305,10 @@ pub(super) fn stiff() -> Section<'static> {
             Part::Map(midpoint),
             Part::Map(energy),
         ],
-        advice: "Where a stiff spring stands for a rod, take the midpoint rule, with fixed or energy-preserving steps, at a step \
-                 that resolves the slow motion; the trapezoidal rule has to resolve the fast one. Choose coordinates in which \
-                 the spring force is small where the stretch is: the difference of two lengths loses digits to rounding, and \
-                 with them the solver its measure of a solution.",
+        advice: "If a stiff spring models a rod, take the midpoint rule, with fixed or energy-preserving steps that resolve the \
+                 slow motion; the trapezoidal rule has to resolve the fast one. Choose coordinates in which the spring \
+                 force is small where the stretch is small: rounding takes digits from the difference of two lengths, and \
+                 the solver then cannot tell how near its solution is.",
     }
 }
 
