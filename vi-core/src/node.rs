@@ -46,6 +46,11 @@ impl<const N: usize, T: Real> Node<N, T> {
         Self { t, t_low: zero, q, q_low: zeros, p, p_low: zeros, energy, energy_low: zero }
     }
 
+    /// Whether this is another node, but for its energy.
+    pub(crate) fn is_at(&self, other: &Self) -> bool {
+        Self { energy: other.energy, energy_low: other.energy_low, ..*self } == *other
+    }
+
     /// The node at the origin, at rest.
     pub(crate) fn zeros() -> Self {
         Self::new(State { t: T::zero(), q: SVector::zeros(), p: SVector::zeros() }, T::zero())

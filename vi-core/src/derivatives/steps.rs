@@ -61,7 +61,7 @@ pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
 
 /// The unknown of an energy-preserving step beside v.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sought {
+pub enum Sought {
     /// The length, for given energy.
     Length,
     /// None: the length is given, and the energy equation does not apply.

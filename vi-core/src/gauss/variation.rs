@@ -61,11 +61,11 @@ where
     }
 
     fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        Lengths::<S, N, STAGES>::vary_step_of(run, length, variations)
+        Lengths::<S, N, STAGES>::vary_given(run, length, Sought::Neither, variations)
     }
 
     fn vary_start(run: &Run<Self, S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        Lengths::<S, N, STAGES>::vary_start(run, variations)
+        Lengths::<S, N, STAGES>::vary_given(run, run.h(), Sought::Energy, variations)
     }
 }
 

@@ -36,30 +36,6 @@ fn lengths<'a, S: Motion<N>, const N: usize, const STAGES: usize>(
     ConstrainedLengths { system, last: &steps.unknowns, sign: steps.sign, workspace: RefCell::new(workspace) }
 }
 
-/// Maps tangent vectors at the node of a run to those after a step of the length h, regardless of its energy.
-///
-/// # Errors
-/// Those of a step with constraints and of its derivative.
-fn vary_given<S, const N: usize, const K: usize, F: Form, const STAGES: usize>(
-    Run { system, node, memory: Lengths { steps, course }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
-    h: f64,
-    sought: Sought,
-    variations: &mut [Variation<N>],
-) -> Result<(), StepError>
-where
-    S: Convertible<N, Kind = Bound<K, F>>,
-{
-    let (shift, cache) = (course.shift, &mut None);
-    let steps = lengths::<S, N, STAGES>(system, steps, cache);
-    let tried: TriedLength<N, STAGES, Multipliers<S, N>> = steps.tried(node, h, shift, None)?;
-    let TakenLength { mu, .. } = steps.ended(node, &tried)?.taken;
-    let mut u = Vec::new();
-    tried.write(&mut u);
-    vary_length::<N, STAGES>((node.t, h), shift, sought, variations, |all, energies| {
-        vary::<S, N, STAGES>(system, (node, h), (&u, mu.as_ref()), all, Some(energies))
-    })
-}
-
 /// The solver of [`EnergyPreservingGauss`] steps with constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BoundLengths<const STAGES: usize>;
@@ -174,8 +150,9 @@ where
         check_fallback(course.control.fallback, before.t)?;
         let (start, h, u, mu) = steps.last(node).ok_or_else(|| not_last(before.t))?;
         // The energy differs if `set_parameters` came between `before` and the step.
-        let is_start = Node { energy: before.energy, energy_low: before.energy_low, ..*start } == *before;
-        let (Some((_, u)), true, StepKind::EnergyPreserving) = (u.split_last(), is_start, course.control.kind) else {
+        let (Some((_, u)), true, StepKind::EnergyPreserving) =
+            (u.split_last(), start.is_at(before), course.control.kind)
+        else {
             return Err(not_last(before.t));
         };
         vary_length::<N, STAGES>((before.t, h), course.shift, Sought::Length, variations, |all, energies| {
@@ -183,19 +160,21 @@ where
         })
     }
 
-    fn vary_step_of(
-        run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
-        length: f64,
+    fn vary_given(
+        Run { system, node, memory: Lengths { steps, course }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        h: f64,
+        sought: Sought,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError> {
-        vary_given(run, length, Sought::Neither, variations)
-    }
-
-    fn vary_start(
-        run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
-        variations: &mut [Variation<N>],
-    ) -> Result<(), StepError> {
-        vary_given(run, run.h(), Sought::Energy, variations)
+        let (shift, cache) = (course.shift, &mut None);
+        let steps = lengths::<S, N, STAGES>(system, steps, cache);
+        let tried: TriedLength<N, STAGES, Multipliers<S, N>> = steps.tried(node, h, shift, None)?;
+        let TakenLength { mu, .. } = steps.ended(node, &tried)?.taken;
+        let mut u = Vec::new();
+        tried.write(&mut u);
+        vary_length::<N, STAGES>((node.t, h), shift, sought, variations, |all, energies| {
+            vary::<S, N, STAGES>(system, (node, h), (&u, mu.as_ref()), all, Some(energies))
+        })
     }
 }
 

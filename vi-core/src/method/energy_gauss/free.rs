@@ -168,27 +168,6 @@ where
     LengthsOfStages::of(system, Instructions::detected(), stages, cache).tried(node, h, shift, None)
 }
 
-/// Maps tangent vectors at the node of a run to those after a step of the length h, regardless of its energy.
-///
-/// # Errors
-/// Those of a Gauss step and of its derivative; [`StepError::NonFinite`] if its energy is not finite.
-#[cfg(feature = "alloc")]
-fn vary_given<S, const N: usize, const STAGES: usize>(
-    Run { system, node, memory, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
-    h: f64,
-    sought: Sought,
-    variations: &mut [Variation<N>],
-) -> Result<(), StepError>
-where
-    S: Convertible<N, Kind = Free>,
-{
-    let Lengths { steps, course } = memory;
-    let stages = alone(system, (node, steps), h, course.shift)?.step.stages;
-    vary_length::<N, STAGES>((node.t, h), course.shift, sought, variations, |all, energies| {
-        vary(system, (node, h, &stages), all, Some(energies))
-    })
-}
-
 /// The solver of [`EnergyPreservingGauss`](super::EnergyPreservingGauss) steps without constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FreeLengths<const STAGES: usize>;
@@ -286,9 +265,8 @@ where
         let Lengths { steps: last, course } = &run.memory;
         check_fallback(course.control.fallback, before.t)?;
         // The energy differs if `set_parameters` came between `before` and the step.
-        let is_start =
-            Node { energy: 0.0, energy_low: 0.0, ..last.before } == Node { energy: 0.0, energy_low: 0.0, ..*before };
-        if !last.has_step(&run.node) || !is_start || course.control.kind != StepKind::EnergyPreserving {
+        if !last.has_step(&run.node) || !last.before.is_at(before) || course.control.kind != StepKind::EnergyPreserving
+        {
             return Err(not_last(before.t));
         }
         vary_length::<N, STAGES>((before.t, last.h), course.shift, Sought::Length, variations, |all, energies| {
@@ -297,19 +275,15 @@ where
     }
 
     #[cfg(feature = "alloc")]
-    fn vary_step_of(
-        run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
-        length: f64,
+    fn vary_given(
+        Run { system, node, memory: Lengths { steps, course }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        h: f64,
+        sought: Sought,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError> {
-        vary_given(run, length, Sought::Neither, variations)
-    }
-
-    #[cfg(feature = "alloc")]
-    fn vary_start(
-        run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
-        variations: &mut [Variation<N>],
-    ) -> Result<(), StepError> {
-        vary_given(run, run.h(), Sought::Energy, variations)
+        let stages = alone(system, (node, steps), h, course.shift)?.step.stages;
+        vary_length::<N, STAGES>((node.t, h), course.shift, sought, variations, |all, energies| {
+            vary(system, (node, h, &stages), all, Some(energies))
+        })
     }
 }

@@ -58,7 +58,7 @@ use super::preserving::{PreservingStep, StepsOfAnyLength, check_power, failed, m
 use super::shift::{Shiftable, StepPower};
 use super::{Memory, Method, Problem, Report, Storable};
 #[cfg(feature = "alloc")]
-use crate::derivatives::Variation;
+use crate::derivatives::{Sought, Variation};
 use crate::energy_preserving::start::check_density;
 use crate::error::StepError;
 use crate::gauss::density::power;
@@ -172,23 +172,15 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
         before: &Node<N>,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError>;
-    /// `vary_step_of`.
+    /// Maps tangent vectors at the node of a run to those after a step of the length h, regardless of its energy.
     ///
     /// # Errors
     /// As for `vary`.
     #[cfg(feature = "alloc")]
-    fn vary_step_of(
+    fn vary_given(
         run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
-        length: f64,
-        variations: &mut [Variation<N>],
-    ) -> Result<(), StepError>;
-    /// `vary_start`.
-    ///
-    /// # Errors
-    /// As for `vary`.
-    #[cfg(feature = "alloc")]
-    fn vary_start(
-        run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        h: f64,
+        sought: Sought,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError>;
 }

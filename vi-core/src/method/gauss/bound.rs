@@ -151,7 +151,7 @@ impl<const N: usize> ConstrainedSteps<N> {
     /// Whether the unknowns belong to the step that led to the node. After a change of parameters they do not.
     fn has_step(&self, node: &Node<N>) -> bool {
         // A shift changes the energy of the node alone.
-        Node { energy: node.energy, energy_low: node.energy_low, ..self.before } != *node
+        !self.before.is_at(node)
     }
 
     /// The start node of the last step; the current node before the first step.
