@@ -1,6 +1,7 @@
 //! The measured error of a step: motions that are lost, jumps, events, limits; and steps from a tolerance.
 
 use crate::support::scenes::{self, Scene};
+use core::f64::consts::TAU;
 use vi_core::motion::Motion;
 use vi_core::run::{Event, Length, LocalError, Monitored};
 use vi_core::stepping::{Convertible, EnergyStepping};
@@ -33,6 +34,25 @@ fn a_run_that_loses_its_orbit_is_told() {
     let mut run = falling().integrate(Gauss::<8>, 0.01).expect("a start").monitored();
     run.until(6.0).expect("every step has a solution");
     assert!(run.largest().estimate < 1e-12, "{:?}", run.largest());
+}
+
+#[test]
+fn many_small_errors_add_up() {
+    // A midpoint step turns the phase by 2 atan(ω h/2) instead of ω h: of n steps, by n e too little.
+    let oscillator = HarmonicOscillator { m: 1.3, k: 2.0 };
+    let (h, steps) = (0.1, 40_000_u32);
+    let phase = (2.0_f64 / 1.3).sqrt() * h;
+    let lag = f64::from(steps) * (phase - 2.0 * (phase / 2.0).atan());
+    let mut run = oscillator.at(0.0, [0.7], [0.0]).integrate(FixedStep, h).expect("a start").monitored();
+    for _ in 0..steps {
+        run.step().expect("a step");
+    }
+    let found = run.largest();
+    println!("{found:?}, phase {lag}");
+    // Each step is right to 1e-4, and the run is off by more than one turn. The scale is twice the amplitude, and q is off
+    // by the lag times the amplitude where it passes through zero. Measured: 0.98 of that.
+    assert!(found.estimate < 1e-3 && lag > TAU, "{found:?}, {lag}");
+    assert!((0.9..1.1).contains(&(found.sum / (lag / 2.0))), "{found:?}, {lag}");
 }
 
 #[test]

@@ -133,6 +133,8 @@ def test_a_tolerance_finds_the_step():
     # Measured: 1.7e-9 at another place than where the step was chosen.
     assert 1e-10 < run.error_estimate.estimate < 2e-9
     assert run.error_estimate.coordinate in ("x", "y")
+    # The errors of all steps: more than that of one, and at most as if each had the largest.
+    assert 1.0 < run.error_estimate.sum / run.error_estimate.estimate <= 20.0 / run.h + 1.0
     assert run.local_error().q.shape == (2,)
 
 

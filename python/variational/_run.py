@@ -34,11 +34,12 @@ class LocalError(NamedTuple):
 
 @unassignable()
 class ErrorEstimate(NamedTuple):
-    """The largest error of a step, relative to the scale of its motion."""
+    """The largest error of a step, relative to the scale of its motion, and what the errors of all steps may add up to."""
 
     estimate: float
     t: float
     coordinate: str
+    sum: float
 
 
 Look = Callable[["Run", float], tuple[Solution, bool]]
@@ -582,8 +583,8 @@ class Run:
         found = self._run.largest_error
         if found is None:
             return None
-        estimate, t, index = found
-        return ErrorEstimate(estimate, t, self._cls.coordinates[index])
+        estimate, t, index, total = found
+        return ErrorEstimate(estimate, t, self._cls.coordinates[index], total)
 
     def __copy__(self) -> Run:
         return Run(self._cls, self._run.copy())

@@ -383,8 +383,8 @@ impl Run {
     /// The largest relative error of a step since `monitor`, the time at which that step began, and the index of the
     /// coordinate; `None` without a monitor.
     #[getter]
-    fn largest_error(&self) -> PyResult<Option<(f64, f64, usize)>> {
-        Ok(self.lock()?.largest_error().map(|of| (of.estimate, of.t, of.coordinate)))
+    fn largest_error(&self) -> PyResult<Option<(f64, f64, usize, f64)>> {
+        Ok(self.lock()?.largest_error().map(|of| (of.estimate, of.t, of.coordinate, of.sum)))
     }
 
     /// Everything that the run carries, as text.

@@ -349,11 +349,21 @@ pub struct ErrorEstimate {
     pub t: f64,
     /// Index of the coordinate.
     pub coordinate: usize,
+    /// The errors of all steps so far, added up, in the same unit: the largest entry. Each step counts with the error
+    /// of the measured one of its window, so that it is a bound rather than a mean. Where errors cancel, as those of
+    /// the energy of a symplectic method do, the run is closer; where neighbouring motions part, it is not.
+    pub sum: f64,
 }
 
 impl ErrorEstimate {
+    /// Nothing measured until t.
+    fn none(t: f64) -> Self {
+        Self { estimate: 0.0, t, coordinate: 0, sum: 0.0 }
+    }
+
     fn or_larger(self, other: Self) -> Self {
-        if other.estimate > self.estimate { other } else { self }
+        let larger = if other.estimate > self.estimate { other } else { self };
+        Self { sum: self.sum.max(other.sum), ..larger }
     }
 }
 
@@ -394,6 +404,9 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     first_hv: Option<SVector<f64, N>>,
     deflection: SVector<f64, N>,
     largest: ErrorEstimate,
+    /// The errors of all steps of closed windows, added up, and the number of those steps.
+    sums: SVector<f64, N>,
+    counted: u64,
     /// H along the run, and its largest error.
     energy: Option<EnergyPath>,
     of_energy: ErrorEstimate,
@@ -419,7 +432,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 
     /// The same for errors of single steps alone.
     pub(super) fn of_steps(run: &Run<M, S, N, T>) -> Self {
-        let nothing = ErrorEstimate { estimate: 0.0, t: run.node.t.to_f64(), coordinate: 0 };
+        let nothing = ErrorEstimate::none(run.node.t.to_f64());
         let (node, zeros, none) = (run.node, SVector::zeros(), SVector::zeros());
         Self {
             start: node.state(),
@@ -442,6 +455,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             first_hv: None,
             deflection: none,
             largest: nothing,
+            sums: none,
+            counted: 0,
             energy: None,
             of_energy: nothing,
             measurements: 0,
@@ -615,11 +630,18 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         let found = measured(run, &memory, [&before, &after]);
         self.measurements += 1;
         self.add(&found);
+        // Without a step the product of an infinite error has no value.
+        if self.steps > self.counted {
+            #[allow(clippy::cast_precision_loss)] // an estimate
+            let steps = (self.steps - self.counted) as f64;
+            self.sums += found.error * steps;
+            self.counted = self.steps;
+        }
         let t = before.t.to_f64();
         let coordinate = found.action.imax();
         let drift = self.energy.as_mut().map_or(0.0, |energy| energy.drift(run));
         let estimate = found.energy.max(drift);
-        self.of_energy = self.of_energy.or_larger(ErrorEstimate { estimate, t, coordinate });
+        self.of_energy = self.of_energy.or_larger(ErrorEstimate { estimate, t, coordinate, sum: 0.0 });
         if let Some(stretch) = &mut self.stretch {
             for i in 0..N {
                 if found.error[i] > stretch.errors[i] {
@@ -692,12 +714,13 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             Some(stretch) => self.relative(&stretch.errors, &stretch.times),
             None => self.largest,
         };
-        found.or_larger(self.of_energy)
+        let sum = self.relative(&self.sums, &SVector::zeros()).estimate;
+        ErrorEstimate { sum, ..found.or_larger(self.of_energy) }
     }
 
     /// The largest error over all coordinates, relative to their excursions.
     fn relative(&self, errors: &SVector<f64, N>, times: &SVector<f64, N>) -> ErrorEstimate {
-        let mut largest = ErrorEstimate { estimate: 0.0, t: self.last.t.to_f64(), coordinate: 0 };
+        let mut largest = ErrorEstimate::none(self.last.t.to_f64());
         for i in 0..N {
             let error = errors[i];
             let estimate = match error {
@@ -706,7 +729,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
                 _ if self.counts(i) => error / self.scale(i),
                 _ => 0.0,
             };
-            largest = largest.or_larger(ErrorEstimate { estimate, t: times[i], coordinate: i });
+            largest = largest.or_larger(ErrorEstimate { estimate, t: times[i], coordinate: i, sum: 0.0 });
         }
         largest
     }

@@ -251,19 +251,25 @@ pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 /// Above this error of a step, a run is a poor approximation.
 pub(crate) const POOR: f64 = 1e-3;
 
-/// A line about the largest error of a step.
+/// Above this sum of the errors of all steps, relative to the motion, a run may be lost although no step is.
+const LOST: f64 = 0.1;
+
+/// A line about the largest error of a step, and their sum if it is large.
 fn accuracy(found: &ErrorEstimate, coordinates: &[&str]) -> String {
-    let ErrorEstimate { estimate, t, coordinate } = *found;
+    let ErrorEstimate { estimate, t, coordinate, sum } = *found;
     let at = format!("at t = {}", about(t));
     if estimate.is_infinite() {
         return format!("warning: the step {at} is too long for its error to be measured; take shorter ones with --h");
     }
     let name = coordinates.get(coordinate).copied().unwrap_or_default();
     let found = format!("the largest error of a step is {} of the motion of {name}, {at}", about(estimate));
-    if estimate < POOR {
-        format!("note: {found}")
+    let advice = "take shorter steps with --h, or --tolerance 1e-9";
+    if estimate >= POOR {
+        format!("warning: {found}; {advice}")
+    } else if sum >= LOST {
+        format!("warning: {found}, and the errors of all steps may add up to {} of a motion; {advice}", about(sum))
     } else {
-        format!("warning: {found}; take shorter steps with --h, or --tolerance 1e-9")
+        format!("note: {found}")
     }
 }
 
@@ -383,6 +389,15 @@ mod tests {
     use core::cell::{Cell, RefCell};
     use std::borrow::Cow;
     use std::rc::Rc;
+
+    #[test]
+    fn small_errors_of_many_steps_are_a_warning() {
+        let told = |estimate, sum| accuracy(&ErrorEstimate { estimate, t: 2.0, coordinate: 1, sum }, &["x", "y"]);
+        assert_eq!(told(1e-5, 1e-2), "note: the largest error of a step is 0.00001 of the motion of y, at t = 2");
+        let warning = told(1e-5, 0.25);
+        assert!(warning.starts_with("warning: ") && warning.contains("may add up to 0.25 of a motion"), "{warning}");
+        assert!(told(2e-3, 0.25).ends_with("at t = 2; take shorter steps with --h, or --tolerance 1e-9"));
+    }
 
     /// A run that fails after three steps, at t = 1.5.
     struct Ending {
