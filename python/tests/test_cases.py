@@ -16,6 +16,7 @@ def test_no_case_is_lost():
     assert len(CASES) == 13
 
 
+@pytest.mark.filterwarnings("ignore:overflow encountered in multiply:RuntimeWarning")  # in SciPy
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
 def test_case(case, tmp_path, monkeypatch):
     # A case writes its tables beside itself.

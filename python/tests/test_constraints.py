@@ -111,9 +111,9 @@ def test_far_guesses_are_assembled():
 
 
 def test_methods_without_constraints_are_refused():
-    with pytest.raises(ValueError, match=r"RodPendulum has no method 'fixed'.*has constraints"):
+    with pytest.raises(ValueError, match='RodPendulum has constraints, which method="fixed" does not keep'):
         vi.RodPendulum().integrate([0.6, -0.8], h=0.01, method="fixed")
-    with pytest.raises(ValueError, match=r"it has .*stages=6"):
+    with pytest.raises(ValueError, match="stages may be 1, 2, 3, 4 or 6"):
         vi.RodPendulum().integrate([0.6, -0.8], h=0.01, stages=5)
 
 
@@ -184,7 +184,7 @@ def test_energies_kept_on_constraints():
     assert run.shifted_energy == kept and sol.residual.max() < 1e-13
     assert 1e-12 < abs(sol.energy - sol.energy[0]).max() < 1e-3
     # Another method of the same system, another order of it.
-    with pytest.raises(ValueError, match='no .* method="energy", stages=3; it has .*, method="energy", stages=2'):
+    with pytest.raises(ValueError, match='no integrator method="energy", stages=3; stages may be 1 or 2'):
         pendulum.integrate([0.6, -0.8], h=0.05, method="energy", stages=3)
 
 

@@ -157,9 +157,9 @@ def test_systems_that_were_made_and_dropped_take_no_memory():
 def test_a_missing_clause_is_named():
     text = "struct S { coord x; L = dot(x)^2 / 2 - x^4; }"
     for options, words in (
-        ({"method": "fixed", "h": 0.1}, "fixed needs the clause `discretize midpoint;`"),
-        ({"method": "energy", "h": 0.1}, "Write the clause `discretize midpoint;`, or give stages=1"),
-        ({"dtau": 0.1}, "Write the clause `time_scale"),
+        ({"method": "fixed", "h": 0.1}, 'no rule for method="fixed": add `discretize midpoint;`'),
+        ({"method": "energy", "h": 0.1}, 'no rule for method="energy": add `discretize midpoint;`'),
+        ({"dtau": 0.1}, "give h in place of dtau, or write the clause `time_scale"),
         ({"stages": 5, "h": 0.1}, "The argument methods of compile"),
     ):
         with pytest.raises(ValueError, match=words):

@@ -4,6 +4,7 @@ from typing import Any
 
 _contract: int
 _kinds: list[Any]
+METHODS: list[str]
 sources_digest: str
 texts: list[tuple[str, str]]
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from . import _core
 from ._arrays import number, real
 from ._errors import _invalid
 from ._names import meant
@@ -17,10 +17,6 @@ if TYPE_CHECKING:
 
 _MOST = 1e6
 """Steps of h over which a shift is measured; the measurement may halve them."""
-
-
-_BY_RULE = ("fixed", "suzuki-4", "kahan-li-6", "kahan-li-8")
-"""Methods that need a rule."""
 
 
 @dataclass(slots=True)
@@ -50,7 +46,8 @@ def checked(
 ) -> Request:
     """The options of a run.
 
-    Raises TypeError or ValueError for options that do not go together, and InvalidInput for wrong numbers.
+    Raises TypeError for arguments of other types, and for two where one is needed. `_core` says which options go
+    together, and which methods and stages a system has.
     """
     given = [name for name, value in (("h", h), ("tolerance", tolerance), ("dtau", dtau)) if value is not None]
     if not given:
@@ -60,24 +57,12 @@ def checked(
     # "gauss-lobatto" is the name of "gauss" with constraints in earlier versions.
     if method is None or method == "gauss-lobatto":
         method = "gauss"
-    if method not in cls._methods:
+    if method not in _core.METHODS:
         known = ", ".join(f'"{name}"' for name in cls._methods)
-        close = meant(method, cls._methods) if isinstance(method, str) else ""
-        more = "" if getattr(cls, "_source", None) is None else ". The argument methods of compile builds others"
-        why = ", and has constraints, which other methods do not keep" if cls.constraints else ""
-        if method in ("splitting-4", "splitting-6") and not cls.constraints:
-            why = "; a splitting needs a constant mass matrix and forces without velocities"
-        elif method in _BY_RULE and not cls.constraints and "discretize" not in cls.definition:
-            why = f"; {method} needs the clause `discretize midpoint;` in the text"
-        raise ValueError(f"{cls.__name__} has no method {method!r}{close}; it has {known}{why}{more}")
-    if method != "energy" and (shift is not None or shift_from is not None or fallback):
-        raise ValueError('shift, shift_from and fallback are options of method="energy"')
-    if dtau is not None and method != "gauss":
-        raise ValueError(f'dtau is an option of method="gauss": give h or tolerance for method={method!r}')
+        close = meant(method, _core.METHODS) if isinstance(method, str) else ""
+        raise ValueError(f"there is no method {method!r}{close}; {cls.__name__} has {known}")
     if shift is not None and shift_from is not None:
         raise TypeError("give one of shift and shift_from, not both")
-    if stages is not None and method not in ("gauss", "adaptive", "energy"):
-        raise ValueError(f"method={method!r} has no stages: leave out stages=")
     request = Request(
         method=method,
         stages=_stages(stages),
@@ -88,12 +73,7 @@ def checked(
         shift_from=None if shift_from is None else number(shift_from, "shift_from"),
         fallback=bool(fallback),
     )
-    for name, value in (("h", request.h), ("dtau", request.dtau)):
-        if value is not None and (value == 0.0 or not math.isfinite(value)):
-            raise _invalid(name, "finite and not zero", value)
-    if request.tolerance is not None and not 0.0 < request.tolerance < math.inf:
-        raise _invalid("tolerance", "positive and finite", request.tolerance)
-    if request.shift_from is not None and request.h is not None and not 0.0 < request.shift_from / request.h <= _MOST:
+    if request.shift_from is not None and request.h and not 0.0 < request.shift_from / request.h <= _MOST:
         raise _invalid("shift_from", f"ahead, and at most {_MOST:g} steps of h", request.shift_from)
     return request
 

@@ -89,6 +89,7 @@ impl System for Spoiled<dyn System> {
         fn parameters(&self) -> Vec<(&'static str, f64)>;
         fn parameters_about(&self) -> &'static [&'static str];
         fn integrators(&self) -> Vec<Built>;
+        fn offers(&self, wanted: Built) -> Result<(), StepError>;
         fn conserves_energy(&self) -> bool;
         fn evaluate(&self, of: Quantity, points: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError>;
         fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;

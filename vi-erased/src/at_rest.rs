@@ -138,6 +138,10 @@ impl System for Declared<dyn System> {
         self.of.integrators()
     }
 
+    fn offers(&self, wanted: Built) -> Result<(), StepError> {
+        self.of.offers(wanted)
+    }
+
     fn conserves_energy(&self) -> bool {
         self.of.conserves_energy()
     }

@@ -21,10 +21,12 @@
 //! | [`studies`] | exponents, accurate motions, DOP853; feature `studies` |
 //! | [`system`] | a system with its parameters |
 //! | [`at_rest`] | a system without its coordinates at rest |
+//! | [`check`] | whether the options of a plan go together, in words |
 //!
 //! No module imports one below it in this table.
 
 pub mod at_rest;
+pub mod check;
 #[cfg(feature = "derivatives")]
 pub mod control;
 #[cfg(feature = "derivatives")]

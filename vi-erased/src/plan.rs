@@ -236,8 +236,20 @@ impl Plan {
     /// The stages of Gauss steps of a system with or without constraints; `None` for other methods.
     #[must_use]
     pub fn gauss_stages(&self, has_constraints: bool) -> Option<usize> {
-        let usual = if has_constraints { DEFAULT_BOUND_STAGES } else { DEFAULT_STAGES };
-        matches!(self.method, Method::Gauss | Method::Adaptive).then(|| self.stages.unwrap_or(usual))
+        self.usual_stages(has_constraints)
+            .map(|usual| self.stages.unwrap_or(usual))
+            .filter(|_| self.method != Method::Energy)
+    }
+
+    /// The default number of stages of its method, for a system with or without constraints.
+    #[must_use]
+    pub fn usual_stages(&self, has_constraints: bool) -> Option<usize> {
+        match (self.method, has_constraints) {
+            (Method::Gauss | Method::Adaptive, true) => Some(DEFAULT_BOUND_STAGES),
+            (Method::Gauss | Method::Adaptive, false) => Some(DEFAULT_STAGES),
+            (Method::Energy, true) => Some(DEFAULT_BOUND_ENERGY_STAGES),
+            _ => None,
+        }
     }
 
     /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); `None` for steps with [`EnergyPreserving`](vi_core::EnergyPreserving).

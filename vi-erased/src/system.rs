@@ -106,6 +106,13 @@ pub trait System: Send + Sync {
     fn copy(&self) -> Box<dyn System>;
     /// The integrators that are built for it.
     fn integrators(&self) -> Vec<Built>;
+    /// Whether it has an integrator.
+    ///
+    /// # Errors
+    /// Why it does not: [`StepError::HasConstraints`] for one that does not keep its constraints,
+    /// [`StepError::NoTimeScale`], [`StepError::NotSeparable`], [`StepError::NoRule`], and [`StepError::InvalidInput`] for
+    /// stages that are not built.
+    fn offers(&self, wanted: Built) -> Result<(), StepError>;
     /// Whether the energy of a motion is constant: L and f are autonomous, and there is no force.
     fn conserves_energy(&self) -> bool;
     /// A function at as many points as there are times; `q` and `v`, or momenta, have N numbers for each. Appends to
@@ -147,9 +154,8 @@ pub trait System: Send + Sync {
     /// Starts a run.
     ///
     /// # Errors
-    /// The error of the integrators for the initial state. [`StepError::InvalidInput`] for wrong numbers of coordinates
-    /// or velocities, and for stages that are not built; [`StepError::NoRule`] for a method that needs a rule which the
-    /// system does not have, [`StepError::HasConstraints`] for one that does not keep its constraints.
+    /// The error of the integrators for the initial state, and those of [`System::offers`]. [`StepError::InvalidInput`]
+    /// for wrong numbers of coordinates or velocities, [`StepError::RuleTooLarge`] for the rule of a text.
     fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
         self.begin_while(plan, &mut || true)
     }
@@ -265,14 +271,10 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
     /// An integrator.
     ///
     /// # Errors
-    /// As [`System::begin`].
+    /// As [`System::offers`].
     fn integrator(&self, wanted: Built) -> Result<&Integrator<S, N>, StepError> {
         let found = self.integrators.iter().find(|integrator| integrator.built == wanted);
         let has_method = self.integrators.iter().any(|integrator| integrator.built.0 == wanted.0);
-        let is_by_rule = wanted.1.is_none() && wanted.0.splitting().is_none();
-        if found.is_some() && is_by_rule && self.system.has_too_large_rule() {
-            return Err(StepError::RuleTooLarge { system: self.system.name() });
-        }
         found.ok_or(match wanted {
             // Methods that keep constraints have stages.
             (_, stages, _) if !self.system.constraint_names().is_empty() && (!has_method || stages.is_none()) => {
@@ -347,6 +349,10 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
 
     fn integrators(&self) -> Vec<Built> {
         self.integrators.iter().map(|of| of.built).collect()
+    }
+
+    fn offers(&self, wanted: Built) -> Result<(), StepError> {
+        self.integrator(wanted).map(drop)
     }
 
     fn conserves_energy(&self) -> bool {
@@ -430,12 +436,14 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
             Some(p) => State { t: plan.t, q, p: vector(p, "number of momenta")? },
             None => State::at(&self.system, plan.t, q, vector::<N>(&plan.v, "number of velocities")?),
         };
-        (self.integrator(plan.wanted(!self.system.constraint_names().is_empty()))?.begin)(
-            self.system,
-            plan,
-            state,
-            goes_on,
-        )
+        let wanted = plan.wanted(!self.system.constraint_names().is_empty());
+        let integrator = self.integrator(wanted)?;
+        // A text derives its rule when a run asks for it.
+        let is_by_rule = wanted.1.is_none() && wanted.0.splitting().is_none();
+        if is_by_rule && self.system.has_too_large_rule() {
+            return Err(StepError::RuleTooLarge { system: self.system.name() });
+        }
+        (integrator.begin)(self.system, plan, state, goes_on)
     }
 
     #[cfg(feature = "checkpoints")]

@@ -164,19 +164,19 @@ fn initial_states_keep_or_meet_the_constraints() {
         ),
         (
             &["run", "rod-pendulum", "--method", "fixed"],
-            "rod-pendulum has constraints, which --method fixed does not keep: use --method gauss (--stages 1, 2, 3, 4, 6) or adaptive (--stages 3) or energy (--stages 1, 2)",
+            "RodPendulum has constraints, which --method fixed does not keep: use --method gauss (--stages 1, 2, 3, 4, 6), --method adaptive (--stages 3) or --method energy (--stages 1, 2)",
         ),
         (
             &["run", "rod-pendulum", "--stages", "5"],
-            "steps with constraints have 1, 2, 3, 4 or 6 stages in the command, not 5",
+            "RodPendulum has no integrator --method gauss --stages 5; --stages may be 1, 2, 3, 4 or 6",
         ),
         (
             &["run", "rod-pendulum", "--method", "energy", "--stages", "3"],
-            "energy-preserving steps with constraints have 1 or 2 stages, not 3",
+            "RodPendulum has no integrator --method energy --stages 3; --stages may be 1 or 2: with more, rounding hides the length",
         ),
         (
             &["run", "rod-pendulum", "--method", "energy", "--start", "midpoint"],
-            "steps with constraints start from the initial state; remove --start",
+            "steps with constraints start from the initial state: leave out --start",
         ),
         (
             &["run", "four-bar", "--set", "b=1e3", "--steps", "3"],
@@ -428,7 +428,7 @@ fn a_mistake_in_a_scene_is_one_line_and_status_2() {
     );
     // Wrong values are reported as for the command line, which may have replaced them.
     for (text, message) in [
-        ("method = \"gauss\"\nstages = 5\n", "Gauss steps of 5 stages are not built into the command"),
+        ("method = \"gauss\"\nstages = 5\n", "Kepler has no integrator --method gauss --stages 5"),
         ("q = [nan, 0]\n", "the coordinates (--q) must be finite, not NaN"),
         ("until = -1.0\n", "steps of 0.005 from t = 0 do not reach --until -1"),
         ("[parameters]\nm = 1\n", "kepler has no parameter `m`; it has `mu`"),
@@ -597,7 +597,7 @@ fn gauss_steps_in_scaled_time_follow_an_eccentric_orbit() {
     assert_refused(&[
         (
             &["run", "pendulum", "--method", "gauss", "--dtau", "0.5"],
-            "pendulum has no time scale; use steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
+            "Pendulum has no time scale: give --h in place of --dtau, or write the clause `time_scale = …;`",
         ),
         (
             &["run", "kepler", "--method", "gauss", "--dtau", "0.5", "--h", "0.1"],

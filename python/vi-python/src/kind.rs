@@ -3,7 +3,7 @@
 use crate::ensemble::{Ensemble, Output};
 use crate::failure::{Raise as _, wrong};
 use crate::report::{Report, Watch};
-use crate::request::Request;
+use crate::request::{Request, checked};
 use crate::rows::{Linearized, linearized, matrix, rows, vector};
 use crate::run::Run;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
@@ -234,7 +234,7 @@ impl Kind {
         let q = vector(&q, self.n, "q")?;
         let v = v.map_or_else(|| Ok(vec![0.0; self.n]), |v| vector(&v, self.n, "v"))?;
         let p = p.map(|p| vector(&p, self.n, "p")).transpose()?;
-        let plan = Plan { p, ..request.plan(&*system, t, q, v)? };
+        let plan = Plan { p, ..checked(py, &*system, request.plan(&*system, t, q, v)?)? };
         // A tolerance takes thousands of steps, a measured shift up to billions.
         let mut watch = Watch::new(Report::default(), f64::INFINITY);
         let run = py.detach(|| system.begin_while(&plan, &mut || watch.goes_on()));
@@ -280,7 +280,8 @@ impl Kind {
             _ => return Err(wrong("give one of until and times")),
         };
         // Finds wrong options once, before the threads start.
-        request.plan(&*self.of, t, vec![0.0; self.n], vec![0.0; self.n])?;
+        let zeros = || vec![0.0; self.n];
+        checked(py, &*self.of, request.plan(&*self.of, t, zeros(), zeros())?)?;
         let parameters = matrix(&parameters, [many, self.parameters.len()], "parameters")?;
         let (q, v) = (matrix(&q, [many, self.n], "q")?, matrix(&v, [many, self.n], "v")?);
         let count = self.parameters.len();

@@ -41,6 +41,7 @@ pub use vi_erased;
 
 use pyo3::prelude::*;
 use vi_erased::System;
+use vi_erased::plan::{Method, Named as _};
 
 /// The version of the interface between these classes and the Python files of the package `variational`.
 pub const CONTRACT: u32 = 5;
@@ -56,6 +57,7 @@ pub fn populate(module: &Bound<'_, PyModule>, systems: Vec<Box<dyn System>>) -> 
     module.add_class::<Run>()?;
     module.add_class::<Dense>()?;
     module.add("_contract", CONTRACT)?;
+    module.add("METHODS", Method::ALL.map(Method::name))?;
     module.add("_kinds", kinds)
 }
 

@@ -49,7 +49,7 @@ pub use events::Crossings;
 #[cfg(feature = "alloc")]
 pub use solution::Solution;
 pub use times::Grid;
-pub use tolerance::{Length, Tolerance};
+pub use tolerance::{Length, Tolerance, check_tolerance};
 
 use crate::angles::{self, Turns};
 use crate::error::StepError;

@@ -68,6 +68,18 @@ const LONGEST: f64 = 1e4;
 /// Consecutive shorter trials without a smaller error, after which rounding dominates.
 const STALLED: u32 = 3;
 
+/// Rejects a tolerance that no step keeps.
+///
+/// # Errors
+/// [`StepError::InvalidInput`].
+#[doc(hidden)]
+pub fn check_tolerance<T: Scalar>(tolerance: f64) -> Result<(), StepError> {
+    if tolerance >= T::EPSILON && tolerance < 1.0 {
+        return Ok(());
+    }
+    Err(StepError::InvalidInput { input: "the tolerance", allowed: "between an ulp and 1", value: tolerance })
+}
+
 impl<T: Scalar> Length<T> for Tolerance {
     fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
         self,
@@ -75,10 +87,7 @@ impl<T: Scalar> Length<T> for Tolerance {
         method: &M,
     ) -> Result<T, StepError> {
         let Self(tolerance) = self;
-        if !(tolerance >= T::EPSILON && tolerance < 1.0) {
-            let allowed = "between an ulp and 1";
-            return Err(StepError::InvalidInput { input: "the tolerance", allowed, value: tolerance });
-        }
+        check_tolerance::<T>(tolerance)?;
         let guess = guess(start)?;
         let mut h = guess;
         // The longest accepted length, and the shortest rejected one.

@@ -11,10 +11,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use vi_core::StepError;
 use vi_erased::System;
-use vi_erased::plan::Named as _;
-use vi_erased::plan::{
-    DEFAULT_BOUND_ENERGY_STAGES, DEFAULT_BOUND_STAGES, DEFAULT_STAGES, Method, PhasePoint, Plan, Shift, Start,
-};
+use vi_erased::check::{self, Face, Refusal};
+use vi_erased::plan::{Method, PhasePoint, Plan, Start};
 use vi_erased::simulation::{Row, Steps};
 use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::Failure;
@@ -211,28 +209,28 @@ impl Request {
         let start = PhasePoint { t, q: q.unwrap_or(entry.q), v: v.unwrap_or(entry.v) };
         let method = arguments.method.or(scene.method).unwrap_or(system.usual_method());
         let options = Options::of(arguments, &scene);
-        options.check(method)?;
-        check_rule(system.as_ref(), method, &options)?;
-        let stages = stages(system.as_ref(), method, options.stages)?;
-        // Short energy-preserving steps with constraints keep their length.
-        let usual = if system.has_constraints() { entry.h } else { entry.h * usual_length(method, stages) };
-        let h = arguments.h.or(scene.h).unwrap_or(usual);
-        let mut plan = Plan {
+        let asked = Plan {
             start: options.start.unwrap_or_default(),
-            stages,
+            stages: options.stages,
+            shift: options.shift.map(|wanted| wanted.over(entry.h)),
             fallback: options.fallback,
-            ..Plan::new(method, h, start)
+            dtau: options.dtau,
+            ..Plan::new(method, entry.h, start)
         };
+        let mut plan = check::integrator(system.as_ref(), asked).map_err(|refusal| refused(&refusal))?;
+        // Short energy-preserving steps with constraints keep their length.
+        let usual = if system.has_constraints() { entry.h } else { entry.h * usual_length(method, plan.stages) };
+        plan.h = arguments.h.or(scene.h).unwrap_or(usual);
         placement.follow(system.as_ref(), &mut plan);
         if let (Some(sweep), Some(item)) = (&scene.sweep, arguments.item) {
             set_item((sweep, item), placement, system.as_mut(), &mut plan)?;
         }
         placement.check(system.as_ref(), &plan)?;
-        check_initial(system.as_ref(), &plan)?;
+        check::numbers(system.as_ref(), &plan).map_err(|refusal| refused(&refusal))?;
         let given = plan.clone();
         let moved = placement.project(system.as_ref(), &mut plan).map_err(|error| Failure::start(error, &given))?;
         if let Some(dtau) = options.dtau {
-            scale_time(system.as_ref(), &mut plan, dtau)?;
+            scale_time(system.as_ref(), &mut plan, dtau);
         }
         if let Some(tolerance) = arguments.tolerance {
             plan.h = found_step(system.as_ref(), &plan, tolerance)?;
@@ -241,7 +239,7 @@ impl Request {
             (None, None) => length(scene.steps, scene.until, &plan)?,
             (steps, until) => length(steps, until, &plan)?,
         };
-        plan.shift = options.shift.map(|wanted| shift(wanted, length, &plan)).transpose()?;
+        plan.shift = options.shift.map(|wanted| wanted.over(length.measured(&plan)));
         let every = arguments.every.or(scene.every).unwrap_or(1);
         if every == 0 {
             return Err(Failure::Input("--every must be at least 1: 1 writes every node, 10 every tenth".to_owned()));
@@ -272,54 +270,11 @@ impl Request {
     }
 }
 
-/// Rejects steps by a rule for a system without one, and steps that do not keep constraints for a system with some.
-fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<(), Failure> {
-    let name = kebab(system.name());
-    if system.has_constraints() && options.start.is_some() {
-        return Err(Failure::Input("steps with constraints start from the initial state; remove --start".to_owned()));
-    }
-    if system.has_constraints() && system.has(method) {
-        return Ok(());
-    }
-    if system.has_constraints() {
-        return Err(Failure::Input(format!(
-            "{name} has constraints, which --method {} does not keep: use --method {}",
-            method.name(),
-            methods(system)
-        )));
-    }
-    let needs_none = match method {
-        Method::Gauss | Method::Adaptive => true,
-        Method::Energy => options.stages.is_some() || options.shift.is_some(),
-        _ => false,
-    };
-    if needs_none || system.has_rule() {
-        return Ok(());
-    }
-    Err(Failure::Input(format!(
-        "{} has no rule for --method {}: add `discretize midpoint;` to it, or use --method gauss, or --method energy with --stages 2",
-        system.name(),
-        method.name()
-    )))
-}
-
-/// The methods of a system with constraints, with their stages.
-fn methods(system: &dyn System) -> String {
-    let integrators = system.integrators();
-    let of_method = |method: &Method| {
-        let stages: Vec<String> =
-            integrators.iter().filter(|of| of.0 == *method).filter_map(|of| of.1).map(|s| s.to_string()).collect();
-        format!("{} (--stages {})", method.name(), stages.join(", "))
-    };
-    let has = |method: &&Method| integrators.iter().any(|of| of.0 == **method);
-    Method::ALL.iter().filter(has).map(of_method).collect::<Vec<_>>().join(" or ")
-}
-
 /// Options that apply to some methods only.
 #[derive(Clone, Copy, Debug)]
 struct Options {
     start: Option<Start>,
-    stages: Option<u64>,
+    stages: Option<usize>,
     shift: Option<Wanted>,
     fallback: bool,
     dtau: Option<f64>,
@@ -334,76 +289,13 @@ impl Options {
         let dtau = scene.dtau.filter(|_| arguments.h.is_none());
         Self {
             start: arguments.start.or(scene.start),
-            stages: arguments.stages.or(scene.stages),
+            // No system has as many as do not fit.
+            stages: arguments.stages.or(scene.stages).map(|stages| usize::try_from(stages).unwrap_or(usize::MAX)),
             shift: arguments.shift.or(scene.shift),
             fallback: arguments.fallback || scene.fallback.unwrap_or(false),
             dtau: arguments.dtau.or(dtau).filter(|_| arguments.tolerance.is_none()),
         }
     }
-
-    /// Checks that the method has these options, and that they are compatible.
-    fn check(&self, method: Method) -> Result<(), Failure> {
-        let Self { start, stages, shift, fallback, dtau } = *self;
-        let energy = "only energy-preserving steps have a";
-        let (is_energy, is_gauss) = (method == Method::Energy, method == Method::Gauss);
-        let message = match () {
-            () if start.is_some() && !is_energy => {
-                format!("{energy} --start; add --method energy, or remove it")
-            }
-            () if shift.is_some() && !is_energy => {
-                format!("{energy} --shift; add --method energy, or remove it")
-            }
-            () if fallback && !is_energy => format!("{energy} --fallback; add --method energy, or remove it"),
-            () if stages.is_some() && !is_energy && !is_gauss && method != Method::Adaptive => {
-                "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it"
-                    .to_owned()
-            }
-            () if dtau.is_some() && !is_gauss => {
-                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or remove it".to_owned()
-            }
-            () if start.is_some() && (stages.is_some() || shift.is_some()) => {
-                "steps with --stages or --shift start from the initial state; remove --start".to_owned()
-            }
-            () => return Ok(()),
-        };
-        Err(Failure::Input(message))
-    }
-}
-
-/// A number of stages that the system has, by default that of the method; `None` for steps without stages.
-fn stages(system: &dyn System, method: Method, wanted: Option<u64>) -> Result<Option<usize>, Failure> {
-    let Some(wanted) = wanted else {
-        return Ok(match (method, system.has_constraints()) {
-            (Method::Gauss | Method::Adaptive, true) => Some(DEFAULT_BOUND_STAGES),
-            (Method::Gauss | Method::Adaptive, false) => Some(DEFAULT_STAGES),
-            (Method::Energy, true) => Some(DEFAULT_BOUND_ENERGY_STAGES),
-            _ => None,
-        });
-    };
-    let mut built: Vec<usize> = system.integrators().iter().filter(|of| of.0 == method).filter_map(|of| of.1).collect();
-    built.sort_unstable();
-    built.dedup();
-    if let Some(found) = built.iter().find(|built| **built as u64 == wanted) {
-        return Ok(Some(*found));
-    }
-    let built = alternatives(&built);
-    Err(Failure::Input(match (method, system.has_constraints()) {
-        (Method::Energy, true) => format!("energy-preserving steps with constraints have {built} stages, not {wanted}"),
-        (Method::Energy, false) => {
-            format!("energy-preserving steps have {built} stages, not {wanted}: with more, rounding hides the length")
-        }
-        (_, true) => format!("steps with constraints have {built} stages in the command, not {wanted}"),
-        (_, false) => {
-            format!("Gauss steps of {wanted} stages are not built into the command; --stages may be {built}")
-        }
-    }))
-}
-
-/// `1, 2 or 3`.
-fn alternatives(numbers: &[usize]) -> String {
-    let mut words: Vec<String> = numbers.iter().map(usize::to_string).collect();
-    let last = words.pop().unwrap_or_default();
-    if words.is_empty() { last } else { format!("{} or {last}", words.join(", ")) }
 }
 
 /// Ratio of the default step to that of the system. For short energy-preserving steps of order 4 and 6, rounding hides
@@ -417,23 +309,13 @@ fn usual_length(method: Method, stages: Option<usize>) -> f64 {
 }
 
 /// Sets equal steps in transformed time; g determines the first step in time.
-fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Failure> {
+fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) {
     let Plan { t, q, v, .. } = plan.clone();
-    let Some(g) = system.time_scale(&PhasePoint { t, q, v }) else {
-        return Err(Failure::Input(format!(
-            "{} has no time scale; use steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
-            kebab(system.name())
-        )));
-    };
-    if !dtau.is_finite() || dtau == 0.0 {
-        return Err(Failure::Input(format!(
-            "the step in transformed time (--dtau) must be finite and not zero, not {dtau}"
-        )));
-    }
-    plan.dtau = Some(dtau);
     // A run reports an invalid g.
-    plan.h = if g > 0.0 && g.is_finite() { g * dtau } else { dtau };
-    Ok(())
+    plan.h = match system.time_scale(&PhasePoint { t, q, v }) {
+        Some(g) if g > 0.0 && g.is_finite() => g * dtau,
+        _ => dtau,
+    };
 }
 
 /// The step whose error is the tolerance.
@@ -441,17 +323,6 @@ fn found_step(system: &dyn System, plan: &Plan, tolerance: f64) -> Result<f64, F
     let plan = Plan { tolerance: Some(tolerance), ..plan.clone() };
     let begun = system.begin(&plan).map_err(|error| Failure::start(error, &plan))?;
     Ok(begun.h())
-}
-
-/// The requested shift: `auto` is measured over the run, or its first part.
-fn shift(wanted: Wanted, length: Length, plan: &Plan) -> Result<Shift, Failure> {
-    match wanted {
-        Wanted::Given(shift) if !shift.is_finite() => {
-            Err(Failure::Input(format!("the shift (--shift) must be finite, not {shift}")))
-        }
-        Wanted::Given(shift) => Ok(Shift::Of(shift)),
-        Wanted::Auto => Ok(Shift::Over(length.measured(plan))),
-    }
 }
 
 /// The system of a file without these constraints.
@@ -509,43 +380,21 @@ fn set_item(
     Ok(())
 }
 
-/// Checks sizes and finiteness of the initial state, and that the step leads to the end.
+/// Checks the numbers of a plan, and that the step leads to the end.
 ///
 /// # Errors
 /// [`Failure::Input`] for the first wrong input.
 pub(super) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<(), Failure> {
-    check_initial(system, plan)?;
+    check::numbers(system, plan).map_err(|refusal| refused(&refusal))?;
     match length {
         Length::Until(end) => check_direction(plan, end),
         Length::Steps(_) => Ok(()),
     }
 }
 
-/// Checks sizes and finiteness of the initial state.
-fn check_initial(system: &dyn System, plan: &Plan) -> Result<(), Failure> {
-    let coordinates = system.coordinates();
-    for (what, values) in [("coordinates (--q)", &plan.q), ("velocities (--v)", &plan.v)] {
-        if values.len() != coordinates.len() {
-            return Err(Failure::Input(format!(
-                "{} has the coordinates {}: give as many {what}, not {}",
-                kebab(system.name()),
-                coordinates.join(", "),
-                values.len()
-            )));
-        }
-        if let Some(value) = values.iter().find(|value| !value.is_finite()) {
-            return Err(Failure::Input(format!("the {what} must be finite, not {value}")));
-        }
-    }
-    for (what, value) in [("initial time (--t)", plan.t), ("step (--h)", plan.h)] {
-        if !value.is_finite() {
-            return Err(Failure::Input(format!("the {what} must be finite, not {value}")));
-        }
-    }
-    if plan.h == 0.0 {
-        return Err(Failure::Input("the step (--h) must not be zero".to_owned()));
-    }
-    Ok(())
+/// A plan that has no run, in the words of the command.
+fn refused(refusal: &Refusal) -> Failure {
+    Failure::Input(refusal.told(Face::Command))
 }
 
 /// Checks that steps lead to the end.
@@ -577,6 +426,7 @@ fn length(steps: Option<u64>, until: Option<f64>, plan: &Plan) -> Result<Length,
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vi_erased::plan::Shift;
 
     fn arguments(target: &str) -> Arguments {
         Arguments { target: Some(target.to_owned()), steps: Some(10), ..Arguments::default() }
@@ -597,55 +447,22 @@ mod tests {
             change(&mut arguments);
             message(&arguments)
         };
-        let cases: [(String, &str); 23] = [
+        let cases: [(String, &str); 15] = [
             (with(|a| a.set = vec!["k=1".into()]), "double-well has no parameter `k`; it has `m`"),
             (
                 with(|a| a.set = vec!["m=1".into(), " m =2".into()]),
                 "the parameter `m` is set twice; use --set once per parameter",
             ),
-            (with(|a| a.every = Some(0)), "--every must be at least 1: 1 writes every node, 10 every tenth"),
+            // Options in the words of `check`.
             (
                 with(|a| a.start = Some(Start::Points)),
-                "only energy-preserving steps have a --start; add --method energy, or remove it",
-            ),
-            (
-                with(|a| a.stages = Some(8)),
-                "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it",
-            ),
-            (
-                with(|a| (a.method, a.stages) = (Some(Method::Energy), Some(4))),
-                "energy-preserving steps have 1, 2 or 3 stages, not 4: with more, rounding hides the length",
-            ),
-            (
-                with(|a| (a.method, a.shift) = (Some(Method::Gauss), Some(Wanted::Auto))),
-                "only energy-preserving steps have a --shift; add --method energy, or remove it",
-            ),
-            (
-                with(|a| (a.method, a.shift) = (Some(Method::Energy), Some(Wanted::Given(f64::INFINITY)))),
-                "the shift (--shift) must be finite, not inf",
-            ),
-            (
-                with(|a| a.fallback = true),
-                "only energy-preserving steps have a --fallback; add --method energy, or remove it",
-            ),
-            (
-                with(|a| {
-                    (a.method, a.start, a.shift) = (Some(Method::Energy), Some(Start::Points), Some(Wanted::Auto));
-                }),
-                "steps with --stages or --shift start from the initial state; remove --start",
-            ),
-            (
-                with(|a| a.dtau = Some(0.1)),
-                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or remove it",
-            ),
-            (
-                with(|a| (a.method, a.dtau) = (Some(Method::Gauss), Some(0.1))),
-                "double-well has no time scale; use steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
+                "--start is an option of --method energy: give this method, or leave out --start",
             ),
             (
                 with(|a| (a.method, a.stages) = (Some(Method::Gauss), Some(5))),
-                "Gauss steps of 5 stages are not built into the command; --stages may be 4 or 8",
+                "DoubleWell has no integrator --method gauss --stages 5; --stages may be 4 or 8",
             ),
+            (with(|a| a.every = Some(0)), "--every must be at least 1: 1 writes every node, 10 every tenth"),
             (
                 with(|a| a.output = Some("orbit.npy".into())),
                 "the output `orbit.npy` must end in .csv; pandas reads it with `read_csv(FILE, comment=\"#\")`",
@@ -658,10 +475,10 @@ mod tests {
             (with(|a| a.set = vec!["m=inf".into()]), "the parameter `m` must be finite, not inf"),
             (
                 with(|a| a.q = Some(vec![1.0, 2.0])),
-                "double-well has the coordinates q: give as many coordinates (--q), not 2",
+                "DoubleWell has the coordinates q: give as many coordinates (--q), not 2",
             ),
             (with(|a| a.v = Some(vec![f64::NAN])), "the velocities (--v) must be finite, not NaN"),
-            (with(|a| a.h = Some(0.0)), "the step (--h) must not be zero"),
+            (with(|a| a.h = Some(0.0)), "the step (--h) must be finite, not zero and not subnormal, not 0.0"),
             (with(|a| a.until = Some(1.0)), "give either --steps or --until, not both"),
             (
                 with(|a| (a.steps, a.until, a.h) = (None, Some(1.0), Some(-0.1))),
@@ -680,7 +497,11 @@ mod tests {
         let plan = plan_of(&scaled(0.5));
         // g = r^(3/2) at r = 0.4.
         assert!((plan.h - 0.5 * 0.4_f64.powf(1.5)).abs() < 1e-15 && plan.dtau == Some(0.5), "{plan:?}");
-        assert_eq!(message(&scaled(0.0)), "the step in transformed time (--dtau) must be finite and not zero, not 0");
+        let refused = message(&scaled(0.0));
+        assert_eq!(
+            refused,
+            "the step in transformed time (--dtau) must be finite, not zero and not subnormal, not 0.0"
+        );
     }
 
     #[test]
@@ -702,27 +523,5 @@ mod tests {
         assert_eq!((request.every, request.output), (1, Output::Standard));
         assert_eq!((request.plan.h, request.plan.method), (0.01, Method::Fixed));
         assert_eq!(request.length, Length::Steps(10));
-    }
-
-    vi_core::lagrangian! {
-        struct Alone {
-            coord x;
-            L = dot(x)^2 / 2 - x^4 / 4;
-        }
-    }
-
-    #[test]
-    fn a_system_without_a_rule_gets_the_names_of_its_methods() {
-        let system = vi_report::entry::Entry::with_gauss_only::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
-        let of = |method, stages| {
-            let arguments = Arguments { method: Some(method), stages, ..arguments("kepler") };
-            check_rule(system.as_ref(), method, &Options::of(&arguments, &Scene::default()))
-        };
-        assert!(of(Method::Gauss, None).is_ok() && of(Method::Energy, Some(2)).is_ok());
-        for method in [Method::Fixed, Method::Suzuki4, Method::Energy] {
-            let said = of(method, None).expect_err("no rule").to_string();
-            let wanted = format!("Alone has no rule for --method {}: add `discretize midpoint;` to it", method.name());
-            assert!(said.contains(&wanted), "{said}");
-        }
     }
 }

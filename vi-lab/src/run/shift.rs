@@ -5,6 +5,7 @@
 use core::fmt;
 use serde::Deserializer;
 use serde::de::{self, Visitor};
+use vi_erased::plan::Shift;
 use vi_report::input::number;
 
 /// A requested shift.
@@ -14,6 +15,16 @@ pub(crate) enum Wanted {
     Given(f64),
     /// Measured along the motion.
     Auto,
+}
+
+impl Wanted {
+    /// The shift of a plan; `auto` is measured over this time from the start.
+    pub(super) fn over(self, time: f64) -> Shift {
+        match self {
+            Self::Given(shift) => Shift::Of(shift),
+            Self::Auto => Shift::Over(time),
+        }
+    }
 }
 
 /// The allowed values.
