@@ -126,13 +126,14 @@ pub(super) fn phase<S: Convertible<N>, const N: usize>(
     [h, floor]: [f64; 2],
 ) -> Result<Option<Phase>, StepError> {
     let (t, q, v) = start.middle(end);
+    let least = (h * floor).powi(6);
     if system.scales_time() {
         let mut powers = [0.0; 3];
         for (power, (t, q, v)) in powers.iter_mut().zip([(start.t, start.q, start.v), (t, q, v), (end.t, end.q, end.v)])
         {
             let g = system.scaled_point(t, &q, &v).g;
             check_time_scale(t, g)?;
-            *power = (h / g).powi(6);
+            *power = (h / g).powi(6) + least;
         }
         return Ok(Phase::of(powers));
     }
@@ -141,7 +142,6 @@ pub(super) fn phase<S: Convertible<N>, const N: usize>(
     let powers = [start, middle, end].map(|forces| forces.power(h));
     let per_half = (2.0 * h * h).powi(2);
     let changes = [(middle, start), (end, middle)].map(|(one, other)| one.change(&middle.compliance, other) * per_half);
-    let least = (h * floor).powi(6);
     let [start, middle, end] = powers.map(|power| power + least);
     let in_middle = 0.5 * (changes[0] + changes[1]);
     Ok(Phase::of([start + changes[0], middle + in_middle, end + changes[1]]))
