@@ -27,8 +27,9 @@ use crate::stepping::Convertible;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-/// A first step feels no force that could set the lengths of the others, if its phase to the power of its order is smaller.
-/// The others then have the phase [`USUAL`] for each stage, and are no longer than the first one.
+/// A first step feels no force that could set the lengths of the others, if its phase to the power of its order is smaller
+/// and no time scale says otherwise. The others then have the phase [`USUAL`] for each stage, and are no longer than the
+/// first one.
 const FREE: f64 = 1e-12;
 const USUAL: f64 = 0.1;
 /// The largest deviation of ln h Ω from ln ε of an accepted step. After [`FEW`] lengths it is [`ROUGH`]: then rounding of
@@ -105,7 +106,7 @@ impl Reversible {
         let [start, end] = [Place::of(system, start)?, Place::of(system, end)?];
         #[allow(clippy::cast_precision_loss)] // 16 stages at most
         let stages = STAGES as f64;
-        let is_felt = |found: &Phase| found.value.powf(2.0 * stages) > FREE;
+        let is_felt = |found: &Phase| system.scales_time() || found.value.powf(2.0 * stages) > FREE;
         let found = phase(system, [&start, &end], [h.abs(), 0.0])?.filter(is_felt);
         let usual = USUAL * stages;
         let Phase { value, slope, .. } = found.unwrap_or(Phase { value: usual, slope: 1.0, ratio: 1.0 });
