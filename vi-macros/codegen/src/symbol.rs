@@ -62,6 +62,8 @@ pub enum Symbol {
     LetRate(LetEntry),
     /// A number that the body of a loop reads, by its place in the list of these.
     Access(usize),
+    /// Momentum p_i; appears in a Hamiltonian only.
+    Momentum(usize),
     /// Acceleration a_i; appears in the step density only.
     Acceleration(usize),
     /// Multiplier of a constraint; appears in the derivatives of the reaction only.
@@ -103,6 +105,7 @@ impl Symbol {
             Self::Q0(index) => Some((Self::Q0(0), *index)),
             Self::Q1(index) => Some((Self::Q1(0), *index)),
             Self::P0(index) => Some((Self::P0(0), *index)),
+            Self::Momentum(index) => Some((Self::Momentum(0), *index)),
             Self::StepVelocity(index) => Some((Self::StepVelocity(0), *index)),
             Self::Multiplier(index) => Some((Self::Multiplier(0), *index)),
             Self::Acceleration(index) => Some((Self::Acceleration(0), *index)),

@@ -14,7 +14,7 @@ const INPUTS: u64 = 1000;
 const LONGEST: usize = 32_000_000;
 
 /// Correct systems, which together use every clause and every form of expression.
-const SYSTEMS: [&str; 13] = [
+const SYSTEMS: [&str; 16] = [
     "struct A { param m = 1, k = 2.5e-1; coord x; let v = dot(x); L = m * v^2 / 2 - k * x^2; force x = -0.1 * v; discretize midpoint; }",
     "pub struct B { const N = 3; param a = N / 2; coord q[N], y; let e[i in 1..N] = q[i] - q[i - 1]; L = sum(i in 0..N, dot(q[i])^2) + dot(y)^2 - a * sum(i in 1..N, e[i]^2 * cos(y)); force q[i in 0..2] = sin(t * i); discretize trapezoidal; }",
     "/// Doc.\n struct C { coord θ, φ; L = (dot(θ)^2 + sin(θ)^2 * dot(φ)^2) / 2 + cos(θ); dissipation = dot(θ)^2 + dot(θ)^4; discretize midpoint; }",
@@ -27,11 +27,14 @@ const SYSTEMS: [&str; 13] = [
     "struct K { const N = 2; param m[N] = [1, 2.5], l[N + 1] = 0.5, k = 1,; coord q[N]; let x[i in 0..N] = sum(j in 0..i + 1, l[j] * sin(q[j]) + t * l[N]); L = sum(i in 0..N, m[i] * dot(x[i])^2 + dot(q[i])^2) - k * x[1]; force q[0] = -dot(x[0] * x[1]); discretize midpoint, trapezoidal,; }",
     "struct M { const N = 3, s = [1, -2, 3], A[2][2] = [[1, 2], [3, 4]]; param K[2][2] = [[1, 2], [3, 4]], m[N] = s; coord r[N][2], x; let R = [[cos(x), -sin(x)], [sin(x), cos(x)]], p[0] = R * r[0]; let p[i in 1..N] = p[i - 1] + transpose(R) * A * r[i]; L = sum(i in 0..N, m[i] * dot(r[i]) * dot(r[i])) + dot(x)^2 - sum(i in 0..N, j in 0..i, 1 / norm(r[i] - r[j])) - p[N - 1] * K * p[0]; force r[i in 0..N] = [0, -m[i]]; discretize midpoint; check { r[0] = [1, 2], dot(r[1][0]) = 3, K = A; h = 0.1; } }",
     "struct N { coord q[3], u[2][3]; let d[i in 0..3][j in 0..i] = q[i] - q[j]; let w = cross(u[0], q); L = dot(q) * dot(q) + dot(u[0]) * dot(u[0]) + dot(u[1]) * dot(u[1]) - sum(i in 0..3, j in 0..i, d[i][j]^2) - dot(w) * w * cross([q[0], x_0], [1, q[1]]); let x_0 = 2; force u = [[1, 2, 3], -q]; discretize trapezoidal; }",
+    "struct O { param m = 1, k = 2; coord r, a; momentum p of r, l of a; let u = l / r; H = (p^2 + u^2 + p * l * sin(a)) / (2 * m) + k * (r - 1)^2; force r = -p * u; discretize midpoint; }",
+    "struct P { const N = 2; param m[N] = 1, B = 3; coord r[N][2], s; momentum p of r, q of s; let A[i in 0..N] = [-B * r[i][1], B * r[i][0]]; H = sum(i in 0..N, (p[i] - A[i]) * (p[i] - A[i]) / (2 * m[i])) + sqrt(4 + q^2) - cos(s * t); constraint c = s - r[0][0]; }",
+    "struct Q { param a = 2; coord x, y, z; momentum p of x, q of y, s of z; H = (p^2 * (1 + x^2)^3 + a * q^2 * cos(y)^2 + s^2 / (2 + x)) / (3 + sin(y)^2) + p * q * x + q * s / a + x * s; discretize trapezoidal; }",
     "struct H { const M = 4; coord u[M]; let a[i in 0..M] = sum(j in 0..i + 1, dot(u[j]) * cos(u[j])); L = sum(i in 0..M, a[i]^2 + dot(u[i])^2); discretize midpoint; }",
 ];
 
 /// Inserted tokens: all words of the language, and some others.
-const WORDS: &str = "struct const param coord let L force dissipation discretize midpoint trapezoidal Ld fd_minus fd_plus gd_minus \
+const WORDS: &str = "struct const param coord let momentum of L H force dissipation discretize midpoint trapezoidal Ld fd_minus fd_plus gd_minus \
     gd_plus f h t t0 t1 q0 q1 q x y θ i in dot sum pi sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign \
     hypot pow cross norm transpose self Self r#type fn _ + - * / ^ = ; , : . .. # ! & 0 1 2 3 7 0.5 1e3 1e-3 1e308 1e400 1e-400 0x10 1f64 2x 100 256 257 \
     1000 20000 65536 4294967296 18446744073709551616 99999999999999999999999999999999999999999999999999 1_0 1e-30 2.5e-200 0.1234567890123456789012345678901234567890 \

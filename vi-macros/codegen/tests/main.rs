@@ -9,6 +9,7 @@ mod families;
 mod forms;
 mod functions;
 mod growth;
+mod hamiltonian;
 mod inspect;
 mod large;
 mod mass;

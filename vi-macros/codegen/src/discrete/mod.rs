@@ -15,9 +15,10 @@ mod step;
 pub mod system;
 
 pub use constraints::Constraints;
-pub use continuous::{Continuous, PointDerivatives, TimeScale};
 #[cfg(feature = "inspect")]
-pub(crate) use continuous::{energy, summands};
+pub(crate) use continuous::energy;
+pub(crate) use continuous::summands;
+pub use continuous::{Continuous, PointDerivatives, TimeScale};
 pub use fields::Fields;
 pub use slots::SlotDerivatives;
 pub use step::Equations;

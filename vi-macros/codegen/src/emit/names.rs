@@ -110,6 +110,7 @@ impl<'a> Names<'a> {
             Symbol::Continuous(Variable::Velocity(index)) | Symbol::StepVelocity(index) => {
                 format!("{}_dot", coordinate(index))
             }
+            Symbol::Momentum(index) => format!("p_{}", coordinate(index)),
             Symbol::Acceleration(index) => format!("{}_ddot", coordinate(index)),
             Symbol::Multiplier(index) => format!("lambda_{}", self.model.constraints[*index].ident()),
             Symbol::T0 => "t0".to_owned(),

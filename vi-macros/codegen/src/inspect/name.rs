@@ -177,6 +177,7 @@ fn named(derived: &Derived, symbol: &Symbol) -> Name {
         Symbol::E0 => Name::of("E0"),
         Symbol::Q0(index) => of(index).with("0"),
         Symbol::Q1(index) => of(index).with("1"),
+        Symbol::Momentum(index) => Name::of("p").with(of(index).text()),
         Symbol::P0(index) => Name::of("p0").with(of(index).text()),
         Symbol::StepVelocity(index) => Name::of("v").with(of(index).text()),
         Symbol::Low(low) => {

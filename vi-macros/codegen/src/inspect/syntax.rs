@@ -18,6 +18,7 @@ pub(super) fn text(system: &System) -> String {
         let word = if coordinate.is_rotation { "rotation" } else { "coord" };
         lines.push(format!("{word} {}{};", coordinate.name, brackets(&coordinate.lengths)));
     }
+    lines.extend(system.momenta.iter().map(|of| format!("momentum {} of {};", of.name, of.of)));
     lines.extend(system.functions.iter().map(|of| {
         let arguments: Vec<String> = of.arguments.iter().map(ToString::to_string).collect();
         let body = match &of.body {
@@ -48,7 +49,7 @@ pub(super) fn text(system: &System) -> String {
 /// The definitions of the named parts, of L, of the forces and of the constraints.
 pub(super) fn equations(system: &System) -> Vec<String> {
     let mut lines: Vec<String> = system.lets.iter().map(|of| format!("let {}", definition(of))).collect();
-    lines.extend(system.lagrangians.iter().map(definition));
+    lines.extend(system.lagrangians.iter().chain(&system.hamiltonians).map(definition));
     lines.extend(system.forces.iter().map(|of| format!("force {}", definition(of))));
     lines.extend(system.torques.iter().map(|of| format!("torque {}", definition(of))));
     lines.extend(system.space_torques.iter().map(|of| format!("space_torque {}", definition(of))));

@@ -1,6 +1,6 @@
 //! Each example to the compiler: one message, at the marked token, with the words that the example names.
 
-use super::{ArrayMistake, Character, ConstraintMistake, FunctionMistake, Habit, Message, words};
+use super::{ArrayMistake, Character, ConstraintMistake, FunctionMistake, Habit, HamiltonianMistake, Message, words};
 use crate::syntax;
 use proc_macro2::TokenStream;
 
@@ -11,7 +11,7 @@ const SYSTEM: &str = "const N = 3, s = [1, 2]; param l = 1, m = 2, g = 3; coord 
 
 /// The clauses of an example: all of them, one that ends with `;`, or an expression.
 fn clauses(example: &str) -> String {
-    if example.replace(['«', '»'], "").split([' ', ';']).any(|word| word == "L") {
+    if example.replace(['«', '»'], "").split([' ', ';']).any(|word| word == "L" || word == "H") {
         return example.to_owned();
     }
     let clause = if example.ends_with(';') { example.to_owned() } else { format!("let value = {example};") };
@@ -96,7 +96,7 @@ fn each_example_has_its_message() {
             })*
         };
     }
-    compare!(Message ArrayMistake ConstraintMistake FunctionMistake Habit);
+    compare!(Message ArrayMistake ConstraintMistake FunctionMistake Habit HamiltonianMistake);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

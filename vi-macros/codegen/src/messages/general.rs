@@ -1,7 +1,9 @@
 //! Mistakes of any kind: names, constants, lengths, clauses, rules, checks, sizes.
 
 use super::words::{self, did_you_mean};
-use super::{ArrayMistake, Character, ConstraintMistake, FunctionMistake, Habit, constraints, functions};
+use super::{
+    ArrayMistake, Character, ConstraintMistake, FunctionMistake, Habit, HamiltonianMistake, constraints, functions,
+};
 use crate::rules;
 use vi_expr::TooLarge;
 
@@ -14,7 +16,7 @@ const FUNCTIONS: &str = "the functions are sqrt exp ln sin cos tan asin acos ata
     transpose, in a rule L f, elsewhere dot; declare others with `fn` or `table`";
 
 /// The clauses.
-const CLAUSES: &str = "the clauses are const, param, input, coord, angle, rotation, fn, table, let, L, force, torque, space_torque, dissipation, constraint, time_scale, discretize, check";
+const CLAUSES: &str = "the clauses are const, param, input, coord, angle, rotation, momentum, fn, table, let, L, H, force, torque, space_torque, dissipation, constraint, time_scale, discretize, check";
 
 /// Why an expression cannot use a declared name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +27,8 @@ pub enum Absence {
     Parameter,
     /// It is a coordinate; the expression is a constant.
     Coordinate,
+    /// It is a momentum; the expression is a constant.
+    Momentum,
     /// It is a `let`; the expression is a constant.
     Let,
     /// It is a constraint.
@@ -59,7 +63,7 @@ pub enum Massless {
 
 catalogue! {
     /// A mistake in the input.
-    Message (Array(ArrayMistake), Character(Character), Constraint(ConstraintMistake), Function(FunctionMistake), Habit(Habit)):
+    Message (Array(ArrayMistake), Character(Character), Constraint(ConstraintMistake), Function(FunctionMistake), Habit(Habit), Hamiltonian(HamiltonianMistake)):
 
     Duplicate { name: String } = "the name `{name}` is declared twice", "rename one of them",
         ["sum(i in 0..2, «i» in 0..2, 1)", "sum(i in 0..2, sum(«i» in 0..2, 1))"] { name: "i" },
@@ -119,6 +123,7 @@ catalogue! {
                 Absence::Below => format!("`{name}` is not declared before this line"),
                 Absence::Parameter => format!("`{name}` is a parameter: it has no value at compile time"),
                 Absence::Coordinate => format!("`{name}` is a coordinate: it has no value at compile time"),
+                Absence::Momentum => format!("`{name}` is a momentum: it has no value at compile time"),
                 Absence::Let => format!("`{name}` is a `let`, which a constant cannot use"),
                 Absence::Constraint => ConstraintMistake::Value { name: name.clone() }.what(),
             }
@@ -142,6 +147,7 @@ catalogue! {
         ["param k = 1, m = 1, w = sqrt(«k»/2); coord x; L = m * dot(x)^2 - k * w * x^2;"]
             { name: "k", absence: Absence::Parameter },
         ["param a = 1; const b = «a»;"] { name: "a", absence: Absence::Parameter },
+        ["param k = «p»; coord x; momentum p of x; H = k * p^2;"] { name: "p", absence: Absence::Momentum },
         ["coord q[«n»]; let n = 3; L = 1;"] { name: "n", absence: Absence::Let },
         ["coord x; let a = «b»; let b = 1; L = a * dot(x)^2;", "coord x; let b = «b»; L = b * dot(x)^2;",
          "coord x; const a = «b», b = 1; L = a * b * dot(x)^2;"] { name: "b", absence: Absence::Below };
@@ -358,11 +364,18 @@ catalogue! {
          "dissipation = «-»sum(i in 0..3, dot(q[i])^2);"];
     SecondTimeScale = "a second `time_scale`", "write `time_scale` once",
         ["time_scale = 1 + x^2; «time_scale» = 1;"];
-    VelocityInTimeScale { name: String } =
-        "a time scale cannot depend on the velocities in `{name}`", "use positions, time, constants and parameters",
-        ["time_scale = 1 + «dot»(x)^2;"] { name: "dot" },
-        ["let speed = dot(x)^2; time_scale = 1 + «speed»;"] { name: "speed" },
-        ["let e[i in 0..3] = dot(q[i]); time_scale = 1 + «e»[0]^2;"] { name: "e" };
+    VelocityIn { name: String, clause: &'static str } =
+        "`{clause}` cannot depend on the velocities in `{name}`",
+        {
+            let momenta = if *clause == "H" { ", momenta" } else { "" };
+            format!("use positions{momenta}, time, constants and parameters")
+        },
+        ["time_scale = 1 + «dot»(x)^2;"] { name: "dot", clause: "time_scale" },
+        ["let speed = dot(x)^2; time_scale = 1 + «speed»;"] { name: "speed", clause: "time_scale" },
+        ["let e[i in 0..3] = dot(q[i]); time_scale = 1 + «e»[0]^2;"] { name: "e", clause: "time_scale" },
+        ["coord x; momentum p of x; let v = p / 2; time_scale = 1 + «v»^2; H = p^2;"] { name: "v", clause: "time_scale" },
+        ["coord x; momentum p of x; H = p^2 + «dot»(x);"] { name: "dot", clause: "H" },
+        ["coord x; momentum p of x; let v = dot(x); H = p^2 + «v»;"] { name: "v", clause: "H" };
     TimeScaleNotPositive =
         "the time scale is not positive", "dt = g dτ: write a g that is positive in every state of the motion",
         ["time_scale = «0»;", "time_scale = «cos»(pi);"];
@@ -371,7 +384,7 @@ catalogue! {
         ["coord x; L = dot(x)^2 / 2 - x^2; discretize { «Ld» = h * L(t0, q0, q0/h); }"] { name: "q1" },
         ["coord x; L = dot(x)^2 / 2 - x^2; discretize { «Ld» = h * L(t0, q1, q1/h); }"] { name: "q0" },
         ["coord x; L = dot(x)^2 / 2 - x^2; discretize { «Ld» = L(t0, q0, q1 - q0); }"] { name: "t0" };
-    MissingLagrangian = "the system has no Lagrangian", "write `L = …;`, kinetic minus potential energy";
+    MissingLagrangian = "the system has no Lagrangian", "write `L = …;`, kinetic minus potential energy, or `H = …;` with a `momentum`";
     SecondLagrangian = "a second `L`", "write `L` once; name parts of it with `let`",
         ["coord x; L = dot(x)^2; «L» = dot(x)^2;"];
     SecondRule = "a second `discretize`", "write `discretize` once; it may list several rules by their names",

@@ -69,6 +69,7 @@ mod examples;
 mod functions;
 mod general;
 mod habits;
+mod hamiltonian;
 pub(crate) mod words;
 
 pub use arrays::ArrayMistake;
@@ -77,6 +78,7 @@ pub use constraints::ConstraintMistake;
 pub use functions::FunctionMistake;
 pub use general::{Absence, Massless, Message, Singular};
 pub use habits::Habit;
+pub use hamiltonian::HamiltonianMistake;
 
 pub(crate) use arrays::bracketed;
 

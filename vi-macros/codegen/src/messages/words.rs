@@ -17,11 +17,7 @@ pub(super) const CLAUSES: &Table = &[
     ("constant constants static", "write `const g = 9.81;`"),
     ("lagrangian Lagrangian Lagrange Lag", "write `L = …;`"),
     ("l", "write `L = …;` for the Lagrangian, `let l = …;` to name a part"),
-    (
-        "H hamiltonian Hamiltonian",
-        "write the Lagrangian, a function of coordinates and velocities: `L = m * dot(q)^2 / 2 - V;` for `H = p^2 / (2 * m) + V`; \
-         Hamiltonians are not supported",
-    ),
+    ("hamiltonian Hamiltonian momenta", "write `momentum p of q;` and `H = …;`, as in `H = p^2 / (2 * m) + V;`"),
     ("rayleigh Rayleigh damping friction", "write `dissipation = …;`, Rayleigh's function"),
     ("constraints constrain subject holonomic nonholonomic equation equations eq", constraints::NAMED),
     (

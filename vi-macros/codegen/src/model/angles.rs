@@ -227,8 +227,8 @@ fn clauses(context: &mut Context, system: &System, lagrangian: Option<Expr>, tim
         what: what.to_owned(),
     };
     let mut all = Vec::new();
-    let first = system.lagrangians.first().zip(lagrangian);
-    all.extend(first.map(|(written, expr)| clause(vec![expr], written, "`L`")));
+    let first = system.function().zip(lagrangian);
+    all.extend(first.map(|(written, expr)| clause(vec![expr], written, &format!("`{}`", written.name))));
     for line in &system.forces {
         let entries = Entries::of_coordinate(context, &line.name.to_string());
         let unknown = |_: &Context, name: String| Message::ForceOnOther { name, near: None };

@@ -65,6 +65,16 @@ impl Array {
         self.entries.iter().any(|entry| entry.any(condition))
     }
 
+    /// Applies an operation to each of its numbers.
+    pub(super) fn each(&mut self, make: &mut dyn FnMut(&mut Expr)) {
+        for entry in &mut self.entries {
+            match entry {
+                Entry::Number(value) => make(value),
+                Entry::Array(array) => array.each(make),
+            }
+        }
+    }
+
     /// The index behind its last entry.
     pub(super) fn end(&self) -> i64 {
         self.first.saturating_add(i64::try_from(self.entries.len()).unwrap_or(i64::MAX))

@@ -7,8 +7,8 @@ use super::rotation::{self, COMPONENTS};
 use super::scope::Meaning;
 use super::value::Value;
 use super::{
-    Coordinate, Function, Model, Parameter, Rule, angles, check_state, constraint, force, function, indices, lets,
-    mass, rule, smoothness, time_scale, timeless,
+    Coordinate, Function, Model, Parameter, Rule, angles, check_state, constraint, force, function, hamiltonian,
+    indices, lets, mass, rule, smoothness, time_scale, timeless,
 };
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
 use crate::messages::{Absence, ArrayMistake, FunctionMistake, Message, error};
@@ -74,17 +74,20 @@ struct Named {
     parameters: Vec<Parameter>,
     coordinates: Vec<Coordinate>,
     functions: Vec<Function>,
+    /// L of a Hamiltonian.
+    lagrangian: Option<Expr>,
 }
 
 fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: bool) -> Result<Model> {
     let mut context = Context::new(pool);
     context.scope.kept = is_large.then(Vec::new);
-    let Named { parameters, coordinates, functions } = context.names(system);
+    let Named { parameters, coordinates, functions, lagrangian: of_hamiltonian } = context.names(system);
     let constraints = constraint::constraints(&mut context, &system.constraints, &coordinates);
     if system.is_constrained {
         constraint::check_clauses(&mut context, system);
     }
-    let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
+    let is_written = system.hamiltonians.is_empty() && system.momenta.is_empty();
+    let lagrangian = if is_written { context.lagrangian(&system.lagrangians, &system.name) } else { of_hamiltonian };
     let mut forces = force::forces(&mut context, &system.forces, &coordinates);
     let dissipation = force::dissipate(&mut context, &system.dissipations, &mut forces, &parameters);
     rotation::torques(&mut context, &system.torques, false, &coordinates, &mut forces);
@@ -115,7 +118,7 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     let mut without_time = |expr| if is_large { expr } else { timeless::timeless(pool, expr) };
     let lagrangian = without_time(lagrangian);
     let forces = forces.into_iter().map(without_time).collect();
-    let lagrangian_span = system.lagrangians[0].name.span();
+    let lagrangian_span = system.function().map_or_else(|| system.name.span(), |written| written.name.span());
     let rows = constraint::rows(pool, &constraints, coordinates.len());
     let singular = if is_large {
         Ok(())
@@ -169,6 +172,7 @@ impl Context<'_> {
         let System { constants, parameters, coordinates, lets, .. } = system;
         self.scope.expect(lets.iter().map(|named| &named.name), Absence::Let);
         self.scope.expect(coordinates.iter().map(|coordinate| &coordinate.name), Absence::Coordinate);
+        self.scope.expect(system.momenta.iter().map(|momentum| &momentum.name), Absence::Momentum);
         self.scope.expect(parameters.iter().map(|parameter| &parameter.name), Absence::Parameter);
         self.scope.expect(system.constraints.iter().map(|constraint| &constraint.name), Absence::Constraint);
         self.scope.expect(constants.iter().map(|constant| &constant.name), Absence::Below);
@@ -177,8 +181,10 @@ impl Context<'_> {
         let coordinates = self.coordinates(coordinates, &system.name);
         self.scope.expect(lets.iter().map(|named| &named.name), Absence::Below);
         let functions = function::functions(self, system, &parameters);
+        hamiltonian::momenta(self, system, &coordinates);
         lets::lets(self, lets);
-        Named { parameters, coordinates, functions }
+        let lagrangian = hamiltonian::lagrangian(self, system, (&coordinates, &parameters));
+        Named { parameters, coordinates, functions, lagrangian }
     }
 
     fn constants(&mut self, constants: &[Constant]) {

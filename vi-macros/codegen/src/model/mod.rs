@@ -14,6 +14,9 @@ mod context;
 mod dissipation;
 mod force;
 mod function;
+mod hamiltonian;
+mod inverse;
+pub(crate) mod legendre;
 mod lengths;
 mod lets;
 mod mass;
@@ -276,6 +279,7 @@ impl Model {
             Symbol::Continuous(Variable::Time) => "t".to_owned(),
             Symbol::Continuous(Variable::Coordinate(index)) => coordinate(*index),
             Symbol::Continuous(Variable::Velocity(index)) => format!("dot({})", coordinate(*index)),
+            Symbol::Momentum(index) => format!("p_{}", coordinate(*index)),
             Symbol::Acceleration(index) => format!("dot(dot({}))", coordinate(*index)),
             Symbol::Multiplier(index) => format!("λ_{}", self.constraints[*index].text()),
             Symbol::T0 => "t0".to_owned(),

@@ -226,7 +226,7 @@ impl Scope {
             }
             Some(Meaning::OfState) => Message::NotInRule { name: text },
             Some(Meaning::Constraint) => Message::Constraint(ConstraintMistake::Value { name: text }),
-            Some(Meaning::Moving) => Message::VelocityInTimeScale { name: text },
+            Some(Meaning::Moving(clause)) => Message::VelocityIn { name: text, clause },
             Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_) | Meaning::Function(_)) => {
                 Message::FunctionWithoutArguments { name: text }
             }
@@ -240,7 +240,7 @@ impl Scope {
         match self.meaning(&name) {
             Some(Meaning::OfState) => Message::NotInRule { name },
             Some(Meaning::Constraint) => Message::Constraint(ConstraintMistake::Value { name }),
-            Some(Meaning::Moving) => Message::VelocityInTimeScale { name },
+            Some(Meaning::Moving(clause)) => Message::VelocityIn { name, clause },
             Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_) | Meaning::Function(_)) => {
                 Message::FunctionWithoutArguments { name }
             }
@@ -281,7 +281,7 @@ impl Scope {
                 let components = (0..dimension).map(|index| pool.symbol(at_point(Quantity::Force(index), point)));
                 Ok(Value::vector_of(components.collect()))
             }
-            Some(Meaning::Moving) => Err(error(function.span(), &Message::VelocityInTimeScale { name })),
+            Some(Meaning::Moving(clause)) => Err(error(function.span(), &Message::VelocityIn { name, clause })),
             Some(Meaning::Wrong) => Ok(Value::Number(pool.one())),
             Some(Meaning::Function(called)) => {
                 self.record_call(&name);
@@ -423,7 +423,8 @@ impl Scope {
         if let Some(name) = name.filter(|name| self.is_constant(pool, &name.to_string())) {
             return Err(error(name.span(), &Message::DotOfConstant { name: name.to_string() }));
         }
-        let is_velocity = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
+        let is_velocity =
+            |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)) | Symbol::Momentum(_));
         if value.entries().iter().any(|entry| pool.depends_on(*entry, &is_velocity)) {
             // Names an array entry without its index; other expressions have no name.
             let name = match &argument.kind {

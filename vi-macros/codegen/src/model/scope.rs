@@ -89,8 +89,8 @@ pub(super) enum Meaning {
     Constraint,
     /// A quantity that depends on the state; in a rule it may only appear in arguments of L and f.
     OfState,
-    /// A quantity that depends on velocities; a time scale cannot use it.
-    Moving,
+    /// A quantity that depends on velocities, which this clause cannot use.
+    Moving(&'static str),
     /// A declaration with a reported error: it evaluates to 1, with or without an index.
     Wrong,
 }
@@ -153,18 +153,44 @@ impl Scope {
         self
     }
 
-    /// The names that a time scale may use: those that depend on velocities are excluded.
-    pub(super) fn of_time_scale(&self, pool: &Pool<Symbol>) -> Self {
+    /// The names that a clause without velocities may use.
+    pub(super) fn without_velocities(&self, pool: &Pool<Symbol>, clause: &'static str) -> Self {
         let is_velocity = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
         let moves = |expr: &Expr| pool.depends_on(*expr, &is_velocity);
         let meaning = |meaning: &Meaning| match meaning {
-            Meaning::Dot => Meaning::Moving,
-            Meaning::Number(value) if moves(value) => Meaning::Moving,
-            Meaning::Array(array) if array.any(&moves) => Meaning::Moving,
+            Meaning::Dot => Meaning::Moving(clause),
+            Meaning::Number(value) if moves(value) => Meaning::Moving(clause),
+            Meaning::Array(array) if array.any(&moves) => Meaning::Moving(clause),
             _ => meaning.clone(),
         };
         let names = self.names.iter().map(|(name, known)| (name.clone(), meaning(known))).collect();
         Self { called: Rc::clone(&self.called), ..Self::with_names(names) }
+    }
+
+    /// The name of an array of `let`s whose entries are symbols of an expression.
+    pub(super) fn array_in(&self, pool: &Pool<Symbol>, expr: Expr) -> Option<String> {
+        pool.symbols(expr).into_iter().find_map(|symbol| match symbol {
+            Symbol::Let(entry) | Symbol::LetRate(entry) => Some(self.kept.as_ref()?.get(entry.array)?.name.clone()),
+            _ => None,
+        })
+    }
+
+    /// Gives the momenta their values in all names.
+    pub(super) fn settle(&mut self, pool: &mut Pool<Symbol>, momenta: &[Expr]) {
+        let mut settled = |expr: &mut Expr| {
+            *expr = pool.substitute(*expr, &mut |_, symbol| match symbol {
+                Symbol::Momentum(index) => momenta.get(*index).copied(),
+                _ => None,
+            });
+        };
+        for meaning in self.names.values_mut() {
+            match meaning {
+                Meaning::Number(value) => settled(value),
+                Meaning::Array(array) => array.each(&mut settled),
+                _ => {}
+            }
+        }
+        self.kept.iter_mut().flatten().flat_map(|array| &mut array.definitions).for_each(settled);
     }
 
     /// The number of an evaluation point; equal points have the same number.
@@ -420,7 +446,7 @@ impl Scope {
     /// The declared name nearest to a misspelt one.
     pub(super) fn near(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
         let is_no_value = |meaning: &Meaning| {
-            matches!(meaning, Meaning::OfState | Meaning::Moving | Meaning::Dot | Meaning::Constraint)
+            matches!(meaning, Meaning::OfState | Meaning::Moving(_) | Meaning::Dot | Meaning::Constraint)
         };
         let is_meant = |known: &str| !self.meaning(known).is_some_and(is_no_value);
         let other = words::other_alphabet(name).filter(|other| self.names.contains_key(other) && is_meant(other));

@@ -15,19 +15,14 @@ pub(super) fn time_scale(context: &mut Context, written: &[Definition]) -> Optio
     for other in others {
         context.errors.at(other.name.span(), &Message::SecondTimeScale);
     }
-    let mut scope = context.scope.of_time_scale(context.pool);
+    let mut scope = context.scope.without_velocities(context.pool, "time_scale");
     let value = scope.expression(context.pool, &first.value);
     let value = context.report(value)?;
     let closed = context.closed(value);
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     if context.pool.depends_on(closed, &moves) && !context.is_too_large() {
-        // The name is that of an array of `let`s, whose entries are symbols.
-        let mut arrays = context.pool.symbols(value).into_iter();
-        let name = arrays.find_map(|symbol| match symbol {
-            Symbol::Let(entry) => context.scope.kept.as_ref()?.get(entry.array).map(|array| array.name.clone()),
-            _ => None,
-        });
-        context.errors.at(first.value.span, &Message::VelocityInTimeScale { name: name.unwrap_or_default() });
+        let name = context.scope.array_in(context.pool, value).unwrap_or_default();
+        context.errors.at(first.value.span, &Message::VelocityIn { name, clause: "time_scale" });
     }
     let is_number = context.pool.is_constant(closed) && !context.is_too_large();
     if is_number && matches!(context.pool.constant_sign(closed), Ok(Ordering::Less | Ordering::Equal)) {

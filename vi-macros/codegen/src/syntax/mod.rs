@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 /// The words that start a clause.
-const CLAUSES: [&str; 18] = [
+const CLAUSES: [&str; 20] = [
     "const",
     "param",
     "input",
@@ -28,8 +28,10 @@ const CLAUSES: [&str; 18] = [
     "rotation",
     "fn",
     "table",
+    "momentum",
     "let",
     "L",
+    "H",
     "force",
     "torque",
     "space_torque",
@@ -61,6 +63,8 @@ pub struct System {
     pub parameters: Vec<Parameter>,
     /// `coord x, q[8];`, `angle θ;` and `rotation R;` in order.
     pub coordinates: Vec<Coordinate>,
+    /// `momentum p of q;` in order.
+    pub momenta: Vec<Momentum>,
     /// `fn f(a) = …;` in order.
     pub functions: Vec<Rc<Function>>,
     /// `table f(a) = …;` in order.
@@ -73,6 +77,8 @@ pub struct System {
     pub lets: Vec<Definition>,
     /// `L = …;`, each occurrence.
     pub lagrangians: Vec<Definition>,
+    /// `H = …;`, each occurrence.
+    pub hamiltonians: Vec<Definition>,
     /// `force x = …;` in order; the name is the coordinate's.
     pub forces: Vec<Definition>,
     /// `torque R = …;` in order; the name is the rotation's.
@@ -102,6 +108,11 @@ impl System {
             Some(Discretization::Written(_)) => 1,
             None => 0,
         }
+    }
+
+    /// The clause of the function that defines the motion: `L`, or `H`.
+    pub(crate) fn function(&self) -> Option<&Definition> {
+        self.lagrangians.first().or(self.hamiltonians.first())
     }
 
     /// Removes the rules of a system without constraints, if they are built-in ones, and returns the first. Others stay,
@@ -221,6 +232,14 @@ pub struct Coordinate {
     pub is_angle: bool,
     /// Whether it is declared as a `rotation`, with four components.
     pub is_rotation: bool,
+}
+
+/// The momentum of a coordinate, or those of an array of coordinates.
+pub struct Momentum {
+    /// Its name.
+    pub name: Ident,
+    /// The name of the coordinate.
+    pub of: Ident,
 }
 
 /// The rule from L to L_d.

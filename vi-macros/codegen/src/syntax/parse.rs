@@ -8,7 +8,7 @@ use super::tokens::{DEPTH, check_rust, has_bracket, name};
 use super::unexpected;
 use super::{
     CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression, INSIDE_BRACKETS, Indices,
-    Kind, Parameter, Rule, System, clause_of,
+    Kind, Momentum, Parameter, Rule, System, clause_of,
 };
 use crate::messages::{ConstraintMistake, Errors, Habit, Message, bounded, error, nearest, words};
 use num_traits::Zero;
@@ -161,12 +161,14 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         constants: Vec::new(),
         parameters: Vec::new(),
         coordinates: Vec::new(),
+        momenta: Vec::new(),
         functions: Vec::new(),
         tables: Vec::new(),
         folder: std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default().into(),
         files: BTreeMap::new(),
         lets: Vec::new(),
         lagrangians: Vec::new(),
+        hamiltonians: Vec::new(),
         forces: Vec::new(),
         torques: Vec::new(),
         space_torques: Vec::new(),
@@ -254,6 +256,10 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             list(input, &mut |input| coordinate(input, &word).map(|one| system.coordinates.push(one)))?;
             return end_of_names(input, start);
         }
+        "momentum" => {
+            list(input, &mut |input| momentum(input).map(|one| system.momenta.push(one)))?;
+            return end_of_names(input, start);
+        }
         "fn" => system.functions.push(Rc::new(function::function(input)?)),
         "table" => system.tables.push(function::table(input)?),
         "let" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.lets.push(one)))?,
@@ -266,6 +272,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             list(input, &mut |input| indexed(input, &attributes).map(|one| system.space_torques.push(one)))?;
         }
         "L" => system.lagrangians.push(value_of(word, input, attributes)?),
+        "H" => system.hamiltonians.push(value_of(word, input, attributes)?),
         "dissipation" => system.dissipations.push(value_of(word, input, attributes)?),
         "constraint" => {
             system.is_constrained = true;
@@ -516,6 +523,16 @@ fn parameter(
 fn coordinate(input: ParseStream, word: &Ident) -> Result<Coordinate> {
     let name = name(input)?;
     Ok(Coordinate { name, lengths: lengths(input)?, is_angle: word == "angle", is_rotation: word == "rotation" })
+}
+
+/// `p of q`, after the word `momentum`
+fn momentum(input: ParseStream) -> Result<Momentum> {
+    let name = name(input)?;
+    let span = input.span();
+    match input.parse::<Ident>() {
+        Ok(word) if word == "of" => Ok(Momentum { name, of: self::name(input)? }),
+        _ => Err(error(span, &Message::Expected { what: "`of` and a coordinate, as in `momentum p of q;`" })),
+    }
 }
 
 /// The lengths of an array, `[8]` or `[8][3]`; none of a number

@@ -125,12 +125,13 @@ pub(super) fn end_of_definition(input: ParseStream, start: Cursor, what: &'stati
 pub(super) fn end_of_names(input: ParseStream, start: Cursor) -> Error {
     let is_coordinates =
         start.ident().is_some_and(|(word, _)| word == "coord" || word == "angle" || word == "rotation");
+    let is_rule = start.ident().is_some_and(|(word, _)| word == "discretize");
     let is_argument =
         input.peek(syn::token::Paren) || input.peek(Token![=]) || input.peek(Token![<]) || input.peek(syn::Lit);
     match previous(input, start) {
         Some(last) if ends(input) => no_semicolon(&last),
         _ if is_coordinates && input.peek(Token![=]) => unexpected(input.span(), Some(Habit::ValueOfCoordinate), ""),
-        _ if !is_coordinates && is_argument => unexpected(input.span(), Some(Habit::RuleWithArguments), ""),
+        _ if is_rule && is_argument => unexpected(input.span(), Some(Habit::RuleWithArguments), ""),
         _ if input.peek(Token![:]) => unexpected(input.span(), Some(Habit::Type), ""),
         _ => unexpected(input.span(), None, "`,` or `;`"),
     }

@@ -1,0 +1,155 @@
+//! The Hamiltonian: an input in place of L.
+//!
+//! In: the lines `momentum p of q;` and `H = …;`. Out: L, by the Legendre transformation; each momentum becomes a name for
+//! L_v in every other expression.
+
+use super::context::Context;
+use super::legendre::{NoTransform, transform};
+use super::lets::{self, Closed};
+use super::scope::Meaning;
+use super::value::Value;
+use super::{Coordinate, Parameter, mass};
+use crate::limits::bounded;
+use crate::messages::{HamiltonianMistake, Message, error};
+use crate::symbol::{Symbol, Variable};
+use crate::syntax::{Momentum, System};
+use proc_macro2::Span;
+use vi_expr::Expr;
+
+/// Declares the momenta, whose values are symbols until [`lagrangian`].
+pub(super) fn momenta(context: &mut Context, system: &System, coordinates: &[Coordinate]) {
+    let mut of_coordinate: Vec<Option<&Momentum>> = vec![None; coordinates.len()];
+    for momentum in &system.momenta {
+        let of = momentum.of.to_string();
+        let places: Vec<usize> = (0..coordinates.len()).filter(|place| coordinates[*place].name == of).collect();
+        let lengths = match context.scope.meaning(&of) {
+            Some(Meaning::Coordinate(_)) => Some(Vec::new()),
+            Some(Meaning::Coordinates { lengths, .. }) => Some(lengths.clone()),
+            Some(Meaning::Wrong) => None,
+            _ => {
+                let near = context.scope.near_of(context.pool, &of, |known| context.scope.is_coordinate(known));
+                report(context, momentum.of.span(), HamiltonianMistake::OfOther { name: of.clone(), near });
+                None
+            }
+        };
+        let Some(lengths) = lengths else {
+            context.declare(&momentum.name, Meaning::Wrong);
+            continue;
+        };
+        let is_second = places.iter().any(|place| of_coordinate[*place].replace(momentum).is_some());
+        if is_second {
+            report(context, momentum.of.span(), HamiltonianMistake::Second { name: of.clone() });
+        }
+        if places.iter().any(|place| coordinates[*place].is_rotation) {
+            report(context, momentum.of.span(), HamiltonianMistake::OfRotation { name: of });
+        }
+        let symbols = places.into_iter().map(|place| context.pool.symbol(Symbol::Momentum(place))).collect();
+        let meaning = lets::meaning(&Value::of_shape(&lengths, symbols));
+        context.declare(&momentum.name, meaning);
+    }
+    check_clauses(context, system, coordinates, &of_coordinate);
+}
+
+/// Reports momenta without H, H with L, and H without a momentum of each coordinate.
+fn check_clauses(context: &mut Context, system: &System, coordinates: &[Coordinate], given: &[Option<&Momentum>]) {
+    let [first, others @ ..] = &system.hamiltonians[..] else {
+        if let Some(momentum) = system.momenta.first() {
+            let (name, of) = (momentum.name.to_string(), momentum.of.to_string());
+            report(context, momentum.name.span(), HamiltonianMistake::Missing { name, of });
+        }
+        return;
+    };
+    for other in others {
+        report(context, other.name.span(), HamiltonianMistake::SecondHamiltonian);
+    }
+    if !system.lagrangians.is_empty() {
+        report(context, first.name.span(), HamiltonianMistake::Both);
+    }
+    let is_known = system.momenta.iter().all(|momentum| context.scope.is_coordinate(&momentum.of.to_string()));
+    let missing = coordinates.iter().zip(given).find(|(_, momentum)| momentum.is_none());
+    if let Some((coordinate, _)) = missing.filter(|_| is_known) {
+        let name = coordinate.name.to_string();
+        let mistake = if coordinate.is_rotation {
+            HamiltonianMistake::OfRotation { name }
+        } else {
+            HamiltonianMistake::MissingMomentum { name }
+        };
+        report(context, coordinate.name.span(), mistake);
+    }
+}
+
+fn report(context: &mut Context, span: Span, mistake: HamiltonianMistake) {
+    context.errors.at(span, &Message::Hamiltonian(mistake));
+}
+
+/// L of the system's H, and L_v as the values of the momenta; `None` without H or after a report.
+pub(super) fn lagrangian(
+    context: &mut Context,
+    system: &System,
+    (coordinates, parameters): (&[Coordinate], &[Parameter]),
+) -> Option<Expr> {
+    let written = system.hamiltonians.first()?;
+    let mut scope = context.scope.without_velocities(context.pool, "H");
+    let value = scope.expression(context.pool, &written.value);
+    let value = context.report(value)?;
+    let hamiltonian = with_momenta(context, value);
+    let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)) | Symbol::LetRate(_));
+    if context.pool.depends_on(hamiltonian, &moves) {
+        let name = context.scope.array_in(context.pool, value).unwrap_or_default();
+        context.errors.at(written.value.span, &Message::VelocityIn { name, clause: "H" });
+    }
+    if !context.errors.is_empty() {
+        return None;
+    }
+    let variables: [fn(usize) -> Symbol; 2] = [Symbol::Momentum, |index| Symbol::Continuous(Variable::Velocity(index))];
+    let made = transform(context.pool, hamiltonian, variables, parameters, coordinates.len());
+    let lagrangian = match (bounded(context.pool), made) {
+        (Err(size), _) => Err(error(written.name.span(), &Message::TooLarge { size })),
+        (_, Ok(lagrangian)) => Ok(lagrangian),
+        (_, Err(why)) => Err(no_lagrangian(system, coordinates, why)),
+    };
+    let lagrangian = context.report(lagrangian)?;
+    let momenta: Vec<Expr> = (0..coordinates.len())
+        .map(|index| {
+            let momentum = mass::slope(context.pool, lagrangian, Variable::Velocity(index));
+            context.closed(momentum)
+        })
+        .collect();
+    context.scope.settle(context.pool, &momenta);
+    Some(lagrangian)
+}
+
+/// H with the entries of arrays of `let`s that contain momenta replaced: the others stay symbols, so that loops over them do.
+fn with_momenta(context: &mut Context, value: Expr) -> Expr {
+    let Context { pool, scope, .. } = context;
+    let arrays = scope.kept.as_deref().unwrap_or_default();
+    let closed = Closed::of(pool, arrays);
+    let moves = |symbol: &Symbol| matches!(symbol, Symbol::Momentum(_));
+    pool.substitute(value, &mut |pool, symbol| {
+        let entry = pool.symbol(symbol.clone());
+        let by_coordinates = closed.expression(pool, entry);
+        pool.depends_on(by_coordinates, &moves).then_some(by_coordinates)
+    })
+}
+
+/// The message for an H without a Lagrangian.
+fn no_lagrangian(system: &System, coordinates: &[Coordinate], why: NoTransform) -> syn::Error {
+    let momentum = |place: usize| {
+        let Coordinate { name, indices, .. } = &coordinates[place];
+        let of = system.momenta.iter().find(|momentum| momentum.of == *name);
+        let span = of.map_or_else(|| name.span(), |momentum| momentum.name.span());
+        let text = of.map_or_else(String::new, |momentum| momentum.name.to_string());
+        (span, text + &crate::messages::bracketed(indices))
+    };
+    let whole = system.hamiltonians[0].name.span();
+    let (span, mistake) = match why {
+        NoTransform::NotQuadratic(place) => (whole, HamiltonianMistake::NotQuadratic { name: momentum(place).1 }),
+        NoTransform::Linear(place) => {
+            let (span, name) = momentum(place);
+            (span, HamiltonianMistake::Linear { name })
+        }
+        NoTransform::Singular => (whole, HamiltonianMistake::Singular),
+        NoTransform::Coupled(count) => (whole, HamiltonianMistake::Coupled { count }),
+    };
+    error(span, &Message::Hamiltonian(mistake))
+}
