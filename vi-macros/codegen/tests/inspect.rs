@@ -69,6 +69,31 @@ fn a_time_that_cancels_is_no_dependence() {
 }
 
 #[test]
+fn a_lagrangian_shows_its_hamiltonian() {
+    let hamiltonian = |body: &str| {
+        let text = explain(tokens(body)).unwrap_or_else(|error| panic!("{body}: {error}")).text();
+        text.lines().find_map(|line| line.trim().strip_prefix("H = ").map(str::to_owned))
+    };
+    let shown = |body: &str| hamiltonian(body).unwrap_or_else(|| panic!("{body}"));
+    let polar = "param m = 1, k = 2; coord r, a; L = m*(dot(r)^2 + r^2*dot(a)^2)/2 - k*(r - 1)^2/2;";
+    assert_eq!(shown(polar), "k*(r - 1)^2/2 + p_r^2/(2*m) + p_a^2/(2*m*r^2)");
+    let field = "param e = 2; coord r[2]; L = dot(r)*dot(r)/2 + e*r[0]*dot(r[1]);";
+    assert_eq!(shown(field), "p_r[0]^2/2 + p_r[1]^2/2 - e*r[0]*p_r[1] + e^2*r[0]^2/2");
+    let pendulum = "coord a, b; L = dot(a)^2 + dot(b)^2/2 + dot(a)*dot(b)*cos(a - b) + 2*cos(a) + cos(b);";
+    assert_eq!(
+        shown(pendulum),
+        "p_a^2/(2*(2 - cos(a - b)^2)) - 2*cos(a) - cos(b) - cos(a - b)*p_a*p_b/(2 - cos(a - b)^2) + p_b^2/(2 - cos(a - b)^2)"
+    );
+    // Written by H: the same.
+    let back =
+        "param m = 1, k = 2; coord r, a; momentum p of r, l of a; H = p^2/(2*m) + l^2/(2*m*r^2) + k*(r - 1)^2/2;";
+    assert_eq!(shown(back), "p_r^2/(2*m) + p_a^2/(2*m*r^2) + k*(r - 1)^2/2");
+    let latex = explain(tokens(back)).expect("a system").latex();
+    assert!(latex.contains("H &= \\frac{p_{r}^{2}}{2 m}"), "{latex}");
+    assert_eq!(hamiltonian("coord x; L = dot(x)^4 - x^2;"), None);
+}
+
+#[test]
 fn findings_in_words() {
     let free = "coord x, y; L = (dot(x)^2 + dot(y)^2)/2 - t*y; discretize midpoint;";
     let wanted = [

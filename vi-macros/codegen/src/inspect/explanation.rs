@@ -5,7 +5,8 @@
 
 use super::{latex, name};
 use crate::Derived;
-use vi_expr::Expr;
+use crate::symbol::Symbol;
+use vi_expr::{Expr, Pool};
 
 /// The mathematics of a system.
 pub struct Explanation {
@@ -48,7 +49,12 @@ pub enum Line {
 impl Line {
     /// The equation that gives an expression a name.
     pub(super) fn equation(derived: &Derived, left: (&str, &str), right: Expr) -> Self {
-        let Derived { pool, model, system, .. } = derived;
+        Self::equation_in(derived, &derived.pool, left, right)
+    }
+
+    /// The same for an expression in another pool.
+    pub(super) fn equation_in(derived: &Derived, pool: &Pool<Symbol>, left: (&str, &str), right: Expr) -> Self {
+        let Derived { model, system, .. } = derived;
         Self::Equation {
             left: left.0.to_owned(),
             right: pool.render(right, &|symbol| system.spell(model, symbol)),

@@ -7,7 +7,13 @@ use super::name;
 use crate::Derived;
 use crate::discrete::TimeScale;
 use crate::findings::{Block, Elimination};
+use crate::limits::bounded;
+use crate::model::legendre::transform;
 use crate::model::{Coordinate, Model, Rule};
+use crate::symbol::{Symbol, Variable};
+
+/// Characters of a Hamiltonian that is not shown.
+const LONGEST: usize = 1000;
 
 /// The heading of the sections for a further rule.
 pub(super) fn further_rule(name: &str) -> Section {
@@ -47,11 +53,19 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     }
     functions.extend(Line::equations(derived, ("p", "p"), &of.momentum));
     functions.push(Line::equation(derived, ("E", "E"), of.energy));
-    let mut title = "Lagrangian L, force f, momentum p, energy E";
-    if derived.system.by_rule.is_some() {
+    let hamiltonian = hamiltonian(derived);
+    let has_hamiltonian = hamiltonian.is_some();
+    functions.extend(hamiltonian);
+    let has_rule = derived.system.by_rule.is_some();
+    if has_rule {
         functions.push(Line::equation(derived, ("D", "D"), of.step_density));
-        title = "Lagrangian L, force f, momentum p, energy E, step density D";
     }
+    let title = match (has_hamiltonian, has_rule) {
+        (false, false) => "Lagrangian L, force f, momentum p, energy E",
+        (true, false) => "Lagrangian L, force f, momentum p, energy E, Hamiltonian H",
+        (false, true) => "Lagrangian L, force f, momentum p, energy E, step density D",
+        (true, true) => "Lagrangian L, force f, momentum p, energy E, Hamiltonian H, step density D",
+    };
     let mut sections = vec![Section { title: "System", lines }, Section { title, lines: functions }];
     sections.extend(constraints(derived));
     if let Some(TimeScale { g, g_dq, g_dt }) = &of.time_scale {
@@ -62,6 +76,18 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     }
     sections.extend(super::functions::sections(model));
     sections
+}
+
+/// H(t, q, p), if it has a closed form that is not long.
+fn hamiltonian(derived: &Derived) -> Option<Line> {
+    let mut pool = derived.pool.clone();
+    let model = &derived.model;
+    let variables: [fn(usize) -> Symbol; 2] = [|index| Symbol::Continuous(Variable::Velocity(index)), Symbol::Momentum];
+    let dimension = model.dimension();
+    let hamiltonian = transform(&mut pool, model.lagrangian, variables, &model.parameters, dimension).ok()?;
+    bounded(&pool).ok()?;
+    let text = pool.render_within(LONGEST, hamiltonian, &|symbol| model.spell(symbol));
+    (text.chars().count() < LONGEST).then(|| Line::equation_in(derived, &pool, ("H", "H"), hamiltonian))
 }
 
 /// g of the constraints on positions; A and a of all of them.
