@@ -4,7 +4,7 @@ use proc_macro::TokenStream;
 
 /// Turns a mechanical system into variational integrators.
 ///
-/// In: a struct with the clauses `const`, `param`, `coord`, `let`, `L`, `force`, `dissipation`,
+/// In: a struct with the clauses `const`, `param`, `coord`, `let`, `L` or `momentum` and `H`, `force`, `dissipation`,
 /// `constraint`, `time_scale`, `discretize` and `check`. Out: the struct with its parameters, its implementations of `vi_core`'s traits, and a test
 /// for each check. Every mistake is a compile error at the wrong token.
 ///
