@@ -152,10 +152,14 @@ impl<S: Runnable<N>, const N: usize> Objective<AnyMethod<S, N>, S, N> for AtTheE
     }
 }
 
-/// The directions of the coordinates, the momenta, and the parameters of these indices.
+/// The directions of the coordinates, the momenta, and the parameters of these indices, as in [`Wanted`].
 fn directions<S: Runnable<N>, const N: usize>(run: &AnyRun<S, N>, parameters: &[usize]) -> Vec<Variation<N>> {
     let count = run.system().parameters().len();
-    let of = |index: &usize| if *index < count { Variation::of_index(*index) } else { Variation::of_length() };
+    let of = |index: &usize| match index.checked_sub(count) {
+        None => Variation::of_index(*index),
+        Some(0) => Variation::of_length(),
+        Some(_) => Variation { t: 1.0, ..Variation::zero() },
+    };
     Variation::of_state().into_iter().chain(parameters.iter().map(of)).collect()
 }
 

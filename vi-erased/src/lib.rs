@@ -20,6 +20,7 @@
 //! | [`integrator`] | an integrator that is built for a system |
 //! | [`studies`] | exponents, accurate motions, DOP853; feature `studies` |
 //! | [`system`] | a system with its parameters |
+//! | [`shooting`] | steps from many nodes with their Jacobians, for optimal control; feature `derivatives` |
 //! | [`at_rest`] | a system without its coordinates at rest |
 //! | [`check`] | whether the options of a plan go together, in words |
 //!
@@ -39,6 +40,8 @@ mod run;
 pub mod section;
 #[cfg(feature = "sessions")]
 mod session;
+#[cfg(feature = "derivatives")]
+pub mod shooting;
 pub mod simulation;
 pub mod start;
 #[cfg(feature = "studies")]

@@ -171,7 +171,8 @@ pub enum End<'a> {
 pub struct Wanted<'a> {
     /// The end of the steps.
     pub end: End<'a>,
-    /// Indices of parameters that vary. The number of parameters is the index of the step length.
+    /// Indices of parameters that vary. The number of parameters is the index of the step length, the next number that of
+    /// the time at the start.
     pub parameters: &'a [usize],
     /// Whether velocities vary at the start, and are differentiated at the end, in place of momenta.
     pub has_velocities: [bool; 2],
