@@ -124,6 +124,7 @@ impl Expressions {
 /// A function of the time, the coordinates and the velocities of a system: a number, a vector or a matrix.
 pub struct Observable {
     of: Pooled,
+    coordinates: usize,
     shape: Vec<usize>,
     entries: Vec<Expr>,
 }
@@ -134,17 +135,50 @@ impl Observable {
     /// # Errors
     /// The mistakes of the text or of the expression.
     pub fn parse(text: &str, files: &[(String, String)], expression: &str) -> Result<Self, Mistakes> {
-        let Source { system, mut of, .. } = Source::of(text, files)?;
+        let Source { system, model, mut of } = Source::of(text, files)?;
         let wrong = |error: syn::Error| Mistakes::wrong("expression", expression, &error);
         let written = alone(expression).map_err(wrong)?;
         let (shape, entries) = check::shaped_expression(&mut of.pool, &system, &written).map_err(wrong)?;
-        Ok(Self { of, shape, entries })
+        Ok(Self { of, coordinates: model.dimension(), shape, entries })
+    }
+
+    /// Its derivatives, with a further last axis: with respect to t, the coordinates, the velocities, and the parameters of
+    /// these indices. Those with respect to the values of a table are NaN.
+    #[must_use]
+    pub fn derivatives(mut self, parameters: &[usize]) -> Self {
+        let state =
+            (0..self.coordinates).map(Variable::Coordinate).chain((0..self.coordinates).map(Variable::Velocity));
+        let state = [Variable::Time].into_iter().chain(state).map(Symbol::Continuous);
+        let is = |symbol: &Symbol, wanted: usize| matches!(symbol, Symbol::Parameter { index, .. } if *index == wanted);
+        let mut slopes = Vec::new();
+        for entry in &self.entries {
+            let pool = &mut self.of.pool;
+            for variable in state.clone() {
+                slopes.push(pool.derivative(*entry, &mut |pool, symbol| {
+                    if *symbol == variable { pool.one() } else { pool.zero() }
+                }));
+            }
+            for index in parameters {
+                slopes.push(pool.derivative(*entry, &mut |pool, symbol| {
+                    if is(symbol, *index) { pool.one() } else { pool.zero() }
+                }));
+            }
+        }
+        self.shape.push(1 + 2 * self.coordinates + parameters.len());
+        Self { entries: slopes, ..self }
     }
 
     /// The lengths of a vector or a matrix; none of a number.
     #[must_use]
     pub fn shape(&self) -> &[usize] {
         &self.shape
+    }
+
+    /// Whether each entry is zero at every point.
+    #[must_use]
+    pub fn zeros(&self) -> Vec<bool> {
+        let zero = self.of.pool.zero();
+        self.entries.iter().map(|entry| *entry == zero).collect()
     }
 
     /// The entries at a point, row by row; NaN where they have no value.

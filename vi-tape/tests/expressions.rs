@@ -108,3 +108,29 @@ fn an_observable_has_a_shape_and_velocities() {
     let wrong = Observable::parse(TEXT, &[], "x + [1, 2]").err().map(|error| error.to_string()).unwrap_or_default();
     assert!(wrong.contains("--> expression:1:"), "{wrong}");
 }
+
+#[test]
+fn derivatives_of_an_expression_are_those_of_differences() {
+    let text = "x^2 * dot(y) + m * sin(t) * well(x) - valley(x, y) * c[1]";
+    let parsed = || Observable::parse(TEXT, &[], text).unwrap_or_else(|error| panic!("{error}"));
+    let (value, slopes) = (parsed(), parsed().derivatives(&[0, 2]));
+    assert_eq!(slopes.shape(), [7]);
+    // x, y and the velocity of y, but not that of x.
+    assert_eq!(slopes.zeros(), [false, false, false, true, false, false, false]);
+    // t, q, v, and the two parameters.
+    let point = [0.5, 0.6, -0.8, 2.0, 0.5, 1.3, 0.4];
+    let at = |[t, x, y, vx, vy, m, c]: [f64; 7]| {
+        let mut parameters = PARAMETERS;
+        (parameters[0], parameters[2]) = (m, c);
+        let (q, v) = ([x, y], [vx, vy]);
+        let moment = Moment { t, q: &q, v: &v, parameters: &parameters, ..Moment::default() };
+        (value.values(&moment)[0], slopes.values(&moment))
+    };
+    for (column, slope) in at(point).1.into_iter().enumerate() {
+        let moved = |by: f64| at(core::array::from_fn(|of| point[of] + if of == column { by } else { 0.0 })).0;
+        let difference = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+        assert!((difference - slope).abs() < 1e-9, "{column}: {difference} {slope}");
+    }
+    let of_inputs = Observable::parse(TEXT, &[], "m^2").unwrap_or_else(|error| panic!("{error}")).derivatives(&[0]);
+    assert_eq!(of_inputs.zeros(), [true, true, true, true, true, false]);
+}
