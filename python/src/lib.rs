@@ -98,19 +98,39 @@ type Points = (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<f64>>);
 #[pymethods]
 #[pyo3(crate = "vi_python::pyo3")]
 impl Observable {
-    /// `files` are paths and texts of the files of its tables.
+    /// `files` are paths and texts of the files of its tables. With `wrt`, indices of parameters, it is the derivatives of
+    /// the expression: the last axis has t, the coordinates, the velocities and these parameters.
     ///
     /// Raises ValueError for a mistake, with its line.
     #[new]
-    fn new(py: Python<'_>, definition: &str, files: Vec<(String, String)>, expression: &str) -> PyResult<Self> {
-        let parsed = py.detach(|| expressions::Observable::parse(definition, &files, expression).map(Mutex::new));
-        parsed.map(Self).map_err(|mistakes| PyValueError::new_err(mistakes.to_string()))
+    #[pyo3(signature = (definition, files, expression, wrt=None))]
+    fn new(
+        py: Python<'_>,
+        definition: &str,
+        files: Vec<(String, String)>,
+        expression: &str,
+        wrt: Option<Vec<usize>>,
+    ) -> PyResult<Self> {
+        let parsed = py.detach(|| {
+            let of = expressions::Observable::parse(definition, &files, expression)?;
+            Ok(Mutex::new(match wrt {
+                None => of,
+                Some(wrt) => of.derivatives(&wrt),
+            }))
+        });
+        parsed.map(Self).map_err(|mistakes: vi_tape::Mistakes| PyValueError::new_err(mistakes.to_string()))
     }
 
     /// The lengths of a vector or a matrix; none of a number.
     #[getter]
     fn shape(&self) -> Vec<usize> {
         self.lock().shape().to_vec()
+    }
+
+    /// Whether each entry is zero at every point.
+    #[getter]
+    fn zeros(&self) -> Vec<bool> {
+        self.lock().zeros()
     }
 
     /// The entries at points, one point after the other, with the numbers of the system at each of them or at all.

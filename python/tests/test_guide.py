@@ -12,8 +12,8 @@ ROOT = Path(__file__).parents[2]
 PAGES = ["docs/python.md", "docs/from_scipy.md", "python/README.md", "README.md"]
 PAGES += sorted(str(page.relative_to(ROOT)) for page in (ROOT / "docs/python").glob("*.md"))
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-OPTIONAL = ["fmpy", "jax", "matplotlib", "pandas", "scipy", "torch"]
-USES = {"matplotlib": (".plot(", ".animate("), "scipy": ("vi.fit(",)}
+OPTIONAL = ["casadi", "fmpy", "jax", "matplotlib", "pandas", "scipy", "torch"]
+USES = {"matplotlib": (".plot(", ".animate("), "scipy": ("vi.fit(",), "casadi": ("vi.optimise(",)}
 
 
 def blocks():

@@ -32,6 +32,7 @@ from ._events import Event, Period
 from ._explanation import Explanation
 from ._fit import Fit, Unidentifiable, fit
 from ._names import meant
+from ._optimise import EnergyBalance, Optimum, optimise
 from ._robots import Robot, from_mjcf, from_urdf
 from ._run import LocalError, Run
 from ._solution import Events, Solution
@@ -56,8 +57,9 @@ def __getattr__(name: str) -> type[System]:
 
 
 __all__ = [
-    "Comparison", "CompileError", "Ensemble", "Equilibrium", "Event", "Events", "Explanation", "Fit", "Linearization",
-    "LocalError", "Period", "Projected", "Robot", "Run", "Solution", "System", "Unidentifiable", "compare", "compile",
-    "fit", "from_mjcf", "from_urdf", "load_ipython_extension", "stubs", "systems", "warm",
+    "Comparison", "CompileError", "EnergyBalance", "Ensemble", "Equilibrium", "Event", "Events", "Explanation", "Fit",
+    "Linearization", "LocalError", "Optimum", "Period", "Projected", "Robot", "Run", "Solution", "System",
+    "Unidentifiable", "compare", "compile", "fit", "from_mjcf", "from_urdf", "load_ipython_extension", "optimise",
+    "stubs", "systems", "warm",
     *_error_names, *systems,
 ]  # fmt: skip

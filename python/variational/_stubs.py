@@ -26,6 +26,7 @@ from ._ensemble import Ensemble as Ensemble
 from ._events import Event as Event, Period as Period
 from ._explanation import Explanation as Explanation
 from ._fit import Fit as Fit, Unidentifiable as Unidentifiable, fit as fit
+from ._optimise import EnergyBalance as EnergyBalance, Optimum as Optimum, optimise as optimise
 from ._robots import Robot as Robot, from_mjcf as from_mjcf, from_urdf as from_urdf
 from ._run import LocalError as LocalError, Run as Run
 from ._solution import Events as Events, Solution as Solution

@@ -504,12 +504,13 @@ class System(metaclass=SystemType):
         return np.array(found).reshape(shape) if shape else found[0]
 
     @classmethod
-    def _observable(cls, expression: str) -> _core.Observable:
-        """An expression in the names of the system. Raises ValueError for a mistake, with its place."""
+    def _observable(cls, expression: str, wrt: list[int] | None = None) -> _core.Observable:
+        """An expression in the names of the system, or its derivatives with respect to t, q, v and the parameters of
+        these indices. Raises ValueError for a mistake, with its place."""
         if not isinstance(expression, str):
             raise TypeError(f"an expression is a text, such as 'm * x^2', not {expression!r}")
         definition, files = cls._read()
-        return _core.Observable(definition, list(files), expression)
+        return _core.Observable(definition, list(files), expression, wrt)
 
     @classmethod
     def _read(cls) -> tuple[str, tuple[tuple[str, str], ...]]:

@@ -1,16 +1,17 @@
 //! The pyclass of a system's type.
 
 use crate::ensemble::{Ensemble, Output};
-use crate::failure::{Raise as _, wrong};
+use crate::failure::{Raise as _, instance, wrong};
 use crate::report::{Report, Watch};
 use crate::request::{Request, checked};
 use crate::rows::{Linearized, linearized, matrix, rows, vector};
 use crate::run::Run;
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use vi_erased::System;
 use vi_erased::control::Rest;
 use vi_erased::plan::{Method, Named as _, PhasePoint, Plan};
+use vi_erased::shooting::Shots;
 use vi_erased::system::{OnConstraints, Quantity};
 
 /// A system's type.
@@ -240,6 +241,35 @@ impl Kind {
         let run = py.detach(|| system.begin_while(&plan, &mut || watch.goes_on()));
         watch.check()?;
         Ok(Run::new(run.raise(py)?, plan.wanted(!system.constraints().is_empty())))
+    }
+
+    /// Steps of equal length from K nodes, with all parameters of each: their ends (K, 2N); the Jacobians (K, 2N, 2N + M + 2)
+    /// with respect to q, p, the M parameters of these indices, h and t; the index and the exception of each failed one.
+    /// With `velocities` the ends have them in place of momenta.
+    #[allow(clippy::too_many_arguments, clippy::type_complexity)] // Python's keywords
+    fn shoot<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray2<'py, f64>,
+        request: Request,
+        t: PyReadonlyArray1<'py, f64>,
+        q: PyReadonlyArray2<'py, f64>,
+        p: PyReadonlyArray2<'py, f64>,
+        h: PyReadonlyArray1<'py, f64>,
+        varied: Vec<usize>,
+        steps: u64,
+        velocities: bool,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>, Vec<(usize, Bound<'py, PyAny>)>)> {
+        let (many, n) = (t.len(), self.n);
+        let plan = request.plan(&*self.of, 0.0, Vec::new(), Vec::new())?;
+        let parameters = matrix(&parameters, [many, self.parameters.len()], "parameters")?;
+        let (t, h) = (vector(&t, many, "t")?, vector(&h, many, "h")?);
+        let (q, p) = (matrix(&q, [many, n], "q")?, matrix(&p, [many, n], "p")?);
+        let shots = Shots { t: &t, q: &q, p: &p, h: &h, parameters: &parameters };
+        let ends = py.detach(|| shots.ends(&*self.of, &plan, &varied, steps, velocities));
+        let jacobians = PyArray1::from_vec(py, ends.jacobians).reshape([many, 2 * n, 2 * n + varied.len() + 2])?;
+        let errors = ends.errors.iter().map(|(index, error)| Ok((*index, instance(py, error)?)));
+        Ok((rows(py, ends.states, 2 * n)?, jacobians, errors.collect::<PyResult<_>>()?))
     }
 
     /// Restarts a stored run.

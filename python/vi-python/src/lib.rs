@@ -44,7 +44,7 @@ use vi_erased::System;
 use vi_erased::plan::{Method, Named as _};
 
 /// The version of the interface between these classes and the Python files of the package `variational`.
-pub const CONTRACT: u32 = 5;
+pub const CONTRACT: u32 = 6;
 
 /// Adds systems to a Python module.
 ///

@@ -1,0 +1,154 @@
+"""Nonlinear programs, solved by IPOPT of CasADi's wheel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._arrays import Array
+
+Indices = NDArray[np.intp]
+
+
+class Program(Protocol):
+    """min f(x) with lower <= x <= upper and row_bounds[0] <= g(x) <= row_bounds[1]."""
+
+    lower: Array
+    upper: Array
+
+    @property
+    def row_bounds(self) -> tuple[Array, Array]: ...
+
+    @property
+    def pattern(self) -> tuple[Indices, Indices]:
+        """Rows and columns of the numbers of the Jacobian of g; equal places add up."""
+
+    @property
+    def hessian_pattern(self) -> tuple[Indices, Indices]:
+        """The same of the symmetric Hessian matrix, with both halves."""
+
+    def evaluated(self, x: Array) -> tuple[float, Array, Array, Array]:
+        """f, its gradient, g, and the numbers of the Jacobian of g; NaN where there are none."""
+
+    def hessian(self, x: Array, weight: float, multipliers: Array) -> Array:
+        """The numbers of the Hessian matrix of weight f + multipliers · g."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """The last point of the solver."""
+
+    x: Array
+    cost: float
+    multipliers: Array
+    residual: float
+    iterations: int
+    success: bool
+    status: str
+
+
+def solve(program: Program, start: Array, options: dict[str, Any]) -> Solved:
+    """Solves a program from a start. `options` are those of IPOPT."""
+    try:
+        import casadi
+    except ImportError:
+        raise ImportError("optimise needs IPOPT of casadi: pip install casadi") from None
+    last: dict[str, Any] = {"x": None, "of": None}
+
+    def at(x: Any) -> tuple[float, Array, Array, Array]:
+        # IPOPT asks for values and derivatives one after the other.
+        point = np.asarray(x, dtype=float).ravel()
+        if last["x"] is None or not np.array_equal(last["x"], point):
+            last.update(x=point.copy(), of=program.evaluated(point))
+        return last["of"]
+
+    size, (lower, upper) = len(start), program.row_bounds
+    jacobian = _Matrix(casadi, *program.pattern, len(lower), size)
+    rows, columns = program.hessian_pattern
+    # IPOPT reads one half.
+    half = rows <= columns
+    hessian = _Matrix(casadi, rows[half], columns[half], size, size)
+    dense = casadi.Sparsity.dense
+    none, vector, row, number = casadi.Sparsity(0, 0), dense(size), dense(len(lower)), dense(1)
+    values = _callback(casadi, "values", [vector], [number, row], lambda x: (at(x)[0], at(x)[2]))
+    gradient = _callback(casadi, "gradient", [vector, none], [number, vector], lambda x, _: at(x)[:2])
+    slopes = _callback(
+        casadi, "jacobian", [vector, none], [row, jacobian.sparsity], lambda x, _: (at(x)[2], jacobian(at(x)[3]))
+    )
+
+    def curved(x: Any, _: Any, weight: Any, multipliers: Any) -> tuple[Any]:
+        point, of_rows = (np.asarray(of, dtype=float).ravel() for of in (x, multipliers))
+        return (hessian(program.hessian(point, float(weight), of_rows)[half]),)
+
+    curvature = _callback(casadi, "hessian", [vector, none, number, row], [hessian.sparsity], curved)
+    x = casadi.MX.sym("x", size)
+    f, g = values(x)
+    # IPOPT relaxes bounds by 1e-8 unless it is told not to.
+    usual = {"tol": 1e-10, "bound_relax_factor": 0.0, "max_iter": 1000, "print_level": 0, "sb": "yes"}
+    settings: dict[str, Any] = {
+        "grad_f": gradient,
+        "jac_g": slopes,
+        "hess_lag": curvature,
+        # The values have no other derivatives.
+        "no_nlp_grad": True,
+        "print_time": False,
+        "show_eval_warnings": False,
+        "ipopt": {**usual, **options},
+    }
+    named: dict[str, Any] = {"x": x, "f": f, "g": g}
+    solver = casadi.nlpsol("optimise", "ipopt", named, settings)
+    found = solver(x0=start, lbx=program.lower, ubx=program.upper, lbg=lower, ubg=upper)
+    stats, point = solver.stats(), np.asarray(found["x"]).ravel()
+    of_g = np.asarray(found["g"]).ravel()
+    violated = [lower - of_g, of_g - upper, program.lower - point, point - program.upper]
+    return Solved(
+        point,
+        float(found["f"]),
+        np.asarray(found["lam_g"]).ravel(),
+        float(np.concatenate([[0.0], *violated]).max()),
+        int(stats["iter_count"]),
+        bool(stats["success"]),
+        stats["return_status"].replace("_", " "),
+    )
+
+
+class _Matrix:
+    """A sparse matrix of given places, column by column."""
+
+    def __init__(self, casadi: Any, rows: Indices, columns: Indices, height: int, width: int):
+        places, self.order = np.unique(columns * height + rows, return_inverse=True)
+        self.size, self.dm = len(places), casadi.DM
+        rows, columns = (of.tolist() for of in (places % height, places // height))
+        self.sparsity = casadi.Sparsity.triplet(height, width, rows, columns)
+
+    def __call__(self, numbers: Array) -> Any:
+        return self.dm(self.sparsity, np.bincount(self.order, numbers, self.size))
+
+
+def _callback(casadi: Any, name: str, inputs: list[Any], outputs: list[Any], function: Any) -> Any:
+    """A function of CasADi with these shapes."""
+
+    class Callback(casadi.Callback):  # type: ignore[misc]
+        def __init__(self) -> None:
+            casadi.Callback.__init__(self)
+            self.construct(name, {})
+
+        def get_n_in(self) -> int:
+            return len(inputs)
+
+        def get_n_out(self) -> int:
+            return len(outputs)
+
+        def get_sparsity_in(self, index: int) -> Any:
+            return inputs[index]
+
+        def get_sparsity_out(self, index: int) -> Any:
+            return outputs[index]
+
+        def eval(self, arguments: Any) -> Any:
+            return [casadi.DM(of) for of in function(*arguments)]
+
+    return Callback()

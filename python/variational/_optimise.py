@@ -1,0 +1,716 @@
+"""Optimal control: the inputs of least cost, by direct multiple shooting over exact steps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._arrays import Array, array, count, finite, fixed, number, vector
+from ._calls import checked_call, unassignable
+from ._errors import advised  # type: ignore[attr-defined]
+from ._names import among, course, meant
+from ._nlp import Indices, Solved, solve
+from ._request import checked
+from ._solution import Solution
+
+if TYPE_CHECKING:
+    from ._system import System
+
+_GAUSS = np.polynomial.legendre.leggauss(3)
+"""Points and weights of the cost of a step, of order 6."""
+_GAUSS_OF_WORK = np.polynomial.legendre.leggauss(8)
+"""The same of the work of a step, of order 16."""
+
+_CHANGE = 1e-5
+"""Change of a variable for a second derivative, relative to its size: the differences are of exact derivatives."""
+
+
+@unassignable()
+class EnergyBalance(NamedTuple):
+    """The energy of an optimum. `change - work - other` is the error of the steps and of the integrals, unless L has an
+    input or the time."""
+
+    change: float
+    """Energy at the end less that at the start."""
+    work: float
+    """Work of the inputs: of the generalized force less the force with zero inputs."""
+    other: float
+    """Work of the other forces, such as friction."""
+
+
+@unassignable()
+@dataclass(frozen=True, eq=False, repr=False)
+class Optimum:
+    """The inputs of least cost, and the motion that they cause."""
+
+    solution: Solution
+    """The run of these inputs: its K + 1 rows are the nodes."""
+    t: Array
+    """The times of the nodes, (K + 1,)."""
+    u: Array
+    """The inputs of each step, (K, M), in the order of `inputs`."""
+    inputs: tuple[str, ...]
+    """Names of the inputs."""
+    cost: float
+    """The cost: the integral of `cost` over the steps, plus `final` at the end."""
+    iterations: int
+    """Iterations of the solver."""
+    success: bool
+    """Whether the solver found an optimum."""
+    status: str
+    """The last words of the solver."""
+    residual: float
+    """The largest violation of a step, of an end or of a bound."""
+    costates: Array
+    """Derivatives of the cost with respect to (q, p) at the end of each step, (K, 2N)."""
+    multipliers: dict[str, Array]
+    """Multipliers of the other conditions by name: one for each node that has the condition. A positive one pushes
+    against an upper bound."""
+    _nodes: tuple[Array, Array]
+    _problem: dict[str, Any]
+
+    def __getitem__(self, name: str) -> Array:
+        """An input by its name, (K,); a coordinate, a velocity or an expression at the nodes, (K + 1,)."""
+        found = among(name, self.inputs)
+        return fixed(self.u[:, self.inputs.index(found)].copy()) if found in self.inputs else self.solution[name]
+
+    def __repr__(self) -> str:
+        name = type(self.solution.system).__name__
+        lines = [
+            f"Optimum of {name}: cost {self.cost:.8g} in {self.iterations} iterations",
+            f"{len(self.u)} steps to t = {self.t[-1]:g}, largest residual {self.residual:.1e}, error of a step "
+            f"{self.errors.max():.1e}",
+        ]
+        return "\n".join(lines if self.success else [*lines, f"not converged: {self.status}"])
+
+    @cached_property
+    def errors(self) -> Array:
+        """The error of the coordinates in each step, by half steps, (K, N)."""
+        return fixed(np.array([run.local_error().q for run in self._runs()]))
+
+    @cached_property
+    def energy_balance(self) -> EnergyBalance:
+        """The change of the energy, and the work of the inputs and of other forces."""
+        work = other = 0.0
+        for run, h in zip(self._runs(), np.diff(self.t), strict=True):
+            driven = run.system
+            free = driven.copy().set(**dict.fromkeys(driven.inputs, 0.0))
+            for point, weight in zip(*_GAUSS_OF_WORK, strict=True):
+                at = run.copy().step((1.0 + point) / 2.0 * h)
+                force, rest = driven.force(at.t, at.q, at.v), free.force(at.t, at.q, at.v)
+                work += weight / 2.0 * h * float((force - rest) @ at.v)
+                other += weight / 2.0 * h * float(rest @ at.v)
+        energy = self.solution.energy
+        return EnergyBalance(float(energy[-1] - energy[0]), work, other)
+
+    def again(self, **changes: Any) -> Optimum:
+        """The same problem with other arguments of `optimise`, from this optimum as the guess: `again(steps=50)`."""
+        return optimise(**{**self._problem, "guess": self, **changes})
+
+    def _runs(self) -> Any:
+        """A run at the start of each step."""
+        system, options = self.solution.system, {key: self._problem[key] for key in ("method", "stages")}
+        for k, h in enumerate(np.diff(self.t)):
+            own = type(system)._of(self.solution._values[k])  # type: ignore[index]
+            yield own.integrate(self.solution.q[k], p=self.solution.p[k], t=self.t[k], h=h, **options)
+
+
+@checked_call
+def optimise(
+    system: System,
+    *,
+    steps: int | ArrayLike,
+    duration: float | Sequence[float] | None = None,
+    start: Any,
+    end: Any = None,
+    cost: str | None = None,
+    final: str | None = None,
+    inputs: str | Sequence[str] | Mapping[str, Any] | None = None,
+    bounds: Mapping[str, Any] | None = None,
+    guess: Any = None,
+    t: float | None = None,
+    method: str | None = None,
+    stages: int | None = None,
+    options: Mapping[str, Any] | None = None,
+) -> Optimum:
+    """Finds the inputs of least cost by direct multiple shooting: the constraints are the steps of the method, whose
+    Jacobians are exact. IPOPT of CasADi solves the program.
+
+    Parameters
+    ----------
+    system : System
+        The system. Its parameters, and the inputs that are not in `inputs`, stay constant.
+    steps : int or array
+        The number K of steps of equal length, or K + 1 ascending times that have the proportions of the steps. The
+        inputs are constant over a step.
+    duration : float or pair
+        The time of all steps; two numbers are the bounds of a free one. By default that of the times in `steps`.
+    start, end : pair or dict
+        Coordinates and velocities (q, v), or values of some: `{"x": 0.0, "dot(x)": (-1.0, 1.0)}`. A pair is the least
+        and the greatest value. Coordinates, velocities and expressions of the language can be given, others are free.
+    cost : str
+        An expression of the language, whose integral is least: `"u^2"`, or `"1"` for the least time. Three Gauss points
+        in each step take the integral.
+    final : str
+        An expression at the end that is added to the cost.
+    inputs : list of str or dict
+        The inputs to find, and their bounds: `{"u": (-1.0, 1.0)}`. By default all of the system, without bounds.
+    bounds : dict
+        Bounds of coordinates, velocities and expressions at all nodes: `{"x": (-1.0, 1.0), "x^2 + y^2": (0.1, None)}`.
+    guess : dict, Optimum or Solution
+        Where the solver starts. A dict has inputs, numbers or one for each step, and perhaps the "duration": the motion
+        is that of these inputs from the start. By default the coordinates go from start to end on a line, without
+        inputs.
+    t : float
+        The time of the start: by default the first of the times in `steps`, or zero.
+    method, stages
+        As in `integrate`, for methods whose steps have the given length.
+    options : dict
+        Options of IPOPT, such as `{"max_iter": 500, "print_level": 5}`.
+
+    Second derivatives are differences of the exact first ones. If no optimum is found, `success` is False. Raises
+    StepError if the motion of the guess fails.
+    """
+    given = {name: value for name, value in locals().items() if name != "guess"}
+    problem = _Problem(system, steps, duration, t, method, stages)
+    given["system"] = system.copy()
+    problem.set_inputs(inputs)
+    problem.set_costs(cost, final)
+    for name, of, nodes in (("start", start, [0]), ("end", end, [problem.steps])):
+        problem.set_end(name, of, nodes)
+    problem.set_bounds(bounds)
+    begin = problem.guessed(guess)
+    problem.check(begin)
+    return _optimum(problem, solve(problem, begin, dict(options or {})), given)
+
+
+def _optimum(problem: _Problem, found: Solved, given: dict[str, Any]) -> Optimum:
+    """The result of a solved problem, with the run of its inputs."""
+    n, k = problem.n, problem.steps
+    duration, q, p, u = problem.split(found.x)
+    t = problem.times(duration)
+    values = problem.parameters(np.vstack([u, u[-1:]]))
+    cls = type(problem.system)
+    solution = _replayed(cls, values, t, q[0], p[0], {"method": given["method"], "stages": given["stages"]})
+    own = found.multipliers[2 * n * k :]
+    multipliers: dict[str, Array] = {}
+    for row in problem.rows:
+        multipliers[row.name] = fixed(own[row.place : row.place + len(row.nodes)].copy())
+    return Optimum(
+        solution,
+        fixed(t),
+        fixed(u),
+        tuple(problem.names),
+        found.cost,
+        found.iterations,
+        found.success,
+        found.status,
+        found.residual,
+        fixed(found.multipliers[: 2 * n * k].reshape(k, 2 * n)),
+        multipliers,
+        (fixed(q), fixed(p)),
+        given,
+    )
+
+
+def _replayed(cls: Any, values: Array, t: Array, q: Array, p: Array, options: dict[str, Any]) -> Solution:
+    """The run through these times, with numbers of the system for each of its steps."""
+    run = cls._of(values[0]).integrate(q, p=p, t=t[0], h=t[1] - t[0], **options)
+    rows = [(run.t, run.q, run.p, run.v, run.energy)]
+    for row, end in enumerate(t[1:]):
+        if row and not np.array_equal(values[row], values[row - 1]):
+            changed = np.flatnonzero(values[row] != values[row - 1]).tolist()
+            run._run.set_parameters([(index, values[row][index]) for index in changed])
+        run.step(end - run.t)
+        rows.append((end, run.q, run.p, run.v, run.energy))
+    t, q, p, v, energy = (np.array(column) for column in zip(*rows, strict=True))
+    solution = Solution(cls._of(values[0])._fixed(), t, q, p)
+    # Each row has a system of its own.
+    solution.__dict__.update(v=fixed(v), energy=fixed(energy))
+    solution._values = values
+    return solution
+
+
+class _Function:
+    """A function of the time, the coordinates, the velocities and the inputs: an expression of the language."""
+
+    def __init__(self, system: System, text: str, inputs: list[int]):
+        self.n = len(system.coordinates)
+        self.value = system._observable(text)
+        if self.value.shape:
+            raise ValueError(f"{text!r} must be a number, not of the shape {tuple(self.value.shape)}")
+        self.slope = system._observable(text, inputs)
+        self.is_of_inputs = all(self.slope.zeros[: 1 + 2 * self.n])
+        """Whether it depends on inputs alone."""
+
+    def __call__(self, t: Array, q: Array, v: Array, parameters: Array) -> tuple[Array, Array]:
+        """Values (B,), and derivatives (B, 1 + 2N + M) with respect to t, q, v and the inputs."""
+        points, numbers = (t.tolist(), q.tolist(), v.tolist()), parameters.tolist()
+        slopes = np.array(self.slope.values(points, numbers)).reshape(len(t), -1)
+        return np.array(self.value.values(points, numbers)), slopes
+
+
+class _Velocity:
+    """A velocity."""
+
+    def __init__(self, n: int, index: int, inputs: int):
+        self.index, self.slope = index, np.eye(1 + 2 * n + inputs)[1 + n + index]
+
+    def __call__(self, t: Array, q: Array, v: Array, parameters: Array) -> tuple[Array, Array]:
+        return v[:, self.index], np.tile(self.slope, (len(t), 1))
+
+
+class _Row(NamedTuple):
+    """A function with bounds at some nodes. It has rows of the program from `place` on, behind those of the steps."""
+
+    name: str
+    function: Any
+    nodes: Indices
+    bounds: tuple[float, float]
+    place: int
+
+
+class _Problem:
+    """The nonlinear program. Its variables are the duration, then q, p and the inputs of each node.
+
+    Everything but the equality of nodes is local: the step, the cost and the rows of a node depend on its variables
+    w = (q, p, u, duration). The last node has the inputs of the last step.
+    """
+
+    def __init__(
+        self, system: System, steps: Any, duration: Any, t: float | None, method: str | None, stages: int | None
+    ):
+        from ._system import System
+
+        if not isinstance(system, System):
+            raise TypeError(f"optimise needs a system such as vi.CartPole(), not {system!r}")
+        cls = type(system)
+        if method in ("energy", "adaptive"):
+            raise ValueError(f'method="{method}" finds the lengths of its steps: optimise needs given ones')
+        self.system, self.n = system, len(system.coordinates)
+        self.shares, first, span = _shares(steps)
+        self.t = first if t is None else number(t, "t")
+        self.steps = len(self.shares) - 1
+        self.duration = _durations(span if duration is None else duration)
+        self.request = checked(cls, 1.0, None, None, method, stages, None, None, False)
+        self.kind = system._for(self.request)._kind
+        self.kind.integrator(self.request)
+        self.rows: list[_Row] = []
+        self.velocities = np.zeros(self.n)
+        self.final: _Row | None = None
+        self.cost: _Function | None = None
+
+    def set_inputs(self, inputs: Any) -> None:
+        """The inputs to find, and the layout of the variables."""
+        system = self.system
+        known: dict[str, dict[str, int]] = {}
+        for name in system.inputs:
+            known |= {name: system._parameter(name).entries}
+            known |= {entry: {entry: index} for entry, index in system._parameter(name).entries.items()}
+        if not known:
+            raise ValueError(
+                f"{type(system).__name__} has no inputs: declare them in the text, as in `input u = 0.0; force x = u;`"
+            )
+        wanted = system.inputs if inputs is None else [inputs] if isinstance(inputs, str) else inputs
+        found: dict[str, tuple[int, tuple[float, float]]] = {}
+        for name in wanted:
+            meaning = among(name, known)
+            if meaning not in known:
+                raise ValueError(
+                    f"{type(system).__name__} has no input {name!r}{meant(name, known)}; it has "
+                    f"{', '.join(system.inputs)}"
+                )
+            pair = _pair(wanted[name], name) if isinstance(wanted, Mapping) else (-math.inf, math.inf)
+            found |= {entry: (index, pair) for entry, index in known[meaning].items()}
+        self.names = list(found)
+        self.indices = [index for index, _ in found.values()]
+        self.m = len(found)
+        n, m, k = self.n, self.m, self.steps
+        each = 2 * n + m
+        self.size = 1 + each * k + 2 * n
+        places = 1 + each * np.arange(k + 1)[:, None] + np.arange(each)
+        places[k, 2 * n :] = places[k - 1, 2 * n :]
+        self.places = np.hstack([places, np.zeros((k + 1, 1), dtype=int)])
+        self.lower, self.upper = np.full(self.size, -math.inf), np.full(self.size, math.inf)
+        self.lower[0], self.upper[0] = self.duration
+        for column, (_, pair) in enumerate(found.values()):
+            at = self.places[:k, 2 * n + column]
+            self.lower[at], self.upper[at] = pair
+
+    def set_costs(self, cost: str | None, final: str | None) -> None:
+        if cost is None and final is None:
+            raise ValueError('give cost, such as cost="u^2" or cost="1" for the least time, or final')
+        if cost is not None:
+            self.cost = _Function(self.system, cost, self.indices)
+        if final is not None:
+            function = _Function(self.system, final, self.indices)
+            self.final = _Row("final", function, np.array([self.steps]), (-math.inf, math.inf), 0)
+
+    def set_end(self, name: str, of: Any, nodes: list[int]) -> None:
+        """The conditions of the start or of the end."""
+        if of is None:
+            return
+        coordinates = self.system.coordinates
+        if not isinstance(of, Mapping):
+            if not isinstance(of, (tuple, list)) or len(of) != 2:
+                raise TypeError(f'{name} must be (q, v), or a dict such as {{"{coordinates[0]}": 0.0}}, not {of!r}')
+            q, v = (vector(x, self.n, f"{letter} of {name}", coordinates) for x, letter in zip(of, "qv", strict=True))
+            if self.system.constraints and name == "start":
+                self._fix_start(q, v)
+                return
+            velocities = {f"dot({x})": value for x, value in zip(coordinates, v, strict=True)}
+            of = {**dict(zip(coordinates, q, strict=True)), **velocities}
+        for key, value in of.items():
+            self._bound(key, _pair(value, key), np.array(nodes), f"{key} of {name}")
+
+    def _fix_start(self, q: Array, v: Array) -> None:
+        """The start of a system with constraints: its momenta, because the velocities do not determine them."""
+        self.velocities = v
+        state = np.concatenate([q, self.system.momentum(self.t, q, v)])
+        self.lower[self.places[0, : 2 * self.n]] = self.upper[self.places[0, : 2 * self.n]] = state
+
+    def set_bounds(self, bounds: Any) -> None:
+        if bounds is not None and not isinstance(bounds, Mapping):
+            first = self.system.coordinates[0]
+            raise TypeError(f'bounds must be a dict such as {{"{first}": (-1.0, 1.0)}}, not {bounds!r}')
+        for name, pair in (bounds or {}).items():
+            if among(name, self.names) in self.names:
+                raise ValueError(f"{name} is an input: write its bounds as inputs={{{name!r}: {pair!r}}}")
+            self._bound(name, _pair(pair, name), np.arange(self.steps + 1), name)
+
+    def _bound(self, name: str, pair: tuple[float, float], nodes: Indices, title: str) -> None:
+        """Bounds of a coordinate are those of variables; of anything else, those of rows."""
+        try:
+            is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
+        except KeyError:
+            function: Any = _Function(self.system, name, self.indices)
+        else:
+            if not is_velocity:
+                at = self.places[nodes, index]
+                self.lower[at] = np.maximum(self.lower[at], pair[0])
+                self.upper[at] = np.minimum(self.upper[at], pair[1])
+                if (self.lower[at] > self.upper[at]).any():
+                    raise ValueError(f"the bounds of {name} exclude its value at the start or at the end")
+                return
+            function = _Velocity(self.n, index, self.m)
+        place = sum(len(row.nodes) for row in self.rows)
+        self.rows.append(_Row(title, function, nodes, pair, place))
+
+    # The variables.
+
+    def times(self, duration: float) -> Array:
+        return self.t + self.shares * duration
+
+    def split(self, x: Array) -> tuple[float, Array, Array, Array]:
+        """The duration, q, p and the inputs."""
+        w, n = x[self.places], self.n
+        return float(x[0]), w[:, :n].copy(), w[:, n : 2 * n].copy(), w[:-1, 2 * n : -1].copy()
+
+    def joined(self, duration: float, q: Array, p: Array, u: Array) -> Array:
+        x = np.empty(self.size)
+        x[self.places] = np.column_stack([q, p, np.vstack([u, u[-1:]]), np.full(len(q), duration)])
+        return np.clip(x, self.lower, self.upper)
+
+    def parameters(self, u: Array) -> Array:
+        """All numbers of the system, for each row of inputs."""
+        values = np.tile(self.system._values, (len(u), 1))
+        values[:, self.indices] = u
+        return values
+
+    # Functions of nodes k (B,) and their variables w (B, 2N + M + 1).
+
+    def _shoot(self, k: Indices, w: Array, part: float, steps: int, velocities: bool) -> tuple[Array, Array]:
+        """Steps of a part of the length of each step: their ends (B, 2N), and the derivatives with respect to q, p, u,
+        the length and the time of the start."""
+        n = self.n
+        q, p, u = (np.ascontiguousarray(of) for of in (w[:, :n], w[:, n : 2 * n], w[:, 2 * n : -1]))
+        t, h = self.t + self.shares[k] * w[:, -1], part * self._widths(k) * w[:, -1]
+        ends, slopes, errors = self.kind.shoot(
+            self.parameters(u), self.request, t, q, p, h, self.indices, steps, velocities
+        )
+        self.error = errors[0] if errors else None
+        return ends, slopes
+
+    def _widths(self, k: Indices) -> Array:
+        """The share of the duration of each step; the last node has the last step."""
+        return np.diff(self.shares)[np.minimum(k, self.steps - 1)]
+
+    def _by_duration(self, k: Indices, slopes: Array) -> Array:
+        """The last two columns, the length of the step and the time of its start, as one of the duration."""
+        shape = (-1, *[1] * (slopes.ndim - 2))
+        widths, shares = self._widths(k).reshape(shape), self.shares[k].reshape(shape)
+        column = slopes[..., -2] * widths + slopes[..., -1] * shares
+        return np.concatenate([slopes[..., :-2], column[..., None]], axis=-1)
+
+    def _of_motion(self, function: Any, t: Array, w: Array, ends: Array, slopes: Array) -> tuple[Array, Array]:
+        """A function at (q, v) of `ends`, and its derivatives by the chain rule."""
+        n = self.n
+        value, own = function(t, ends[:, :n], ends[:, n:], self.parameters(w[:, 2 * n : -1]))
+        chained = np.einsum("bi,bij->bj", own[:, 1 : 1 + 2 * n], slopes)
+        chained[:, 2 * n : -2] += own[:, 1 + 2 * n :]
+        # The time of the end depends on the length and on the start.
+        chained[:, -2] += own[:, 0]
+        chained[:, -1] += own[:, 0]
+        return value, chained
+
+    def _step(self, k: Indices, w: Array) -> tuple[Array, Array]:
+        """The ends (q, p) of steps."""
+        ends, slopes = self._shoot(k, w, 1.0, 1, False)
+        return ends, self._by_duration(k, slopes)
+
+    def _at_nodes(self, w: Array) -> Iterator[tuple[_Row, Array, Array]]:
+        """Each row with its values and derivatives at its nodes, from the variables of all nodes."""
+        moved: dict[bytes, Any] = {}
+        for row in self.rows if self.final is None else [*self.rows, self.final]:
+            k, own = row.nodes, w[row.nodes]
+            key = k.tobytes()
+            if key not in moved:
+                moved[key] = self._shoot(k, own, 1.0, 0, True)
+            value, chained = self._of_motion(row.function, self.t + self.shares[k] * own[:, -1], own, *moved[key])
+            chained[:, -2] = 0.0
+            yield row, value, self._by_duration(k, chained)
+
+    def _integral(self, k: Indices, w: Array) -> tuple[Array, Array]:
+        """The cost of steps."""
+        n, cost = self.n, self.cost
+        if cost is None:
+            return np.zeros(len(w)), np.zeros_like(w)
+        start, h = self.t + self.shares[k] * w[:, -1], self._widths(k) * w[:, -1]
+        total, slope = np.zeros(len(w)), np.zeros((len(w), w.shape[1] + 1))
+        if cost.is_of_inputs:
+            total, own = cost(start, w[:, :n], w[:, :n], self.parameters(w[:, 2 * n : -1]))
+            slope[:, 2 * n : -2] = own[:, 1 + 2 * n :]
+        else:
+            for place, weight in zip(*_GAUSS, strict=True):
+                part = (1.0 + place) / 2.0
+                value, chained = self._of_motion(cost, start + part * h, w, *self._shoot(k, w, part, 1, True))
+                chained[:, -2] *= part
+                total += weight / 2.0 * value
+                slope += weight / 2.0 * chained
+        slope *= h[:, None]
+        slope[:, -2] += total
+        return h * total, self._by_duration(k, slope)
+
+    # The program.
+
+    def check(self, x: Array) -> None:
+        """Raises the StepError of a step of the guess."""
+        k = np.arange(self.steps)
+        self._step(k, x[self.places[:-1]])
+        if self.error is not None:
+            raise advised(self.error[1], type(self.system))
+
+    @property
+    def row_bounds(self) -> tuple[Array, Array]:
+        zeros = np.zeros(2 * self.n * self.steps)
+        pairs = [np.tile(row.bounds, (len(row.nodes), 1)) for row in self.rows]
+        own = np.concatenate([np.zeros((0, 2)), *pairs])
+        return np.concatenate([zeros, own[:, 0]]), np.concatenate([zeros, own[:, 1]])
+
+    @cached_property
+    def pattern(self) -> tuple[Indices, Indices]:
+        """Rows and columns of the numbers of the Jacobian, in the order of `evaluated`."""
+        n, k, local = self.n, self.steps, self.places.shape[1]
+        steps = np.arange(2 * n * k)
+        rows = [np.repeat(steps, local), steps]
+        columns = [np.repeat(self.places[:-1], 2 * n, axis=0).ravel(), self.places[1:, : 2 * n].ravel()]
+        for row in self.rows:
+            rows.append(np.repeat(2 * n * k + row.place + np.arange(len(row.nodes)), local))
+            columns.append(self.places[row.nodes].ravel())
+        return np.concatenate(rows), np.concatenate(columns)
+
+    def evaluated(self, x: Array) -> tuple[float, Array, Array, Array]:
+        n, k = self.n, np.arange(self.steps)
+        w = x[self.places]
+        ends, slopes = self._step(k, w[:-1])
+        values = [(ends - w[1:, : 2 * n]).ravel()]
+        numbers = [slopes.ravel(), np.full(2 * n * self.steps, -1.0)]
+        costs, slope = self._integral(k, w[:-1])
+        total, gradient = float(costs.sum()), np.zeros(self.size)
+        np.add.at(gradient, self.places[:-1], slope)
+        for row, value, slope in self._at_nodes(w):
+            if row is self.final:
+                total += float(value[0])
+                np.add.at(gradient, self.places[row.nodes], slope)
+            else:
+                values.append(value)
+                numbers.append(slope.ravel())
+        return total, gradient, np.concatenate(values), np.concatenate(numbers)
+
+    @cached_property
+    def free(self) -> Indices:
+        """The local variables that vary."""
+        local = np.arange(self.places.shape[1])
+        return local if self.lower[0] < self.upper[0] else local[:-1]
+
+    @cached_property
+    def hessian_pattern(self) -> tuple[Indices, Indices]:
+        places = self.places[:, self.free]
+        shape = (*places.shape, len(self.free))
+        return np.broadcast_to(places[:, :, None], shape).ravel(), np.broadcast_to(places[:, None], shape).ravel()
+
+    def hessian(self, x: Array, weight: float, multipliers: Array) -> Array:
+        """Central differences of the gradient of each node's part of the Lagrangian function."""
+        w, free = x[self.places], self.free
+        changes = _CHANGE * np.maximum(np.abs(w).max(axis=0), 1e-2)[free]
+        blocks = np.empty((len(w), len(free), len(free)))
+        for column, change in zip(range(len(free)), changes, strict=True):
+            moved = np.zeros(w.shape[1])
+            moved[free[column]] = change
+            both = [self._gradient(w + sign * moved, weight, multipliers)[:, free] for sign in (1.0, -1.0)]
+            blocks[:, :, column] = (both[0] - both[1]) / (2.0 * change)
+        # A changed node whose step fails has no second derivative.
+        return np.nan_to_num((blocks + blocks.transpose(0, 2, 1)) / 2.0, posinf=0.0, neginf=0.0).ravel()
+
+    def _gradient(self, w: Array, weight: float, multipliers: Array) -> Array:
+        """The gradient of each node's part of the Lagrangian function, (K + 1, 2N + M + 1)."""
+        n, k = self.n, np.arange(self.steps)
+        _, slopes = self._step(k, w[:-1])
+        gradient = np.zeros_like(w)
+        gradient[:-1] = np.einsum("ki,kij->kj", multipliers[: slopes.shape[0] * 2 * n].reshape(-1, 2 * n), slopes)
+        gradient[:-1] += weight * self._integral(k, w[:-1])[1]
+        for row, _, slope in self._at_nodes(w):
+            own = multipliers[2 * n * self.steps + row.place :][: len(row.nodes), None]
+            gradient[row.nodes] += (weight if row is self.final else own) * slope
+        return gradient
+
+    # The guess.
+
+    def guessed(self, guess: Any) -> Array:
+        """The variables where the solver starts."""
+        if isinstance(guess, Optimum):
+            return self._of_rows(guess.t, guess.u, guess.inputs, guess._nodes)
+        if isinstance(guess, Solution):
+            u = np.column_stack([guess[name] for name in self.names])[:-1]
+            return self._of_rows(guess.t, u, self.names, (guess.q, guess.p))
+        if guess is not None and not isinstance(guess, Mapping):
+            raise TypeError(f"guess must be a dict of inputs, an Optimum or a Solution, not {guess!r}")
+        duration = self._duration((guess or {}).get("duration"))
+        given = {name: value for name, value in (guess or {}).items() if name != "duration"}
+        return self._of_inputs(duration, given) if given else self._line(duration)
+
+    def _duration(self, guess: Any) -> float:
+        if guess is not None:
+            return number(guess, "the duration of guess")
+        if not math.isfinite(self.duration[1]):
+            raise ValueError('give a finite greatest duration, or guess={"duration": …}')
+        return sum(self.duration) / 2.0
+
+    def _line(self, duration: float) -> Array:
+        """Coordinates on a line between the ends, with its velocity."""
+        ends = []
+        for k, other in ((0, self.steps), (self.steps, 0)):
+            at, of_other = self.places[k, : self.n], self.places[other, : self.n]
+            there = [_middle(self.lower[place], self.upper[place]) for place in at]
+            spare = [_middle(self.lower[place], self.upper[place]) for place in of_other]
+            ends.append([a if a is not None else b or 0.0 for a, b in zip(there, spare, strict=True)])
+        first, last = np.array(ends)
+        q = first + self.shares[:, None] * (last - first)
+        v = np.tile((last - first) / duration, (len(q), 1))
+        if self.system.constraints:
+            q, v = self.system.assemble(q, v, t=self.t)[:2]
+        at = self.places[:-1, 2 * self.n : -1]
+        u = np.clip(0.0, self.lower[at], self.upper[at])
+        return self.joined(duration, q, self._momenta(duration, q, v, u), u)
+
+    def _momenta(self, duration: float, q: Array, v: Array, u: Array) -> Array:
+        values, t = self.parameters(np.vstack([u, u[-1:]])), self.times(duration)
+        cls = type(self.system)
+        return np.array([cls._of(values[k]).momentum(t[k], q[k], v[k]) for k in range(len(q))])
+
+    def _of_inputs(self, duration: float, guess: Mapping[str, Any]) -> Array:
+        """The motion of given inputs from the start."""
+        u = np.zeros((self.steps, self.m))
+        for name, value in guess.items():
+            found = among(name, self.names)
+            if found not in self.names:
+                raise ValueError(
+                    f"{name!r} of guess is not an input to find{meant(name, self.names)}; they are "
+                    f"{', '.join(self.names)}"
+                )
+            numbers = array(value, name)
+            finite(numbers, name)
+            if numbers.shape not in ((), (self.steps,)):
+                raise ValueError(
+                    f"{name} of guess must be a number or one for each of {self.steps} steps, not of the shape "
+                    f"{numbers.shape}"
+                )
+            u[:, self.names.index(found)] = numbers
+        q, v = self._start()
+        p = self._momenta(duration, q[None], v[None], u[:1])[0]
+        options = {"method": self.request.method, "stages": self.request.stages}
+        values = self.parameters(np.vstack([u, u[-1:]]))
+        run = _replayed(type(self.system), values, self.times(duration), q, p, options)
+        return self.joined(duration, run.q, run.p, u)
+
+    def _start(self) -> tuple[Array, Array]:
+        """Coordinates and velocities of the start: the middle of their bounds, zero without."""
+        at = self.places[0, : self.n]
+        q = np.array([_middle(self.lower[place], self.upper[place]) or 0.0 for place in at])
+        v = self.velocities.copy()
+        for row in self.rows:
+            if isinstance(row.function, _Velocity) and 0 in row.nodes:
+                v[row.function.index] = _middle(*row.bounds) or 0.0
+        return q, v
+
+    def _of_rows(self, t: Array, u: Array, names: Sequence[str], nodes: tuple[Array, Array]) -> Array:
+        """Another motion, at the same shares of its duration."""
+        missing = [name for name in self.names if name not in names]
+        if missing:
+            raise ValueError(f"the guess has no input {', '.join(missing)}")
+        lower, upper = self.duration
+        duration = float(np.clip(t[-1] - t[0], lower, upper))
+        shares = (t - t[0]) / (t[-1] - t[0])
+        q, p = (np.column_stack([np.interp(self.shares, shares, of) for of in column.T]) for column in nodes)
+        middles = (self.shares[1:] + self.shares[:-1]) / 2.0
+        step = np.clip(np.searchsorted(shares, middles, side="right") - 1, 0, len(u) - 1)
+        return self.joined(duration, q, p, u[step][:, [names.index(name) for name in self.names]])
+
+
+def _shares(steps: Any) -> tuple[Array, float, float | None]:
+    """The nodes as shares of the duration, and the start and the duration of given times."""
+    if np.ndim(steps) == 0:
+        return np.linspace(0.0, 1.0, count(steps, "steps", 1) + 1), 0.0, None
+    times = array(steps, "steps")
+    finite(times, "steps")
+    if times.ndim != 1 or len(times) < 2 or not (np.diff(times) > 0.0).all():
+        raise ValueError("steps must be a number of steps, or two or more ascending times")
+    span = float(times[-1] - times[0])
+    return (times - times[0]) / span, float(times[0]), span
+
+
+def _durations(duration: Any) -> tuple[float, float]:
+    """The least and the greatest duration."""
+    if duration is None:
+        raise TypeError("give duration: the time of all steps, or the bounds (least, greatest) of a free one")
+    lower, upper = _pair(duration, "duration")
+    if not 0.0 < lower < math.inf:
+        raise ValueError(
+            f"duration must be positive, not {duration!r}: the least free one may be small, as in (0.1, 10.0)"
+        )
+    return lower, upper
+
+
+def _pair(value: Any, name: str) -> tuple[float, float]:
+    """A value, or the least and the greatest one; None is no bound."""
+    if value is None or (np.ndim(value) == 0 and not isinstance(value, (tuple, list))):
+        found = number(value, name)
+        return found, found
+    if len(value) != 2:
+        raise ValueError(f"the bounds of {name} must be two numbers or None, not {value!r}")
+    lower, upper = (other if of is None else float(of) for of, other in zip(value, (-math.inf, math.inf), strict=True))
+    if not lower <= upper:
+        raise ValueError(f"the bounds of {name} must be ascending, not {value!r}")
+    return lower, upper
+
+
+def _middle(lower: float, upper: float) -> float | None:
+    """The middle of bounds; the only one; None without."""
+    finite_ones = [bound for bound in (lower, upper) if math.isfinite(bound)]
+    return sum(finite_ones) / len(finite_ones) if finite_ones else None
