@@ -297,6 +297,8 @@ class _Problem:
         self.shares, first, span = _shares(steps)
         self.t = first if t is None else number(t, "t")
         self.steps = len(self.shares) - 1
+        # The last node has the last step.
+        self.widths = np.diff(self.shares)[[*range(self.steps), -1]]
         self.duration = _durations(span if duration is None else duration)
         self.request = checked(cls, 1.0, None, None, method, stages, None, None, False)
         self.kind = system._for(self.request)._kind
@@ -430,21 +432,17 @@ class _Problem:
         the length and the time of the start."""
         n = self.n
         q, p, u = (np.ascontiguousarray(of) for of in (w[:, :n], w[:, n : 2 * n], w[:, 2 * n : -1]))
-        t, h = self.t + self.shares[k] * w[:, -1], part * self._widths(k) * w[:, -1]
+        t, h = self.t + self.shares[k] * w[:, -1], part * self.widths[k] * w[:, -1]
         ends, slopes, errors = self.kind.shoot(
             self.parameters(u), self.request, t, q, p, h, self.indices, steps, velocities
         )
         self.error = errors[0] if errors else None
         return ends, slopes
 
-    def _widths(self, k: Indices) -> Array:
-        """The share of the duration of each step; the last node has the last step."""
-        return np.diff(self.shares)[np.minimum(k, self.steps - 1)]
-
     def _by_duration(self, k: Indices, slopes: Array) -> Array:
         """The last two columns, the length of the step and the time of its start, as one of the duration."""
         shape = (-1, *[1] * (slopes.ndim - 2))
-        widths, shares = self._widths(k).reshape(shape), self.shares[k].reshape(shape)
+        widths, shares = self.widths[k].reshape(shape), self.shares[k].reshape(shape)
         column = slopes[..., -2] * widths + slopes[..., -1] * shares
         return np.concatenate([slopes[..., :-2], column[..., None]], axis=-1)
 
@@ -465,23 +463,24 @@ class _Problem:
         return ends, self._by_duration(k, slopes)
 
     def _at_nodes(self, w: Array) -> Iterator[tuple[_Row, Array, Array]]:
-        """Each row with its values and derivatives at its nodes, from the variables of all nodes."""
+        """Each row with its values and derivatives at its nodes, from the variables of all nodes, C times."""
         moved: dict[bytes, Any] = {}
         for row in self.rows if self.final is None else [*self.rows, self.final]:
-            k, own = row.nodes, w[row.nodes]
-            key = k.tobytes()
+            k, own = np.tile(row.nodes, len(w)), w[:, row.nodes].reshape(-1, w.shape[-1])
+            key = row.nodes.tobytes()
             if key not in moved:
                 moved[key] = self._shoot(k, own, 1.0, 0, True)
             value, chained = self._of_motion(row.function, self.t + self.shares[k] * own[:, -1], own, *moved[key])
             chained[:, -2] = 0.0
-            yield row, value, self._by_duration(k, chained)
+            shape = (len(w), len(row.nodes))
+            yield row, value.reshape(shape), self._by_duration(k, chained).reshape(*shape, -1)
 
     def _integral(self, k: Indices, w: Array) -> tuple[Array, Array]:
         """The cost of steps."""
         n, cost = self.n, self.cost
         if cost is None:
             return np.zeros(len(w)), np.zeros_like(w)
-        start, h = self.t + self.shares[k] * w[:, -1], self._widths(k) * w[:, -1]
+        start, h = self.t + self.shares[k] * w[:, -1], self.widths[k] * w[:, -1]
         total, slope = np.zeros(len(w)), np.zeros((len(w), w.shape[1] + 1))
         if cost.is_of_inputs:
             total, own = cost(start, w[:, :n], w[:, :n], self.parameters(w[:, 2 * n : -1]))
@@ -534,12 +533,12 @@ class _Problem:
         costs, slope = self._integral(k, w[:-1])
         total, gradient = float(costs.sum()), np.zeros(self.size)
         np.add.at(gradient, self.places[:-1], slope)
-        for row, value, slope in self._at_nodes(w):
+        for row, value, slope in self._at_nodes(w[None]):
             if row is self.final:
-                total += float(value[0])
-                np.add.at(gradient, self.places[row.nodes], slope)
+                total += float(value.sum())
+                np.add.at(gradient, self.places[row.nodes], slope[0])
             else:
-                values.append(value)
+                values.append(value[0])
                 numbers.append(slope.ravel())
         return total, gradient, np.concatenate(values), np.concatenate(numbers)
 
@@ -559,25 +558,25 @@ class _Problem:
         """Central differences of the gradient of each node's part of the Lagrangian function."""
         w, free = x[self.places], self.free
         changes = _CHANGE * np.maximum(np.abs(w).max(axis=0), 1e-2)[free]
-        blocks = np.empty((len(w), len(free), len(free)))
-        for column, change in zip(range(len(free)), changes, strict=True):
-            moved = np.zeros(w.shape[1])
-            moved[free[column]] = change
-            both = [self._gradient(w + sign * moved, weight, multipliers)[:, free] for sign in (1.0, -1.0)]
-            blocks[:, :, column] = (both[0] - both[1]) / (2.0 * change)
+        moved = np.zeros((len(free), 1, w.shape[1]))
+        moved[np.arange(len(free)), 0, free] = changes
+        found = self._gradients(np.concatenate([w + moved, w - moved]), weight, multipliers)[..., free]
+        above, below = np.split(found, 2)
+        blocks = ((above - below) / (2.0 * changes[:, None, None])).transpose(1, 2, 0)
         # A changed node whose step fails has no second derivative.
         return np.nan_to_num((blocks + blocks.transpose(0, 2, 1)) / 2.0, posinf=0.0, neginf=0.0).ravel()
 
-    def _gradient(self, w: Array, weight: float, multipliers: Array) -> Array:
-        """The gradient of each node's part of the Lagrangian function, (K + 1, 2N + M + 1)."""
-        n, k = self.n, np.arange(self.steps)
-        _, slopes = self._step(k, w[:-1])
+    def _gradients(self, w: Array, weight: float, multipliers: Array) -> Array:
+        """The gradient of each node's part of the Lagrangian function, for C values of all variables: (C, K + 1, L)."""
+        k, steps = np.tile(np.arange(self.steps), len(w)), w[:, :-1].reshape(-1, w.shape[-1])
+        of_steps, others = np.split(multipliers, [2 * self.n * self.steps])
+        slopes = self._step(k, steps)[1].reshape(len(w), self.steps, 2 * self.n, -1)
         gradient = np.zeros_like(w)
-        gradient[:-1] = np.einsum("ki,kij->kj", multipliers[: slopes.shape[0] * 2 * n].reshape(-1, 2 * n), slopes)
-        gradient[:-1] += weight * self._integral(k, w[:-1])[1]
+        gradient[:, :-1] = np.einsum("ki,ckij->ckj", of_steps.reshape(self.steps, -1), slopes)
+        gradient[:, :-1] += weight * self._integral(k, steps)[1].reshape(len(w), self.steps, -1)
         for row, _, slope in self._at_nodes(w):
-            own = multipliers[2 * n * self.steps + row.place :][: len(row.nodes), None]
-            gradient[row.nodes] += (weight if row is self.final else own) * slope
+            own = others[row.place : row.place + len(row.nodes), None]
+            gradient[:, row.nodes] += (weight if row is self.final else own) * slope
         return gradient
 
     # The guess.
