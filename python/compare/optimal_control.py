@@ -152,7 +152,7 @@ def swing_figure(plt):
         right.stairs(found["u"], found.t, label=f"{label}, cost {found.cost:.2f}", baseline=None)
     right.set(title="force on the cart", xlabel="t, s", ylabel="u, N")
     right.legend(frameon=False)
-    figure.savefig(FIGURES / "optimal-swing-up.svg")
+    figure.savefig(FIGURES / "optimal-swing-up.svg", metadata={"Date": None})
 
 
 def transfer_figure(plt):
@@ -178,8 +178,7 @@ def transfer_figure(plt):
     other.set_ylabel("radius")
     lines = [of.get_legend_handles_labels() for of in (right, other)]
     right.legend(lines[0][0] + lines[1][0], lines[0][1] + lines[1][1], frameon=False, loc="upper left")
-    figure.savefig(FIGURES / "optimal-transfer.svg")
-    print(found, found.energy_balance)
+    figure.savefig(FIGURES / "optimal-transfer.svg", metadata={"Date": None})
 
 
 def main():
@@ -189,7 +188,7 @@ def main():
     import matplotlib
 
     matplotlib.use("svg")
-    matplotlib.rcParams["svg.hashsalt"] = "optimal"
+    matplotlib.rcParams.update({"svg.hashsalt": "optimal", "svg.fonttype": "none"})
     import matplotlib.pyplot as plt
 
     swing_figure(plt)
