@@ -18,6 +18,7 @@ from ._progress import Report, progress
 from ._solution import Solution
 
 if TYPE_CHECKING:
+    from ._run import Run
     from ._system import System
 
 
@@ -141,7 +142,8 @@ def fit(
         The standard deviation of the measurements, or that of each column. Without it all values have one deviation,
         which is estimated from the residuals.
 
-    With constraints, only parameters that keep the start on them can be unknown. Raises Unidentifiable if the
+    With constraints the start is the nearest state on them, as of `System.project`. Unknown entries of it are
+    independent ones; the constraints move the others, also if a length changes. Raises Unidentifiable if the
     measurements do not determine the unknowns, and StepError if the motion of the first guess fails. After Ctrl-C the
     attribute `solution` of KeyboardInterrupt has the last motion.
     """
@@ -177,6 +179,11 @@ def fit(
     with progress("motions of the fit", None) as model.report:
         try:
             found = least_squares(residuals, guess, jacobian, limits, **options)
+            for _ in range(_MOVES):
+                if not model.move(found.x):
+                    break
+                guess = np.clip(model.guess(), *limits)
+                found = least_squares(residuals, guess, jacobian, limits, **options)
         except KeyboardInterrupt as raised:
             raised.solution = model.solution  # type: ignore[attr-defined]
             raise
@@ -229,17 +236,13 @@ class _Model:
         self.start = np.concatenate(
             [vector(q, n, "q", cls.coordinates), np.zeros(n) if v is None else vector(v, n, "v", cls.coordinates)]
         )
-        self.unknowns = _unknowns(parameters, cls)
+        self.unknowns = unknowns(parameters, cls)
         for name, column in inputs.items():
             if column[0] in [index for is_start, index in self.unknowns.values() if not is_start]:
                 raise ValueError(f"{name} is an unknown and a column of the data")
-        if cls.constraints and any(is_start for is_start, _ in self.unknowns.values()):
-            raise NotImplementedError(
-                f"{cls.__name__} has constraints, which a change of one start value leaves: fit parameters, or a "
-                "system in coordinates without constraints"
-            )
         self.is_parameter = np.array([not is_start for is_start, _ in self.unknowns.values()])
         self.indices = [index for is_start, index in self.unknowns.values() if not is_start]
+        self.entries = [index for is_start, index in self.unknowns.values() if is_start]
         self.evaluations = 0
         self.report: Report | None = None
         self._last: tuple[Array, Any] | None = None
@@ -248,25 +251,67 @@ class _Model:
         """Checks the options of a run, and finds the length of its steps."""
         if method == "energy":
             raise ValueError('method="energy" has steps of other lengths, which do not end at the times of the data')
-        n = len(self.start) // 2
-        options: dict[str, Any] = {"h": h, "tolerance": tolerance, "method": method, "stages": stages}
-        run = self.cls._of(self.values).integrate(self.start[:n], self.start[n:], t=self.t, **options)
-        self._check_start(run)
+        self.options: dict[str, Any] = {"method": method, "stages": stages}
+        self.start = self._on_constraints(self.start, self.values)
+        run = self._run(self.start, self.values, h=h, tolerance=tolerance)
         self.h = run.h
         if self.h < 0.0:
             raise ValueError(f"h must be positive, not {self.h!r}")
-        self.options: dict[str, Any] = {"method": method, "stages": stages}
+        self.slope = self._slope(run)
+        self._check_entries()
 
-    def _check_start(self, run: Any) -> None:
-        """Checks that the start stays on the constraints where a parameter changes."""
-        moved = run._tangent(self.indices, velocities=[True, True])[: len(self.start), len(self.start) :]
-        names = [name for name, (is_start, _) in self.unknowns.items() if not is_start]
-        for name, change in zip(names, moved.T, strict=True):
-            if np.abs(change).max(initial=0.0) > _ROUNDING:
-                raise NotImplementedError(
-                    f"a change of {name} moves the constraints away from the start: fit needs parameters that keep it "
-                    "on them"
-                )
+    def _check_entries(self) -> None:
+        """Checks that the constraints leave the unknown entries of the start independent."""
+        names = [name for name, (is_start, _) in self.unknowns.items() if is_start]
+        change = self.slope[self.entries][:, ~self.is_parameter]
+        if names and np.abs(change - np.eye(len(names))).max() > _DEPENDENT:
+            raise ValueError(
+                f"the constraints determine some of {_listed(names)} by the others at the start: leave these out"
+            )
+
+    def move(self, unknowns: Array) -> bool:
+        """Moves the guess to these unknowns, where the derivatives are exact. False if it is there already, as without
+        constraints always."""
+        if not self.cls.constraints or np.allclose(unknowns, self.guess(), rtol=_NEAR, atol=1e-3 * _NEAR):
+            return False
+        self.start, self.values = self._moved(unknowns)
+        self.slope = self._slope(self._run(self.start, self.values, h=self.h))
+        self._last = None
+        return True
+
+    def _moved(self, unknowns: Array) -> tuple[Array, Array]:
+        """The start of these unknowns on the constraints, and the numbers of the system."""
+        values = self.values.copy()
+        values[self.indices] = unknowns[self.is_parameter]
+        start = self.start + self.slope @ (unknowns - self.guess())
+        start[self.entries] = unknowns[~self.is_parameter]
+        return self._on_constraints(start, values), values
+
+    def _on_constraints(self, start: Array, values: Array) -> Array:
+        """The start on the constraints that is nearest to this one."""
+        if not self.cls.constraints:
+            return start
+        found = self._system(values, 0).project(*np.split(start, 2), t=self.t)
+        return np.concatenate([found.q, found.v])
+
+    def _slope(self, run: Run) -> Array:
+        """The derivatives of the start (q, v) with respect to the unknowns, (2N, U). Its unknown entries are these
+        unknowns themselves, and the constraints move the others."""
+        size, count = len(self.start), len(self.indices)
+        if self.cls.constraints:
+            columns = run._tangent(self.indices, velocities=[True, True])[:size]
+        else:
+            columns = np.eye(size, size + count)
+        moved, own = columns[:, self.entries], columns[:, size:]
+        along = moved @ np.linalg.pinv(moved[self.entries], rcond=_DEPENDENT)
+        slope = np.empty((size, len(self.unknowns)))
+        slope[:, ~self.is_parameter] = along
+        slope[:, self.is_parameter] = own - along @ own[self.entries]
+        return slope
+
+    def _run(self, start: Array, values: Array, **options: Any) -> Run:
+        q, v = np.split(start, 2)
+        return self._system(values, 0).integrate(q, v, t=self.t, **options, **self.options)
 
     def guess(self) -> Array:
         """The first guess of the unknowns."""
@@ -289,16 +334,9 @@ class _Model:
         return None if self._last is None else self._last[1][2]
 
     def _computed(self, unknowns: Array) -> tuple[Array, Array, Solution]:
-        n = len(self.start) // 2
-        values, start = self.values.copy(), self.start.copy()
-        slope = np.zeros((2 * n, len(unknowns)))
-        for column, ((is_start, index), value) in enumerate(zip(self.unknowns.values(), unknowns, strict=True)):
-            (start if is_start else values)[index] = value
-            if is_start:
-                slope[index, column] = 1.0
-        t = self.t
-        run = self._system(values, 0).integrate(start[:n], start[n:], t=t, h=self.h, **self.options)
-        slope = self._carried(run, slope, velocities=[True, False])
+        start, values = self._moved(unknowns)
+        t, run = self.t, self._run(start, values, h=self.h)
+        slope = self._carried(run, self._slope(run), velocities=[True, False])
         rows, outputs = [], []
         for row, end in enumerate(self.times):
             if end > t:
@@ -315,6 +353,7 @@ class _Model:
         # With inputs each row has a system of its own.
         solution.__dict__.update(v=fixed(v), energy=fixed(energy))
         solution._values = np.array([self._system(values, row)._values for row in range(len(self.times))])
+        n = len(self.start) // 2
         indices = [index + n * is_velocity for (is_velocity, index), _ in self.rows.values()]
         return np.concatenate([q, v], axis=-1)[:, indices], np.array(outputs)[:, indices], solution
 
@@ -376,7 +415,7 @@ def _read(data: Any, cls: Any) -> tuple[Array, dict[str, tuple[tuple[bool, int],
     return times, measured, inputs
 
 
-def _unknowns(parameters: str | Iterable[str], cls: Any) -> dict[str, tuple[bool, int]]:
+def unknowns(parameters: str | Iterable[str], cls: Any) -> dict[str, tuple[bool, int]]:
     """Whether each unknown is a start value, and its index: in (q, v), or in the numbers of the system."""
     names = [parameters] if isinstance(parameters, str) else list(parameters)
     found: dict[str, tuple[bool, int]] = {}
@@ -442,6 +481,16 @@ def _sigmas(sigma: float | Mapping[str, float] | None, columns: tuple[str, ...])
             raise ValueError(f"sigma of {name} must be positive, not {found.get(name)!r}")
     return np.array([found[name] for name in columns])
 
+
+_DEPENDENT = 1e-8
+"""Unknown entries of the start depend on each other if a change by the constraints is relatively smaller."""
+
+_NEAR = 1e-9
+"""A guess with constraints is at the unknowns found, relative to them. Derivatives of the start are exact there; far from
+the guess they miss the curvature of the constraints."""
+
+_MOVES = 10
+"""Moves of the guess to the unknowns found at most. Each leaves the square of the distance of the one before."""
 
 _SINGULAR = 1e-10
 """Derivatives are exact to about 1e-12."""
