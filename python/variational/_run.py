@@ -422,8 +422,9 @@ class Run:
 
         The matrices "q" and "p" (2N, N) are with respect to the start; each name in `wrt` adds the derivative with
         respect to this parameter: (2N,), or (2N, K) for an array. The name "h" means the length of the steps, if no
-        parameter has it and the method does not find the length. With `velocities` all are in (q, v): the matrices are
-        "q" and "v", and velocities are constant where a parameter changes.
+        parameter has it; for method="energy" that of the first step, which determines the kept energy, and not for
+        method="adaptive". With `velocities` all are in (q, v): the matrices are "q" and "v", and velocities are
+        constant where a parameter changes.
 
         With an event, a coordinate or a velocity that crosses a value, the run ends at its first time before `until`.
         A last row then has the derivatives of this time. With constraints the start is the nearest state on them, as of
@@ -540,9 +541,10 @@ class Run:
             raise TypeError(f"wrt must be names of parameters, not {wrt!r}")
         length = range(len(self._cls._defaults), len(self._cls._defaults) + 1)
         is_length = [has_length and name == "h" and name not in self._cls.parameters for name in names]
-        method = self._run.integrator[0]
-        if any(is_length) and method in ("energy", "adaptive"):
-            raise ValueError(f'method="{method}" finds the lengths of its steps: there is no derivative with respect to h')
+        if any(is_length) and self._run.integrator[0] == "adaptive":
+            raise ValueError(
+                'method="adaptive" finds the lengths of its steps: there is no derivative with respect to h'
+            )
         named = zip(names, is_length, strict=True)
         indices = [length if own else self._cls._parameter(name).indices for name, own in named]
         return names, [index for of in indices for index in of]

@@ -50,7 +50,7 @@ pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
     }
 
     /// Sets `energy` of tangent vectors at the start of a run by [`Start::integrate`](crate::Start::integrate): the
-    /// preserved energy follows from the state and the parameters.
+    /// preserved energy follows from the state, the parameters and the length of the first step.
     ///
     /// # Errors
     /// As [`Run::vary`].
@@ -423,7 +423,7 @@ where
                 Sought::Length => (energy_dv.dot(&of_residual) - (energy - variation.energy) / h) / schur,
                 Sought::Neither => variation.h,
                 Sought::Energy => {
-                    variation.energy = energy - energy_dv.dot(&of_residual) * h;
+                    variation.energy = energy + (schur * variation.h - energy_dv.dot(&of_residual)) * h;
                     continue;
                 }
             };

@@ -45,8 +45,8 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Tangent<M, S, N
     }
 
     /// A run before its first step, started by [`Start::integrate`](crate::Start::integrate), with tangent vectors of
-    /// its initial state and parameters. The preserved energy follows from these: the function sets `energy` of each
-    /// vector.
+    /// its initial state, its parameters and its first length. The preserved energy follows from these: the function sets
+    /// `energy` of each vector.
     ///
     /// # Errors
     /// As [`Run::vary`].

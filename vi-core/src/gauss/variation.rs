@@ -94,7 +94,7 @@ pub(crate) fn vary_length<const N: usize, const STAGES: usize>(
             Sought::Length => (own.energy - energy.start) / schur,
             Sought::Neither => own.h,
             Sought::Energy => {
-                own.energy = energy.start;
+                own.energy = energy.start + schur * own.h;
                 continue;
             }
         };
