@@ -468,20 +468,33 @@ METHODS = [
 ]
 
 
-@pytest.mark.parametrize("options", METHODS, ids=lambda options: "-".join(map(str, options.values())))
+ENDS = [{"steps": 20}, {"until": 1.234}, {"until": 9.0, "event": vi.Event("y", 0.5)}]
+
+
+@pytest.mark.parametrize("options", [*METHODS, {"method": "adaptive", "h": 0.1}], ids=str)
 @pytest.mark.parametrize("before", [0, 3])
-def test_the_gradient_is_that_of_the_tangent(options, before):
+@pytest.mark.parametrize("end", ENDS, ids=str)
+@pytest.mark.parametrize("second", ["p", "v"])
+def test_the_gradient_is_that_of_the_tangent(options, before, end, second):
     def run():
         found = vi.Kepler().integrate([0.5, 0.1], [0.1, 1.6], **options)
         found.steps(before)
         return found
 
-    slope = np.array([0.3, -0.2, 0.7, 0.5])
-    tangent, gradient = run().tangent(20, ["mu"]), run().gradient(20, q=slope[:2], p=slope[2:], wrt=["mu"])
-    for name in ("q", "p", "mu"):
+    if options.get("method") == "adaptive" and end == ENDS[1]:
+        end = {"until": 4.321}
+    slope, velocities, at_end = np.array([0.3, -0.2, 0.7, 0.5]), second == "v", run()
+    given = {"q": slope[:2], second: slope[2:], "wrt": ["mu"], "velocities": velocities}
+    if "event" in end:
+        slope, given["t"] = np.append(slope, 0.9), 0.9
+    tangent, gradient = run().tangent(wrt=["mu"], velocities=velocities, **end), at_end.gradient(**given, **end)
+    for name in ("q", second, "mu"):
         # Measured: 1e-15 of the sum of sizes; 3.4e-7 of energy-preserving Gauss steps, whose length varies much with p.
         sizes = np.abs(slope) @ np.abs(tangent[name])
         assert np.all(np.abs(gradient[name] - slope @ tangent[name]) <= 1e-6 * sizes), name
+    aside = run()
+    aside.tangent(**end)
+    assert aside.t == at_end.t and np.array_equal(aside.q, at_end.q)
 
 
 OF_ENERGY = [

@@ -433,12 +433,19 @@ class Run:
         Raises ValueError if there is no event before `until`.
         """
         n = len(self._cls.coordinates)
+        names, indices = self._wrt(wrt, True)
+        options = self._end(steps, until, event)
+        with progress(self._title) as report:
+            columns = self._tangent(indices, velocities=[velocities, velocities], report=report, **options)
+        columns = columns if event is not None else columns[: 2 * n]
+        second = "v" if velocities else "p"
+        found = {"q": columns[:, :n].copy(), second: columns[:, n : 2 * n].copy()}
+        return {**found, **self._split(columns[:, 2 * n :], names)}
+
+    def _end(self, steps: int | None, until: float | None, event: Any) -> dict[str, Any]:
+        """The end of differentiated steps."""
         if (steps is None) == (until is None):
             raise TypeError("give one of steps and until")
-        names, indices = self._wrt(wrt, True)
-        options: dict[str, Any] = {"steps": 0 if steps is None else _count(steps, "the number of steps")}
-        if until is not None:
-            options["t"] = number(until, "until")
         if event is not None:
             if until is None:
                 raise TypeError("give until with an event: the time up to which it is looked for")
@@ -452,13 +459,8 @@ class Run:
             met = self.copy().next_event(event, until)
             if not len(met):
                 raise ValueError(f"there is no event before t = {until:g}")
-            options["t"], (options["event"],) = float(met.t[0]), descriptions(event, self, True)
-        with progress(self._title) as report:
-            columns = self._tangent(indices, velocities=[velocities, velocities], report=report, **options)
-        columns = columns if event is not None else columns[: 2 * n]
-        second = "v" if velocities else "p"
-        found = {"q": columns[:, :n].copy(), second: columns[:, n : 2 * n].copy()}
-        return {**found, **self._split(columns[:, 2 * n :], names)}
+            return {"t": float(met.t[0]), "event": descriptions(event, self, True)[0]}
+        return {"steps": _count(steps, "the number of steps")} if until is None else {"t": number(until, "until")}
 
     def _tangent(self, indices: list[int], **options: Any) -> Array:
         """The derivatives of (q, p, t) at the end of steps with respect to (q, p) and these numbers of the system: a
@@ -477,55 +479,45 @@ class Run:
 
     def gradient(
         self,
-        steps: int,
+        steps: int | None = None,
         *,
         q: ArrayLike | None = None,
         p: ArrayLike | None = None,
         v: ArrayLike | None = None,
+        t: float | None = None,
         wrt: Sequence[str] = (),
+        until: float | None = None,
+        event: Event | str | None = None,
         velocities: bool = False,
     ) -> dict[str, Array]:
-        """Takes steps, and returns the gradient of a function of their end by one backward pass.
+        """Takes steps, or runs to the time `until`, and returns the gradient of a function of the end by one backward
+        pass.
 
         q and p are the derivatives of that function with respect to (q, p) at the end. The result has its gradients
         with respect to "q" and "p" at the start, and to each parameter in `wrt`. With `velocities` all are in (q, v):
         v takes the place of p, the result has "q" and "v", and velocities are constant where a parameter changes. With
         constraints the start is the nearest state on them.
+
+        With an event the run ends there, as that of `tangent` does; t is the derivative of the function with respect
+        to this time.
         """
         names_of, n = self._cls.coordinates, len(self._cls.coordinates)
         second, of_second, other = ("v", v, p) if velocities else ("p", p, v)
         if other is not None:
             raise TypeError("v and velocities=True go together: p has derivatives with respect to momenta")
-        if q is None and of_second is None:
+        if t is not None and event is None:
+            raise TypeError("t is the derivative with respect to the time of an event: give event")
+        if q is None and of_second is None and t is None:
             raise TypeError(f"give q or {second}: the derivatives of the function at the end")
         given = ((q, "q"), (of_second, second))
-        slope = np.concatenate([np.zeros(n) if x is None else vector(x, n, name, names_of) for x, name in given])
+        parts = [np.zeros(n) if x is None else vector(x, n, name, names_of) for x, name in given]
+        slope = np.array([*parts[0], *parts[1], 0.0 if t is None else number(t, "t")])
         names, indices = self._wrt(wrt)
-        steps = _count(steps, "the number of steps")
-        own, start = np.zeros(len(indices)), None
-        method, _, is_transformed = self._run.integrator
-        if velocities and (method == "energy" or is_transformed):
-            # The time of the end varies, and velocities depend on it too.
-            with progress(self._title) as report:
-                options: dict[str, Any] = {"steps": steps, "velocities": [True, True], "report": report}
-                found = slope @ self._tangent(indices, **options)[: 2 * n]
-            return self._named(found, second, names)
-        if velocities:
-            # (q, p) by (q, v) at the start, and (q, v) by (q, p) at the end, with their parameters.
-            start, end = self._tangent(indices, velocities=[True, False])[: 2 * n], self.copy()
-            end.steps(steps, max(steps, 1))
-            at_end = slope @ end._tangent(indices, velocities=[False, True])[: 2 * n]
-            slope, own = np.ascontiguousarray(at_end[: 2 * n]), at_end[2 * n :]
+        options = self._end(steps, until, event)
         with self._advising(), progress(self._title) as report:
-            found = self._run.gradient(steps, slope, indices, report)
-        if start is not None:
-            found = np.concatenate([np.zeros(2 * n), found[2 * n :] + own]) + found[: 2 * n] @ start
-        return self._named(found, second, names)
-
-    def _named(self, found: Array, second: str, names: list[str]) -> dict[str, Array]:
-        """A gradient by q, p or v, and parameters."""
-        n = len(self._cls.coordinates)
-        return {"q": found[:n].copy(), second: found[n : 2 * n].copy(), **self._split(found[2 * n :], names)}
+            found = self._run.gradient(indices, slope, velocities=[velocities, velocities], report=report, **options)
+        columns = self._split(found[2 * n :], names)
+        return {"q": found[:n].copy(), second: found[n : 2 * n].copy(), **columns}
 
     @contextlib.contextmanager
     def _advising(self) -> Iterator[None]:

@@ -313,14 +313,13 @@ impl Session for Spoiled<dyn Simulation> {
 
     fn gradient(
         &mut self,
-        steps: u64,
+        wanted: Wanted<'_>,
         slope: &[f64],
-        parameters: &[usize],
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<f64>>, StepError> {
         // Not the fault of the tangent vectors with which it is compared.
         let factor = 1.0 / self.factor(Fault::Tangent, 1.001);
-        let found = self.of.gradient(steps, slope, parameters, goes_on)?;
+        let found = self.of.gradient(wanted, slope, goes_on)?;
         Ok(found.map(|of| of.iter().map(|entry| entry * factor).collect()))
     }
 }

@@ -558,17 +558,17 @@ impl Session for Declared<dyn Simulation> {
     #[cfg(feature = "derivatives")]
     fn gradient(
         &mut self,
-        steps: u64,
+        wanted: Wanted<'_>,
         slope: &[f64],
-        parameters: &[usize],
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<f64>>, StepError> {
         let (all, size) = (self.all(), self.size);
-        if slope.len() != 2 * size {
-            return Err(wrong_size(slope, "number of coordinates and momenta"));
+        if slope.len() != 2 * size + 1 {
+            return Err(wrong_size(slope, "number of coordinates, momenta and the time"));
         }
-        let slope: Vec<f64> = slope.chunks_exact(size).flat_map(|of| extended(of, all)).collect();
-        let found = self.of.gradient(steps, &slope, parameters, goes_on)?;
+        let (state, t) = slope.split_at(2 * size);
+        let slope: Vec<f64> = state.chunks_exact(size).flat_map(|of| extended(of, all)).chain(t.to_vec()).collect();
+        let found = self.of.gradient(wanted, &slope, goes_on)?;
         Ok(found.map(|of| {
             let (state, parameters) = of.split_at(2 * all);
             cut(state, all, size).into_iter().chain(parameters.iter().copied()).collect()

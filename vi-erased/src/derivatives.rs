@@ -25,22 +25,47 @@ pub(crate) fn tangent<S: Runnable<N>, const N: usize>(
     goes_on: &mut dyn FnMut() -> bool,
 ) -> AtEnd<S, Vec<Vec<f64>>, N> {
     let mut tangent = varied(run, begins, parameters, at_start)?;
-    let (mut left, time) = match end {
-        End::Steps(steps) => (steps, None),
-        End::Time(t) | End::Crossing(_, t) => (u64::MAX, Some(t)),
-    };
-    if let Some(t) = time {
-        run.check_ahead(t)?;
-    }
-    // The last step to a time is found by the tangent itself.
-    let is_far = |run: &AnyRun<S, N>, t: f64| (run.time_to(t) - 2.0 * run.longest()) * run.h().signum() > 0.0;
-    while left > 0 && time.is_none_or(|t| is_far(tangent.run(), t)) {
+    check_ahead(run, end)?;
+    let mut taken = 0;
+    while is_before(end, tangent.run(), taken) {
         if !goes_on() {
             return Ok(None);
         }
         tangent.step()?;
-        left -= 1;
+        taken += 1;
     }
+    let rows = ended(&mut tangent, end, at_end)?;
+    Ok(Some((tangent.run().clone(), rows)))
+}
+
+/// Checks that an end is not behind the run.
+///
+/// # Errors
+/// As [`vi_core::Run::check_ahead`].
+fn check_ahead<S: Runnable<N>, const N: usize>(run: &AnyRun<S, N>, end: End<'_>) -> Result<(), StepError> {
+    match end {
+        End::Steps(_) => Ok(()),
+        End::Time(t) | End::Crossing(_, t) => run.check_ahead(t),
+    }
+}
+
+/// Whether a run that has taken some steps takes another one before its end. [`ended`] takes the last ones to a time.
+fn is_before<S: Runnable<N>, const N: usize>(end: End<'_>, run: &AnyRun<S, N>, taken: u64) -> bool {
+    match end {
+        End::Steps(steps) => taken < steps,
+        End::Time(t) | End::Crossing(_, t) => (run.time_to(t) - 2.0 * run.longest()) * run.h().signum() > 0.0,
+    }
+}
+
+/// Moves tangent vectors to the end, and returns their coordinates, momenta, or velocities if wanted, and times.
+///
+/// # Errors
+/// As [`Session::tangent`](crate::Session::tangent).
+fn ended<S: Runnable<N>, const N: usize>(
+    tangent: &mut Tangent<AnyMethod<S, N>, S, N>,
+    end: End<'_>,
+    has_velocities: bool,
+) -> Result<Vec<Vec<f64>>, StepError> {
     match end {
         End::Steps(_) => {}
         End::Time(t) => drop(tangent.until(t)?),
@@ -48,16 +73,15 @@ pub(crate) fn tangent<S: Runnable<N>, const N: usize>(
             let because = "an event of a derivative is a coordinate or a velocity that crosses a value";
             let event = section.smooth_event().ok_or(StepError::NoDerivative { t, because })?;
             // Beyond the time of the crossing, where rounding decides on which side it is.
-            tangent.until_event(&event, t + run.h())?;
+            tangent.until_event(&event, t + tangent.run().h())?;
         }
     }
-    let velocities = at_end.then(|| tangent.velocities()).transpose()?;
+    let velocities = has_velocities.then(|| tangent.velocities()).transpose()?;
     let of_node = |(direction, of): (usize, &Variation<N>)| {
         let second = velocities.as_ref().map_or(&of.p, |of| &of[direction]);
         of.q.iter().chain(second).chain([&of.t]).copied().collect()
     };
-    let found = tangent.variations().iter().enumerate().map(of_node).collect();
-    Ok(Some((tangent.run().clone(), found)))
+    Ok(tangent.variations().iter().enumerate().map(of_node).collect())
 }
 
 /// The largest Lyapunov exponents of the first coordinates over some steps, as
@@ -84,7 +108,7 @@ pub(crate) fn lyapunov<S: Runnable<N>, const N: usize>(
 /// Steps of a stretch of a gradient, whose states are all kept.
 const STRETCH: u64 = 2048;
 
-/// The gradient of a linear function of the node after steps, by one backward pass, as
+/// The gradient of a linear function of the end of some steps, by one backward pass, as
 /// [`Session::gradient`](crate::Session::gradient).
 ///
 /// # Errors
@@ -92,26 +116,42 @@ const STRETCH: u64 = 2048;
 pub(crate) fn gradient<S: Runnable<N>, const N: usize>(
     run: &AnyRun<S, N>,
     begins: bool,
-    (steps, mut slope): (u64, Covector<N>),
-    parameters: &[usize],
+    Wanted { end, parameters, has_velocities: [at_start, at_end] }: Wanted<'_>,
+    slope: &[f64],
     goes_on: &mut dyn FnMut() -> bool,
 ) -> AtEnd<S, Vec<f64>, N> {
     let names: Vec<&'static str> =
         parameters.iter().filter_map(|index| run.system().parameters().get(*index).copied()).collect();
+    check_ahead(run, end)?;
     // The run at the start of each stretch; the pass goes back from the last one.
-    let (mut ahead, mut stretches, mut left) = (run.clone(), Vec::new(), steps);
-    while left > 0 {
-        let few = left.min(STRETCH);
-        stretches.push((ahead.clone(), few));
-        for _ in 0..few {
-            if !goes_on() {
-                return Ok(None);
-            }
-            ahead.single_step()?;
+    let (mut ahead, mut stretches, mut taken) = (run.clone(), Vec::new(), 0);
+    while is_before(end, &ahead, taken) {
+        if !goes_on() {
+            return Ok(None);
         }
-        left -= few;
+        match stretches.last_mut() {
+            Some((_, few)) if *few < STRETCH => *few += 1,
+            _ => stretches.push((ahead.clone(), 1)),
+        }
+        ahead.single_step()?;
+        taken += 1;
     }
-    let mut sums = vec![0.0; names.len()];
+    // Over the last steps to a time or an event, and to velocities, tangent vectors of all directions.
+    let mut all = Variation::of_state();
+    all.extend([Variation { energy: 1.0, ..Variation::zero() }, Variation { t: 1.0, ..Variation::zero() }]);
+    all.extend(directions(run, parameters).drain(2 * N..));
+    let mut last = Tangent::new(ahead, all);
+    last.project()?;
+    let rows = ended(&mut last, end, at_end)?;
+    let changes: Vec<f64> = rows.iter().map(|row| row.iter().zip(slope).map(|(of, slope)| of * slope).sum()).collect();
+    let (state, of_parameters) = changes.split_at(2 * N + 2);
+    let mut slope = Covector {
+        t: state[2 * N + 1],
+        q: SVector::from_fn(|row, _| state[row]),
+        p: SVector::from_fn(|row, _| state[N + row]),
+        energy: state[2 * N],
+    };
+    let mut sums = of_parameters.to_vec();
     for (run, few) in stretches.iter().rev() {
         // A stretch takes as long as on the way ahead.
         if !(0..*few).all(|_| goes_on()) {
@@ -129,10 +169,10 @@ pub(crate) fn gradient<S: Runnable<N>, const N: usize>(
             *sum -= slope.energy * direction.energy;
         }
     }
-    let directions = varied(run, begins, parameters, false)?;
+    let directions = varied(run, begins, parameters, at_start)?;
     let mut of: Vec<f64> = directions.variations().iter().map(|direction| slope.of(direction)).collect();
     of[2 * N..].iter_mut().zip(&sums).for_each(|(of, sum)| *of += sum);
-    Ok(Some((ahead, of)))
+    Ok(Some((last.run().clone(), of)))
 }
 
 /// A linear function of the node at the end.

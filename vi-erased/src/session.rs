@@ -10,13 +10,11 @@ use crate::method::AnyMemory;
 use crate::method::{AnyMethod, AnyOutput, AnyRun, Progress};
 use crate::run::{Simulated, met};
 use crate::section::Section;
-#[cfg(feature = "derivatives")]
-use crate::simulation::Wanted;
 use crate::simulation::{Met, Rows, Session, StepOutput, vector};
+#[cfg(feature = "derivatives")]
+use crate::simulation::{Wanted, wrong_size};
 #[cfg(feature = "checkpoints")]
 use serde_json::value::RawValue;
-#[cfg(feature = "derivatives")]
-use vi_core::derivatives::Covector;
 #[cfg(feature = "checkpoints")]
 use vi_core::run::Checkpoint;
 use vi_core::run::DenseOutput as _;
@@ -206,17 +204,14 @@ impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
     #[cfg(feature = "derivatives")]
     fn gradient(
         &mut self,
-        steps: u64,
+        wanted: Wanted<'_>,
         slope: &[f64],
-        parameters: &[usize],
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<f64>>, StepError> {
-        let State { q, p, .. } = match slope.split_at_checked(N) {
-            Some((q, p)) => state::<N>(0.0, q, p)?,
-            None => state::<N>(0.0, slope, &[])?,
-        };
-        let slope = Covector { q, p, ..Covector::zero() };
-        let found = derivatives::gradient(&self.run, self.begins(), (steps, slope), parameters, goes_on)?;
+        if slope.len() != 2 * N + 1 {
+            return Err(wrong_size(slope, "number of coordinates, momenta and the time"));
+        }
+        let found = derivatives::gradient(&self.run, self.begins(), wanted, slope, goes_on)?;
         Ok(self.at_end(found))
     }
 }

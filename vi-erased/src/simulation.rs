@@ -284,17 +284,16 @@ pub trait Session {
         count_and_coordinates: [usize; 2],
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<f64>>, StepError>;
-    /// Takes steps, and returns the gradient of `slope·(q, p)` at their end by q, p, and the parameters of these
-    /// indices, by one backward pass.
+    /// Takes steps, and returns the gradient of `slope·(q, p, t)` at their end with respect to q, p, and the parameters
+    /// of these indices, not the step length, by one backward pass. Otherwise as [`Session::tangent`].
     ///
     /// # Errors
-    /// As [`gradient`](vi_core::derivatives::gradient).
+    /// As [`Session::tangent`] and [`gradient`](vi_core::derivatives::gradient).
     #[cfg(feature = "derivatives")]
     fn gradient(
         &mut self,
-        steps: u64,
+        wanted: Wanted<'_>,
         slope: &[f64],
-        parameters: &[usize],
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<f64>>, StepError>;
 }

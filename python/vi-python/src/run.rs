@@ -12,6 +12,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 use vi_core::StepError;
 use vi_erased::plan::Named as _;
+use vi_erased::section::Section;
 use vi_erased::simulation::{End, Met, Wanted};
 use vi_erased::{Built, Rows, Simulation};
 
@@ -49,6 +50,20 @@ impl Run {
             0 => run.h(),
             bits => f64::from_bits(bits),
         }
+    }
+
+    /// The section of an event of a derivative.
+    fn section(&self, event: Option<Description>) -> PyResult<Option<Section>> {
+        let none = (Report::default(), [0.0; 2]);
+        let (sections, _) = sections(event.into_iter().collect(), self.n, &Raised::default(), none)?;
+        // The last one looks for signals.
+        Ok(sections.into_iter().rev().nth(1))
+    }
+
+    /// The expected number of steps, or of those up to a time.
+    #[allow(clippy::cast_precision_loss)] // of a progress bar
+    fn expected(&self, run: &dyn Simulation, steps: u64, t: Option<f64>) -> f64 {
+        t.map_or(steps, |end| steps_to(run, self.length(run), end)) as f64
     }
 
     /// Checks the indices of parameters.
@@ -304,21 +319,14 @@ impl Run {
         velocities: [bool; 2],
         report: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let none = (Report::default(), [0.0; 2]);
-        let (sections, _) = sections(event.into_iter().collect(), self.n, &Raised::default(), none)?;
+        let section = self.section(event)?;
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
         let count = run.parameters().len();
         Self::check_parameters(run, parameters.iter().copied().filter(|index| *index != count))?;
-        let end = match (t, &sections[..]) {
-            (None, _) => End::Steps(steps),
-            (Some(t), [section, _signals]) => End::Crossing(section, t),
-            (Some(t), _) => End::Time(t),
-        };
-        let wanted = Wanted { end, parameters: &parameters, has_velocities: velocities };
-        #[allow(clippy::cast_precision_loss)] // of a progress bar
-        let total = t.map_or(steps, |end| steps_to(run, self.length(run), end)) as f64;
-        let mut watch = Watch::new(Report::new(report), total);
+        let wanted =
+            Wanted { end: end(steps, t, section.as_ref()), parameters: &parameters, has_velocities: velocities };
+        let mut watch = Watch::new(Report::new(report), self.expected(run, steps, t));
         let rows = py.detach(|| run.tangent(wanted, &mut || watch.goes_on())).raise(py)?;
         let rows = watch.unless_raised(rows)?;
         Ok(PyArray2::from_vec2(py, &rows)?)
@@ -346,25 +354,30 @@ impl Run {
         linearized(py, self.lock()?.linearization().raise(py)?)
     }
 
-    /// Takes steps. Returns the gradient of slope·(q, p) at their end with respect to the start and the parameters of
-    /// these indices.
-    #[pyo3(signature = (steps, slope, parameters, report=None))]
+    /// Takes steps to an end, as `tangent`. Returns the gradient of slope·(q, p, t) there with respect to the start and
+    /// the parameters of these indices.
+    #[pyo3(signature = (parameters, slope, steps=0, t=None, event=None, velocities=[false, false], report=None))]
+    #[allow(clippy::too_many_arguments)] // Python's keywords
     fn gradient<'py>(
         &self,
         py: Python<'py>,
-        steps: u64,
-        slope: PyReadonlyArray1<'py, f64>,
         parameters: Vec<usize>,
+        slope: PyReadonlyArray1<'py, f64>,
+        steps: u64,
+        t: Option<f64>,
+        event: Option<Description>,
+        velocities: [bool; 2],
         report: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let slope = vector(&slope, 2 * self.n, "the slope")?;
+        let (slope, section) = (vector(&slope, 2 * self.n + 1, "the slope")?, self.section(event)?);
         let mut guard = self.lock()?;
         let run: &mut dyn Simulation = &mut **guard;
         Self::check_parameters(run, parameters.iter().copied())?;
+        let wanted =
+            Wanted { end: end(steps, t, section.as_ref()), parameters: &parameters, has_velocities: velocities };
         // Each step is taken once on the way ahead, and once on the way back.
-        #[allow(clippy::cast_precision_loss)] // of a progress bar
-        let mut watch = Watch::new(Report::new(report), 2.0 * steps as f64);
-        let found = py.detach(|| run.gradient(steps, &slope, &parameters, &mut || watch.goes_on())).raise(py)?;
+        let mut watch = Watch::new(Report::new(report), 2.0 * self.expected(run, steps, t));
+        let found = py.detach(|| run.gradient(wanted, &slope, &mut || watch.goes_on())).raise(py)?;
         Ok(PyArray1::from_vec(py, watch.unless_raised(found)?))
     }
 
@@ -390,6 +403,15 @@ impl Run {
     /// Everything that the run carries, as text.
     fn checkpoint(&self) -> PyResult<String> {
         self.lock()?.checkpoint().map_err(wrong)
+    }
+}
+
+/// The end of differentiated steps: a number of them, a time, or a section at this time.
+fn end(steps: u64, t: Option<f64>, section: Option<&Section>) -> End<'_> {
+    match (t, section) {
+        (None, _) => End::Steps(steps),
+        (Some(t), None) => End::Time(t),
+        (Some(t), Some(section)) => End::Crossing(section, t),
     }
 }
 
