@@ -509,3 +509,14 @@ def test_a_stored_state_off_the_constraints_is_refused_in_words_of_python():
     with pytest.raises(ValueError, match="does not satisfy the constraint `rod`: residual 1.7") as caught:
         restart(system, integrator, stored.replace("[0.6,-0.8]", "[0.6,-0.9]"))
     assert not re.search("::|&", str(caught.value))
+
+
+def test_the_jacobian_of_a_solution_on_constraints():
+    system = vi.System(RODS)()
+    start, times = system.project([0.6, -0.8, 1.1, -1.7], [0.8, 0.6, 0.3, 0.2]), [0.0, 0.31, 1.0]
+    run = system.integrate(start.q, start.v, h=0.02)
+    found = run.copy().at(times).jacobian(["l", "x"], of=["w", "dot(w)"])
+    for row, t in zip(found, times, strict=True):
+        tangent = run.copy().tangent(wrt=["l"], until=t, velocities=True)
+        expected = np.column_stack([tangent["l"], tangent["q"][:, 0]])[[3, 7]]
+        assert np.array_equal(row, expected)

@@ -828,3 +828,51 @@ def test_derivatives_to_a_time_and_an_event(method, stages, velocities, event):
         difference = (8.0 * (end(axis) - end(-axis)) - (end(2.0 * axis) - end(-2.0 * axis))) / 12e-4
         # Measured: 1.4e-12.
         assert np.abs(column - difference).max() < 4e-12 * (1.0 + np.abs(columns).max())
+
+
+@pytest.mark.parametrize("options", [*METHODS, {"method": "adaptive", "h": 0.1}], ids=str)
+def test_the_jacobian_of_a_solution_is_made_of_tangents(options):
+    times = [0.0, 0.37, 1.1, 1.1, 4.2]
+    run = vi.Kepler().integrate([0.5, 0.1], [0.1, 1.6], **options)
+    aside, sol = run.copy(), run.at(times)
+    found = sol.jacobian(["mu", "dot(y)", "x"])
+    assert found.shape == (5, 4, 3)
+    for row, t in zip(found, times, strict=True):
+        tangent = aside.copy().tangent(wrt=["mu"], until=t, velocities=True)
+        expected = np.column_stack([tangent["mu"], tangent["v"][:, 1], tangent["q"][:, 0]])
+        assert np.array_equal(row, expected)
+    assert np.array_equal(sol.jacobian("mu", of="dot(x)"), found[:, 2, :1])
+    assert np.array_equal(sol.jacobian("mu", of=["y", "x"]), found[:, [1, 0], :1])
+
+
+def test_least_squares_with_the_jacobian_of_a_solution():
+    optimize = pytest.importorskip("scipy.optimize")
+    times = np.linspace(0.0, 8.0, 60)
+    measured = vi.DampedOscillator(k=4.3, c=0.21).integrate([1.0], h=0.1).at(times)["x"]
+
+    def motion(values):
+        return vi.DampedOscillator(k=values[0], c=values[1]).integrate([1.0], h=0.1).at(times)
+
+    found = optimize.least_squares(
+        lambda values: motion(values)["x"] - measured,
+        [4.0, 0.1],
+        lambda values: motion(values).jacobian(["k", "c"], of="x"),
+        **dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15),
+    )
+    assert found.x == pytest.approx([4.3, 0.21], rel=1e-12)
+
+
+def test_solutions_without_a_run_have_no_jacobian(kepler):
+    rows = [
+        kepler.until(1.0, callback=lambda run: None),
+        kepler.events("y", until=5.0),
+        pickle.loads(pickle.dumps(kepler.until(6.0))),
+    ]
+    for sol in rows:
+        with pytest.raises(ValueError, match="without a callback and not unpickled: take it again"):
+            sol.jacobian("mu")
+    sol = kepler.until(7.0)
+    with pytest.raises(ValueError, match="no parameter or start value 'nu'"):
+        sol.jacobian("nu")
+    with pytest.raises(KeyError, match="z"):
+        sol.jacobian("mu", of="z")

@@ -198,10 +198,12 @@ class Run:
         _check_on_error(on_error)
         system = self.system
         if callback is None:
-            again = self._repeats(end, steps, every) if dense else None
+            again, start = self._repeats(end, steps, every) if dense else None, self.copy()
             with progress(self._title) as report:
                 (t, q, p), error, polynomials = self._run.advance(end, steps, every, bool(dense), report)
-            return _finished(Solution(system, t, q, p, advised(error, self._cls), polynomials, again), on_error)
+            found = Solution(system, t, q, p, advised(error, self._cls), polynomials, again)
+            found._start = start
+            return _finished(found, on_error)
         if dense:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
         return _finished(self._called(end, steps, every, callback), on_error)
@@ -293,9 +295,12 @@ class Run:
         _check_on_error(on_error)
         wanted = ordered(times, self.h)
         if callback is None:
+            start = self.copy()
             with progress(self._title) as report:
                 (t, q, p), error, _ = self._run.at(wanted, report)
-            return _finished(Solution(self.system, t, q, p, advised(error, self._cls)), on_error)
+            found = Solution(self.system, t, q, p, advised(error, self._cls))
+            found._start = start
+            return _finished(found, on_error)
         ahead, done = float(np.sign(self.h)), 0
 
         def look(before: Run, t: float) -> tuple[Solution, bool]:
@@ -467,6 +472,13 @@ class Run:
         column for each."""
         with self._advising():
             return self._run.tangent(indices, **options).T
+
+    def _tangents_at(self, indices: list[int], times: Array) -> Array:
+        """The derivatives of (q, v) at these times with respect to (q, v) and these parameters: (K, 2N, D)."""
+        run = self.copy()
+        with run._advising(), progress(run._title) as report:
+            found = run._run.tangents_at(indices, times, report)
+        return np.moveaxis(found, 1, 2)[:, : 2 * len(self._cls.coordinates)]
 
     def lyapunov(self, steps: int, count: int = 1) -> Array:
         """Takes steps, and returns the largest Lyapunov exponents of them, per unit of time, in descending order.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from ._names import among, course, is_plain
 
 if TYPE_CHECKING:
     from ._errors import StepError
+    from ._run import Run
     from ._system import System
 
 
@@ -143,6 +144,7 @@ class Solution(ByName):
         self._values = None
         self._dense = dense
         self._again = again
+        self._start: Run | None = None
 
     @cached_property
     def v(self) -> Array:
@@ -226,6 +228,35 @@ class Solution(ByName):
             )
         return dense
 
+    def jacobian(self, wrt: str | Iterable[str], of: str | Sequence[str] | None = None) -> Array:
+        """The derivatives of coordinates and velocities at the times of the rows, which do not vary, exact to rounding.
+
+        wrt names parameters "k", entries "m[0]" and start values "x", "dot(x)"; an array has a column for each entry.
+        The shape is (K, U) for one name of a coordinate "x" or a velocity "dot(x)", and (K, C, U) for several; by
+        default they are all coordinates, then all velocities. Velocities of the start are constant where a parameter
+        changes. With constraints the start is the nearest state on them.
+
+        Raises ValueError if the solution has no run: those with a callback, of events, and unpickled ones.
+        """
+        from ._fit import unknowns
+
+        if self._start is None:
+            raise ValueError(
+                "derivatives need a solution of until, steps or at, without a callback and not unpickled: take it again"
+            )
+        cls, size = type(self.system), 2 * len(self.system.coordinates)
+        varied = unknowns(wrt, cls)
+        indices = [index for is_start, index in varied.values() if not is_start]
+        parameters = iter(range(size, size + len(indices)))
+        chosen = [index if is_start else next(parameters) for is_start, index in varied.values()]
+        names = [of] if isinstance(of, str) else of
+        rows = list(range(size))
+        if names is not None:
+            places = [course(name, cls.coordinates, cls.__name__) for name in names]
+            rows = [index + is_velocity * size // 2 for is_velocity, index in places]
+        found = self._start._tangents_at(indices, self.t)[:, rows][..., chosen]
+        return found[:, 0] if isinstance(of, str) else found
+
     def __len__(self) -> int:
         return len(self.t)
 
@@ -239,7 +270,7 @@ class Solution(ByName):
 
     def __getstate__(self) -> dict[str, Any]:
         # Dense output belongs to the compiled module: an unpickled solution takes the steps again when it is called.
-        return {**self.__dict__, "_dense": None}
+        return {**self.__dict__, "_dense": None, "_start": None}
 
     def to_dataframe(self) -> Any:
         """The rows as a DataFrame of pandas: columns t, q, dot(q), p_q, Λ of each constraint, energy, and inputs."""
@@ -297,7 +328,7 @@ class Solution(ByName):
         return animated(self, points, trace, fps, speed, axes)
 
 
-check_arguments(Solution, ["plot", "animate"])
+check_arguments(Solution, ["jacobian", "plot", "animate"])
 
 
 BY_SYSTEM = ("v", "energy", "reactions")

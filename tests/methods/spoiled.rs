@@ -302,6 +302,15 @@ impl Session for Spoiled<dyn Simulation> {
         Ok(found.map(|of| of.iter().map(|of| of.iter().map(|entry| entry * factor).collect()).collect()))
     }
 
+    fn tangents_at(
+        &mut self,
+        times_and_parameters: (&[f64], &[usize]),
+        has_velocities: [bool; 2],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<Vec<f64>>>>, StepError> {
+        self.of.tangents_at(times_and_parameters, has_velocities, goes_on)
+    }
+
     fn lyapunov(
         &mut self,
         steps: u64,

@@ -440,6 +440,16 @@ impl Declared<dyn Simulation> {
         self.of.p().len()
     }
 
+    /// Derivatives without those of the coordinates at rest, nor with respect to them.
+    #[cfg(feature = "derivatives")]
+    fn declared(&self, rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let (all, size) = (self.all(), self.size);
+        let is_declared = |at: usize| at >= 2 * all || at % all < size;
+        let declared = |of: Vec<f64>| of.into_iter().enumerate().filter(|(at, _)| is_declared(*at));
+        let rows = rows.into_iter().enumerate().filter(|(at, _)| is_declared(*at));
+        rows.map(|(_, row)| declared(row).map(|(_, entry)| entry).collect()).collect()
+    }
+
     /// Adds what a function records, without the coordinates at rest.
     fn recorded<Y>(&mut self, rows: &mut Rows, record: impl FnOnce(&mut dyn Simulation, &mut Rows) -> Y) -> Y {
         let (all, mut found) = (self.all(), Rows::default());
@@ -535,14 +545,18 @@ impl Session for Declared<dyn Simulation> {
         wanted: Wanted<'_>,
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Vec<f64>>>, StepError> {
-        let (all, size) = (self.all(), self.size);
-        let found = self.of.tangent(wanted, goes_on)?;
-        let is_declared = |at: usize| at >= 2 * all || at % all < size;
-        Ok(found.map(|rows| {
-            let declared = |of: Vec<f64>| of.into_iter().enumerate().filter(|(at, _)| is_declared(*at));
-            let rows = rows.into_iter().enumerate().filter(|(at, _)| is_declared(*at));
-            rows.map(|(_, row)| declared(row).map(|(_, entry)| entry).collect()).collect()
-        }))
+        Ok(self.of.tangent(wanted, goes_on)?.map(|rows| self.declared(rows)))
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn tangents_at(
+        &mut self,
+        times_and_parameters: (&[f64], &[usize]),
+        has_velocities: [bool; 2],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<Vec<f64>>>>, StepError> {
+        let found = self.of.tangents_at(times_and_parameters, has_velocities, goes_on)?;
+        Ok(found.map(|of| of.into_iter().map(|rows| self.declared(rows)).collect()))
     }
 
     #[cfg(feature = "derivatives")]

@@ -38,6 +38,35 @@ pub(crate) fn tangent<S: Runnable<N>, const N: usize>(
     Ok(Some((tangent.run().clone(), rows)))
 }
 
+/// Derivatives at times, which do not vary, as [`Session::tangents_at`](crate::Session::tangents_at).
+///
+/// # Errors
+/// As there.
+pub(crate) fn tangents_at<S: Runnable<N>, const N: usize>(
+    run: &AnyRun<S, N>,
+    begins: bool,
+    (times, parameters): (&[f64], &[usize]),
+    has_velocities: [bool; 2],
+    goes_on: &mut dyn FnMut() -> bool,
+) -> AtEnd<S, Vec<Vec<Vec<f64>>>, N> {
+    let [at_start, at_end] = has_velocities;
+    let mut tangent = varied(run, begins, parameters, at_start)?;
+    let mut found = Vec::with_capacity(times.len());
+    for t in times {
+        let end = End::Time(*t);
+        check_ahead(tangent.run(), end)?;
+        while is_before(end, tangent.run(), 0) {
+            if !goes_on() {
+                return Ok(None);
+            }
+            tangent.step()?;
+        }
+        // The run keeps its own steps.
+        found.push(ended(&mut tangent.clone(), end, at_end)?);
+    }
+    Ok(Some((tangent.run().clone(), found)))
+}
+
 /// Checks that an end is not behind the run.
 ///
 /// # Errors

@@ -191,6 +191,17 @@ impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
     }
 
     #[cfg(feature = "derivatives")]
+    fn tangents_at(
+        &mut self,
+        times_and_parameters: (&[f64], &[usize]),
+        has_velocities: [bool; 2],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<Vec<f64>>>>, StepError> {
+        let found = derivatives::tangents_at(&self.run, self.begins(), times_and_parameters, has_velocities, goes_on)?;
+        Ok(self.at_end(found))
+    }
+
+    #[cfg(feature = "derivatives")]
     fn lyapunov(
         &mut self,
         steps: u64,

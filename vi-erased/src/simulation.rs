@@ -272,6 +272,18 @@ pub trait Session {
         wanted: Wanted<'_>,
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Vec<f64>>>, StepError>;
+    /// As [`Session::tangent`] at each of these times, in the order of the run, which keeps its own steps and is near the
+    /// last one after.
+    ///
+    /// # Errors
+    /// As [`Session::tangent`].
+    #[cfg(feature = "derivatives")]
+    fn tangents_at(
+        &mut self,
+        times_and_parameters: (&[f64], &[usize]),
+        has_velocities: [bool; 2],
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<Vec<Vec<f64>>>>, StepError>;
     /// Takes steps, and returns the largest Lyapunov exponents of them, of the first `coordinates`. Otherwise as
     /// [`Session::tangent`].
     ///

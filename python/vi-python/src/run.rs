@@ -5,7 +5,7 @@ use crate::events::{Description, Raised, sections};
 use crate::failure::{Raise as _, busy, instance, value, wrong};
 use crate::report::{Report, Watch, part};
 use crate::rows::{Linearized, check_memory, linearized, record_some, reserved, steps_to, to_python, vector};
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
@@ -330,6 +330,27 @@ impl Run {
         let rows = py.detach(|| run.tangent(wanted, &mut || watch.goes_on())).raise(py)?;
         let rows = watch.unless_raised(rows)?;
         Ok(PyArray2::from_vec2(py, &rows)?)
+    }
+
+    /// Derivatives of (q, v) with respect to those of the start at times, which are in the order of the run: for each time
+    /// rows as of `tangent`.
+    #[pyo3(signature = (parameters, times, report=None))]
+    fn tangents_at<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: Vec<usize>,
+        times: PyReadonlyArray1<'py, f64>,
+        report: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let times = vector(&times, times.len(), "times")?;
+        let mut guard = self.lock()?;
+        let run: &mut dyn Simulation = &mut **guard;
+        let count = run.parameters().len();
+        Self::check_parameters(run, parameters.iter().copied().filter(|index| *index != count))?;
+        let mut watch = Watch::new(Report::new(report), self.expected(run, 0, times.last().copied()));
+        let wanted = (&times[..], &parameters[..]);
+        let found = py.detach(|| run.tangents_at(wanted, [true; 2], &mut || watch.goes_on())).raise(py)?;
+        Ok(PyArray3::from_vec3(py, &watch.unless_raised(found)?)?)
     }
 
     /// Takes steps. Returns the largest Lyapunov exponents of them.
