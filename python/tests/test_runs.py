@@ -663,6 +663,10 @@ def test_a_solution_has_expressions_of_the_language():
     assert np.abs(sol["[[θ, 1], [0, ψ^2]]"][:, 1, 1] - ψ**2).max() < 1e-15
     at = arm.evaluate("m * norm(w)", 0.0, sol.q, sol.v)
     assert np.abs(at - 1.7 * np.linalg.norm(w, axis=1)).max() < 2e-15  # 4.5e-16
+    other = arm.copy().set(m=2.0)
+    assert np.array_equal(other.evaluate("m * norm(w)", sol), other.evaluate("m * norm(w)", sol.t, sol.q, sol.v))
+    with pytest.raises(TypeError, match="needs t, q and v, or a solution"):
+        arm.evaluate("norm(w)", 0.0, [0.0, 0.0])
     one = arm.evaluate("norm(w)", 0.0, [0.0, 0.0], [0.0, 0.0])
     assert isinstance(one, float) and one == pytest.approx(1.3, abs=1e-15)
     many = arm.ensemble(h=0.02, until=0.1, q=[[0.6, -0.3], [0.1, 0.2], [0.3, 0.3]], parameters={"m": [1.0, 2.0, 3.0]})

@@ -29,6 +29,7 @@ from ._explanation import Explanation
 from ._names import among, meant
 from ._request import Request, checked
 from ._run import Run
+from ._solution import Solution
 
 
 class Parameter:
@@ -310,15 +311,22 @@ class System(metaclass=SystemType):
         """The acceleration at (t, q, v). Raises InconsistentStart if (t, q, v) is off the constraints."""
         return self._at("acceleration", t, q, v, self._shape)
 
-    def evaluate(self, expression: str, t: ArrayLike, q: ArrayLike, v: ArrayLike) -> Any:
-        """An expression of the language at (t, q, v), in the names of the system: its coordinates, parameters, `let`s,
-        functions and tables.
+    def evaluate(
+        self, expression: str, t: ArrayLike | Solution, q: ArrayLike | None = None, v: ArrayLike | None = None
+    ) -> Any:
+        """An expression of the language at (t, q, v), or along a solution, in the names of the system: its coordinates,
+        parameters, `let`s, functions and tables.
 
         >>> system.evaluate("m * l^2 * dot(θ)", 0.0, [0.3], [1.0])
+        >>> system.evaluate("m * l^2 * dot(θ)", sol)
 
-        A vector or a matrix has its axes last. Along a solution write `sol["m * l^2 * dot(θ)"]`. Raises ValueError for
-        a mistake, with its place.
+        A vector or a matrix has its axes last. `sol["m * l^2 * dot(θ)"]` is the same with the parameters of the run.
+        Raises ValueError for a mistake, with its place.
         """
+        if isinstance(t, Solution) and q is None and v is None:
+            t, q, v = t.t, t.q, t.v
+        if q is None or v is None:
+            raise TypeError("evaluate needs t, q and v, or a solution")
         return self._evaluated(expression, *self._points(t, q, v), self._values[None])
 
     def reaction(self, t: ArrayLike, q: ArrayLike, p: ArrayLike) -> Array:
