@@ -32,6 +32,14 @@ from ._run import Run
 from ._solution import Solution
 
 
+@functools.lru_cache(maxsize=256)
+def _observable(
+    definition: str, files: tuple[tuple[str, str], ...], expression: str, wrt: tuple[int, ...] | None
+) -> _core.Observable:
+    """An expression in the names of the system of a text. Each reading keeps some memory, so there is one."""
+    return _core.Observable(definition, list(files), expression, None if wrt is None else list(wrt))
+
+
 class Parameter:
     """A parameter of a system. An array is returned as a copy that cannot be written: assign the whole array."""
 
@@ -517,8 +525,7 @@ class System(metaclass=SystemType):
         these indices. Raises ValueError for a mistake, with its place."""
         if not isinstance(expression, str):
             raise TypeError(f"an expression is a text, such as 'm * x^2', not {expression!r}")
-        definition, files = cls._read()
-        return _core.Observable(definition, list(files), expression, wrt)
+        return _observable(*cls._read(), expression, None if wrt is None else tuple(wrt))
 
     @classmethod
     def _read(cls) -> tuple[str, tuple[tuple[str, str], ...]]:
