@@ -4,6 +4,7 @@ import contextlib
 import gc
 import multiprocessing
 import os
+import pickle
 import signal
 import sys
 import threading
@@ -155,25 +156,64 @@ def test_ensembles_in_a_forked_process():
     assert process.exitcode == 0
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
-def test_nothing_leaks():
-    pendulum = vi.Pendulum()
+def runs():
+    run = vi.Pendulum().integrate([1.0], h=0.05)
+    run.steps(3)
+    run.events(vi.Event(vi.Pendulum.coordinates[0]), 0.3)
+    with contextlib.suppress(vi.InvalidInput):
+        run.until(-1.0)
 
-    def calls(count):
-        for _ in range(count):
-            run = pendulum.integrate([1.0], h=0.05)
-            run.steps(3)
-            run.events(vi.Event(vi.Pendulum.coordinates[0]), 0.3)
-            with contextlib.suppress(vi.InvalidInput):
-                run.until(-1.0)
+
+def derivatives():
+    run = vi.Pendulum().integrate([1.0], h=0.05)
+    run.tangent(2, ["l"], velocities=True)
+    run.gradient(until=0.3, q=[1.0], wrt=["l"])
+    run.at([0.4]).jacobian("l", of="θ")
+
+
+def constraints():
+    rod = vi.RodPendulum()
+    start = rod.project([0.6, -0.7])
+    run = rod.integrate(start.q, start.v, h=0.05)
+    run.set(g=9.7).steps(2).reactions.sum()
+
+
+def values():
+    sol = vi.Pendulum().integrate([1.0], h=0.05).until(0.1, dense=True)
+    sol(0.07)
+    sol["m * l * cos(θ)"].sum()
+    pickle.loads(pickle.dumps(sol)).energy.sum()
+
+
+CALLS = [runs, derivatives, constraints, values]
+
+
+def grown(calls, count):
+    """The growth of the memory in this many times four calls."""
 
     def resident():
         gc.collect()
         with open("/proc/self/statm") as file:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE")
 
-    calls(2_000)
+    for _ in range(500):
+        calls()
     before = resident()
-    calls(10_000)
-    # Measured: 0 to 0.04 MB. A leak of 100 bytes in each of the four calls would be 4 MB.
-    assert resident() - before < 2e6
+    for _ in range(count):
+        calls()
+    return resident() - before
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+@pytest.mark.parametrize("calls", CALLS)
+def test_nothing_leaks(calls):
+    # Measured: 0. A leak of 250 bytes in each of the four calls would be 1 MB.
+    assert grown(calls, 1_000) < 5e5
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+@pytest.mark.long
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("calls", CALLS)
+def test_nothing_leaks_in_a_million_calls(calls):
+    assert grown(calls, 250_000) < 2e6
