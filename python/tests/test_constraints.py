@@ -520,3 +520,26 @@ def test_the_jacobian_of_a_solution_on_constraints():
         tangent = run.copy().tangent(wrt=["l"], until=t, velocities=True)
         expected = np.column_stack([tangent["l"], tangent["q"][:, 0]])[[3, 7]]
         assert np.array_equal(row, expected)
+
+
+def test_matrices_and_velocities_of_rotations():
+    R, ω = np.array([0.5, -0.1, 0.7, 0.5]), np.array([0.3, -2.0, 5.0])
+    top = vi.HeavyTop()
+    sol = top.integrate(R, vi.quaternion_rate(R, ω), h=0.005, stages=6).until(0.5)
+    # Measured: 6.7e-16.
+    assert np.abs(sol["rate(R)"][0] - ω).max() < 5e-15
+    matrices = vi.rotation_matrix(sol["R"])
+    assert np.array_equal(sol["R"], sol.q) and np.array_equal(sol["dot(R)"], sol.v)
+    for column, axis in enumerate(np.eye(3).tolist()):
+        # Measured: 3.3e-16.
+        assert np.abs(matrices[..., column] - sol[f"turn(R, {axis})"]).max() < 2e-15
+    spin = np.einsum("kij,kj->ki", matrices, sol["rate(R)"])
+    # Measured: 4.4e-15 and 4.4e-16.
+    assert np.abs(spin - sol["spin(R)"]).max() < 5e-14
+    assert np.abs(vi.quaternion_rate(sol["R"], ω)[0] - sol.v[0]).max() < 5e-15
+    with pytest.raises(KeyError, match="R is a constraint: its reaction"):
+        sol["Λ_R"]
+    with pytest.raises(ValueError, match="of R must be the 4 entries"):
+        vi.rotation_matrix(ω)
+    with pytest.raises(ValueError, match="of ω must be the 3 axes"):
+        vi.quaternion_rate(R, R)

@@ -34,6 +34,7 @@ from ._fit import Fit, Unidentifiable, fit
 from ._names import meant
 from ._optimise import EnergyBalance, Optimum, optimise
 from ._robots import Robot, from_mjcf, from_urdf
+from ._rotations import quaternion_rate, rotation_matrix
 from ._run import LocalError, Run
 from ._solution import Events, Solution
 from ._stubs import stubs
@@ -60,6 +61,6 @@ __all__ = [
     "Comparison", "CompileError", "EnergyBalance", "Ensemble", "Equilibrium", "Event", "Events", "Explanation", "Fit",
     "Linearization", "LocalError", "Optimum", "Period", "Projected", "Robot", "Run", "Solution", "System",
     "Unidentifiable", "compare", "compile", "fit", "from_mjcf", "from_urdf", "load_ipython_extension", "optimise",
-    "stubs", "systems", "warm",
+    "quaternion_rate", "rotation_matrix", "stubs", "systems", "warm",
     *_error_names, *systems,
 ]  # fmt: skip

@@ -42,7 +42,8 @@ class ByName:
         if isinstance(name, str) and name not in coordinates:
             if among(name.partition("[")[0], self.system.parameters) in self.system.parameters:
                 return self._of_parameter(self.system._parameter(name))
-            if (constraint := name.removeprefix("Λ_")) in constraints:
+            # The quaternions of a rotation have the name of its constraint.
+            if (constraint := name.removeprefix("Λ_")) in constraints and f"{name}[0]" not in coordinates:
                 column = constraints.index(constraint)
                 raise KeyError(f"{constraint} is a constraint: its reaction is reactions[..., {column}]")
             if name in ("t", "q", "v", "p", "energy", "reactions"):

@@ -28,6 +28,7 @@ from ._explanation import Explanation as Explanation
 from ._fit import Fit as Fit, Unidentifiable as Unidentifiable, fit as fit
 from ._optimise import EnergyBalance as EnergyBalance, Optimum as Optimum, optimise as optimise
 from ._robots import Robot as Robot, from_mjcf as from_mjcf, from_urdf as from_urdf
+from ._rotations import quaternion_rate as quaternion_rate, rotation_matrix as rotation_matrix
 from ._run import LocalError as LocalError, Run as Run
 from ._solution import Events as Events, Solution as Solution
 from ._stubs import stubs as stubs
