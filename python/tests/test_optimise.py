@@ -283,6 +283,42 @@ def test_guesses():
     assert abs(run.q[0]) < 0.03 and abs(run.v[0]) < 0.03
 
 
+def test_an_array_of_inputs():
+    Two = vi.System("""
+    struct Two {
+        input w[2] = 0.0;
+        coord q[2];
+        L = (dot(q[0])^2 + dot(q[1])^2) / 2;
+        force q[0] = w[0];
+        force q[1] = w[1];
+    }
+    """)
+    options = {"steps": 8, "duration": 2.0, "start": ([0.0, 0.0], [0.0, 0.0]), "cost": "w[0]^2 + w[1]^2"}
+    one = vi.optimise(Mass(), **{**options, "start": ([0.0], [0.0]), "cost": "u^2"}, end={"x": 1.0})
+    both = vi.optimise(Two(), **options, end={"q[0]": 1.0, "q[1]": -1.0}, guess={"w": np.ones((8, 2)), "w[1]": 0.0})
+    assert both.inputs == ("w[0]", "w[1]") and both["w"].shape == (8, 2) and both["w[0]"].shape == (8,)
+    assert np.abs(both["w"] - one["u"][:, None] * [1.0, -1.0]).max() < 1e-9
+    # One of them stays as the system has it.
+    single = vi.optimise(Two(w=[0.5, 0.0]), **options, end={"q[1]": 1.0}, inputs="w[1]", guess={"w[1]": 1.0})
+    assert single.inputs == ("w[1]",) and (single.solution["w[0]"] == 0.5).all()
+    assert np.abs(single["w[1]"] - one["u"]).max() < 1e-9
+
+
+def test_every_method_of_given_length():
+    Quartic = vi.System("""
+    struct Quartic { input u = 0.0; coord x; L = dot(x)^2 / 2 - x^4 / 4; force x = u; discretize midpoint; }
+    """)
+    options = {"steps": 20, "duration": 3.0, "start": ([1.0], [0.0]), "end": ([0.0], [0.0]), "cost": "u^2 + x^2"}
+    costs = {}
+    for method in Quartic._methods:
+        if method not in ("energy", "adaptive"):
+            found = vi.optimise(Quartic(), method=method, **options)
+            assert found.success and found.residual < 1e-12
+            costs[method] = found.cost
+    assert len(costs) == 7 and abs(costs.pop("fixed") - costs["gauss"]) < 0.01
+    assert all(abs(cost - costs["gauss"]) < 1e-5 for cost in costs.values())
+
+
 def test_what_is_not_found_is_told():
     # The bound of the force is too small for the time.
     options = {
@@ -318,7 +354,7 @@ def test_what_is_not_found_is_told():
         ({"start": 0.0}, TypeError, "start must be"),
         ({"guess": 1.0}, TypeError, "guess must be"),
         ({"guess": {"w": 1.0}}, ValueError, "not an input to find"),
-        ({"guess": {"u": [1.0]}}, ValueError, "one for each of 5 steps"),
+        ({"guess": {"u": [1.0]}}, ValueError, "one for each step in the shape"),
         ({"tspan": 1.0}, TypeError, "optimise has no argument"),
     ],
 )

@@ -76,9 +76,10 @@ class Optimum:
     _problem: dict[str, Any]
 
     def __getitem__(self, name: str) -> Array:
-        """An input by its name, (K,); a coordinate, a velocity or an expression at the nodes, (K + 1,)."""
-        found = among(name, self.inputs)
-        return fixed(self.u[:, self.inputs.index(found)].copy()) if found in self.inputs else self.solution[name]
+        """An input by its name, (K,), or an array of them; a coordinate, a velocity or an expression at the nodes,
+        (K + 1,)."""
+        columns = _columns(name, self.inputs)
+        return fixed(self.u[:, columns].copy()) if columns != [] else self.solution[name]
 
     def __repr__(self) -> str:
         name = type(self.solution.system).__name__
@@ -627,20 +628,20 @@ class _Problem:
         """The motion of given inputs from the start."""
         u = np.zeros((self.steps, self.m))
         for name, value in guess.items():
-            found = among(name, self.names)
-            if found not in self.names:
+            columns = _columns(name, self.names)
+            if columns == []:
                 raise ValueError(
                     f"{name!r} of guess is not an input to find{meant(name, self.names)}; they are "
                     f"{', '.join(self.names)}"
                 )
             numbers = array(value, name)
             finite(numbers, name)
-            if numbers.shape not in ((), (self.steps,)):
+            wanted = u[:, columns].shape
+            if numbers.shape not in ((), wanted):
                 raise ValueError(
-                    f"{name} of guess must be a number or one for each of {self.steps} steps, not of the shape "
-                    f"{numbers.shape}"
+                    f"{name} of guess must be a number, or one for each step in the shape {wanted}, not {numbers.shape}"
                 )
-            u[:, self.names.index(found)] = numbers
+            u[:, columns] = numbers
         q, v = self._start()
         p = self._momenta(duration, q[None], v[None], u[:1])[0]
         options = {"method": self.request.method, "stages": self.request.stages}
@@ -670,6 +671,12 @@ class _Problem:
         middles = (self.shares[1:] + self.shares[:-1]) / 2.0
         step = np.clip(np.searchsorted(shares, middles, side="right") - 1, 0, len(u) - 1)
         return self.joined(duration, q, p, u[step][:, [names.index(name) for name in self.names]])
+
+
+def _columns(name: str, inputs: Sequence[str]) -> int | list[int]:
+    """The column of an input, or those of an array of inputs; none of another name."""
+    found = among(name, inputs)
+    return inputs.index(found) if found in inputs else [k for k, of in enumerate(inputs) if of.startswith(f"{found}[")]
 
 
 def _shares(steps: Any) -> tuple[Array, float, float | None]:
