@@ -138,7 +138,7 @@ def test_swing_up_of_a_cart_pole():
 
 
 @pytest.mark.long
-def test_swing_up_is_that_of_the_rust_example():
+def test_swing_up_is_that_of_the_rust_example(warm_cache):
     pole = CartPole.native(methods="gauss 2")()
     found = vi.optimise(pole, steps=25, guess=pushes(25), **{**SWING, "stages": 2})
     # The output of `cargo run --example swing_up`.

@@ -306,6 +306,8 @@ class _Problem:
         self.kind.integrator(self.request)
         self.rows: list[_Row] = []
         self.velocities = np.zeros(self.n)
+        self.error: tuple[int, Exception] | None = None
+        """The first failed step of the last evaluation."""
         self.final: _Row | None = None
         self.cost: _Function | None = None
 
