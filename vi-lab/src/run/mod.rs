@@ -160,6 +160,9 @@ pub(crate) struct Arguments {
     /// Initial velocities, separated by commas [default: those of the system]
     #[arg(long, value_name = "V,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
     pub(crate) v: Option<Vec<f64>>,
+    /// Initial momenta, separated by commas, in place of the velocities
+    #[arg(long, value_name = "P,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number, conflicts_with = "v")]
+    pub(crate) p: Option<Vec<f64>>,
     /// Move the initial state to the nearest one on the constraints, and print by how much
     #[arg(long)]
     pub(crate) project: bool,

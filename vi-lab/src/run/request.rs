@@ -14,6 +14,7 @@ use vi_erased::System;
 use vi_erased::check::{self, Face, Refusal};
 use vi_erased::plan::{Method, PhasePoint, Plan, Start};
 use vi_erased::simulation::{Row, Steps};
+use vi_erased::system::Quantity;
 use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::failure::Failure;
 use vi_report::input::number;
@@ -201,8 +202,11 @@ impl Request {
             }
             set(system.as_mut(), name, value)?;
         }
-        let [q, v] = [arguments.q.clone().or(scene.q.clone()), arguments.v.clone().or(scene.v.clone())];
-        let is_default = q.is_none() && v.is_none();
+        let q = arguments.q.clone().or(scene.q.clone());
+        let is_given = arguments.v.is_some() || arguments.p.is_some();
+        let given = if is_given { [&arguments.v, &arguments.p] } else { [&scene.v, &scene.p] };
+        let [v, p] = given.map(Clone::clone);
+        let is_default = q.is_none() && v.is_none() && p.is_none();
         let projects = arguments.project || scene.project.unwrap_or(false);
         let placement = Placement::of(system.as_ref(), entry.start.filter(|_| is_default), projects)?;
         let t = arguments.t.or(scene.t).unwrap_or(0.0);
@@ -226,7 +230,11 @@ impl Request {
             set_item((sweep, item), placement, system.as_mut(), &mut plan)?;
         }
         placement.check(system.as_ref(), &plan)?;
+        plan.p = p;
         check::numbers(system.as_ref(), &plan).map_err(|refusal| refused(&refusal))?;
+        if let Some(p) = plan.p.take() {
+            plan.v = velocities(system.as_ref(), &plan, &p)?;
+        }
         let given = plan.clone();
         let moved = placement.project(system.as_ref(), &mut plan).map_err(|error| Failure::start(error, &given))?;
         if let Some(dtau) = options.dtau {
@@ -397,6 +405,14 @@ fn refused(refusal: &Refusal) -> Failure {
     Failure::Input(refusal.told(Face::Command))
 }
 
+/// The velocities of these momenta at the start of a plan.
+fn velocities(system: &dyn System, plan: &Plan, p: &[f64]) -> Result<Vec<f64>, Failure> {
+    let mut v = Vec::new();
+    let found = system.evaluate(Quantity::Velocity, [&[plan.t], &plan.q, p], &mut v);
+    found.map_err(|error| Failure::start(error, plan))?;
+    Ok(v)
+}
+
 /// Checks that steps lead to the end.
 fn check_direction(plan: &Plan, until: f64) -> Result<(), Failure> {
     if (until - plan.t) * plan.h >= 0.0 {
@@ -447,7 +463,7 @@ mod tests {
             change(&mut arguments);
             message(&arguments)
         };
-        let cases: [(String, &str); 15] = [
+        let cases: [(String, &str); 17] = [
             (with(|a| a.set = vec!["k=1".into()]), "double-well has no parameter `k`; it has `m`"),
             (
                 with(|a| a.set = vec!["m=1".into(), " m =2".into()]),
@@ -478,6 +494,8 @@ mod tests {
                 "DoubleWell has the coordinates q: give as many coordinates (--q), not 2",
             ),
             (with(|a| a.v = Some(vec![f64::NAN])), "the velocities (--v) must be finite, not NaN"),
+            (with(|a| a.p = Some(vec![1.0, 2.0])), "DoubleWell has the coordinates q: give as many momenta (--p), not 2"),
+            (with(|a| a.p = Some(vec![f64::INFINITY])), "the momenta (--p) must be finite, not inf"),
             (with(|a| a.h = Some(0.0)), "the step (--h) must be finite, not zero and not subnormal, not 0.0"),
             (with(|a| a.until = Some(1.0)), "give either --steps or --until, not both"),
             (
@@ -489,6 +507,15 @@ mod tests {
         for (found, expected) in cases {
             assert_eq!(found, expected);
         }
+    }
+
+    #[test]
+    fn momenta_become_the_velocities_of_the_parameters() {
+        let with = |p: f64| {
+            let arguments = Arguments { p: Some(vec![p]), set: vec!["m=4".into()], ..arguments("double-well") };
+            plan_of(&arguments).v
+        };
+        assert_eq!([with(2.0), with(-1.0)], [[0.5], [-0.25]]);
     }
 
     #[test]

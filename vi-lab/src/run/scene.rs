@@ -69,6 +69,8 @@ pub(super) struct Scene {
     pub(super) q: Option<Vec<f64>>,
     /// Initial velocities.
     pub(super) v: Option<Vec<f64>>,
+    /// Initial momenta, in place of the velocities.
+    pub(super) p: Option<Vec<f64>>,
     /// Whether the initial state moves onto the constraints.
     pub(super) project: Option<bool>,
     /// Parameters by name.
@@ -114,6 +116,12 @@ impl Scene {
         }
         if scene.dtau.is_some() && scene.sweep.as_ref().is_some_and(|sweep| sweep.is_over("h")) {
             return Err("the sweep varies `h`, but steps in transformed time have no `h`; remove `dtau`".to_owned());
+        }
+        if scene.v.is_some() && scene.p.is_some() {
+            return Err("give either `v` or `p`, not both".to_owned());
+        }
+        if scene.p.is_some() && scene.sweep.is_some() {
+            return Err("the runs of a sweep start from velocities: write `v` in place of `p`".to_owned());
         }
         if scene.steps.is_some() && scene.until.is_some() {
             return Err("give either `steps` or `until`, not both".to_owned());
@@ -207,6 +215,11 @@ mod tests {
             ("system = \"kepler\"\nsteps = 1\nsteps = 2\n", "line 3: duplicate key"),
             ("system = \"kepler\"\n\ncolour = 1\n", "line 3: unknown field `colour`"),
             ("system = \"kepler\"\nsteps = 1\nuntil = 2.0\n", "give either `steps` or `until`, not both"),
+            ("system = \"kepler\"\nv = [1, 2]\np = [1, 2]\n", "give either `v` or `p`, not both"),
+            (
+                "system = \"kepler\"\np = [1, 2]\n[sweep]\nover = [{ name = \"h\", values = [0.1] }]\n",
+                "the runs of a sweep start from velocities: write `v` in place of `p`",
+            ),
             ("system = \"kepler\"\nh = 1.0\ndtau = 2.0\n", "give either `h` or `dtau`, not both"),
             (
                 "system = \"kepler\"\ndtau = 2.0\n[sweep]\nover = [{ name = \"h\", values = [0.1] }]\n",
