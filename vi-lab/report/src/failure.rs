@@ -129,7 +129,9 @@ impl Failure {
 fn suggestion(error: &clap::Error) -> Option<String> {
     let [argument, command, usage] =
         [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::Usage].map(|kind| error.get(kind));
-    if let Some(near) = argument.or(command) {
+    // One letter is near to no word: `--p` to `--parameter`.
+    let is_word = |near: &&ContextValue| near.to_string().len() > "--p".len();
+    if let Some(near) = argument.filter(is_word).or(command) {
         let near = match near {
             ContextValue::Strings(names) => names.join(" or "),
             name => name.to_string(),

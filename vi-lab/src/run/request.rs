@@ -494,7 +494,10 @@ mod tests {
                 "DoubleWell has the coordinates q: give as many coordinates (--q), not 2",
             ),
             (with(|a| a.v = Some(vec![f64::NAN])), "the velocities (--v) must be finite, not NaN"),
-            (with(|a| a.p = Some(vec![1.0, 2.0])), "DoubleWell has the coordinates q: give as many momenta (--p), not 2"),
+            (
+                with(|a| a.p = Some(vec![1.0, 2.0])),
+                "DoubleWell has the coordinates q: give as many momenta (--p), not 2",
+            ),
             (with(|a| a.p = Some(vec![f64::INFINITY])), "the momenta (--p) must be finite, not inf"),
             (with(|a| a.h = Some(0.0)), "the step (--h) must be finite, not zero and not subnormal, not 0.0"),
             (with(|a| a.until = Some(1.0)), "give either --steps or --until, not both"),
