@@ -380,3 +380,16 @@ def test_without_casadi(monkeypatch):
     monkeypatch.setitem(sys.modules, "casadi", None)
     with pytest.raises(ImportError, match="pip install casadi"):
         vi.optimise(Mass(), steps=5, duration=1.0, start=([0.0], [0.0]), cost="u^2")
+
+
+def test_conditions_without_a_value_are_told():
+    mass = vi.System("struct Mass { input u = 0.0; coord x; L = dot(x)^2 / 2; force x = u; }")()
+    given = {"steps": 5, "duration": 1.0, "start": ([0.0], [0.0])}
+    with pytest.raises(ValueError, match=r"sqrt\(x - 5\) of end has no finite value at node 5 of the guess"):
+        vi.optimise(mass, **given, end={"sqrt(x - 5)": 2.0}, cost="u^2")
+    with pytest.raises(ValueError, match=r"ln\(x - 3\).* has no finite value at node 0"):
+        vi.optimise(mass, **given, bounds={"ln(x - 3)": (0.0, 1.0)}, cost="u^2")
+    with pytest.raises(ValueError, match="the cost has no finite value along the guess"):
+        vi.optimise(mass, **given, end={"x": 1.0}, cost="ln(x - 2)")
+    with pytest.raises(ValueError, match="IPOPT does not take these options"):
+        vi.optimise(mass, **given, end={"x": 1.0}, cost="u^2", options={"foo": 1})

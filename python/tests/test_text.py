@@ -452,3 +452,13 @@ def test_a_hamiltonian():
     assert "p_r^2/(2*m) + p_a^2/(2*m*r^2)" in str(ByL().explain())
     with pytest.raises(vi.CompileError, match="contains no square of `p`"):
         vi.System("struct Linear { coord x; momentum p of x; H = p * x; }")
+
+
+def test_a_momentum_where_an_input_changes():
+    # v = (r - u)/m jumps with u and m, the momentum does not.
+    Charge = vi.System("struct Charge { param m = 1.0; input u = 0.0; coord x; momentum r of x; H = (r - u)^2/(2*m); }")
+    for name in ("u", "m"):
+        run = Charge().integrate(q=[0.0], p=[1.0], h=0.1)
+        sol = run.until(0.5, callback=lambda run, name=name: run.set(**{name: 2.0 + run.t}))
+        np.testing.assert_allclose(sol["r"], 1.0, rtol=1e-15)
+        np.testing.assert_allclose(sol["m * dot(x) + u"], 1.0, rtol=1e-15)

@@ -99,10 +99,14 @@ def solve(program: Program, start: Array, options: dict[str, Any]) -> Solved:
         "ipopt": {**usual, **options},
     }
     named: dict[str, Any] = {"x": x, "f": f, "g": g}
-    solver = casadi.nlpsol("optimise", "ipopt", named, settings)
+    try:
+        solver = casadi.nlpsol("optimise", "ipopt", named, settings)
+    except RuntimeError as error:
+        # The solver is built from its options alone.
+        raise ValueError(f"IPOPT does not take these options: {options}") from error
     found = solver(x0=start, lbx=program.lower, ubx=program.upper, lbg=lower, ubg=upper)
     stats, point = solver.stats(), np.asarray(found["x"]).ravel()
-    of_g = np.asarray(found["g"]).ravel()
+    of_g = at(point)[2]
     violated = [lower - of_g, of_g - upper, program.lower - point, point - program.upper]
     return Solved(
         point,

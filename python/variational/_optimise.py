@@ -502,11 +502,20 @@ class _Problem:
     # The program.
 
     def check(self, x: Array) -> None:
-        """Raises the StepError of a step of the guess."""
+        """Raises the StepError of a step of the guess, and ValueError for a cost or a condition without a value there."""
         k = np.arange(self.steps)
         self._step(k, x[self.places[:-1]])
         if self.error is not None:
             raise advised(self.error[1], type(self.system))
+        cost, _, conditions, _ = self.evaluated(x)
+        if not math.isfinite(cost):
+            raise ValueError("the cost has no finite value along the guess: give another guess, or another cost")
+        for row in self.rows:
+            first = 2 * self.n * self.steps + row.place
+            lost = np.flatnonzero(~np.isfinite(conditions[first : first + len(row.nodes)]))
+            if len(lost):
+                node = row.nodes[lost[0]]
+                raise ValueError(f"{row.name} has no finite value at node {node} of the guess: give another guess")
 
     @property
     def row_bounds(self) -> tuple[Array, Array]:

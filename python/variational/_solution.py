@@ -60,12 +60,26 @@ class ByName:
             values = self.system._values[None]
         else:
             values = np.repeat(self._values, self.t.size // max(len(self._values), 1), axis=0)
-        shape, points = self.system._points(self.t, self.q, self.v)
+        shape, points = self.system._points(self.t, self.q, self._velocities_from_here())
         try:
             found = self.system._evaluated(text, shape, points, values)
         except ValueError as error:
             raise (unknown if is_plain(text) else error) from None
         return fixed(found)
+
+    def _velocities_from_here(self) -> Array:
+        """The velocities from each row on: where a parameter changes, that of the momenta by its new value. `v` has
+        those before the change."""
+        values = self._values
+        if values is None or len(values) != self.t.size or self.t.ndim != 1:
+            return self.v
+        changed = 1 + np.flatnonzero((values[1:] != values[:-1]).any(axis=1))
+        if not len(changed):
+            return self.v
+        v, system = self.v.copy(), type(self.system)
+        for row in changed:
+            v[row] = system._of(values[row]).velocity(self.t[row], self.q[row], self.p[row])
+        return v
 
     def _of_parameter(self, parameter: Any) -> Array:
         """The values of a parameter, with the axes of the rows first."""

@@ -42,7 +42,7 @@ catalogue! {
         ["coord x, y; momentum p of x, «l» of y; H = p^2 + l * x;", "coord x, y; momentum p of x, «l» of y; H = p^2 + y^2;",
          "coord x; momentum «l» of x; H = l * x;"] { name: "l" };
     Singular =
-        "the matrix ∂²H/∂p² is singular for every state, so that the system has no Lagrangian",
+        "the matrix ∂²H/∂p² is singular for every state, or nearly so, and has no Lagrangian",
         "each independent momentum needs a quadratic term of its own, as in `p^2 / (2 * m)`",
         ["coord x, y; momentum p of x, l of y; «H» = (p + l)^2 / 2;",
          "coord r[2]; momentum p of r; «H» = norm(p) + r * r;"];
