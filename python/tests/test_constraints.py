@@ -543,3 +543,10 @@ def test_matrices_and_velocities_of_rotations():
         vi.rotation_matrix(ω)
     with pytest.raises(ValueError, match="of ω must be the 3 axes"):
         vi.quaternion_rate(R, R)
+    with pytest.raises(ValueError, match="unit quaternions: divide"):
+        vi.rotation_matrix([2.0, 1.0, 0.0, 0.0])
+    with pytest.raises(ValueError, match="unit quaternions: divide"):
+        vi.quaternion_rate(np.zeros(4), ω)
+    with pytest.raises(ValueError, match="R and ω do not broadcast"):
+        vi.quaternion_rate(np.full((5, 4), 0.5), np.ones((4, 3)))
+    assert vi.quaternion_rate(R, np.ones((6, 3))).shape == (6, 4)

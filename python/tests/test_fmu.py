@@ -228,4 +228,6 @@ def test_what_cannot_be_a_unit(tmp_path, monkeypatch):
         cart.fmu(path, h=0.01, stages=5)
     with pytest.raises(ValueError, match="q must have 2 entries"):
         cart.fmu(path, [0.0], h=0.01)
+    with pytest.raises(FileNotFoundError, match="there is no folder"):
+        cart.fmu(tmp_path / "none" / "cart.fmu", h=0.01)
     assert not path.exists()

@@ -42,11 +42,13 @@ _WORDS = {
 def write(system: System, path: Path, request: Request, t: float, q: Array, v: Array, verbose: bool) -> Path:
     """Writes the unit of a run of the system from this start.
 
-    Raises CompileError, and InvalidInput for steps back in time.
+    Raises CompileError, InvalidInput for steps back in time, and FileNotFoundError for a path without a folder.
     """
     for name, value in (("h", request.h), ("dtau", request.dtau)):
         if value is not None and value < 0.0:
             raise _invalid(name, "positive for an FMU", value)
+    if not path.absolute().parent.is_dir():
+        raise FileNotFoundError(f"there is no folder {path.parent}")
     definition = system._to_compile()
     last = _last(system, request, t, q, v)
     token = str(uuid.uuid5(uuid.NAMESPACE_OID, definition + last))

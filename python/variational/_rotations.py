@@ -12,6 +12,10 @@ def _quaternion(R: ArrayLike) -> Array:
     found = array(R, "R")
     if found.shape[-1:] != (4,):
         raise ValueError(f"the last axis of R must be the 4 entries of a quaternion, not of shape {found.shape}")
+    lengths = np.linalg.norm(found, axis=-1)
+    # False for NaN.
+    if not (abs(lengths - 1.0) < 1e-6).all():
+        raise ValueError("R must be unit quaternions: divide them by np.linalg.norm(R, axis=-1, keepdims=True)")
     return found
 
 
@@ -38,6 +42,11 @@ def quaternion_rate(R: ArrayLike, ω: ArrayLike) -> Array:
     R, ω = _quaternion(R), array(ω, "ω")
     if ω.shape[-1:] != (3,):
         raise ValueError(f"the last axis of ω must be the 3 axes of the body, not of shape {ω.shape}")
+    try:
+        shape = np.broadcast_shapes(R.shape[:-1], ω.shape[:-1])
+    except ValueError:
+        raise ValueError(f"R and ω do not broadcast: their shapes are {R.shape} and {ω.shape}") from None
+    R, ω = np.broadcast_to(R, (*shape, 4)), np.broadcast_to(ω, (*shape, 3))
     w, r = R[..., :1], R[..., 1:]
     scalar = -np.sum(r * ω, axis=-1, keepdims=True)
     return 0.5 * np.concatenate([scalar, w * ω + np.cross(r, ω)], axis=-1)
