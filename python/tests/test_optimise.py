@@ -176,6 +176,7 @@ def test_transfer_between_circles():
     assert np.abs(y - np.concatenate([found.solution.q[-1], found.solution.v[-1]])).max() < 1e-9
 
 
+@pytest.mark.long
 def test_swing_up_on_a_rod():
     # The same pendulum in Cartesian coordinates with a constraint, and by its angle.
     Rod = vi.System("""
