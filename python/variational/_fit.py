@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ._arrays import Array, array, finite, fixed, number, ordered, vector
 from ._calls import checked_call, unassignable
 from ._errors import StepError
-from ._names import among, course, meant
+from ._names import among, course, meant, unknowns, unknowns_of
 from ._progress import Report, progress
 from ._solution import Solution
 
@@ -415,35 +415,6 @@ def _read(data: Any, cls: Any) -> tuple[Array, dict[str, tuple[tuple[bool, int],
     return times, measured, inputs
 
 
-def unknowns(parameters: str | Iterable[str], cls: Any) -> dict[str, tuple[bool, int]]:
-    """Whether each unknown is a start value, and its index: in (q, v), or in the numbers of the system."""
-    names = [parameters] if isinstance(parameters, str) else list(parameters)
-    found: dict[str, tuple[bool, int]] = {}
-    for name in names:
-        found |= _entries(name, cls)
-    if not found:
-        raise ValueError("give at least one unknown")
-    return found
-
-
-def _entries(name: str, cls: Any) -> dict[str, tuple[bool, int]]:
-    """The unknowns of a name; an array of parameters has several."""
-    if not isinstance(name, str):
-        raise TypeError(f"unknowns must be names, not {name!r}")
-    arrays = {whole: cls._parameter(whole).entries for whole in cls.parameters}
-    known = {whole: {entry: (False, index) for entry, index in entries.items()} for whole, entries in arrays.items()}
-    known |= {entry: {entry: of} for entries in list(known.values()) for entry, of in entries.items()}
-    starts = [*cls.coordinates, *(f"dot({x})" for x in cls.coordinates)]
-    known |= {start: {start: (True, index)} for index, start in enumerate(starts)}
-    found = among(name, known)
-    if found not in known:
-        raise ValueError(
-            f"{cls.__name__} has no parameter or start value {name!r}{meant(name, known)}; "
-            f"it has {_listed([*cls.parameters, *starts])}"
-        )
-    return known[found]
-
-
 def _bounds(bounds: Mapping[str, Sequence[float]], cls: Any, guess: Mapping[str, float]) -> tuple[Array, Array]:
     """The least and the greatest value of each unknown."""
     if not isinstance(bounds, Mapping):
@@ -453,7 +424,7 @@ def _bounds(bounds: Mapping[str, Sequence[float]], cls: Any, guess: Mapping[str,
         limits = array(pair, f"the bounds of {name}")
         if limits.shape != (2,) or not limits[0] < limits[1]:
             raise ValueError(f"the bounds of {name} must be two ascending numbers, not {pair!r}")
-        for entry in _entries(name, cls):
+        for entry in unknowns_of(name, cls):
             if entry not in guess:
                 raise ValueError(f"{name!r} of bounds is not an unknown{meant(name, guess)}; they are {_listed(guess)}")
             if not limits[0] <= guess[entry] <= limits[1]:

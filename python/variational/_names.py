@@ -10,6 +10,7 @@ import keyword
 import re
 import unicodedata
 from collections.abc import Iterable
+from typing import Any
 
 
 def spelled(name: str) -> str:
@@ -80,3 +81,32 @@ def meant(name: str, known: Iterable[str]) -> str:
     """` (did you mean …?)` if a known name is close."""
     close = difflib.get_close_matches(name, list(known), n=1)
     return f" (did you mean {close[0]!r}?)" if close else ""
+
+
+def unknowns(parameters: str | Iterable[str], cls: Any) -> dict[str, tuple[bool, int]]:
+    """Whether each unknown is a start value, and its index: in (q, v), or in the numbers of the system."""
+    names = [parameters] if isinstance(parameters, str) else list(parameters)
+    found: dict[str, tuple[bool, int]] = {}
+    for name in names:
+        found |= unknowns_of(name, cls)
+    if not found:
+        raise ValueError("give at least one unknown")
+    return found
+
+
+def unknowns_of(name: str, cls: Any) -> dict[str, tuple[bool, int]]:
+    """The unknowns of a name; an array of parameters has several."""
+    if not isinstance(name, str):
+        raise TypeError(f"unknowns must be names, not {name!r}")
+    arrays = {whole: cls._parameter(whole).entries for whole in cls.parameters}
+    known = {whole: {entry: (False, index) for entry, index in entries.items()} for whole, entries in arrays.items()}
+    known |= {entry: {entry: of} for entries in list(known.values()) for entry, of in entries.items()}
+    starts = [*cls.coordinates, *(f"dot({x})" for x in cls.coordinates)]
+    known |= {start: {start: (True, index)} for index, start in enumerate(starts)}
+    found = among(name, known)
+    if found not in known:
+        raise ValueError(
+            f"{cls.__name__} has no parameter or start value {name!r}{meant(name, known)}; "
+            f"it has {', '.join([*cls.parameters, *starts])}"
+        )
+    return known[found]

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._animation import animated
 from ._arrays import Array, array, finite, fixed
 from ._calls import check_arguments, no_attribute, unassignable
-from ._names import among, course, is_plain
+from ._names import among, course, is_plain, unknowns
 
 if TYPE_CHECKING:
     from ._errors import StepError
@@ -253,8 +253,6 @@ class Solution(ByName):
 
         Raises ValueError if the solution has no run: those with a callback, of events, and unpickled ones.
         """
-        from ._fit import unknowns
-
         if self._start is None:
             raise ValueError(
                 "derivatives need a solution of until, steps or at, without a callback and not unpickled: take it again"
