@@ -44,9 +44,9 @@ impl Shots<'_> {
     /// the constraints. The Jacobian is exact for nodes on the constraints.
     #[must_use]
     pub fn ends(&self, system: &dyn System, plan: &Plan, varied: &[usize], steps: u64, has_velocities: bool) -> Ends {
-        let (n, names) = (system.coordinates().len(), system.parameters());
+        let (n, count) = (system.coordinates().len(), system.parameters().len());
         // Behind the parameters are the length of the steps and the time of the start.
-        let parameters: Vec<usize> = varied.iter().copied().chain([names.len(), names.len() + 1]).collect();
+        let parameters: Vec<usize> = varied.iter().copied().chain([count, count + 1]).collect();
         let wanted =
             Wanted { end: End::Steps(steps), parameters: &parameters, has_velocities: [false, has_velocities] };
         let columns = 2 * n + parameters.len();
@@ -74,13 +74,9 @@ impl Shots<'_> {
         (system, plan): (&dyn System, &Plan),
         wanted: Wanted<'_>,
     ) -> Result<(Vec<f64>, Vec<Vec<f64>>), StepError> {
-        let names = system.parameters();
         let of = |values: &[f64], count: usize| values[index * count..(index + 1) * count].to_vec();
-        let mut own = system.copy();
-        for ((name, _), value) in names.iter().zip(of(self.parameters, names.len())) {
-            own.set(name, value);
-        }
-        let n = system.coordinates().len();
+        let (n, count) = (system.coordinates().len(), self.parameters.len() / self.t.len());
+        let own = system.with_parameters(&of(self.parameters, count));
         let (t, h, q, p) = (self.t[index], self.h[index], of(self.q, n), of(self.p, n));
         let start = if own.has_constraints() {
             let mut v = Vec::new();

@@ -192,6 +192,16 @@ impl dyn System + '_ {
         self.has(Method::Fixed)
     }
 
+    /// A system of the same type with these values of its parameters, in their order.
+    #[must_use]
+    pub fn with_parameters(&self, values: &[f64]) -> Box<dyn System> {
+        let mut system = self.copy();
+        for ((name, _), value) in self.parameters().into_iter().zip(values) {
+            system.set(name, *value);
+        }
+        system
+    }
+
     /// The default method of the system.
     #[must_use]
     pub fn usual_method(&self) -> Method {

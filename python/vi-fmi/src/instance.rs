@@ -193,11 +193,7 @@ impl Instance {
 
     /// The system with these parameters.
     fn system(&self, parameters: &[f64]) -> Box<dyn System> {
-        let mut system = self.unit.system.copy();
-        for ((name, _), value) in system.parameters().into_iter().zip(parameters) {
-            system.set(name, *value);
-        }
-        system
+        self.unit.system.with_parameters(parameters)
     }
 
     fn outputs(&mut self) -> Outcome<&[f64]> {

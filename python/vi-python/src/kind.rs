@@ -35,11 +35,7 @@ impl Kind {
         if values.len() != count {
             return Err(wrong(format!("{} has {count} parameters, not {}", self.of.name(), values.len())));
         }
-        let mut system = self.of.copy();
-        for ((name, _), value) in self.parameters.iter().zip(values) {
-            system.set(name, *value);
-        }
-        Ok(system)
+        Ok(self.of.with_parameters(values))
     }
 }
 
