@@ -118,8 +118,6 @@ pub enum Refusal {
         built: Vec<Built>,
         /// The reason.
         reason: Box<StepError>,
-        /// Whether it has a rule.
-        has_rule: bool,
     },
 }
 
@@ -144,7 +142,7 @@ impl Refusal {
             Self::Number { input, option, allowed, value } => {
                 format!("{input} ({}) must be {allowed}, not {value:?}", face.option(option))
             }
-            Self::Integrator { system, wanted, built, reason, has_rule } => {
+            Self::Integrator { system, wanted, built, reason } => {
                 let method = face.method(wanted.0);
                 match reason.as_ref() {
                     StepError::HasConstraints { .. } => {
@@ -158,7 +156,7 @@ impl Refusal {
                         face.option("h"),
                         face.option("dtau")
                     ),
-                    StepError::NoRule { .. } if !has_rule => format!(
+                    StepError::NoRule { .. } if !built.iter().any(|of| of.0 == Method::Fixed) => format!(
                         "{system} has no rule for {method}: add `discretize midpoint;` to it, or use {}, or {}",
                         face.method(Method::Gauss),
                         face.integrator((Method::Energy, Some(2), false))
@@ -230,10 +228,7 @@ pub fn integrator(system: &dyn System, plan: Plan) -> Result<Plan, Refusal> {
     let wanted = plan.wanted(system.has_constraints());
     match system.offers(wanted) {
         Ok(()) => Ok(plan),
-        Err(reason) => {
-            let (system, has_rule) = (system.name(), system.has_rule());
-            Err(Refusal::Integrator { system, wanted, built, reason: Box::new(reason), has_rule })
-        }
+        Err(reason) => Err(Refusal::Integrator { system: system.name(), wanted, built, reason: Box::new(reason) }),
     }
 }
 

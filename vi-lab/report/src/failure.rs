@@ -9,6 +9,7 @@ use std::io;
 use std::path::Path;
 use vi_core::StepError;
 use vi_core::error::BORDERED_MASS;
+use vi_erased::check::{Face, Refusal};
 use vi_erased::plan::{Method, Plan};
 
 /// The exit status for a closed standard output: that of a command ended by SIGPIPE.
@@ -60,6 +61,13 @@ pub enum Failure {
     Unread,
     /// Two failures; the exit status is that of the first.
     Both(Box<[Failure; 2]>),
+}
+
+impl From<Refusal> for Failure {
+    /// A plan that has no run is wrong input.
+    fn from(refusal: Refusal) -> Self {
+        Self::Input(refusal.told(Face::Command))
+    }
 }
 
 impl Failure {

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use vi_core::StepError;
 use vi_erased::System;
-use vi_erased::check::{self, Face, Refusal};
+use vi_erased::check;
 use vi_erased::plan::{Method, PhasePoint, Plan, Start};
 use vi_erased::simulation::{Row, Steps};
 use vi_erased::system::Quantity;
@@ -221,7 +221,7 @@ impl Request {
             dtau: options.dtau,
             ..Plan::new(method, entry.h, start)
         };
-        let mut plan = check::integrator(system.as_ref(), asked).map_err(|refusal| refused(&refusal))?;
+        let mut plan = check::integrator(system.as_ref(), asked)?;
         // Short energy-preserving steps with constraints keep their length.
         let usual = if system.has_constraints() { entry.h } else { entry.h * usual_length(method, plan.stages) };
         plan.h = arguments.h.or(scene.h).unwrap_or(usual);
@@ -231,13 +231,13 @@ impl Request {
         }
         placement.check(system.as_ref(), &plan)?;
         plan.p = p;
-        check::numbers(system.as_ref(), &plan).map_err(|refusal| refused(&refusal))?;
+        check::numbers(system.as_ref(), &plan)?;
         if let Some(p) = plan.p.take() {
             plan.v = velocities(system.as_ref(), &plan, &p)?;
         }
         let given = plan.clone();
         let moved = placement.project(system.as_ref(), &mut plan).map_err(|error| Failure::start(error, &given))?;
-        if let Some(dtau) = options.dtau {
+        if let Some(dtau) = plan.dtau {
             scale_time(system.as_ref(), &mut plan, dtau);
         }
         if let Some(tolerance) = arguments.tolerance {
@@ -393,16 +393,11 @@ fn set_item(
 /// # Errors
 /// [`Failure::Input`] for the first wrong input.
 pub(super) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<(), Failure> {
-    check::numbers(system, plan).map_err(|refusal| refused(&refusal))?;
+    check::numbers(system, plan)?;
     match length {
         Length::Until(end) => check_direction(plan, end),
         Length::Steps(_) => Ok(()),
     }
-}
-
-/// A plan that has no run, in the words of the command.
-fn refused(refusal: &Refusal) -> Failure {
-    Failure::Input(refusal.told(Face::Command))
 }
 
 /// The velocities of these momenta at the start of a plan.
