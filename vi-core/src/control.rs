@@ -71,7 +71,7 @@ pub trait Dynamics<const N: usize>: Convertible<N> {
     /// # Errors
     /// [`StepError::Singular`] if the mass matrix is singular or the constraints are redundant at q,
     /// [`StepError::InconsistentStart`] if (t, q, v) does not satisfy a constraint, [`StepError::NonFinite`] if L, f or a
-    /// derivative is not finite.
+    /// derivative is not finite, [`StepError::FirstOrder`] if L is linear in the velocities.
     fn linearization(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Linearization, StepError> {
         linearized(self, t, q.vector(), v.vector())
     }
@@ -105,6 +105,10 @@ fn linearized<S: Convertible<N>, const N: usize>(
     q: SVector<f64, N>,
     v: SVector<f64, N>,
 ) -> Result<Linearization, StepError> {
+    if system.is_first_order() {
+        // Inputs change its velocities at once.
+        return Err(StepError::FirstOrder { system: system.name() });
+    }
     let node = Node::new(State { t, q, p: SVector::zeros() }, 0.0);
     let explained = |failure: StepError| failure.explained(system, &node, 0.0, &v);
     let acceleration = system.acceleration(t, &q, &v).map_err(explained)?;

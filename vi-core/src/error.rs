@@ -174,6 +174,11 @@ pub enum StepError {
         /// Name of the system.
         system: &'static str,
     },
+    /// L is linear in the velocities: the system has no mass matrix, which the method or the quantity needs.
+    FirstOrder {
+        /// Name of the system.
+        system: &'static str,
+    },
     /// Two velocities have the same momenta: L is not defined at rest and has a branch on each side.
     Ambiguous {
         /// Time of this state.
@@ -428,6 +433,9 @@ impl fmt::Display for Reason<'_> {
             StepError::HasConstraints { system } => {
                 write!(f, "`{system}` has constraints, which this method does not keep")
             }
+            StepError::FirstOrder { system } => {
+                write!(f, "L of `{system}` is linear in the velocities: it has no mass matrix")
+            }
             StepError::Ambiguous { t } => write!(f, "two velocities have the same momenta at t = {t:.9}"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
             // Plus zero: −0 is 0.
@@ -574,6 +582,7 @@ impl fmt::Display for StepError {
             Self::NotSeparable { .. } | Self::RuleTooLarge { .. } | Self::HasConstraints { .. } => {
                 f.write_str("; take `Gauss`")
             }
+            Self::FirstOrder { .. } => f.write_str("; it moves by `Gauss`"),
             Self::NoStepDensity { .. } => f.write_str("; make the table `cubic`, or take `FixedStep` or `Gauss`"),
             Self::NoRule { .. } => f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`"),
             Self::Ambiguous { .. } => {

@@ -103,6 +103,7 @@ macro_rules! forward {
         const SEPARABLE: bool = <$s as $crate::motion::Motion<$n, $t>>::SEPARABLE;
         const SCALES_TIME: bool = <$s as $crate::motion::Motion<$n, $t>>::SCALES_TIME;
         const POINT_MASSES: bool = <$s as $crate::motion::Motion<$n, $t>>::POINT_MASSES;
+        const WITHOUT_VELOCITY: &'static [bool] = <$s as $crate::motion::Motion<$n, $t>>::WITHOUT_VELOCITY;
         const CONSTRAINTS: &'static [&'static str] = <$s as $crate::motion::Motion<$n, $t>>::CONSTRAINTS;
         const HOLONOMIC: usize = <$s as $crate::motion::Motion<$n, $t>>::HOLONOMIC;
         const BLOCKS: &'static [$crate::linear::Block] = <$s as $crate::motion::Motion<$n, $t>>::BLOCKS;
@@ -112,7 +113,7 @@ macro_rules! forward {
     (@motion_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
         $crate::forward! { @facts ($this) ($to) $crate::motion::Motion<$n, $t>, $s,
             has_constant_mass -> bool, is_separable -> bool, scales_time -> bool, has_point_masses -> bool,
-            moving -> usize, constraint_names -> &'static [&'static str], holonomic -> usize,
+            without_velocity -> &'static [bool], moving -> usize, constraint_names -> &'static [&'static str], holonomic -> usize,
             blocks -> &'static [$crate::linear::Block] }
     };
     (@point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {

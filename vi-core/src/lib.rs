@@ -33,6 +33,7 @@
 //! | [`kind`] | free systems, and systems with constraints |
 //! | [`motion`] | the equations of motion at one point, for Gauss steps |
 //! | [`constrained`] | systems with constraints, for Gauss–Lobatto steps |
+//! | [`first_order`] | systems whose L is linear in the velocities |
 //! | [`indexed`] | large systems: all their functions from first and second derivatives by loops |
 //! | [`rules`] | markers of the quadrature rules that `discretize` can name |
 //! | [`state`], [`node`] | states, intervals and steps; nodes with compensated sums |
@@ -97,6 +98,7 @@ pub mod discrete;
 pub mod energy_preserving;
 pub mod error;
 mod explained;
+pub mod first_order;
 mod forward;
 pub mod function;
 pub mod gauss;

@@ -52,6 +52,9 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     const SCALES_TIME: bool = false;
     /// Whether L_v is M v with a constant diagonal M, and `L_q + f` depends on t alone: point masses in a uniform field.
     const POINT_MASSES: bool = false;
+    /// For each coordinate of a system whose L is linear in the velocities, whether L does not contain its velocity; empty
+    /// for all other systems. See [`first_order`](mod@crate::first_order).
+    const WITHOUT_VELOCITY: &'static [bool] = &[];
     /// Names of the constraints as declared, entries of arrays as `link[3]`. Holonomic constraints come first.
     const CONSTRAINTS: &'static [&'static str] = &[];
     /// The number of holonomic constraints.
@@ -80,6 +83,16 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     #[inline(always)]
     fn has_point_masses(&self) -> bool {
         Self::POINT_MASSES
+    }
+    /// [`Motion::WITHOUT_VELOCITY`].
+    #[inline(always)]
+    fn without_velocity(&self) -> &'static [bool] {
+        Self::WITHOUT_VELOCITY
+    }
+    /// Whether L is linear in the velocities.
+    #[inline(always)]
+    fn is_first_order(&self) -> bool {
+        !self.without_velocity().is_empty()
     }
     /// The number of coordinates that move: the first ones. Those after them are at rest at 0, with the mass 1 and without
     /// forces; only systems that are known at run time have any. Steps leave them out where they take time.
@@ -145,7 +158,8 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     // The functions below are those of the constraints. A free system has the provided ones; a bound one that leaves
     // out one of them does not compile.
 
-    /// `L_q + f − L_vt − L_vq v`: M times the acceleration without the reaction.
+    /// `L_q + f − L_vt − L_vq v`: M times the acceleration without the reaction. Zero at the velocity of a system of first
+    /// order, which needs its own function.
     fn applied(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
         const { assert!(Self::Kind::COUNT == 0, "a system with constraints needs its own `applied`") };
         let unknown = |_| SVector::repeat(T::real(f64::NAN));

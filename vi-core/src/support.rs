@@ -4,6 +4,7 @@ pub use crate::angles::{Reduced, Turns, are_far, has_angles, reduced as reduced_
 pub use crate::compensated::two_sum;
 #[cfg(feature = "alloc")]
 pub use crate::constrained::{constrained_acceleration, constrained_flow};
+pub use crate::first_order::first_order_flow;
 pub use crate::legendre::{acceleration, step_density, velocity, velocity_by_mass};
 pub use crate::method::check_step;
 pub use crate::predictor::weights;

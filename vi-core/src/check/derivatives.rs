@@ -28,10 +28,12 @@ pub(super) type First = Dual<Bounded>;
 pub(super) type Second = Dual<First>;
 
 /// Tests momentum, energy, the equations at a point and their derivatives against dual numbers, without constraints also
-/// the acceleration.
+/// the acceleration. If L is linear in the velocities, its acceleration has to keep `L_q + f = d/dt ∂L/∂v`, which holds at the
+/// velocities of the coordinates only.
 ///
 /// # Errors
-/// The first number that differs; [`CheckFailure::Vacuous`] if momentum, energy or the mass matrix is zero throughout.
+/// The first number that differs; [`CheckFailure::Vacuous`] if momentum, energy or the mass matrix is zero throughout, or
+/// ∂L_v/∂q if L is linear in the velocities.
 pub fn derivatives<const N: usize, S: MotionChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(system.name(), "derivatives");
     let place = &placed(system, place, &check)?;
@@ -39,7 +41,7 @@ pub fn derivatives<const N: usize, S: MotionChecked<N>>(system: &S, place: &Plac
         continuous(&sample, &mut check)?;
         point(&sample, &mut check)?;
     }
-    check.finish(&["momentum", "energy", "mass"])
+    check.finish(&["momentum", "energy", if system.is_first_order() { "momentum_dq" } else { "mass" }])
 }
 
 /// `∂L/∂q`, and its rate and that of `∂L/∂t` along the trajectory (1, v, a), by second-order dual numbers.
@@ -81,9 +83,19 @@ fn continuous<const N: usize, S: MotionChecked<N>>(
     let a = if is_free { acceleration(sample, check)? } else { SVector::repeat(Bounded::exact(0.0)) };
     let (gradient, _, _) = gradient_and_rates(&second, *t, [&place, &velocity, &a]);
     let applied = gradient + bounded.force(time, &place, &velocity);
-    if is_free {
-        let rate = slopes(&dual.momentum(Dual::variable(time), &along(&place, &velocity), &along(&velocity, &a)));
-        check.vector("rate of the momentum", &rate, &applied)?;
+    let moving = |a: &SVector<Bounded, N>| (Dual::variable(time), along(&place, &velocity), along(&velocity, a));
+    if system.is_first_order() {
+        let (time, q, v) = moving(&SVector::repeat(Bounded::exact(0.0)));
+        let missing = applied - slopes(&dual.momentum(time, &q, &v));
+        let bounds = bounded.applied(time.value, &place, &velocity);
+        let found = vector_of(&system.convert::<f64>().applied(sample.t, &sample.q, &sample.v), &bounds);
+        check.vector("force without inertia", &found, &missing)?;
+        let (time, q, v) = moving(&a);
+        let rate = slopes(&dual.applied(time, &q, &v));
+        check.vector("rate of the force without inertia", &rate, &SVector::repeat(Bounded::exact(0.0)))?;
+    } else if is_free {
+        let (time, q, v) = moving(&a);
+        check.vector("rate of the momentum", &slopes(&dual.momentum(time, &q, &v)), &applied)?;
     }
     // The point evaluation of Gauss steps must agree too.
     let (point, bounds) = (system.point(*t, q, v), bounded.point(time, &place, &velocity));

@@ -167,7 +167,8 @@ impl<const N: usize> SampledMotion<N> {
     }
 }
 
-/// The nearest place on the constraints; without constraints the place itself.
+/// The nearest place on the constraints; without constraints the place itself. If L is linear in the velocities, the place
+/// with those of its coordinates.
 ///
 /// # Errors
 /// As [`State::projected`].
@@ -176,7 +177,7 @@ pub(super) fn placed<const N: usize, S: MotionChecked<N>>(
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Place<N>, CheckFailure> {
-    if const { S::Kind::COUNT == 0 } {
+    if const { S::Kind::COUNT == 0 } && !system.is_first_order() {
         return Ok(*place);
     }
     let nearest = State::projected(system, place.t, place.q, place.v).map_err(|error| check.step(error))?;
@@ -192,7 +193,11 @@ pub(super) fn samples<const N: usize, S: MotionChecked<N>>(
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    let mass = |at: &Trajectory<N>| system.point(at.t, &at.q, &at.v).mass.dense();
+    let is_first_order = system.is_first_order();
+    let mass = |at: &Trajectory<N>| {
+        // Without masses, lengths of the coordinates are compared.
+        if is_first_order { SMatrix::identity() } else { system.point(at.t, &at.q, &at.v).mass.dense() }
+    };
     let has_values = |Sample { system, t, q, v, h }: &Sample<S, N>| {
         Sample { system: Extended(*system), t: *t, q: *q, v: *v, h: *h }.has_values()
     };

@@ -103,13 +103,19 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
         Ok(self)
     }
 
-    /// The nearest state with the held coordinates.
+    /// The nearest state with the held coordinates. If L is linear in the velocities, only the velocities move: to those of
+    /// the coordinates.
     ///
     /// # Errors
     /// As [`State::projected`]; [`StepError::Singular`] also if the held coordinates leave no motion, or do not satisfy
     /// a constraint on them alone; [`StepError::InconsistentStart`] if their velocities do not.
     pub fn projected(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> Result<Projected<N>, StepError> {
         let (q, v) = (q.vector(), v.vector());
+        if self.system.is_first_order() {
+            let state = State::at(self.system, t, q, v);
+            let moved_v = state.velocity(self.system)? - v;
+            return Ok(Projected { state, moved_q: SVector::zeros(), moved_v, energy_lost: 0.0 });
+        }
         self.explained((t, &q, &v), || self.found((t, &q, &v), false))
     }
 

@@ -19,6 +19,7 @@ use super::solve::Workspace;
 use super::{border, bordered, reaction_of, with_idle};
 use crate::derivatives::{TOGETHER, Variation, Varied, more_parameters, not_finite, singular};
 use crate::error::StepError;
+use crate::first_order;
 use crate::gauss::variation::VariedEnergies;
 use crate::kind::Kind;
 use crate::lagrangian::Lagrangian;
@@ -141,7 +142,13 @@ pub(crate) fn project<S, const N: usize>(
 where
     S: Convertible<N>,
 {
-    if const { S::Kind::COUNT == 0 } { Ok(()) } else { corrected(system, node, variations).map(drop) }
+    if const { S::Kind::COUNT > 0 } {
+        return corrected(system, node, variations).map(drop);
+    }
+    if system.is_first_order() {
+        first_order::project(system, node, variations);
+    }
+    Ok(())
 }
 
 /// Moves tangent vectors at a node to admissible ones, and returns the changes.
@@ -226,7 +233,7 @@ where
     S: Convertible<N>,
 {
     if const { S::Kind::COUNT == 0 } {
-        return Ok(());
+        return if system.is_first_order() { first_order::check(system, node, variations) } else { Ok(()) };
     }
     let mut admissible = variations.to_vec();
     let corrections = corrected(system, node, &mut admissible)?;

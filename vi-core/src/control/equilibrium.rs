@@ -10,6 +10,7 @@
 
 use super::{no_eigenvalues, spectrum};
 use crate::error::StepError;
+use crate::first_order::STRUCTURE;
 use alloc::vec::Vec;
 use nalgebra::{Complex, DMatrix, SVector};
 #[cfg(not(feature = "std"))]
@@ -62,12 +63,29 @@ impl<const N: usize> Equilibrium<N> {
     /// oscillations are then exactly zero, and so are both rates of a free motion; ω² has an error of a few ulps of the
     /// largest ω².
     ///
+    /// A direction without mass has one rate: those of `C y' + K y = 0`, if L is linear in the velocities.
+    ///
     /// # Errors
     /// [`StepError::Singular`] if the mass matrix is singular along these directions, [`StepError::NonFinite`] if the QR
     /// iteration does not converge.
     pub fn rates(&self) -> Result<Vec<Complex<f64>>, StepError> {
         let Self { t, mass, damping, stiffness, .. } = self;
         let count = mass.nrows();
+        let is_massless = |k: &usize| mass.row(*k).iter().all(|entry| *entry == 0.0);
+        let (massless, massive): (Vec<usize>, Vec<usize>) = (0..count).partition(is_massless);
+        if !massless.is_empty() {
+            let [c, k] = [damping, stiffness].map(|of| part(of, &massless));
+            let singular = StepError::Singular { t: *t, matrix: STRUCTURE };
+            let a = c.lu().solve(&-k).filter(|of| of.iter().all(|entry| entry.is_finite())).ok_or(singular)?;
+            let mut rates = spectrum::eigenvalues(&a).ok_or(no_eigenvalues(*t))?;
+            if !massive.is_empty() {
+                // Coordinates at rest.
+                let [mass, damping, stiffness] = [mass, damping, stiffness].map(|of| part(of, &massive));
+                rates.extend(Self { mass, damping, stiffness, ..self.clone() }.rates()?);
+                spectrum::sort(&mut rates);
+            }
+            return Ok(rates);
+        }
         if damping.iter().all(|entry| *entry == 0.0)
             && self.is_symmetric()
             && let Some(mut squares) = spectrum::squared_frequencies(stiffness, mass)
@@ -112,6 +130,11 @@ impl<const N: usize> Equilibrium<N> {
             })
         })
     }
+}
+
+/// The rows and columns of these indices.
+fn part(of: &DMatrix<f64>, places: &[usize]) -> DMatrix<f64> {
+    of.select_rows(places).select_columns(places)
 }
 
 /// The rates ±iω of these ω², sorted.

@@ -107,7 +107,8 @@ struct Balance<const N: usize> {
 /// The size of a move by the diagonal of a mass matrix. Unlike lengths of the coordinates, its kinetic energy has no units
 /// of its own.
 fn size_by<const N: usize>(mass: &SMatrix<f64, N, N>) -> impl Fn(&SVector<f64, N>) -> f64 + use<N> {
-    let weights = mass.diagonal().map(f64::abs);
+    // Without a mass, by the length of the coordinate.
+    let weights = mass.diagonal().map(|mass| if mass == 0.0 { 1.0 } else { mass.abs() });
     move |u| u.component_mul(u).dot(&weights).sqrt()
 }
 

@@ -38,4 +38,5 @@ pub use steps::Differentiable;
 pub(crate) use steps::{Sought, check_fallback, not_last, singular};
 pub use tangent::Tangent;
 pub use variation::Variation;
+pub(crate) use variation::along_parameters;
 pub(crate) use variation::{TOGETHER, Varied, changes_of_energy, more_parameters, not_finite};

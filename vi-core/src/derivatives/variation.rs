@@ -2,6 +2,7 @@
 
 use crate::constrained;
 use crate::error::StepError;
+use crate::first_order::first_order_flow;
 use crate::kind::Kind;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::linear;
@@ -274,6 +275,10 @@ where
 /// The number of independent admissible tangent vectors at a node, with fixed time and parameters.
 pub(crate) fn dimension<S: Motion<N>, const N: usize>(system: &S) -> usize {
     let kept = |rows: core::ops::Range<usize>| rows.filter(|r| !system.is_dropped(*r)).count();
+    if system.is_first_order() {
+        // Coordinates at rest keep their momenta.
+        return 2 * N - system.moving();
+    }
     2 * N - kept(0..system.holonomic()) - kept(0..system.constraint_names().len())
 }
 
@@ -296,15 +301,20 @@ where
     let State { t, q, .. } = state;
     let matrix = system.point(*t, q, v).mass;
     let along = |value: f64, slope: f64| Dual { value, slope };
-    // L_v(t, q, v) = p
     let system = along_parameters(system, variation);
+    if system.is_first_order() {
+        let varied = q.zip_map(&variation.q, along);
+        let flow = first_order_flow(&system, along(*t, variation.t), &varied)?;
+        return Ok(flow.v.map(|entry| entry.slope));
+    }
+    // L_v(t, q, v) = p
     let point = system.point(along(*t, variation.t), &q.zip_map(&variation.q, along), &v.map(Dual::fixed));
     let of_v = linear::solve(&matrix, &(variation.p - point.momentum.map(|entry| entry.slope)));
     of_v.ok_or(StepError::Singular { t: *t, matrix: "mass matrix" })
 }
 
 /// A system with parameters that vary in one direction.
-pub(super) fn along_parameters<S: Convertible<N>, const N: usize>(
+pub(crate) fn along_parameters<S: Convertible<N>, const N: usize>(
     system: &S,
     variation: &Variation<N>,
 ) -> S::In<Dual<f64>> {

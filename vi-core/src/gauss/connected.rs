@@ -74,12 +74,19 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     where
         Y: Convertible<N>,
     {
-        let step = self.recovered(system, instructions, left, cache)?;
+        let step = match self.recovered(system, instructions, left, cache) {
+            Ok(step) => step,
+            // Iterations may leave the domain of L, whose velocities are functions of the coordinates.
+            Err(failure) if system.is_first_order() => {
+                return self.continued(system, instructions, None, cache).map_err(|_| failure);
+            }
+            Err(failure) => return Err(failure),
+        };
         let is_proven = is_proven(&ErasedSystem::of(system), self.node, &step);
-        if is_proven { Ok(step) } else { self.continued(system, instructions, step, cache) }
+        if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
     }
 
-    /// The step of this length that continues those of short lengths: `step` itself, bit for bit, if it does.
+    /// The step of this length that continues those of short lengths: `taken` itself, bit for bit, if it does.
     ///
     /// # Errors
     /// [`StepError::TooLong`] if the branch ends at a shorter length, or has not been followed to this one.
@@ -89,19 +96,20 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         &self,
         system: &Y,
         instructions: Instructions,
-        step: Step<N, S>,
+        taken: Option<Step<N, S>>,
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
         Y: Convertible<N>,
     {
         let from = constant(system, self.node)?;
-        let weights = weights(&ErasedSystem::of(system), self.node, &step);
-        let steps = &mut StepsFrom { start: self, system, instructions, cache, from: &from, weights, taken: &step };
+        let rare = ErasedSystem::of(system);
+        let weights = taken.as_ref().map_or([1.0; N], |step| weights(&rare, self.node, step));
+        let steps = &mut StepsFrom { start: self, system, instructions, cache, from: &from, weights, taken };
         let too_long = |part: f64| StepError::TooLong { t: self.node.t, h: self.h, longest: (part * self.h).abs() };
         let found = branch::follow(steps).map_err(too_long)?;
-        let is_same = distance([&step.stages, &found.stages], &from, &weights) <= EQUAL;
-        Ok(if is_same { step } else { Step { linearization: None, ..found } })
+        let is_same = |step: &Step<N, S>| distance([&step.stages, &found.stages], &from, &weights) <= EQUAL;
+        Ok(taken.filter(is_same).unwrap_or(Step { linearization: None, ..found }))
     }
 }
 
@@ -114,8 +122,8 @@ struct StepsFrom<'a, Y, const N: usize, const S: usize> {
     /// The stages equal to the node.
     from: &'a Stages<N, S>,
     weights: [f64; N],
-    /// The solved step of the whole length.
-    taken: &'a Step<N, S>,
+    /// The solved step of the whole length, if there is one.
+    taken: Option<Step<N, S>>,
 }
 
 impl<Y, const N: usize, const S: usize> StepsFrom<'_, Y, N, S>
@@ -148,7 +156,7 @@ where
         } else {
             at(last, |c| part / shorter[1].part * c)
         };
-        let found = self.solved(part, &guess).or_else(|| (part >= 1.0).then_some(*self.taken));
+        let found = self.solved(part, &guess).or_else(|| self.taken.filter(|_| part >= 1.0));
         found.filter(|step| distance([&guess, &step.stages], self.from, &self.weights) <= NEAR)
     }
 }

@@ -44,10 +44,10 @@ pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     /// The linearized equations, if fixed-point iteration does not contract.
     newton: Option<&'a Newton<N, S>>,
     /// Velocities that determine the positions.
-    velocity: Stages<N, S>,
+    pub(super) velocity: Stages<N, S>,
     /// Velocities and forces of the last evaluation.
-    evaluated: Stages<N, S>,
-    force: Stages<N, S>,
+    pub(super) evaluated: Stages<N, S>,
+    pub(super) force: Stages<N, S>,
     /// The largest `Σ_l |M⁻¹_kl P_l|` of the stages, for a variable mass matrix. If velocities are smaller, these terms
     /// cancel and determine the rounding error. Zero if M is constant or not finite.
     terms: SVector<f64, N>,
@@ -131,7 +131,7 @@ where
 
     /// The positions by the current velocities.
     #[inline(always)]
-    fn positions(&self) -> Stages<N, S> {
+    pub(super) fn positions(&self) -> Stages<N, S> {
         let n = self.system.moving();
         let mut x = self.integrals(&self.velocity, &self.node.q_low);
         for k in 0..n {
@@ -144,7 +144,7 @@ where
 
     /// The momenta by the current forces minus `momentum`, the L_v of the velocities.
     #[inline(always)]
-    fn missing(&self, momentum: &Stages<N, S>) -> Stages<N, S> {
+    pub(super) fn missing(&self, momentum: &Stages<N, S>) -> Stages<N, S> {
         let n = self.system.moving();
         let mut missing = self.integrals(&self.force, &self.node.p_low);
         for k in 0..n {

@@ -41,16 +41,25 @@ impl<const N: usize> Linearization<N> {
         [self.h, self.t].iter().chain(&self.q).chain(&self.v).all(|number| number.is_finite())
     }
 
-    /// An estimate of the largest h ω: the growth of a vector by `h E⁻¹ G`, with `E = [I 0; C M]` and `G = [0 I; K B]`.
+    /// An estimate of the largest h ω: the growth of a vector by `h E⁻¹ G`, with `E = [I 0; C M]` and `G = [0 I; K B]`. If L
+    /// is linear in the velocities, by `h (C − B)⁻¹ K`.
     pub(crate) fn stiffness(&self, system: &ErasedSystem<'_, N>) -> f64 {
         let derivatives = system.derivatives(self.t, &self.q, &self.v);
         let AnyDerivatives { momentum_dq: c, mass: m, force_dq: k, force_dv: b } = &derivatives;
         let ones = SVector::<f64, N>::repeat(1.0);
-        let (mut x, mut y) = (ones, ones);
+        let is_first_order = !system.without_velocity().is_empty();
+        let (mut x, mut y) = if is_first_order { (ones, SVector::zeros()) } else { (ones, ones) };
         let mut length = 0.0;
         for _ in 0..POWERS {
             let norm = (x.norm_squared() + y.norm_squared()).sqrt();
             (x, y) = (x / norm, y / norm);
+            if is_first_order {
+                // Coordinates at rest have the mass 1.
+                let Some(rates) = linear::solve(&(c - b + m), &(k * x)) else { return f64::INFINITY };
+                (x, y) = (rates, SVector::zeros());
+                length += x.norm().ln();
+                continue;
+            }
             let Some(rates) = linear::solve(m, &(k * x + (b - c) * y)) else { return f64::INFINITY };
             (x, y) = (y, rates);
             length += (x.norm_squared() + y.norm_squared()).sqrt().ln();

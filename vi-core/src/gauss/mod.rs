@@ -7,7 +7,7 @@
 //! | `tableau` | the coefficients, computed at compile time in twice the precision (`pair`) |
 //! | `lobatto` | the nodes between which constraints act, for [`GaussLobatto`](crate::method::GaussLobatto) |
 //! | `stages` | arrays of stage values, laid out for SIMD |
-//! | `separable`, `general` | the stage equations: forces of the position alone, and any system |
+//! | `separable`, `general`, `first_order` | the stage equations: forces of the position alone, any system with masses, and L linear in the velocities |
 //! | `fixed_point` | fixed-point iteration to convergence |
 //! | `solve` | the solver of a step, with runtime dispatch to SIMD instructions |
 //! | `branch` | the branch of steps of all lengths, from h → 0 |
@@ -35,6 +35,7 @@ pub mod density;
 pub(crate) mod energies;
 #[cfg(feature = "alloc")]
 mod factors;
+mod first_order;
 pub(crate) mod fixed_point;
 pub(crate) mod general;
 pub(crate) mod history;

@@ -23,25 +23,32 @@ pub(crate) enum Form {
     ConstantMass,
     /// Variable mass matrix.
     VaryingMass,
+    /// No mass matrix: [`Motion::is_first_order`].
+    FirstOrder,
 }
 
 impl Form {
     /// The form of the equations of a type; `None` for a type of systems that differ.
     const fn known<Y: Motion<N, T>, const N: usize, T: Real>() -> Option<Self> {
-        if Y::INTERPRETED { None } else { Some(Self::from(Y::SEPARABLE, Y::CONSTANT_MASS)) }
+        if Y::INTERPRETED {
+            None
+        } else {
+            Some(Self::from(!Y::WITHOUT_VELOCITY.is_empty(), Y::SEPARABLE, Y::CONSTANT_MASS))
+        }
     }
 
     /// The form of the equations of a system.
     #[inline(always)]
     fn of<const N: usize, T: Real>(system: &impl Motion<N, T>) -> Self {
-        Self::from(system.is_separable(), system.has_constant_mass())
+        Self::from(system.is_first_order(), system.is_separable(), system.has_constant_mass())
     }
 
-    const fn from(is_separable: bool, has_constant_mass: bool) -> Self {
-        match (is_separable, has_constant_mass) {
-            (true, _) => Self::Separable,
-            (false, true) => Self::ConstantMass,
-            (false, false) => Self::VaryingMass,
+    const fn from(is_first_order: bool, is_separable: bool, has_constant_mass: bool) -> Self {
+        match (is_first_order, is_separable, has_constant_mass) {
+            (true, ..) => Self::FirstOrder,
+            (_, true, _) => Self::Separable,
+            (_, _, true) => Self::ConstantMass,
+            _ => Self::VaryingMass,
         }
     }
 
@@ -137,6 +144,7 @@ pub(crate) type AnyDerivatives<const N: usize> = PointDerivatives<SMatrix<f64, N
 trait Erased<const N: usize> {
     fn form(&self) -> Form;
     fn moving(&self) -> usize;
+    fn without_velocity(&self) -> &'static [bool];
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64>;
     fn sides(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Sides<N, f64>;
     fn derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyDerivatives<N>;
@@ -150,6 +158,10 @@ impl<S: Convertible<N>, const N: usize> Erased<N> for S {
 
     fn moving(&self) -> usize {
         Motion::moving(self)
+    }
+
+    fn without_velocity(&self) -> &'static [bool] {
+        Motion::without_velocity(self)
     }
 
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64> {
@@ -196,6 +208,11 @@ impl<'a, const N: usize> ErasedSystem<'a, N> {
     /// Erases the type of the system.
     pub(crate) fn of<S: Convertible<N>>(system: &'a S) -> Self {
         Self(system)
+    }
+
+    /// [`Motion::without_velocity`].
+    pub(crate) fn without_velocity(&self) -> &'static [bool] {
+        self.0.without_velocity()
     }
 
     /// Derivatives of L_v and L_q + f.

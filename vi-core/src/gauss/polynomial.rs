@@ -13,9 +13,9 @@
 
 use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::{ErasedSystem, Points};
+use super::points::{ErasedSystem, Form, Points};
 use super::stages::{Stages, set, stage, time};
-use super::tableau::Tableau;
+use super::tableau::{Tableau, real};
 use crate::node::Node;
 use crate::run::DenseOutput;
 use crate::state::State;
@@ -30,16 +30,20 @@ pub struct CollocationPolynomial<const N: usize, const S: usize> {
     /// Coefficients of the velocity and of the force in Legendre polynomials.
     velocity: Stages<N, S>,
     force: Stages<N, S>,
+    /// The position at the end of the step minus that of the polynomial, where they differ: in a system of first order. It
+    /// counts as `θ P_S(x)`, which is zero at the start and at the stages.
+    rest: Option<SVector<f64, N>>,
 }
 
 impl<const N: usize, const S: usize> CollocationPolynomial<N, S> {
-    /// Dense output of the step of length h from the node `before` with the state `start`.
+    /// Dense output of the step of length h from the node `before` with the state `start` to the position `end`.
     pub(crate) fn over(
         system: &ErasedSystem<'_, N>,
         before: &Node<N>,
         h: f64,
         stages: Stages<N, S>,
         start: State<N>,
+        end: &SVector<f64, N>,
     ) -> Self {
         let equations = equations(system, before, h, stages);
         let x = equations.start();
@@ -49,7 +53,12 @@ impl<const N: usize, const S: usize> CollocationPolynomial<N, S> {
             let t = time::<N, S, false, f64>(before, h, i);
             set(&mut force, i, &system.at(t, &stage(&x, i), &stage(&velocity, i)).force);
         }
-        Self { start, h, velocity: coefficients(&velocity), force: coefficients(&force) }
+        let mut polynomial =
+            Self { start, h, velocity: coefficients(&velocity), force: coefficients(&force), rest: None };
+        if Points::<N, f64>::form(system) == Form::FirstOrder {
+            polynomial.rest = Some(end - polynomial.state(start.t + h).q);
+        }
+        polynomial
     }
 
     /// The fraction of the step at the time t.
@@ -69,13 +78,21 @@ impl<const N: usize, const S: usize> DenseOutput<N> for CollocationPolynomial<N,
 
     fn state(&self, t: f64) -> State<N> {
         let integrals = integrals::<S>(self.part(t));
-        let q = self.start.q + sum(&self.velocity, &integrals) * self.h;
+        let mut q = self.start.q + sum(&self.velocity, &integrals) * self.h;
+        if let Some(rest) = self.rest {
+            q += rest * (self.part(t) * legendre(S, self.part(t))[0]);
+        }
         let p = self.start.p + sum(&self.force, &integrals) * self.h;
         State { t, q, p }
     }
 
     fn velocity(&self, t: f64) -> SVector<f64, N> {
-        sum(&self.velocity, &polynomials(self.part(t)))
+        let mut v = sum(&self.velocity, &polynomials(self.part(t)));
+        if let Some(rest) = self.rest {
+            let [value, slope] = legendre(S, self.part(t));
+            v += rest * ((value + self.part(t) * slope) / self.h);
+        }
+        v
     }
 }
 
@@ -118,6 +135,18 @@ pub(crate) fn polynomials<const S: usize>(part: f64) -> [f64; S] {
         k += 1.0;
     }
     values
+}
+
+/// P_k(2θ − 1) and its derivative with respect to θ, by `P'_{k+1} = P'_{k−1} + (2k + 1) P_k`.
+fn legendre(k: usize, part: f64) -> [f64; 2] {
+    let x = 2.0 * part - 1.0;
+    let (mut values, mut slopes) = ([0.0, 1.0], [0.0, 0.0]);
+    for k in 0..k {
+        let odd = real(2 * k + 1);
+        slopes = [slopes[1], slopes[0] + odd * values[1]];
+        values = [values[1], (odd * x * values[1] - real(k) * values[0]) / real(k + 1)];
+    }
+    [values[1], 2.0 * slopes[1]]
 }
 
 /// `∫_0^θ P_k(2u − 1) du`, k = 0 … S − 1.

@@ -4,6 +4,7 @@
 //! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
 //! no state. The stages of every [`Step`] satisfy their equations to rounding.
 
+use super::first_order::FirstOrder;
 use super::fixed_point::{self, Convergence, Equations, FixedPointResult, NOISE, Pause, StageIncrement};
 use super::general::{General, equations};
 use super::linearization::Linearization;
@@ -138,6 +139,10 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         system: &ErasedSystem<'_, N>,
         newton: Option<&Newton<N, S>>,
     ) -> StageSolution<N, S> {
+        if Points::<N, f64>::form(system) == Form::FirstOrder {
+            let equations = FirstOrder::new(system, (self.node, self.h), self.guess::<false>(), newton);
+            return finished(equations, self);
+        }
         solved::<f64, _, _, N, S, false, false>(system, system, self, newton)
     }
 
@@ -153,7 +158,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Convertible<N>,
     {
         let in_scalars = || self.in_scalars(&ErasedSystem::of(system), newton);
-        if !Y::SIDE_BY_SIDE {
+        if !Y::SIDE_BY_SIDE || system.is_first_order() {
             return in_scalars();
         }
         let stages = SideBySide { system, start: self, newton };

@@ -128,7 +128,7 @@ pub(crate) fn mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &
 /// The mass matrix of a system, if it is constant.
 #[inline(always)]
 pub(crate) fn constant_mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Option<Y::Mass> {
-    (system.form() != Form::VaryingMass).then(|| mass(system, node))
+    matches!(system.form(), Form::Separable | Form::ConstantMass).then(|| mass(system, node))
 }
 
 /// `base_i + Σ_j matrix_ij x_j` at the stages i. Two sums, because additions form a dependency chain.

@@ -167,6 +167,9 @@ where
     }
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
+        if system.is_first_order() {
+            return Err(StepError::FirstOrder { system: system.name() });
+        }
         let steps = solver::<S, N, STAGES>().begin(system, node, h)?;
         Ok(Following { steps, h, law: None })
     }

@@ -293,6 +293,9 @@ where
     }
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
+        if system.is_first_order() {
+            return Err(StepError::FirstOrder { system: system.name() });
+        }
         check_density(system)?;
         node.energy = 0.0;
         let mut memory = begun(system, node, h)?;

@@ -16,6 +16,8 @@ use super::{Gauss, StageSolver};
 #[cfg(feature = "alloc")]
 use crate::derivatives::{Variation, not_last};
 use crate::error::StepError;
+#[cfg(feature = "alloc")]
+use crate::first_order;
 use crate::gauss::energies::energies;
 use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
 use crate::gauss::general::equations;
@@ -146,6 +148,7 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
                 self.h,
                 self.stages.data.0,
                 *before,
+                &node.q,
             );
             Ok(GaussOutput::Collocation(motion))
         } else {
@@ -169,6 +172,28 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         Ok(())
     }
 }
+
+/// Checks that the momenta of a system of first order are those of its coordinates.
+///
+/// # Errors
+/// [`StepError::InvalidInput`] with the first momentum that is not.
+fn check_momenta<S: Motion<N>, const N: usize>(system: &S, node: &Node<N>) -> Result<(), StepError> {
+    if !system.is_first_order() {
+        return Ok(());
+    }
+    let momentum = system.momentum(node.t, &node.q, &SVector::zeros());
+    let is_other = |(given, of): &(&f64, &f64)| (*given - *of).abs() > OFF * momentum.amax();
+    match node.p.iter().zip(&momentum).find(is_other) {
+        Some((given, _)) => {
+            let allowed = "that of L at the coordinates, which determine it: L is linear in the velocities";
+            Err(StepError::InvalidInput { input: "a momentum", allowed, value: *given })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Relative error of momenta that were computed elsewhere.
+const OFF: f64 = 1e-9;
 
 /// Takes the next step of a run inside the dispatched function.
 struct Advancing<'a, Y, const N: usize, const S: usize> {
@@ -213,6 +238,7 @@ where
     }
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
+        check_momenta(system, node)?;
         LastStages::constant(system, node, h)
     }
 
@@ -293,11 +319,17 @@ where
 
     fn with_system(
         &self,
-        [_, after]: [&S; 2],
+        [system, after]: [&S; 2],
         node: &mut Node<N>,
         _h: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
+        if after.is_first_order() {
+            // The momenta follow from the coordinates, which stay.
+            let momentum = |of: &S| of.momentum(node.t, &node.q, &SVector::zeros());
+            let change = momentum(after) - momentum(system);
+            node.add_momentum(&change);
+        }
         node.state().velocity(after)?;
         Ok(LastStages { before: *node, linearization: None, ..*memory })
     }
@@ -370,7 +402,8 @@ where
         if !memory.has_step(node) || start != before {
             return Err(not_last(before.t));
         }
-        vary(system, (before, *h, &stages.data.0), variations, None)
+        vary(system, (before, *h, &stages.data.0), variations, None)?;
+        if system.is_first_order() { first_order::vary(system, node, variations) } else { Ok(()) }
     }
 }
 
