@@ -126,7 +126,7 @@ pub enum Dependence {
 pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Findings {
     let cyclic = system.continuous.cyclic.iter().enumerate().filter(|(_, cyclic)| **cyclic).map(|(index, _)| index);
     let matrix = |id: FunctionId, output: Output| program.function(id).map(|of| (of, of.results.matrix(output)));
-    let mass = matrix(FunctionId::Acceleration, Output::Mass).or_else(|| matrix(FunctionId::Point, Output::Mass));
+    let mass = matrix(FunctionId::Point, Output::Mass);
     let momentum = program.function(FunctionId::Momentum);
     let velocities =
         |symbol: &Symbol| matches!(symbol, Symbol::Parameter { .. } | Symbol::Continuous(Variable::Velocity(_)));

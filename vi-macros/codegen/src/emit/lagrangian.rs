@@ -6,6 +6,7 @@ use super::constraints;
 use super::formula::item_name;
 use super::matrix::matrix;
 use super::state_function::{number, vector, vector_of};
+use crate::findings::Pattern;
 use crate::model::{Coordinate, Model, Parameter};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
@@ -145,16 +146,28 @@ impl Source<'_> {
     }
 }
 
+/// The acceleration; if L is linear in the velocities, that of the velocity which the equations have at the coordinates.
 fn acceleration(source: &Source) -> TokenStream {
     let dimension = source.dimension();
-    let formula = "Solves `M a = L_q + f − L_vt − L_vq v`.";
+    let is_first_order = !source.model.without_velocity.is_empty();
+    let formula = if is_first_order {
+        "Solves `Ω a = d/dt (Ω v)` at the velocity v of the coordinates."
+    } else {
+        "Solves `M a = L_q + f − L_vt − L_vq v`."
+    };
     let Some((body, documentation)) = source.documented(FunctionId::Acceleration, formula, VelocityFrom::Argument)
     else {
         return TokenStream::new();
     };
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let (form, mass) = matrix(&source.findings.mass, true, body.results.matrix(Output::Mass));
-    let applied = vector_of(body.results.vector(Output::MassTimesAcceleration));
+    let ((form, mass), applied) = if is_first_order {
+        let structure = matrix(&Pattern::Dense, false, body.results.matrix(Output::Structure));
+        (structure, body.results.vector(Output::StructureTimesAcceleration))
+    } else {
+        let mass = matrix(&source.findings.mass, true, body.results.matrix(Output::Mass));
+        (mass, body.results.vector(Output::MassTimesAcceleration))
+    };
+    let applied = vector_of(applied);
     quote! {
         #documentation
         #[inline]
@@ -203,6 +216,19 @@ pub(super) fn step_density(source: &Source) -> TokenStream {
 /// otherwise Newton iteration.
 fn flow(source: &Source) -> TokenStream {
     let dimension = source.dimension();
+    if !source.model.without_velocity.is_empty() {
+        return quote! {
+            #[inline]
+            fn flow(
+                &self,
+                t: T,
+                q: &::vi_core::SVector<T, #dimension>,
+                _: &::vi_core::SVector<T, #dimension>,
+            ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
+                ::vi_core::support::first_order_flow::<Self, #dimension, T>(self, t, q)
+            }
+        };
+    }
     let point = quote!(::vi_core::motion::Motion::point);
     let velocity = if source.system.continuous.quadratic {
         quote! {

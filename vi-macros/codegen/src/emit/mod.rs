@@ -95,7 +95,8 @@ pub fn items(derivations: &Derivations) -> TokenStream {
     let structure = structure::structure(&source, &further);
     let (functions, parameters) = (functions::items(source.model), structure::parameters(source.model));
     let lagrangian = lagrangian::item(&source);
-    let (motion, convertible) = (motion::item(&source), structure::convertible(source.model, true));
+    let (motion, convertible) =
+        (motion::item(&source), structure::convertible(source.model, source.model.without_velocity.is_empty()));
     let batch = own.as_ref().map(|_| structure::batch(source.model));
     let by_own = own.as_ref().map(by_rule);
     let by_further = further.iter().map(by_rule);

@@ -4,7 +4,7 @@ use super::Source;
 use super::body::{Body, VelocityFrom, state_parts};
 use super::constraints::{self, Members};
 use super::matrix::matrix;
-use super::state_function::{number, vector_of};
+use super::state_function::{number, vector, vector_of};
 use crate::discrete::TimeScale;
 use crate::program::{FunctionId, Output};
 use proc_macro2::TokenStream;
@@ -13,8 +13,10 @@ use quote::quote;
 /// The implementation of `Motion`.
 pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
-    let Members { kind, items, functions } =
-        source.system.constraints.as_ref().map_or_else(Members::free, |of| constraints::members(source, of));
+    let Members { kind, items, functions } = match &source.system.constraints {
+        Some(of) => constraints::members(source, of),
+        None => Members { functions: of_first_order(source), ..Members::free() },
+    };
     let constant_mass = source.findings.constant_mass;
     let separable = source.findings.force_of_position && source.system.constraints.is_none();
     let (form, point) = point(source);
@@ -53,6 +55,20 @@ pub(super) fn item(source: &Source) -> TokenStream {
         }
         #has_time_scale
         #is_separable
+    }
+}
+
+/// What a system whose L is linear in the velocities adds; nothing for others.
+fn of_first_order(source: &Source) -> TokenStream {
+    let without = &source.model.without_velocity;
+    if without.is_empty() {
+        return TokenStream::new();
+    }
+    let formula = source.formulas("(L_q + f − dϑ/dt)", &source.system.continuous.mass_times_acceleration);
+    let applied = vector(source, FunctionId::Applied, &formula);
+    quote! {
+        const WITHOUT_VELOCITY: &'static [bool] = &[#(#without),*];
+        #applied
     }
 }
 

@@ -84,7 +84,7 @@ fn hamiltonian(derived: &Derived) -> Option<Line> {
     let model = &derived.model;
     let variables: [fn(usize) -> Symbol; 2] = [|index| Symbol::Continuous(Variable::Velocity(index)), Symbol::Momentum];
     let dimension = model.dimension();
-    let hamiltonian = transform(&mut pool, model.lagrangian, variables, &model.parameters, dimension).ok()?;
+    let hamiltonian = transform(&mut pool, model.lagrangian, variables, &model.parameters, dimension)?;
     bounded(&pool).ok()?;
     let text = pool.render_within(LONGEST, hamiltonian, &|symbol| model.spell(symbol));
     (text.chars().count() < LONGEST).then(|| Line::equation_in(derived, &pool, ("H", "H"), hamiltonian))

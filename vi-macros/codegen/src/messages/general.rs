@@ -40,14 +40,27 @@ pub enum Absence {
 pub enum Singular {
     /// This coordinate contributes nothing to it.
     Massless(String, Massless),
-    /// L is linear in all velocities: the equations are of first order.
-    FirstOrder,
     /// L is homogeneous of degree 1 in the velocities: v·L_v = L, so that M v = 0.
     Homogeneous,
     /// Some directions of motion have no kinetic energy.
     Dependent,
     /// Some directions of motion that the constraints allow have no kinetic energy, with a coordinate that they move.
     Allowed(Option<String>),
+}
+
+/// Why a system whose L is linear in the velocities has no steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FirstOrder {
+    /// The number of coordinates is odd.
+    Odd,
+    /// L contains the velocities of more or less than half of the coordinates.
+    Halves,
+    /// The momenta do not determine the coordinates without a velocity.
+    Singular,
+    /// It has this clause.
+    Clause(&'static str),
+    /// The force on this coordinate depends on a velocity that L does not contain.
+    Force(String),
 }
 
 /// How L depends on a coordinate that contributes nothing to the mass matrix.
@@ -454,13 +467,19 @@ catalogue! {
             { why: Singular::Massless("y".to_owned(), Massless::Absent) },
         ["coord x, y; «L» = (dot(x) + dot(y))^2;", "coord x, y; «L» = (dot(x) - dot(y))^2 / 2 - x^2;"]
             { why: Singular::Dependent },
-        ["coord x; «L» = x * dot(x);",
-         "param a = 1, b = 2; coord x, y; «L» = (ln(y) / x + y) * dot(x) - (a * x + b * y - ln(x) - 2 * ln(y));",
-         "coord x, y; let s = 1 + x^2 + y^2; «L» = s * (x * dot(y) - y * dot(x)) - cos(x) - sin(y);"]
-            { why: Singular::FirstOrder },
         ["param m = 1, c = 3e8; coord T, x; «L» = -m * c * sqrt(c^2 * dot(T)^2 - dot(x)^2);",
          "coord x, y; «L» = sqrt(dot(x)^2 + dot(y)^2) / y;", "coord x, y; «L» = dot(x)^2 / dot(y) + dot(y) * x;"]
             { why: Singular::Homogeneous };
+    FirstOrder { why: FirstOrder } = { of_first_order(why) }, { canonical(why) },
+        ["coord x; «L» = x * dot(x);", "coord x, y, z; «L» = x * dot(y) - z^2;"] { why: FirstOrder::Odd },
+        ["coord x, y; let s = 1 + x^2 + y^2; «L» = s * (x * dot(y) - y * dot(x)) - cos(x) - sin(y);",
+         "coord a, b, c, d; «L» = b * dot(a) - c^2 - d^2;"] { why: FirstOrder::Halves },
+        ["coord x, y; «L» = x * dot(x) - y^2;", "coord a, b, c, d; «L» = (c + d) * (dot(a) + dot(b)) - c^2;"]
+            { why: FirstOrder::Singular },
+        ["coord x, y; L = x * dot(y) - x^2 - y^2; «time_scale» = 1 + x^2;"] { why: FirstOrder::Clause("time_scale") },
+        ["coord x, y; L = x * dot(y) - x^2 - y^2; discretize «midpoint»;",
+         "coord x; momentum p of x; H = p^4 / 4 + x^2; discretize «midpoint»;"] { why: FirstOrder::Clause("discretize") },
+        ["coord x, y; L = x * dot(y) - x^2 - y^2; force «y» = -dot(x);"] { why: FirstOrder::Force("y".to_owned()) };
     UnknownRule { name: String, near: Option<String> } =
         "unknown rule `{name}`",
         {
@@ -629,6 +648,37 @@ fn another_name(name: &str) -> String {
     }
 }
 
+/// What is wrong with an L that is linear in the velocities.
+fn of_first_order(why: &FirstOrder) -> String {
+    match why {
+        FirstOrder::Odd | FirstOrder::Halves | FirstOrder::Singular => {
+            "`L` is linear in the velocities, and has no canonical form".to_owned()
+        }
+        FirstOrder::Clause(clause) => format!("a system of first order takes no `{clause}`"),
+        FirstOrder::Force(name) => format!("the force on `{name}` depends on a velocity that `L` does not contain"),
+    }
+}
+
+/// What to write instead.
+fn canonical(why: &FirstOrder) -> String {
+    match why {
+        FirstOrder::Odd => "such a system has an even number of coordinates, and the velocities of half of them in `L`, as in \
+                            `x * dot(y) - H`; any other motion needs a kinetic energy, as in `m * dot(x)^2 / 2`"
+            .to_owned(),
+        FirstOrder::Halves => "write `L` with the velocities of half of the coordinates: the time derivative of a function of the \
+                               coordinates changes no motion, so that `x * dot(y)` may stand for `(x * dot(y) - y * dot(x)) / 2`"
+            .to_owned(),
+        FirstOrder::Singular => "each coordinate without a velocity has to be a factor of one, as `x` in `x * dot(y) - H`: `L` does not \
+                                 determine the motion"
+            .to_owned(),
+        FirstOrder::Clause(clause) => format!(
+            "remove it, and use `Gauss`: `L` is linear in the velocities, or `H` has no `L` in closed form, and {}",
+            if *clause == "discretize" { "a rule would have parasitic steps" } else { "steps have no other time" }
+        ),
+        FirstOrder::Force(_) => "write it by the velocities in `L`, or by the coordinates".to_owned(),
+    }
+}
+
 /// Help for a coordinate without kinetic energy.
 fn kinetic_energy(why: &Singular) -> String {
     match why {
@@ -642,11 +692,6 @@ fn kinetic_energy(why: &Singular) -> String {
         Singular::Massless(name, Massless::Linear) => format!(
             "`dot({name})` appears in `L` only to the first power, which is not kinetic energy: add a term with `dot({name})^2`"
         ),
-        Singular::FirstOrder => {
-            "`L` is linear in the velocities; systems of first order, dq/dt = f(q), are not supported: every coordinate needs a kinetic \
-             energy, as in `m * dot(x)^2 / 2`"
-                .to_owned()
-        }
         Singular::Homogeneous => {
             "`L` is homogeneous of degree 1 in the velocities, so the equations do not determine the speed: use the time `t` in place of one \
              coordinate, as in `-m * c^2 * sqrt(1 - dot(x)^2 / c^2)`"

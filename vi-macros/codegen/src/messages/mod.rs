@@ -76,7 +76,7 @@ pub use arrays::ArrayMistake;
 pub use characters::Character;
 pub use constraints::ConstraintMistake;
 pub use functions::FunctionMistake;
-pub use general::{Absence, Massless, Message, Singular};
+pub use general::{Absence, FirstOrder, Massless, Message, Singular};
 pub use habits::Habit;
 pub use hamiltonian::HamiltonianMistake;
 

@@ -3,12 +3,13 @@
 //! In: a [`System`]. Out: a [`Model`], or all messages.
 
 use super::context::Context;
+use super::hamiltonian::Transformed;
 use super::rotation::{self, COMPONENTS};
 use super::scope::Meaning;
 use super::value::Value;
 use super::{
-    Coordinate, Function, Model, Parameter, Rule, angles, check_state, constraint, force, function, hamiltonian,
-    indices, lets, mass, rule, smoothness, time_scale, timeless,
+    Coordinate, Function, Model, Parameter, Rule, angles, check_state, constraint, first_order, force, function,
+    hamiltonian, indices, lets, mass, rule, smoothness, time_scale, timeless,
 };
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
 use crate::messages::{Absence, ArrayMistake, FunctionMistake, Message, error};
@@ -117,13 +118,17 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     // A large system is not multiplied out: its sums have to stay loops.
     let mut without_time = |expr| if is_large { expr } else { timeless::timeless(pool, expr) };
     let lagrangian = without_time(lagrangian);
-    let forces = forces.into_iter().map(without_time).collect();
+    let forces: Vec<Expr> = forces.into_iter().map(without_time).collect();
     let lagrangian_span = system.function().map_or_else(|| system.name.span(), |written| written.name.span());
     let rows = constraint::rows(pool, &constraints, coordinates.len());
     let singular = if is_large {
-        Ok(())
+        Ok(Vec::new())
     } else {
         mass::check(pool, (&coordinates, &parameters), (lagrangian, lagrangian_span), &rows)
+    };
+    let first_order = match &singular {
+        Ok(without) if !without.is_empty() => first_order::check(pool, system, &coordinates, (without, &forces)),
+        _ => Ok(()),
     };
     // Values from an exhausted pool are meaningless.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge { size: found }))?;
@@ -140,6 +145,7 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
         forced,
         forces,
         dissipation,
+        without_velocity: Vec::new(),
         constraints,
         time_scale,
         lets: scope.kept.unwrap_or_default(),
@@ -151,7 +157,8 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     // A derivative with a jump is no derivative.
     constraint::check_smoothness(pool, &model)?;
     dependent?;
-    singular?;
+    first_order?;
+    model.without_velocity = singular?;
     if let Some(condition) = smoothness::jump_of_lagrangian(pool, &model) {
         let condition = pool.render_within(CHARACTERS, condition, &|symbol| model.spell(symbol));
         return Err(error(lagrangian_span, &Message::Function(FunctionMistake::Jump { condition })));
@@ -178,12 +185,16 @@ impl Context<'_> {
         self.scope.expect(constants.iter().map(|constant| &constant.name), Absence::Below);
         self.constants(constants);
         let parameters = self.parameters(parameters);
-        let coordinates = self.coordinates(coordinates, &system.name);
+        let mut coordinates = self.coordinates(coordinates, &system.name);
         self.scope.expect(lets.iter().map(|named| &named.name), Absence::Below);
         let functions = function::functions(self, system, &parameters);
         hamiltonian::momenta(self, system, &coordinates);
         lets::lets(self, lets);
-        let lagrangian = hamiltonian::lagrangian(self, system, (&coordinates, &parameters));
+        let transformed = hamiltonian::lagrangian(self, system, (&coordinates, &parameters));
+        let lagrangian = transformed.map(|Transformed { lagrangian, momenta }| {
+            coordinates.extend(momenta);
+            lagrangian
+        });
         Named { parameters, coordinates, functions, lagrangian }
     }
 

@@ -1,16 +1,17 @@
 //! The Hamiltonian: an input in place of L.
 //!
 //! In: the lines `momentum p of q;` and `H = …;`. Out: L, by the Legendre transformation; each momentum becomes a name for
-//! L_v in every other expression.
+//! L_v in every other expression. An H that has no L in closed form gives `L = p·q' − H`, linear in the velocities, and its
+//! momenta are further coordinates.
 
 use super::context::Context;
-use super::legendre::{NoTransform, transform};
+use super::legendre::transform;
 use super::lets::{self, Closed};
 use super::scope::Meaning;
 use super::value::Value;
 use super::{Coordinate, Parameter, mass};
 use crate::limits::bounded;
-use crate::messages::{HamiltonianMistake, Message, error};
+use crate::messages::{HamiltonianMistake, Message};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Momentum, System};
 use proc_macro2::Span;
@@ -82,12 +83,18 @@ fn report(context: &mut Context, span: Span, mistake: HamiltonianMistake) {
     context.errors.at(span, &Message::Hamiltonian(mistake));
 }
 
-/// L of the system's H, and L_v as the values of the momenta; `None` without H or after a report.
+/// L of a Hamiltonian, and its momenta that are coordinates, after those of the system.
+pub(super) struct Transformed {
+    pub(super) lagrangian: Expr,
+    pub(super) momenta: Vec<Coordinate>,
+}
+
+/// L of the system's H, and the values of the momenta: L_v, or coordinates. `None` without H or after a report.
 pub(super) fn lagrangian(
     context: &mut Context,
     system: &System,
     (coordinates, parameters): (&[Coordinate], &[Parameter]),
-) -> Option<Expr> {
+) -> Option<Transformed> {
     let written = system.hamiltonians.first()?;
     let mut scope = context.scope.without_velocities(context.pool, "H");
     let value = scope.expression(context.pool, &written.value);
@@ -103,20 +110,52 @@ pub(super) fn lagrangian(
     }
     let variables: [fn(usize) -> Symbol; 2] = [Symbol::Momentum, |index| Symbol::Continuous(Variable::Velocity(index))];
     let made = transform(context.pool, hamiltonian, variables, parameters, coordinates.len());
-    let lagrangian = match (bounded(context.pool), made) {
-        (Err(size), _) => Err(error(written.name.span(), &Message::TooLarge { size })),
-        (_, Ok(lagrangian)) => Ok(lagrangian),
-        (_, Err(why)) => Err(no_lagrangian(system, coordinates, why)),
+    if let Err(size) = bounded(context.pool) {
+        context.errors.at(written.name.span(), &Message::TooLarge { size });
+        return None;
+    }
+    match made {
+        Some(lagrangian) => {
+            let momenta: Vec<Expr> = (0..coordinates.len())
+                .map(|index| {
+                    let momentum = mass::slope(context.pool, lagrangian, Variable::Velocity(index));
+                    context.closed(momentum)
+                })
+                .collect();
+            context.scope.settle(context.pool, &momenta);
+            Some(Transformed { lagrangian, momenta: Vec::new() })
+        }
+        None if system.is_constrained => {
+            report(context, written.name.span(), HamiltonianMistake::NoLagrangian);
+            None
+        }
+        None => Some(canonical(context, system, coordinates, hamiltonian)),
+    }
+}
+
+/// `L = p·q' − H`, with momenta that are coordinates.
+fn canonical(context: &mut Context, system: &System, coordinates: &[Coordinate], hamiltonian: Expr) -> Transformed {
+    let dimension = coordinates.len();
+    let momentum = |(Coordinate { name, indices, .. }, place): (&Coordinate, usize)| {
+        let of = system.momenta.iter().find(|momentum| momentum.of == *name);
+        let name = of.map_or(name, |momentum| &momentum.name).clone();
+        (Coordinate { name, indices: indices.clone(), is_angle: false, is_rotation: false }, dimension + place)
     };
-    let lagrangian = context.report(lagrangian)?;
-    let momenta: Vec<Expr> = (0..coordinates.len())
-        .map(|index| {
-            let momentum = mass::slope(context.pool, lagrangian, Variable::Velocity(index));
-            context.closed(momentum)
-        })
-        .collect();
-    context.scope.settle(context.pool, &momenta);
-    Some(lagrangian)
+    let (momenta, places): (Vec<Coordinate>, Vec<usize>) = coordinates.iter().zip(0..).map(momentum).unzip();
+    let values: Vec<Expr> =
+        places.iter().map(|place| context.pool.symbol(Symbol::Continuous(Variable::Coordinate(*place)))).collect();
+    context.scope.settle(context.pool, &values);
+    let pool = &mut *context.pool;
+    let hamiltonian = pool.substitute(hamiltonian, &mut |_, symbol| match symbol {
+        Symbol::Momentum(index) => values.get(*index).copied(),
+        _ => None,
+    });
+    let mut terms = vec![pool.neg(hamiltonian)];
+    for (index, momentum) in values.iter().enumerate() {
+        let velocity = pool.symbol(Symbol::Continuous(Variable::Velocity(index)));
+        terms.push(pool.mul(*momentum, velocity));
+    }
+    Transformed { lagrangian: pool.sum(&terms), momenta }
 }
 
 /// H with the entries of arrays of `let`s that contain momenta replaced: the others stay symbols, so that loops over them do.
@@ -130,26 +169,4 @@ fn with_momenta(context: &mut Context, value: Expr) -> Expr {
         let by_coordinates = closed.expression(pool, entry);
         pool.depends_on(by_coordinates, &moves).then_some(by_coordinates)
     })
-}
-
-/// The message for an H without a Lagrangian.
-fn no_lagrangian(system: &System, coordinates: &[Coordinate], why: NoTransform) -> syn::Error {
-    let momentum = |place: usize| {
-        let Coordinate { name, indices, .. } = &coordinates[place];
-        let of = system.momenta.iter().find(|momentum| momentum.of == *name);
-        let span = of.map_or_else(|| name.span(), |momentum| momentum.name.span());
-        let text = of.map_or_else(String::new, |momentum| momentum.name.to_string());
-        (span, text + &crate::messages::bracketed(indices))
-    };
-    let whole = system.hamiltonians[0].name.span();
-    let (span, mistake) = match why {
-        NoTransform::NotQuadratic(place) => (whole, HamiltonianMistake::NotQuadratic { name: momentum(place).1 }),
-        NoTransform::Linear(place) => {
-            let (span, name) = momentum(place);
-            (span, HamiltonianMistake::Linear { name })
-        }
-        NoTransform::Singular => (whole, HamiltonianMistake::Singular),
-        NoTransform::Coupled(count) => (whole, HamiltonianMistake::Coupled { count }),
-    };
-    error(span, &Message::Hamiltonian(mistake))
 }

@@ -19,33 +19,19 @@ use num_traits::One;
 use std::collections::BTreeMap;
 use vi_expr::{Expr, Node, Pool, Rational};
 
-/// Why a function has no transform in closed form. Variables are given by their indices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum NoTransform {
-    /// The function is not quadratic in this variable.
-    NotQuadratic(usize),
-    /// The function is linear in this variable, or does not contain it.
-    Linear(usize),
-    /// The second derivatives of the function are a singular matrix.
-    Singular,
-    /// This number of variables are coupled, and their matrix is not inverted.
-    Coupled(usize),
-}
-
 /// The symbols of variables by index.
 type Variables = fn(usize) -> Symbol;
 
-/// The transform of a function of the variables `from`, as a function of the variables `to`.
-///
-/// # Errors
-/// Why there is none in closed form.
+/// The transform of a function of the variables `from`, as a function of the variables `to`. `None` if there is none in
+/// closed form: the function is not quadratic, its second derivatives are singular, or they couple too many variables by
+/// symbols.
 pub(crate) fn transform(
     pool: &mut Pool<Symbol>,
     function: Expr,
     [from, to]: [Variables; 2],
     parameters: &[Parameter],
     dimension: usize,
-) -> Result<Expr, NoTransform> {
+) -> Option<Expr> {
     let places = (0..dimension).map(|place| (from(place), place)).collect();
     let mut legendre = Legendre { pool, places, from, to, parameters };
     let (roots, rest) = legendre.roots(function);
@@ -54,14 +40,14 @@ pub(crate) fn transform(
     for Root { factor, radicand } in roots {
         let places = legendre.places(radicand);
         let of_rest = legendre.places(rest);
-        if let Some(place) = places.iter().find(|place| !free.contains(place) || of_rest.contains(place)) {
-            return Err(NoTransform::NotQuadratic(*place));
+        if places.iter().any(|place| !free.contains(place) || of_rest.contains(place)) {
+            return None;
         }
         free.retain(|place| !places.contains(place));
         parts.push(legendre.of_root(factor, radicand, &places)?);
     }
     parts.push(legendre.of_quadratic(rest, &free)?);
-    Ok(pool.sum(&parts))
+    Some(pool.sum(&parts))
 }
 
 /// s √Q.
@@ -124,11 +110,11 @@ impl Legendre<'_> {
         Some(Root { factor, radicand: *radicand })
     }
 
-    fn of_root(&mut self, factor: Expr, radicand: Expr, places: &[usize]) -> Result<Expr, NoTransform> {
+    fn of_root(&mut self, factor: Expr, radicand: Expr, places: &[usize]) -> Option<Expr> {
         let Completed { form, linear, value } = self.completed(radicand, places)?;
         if self.pool.is_zero(value) {
             // s √(u·B u) is homogeneous of degree 1.
-            return Err(NoTransform::Singular);
+            return None;
         }
         let square = self.pool.mul(factor, factor);
         let form = self.pool.scale(form, &Rational::from_integer(4.into()));
@@ -146,7 +132,7 @@ impl Legendre<'_> {
             self.pool.mul(value, root)
         };
         let root = self.pool.mul(factor, root);
-        Ok(self.pool.sub(linear, root))
+        Some(self.pool.sub(linear, root))
     }
 
     /// Whether an expression is negative at no point of a fixed sequence.
@@ -158,14 +144,14 @@ impl Legendre<'_> {
         !(0..mass::POINTS).any(is_negative)
     }
 
-    fn of_quadratic(&mut self, function: Expr, places: &[usize]) -> Result<Expr, NoTransform> {
+    fn of_quadratic(&mut self, function: Expr, places: &[usize]) -> Option<Expr> {
         let Completed { form, linear, value } = self.completed(function, places)?;
         let moving = self.pool.add(form, linear);
-        Ok(self.pool.sub(moving, value))
+        Some(self.pool.sub(moving, value))
     }
 
     /// Completes the square.
-    fn completed(&mut self, function: Expr, places: &[usize]) -> Result<Completed, NoTransform> {
+    fn completed(&mut self, function: Expr, places: &[usize]) -> Option<Completed> {
         let (matrix, slopes) = self.quadratic(function, places)?;
         let (mut groups, mut linear, mut centers, mut squares) =
             (Groups::default(), Vec::new(), Vec::new(), Vec::new());
@@ -191,11 +177,11 @@ impl Legendre<'_> {
             }
         }
         let value = self.value(function, &centers, &squares);
-        Ok(Completed { form: groups.half_sum(self.pool), linear: self.pool.sum(&linear), value })
+        Some(Completed { form: groups.half_sum(self.pool), linear: self.pool.sum(&linear), value })
     }
 
     /// A and b of a function that is quadratic in these variables.
-    fn quadratic(&mut self, function: Expr, places: &[usize]) -> Result<(Vec<Vec<Expr>>, Vec<Expr>), NoTransform> {
+    fn quadratic(&mut self, function: Expr, places: &[usize]) -> Option<(Vec<Vec<Expr>>, Vec<Expr>)> {
         let (mut matrix, mut slopes) = (Vec::new(), Vec::new());
         for place in places {
             let slope = self.slope(function, *place);
@@ -213,15 +199,15 @@ impl Legendre<'_> {
             let is_linear = self.pool.is_zero(rest)
                 || !self.pool.is_undefined(rest) && mass::vanish(self.pool, &[rest], self.parameters);
             if !is_linear {
-                return Err(NoTransform::NotQuadratic(*place));
+                return None;
             }
             if row.iter().all(|entry| self.pool.is_zero(*entry)) {
-                return Err(NoTransform::Linear(*place));
+                return None;
             }
             matrix.push(row);
             slopes.push(at_zero);
         }
-        Ok((matrix, slopes))
+        Some((matrix, slopes))
     }
 
     fn slope(&mut self, expr: Expr, place: usize) -> Expr {
@@ -275,11 +261,11 @@ impl Legendre<'_> {
     }
 
     /// The inverse of a block of A.
-    fn inverted(&mut self, block: &[Vec<Expr>]) -> Result<Vec<Vec<Expr>>, NoTransform> {
+    fn inverted(&mut self, block: &[Vec<Expr>]) -> Option<Vec<Vec<Expr>>> {
         if mass::is_singular(self.pool, &block.concat(), block.len(), self.parameters) {
-            return Err(NoTransform::Singular);
+            return None;
         }
-        inverse(self.pool, block).ok_or(NoTransform::Coupled(block.len()))
+        inverse(self.pool, block)
     }
 }
 

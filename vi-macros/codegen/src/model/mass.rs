@@ -12,7 +12,7 @@
 //! good as two of 1. The points have several sizes: at one of them an angle of 1e15 times a coordinate keeps its
 //! digits, and at some of them a root such as sqrt(c^2*dot(T)^2 - dot(x)^2) has a value.
 
-use super::{Coordinate, Parameter, probe};
+use super::{Coordinate, Parameter, first_order, probe};
 use crate::messages::{Massless, Message, Singular, error};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Span;
@@ -30,29 +30,34 @@ pub(super) const MARGIN: f64 = 64.0;
 const ROUNDS: usize = 12;
 
 /// Reports an M that is singular in every state. An M with an entry without a value in any state is left to the check
-/// of its derivatives.
+/// of its derivatives. If M is zero, returns which coordinates have no velocity in L.
 pub(super) fn check(
     pool: &mut Pool<Symbol>,
     (coordinates, parameters): (&[Coordinate], &[Parameter]),
     (lagrangian, span): (Expr, Span),
     rows: &[Vec<Expr>],
-) -> Result<()> {
+) -> Result<Vec<bool>> {
     let dimension = coordinates.len();
-    let Some((momenta, mass)) = mass(pool, lagrangian, dimension) else { return Ok(()) };
+    let regular = Ok(Vec::new());
+    let Some((momenta, mass)) = mass(pool, lagrangian, dimension) else { return regular };
     if rows.len() >= dimension {
         // Where they are independent, they allow no direction.
-        return Ok(());
+        return regular;
     }
     if !rows.is_empty() {
-        return check_bordered(pool, (coordinates, parameters), (lagrangian, &mass), rows);
+        check_bordered(pool, (coordinates, parameters), (lagrangian, &mass), rows)?;
+        return regular;
     }
     let is_empty = |row: &[Expr]| row.iter().all(|entry| pool.is_zero(*entry));
     let empty = mass.chunks(dimension).position(is_empty);
     if empty.is_none() && !is_singular(pool, &mass, dimension, parameters) {
-        return Ok(());
+        return regular;
+    }
+    if is_empty(&mass) {
+        let found = first_order::without_velocity(pool, &momenta, parameters);
+        return found.map_err(|why| error(span, &Message::FirstOrder { why }));
     }
     let (why, span) = match empty {
-        Some(_) if is_empty(&mass) => (Singular::FirstOrder, span),
         Some(row) => {
             let why = Singular::Massless(coordinates[row].text(), massless(pool, lagrangian, row));
             (why, coordinates[row].name.span())

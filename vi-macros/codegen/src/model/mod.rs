@@ -12,6 +12,7 @@ mod condition;
 pub(crate) mod constraint;
 mod context;
 mod dissipation;
+mod first_order;
 mod force;
 mod function;
 mod hamiltonian;
@@ -94,6 +95,9 @@ pub struct Model {
     pub smoothness: Option<Smoothness>,
     /// Whether a force is declared that is not identically zero.
     pub forced: bool,
+    /// For each coordinate of a system whose L is linear in the velocities, whether L does not contain its velocity; empty
+    /// for all other systems.
+    pub without_velocity: Vec<bool>,
     /// The constraints, the holonomic ones first.
     pub constraints: Vec<Constraint>,
     /// g(t, q) of the time transformation dt = g dτ, if declared.

@@ -25,7 +25,7 @@ use vi_expr::{Expr, Node, Pool, TooLarge};
 /// Operations that do not reproduce their expressions: a bug of this compiler, reported and not emitted.
 pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) -> Result<Program> {
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { size: found });
-    let continuous = continuous(&mut Assembly::new(pool, system, &[]), system).map_err(too_large)?;
+    let continuous = continuous(&mut Assembly::new(pool, system, &[]), model, system).map_err(too_large)?;
     let (mut of_slots, mut of_steps) = (Vec::new(), Vec::new());
     if let Some(rule) = &system.by_rule {
         let ByRule { slots, equations, .. } = rule;
@@ -169,7 +169,28 @@ fn step_velocity(pool: &mut Pool<Symbol>, argument: Expr) -> Option<Expr> {
     matches!(pool.node(moved), Node::Symbol(Symbol::StepVelocity(_))).then_some(moved)
 }
 
-fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
+/// Ω, and Ω a by the time derivative of `L_q + f − dϑ/dt = 0`.
+fn structure(pool: &mut Pool<Symbol>, system: &DiscreteSystem) -> Vec<(Output, Vec<Vec<Expr>>)> {
+    let of = &system.point_derivatives;
+    let rows = of.momentum_dq.iter().zip(&of.force_dv);
+    let structure = rows.map(|(of_momentum, of_force)| {
+        of_momentum.iter().zip(of_force).map(|(of_momentum, of_force)| pool.sub(*of_momentum, *of_force)).collect()
+    });
+    let structure = structure.collect();
+    let rate = |equation: &Expr| {
+        pool.derivative(*equation, &mut |pool, symbol| match symbol {
+            Symbol::Continuous(Variable::Time) => pool.one(),
+            Symbol::Continuous(Variable::Coordinate(index)) => {
+                pool.symbol(Symbol::Continuous(Variable::Velocity(*index)))
+            }
+            _ => pool.zero(),
+        })
+    };
+    let rates = system.continuous.mass_times_acceleration.iter().map(rate).collect();
+    vec![(Output::Structure, structure), (Output::StructureTimesAcceleration, vec![rates])]
+}
+
+fn continuous(assembly: &mut Assembly, model: &Model, system: &DiscreteSystem) -> Assembled {
     let of = &system.continuous;
     let mass = (Output::Mass, of.mass.clone());
     let momentum = (Output::Momentum, vec![of.momentum.clone()]);
@@ -187,8 +208,10 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         assembly.function(FunctionId::Momentum, vector(&of.momentum))?,
         assembly.function(FunctionId::Force, vector(&of.force))?,
         match &system.constraints {
-            None => assembly.function(FunctionId::Acceleration, vec![mass.clone(), mass_times_acceleration])?,
-            Some(_) => assembly.function(FunctionId::Applied, vector(&of.mass_times_acceleration))?,
+            None if model.without_velocity.is_empty() => {
+                assembly.function(FunctionId::Acceleration, vec![mass.clone(), mass_times_acceleration])?
+            }
+            _ => assembly.function(FunctionId::Applied, vector(&of.mass_times_acceleration))?,
         },
         assembly.function(FunctionId::Point, vec![momentum.clone(), applied_force.clone(), mass.clone()])?,
         assembly.function(FunctionId::PointDerivatives, point_derivatives)?,
@@ -196,6 +219,10 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     ];
     if let Some(of) = &system.constraints {
         functions.extend(constraints(assembly, of)?);
+    }
+    if !model.without_velocity.is_empty() {
+        let quantities = structure(assembly.pool, system);
+        functions.push(assembly.function(FunctionId::Acceleration, quantities)?);
     }
     if system.has_energy_steps() {
         functions.push(assembly.function(FunctionId::StepDensity, number(of.step_density))?);

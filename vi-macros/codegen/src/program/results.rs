@@ -130,6 +130,10 @@ pub enum Output {
     Momentum,
     /// M a, for the acceleration a.
     MassTimesAcceleration,
+    /// Ω = ∂L_v/∂q − ∂(L_q + f)/∂v, if L is linear in the velocities.
+    Structure,
+    /// Ω a.
+    StructureTimesAcceleration,
     /// L_q + f.
     AppliedForce,
     /// ∂L_v/∂q.
