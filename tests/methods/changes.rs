@@ -1,5 +1,6 @@
 //! Checkpoints, changes of parameters and states.
 
+use super::derivatives::nearest;
 use super::spoiled::Fault;
 use super::structure::kept_energy;
 use super::{Case, Node, advance, ensure, fails, holds};
@@ -64,7 +65,11 @@ fn changes(case: &Case) -> Result<(), String> {
     is_new(&case.of_system(changed), &mut *run, &before)?;
     // Another state, with the first parameters again.
     let p: Vec<f64> = before.p.iter().map(|p| 1.1 * p).collect();
-    let at = Node { t: before.t + 0.3, p, ..before };
+    let mut at = Node { t: before.t + 0.3, p, ..before };
+    if case.is_first_order() {
+        at.q.iter_mut().for_each(|q| *q *= 1.02);
+        nearest(case, &mut at).map_err(|error| error.to_string())?;
+    }
     if case.is_free() {
         let before = case.method.keeps_energy.then(|| energies(&*run)).transpose()?;
         run.set_state(&[(index, value)], (at.t, &at.q, &at.p)).map_err(|error| error.to_string())?;

@@ -29,7 +29,7 @@ fn tangents(case: &Case, end: End<'_>, has_velocities: bool) -> Result<Vec<Vec<f
 
 /// Moves the coordinates of a node to the nearest ones on the constraints, where its momenta become those of their
 /// velocity.
-fn nearest(case: &Case, node: &mut Node) -> Result<(), StepError> {
+pub(super) fn nearest(case: &Case, node: &mut Node) -> Result<(), StepError> {
     let still = PhasePoint { t: node.t, q: node.q.clone(), v: vec![0.0; node.q.len()] };
     node.q = case.system.project(&still)?.point.q;
     let evaluated = |of: Quantity, second: &[f64]| {
@@ -53,7 +53,7 @@ fn moved(case: &Case, start: &Node, direction: usize, by: f64) -> Result<Vec<f64
         }
     }
     let moved = case.of_system(system);
-    if !case.is_free() {
+    if !case.is_free() || case.is_first_order() {
         nearest(&moved, &mut start).map_err(|error| error.to_string())?;
     }
     let mut run = moved.from(case.h(), &start).map_err(|error| error.to_string())?;
@@ -79,7 +79,9 @@ fn tangent(case: &Case) -> Result<(), String> {
         let off = largest(found.iter().enumerate().map(|(k, found)| found - difference(k)));
         let size = largest(found.iter().copied());
         // A parameter of the time scale does not change other methods.
-        ensure!(size > 1e-4 || direction >= 2 * start.q.len(), "direction {direction} changes nothing");
+        // Momenta of a system of first order follow from its coordinates.
+        let is_free = direction < if case.is_first_order() { start.q.len() } else { 2 * start.q.len() };
+        ensure!(size > 1e-4 || !is_free, "direction {direction} changes nothing");
         worst = worst.max(off / (1.0 + size));
     }
     println!("{}: tangent vectors off by {worst:.1e}", case.name());

@@ -110,6 +110,23 @@ const MAGNETIC: &str = "struct Magnetic {
     discretize midpoint;
 }";
 
+/// Three vortices of a plane in a strain that varies with the time, with friction: L is linear in the velocities of y.
+const VORTICES: &str = "struct Vortices {
+    param k[3] = [1.0, 1.5, -0.7], s = 0.3, w = 1.2, c = 0.05;
+    coord y[3], x[3];
+    let r2[i in 0..3][j in 0..3] = (x[i] - x[j])^2 + (y[i] - y[j])^2;
+    L = sum(i in 0..3, k[i]*x[i]*dot(y[i])) - s*cos(w*t)*sum(i in 0..3, k[i]*x[i]*y[i])
+        + k[0]*k[1]*ln(r2[0][1])/2 + k[0]*k[2]*ln(r2[0][2])/2 + k[1]*k[2]*ln(r2[1][2])/2;
+    force y[0] = -c*dot(y[0])^3;
+}";
+
+/// Predator and prey: momenta that are not linear in the coordinates, and conserve their energy.
+const PREDATOR: &str = "struct Predator {
+    param α = 0.9, β = 1.3;
+    coord a, b;
+    L = ln(b)/a*dot(a) - (a - α*ln(a) + b - β*ln(b));
+}";
+
 lagrangian! {
     /// A point on a sphere with a blade, on ground that moves: both kinds of constraints, and time dependence.
     struct Skate {
@@ -137,7 +154,7 @@ const FREE: Scene = Scene {
 };
 
 /// The systems, those with constraints last.
-pub(super) const SCENES: [Scene; 10] = [
+pub(super) const SCENES: [Scene; 12] = [
     Scene {
         name: "coupled",
         system: || text(COUPLED),
@@ -207,6 +224,24 @@ pub(super) const SCENES: [Scene; 10] = [
         parameters: &[("m", 0.9), ("k", 1.3), ("beta", 0.4)],
         q: &[0.3, 0.7, -0.4, 0.1],
         v: &[0.2, 0.0, 0.5, -0.3],
+        ..FREE
+    },
+    Scene {
+        name: "vortices",
+        system: || text(VORTICES),
+        parameters: &[("s", 0.4), ("w", 1.1), ("c", 0.08)],
+        q: &[0.1, 1.2, -0.9, 0.4, -0.3, 0.7],
+        v: &[0.0; 6],
+        h: 0.012,
+        is_symplectic: false,
+        ..FREE
+    },
+    Scene {
+        name: "predator",
+        system: || text(PREDATOR),
+        parameters: &[("α", 0.8), ("β", 1.2)],
+        q: &[1.3, 0.6],
+        v: &[0.0; 2],
         ..FREE
     },
     Scene {

@@ -151,6 +151,10 @@ impl Refusal {
                             or(&face.methods(built))
                         )
                     }
+                    StepError::FirstOrder { .. } => format!(
+                        "{system} has no mass matrix, which {method} needs, since its `L` is linear in the velocities: use {}",
+                        or(&face.methods(built))
+                    ),
                     StepError::NoTimeScale { .. } => format!(
                         "{system} has no time scale: give {} in place of {}, or write the clause `time_scale = …;`",
                         face.option("h"),

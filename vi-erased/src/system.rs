@@ -286,6 +286,9 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
         let found = self.integrators.iter().find(|integrator| integrator.built == wanted);
         let has_method = self.integrators.iter().any(|integrator| integrator.built.0 == wanted.0);
         found.ok_or(match wanted {
+            (method, ..) if self.system.is_first_order() && (method != Method::Gauss || !has_method) => {
+                StepError::FirstOrder { system: self.system.name() }
+            }
             // Methods that keep constraints have stages.
             (_, stages, _) if !self.system.constraint_names().is_empty() && (!has_method || stages.is_none()) => {
                 StepError::HasConstraints { system: self.system.name() }
@@ -499,6 +502,16 @@ fn each<const N: usize>([t, q, v]: [&[f64]; 3]) -> impl Iterator<Item = (f64, SV
 }
 
 #[cfg(feature = "studies")]
+impl<S: Runnable<N>, const N: usize> Typed<S, N> {
+    /// The start of a motion. If L is linear in the velocities, they are those of the coordinates.
+    fn started(&self, from: &PhasePoint) -> Result<Trajectory<N>, StepError> {
+        let Trajectory { t, q, v } = sized(from)?;
+        let v = if self.system.is_first_order() { self.system.flow(t, &q, &SVector::zeros())?.v } else { v };
+        Ok(Trajectory { t, q, v })
+    }
+}
+
+#[cfg(feature = "studies")]
 impl<S: Runnable<N> + Described, const N: usize> Studies for Typed<S, N> {
     fn step_density(&self, at: &PhasePoint) -> Option<f64> {
         let Trajectory { t, q, v } = sized(at).ok()?;
@@ -523,7 +536,7 @@ impl<S: Runnable<N> + Described, const N: usize> Studies for Typed<S, N> {
     }
 
     fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {
-        sized(from)?.at(&Extended(self.system), end).map(erased_point)
+        self.started(from)?.at(&Extended(self.system), end).map(erased_point)
     }
 
     fn lyapunov(&self, plan: &Plan, count: usize, coordinates: usize) -> Result<Box<dyn Exponents>, StepError> {
@@ -544,7 +557,7 @@ impl<S: Runnable<N> + Described, const N: usize> Studies for Typed<S, N> {
                 watch(motion.t, system.energy(motion.t, &motion.q, &motion.v));
             }
         };
-        rival::motion(system, &sized(from)?, end, tolerance, evaluations, &mut show).map(erased_point)
+        rival::motion(system, &self.started(from)?, end, tolerance, evaluations, &mut show).map(erased_point)
     }
 }
 

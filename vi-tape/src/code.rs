@@ -154,6 +154,8 @@ pub(crate) struct Code {
     pub(crate) is_forced: bool,
     pub(crate) is_separable: bool,
     pub(crate) is_quadratic: bool,
+    /// For each coordinate, whether L does not contain its velocity; empty unless L is linear in the velocities.
+    pub(crate) without_velocity: &'static [bool],
     pub(crate) has_constant_mass: bool,
     pub(crate) scales_time: bool,
     /// Whether there are fixed steps.

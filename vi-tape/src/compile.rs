@@ -22,10 +22,12 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use vi_codegen::findings::{self, CLOSED, Elimination, Pattern};
 use vi_codegen::inspect::{report, source};
+use vi_codegen::messages::{FirstOrder, Message, error};
 use vi_codegen::model::{CheckState, Coordinate, Model, Parameter};
 use vi_codegen::program::{Function, FunctionId, Operation, OperationId, Output};
 use vi_codegen::rules::NamedRule;
 use vi_codegen::symbol::{Symbol, Variable};
+use vi_codegen::syntax::Discretization;
 use vi_codegen::{Derived, derive_own, sizes, syntax};
 use vi_core::linear::{AnyForm, Block};
 use vi_dispatch::Instructions;
@@ -66,10 +68,19 @@ pub(crate) fn code(file: &str, text: &str, Parsed { mut system, definition }: Pa
     let wrong = |error: syn::Error| Mistakes::wrong(file, text, &error);
     let [declared, constraints] = sizes(&system).map_err(wrong)?;
     // Without coordinates the check says so.
-    let size = if declared == 0 { 0 } else { size(&system.name.to_string(), [declared, constraints])? };
+    let name = system.name.to_string();
+    let size_of = |count| if count == 0 { Ok(0) } else { size(&name, [count, constraints]) };
+    let least = size_of(declared)?;
     let files = system.files.clone();
+    let of_rule = system.discretizations.first().map(Discretization::span);
     let rule = system.take_named_rules();
-    of_derived(&derive_own(&system).map_err(wrong)?, (definition, files), (size, rule))
+    let derived = derive_own(&system).map_err(wrong)?;
+    if let (Some(span), Some(_), false) = (of_rule, rule, derived.model.without_velocity.is_empty()) {
+        return Err(wrong(error(span, &Message::FirstOrder { why: FirstOrder::Clause("discretize") })));
+    }
+    // Momenta may be coordinates.
+    let size = if derived.model.dimension() > declared { size_of(derived.model.dimension())? } else { least };
+    of_derived(&derived, (definition, files), (size, rule))
 }
 
 /// The equations of a step by the rule of a code, whose text is right.
@@ -157,6 +168,7 @@ fn of_derived(
         is_forced: findings.forced,
         is_separable: findings.force_of_position && model.constraints.is_empty(),
         is_quadratic: continuous.quadratic,
+        without_velocity: model.without_velocity.clone().leak(),
         has_constant_mass: findings.constant_mass,
         scales_time: continuous.time_scale.is_some(),
         has_rule: rule.is_some() || system.by_rule.is_some(),
@@ -262,6 +274,7 @@ type TooMany = &'static str;
 fn functions(of: &Derived, constraints: Option<Constraints>, tables: &Tables) -> Result<Functions, TooMany> {
     use FunctionId as F;
     use Output as O;
+    const MASS: [Output; 2] = [O::Mass, O::MassTimesAcceleration];
     const POINT: [Output; 3] = [O::Momentum, O::AppliedForce, O::Mass];
     const SCALED: [Output; 8] =
         [POINT[0], POINT[1], POINT[2], O::Energy, O::Power, O::TimeScale, O::TimeScaleDq, O::TimeScaleDt];
@@ -272,7 +285,10 @@ fn functions(of: &Derived, constraints: Option<Constraints>, tables: &Tables) ->
         energy: value(F::Energy)?,
         momentum: value(F::Momentum)?,
         force: value(F::Force)?,
-        acceleration: lines(F::Acceleration, &[O::Mass, O::MassTimesAcceleration])?,
+        acceleration: lines(
+            F::Acceleration,
+            if of.model.without_velocity.is_empty() { &MASS } else { &[O::Structure, O::StructureTimesAcceleration] },
+        )?,
         point: lines(F::Point, &POINT)?,
         sides: lines(F::Point, &POINT[..2])?,
         applied_force: lines(F::Point, &POINT[1..2])?,

@@ -108,6 +108,7 @@ fn has(code: &Code, (method, stages, is_transformed): Built) -> bool {
         (Method::Energy, None) => code.has_step_density,
         (Method::Splitting4 | Method::Splitting6, _) => code.is_separable,
         (_, None) => code.has_rule,
-        (_, Some(_)) => true,
+        (Method::Gauss, Some(_)) => true,
+        (_, Some(_)) => code.without_velocity.is_empty(),
     }
 }

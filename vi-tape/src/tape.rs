@@ -199,6 +199,15 @@ impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T>
             return support::constrained_acceleration(self, t, q, v);
         }
         let lines = &self.code.functions.acceleration;
+        if self.is_first_order() {
+            let (structure, applied) = self.at(lines, (t, q, v), |r| {
+                let at_rest = |k: usize| if k < self.code.coordinates.len() { T::zero() } else { T::one() };
+                let mut structure = SMatrix::from_diagonal(&SVector::from_fn(|k, _| at_rest(k)));
+                r.each(0, |row, column, value| structure[(row, column)] = value);
+                (structure, r.vector(1))
+            });
+            return support::acceleration(t, &structure, &applied);
+        }
         let (mass, applied) = self.at(lines, (t, q, v), |r| (K::mass(self.code, r, 0), r.vector(1)));
         support::acceleration(t, &mass, &applied)
     }
@@ -207,6 +216,9 @@ impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T>
     fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
         if const { K::COUNT > 0 } {
             return support::constrained_flow(self, t, q, p);
+        }
+        if self.is_first_order() {
+            return support::first_order_flow(self, t, q);
         }
         let velocity = if self.code.is_quadratic {
             let at_rest = self.point(t, q, &SVector::zeros());
@@ -267,6 +279,10 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
 
     fn has_point_masses(&self) -> bool {
         self.code.constraints.is_some_and(|of| of.has_point_masses)
+    }
+
+    fn without_velocity(&self) -> &'static [bool] {
+        self.code.without_velocity
     }
 
     fn moving(&self) -> usize {

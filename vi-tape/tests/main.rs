@@ -4,6 +4,7 @@ mod allocations;
 mod bits;
 mod bound;
 mod expressions;
+mod first_order;
 mod hamiltonian;
 mod padded;
 mod tables;
