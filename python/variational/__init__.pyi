@@ -152,6 +152,11 @@ class HasConstraints(StepError):
 
     system: str
 
+class FirstOrder(StepError):
+    """L is linear in the velocities: the system has no mass matrix, which the method needs."""
+
+    system: str
+
 class Ambiguous(StepError):
     """Two velocities have the same momenta."""
 
