@@ -12,13 +12,14 @@
 //! polynomial through y0 and the Y_i; y1 is not its end, but follows from x1 and p1.
 //!
 //! One iteration evaluates the equations at (X, Y), corrects V by `L_y + f = 0`, moves X by the new V, and corrects Y by
-//! `ϑ_y⁻¹ (P − ϑ)` with the momenta P from F. If that does not contract, Newton iteration corrects all velocities, as in
+//! `ϑ_y⁻¹ (P − ϑ)` with the momenta P from F. Its matrices are those in the middle
+//! of the guess, or where that contracts slowly those of each stage. If neither contracts, Newton iteration corrects all velocities, as in
 //! [`General`].
 
 use super::fixed_point::{Convergence, Equations, StageIncrement};
 use super::general::General;
 use super::newton::Newton;
-use super::points::{AnyDerivatives, ErasedSystem, Points};
+use super::points::{ErasedSystem, Points};
 use super::stages::{Roundings, Stages, change, growth, roundings, set, stage, time};
 use super::tableau::Tableau;
 use crate::first_order::halves;
@@ -27,9 +28,30 @@ use crate::node::Node;
 use nalgebra::{SMatrix, SVector};
 
 /// Most iterations for y1.
-const ITERATIONS: u32 = 12;
-/// The last correction of y1, relative to the coordinates, after which Newton iteration is at rounding.
-const SETTLED: f64 = 1e-7;
+const ITERATIONS: u32 = 60;
+/// The last correction of y1, relative to the coordinates and to the terms of y: a few roundings.
+const SETTLED: f64 = 64.0 * f64::EPSILON;
+
+/// Contraction up to which the matrices in the middle of the guess serve all stages.
+const FAST: f64 = 1.0 / 8.0;
+
+/// The matrices of an iteration, at a point.
+struct Matrices<const N: usize> {
+    /// The inverse of ϑ_y and of `−∂(L_y + f)/∂x'`; NaN if it is singular.
+    halves: SMatrix<f64, N, N>,
+    momentum_dq: SMatrix<f64, N, N>,
+    force_dv: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize> Matrices<N> {
+    fn at(system: &ErasedSystem<'_, N>, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Self {
+        let of = system.derivatives(t, q, v);
+        let halves = halves(&of, system.without_velocity());
+        let inverse = linear::solve(&halves, &SMatrix::<f64, N, N>::identity());
+        let halves = inverse.unwrap_or_else(|| SMatrix::repeat(f64::NAN));
+        Self { halves, momentum_dq: of.momentum_dq, force_dv: of.force_dv }
+    }
+}
 
 /// The equations of a step; see the [module](self).
 pub(crate) struct FirstOrder<'a, const N: usize, const S: usize> {
@@ -41,6 +63,8 @@ pub(crate) struct FirstOrder<'a, const N: usize, const S: usize> {
     is_by_newton: bool,
     /// The inverse of the matrix a_ij.
     inverse: SMatrix<f64, S, S>,
+    /// The matrices in the middle of the guess.
+    kept: Matrices<N>,
     /// The largest `Σ_l |ϑ_y⁻¹_kl P_l|` of the stages, for each y. If y is smaller, these terms cancel and determine its
     /// rounding error.
     terms: SVector<f64, N>,
@@ -57,14 +81,19 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
     ) -> Self {
         let Tableau { first, b, .. } = const { &Tableau::<S>::VALUES };
         let inverse = SMatrix::<f64, S, S>::from_fn(|i, j| first[j][i] * b[j]).inverse_unchecked();
+        let general = General::new(system, None, (node, h), guess, newton, None);
+        let middle = S / 2;
+        let t = time::<N, S, false, f64>(node, h, middle);
+        let kept = Matrices::at(system, t, &stage(&general.positions(), middle), &stage(&guess, middle));
         Self {
             system,
             node,
             h,
-            general: General::new(system, None, (node, h), guess, newton, None),
+            general,
             without_velocity: system.without_velocity(),
             is_by_newton: newton.is_some(),
             inverse,
+            kept,
             terms: SVector::zeros(),
             roundings: [0.0; N],
         }
@@ -76,32 +105,37 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
         slopes.into()
     }
 
-    /// The inverse of ϑ_y, and of the matrix of `L_y + f = 0`, at the derivatives of a point; NaN if it is singular.
-    fn halves_inverse(&self, of: &AnyDerivatives<N>) -> SMatrix<f64, N, N> {
-        let inverse = linear::solve(&halves(of, self.without_velocity), &SMatrix::<f64, N, N>::identity());
-        inverse.unwrap_or_else(|| SMatrix::repeat(f64::NAN))
-    }
-
     /// The entries of one half of the coordinates; the others are zero.
     fn half(&self, of: impl Fn(usize) -> f64, without_velocity: bool) -> SVector<f64, N> {
         SVector::from_fn(|k, _| if self.without_velocity.get(k) == Some(&without_velocity) { of(k) } else { 0.0 })
     }
 
     /// One iteration by `L_y + f = 0` and `ϑ = P`.
-    fn iterate_by_halves(&mut self, x: &Stages<N, S>) {
+    fn iterate_by_halves(&mut self, x: &Stages<N, S>, before: &Convergence) {
+        let velocity = self.general.velocity;
+        let time = |i| time::<N, S, false, f64>(self.node, self.h, i);
+        let at_stage = |i| Matrices::at(self.system, time(i), &stage(x, i), &stage(&velocity, i));
+        let own: Option<[_; S]> = (before.contraction > FAST).then(|| core::array::from_fn(at_stage));
+        let of = |i: usize| own.as_ref().map_or(&self.kept, |own| &own[i]);
         let mut momentum = [[0.0; S]; N];
-        let derivatives: [_; S] = core::array::from_fn(|i| self.evaluate(i, x, &mut momentum));
+        for i in 0..S {
+            let v = stage(&velocity, i);
+            let sides = self.system.sides_at(time(i), &stage(x, i), &v);
+            let change = of(i).halves * self.half(|k| sides.force[k], true);
+            set(&mut self.general.velocity, i, &(v + change));
+            set(&mut self.general.force, i, &(sides.force + of(i).force_dv * change));
+            set(&mut momentum, i, &sides.momentum);
+        }
         let moved = self.general.positions();
         let missing = self.general.missing(&momentum);
-        let mut changes = [[0.0; S]; N];
-        for (i, (of, inverse)) in derivatives.iter().enumerate() {
-            let by_move = of.momentum_dq * self.half(|k| moved[k][i] - x[k][i], false);
-            let change = *inverse * self.half(|k| missing[k][i] - by_move[k], false);
-            set(&mut changes, i, &change);
+        let (mut changes, mut terms) = ([[0.0; S]; N], self.terms);
+        for i in 0..S {
+            let by_move = of(i).momentum_dq * self.half(|k| moved[k][i] - x[k][i], false);
+            set(&mut changes, i, &(of(i).halves * self.half(|k| missing[k][i] - by_move[k], false)));
             // The momentum that is missing is the difference of these terms.
-            let terms = inverse.abs() * self.half(|k| momentum[k][i].abs(), false);
-            self.terms = self.terms.sup(&self.half(|k| terms[k], true));
+            terms = terms.sup(&(of(i).halves.abs() * self.half(|k| momentum[k][i].abs(), false)));
         }
+        self.terms = self.half(|k| terms[k], true);
         // Only rows of y have changes.
         for k in 0..N {
             let slopes = self.slopes(&changes[k]);
@@ -111,36 +145,14 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
         }
     }
 
-    /// Evaluates stage i at the positions x: corrects its velocity of x, and sets its force and its momentum.
-    fn evaluate(
-        &mut self,
-        i: usize,
-        x: &Stages<N, S>,
-        momentum: &mut Stages<N, S>,
-    ) -> (AnyDerivatives<N>, SMatrix<f64, N, N>) {
-        let (t, q, v) = (time::<N, S, false, f64>(self.node, self.h, i), stage(x, i), stage(&self.general.velocity, i));
-        let sides = self.system.sides_at(t, &q, &v);
-        let of = self.system.derivatives(t, &q, &v);
-        let inverse = self.halves_inverse(&of);
-        let change = inverse * self.half(|k| sides.force[k], true);
-        set(&mut self.general.velocity, i, &(v + change));
-        let force = sides.force + of.force_dv * change;
-        let force = self.half(|k| force[k], false);
-        set(&mut self.general.force, i, &force);
-        set(momentum, i, &self.half(|k| sides.momentum[k], false));
-        (of, inverse)
-    }
-
-    /// `y1 − y0` by the momenta at the end of the step; NaN if ϑ_y is singular there.
+    /// `y1 − y0` by the momenta at the end of the step; NaN if the iteration does not settle.
     fn end(&self, end: &Node<N>, guess: SVector<f64, N>) -> SVector<f64, N> {
         let mut moved = guess;
         let mut last = f64::INFINITY;
+        let v = stage(&self.general.velocity, S - 1);
         for _ in 0..ITERATIONS {
-            let q = end.q + (end.q_low + moved);
-            let v = stage(&self.general.velocity, S - 1);
-            let sides = self.system.sides_at(end.t, &q, &v);
-            let missing = self.half(|k| (end.p[k] - sides.momentum[k]) + end.p_low[k], false);
-            let change = self.halves_inverse(&self.system.derivatives(end.t, &q, &v)) * missing;
+            let sides = self.system.sides_at(end.t, &(end.q + (end.q_low + moved)), &v);
+            let change = self.kept.halves * self.half(|k| (end.p[k] - sides.momentum[k]) + end.p_low[k], false);
             let size = change.amax();
             // NaN ends the search, too.
             if !(size < last) {
@@ -149,7 +161,7 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
             moved += change;
             last = size;
         }
-        let is_found = last <= SETTLED * (end.q + moved).amax();
+        let is_found = last <= SETTLED * (end.q + moved).amax().max(self.terms.amax());
         if is_found { moved } else { SVector::repeat(f64::NAN) }
     }
 }
@@ -168,7 +180,7 @@ impl<const N: usize, const S: usize> Equations<N, S> for FirstOrder<'_, N, S> {
             self.general.iterate(x, y, before);
         } else {
             self.general.evaluated = self.general.velocity;
-            self.iterate_by_halves(x);
+            self.iterate_by_halves(x, before);
             *y = self.general.positions();
         }
     }
