@@ -66,7 +66,7 @@ fn changes(case: &Case) -> Result<(), String> {
     // Another state, with the first parameters again.
     let p: Vec<f64> = before.p.iter().map(|p| 1.1 * p).collect();
     let mut at = Node { t: before.t + 0.3, p, ..before };
-    if case.is_first_order() {
+    if case.system.is_first_order() {
         at.q.iter_mut().for_each(|q| *q *= 1.02);
         nearest(case, &mut at).map_err(|error| error.to_string())?;
     }

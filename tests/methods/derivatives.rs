@@ -53,7 +53,7 @@ fn moved(case: &Case, start: &Node, direction: usize, by: f64) -> Result<Vec<f64
         }
     }
     let moved = case.of_system(system);
-    if !case.is_free() || case.is_first_order() {
+    if !case.is_free() || case.system.is_first_order() {
         nearest(&moved, &mut start).map_err(|error| error.to_string())?;
     }
     let mut run = moved.from(case.h(), &start).map_err(|error| error.to_string())?;
@@ -80,7 +80,7 @@ fn tangent(case: &Case) -> Result<(), String> {
         let size = largest(found.iter().copied());
         // A parameter of the time scale does not change other methods.
         // Momenta of a system of first order follow from its coordinates.
-        let is_free = direction < if case.is_first_order() { start.q.len() } else { 2 * start.q.len() };
+        let is_free = direction < if case.system.is_first_order() { start.q.len() } else { 2 * start.q.len() };
         ensure!(size > 1e-4 || !is_free, "direction {direction} changes nothing");
         worst = worst.max(off / (1.0 + size));
     }

@@ -225,12 +225,6 @@ impl Case {
         self.scene.h * self.method.stretch
     }
 
-    /// Whether L is linear in the velocities.
-    fn is_first_order(&self) -> bool {
-        let wanted = (plan::Method::Energy, Some(1), false);
-        matches!(self.system.offers(wanted), Err(StepError::FirstOrder { .. }))
-    }
-
     /// The start, on the constraints.
     fn start(&self) -> Result<PhasePoint, StepError> {
         let Scene { t, q, v, .. } = *self.scene;

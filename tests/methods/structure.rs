@@ -58,7 +58,7 @@ fn symplecticity(case: &Case) -> Result<(), String> {
     let end = after(20)?;
     let unit = |k: usize| (0..end.len()).map(|i| f64::from(u8::from(i == k))).collect();
     // The momenta of a system of first order follow from its coordinates.
-    let start = if case.is_first_order() { after(0)? } else { (0..end.len()).map(unit).collect() };
+    let start = if case.system.is_first_order() { after(0)? } else { (0..end.len()).map(unit).collect() };
     let (defect, is_symplectic) = (defect(&start, &end), case.scene.is_symplectic && has_fixed_lengths(case.method));
     println!("{}: M'JM - J = {defect:.1e}", case.name());
     // Measured: at most 2.2e-15, and at least 4.9e-4.

@@ -111,8 +111,12 @@ pub trait System: Send + Sync {
     /// # Errors
     /// Why it does not: [`StepError::HasConstraints`] for one that does not keep its constraints,
     /// [`StepError::NoTimeScale`], [`StepError::NotSeparable`], [`StepError::NoRule`], and [`StepError::InvalidInput`] for
-    /// stages that are not built.
+    /// stages that are not built, [`StepError::FirstOrder`] for one that needs a mass matrix.
     fn offers(&self, wanted: Built) -> Result<(), StepError>;
+    /// Whether L is linear in the velocities: coordinates alone are a state, and momenta follow from them.
+    fn is_first_order(&self) -> bool {
+        matches!(self.offers((Method::Energy, None, false)), Err(StepError::FirstOrder { .. }))
+    }
     /// Whether the energy of a motion is constant: L and f are autonomous, and there is no force.
     fn conserves_energy(&self) -> bool;
     /// A function at as many points as there are times; `q` and `v`, or momenta, have N numbers for each. Appends to

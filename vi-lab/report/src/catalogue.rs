@@ -147,6 +147,11 @@ pub fn with_rule(entry: Entry, page: &str) -> Result<Entry, Failure> {
             "{page} compares steps by a rule, which {name} cannot have because of its constraints"
         )));
     }
+    if entry.system.is_first_order() {
+        return Err(Failure::Input(format!(
+            "{page} compares steps by a rule, which {name} cannot have, since its `L` is linear in the velocities"
+        )));
+    }
     Err(Failure::Input(format!(
         "{page} compares steps by a rule, and {name} has none: add `discretize midpoint;` to it"
     )))

@@ -402,6 +402,12 @@ pub(super) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<
 
 /// The velocities of these momenta at the start of a plan.
 fn velocities(system: &dyn System, plan: &Plan, p: &[f64]) -> Result<Vec<f64>, Failure> {
+    if system.is_first_order() {
+        return Err(Failure::Input(format!(
+            "the momenta of {} follow from its coordinates, since its `L` is linear in the velocities: leave out --p",
+            system.name()
+        )));
+    }
     let mut v = Vec::new();
     let found = system.evaluate(Quantity::Velocity, [&[plan.t], &plan.q, p], &mut v);
     found.map_err(|error| Failure::start(error, plan))?;
