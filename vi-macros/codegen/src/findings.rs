@@ -48,6 +48,8 @@ pub struct Findings {
     pub angles: Vec<usize>,
     /// L = T(v) + U(t, q).
     pub separable: bool,
+    /// The coordinates whose velocities L contains, if it is linear in them; none otherwise.
+    pub linear: Vec<usize>,
     /// The mass matrix L_vv depends on parameters only.
     pub constant_mass: bool,
     /// L_v is M v with a constant mass matrix M, and neither L_q nor f depends on v: the acceleration is a function of t and q.
@@ -150,6 +152,7 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         cyclic: cyclic.collect(),
         angles: (0..model.dimension()).filter(|index| model.coordinates[*index].is_angle).collect(),
         separable: momentum.is_some_and(|function| inputs(function, function.results.entries()).iter().all(velocities)),
+        linear: (0..model.without_velocity.len()).filter(|index| !model.without_velocity[*index]).collect(),
         constant_mass,
         force_of_position: constant_mass && system.continuous.momentum_is_mass_times_velocity && !rate_moves,
         point_masses: constant_mass
@@ -468,6 +471,10 @@ impl Findings {
             lines.push(angles_in_words(&list(name, &self.angles)));
         }
         lines.push(match (self.separable, self.constant_mass) {
+            _ if !self.linear.is_empty() => {
+                let (of, velocities) = (list(name, &self.linear), if self.linear.len() == 1 { "velocity" } else { "velocities" });
+                format!("`L` is linear in the {velocities} of {of}, without a mass matrix: equations of first order, with Gauss steps")
+            }
             (true, true) => "`L = T(v) + U(t, q)` with a constant mass matrix".to_owned(),
             (true, false) => "`L = T(v) + U(t, q)`; the mass matrix depends on the velocity".to_owned(),
             (false, true) => "The mass matrix is constant".to_owned(),

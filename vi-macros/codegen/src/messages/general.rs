@@ -690,7 +690,8 @@ fn kinetic_energy(why: &Singular) -> String {
              `{name}` a `param`"
         ),
         Singular::Massless(name, Massless::Linear) => format!(
-            "`dot({name})` appears in `L` only to the first power, which is not kinetic energy: add a term with `dot({name})^2`"
+            "`dot({name})` appears in `L` only to the first power, which is not kinetic energy: add a term with `dot({name})^2`, or write \
+             the kinetic energy of all others by momenta, as `p * dot(z) - p^2 / (2 * m)` with `coord z, p;`"
         ),
         Singular::Homogeneous => {
             "`L` is homogeneous of degree 1 in the velocities, so the equations do not determine the speed: use the time `t` in place of one \
