@@ -798,3 +798,81 @@ def length_of_a_step_with_constraints(claim):
     D = g**2 * sin(angle) ** 2 - 2 * g * rate**2 * cos(angle) - rate**4
     # Measured: 1.7e-12.
     limit(lambda h: excess(h) / h**2, claim(D / 8), "2e-11")
+
+
+@statement(PAGE, "K_p = ϑ_y⁻ᵀ H_y          K_x = H_x − ϑ_xᵀ K_p", "`y_p = ϑ_y⁻¹` and `y_x = −ϑ_y⁻¹ ϑ_x`")
+def momenta_of_a_system_of_first_order(claim):
+    x, y, p = sp.Matrix(sp.symbols("x_:2")), sp.Matrix(sp.symbols("y_:2")), sp.Matrix(sp.symbols("p_:2"))
+    theta = sp.Matrix([x[0] + y[0] * (1 + x[1] ** 2), x[0] * y[0] + y[1] * (2 + y[0] ** 2)])
+    H = x[0] ** 2 * y[1] + x[1] * y[0] ** 2 + y[0] * y[1] ** 2
+    first = (p[0] - x[0]) / (1 + x[1] ** 2)
+    inverse = {y[0]: first, y[1]: (p[1] - x[0] * first) / (2 + first**2)}
+    solved = y.subs(inverse, simultaneous=True)
+    K = H.subs(inverse, simultaneous=True)
+    # At a point, in exact numbers.
+    at = dict(zip(x, [R(1, 2), R(1, 3)])) | dict(zip(y, [R(3, 4), R(2, 5)]))
+    at |= dict(zip(p, theta.subs(at)))
+    here = lambda of: of.subs(at, simultaneous=True)
+    slope = lambda of, by: sp.Matrix([sp.diff(of, z) for z in by])
+    by_y, by_x = here(theta.jacobian(y)), here(theta.jacobian(x))
+    same(here(solved.jacobian(p)), claim(by_y.inv()))
+    same(here(solved.jacobian(x)), claim(-by_y.inv() * by_x))
+    of_p = here(slope(K, p))
+    same(of_p, claim(by_y.T.inv() * here(slope(H, y))))
+    same(here(slope(K, x)), claim(here(slope(H, x)) - by_x.T * of_p))
+
+
+def first_order_step(s, step, theta, H, x, y, p):
+    """A step of L = ϑ(x, y) ẋ − H by the equations of the page; θ and H are expressions in X and Y."""
+    X, Y = sp.symbols("X Y")
+    parts = [theta, sp.diff(theta, X), sp.diff(theta, Y), sp.diff(H, X), sp.diff(H, Y)]
+    at = sp.lambdify((X, Y), parts, "mpmath")
+    [b], a = gauss_integrals(s)([1]), gauss_integrals(s)(gauss_nodes(s))
+    b, a = [mpf(str(sp.N(w, 50))) for w in b], [[mpf(str(sp.N(w, 50))) for w in row] for row in a]
+    def values(V, Y):
+        rows = [at(x + step * sum(a[i][j] * V[j] for j in range(s)), Y[i]) for i in range(s)]
+        return rows, [row[1] * v - row[3] for row, v in zip(rows, V)]
+    def equations(*unknowns):
+        V, Y = unknowns[:s], unknowns[s:]
+        rows, F = values(V, Y)
+        of_x = [rows[i][0] - p - step * sum(a[i][j] * F[j] for j in range(s)) for i in range(s)]
+        return of_x + [row[2] * v - row[4] for row, v in zip(rows, V)]
+    _, _, by_y, _, H_y = at(x, y)
+    unknowns = list(findroot(equations, [H_y / by_y] * s + [y] * s))
+    V, Y = unknowns[:s], unknowns[s:]
+    F = values(V, Y)[1]
+    x, p = x + step * sum(w * v for w, v in zip(b, V)), p + step * sum(w * f for w, f in zip(b, F))
+    return x, findroot(lambda y: at(x, y)[0] - p, Y[-1]), p
+
+
+@statement(
+    PAGE,
+    "| 16 | 1 | 4.7e-4 | 1.7e-3 | 4.0e-2 | 4.7e-4 |",
+    "| 16 | 2 | 8.8e-6 | 5.5e-6 | 8.2e-5 | 8.8e-6 |",
+    "both `ln(y)/x ẋ` and `−ln(x)/y ẏ` have the equations `ẋ = x (c y − d)`, `ẏ = y (a − b x)`",
+    "`S(x)` of degree two in x: the steps stay the same",
+)
+def the_gauge(claim):
+    mp.dps = 25
+    X, Y = sp.symbols("X Y")
+    a, b, c, d = R(5, 4), R(3, 4), R(1, 2), R(7, 8)
+    H = lambda x, y: c * y - d * sp.log(y) + b * x - a * sp.log(x)
+    motion = odefun(lambda t, z: [z[0] * (z[1] / 2 - mpf("0.875")), z[1] * (mpf("1.25") - mpf("0.75") * z[0])], 0, [mpf(1), mpf("2.5")])
+    wanted = motion(2)
+    def end_of(s, theta, energy, start):
+        x, y = start
+        p, steps = sp.lambdify((X, Y), theta, "mpmath")(x, y), 16
+        for _ in range(steps):
+            x, y, p = first_order_step(s, mpf(2) / steps, theta, energy, x, y, p)
+        return x, y
+    distance = lambda one, other: max(abs(a - b) for a, b in zip(one, other))
+    start = mpf(1), mpf("2.5")
+    for s, printed in [(1, ["4.7e-4", "1.7e-3", "4.0e-2"]), (2, ["8.8e-6", "5.5e-6", "8.2e-5"])]:
+        plain = end_of(s, sp.log(Y) / X, H(X, Y), start)
+        exchanged = end_of(s, -sp.log(Y) / X, H(Y, X), start[::-1])[::-1]
+        bent = end_of(s, sp.log(Y) / X + X**2, H(X, Y), start)
+        for end, digits in zip([plain, exchanged, bent], printed):
+            close(distance(end, wanted) / mpf(digits), claim(mpf(1), by="1/5"), "0.05")
+        shifted = end_of(s, sp.log(Y) / X + 3 * X, H(X, Y), start)
+        for found, same_as in zip(shifted, plain):
+            close(found, claim(same_as), "1e-18")
