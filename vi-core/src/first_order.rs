@@ -13,7 +13,9 @@
 #[cfg(feature = "alloc")]
 use crate::derivatives::{Variation, along_parameters};
 use crate::error::StepError;
-use crate::lagrangian::{Flow, Lagrangian as _};
+use crate::lagrangian::Flow;
+#[cfg(feature = "alloc")]
+use crate::lagrangian::Lagrangian as _;
 use crate::linear::{self, Matrix};
 use crate::motion::{Motion, PointDerivatives};
 #[cfg(feature = "alloc")]

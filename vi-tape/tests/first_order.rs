@@ -118,7 +118,7 @@ fn steps_that_need_a_mass_matrix_are_refused() {
     let compiled = LotkaVolterra::default().at(0.0, [1.1, 0.6], [0.0, 0.0]);
     let refused = StepError::FirstOrder { system: "LotkaVolterra" };
     assert_eq!(compiled.integrate(Gauss::<3>.adaptive(), 0.1).err(), Some(refused));
-    assert_eq!(compiled.integrate(EnergyPreservingGauss::<2>::default(), 0.1).err(), Some(refused));
+    assert_eq!(compiled.integrate(EnergyPreservingGauss::<2>, 0.1).err(), Some(refused));
     let mistakes = vi_tape::System::parse("struct System { coord a, b; L = a*dot(b) - a^2; discretize midpoint; }");
     let text = mistakes.err().map(|mistakes| mistakes.to_string()).unwrap_or_default();
     assert!(text.contains("a system of first order takes no `discretize`"), "{text}");

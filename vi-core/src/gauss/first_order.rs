@@ -154,8 +154,7 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
             let sides = self.system.sides_at(end.t, &(end.q + (end.q_low + moved)), &v);
             let change = self.kept.halves * self.half(|k| (end.p[k] - sides.momentum[k]) + end.p_low[k], false);
             let size = change.amax();
-            // NaN ends the search, too.
-            if !(size < last) {
+            if size >= last || size.is_nan() {
                 break;
             }
             moved += change;
