@@ -154,9 +154,7 @@ impl Observable {
         for entry in &self.entries {
             let pool = &mut self.of.pool;
             for variable in state.clone() {
-                slopes.push(pool.derivative(*entry, &mut |pool, symbol| {
-                    if *symbol == variable { pool.one() } else { pool.zero() }
-                }));
+                slopes.push(pool.partial_derivative(*entry, &variable));
             }
             for index in parameters {
                 slopes.push(pool.derivative(*entry, &mut |pool, symbol| {

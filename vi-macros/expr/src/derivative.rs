@@ -19,8 +19,16 @@ use crate::effort::MADE;
 use crate::{Expr, Function, Node, Pool, Rational, Table};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// Derivative of `expr`. The closure gives the derivative of each symbol, once per symbol: 1 for one variable and 0
-    /// for the others gives a partial derivative, the rates of all symbols give the total one.
+    /// Partial derivative of `expr` with respect to a symbol.
+    pub fn partial_derivative<Q: ?Sized>(&mut self, expr: Expr, by: &Q) -> Expr
+    where
+        S: PartialEq<Q>,
+    {
+        self.derivative(expr, &mut |pool, symbol| if symbol == by { pool.one() } else { pool.zero() })
+    }
+
+    /// Derivative of `expr`. The closure gives the derivative of each symbol, once per symbol: the rates of all symbols
+    /// give the total derivative.
     pub fn derivative(&mut self, expr: Expr, symbol_derivative: &mut dyn FnMut(&mut Self, &S) -> Expr) -> Expr {
         if self.is_undefined(expr) || self.is_exhausted() {
             return Expr::UNDEFINED;

@@ -17,7 +17,7 @@
 //! let name = |symbol: &&str| symbol.to_string();
 //! assert_eq!(pool.render(energy, &name), "m*(q1 - q0)^2/(2*h^2)");
 //!
-//! let momentum = pool.derivative(energy, &mut |pool, symbol| if *symbol == "q1" { pool.one() } else { pool.zero() });
+//! let momentum = pool.partial_derivative(energy, &"q1");
 //! assert_eq!(pool.render(momentum, &name), "m*(q1 - q0)/h^2");
 //!
 //! let way = pool.mul(h, v);

@@ -12,7 +12,7 @@
 
 use super::fields::Fields;
 use crate::limits::bounded;
-use crate::model::Model;
+use crate::model::{Model, slope};
 use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Node, Pool, Rational, TooLarge};
 
@@ -187,13 +187,8 @@ pub(super) fn point_derivatives(
 }
 
 fn time_scale(pool: &mut Pool<Symbol>, g: Expr, dimension: usize) -> TimeScale {
-    let mut by = |variable: Variable| {
-        pool.derivative(g, &mut |pool, symbol| {
-            if *symbol == Symbol::Continuous(variable) { pool.one() } else { pool.zero() }
-        })
-    };
-    let g_dq = (0..dimension).map(|index| by(Variable::Coordinate(index))).collect();
-    TimeScale { g, g_dq, g_dt: by(Variable::Time) }
+    let g_dq = (0..dimension).map(|index| slope(pool, g, Variable::Coordinate(index))).collect();
+    TimeScale { g, g_dq, g_dt: slope(pool, g, Variable::Time) }
 }
 
 fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
@@ -285,9 +280,7 @@ pub(crate) fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize
     let mut gains = vec![pool.neg(kinetic)];
     for index in 0..dimension {
         let v = moving(pool, index);
-        let momentum = pool.derivative(kinetic, &mut |pool, symbol| {
-            if *symbol == Symbol::Continuous(Variable::Velocity(index)) { pool.one() } else { pool.zero() }
-        });
+        let momentum = slope(pool, kinetic, Variable::Velocity(index));
         gains.push(pool.mul(v, momentum));
     }
     let closed = pool.sum(&gains);

@@ -131,9 +131,7 @@ impl Fields {
         if !basic.variables.contains(last) {
             return &self.zero;
         }
-        let derived = pool.derivative(basic.expr, &mut |pool, symbol| {
-            if *symbol == Symbol::Continuous(*last) { pool.one() } else { pool.zero() }
-        });
+        let derived = pool.partial_derivative(basic.expr, &Symbol::Continuous(*last));
         let place = self.known.insert_full(key).0;
         self.definitions.push(Definition::new(pool, derived));
         &self.definitions[place]

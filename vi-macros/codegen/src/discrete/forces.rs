@@ -51,9 +51,7 @@ impl Work {
         for (index, point) in rule.points.iter().enumerate() {
             let field = |quantity| Symbol::Field(Field { quantity, derivatives: Vec::new(), point: index });
             let lagrangian = field(Quantity::Lagrangian);
-            let weight = pool.derivative(rule.ld, &mut |pool, symbol| {
-                if *symbol == lagrangian { pool.one() } else { pool.zero() }
-            });
+            let weight = pool.partial_derivative(rule.ld, &lagrangian);
             let weighted = (0..dimension).map(|i| {
                 let force = pool.symbol(field(Quantity::Force(i)));
                 pool.mul(weight, force)

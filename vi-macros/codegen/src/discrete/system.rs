@@ -64,7 +64,7 @@ fn check_derivatives(pool: &mut Pool<Symbol>, fields: &Fields, continuous: &Cont
     bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge { size: found }))?;
     let by = Symbol::Continuous(by);
     let part = pool.reachable(&[whole]).into_iter().find(|part| {
-        let slope = pool.derivative(*part, &mut |pool, symbol| if *symbol == by { pool.one() } else { pool.zero() });
+        let slope = pool.partial_derivative(*part, &by);
         pool.is_undefined(slope)
     });
     let expression = pool.render_within(CHARACTERS, part.unwrap_or(whole), &|symbol| model.spell(symbol));

@@ -144,7 +144,7 @@ impl Body {
             let symbols = pool.symbols(expr);
             let is_read = |place: &usize| reads[*place].is_of_state() && symbols.contains(&Symbol::Access(*place));
             let states: Vec<usize> = (0..reads.len()).filter(is_read).collect();
-            let by_time = derivative(pool, expr, &Symbol::Continuous(Variable::Time));
+            let by_time = pool.partial_derivative(expr, &Symbol::Continuous(Variable::Time));
             let by_state: Vec<Expr> = states.iter().map(|place| slope(pool, expr, *place)).collect();
             let (first_slope, first_curvature) = (slopes.len(), curvatures.len());
             let (mut pairs, mut seconds) = (Vec::new(), Vec::new());
@@ -224,9 +224,5 @@ impl Body {
 
 /// The derivative with respect to the number at this place.
 fn slope(pool: &mut Pool<Symbol>, expr: Expr, place: usize) -> Expr {
-    derivative(pool, expr, &Symbol::Access(place))
-}
-
-fn derivative(pool: &mut Pool<Symbol>, expr: Expr, by: &Symbol) -> Expr {
-    pool.derivative(expr, &mut |pool, symbol| if symbol == by { pool.one() } else { pool.zero() })
+    pool.partial_derivative(expr, &Symbol::Access(place))
 }

@@ -351,9 +351,7 @@ fn update(derived: &Derived, stages: usize) -> Vec<Line> {
 /// L, E, L_t and the force at stage i, then L_d and its slots as sums over the stages.
 fn slots(derived: &mut Derived) -> Vec<Line> {
     let lagrangian = derived.model.lagrangian;
-    let lt = derived.pool.derivative(lagrangian, &mut |pool, symbol| {
-        if *symbol == Symbol::Continuous(Variable::Time) { pool.one() } else { pool.zero() }
-    });
+    let lt = derived.pool.partial_derivative(lagrangian, &Symbol::Continuous(Variable::Time));
     let forces = derived.model.forces.clone();
     let applied = derived.system.continuous.applied_force.clone();
     let lq: Vec<Expr> =

@@ -8,6 +8,7 @@
 
 use super::Parameter;
 use super::context::Context;
+use super::mass::slope;
 use super::probe;
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
@@ -33,16 +34,11 @@ pub(super) fn check(
         let Ok(value) = context.scope.expression(context.pool, summand) else { return false };
         let value = context.closed(value);
         let value = if *is_negative { context.pool.neg(value) } else { value };
-        let losses: Vec<Expr> = (0..losses.len()).map(|index| slope(context.pool, value, index)).collect();
+        let losses: Vec<Expr> =
+            (0..losses.len()).map(|index| slope(context.pool, value, Variable::Velocity(index))).collect();
         self::wrong(context.pool, value, &losses, parameters).as_ref() == Some(&message)
     });
     context.errors.at(span.map_or(written.span, |(_, summand)| summand.span), &message);
-}
-
-/// The derivative with respect to the velocity of this coordinate.
-pub(super) fn slope(pool: &mut Pool<Symbol>, rayleigh: Expr, coordinate: usize) -> Expr {
-    let velocity = Symbol::Continuous(Variable::Velocity(coordinate));
-    pool.derivative(rayleigh, &mut |pool, symbol| if *symbol == velocity { pool.one() } else { pool.zero() })
 }
 
 /// The summands of a written expression, each with whether it is negated.
@@ -85,7 +81,7 @@ fn is_linear(pool: &mut Pool<Symbol>, term: Expr) -> bool {
     let mut is_there = false;
     for symbol in pool.symbols(term) {
         let Symbol::Continuous(Variable::Velocity(index)) = symbol else { continue };
-        let slope = slope(pool, term, index);
+        let slope = slope(pool, term, Variable::Velocity(index));
         if pool.depends_on(slope, &is_velocity) {
             return false;
         }

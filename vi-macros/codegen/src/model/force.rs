@@ -9,6 +9,7 @@
 use super::array::{part, spelled};
 use super::context::Context;
 use super::dissipation;
+use super::mass::slope;
 use super::scope::{Meaning, Scope};
 use super::value::not_a_number;
 use super::{Coordinate, Parameter};
@@ -190,7 +191,7 @@ pub(super) fn dissipate(
     let stays = context.scope.kept.is_some();
     let mut losses = Vec::with_capacity(forces.len());
     for (index, force) in forces.iter_mut().enumerate() {
-        let loss = dissipation::slope(context.pool, rayleigh, index);
+        let loss = slope(context.pool, rayleigh, Variable::Velocity(index));
         if !stays {
             *force = context.pool.sub(*force, loss);
         }

@@ -211,8 +211,7 @@ impl Legendre<'_> {
     }
 
     fn slope(&mut self, expr: Expr, place: usize) -> Expr {
-        let by = (self.from)(place);
-        self.pool.derivative(expr, &mut |pool, symbol| if *symbol == by { pool.one() } else { pool.zero() })
+        self.pool.partial_derivative(expr, &(self.from)(place))
     }
 
     /// The value at these variables; the others are zero.

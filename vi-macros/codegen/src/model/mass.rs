@@ -137,9 +137,7 @@ fn is_homogeneous(pool: &mut Pool<Symbol>, lagrangian: Expr, momenta: &[Expr], p
 fn massless(pool: &mut Pool<Symbol>, lagrangian: Expr, row: usize) -> Massless {
     let multiplier = Symbol::Continuous(Variable::Coordinate(row));
     let velocity = Symbol::Continuous(Variable::Velocity(row));
-    let constraint = pool.derivative(lagrangian, &mut |pool, symbol| {
-        if *symbol == multiplier { pool.one() } else { pool.zero() }
-    });
+    let constraint = pool.partial_derivative(lagrangian, &multiplier);
     let of_state = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Coordinate(_)));
     let is_itself = |symbol: &Symbol| *symbol == multiplier;
     let moves = |symbol: &Symbol| *symbol == velocity;
@@ -155,17 +153,13 @@ fn massless(pool: &mut Pool<Symbol>, lagrangian: Expr, row: usize) -> Massless {
 /// L_v, and M row by row; `None` if an entry has no value in any state.
 fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Option<(Vec<Expr>, Vec<Expr>)> {
     let velocity = |index| Symbol::Continuous(Variable::Velocity(index));
-    let by_velocity = |pool: &mut Pool<Symbol>, expr: Expr, index: usize| {
-        let velocity = velocity(index);
-        pool.derivative(expr, &mut |pool, symbol| if *symbol == velocity { pool.one() } else { pool.zero() })
-    };
     let mut mass = vec![pool.zero(); dimension * dimension];
     let mut momenta = Vec::with_capacity(dimension);
     for row in 0..dimension {
-        let momentum = by_velocity(pool, lagrangian, row);
+        let momentum = pool.partial_derivative(lagrangian, &velocity(row));
         let symbols = pool.symbols(momentum);
         for column in (row..dimension).filter(|column| symbols.contains(&velocity(*column))) {
-            let entry = by_velocity(pool, momentum, column);
+            let entry = pool.partial_derivative(momentum, &velocity(column));
             mass[row * dimension + column] = entry;
             mass[column * dimension + row] = entry;
         }
@@ -266,8 +260,7 @@ fn scales(entries: &[Rounded], dimension: usize) -> Vec<f64> {
 
 /// The partial derivative with respect to a variable.
 pub(crate) fn slope(pool: &mut Pool<Symbol>, expr: Expr, by: Variable) -> Expr {
-    let by = Symbol::Continuous(by);
-    pool.derivative(expr, &mut |pool, symbol| if *symbol == by { pool.one() } else { pool.zero() })
+    pool.partial_derivative(expr, &Symbol::Continuous(by))
 }
 
 /// Whether expressions are zero to rounding at every point with values, and at one such point at least.

@@ -306,10 +306,7 @@ impl Scope {
         let Some(takes) = known.map(Function::arity).or_else(|| (name == "sqrt").then_some(1)) else {
             return self.call_other(pool, function, arguments);
         };
-        if arguments.len() != takes {
-            return Err(error(function.span(), &Message::Arity { name, takes, given: arguments.len() }));
-        }
-        let values = self.each_of(pool, arguments, Self::value)?;
+        let values = self.arguments(pool, function, takes, arguments)?;
         let values = numbers(&name, values, arguments)?;
         Ok(Value::Number(match known {
             Some(Function::Pow) => power(pool, values[0], values[1]),
@@ -319,6 +316,21 @@ impl Scope {
                 power(pool, values[0], half)
             }
         }))
+    }
+
+    /// The arguments of a function that takes this many.
+    pub(super) fn arguments(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        function: &Ident,
+        takes: usize,
+        given: &[Expression],
+    ) -> Result<Vec<Value>> {
+        if given.len() != takes {
+            let message = Message::Arity { name: function.to_string(), takes, given: given.len() };
+            return Err(error(function.span(), &message));
+        }
+        self.each_of(pool, given, Self::value)
     }
 
     /// A function of vectors or rotations, or the message for a name that is no function.

@@ -85,11 +85,7 @@ impl Scope {
     ) -> Result<Option<Value>> {
         let Some(name) = FUNCTIONS.into_iter().find(|name| function == name) else { return Ok(None) };
         let takes = if name == "turn" { 2 } else { 1 };
-        if arguments.len() != takes {
-            let message = Message::Arity { name: name.to_owned(), takes, given: arguments.len() };
-            return Err(error(function.span(), &message));
-        }
-        let values = self.each_of(pool, arguments, Self::value)?;
+        let values = self.arguments(pool, function, takes, arguments)?;
         if let Some(wrong) = values.iter().find(|value| matches!(value, Value::Wrong(_))) {
             return Ok(Some(wrong.clone()));
         }

@@ -2,15 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use vi_expr::{Expr, Function};
+use vi_expr::Function;
 
 use crate::Pool;
 use crate::notation::{read, write};
-
-/// Differentiates by the symbol.
-fn derivative(pool: &mut Pool, expr: Expr, variable: &str) -> Expr {
-    pool.derivative(expr, &mut |pool, symbol| if symbol == variable { pool.one() } else { pool.zero() })
-}
 
 type Formula = fn(f64, f64) -> f64;
 
@@ -61,7 +56,7 @@ fn every_function_against_central_differences() {
         let mut pool = Pool::new();
         let expr = read(&mut pool, text);
         tested.extend(Function::ALL.into_iter().filter(|function| text.contains(&format!("{}(", function.name()))));
-        let partials = [derivative(&mut pool, expr, "x"), derivative(&mut pool, expr, "y")];
+        let partials = [pool.partial_derivative(expr, "x"), pool.partial_derivative(expr, "y")];
         for (x, y) in points {
             let values = pool.evaluate_all(&partials, &mut |symbol| if symbol == "x" { x } else { y });
             // Five points: error of order STEP^4.
@@ -121,7 +116,7 @@ fn forms() {
     for (input, variable, output) in table {
         let mut pool = Pool::new();
         let expr = read(&mut pool, input);
-        let result = derivative(&mut pool, expr, variable);
+        let result = pool.partial_derivative(expr, variable);
         let expected = read(&mut pool, output);
         assert_eq!(result, expected, "{input} by {variable}: {} instead of {output}", write(&pool, result));
     }

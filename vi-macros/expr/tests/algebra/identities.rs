@@ -11,7 +11,7 @@ type Row = (&'static str, f64, f64, f64);
 fn found(text: &str, x: f64) -> [f64; 2] {
     let mut pool = Pool::new();
     let expr = read(&mut pool, text);
-    let slope = pool.derivative(expr, &mut |pool, symbol| if symbol == "x" { pool.one() } else { pool.zero() });
+    let slope = pool.partial_derivative(expr, "x");
     pool.evaluate_all(&[expr, slope], &mut |_| x)[..].try_into().expect("two values")
 }
 

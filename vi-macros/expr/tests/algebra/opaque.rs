@@ -3,10 +3,6 @@
 use super::{Pool, ratio};
 use vi_expr::{Expr, Opaque};
 
-fn derivative(pool: &mut Pool, expr: Expr, by: &str) -> Expr {
-    pool.derivative(expr, &mut |pool, symbol| if symbol == by { pool.one() } else { pool.zero() })
-}
-
 fn text(pool: &Pool, expr: Expr) -> String {
     pool.render(expr, &String::clone)
 }
@@ -17,18 +13,18 @@ fn a_derivative_raises_one_order() {
     let [x, y] = ["x", "y"].map(|name| pool.symbol(name.to_owned()));
     let square = pool.mul(x, x);
     let one = pool.opaque(Opaque::new("cl", 1, 0.7), vec![square]);
-    let slope = derivative(&mut pool, one, "x");
+    let slope = pool.partial_derivative(one, "x");
     assert_eq!(text(&pool, slope), "2*x*cl'(x^2)");
     let two = pool.opaque(Opaque::new("cp", 2, 0.7), vec![x, y]);
-    let by_x = derivative(&mut pool, two, "x");
-    let mixed = derivative(&mut pool, by_x, "y");
-    let by_y = derivative(&mut pool, two, "y");
-    assert_eq!(mixed, derivative(&mut pool, by_y, "x"), "mixed derivatives are equal");
+    let by_x = pool.partial_derivative(two, "x");
+    let mixed = pool.partial_derivative(by_x, "y");
+    let by_y = pool.partial_derivative(two, "y");
+    assert_eq!(mixed, pool.partial_derivative(by_y, "x"), "mixed derivatives are equal");
     assert_eq!(text(&pool, mixed), "cp^(1,1)(x, y)");
     // A further argument is a constant of the run: it has no derivative.
     let of_parameter = pool.opaque(Opaque::new("lift", 1, 0.7), vec![x, y]);
     assert_eq!(text(&pool, of_parameter), "lift(x)");
-    let by_parameter = derivative(&mut pool, of_parameter, "y");
+    let by_parameter = pool.partial_derivative(of_parameter, "y");
     assert!(pool.is_undefined(by_parameter));
 }
 
@@ -42,7 +38,7 @@ fn derivatives_of_the_stand_in_are_consistent() {
     let step = 1e-5;
     let mut expr = function;
     for by in ["x", "y", "x", "x"] {
-        let slope = derivative(&mut pool, expr, by);
+        let slope = pool.partial_derivative(expr, by);
         let (dx, dy) = if by == "x" { (step, 0.0) } else { (0.0, step) };
         let difference = (at(&pool, expr, 0.4 + dx, 1.3 + dy) - at(&pool, expr, 0.4 - dx, 1.3 - dy)) / (2.0 * step);
         let found = at(&pool, slope, 0.4, 1.3);
@@ -92,7 +88,7 @@ fn the_derivative_of_a_condition_is_that_of_the_selected_expression() {
     let root = pool.power(x, &ratio(1, 2));
     let zero = pool.zero();
     let half_root = pool.select(x, root, zero);
-    let slope = derivative(&mut pool, half_root, "x");
+    let slope = pool.partial_derivative(half_root, "x");
     assert_eq!(text(&pool, slope), "if x > 0 { 1/(2*sqrt(x)) } else { 0 }");
     let at = |x: f64| pool.evaluate_all(&[half_root, slope], &mut |_| x);
     assert_eq!(at(4.0), [2.0, 0.25]);
