@@ -7,9 +7,9 @@
 //! There angles appear in functions with a period only, with factors of which a turn makes whole periods, or half ones
 //! that leave the expression as it is.
 
+use super::closed::Closed;
 use super::context::Context;
 use super::force::{self, Entries};
-use super::lets::Closed;
 use super::point::Point;
 use super::rule::Rule;
 use super::{Constraint, Coordinate, Parameter, mass, probe};

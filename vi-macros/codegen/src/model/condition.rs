@@ -13,9 +13,6 @@ use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, Pool};
 
-/// The functions that select one of their arguments.
-pub(super) const CHOICES: [&str; 3] = ["max", "min", "clamp"];
-
 impl Scope {
     /// `if a > b { x } else { y }`. `a >= b` holds unless `b > a`.
     pub(super) fn condition(

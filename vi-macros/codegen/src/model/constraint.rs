@@ -13,9 +13,9 @@
 //! `mobility`.
 
 use super::angles::outside_periods;
+use super::closed::Closed;
 use super::context::Context;
 use super::force::{over, path};
-use super::lets::Closed;
 use super::mass::{self, slope, vanish};
 use super::rotation;
 use super::scope::{Meaning, Scope};

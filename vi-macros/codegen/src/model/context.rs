@@ -3,7 +3,7 @@
 //! In: one definition after the other. Out: their expressions and numbers. A wrong expression is reported and evaluates
 //! to 1, so that later lines are checked too.
 
-use super::lets::Closed;
+use super::closed::Closed;
 use super::scope::{Meaning, Scope};
 use super::value::Value;
 use crate::limits::bounded;

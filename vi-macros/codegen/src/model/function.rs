@@ -4,6 +4,7 @@
 //! at each call. The others are opaque: the [`Model`](super::Model) lists them for the code that evaluates them.
 
 use super::Parameter;
+use super::called::Called;
 use super::context::Context;
 use super::lets;
 use super::scope::{Meaning, Scope};
@@ -57,36 +58,6 @@ impl Function {
         Opaque::new(&self.name.to_string(), self.arguments.len(), frequency)
     }
 }
-
-/// A function as an expression calls it.
-#[derive(Clone)]
-pub(super) enum Called {
-    /// A function of the language.
-    Language(Rc<syntax::Function>),
-    /// An opaque function, the names of its arguments, and the parameters that are its further arguments.
-    Opaque { function: Opaque, arguments: Vec<String>, parameters: Vec<Expr> },
-}
-
-impl core::fmt::Debug for Called {
-    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Language(function) => write!(formatter, "fn {}", function.name),
-            Self::Opaque { function, .. } => write!(formatter, "{function:?}"),
-        }
-    }
-}
-
-impl PartialEq for Called {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Language(left), Self::Language(right)) => Rc::ptr_eq(left, right),
-            (Self::Opaque { function: left, .. }, Self::Opaque { function: right, .. }) => left == right,
-            _ => false,
-        }
-    }
-}
-
-impl Eq for Called {}
 
 /// Declares all functions and tables. Returns those that the generated code evaluates.
 pub(super) fn functions(context: &mut Context, written: &syntax::System, declared: &[Parameter]) -> Vec<Function> {

@@ -4,9 +4,10 @@
 //! L_v in every other expression. An H that has no L in closed form gives `L = p·q' − H`, linear in the velocities, and its
 //! momenta are further coordinates.
 
+use super::closed::Closed;
 use super::context::Context;
 use super::legendre::transform;
-use super::lets::{self, Closed};
+use super::lets;
 use super::scope::Meaning;
 use super::value::Value;
 use super::{Coordinate, Parameter, mass};

@@ -6,8 +6,10 @@
 
 mod angles;
 mod array;
+mod called;
 pub mod check;
 mod check_state;
+mod closed;
 mod condition;
 pub(crate) mod constraint;
 mod context;
@@ -36,9 +38,8 @@ mod value;
 mod vector;
 
 pub use check_state::CheckState;
+pub use closed::{LetArray, rate};
 pub use function::{Function, FunctionKind};
-pub use lets::LetArray;
-pub use lets::rate;
 pub(crate) use mass::slope;
 pub use point::Point;
 pub(crate) use rotation::COMPONENTS;

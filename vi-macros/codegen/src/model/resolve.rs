@@ -4,12 +4,10 @@
 //! expression of a system is a number, a vector or a matrix. In a rule, the coordinates at an end and the force are
 //! vectors.
 
-use super::condition::CHOICES;
-use super::lets::rate;
+use super::closed::rate;
 use super::point::Point;
-use super::scope::{Meaning, Scope};
-use super::value::{Value, brackets, not_a_number, spelled};
-use super::vector;
+use super::scope::{CHOICES, Meaning, OF_VECTORS, Scope};
+use super::value::{Value, brackets, not_a_number, power, spelled};
 use crate::limits::bounded;
 use crate::messages::{ArrayMistake, ConstraintMistake, Errors, Habit, Message, error, nearest};
 use crate::symbol::{Field, Quantity, Symbol, Variable};
@@ -251,7 +249,7 @@ impl Scope {
 
     /// The message for an undeclared name.
     pub(super) fn unknown(&self, pool: &Pool<Symbol>, name: String) -> Message {
-        let is_function = ["sum", "sqrt"].into_iter().chain(vector::FUNCTIONS).any(|function| function == name);
+        let is_function = ["sum", "sqrt"].into_iter().chain(OF_VECTORS).any(|function| function == name);
         if is_function || Function::from_name(&name).is_some() {
             return Message::FunctionWithoutArguments { name };
         }
@@ -528,13 +526,6 @@ fn is_zero(pool: &mut Pool<Symbol>, divisor: Expr) -> bool {
         return pool.is_zero(over_step);
     }
     false
-}
-
-/// `base^exponent`. A root that starts at a point gets a form of its base that is exactly zero before that point.
-pub(super) fn power(pool: &mut Pool<Symbol>, base: Expr, exponent: Expr) -> Expr {
-    let is_root = !pool.as_number(exponent).is_some_and(Rational::is_integer);
-    let base = if is_root { pool.with_ramps(base) } else { base };
-    pool.call(Function::Pow, &[base, exponent])
 }
 
 /// The place of brackets that stand for parentheses in a chain.

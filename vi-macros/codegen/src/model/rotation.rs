@@ -15,9 +15,9 @@
 //! J is the mean of the principal moments of inertia, from the trace of M at R = (1, 0, 0, 0). It changes no motion.
 
 use super::array::part;
+use super::closed::{Closed, LetArray};
 use super::context::Context;
 use super::force::{over, path};
-use super::lets::{Closed, LetArray};
 use super::mass::{slope, vanish};
 use super::scope::{Meaning, Scope};
 use super::value::Value;

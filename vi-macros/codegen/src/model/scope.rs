@@ -4,10 +4,9 @@
 //! of a rule. A name has one meaning, and none before its declaration.
 
 use super::array::Array;
-use super::function::Called;
-use super::lets::LetArray;
+use super::called::Called;
+use super::closed::LetArray;
 use super::point::Point;
-use super::vector;
 use crate::messages::{Absence, FunctionMistake, Habit, Message, error, nearest, words};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::{Ident, Span};
@@ -19,6 +18,12 @@ use vi_expr::{Expr, Function, Pool};
 
 /// Names reserved by the language, besides its functions.
 const RESERVED: [&str; 8] = ["t", "pi", "L", "f", "self", "dot", "sum", "sqrt"];
+
+/// The functions that select one of their arguments.
+pub(super) const CHOICES: [&str; 3] = ["max", "min", "clamp"];
+
+/// The functions of vectors and matrices. Their names are not reserved.
+pub(super) const OF_VECTORS: [&str; 3] = ["cross", "norm", "transpose"];
 
 /// Cost of comparing two names, besides comparing each pair of their letters.
 const COMPARISON: usize = 16;
@@ -464,10 +469,10 @@ impl Scope {
                 _ => None,
             }
         });
-        let built_in: [&str; 5] = ["sqrt", "sum", "max", "min", "clamp"];
         own.chain(Function::ALL.into_iter().map(|function| -> &str { function.name() }))
-            .chain(built_in)
-            .chain(vector::FUNCTIONS)
+            .chain(["sqrt", "sum"])
+            .chain(CHOICES)
+            .chain(OF_VECTORS)
     }
 
     /// The nearest declared name that satisfies `is_meant`.

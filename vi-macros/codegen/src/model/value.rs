@@ -8,7 +8,7 @@ use crate::symbol::Symbol;
 use crate::syntax::{Expression, Kind};
 use proc_macro2::Span;
 use syn::Result;
-use vi_expr::{Expr, Pool};
+use vi_expr::{Expr, Function, Pool, Rational};
 
 /// The value of an expression.
 #[derive(Clone, Debug)]
@@ -239,4 +239,11 @@ pub(super) fn brackets(written: &Expression) -> Option<Span> {
         Kind::Negative(operand) | Kind::Power(operand, _) => brackets(operand),
         _ => None,
     }
+}
+
+/// `base^exponent`. A root that starts at a point gets a form of its base that is exactly zero before that point.
+pub(super) fn power(pool: &mut Pool<Symbol>, base: Expr, exponent: Expr) -> Expr {
+    let is_root = !pool.as_number(exponent).is_some_and(Rational::is_integer);
+    let base = if is_root { pool.with_ramps(base) } else { base };
+    pool.call(Function::Pow, &[base, exponent])
 }

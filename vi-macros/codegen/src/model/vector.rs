@@ -3,9 +3,8 @@
 //! In: an array by its name, with some of its indices; or a function with its arguments. Out: a [`Value`].
 
 use super::array::{Array, Path, part};
-use super::resolve::power;
-use super::scope::{Growing, Meaning, Scope};
-use super::value::{Tensor, Value};
+use super::scope::{Growing, Meaning, OF_VECTORS, Scope};
+use super::value::{Tensor, Value, power};
 use crate::messages::{Absence, ArrayMistake, Errors, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::Expression;
@@ -14,9 +13,6 @@ use core::ops::Range;
 use proc_macro2::{Ident, Span};
 use syn::Result;
 use vi_expr::{Expr, Pool, Rational};
-
-/// The functions of vectors and matrices. Their names are not reserved.
-pub(super) const FUNCTIONS: [&str; 3] = ["cross", "norm", "transpose"];
 
 /// A written index with its value.
 fn placed(values: &[i64], written: &[Expression]) -> Vec<(i64, Span)> {
@@ -114,7 +110,7 @@ impl Scope {
         function: &Ident,
         arguments: &[Expression],
     ) -> Result<Option<Value>> {
-        let Some(name) = FUNCTIONS.into_iter().find(|name| function == name) else { return Ok(None) };
+        let Some(name) = OF_VECTORS.into_iter().find(|name| function == name) else { return Ok(None) };
         let takes = if name == "cross" { 2 } else { 1 };
         let values = self.arguments(pool, function, takes, arguments)?;
         if let Some(wrong) = values.iter().find(|value| matches!(value, Value::Wrong(_))) {
