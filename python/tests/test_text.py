@@ -53,6 +53,9 @@ def test_a_text_is_a_class_at_once():
 def test_the_definition_is_as_it_was_written():
     text = "\n        struct S {\n            coord x;   // a comment\n            L = dot(x)^2;\n        }\n    "
     assert vi.System(text).definition == text
+    for ready in (vi.Pendulum, vi.Kepler):
+        lines = ready.definition.splitlines()
+        assert lines[0].startswith("/// Plane ") and lines[-1] == "}" and "    discretize midpoint;" in lines
 
 
 def test_every_method_agrees():

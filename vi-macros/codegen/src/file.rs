@@ -4,7 +4,7 @@
 //! changes. A system with mistakes is not written. A failed write is a compile error with its reason.
 
 use crate::{Compiled, pretty};
-use proc_macro2::TokenStream;
+use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use std::env;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn expand_into(tokens: &TokenStream, folder: Option<&Path>) -> TokenStream {
         Ok(compiled) => {
             let mut items = compiled.items();
             // Only tokens that are not nested too deep become text: that recurses.
-            items.extend(crate::emit::structure::described(compiled.model(), &tokens.to_string()));
+            items.extend(crate::emit::structure::described(compiled.model(), &definition(tokens)));
             let written = folder.map_or(Ok(()), |folder| write(&compiled, folder));
             (items, written.err().map(|reason| quote!(::core::compile_error! { #reason })))
         }
@@ -34,6 +34,24 @@ fn expand_into(tokens: &TokenStream, folder: Option<&Path>) -> TokenStream {
         #error
         const _: ::core::option::Option<&::core::primitive::str> = ::core::option_env!("VI_EXPAND_DIR");
     }
+}
+
+/// The declaration as it was written; the text of its tokens if the compiler has no other, as inside another macro.
+fn definition(tokens: &TokenStream) -> String {
+    let tokens = tokens.to_string();
+    let written = Span::call_site().source_text().and_then(|invocation| inside(&invocation));
+    let is_same = |text: &String| text.parse::<TokenStream>().is_ok_and(|other| other.to_string() == tokens);
+    written.filter(is_same).unwrap_or(tokens)
+}
+
+/// The text between the brackets of the invocation of a macro, without its common indentation.
+fn inside(invocation: &str) -> Option<String> {
+    let (_, behind) = invocation.split_once('!')?;
+    let text = behind.trim().get(1..)?.strip_suffix(['}', ')', ']'])?;
+    let lines = || text.lines().filter(|line| !line.trim().is_empty());
+    let indent = lines().map(|line| line.len() - line.trim_start().len()).min()?;
+    let lines: Vec<&str> = text.lines().map(|line| line.get(indent..).unwrap_or_default()).collect();
+    Some(lines.join("\n").trim().to_owned())
 }
 
 fn write(compiled: &Compiled, folder: &Path) -> Result<(), String> {
@@ -58,6 +76,16 @@ mod tests {
 
     fn expansion(text: &str, folder: Option<&Path>) -> String {
         expand_into(&text.parse().expect("tokens of Rust"), folder).to_string()
+    }
+
+    #[test]
+    fn a_definition_is_the_text_as_written() {
+        let invocation =
+            "lagrangian! {\n    /// Free.\n    struct Free {\n        coord x;\n\n        L = dot(x)^2;\n    }\n}";
+        let written = "/// Free.\nstruct Free {\n    coord x;\n\n    L = dot(x)^2;\n}";
+        assert_eq!(inside(invocation).as_deref(), Some(written));
+        assert_eq!(inside("vi_macros::lagrangian!(struct A {})").as_deref(), Some("struct A {}"));
+        assert_eq!(inside("other tokens"), None);
     }
 
     #[test]
