@@ -117,3 +117,17 @@ def test_a_dead_point_names_what_passes_it():
     dead_point = _exception("Singular", "the reason", {"t": 0.5, "matrix": "mass matrix bordered by the constraints"})
     assert "run.events(…), which passes it" in str(dead_point)
     assert str(_exception("Singular", "the reason", {"t": 0.5, "matrix": "mass matrix"})) == "the reason"
+
+
+def test_a_step_beyond_a_table_has_its_numbers():
+    Slow = vi.System("""struct Slow {
+        coord x;
+        table drag(v) = [(0, 0), (1, 1), (2, 3)];
+        L = dot(x)^2 / 2 + x;
+        force x = -drag(dot(x)) / 10;
+    }""")
+    with pytest.raises(
+        vi.Undefined, match=r"`drag\(dot\(x\)\)` is given for 0 to 2.*take shorter steps, or stop"
+    ) as raised:
+        Slow().integrate([0.0], h=0.1).until(10.0)
+    assert raised.value.range == [0.0, 2.0] and raised.value.argument > 2.0 and raised.value.t > 2.0

@@ -5,7 +5,7 @@
 
 use core::fmt;
 use serde::Serialize;
-use serde::ser::{Error as _, Impossible, SerializeSeq, SerializeStructVariant, Serializer};
+use serde::ser::{Error as _, Impossible, SerializeSeq, SerializeStructVariant, SerializeTuple, Serializer};
 use vi_core::StepError;
 
 /// The value of a field.
@@ -70,7 +70,6 @@ macro_rules! refuse {
 /// Refuses structured types, but for those given.
 macro_rules! refuse_compounds {
     () => {
-        type SerializeTuple = Impossible<Self::Ok, Unsupported>;
         type SerializeTupleStruct = Impossible<Self::Ok, Unsupported>;
         type SerializeTupleVariant = Impossible<Self::Ok, Unsupported>;
         type SerializeMap = Impossible<Self::Ok, Unsupported>;
@@ -94,9 +93,6 @@ macro_rules! refuse_compounds {
             _: &'static str,
             _: &T,
         ) -> Result<Self::Ok, Unsupported> {
-            Err(Unsupported)
-        }
-        fn serialize_tuple(self, _: usize) -> Result<Self::SerializeTuple, Unsupported> {
             Err(Unsupported)
         }
         fn serialize_tuple_struct(self, _: &'static str, _: usize) -> Result<Self::SerializeTupleStruct, Unsupported> {
@@ -124,6 +120,7 @@ impl Serializer for Variants {
     type Ok = Variant;
     type Error = Unsupported;
     type SerializeSeq = Impossible<Variant, Unsupported>;
+    type SerializeTuple = Impossible<Variant, Unsupported>;
     type SerializeStructVariant = Variant;
 
     refuse_compounds!();
@@ -140,6 +137,9 @@ impl Serializer for Variants {
         Err(Unsupported)
     }
     fn serialize_seq(self, _: Option<usize>) -> Result<Self::SerializeSeq, Unsupported> {
+        Err(Unsupported)
+    }
+    fn serialize_tuple(self, _: usize) -> Result<Self::SerializeTuple, Unsupported> {
         Err(Unsupported)
     }
     fn serialize_struct_variant(
@@ -170,6 +170,7 @@ impl Serializer for OfField {
     type Ok = Value;
     type Error = Unsupported;
     type SerializeSeq = List;
+    type SerializeTuple = List;
     type SerializeStructVariant = Impossible<Value, Unsupported>;
 
     refuse_compounds!();
@@ -205,6 +206,9 @@ impl Serializer for OfField {
     fn serialize_seq(self, _: Option<usize>) -> Result<List, Unsupported> {
         Ok(List(Vec::new()))
     }
+    fn serialize_tuple(self, _: usize) -> Result<List, Unsupported> {
+        Ok(List(Vec::new()))
+    }
     fn serialize_struct_variant(
         self,
         _: &'static str,
@@ -235,5 +239,19 @@ impl SerializeSeq for List {
         }
         let texts = self.0.into_iter().map(|value| if let Value::Text(text) = value { Some(text) } else { None });
         texts.collect::<Option<_>>().map(Value::Texts).ok_or_else(|| Unsupported::custom("mixed"))
+    }
+}
+
+/// An array.
+impl SerializeTuple for List {
+    type Ok = Value;
+    type Error = Unsupported;
+
+    fn serialize_element<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Unsupported> {
+        SerializeSeq::serialize_element(self, value)
+    }
+
+    fn end(self) -> Result<Value, Unsupported> {
+        SerializeSeq::end(self)
     }
 }
