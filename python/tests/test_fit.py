@@ -78,6 +78,19 @@ def test_derivatives_of_velocities_whose_momenta_depend_on_the_coordinates():
         assert np.abs(found.jacobian[..., column] - slope).max() < 1e-8, name  # 5.0e-9, of the differences
 
 
+@pytest.mark.parametrize("columns", [["l * sin(θ)", "-l * cos(θ)"], ["p_θ"], ["dot(θ)", "m * l^2 * dot(θ)"]])
+def test_measured_momenta_and_expressions(columns):
+    times = np.linspace(0.0, 5.0, 40)
+    motion = vi.Pendulum(l=0.7, m=1.3).integrate([1.0], [0.3], h=0.05).at(times)
+    data = {"t": times, **{name: motion[name] for name in columns}}
+    guess = vi.Pendulum(l=0.6, m=1.3)
+    found = vi.fit(guess, data, ["l", "θ", "dot(θ)"], q=[0.9], v=[0.2], h=0.05)
+    assert found.columns == tuple(columns)
+    assert list(found.parameters.values()) == pytest.approx([0.7, 1.0, 0.3], rel=1e-13)  # 1.1e-15
+    ends = [vi.Pendulum(l=0.7 + k, m=1.3).integrate([1.0], [0.3], h=0.05).at(times)[columns[-1]] for k in (-1e-5, 1e-5)]
+    assert found.jacobian[:, -1, 0] == pytest.approx((ends[1] - ends[0]) / 2e-5, abs=1e-8)  # 4e-10
+
+
 def test_errors_are_those_of_many_noisy_pendulums():
     true = vi.Pendulum(l=0.7)
     clean = true.integrate([1.0], h=0.1).at(TIMES).q[:, 0]

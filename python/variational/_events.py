@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +12,7 @@ import numpy as np
 
 from ._arrays import Array, _shown, number
 from ._calls import check_arguments, unassignable, unfit
-from ._names import course, is_plain
+from ._observed import Observed, observed
 
 
 def _refused(event: Any, name: str) -> str:
@@ -23,15 +24,15 @@ def _refused(event: Any, name: str) -> str:
 @unassignable(_refused)
 @dataclass(frozen=True)
 class Event:
-    """A coordinate, or `dot(x)` its velocity, crosses a value: `Event("x", 0.0, direction=+1)`.
+    """A coordinate, `dot(x)` its velocity or `p_x` its momentum crosses a value: `Event("x", 0.0, direction=+1)`.
 
     The direction is +1 for rising, -1 for falling, and 0 for both. The search does not call Python.
 
     Any expression of the language may cross a value too, `Event("norm(r[0] - r[1])", 0.1)`, in the names of the system:
     coordinates, parameters, `let`s, functions and tables. That search calls Python.
 
-    With a period the coordinate crosses the value plus a whole number of periods: `Event("θ", period=2 * np.pi)` is an
-    event in each turn of an angle. That search calls Python.
+    With a period it crosses the value plus a whole number of periods: `Event("θ", period=2 * np.pi)` is an event in each
+    turn of an angle. That search calls Python.
     """
 
     of: str
@@ -80,11 +81,11 @@ def listed(events: Watched | Iterable[Watched]) -> list[Watched]:
         raise TypeError(f"events must be an Event, a function g(t, q, v), or a list of them, not {events!r}") from None
 
 
-def periodic(events: Watched | Iterable[Watched], cls: Any) -> dict[int, tuple[int, int]]:
-    """Coordinate and direction of the events with a period, by their index. The search finds both directions of them:
-    its function changes its own from one period to the next."""
+def periodic(events: Watched | Iterable[Watched]) -> dict[int, tuple[Event, float]]:
+    """The events with a period, and their periods, by their index. The search finds both directions of them: its
+    function changes its own from one period to the next."""
     return {
-        index: (course(event.of, cls.coordinates, cls.__name__)[1], _sign(event.direction))
+        index: (event, event.period)
         for index, event in enumerate(listed(events))
         if isinstance(event, Event) and event.period is not None
     }
@@ -95,20 +96,7 @@ def _description(event: Watched, run: Any, place: str, is_first: bool) -> tuple:
     if isinstance(event, str):
         event = Event(event)
     if isinstance(event, Event):
-        at = number(event.at, "at")
-        try:
-            is_velocity, index = course(event.of, cls.coordinates, cls.__name__)
-        except KeyError as unknown:
-            if event.period is not None:
-                raise
-            return (_difference(event.of, at, run, unknown), _sign(event.direction), place)
-        if event.period is None:
-            return (is_velocity, index, at, _sign(event.direction))
-        period = number(event.period, "period")
-        if period <= 0.0 or is_velocity:
-            raise ValueError(f"the period of a coordinate must be positive, not {event!r}")
-        _sign(event.direction)
-        return (lambda t, q, v: math.sin(math.pi * ((q[index] - at) / period)), 0, place)
+        return _crossing(event, run, place)
     if isinstance(event, Period):
         period = number(event.period, "period")
         if period <= 0.0:
@@ -129,19 +117,46 @@ def _description(event: Watched, run: Any, place: str, is_first: bool) -> tuple:
                 "run.events(…) records events on the way, and k calls of next_event find the k-th one"
             )
         return (event, _sign(getattr(event, "direction", 0)), name)
-    raise TypeError(f"an event must be an Event or a function g(t, q, v), not {event!r}")
+    value = (
+        f": a value belongs to its event, as in vi.Event(name, {event!r})" if isinstance(event, (int, float)) else ""
+    )
+    raise TypeError(f"an event must be an Event or a function g(t, q, v), not {event!r}{value}")
 
 
-def _difference(expression: str, at: float, run: Any, unknown: KeyError) -> Function:
-    """An expression minus a value, with the numbers of a run. A wrong one that is a single name is unknown."""
+def _crossing(event: Event, run: Any, place: str) -> tuple:
+    """The description of a quantity that crosses a value."""
+    at, direction, n = number(event.at, "at"), _sign(event.direction), len(run._cls.coordinates)
     try:
-        of = run._cls._observable(expression)
-    except ValueError as error:
-        raise (unknown if is_plain(expression) else error) from None
+        of = observed(event.of, run._cls)
+    except ValueError:
+        if re.search("[<>=]", event.of) is None:
+            raise
+        raise ValueError(
+            f"{event.of!r} is a condition: write the quantity and the value that it crosses, such as "
+            f'vi.Event("{run._cls.coordinates[0]}", 0.1)'
+        ) from None
     if of.shape:
-        raise ValueError(f"{expression!r} has the shape {tuple(of.shape)}: an event needs one number, such as its norm")
-    parameters = [run._run.parameters.tolist()]
-    return lambda t, q, v: of.values(([t], [q.tolist()], [v.tolist()]), parameters)[0] - at
+        raise ValueError(f"{event.of!r} has the shape {of.shape}: an event needs one number, such as its norm")
+    if event.period is None and of.place is not None and of.place < 2 * n:
+        return (of.place >= n, of.place % n, at, direction)
+    above = _above(of, at, run)
+    if event.period is None:
+        return (above, direction, place)
+    period = number(event.period, "period")
+    if period <= 0.0:
+        raise ValueError(f"the period of an event must be positive, not {event!r}")
+    return (lambda t, q, v: math.sin(math.pi * (above(t, q, v) / period)), 0, place)
+
+
+def _above(of: Observed, at: float, run: Any) -> Function:
+    """A quantity minus a value, with the numbers of a run."""
+    system, place, n = run.system, of.place, len(run._cls.coordinates)
+    if place is None:
+        observable, numbers = system._observable(of.text), [system._values.tolist()]
+        return lambda t, q, v: observable.values(([t], [q.tolist()], [v.tolist()]), numbers)[0] - at
+    if place < 2 * n:
+        return lambda t, q, v: (q if place < n else v)[place % n] - at
+    return lambda t, q, v: system.momentum(t, q, v)[place % n] - at
 
 
 def value(found: Any, name: str) -> float:

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from ._arrays import Array, array, finite, fixed, number, ordered, vector
 from ._calls import checked_call, unassignable
 from ._errors import StepError
-from ._names import among, course, meant, unknowns, unknowns_of
+from ._names import among, meant, unknowns, unknowns_of
+from ._observed import Observed, observed
 from ._progress import Report, progress
 from ._solution import Solution
 
@@ -125,9 +126,9 @@ def fit(
     system : System
         The system. Its parameters are the first guess of the unknown ones.
     data : dict, DataFrame or array
-        Columns "t" with ascending times, and measurements of coordinates "x" and velocities "dot(x)"; NaN if there is
-        none. The column of an input has its value from this time to the next. An array (K, 1 + N) has the columns t and
-        all coordinates.
+        Columns "t" with ascending times, and measurements of coordinates "x", velocities "dot(x)", momenta "p_x", and
+        expressions of the language that are one number, such as "l * sin(θ)"; NaN if there is none. The column of an
+        input has its value from this time to the next. An array (K, 1 + N) has the columns t and all coordinates.
     parameters : list of str
         The unknowns: names of parameters, or of entries such as "m[0]"; a coordinate "x" or a velocity "dot(x)" is its
         value at the start.
@@ -347,15 +348,23 @@ class _Model:
                 slope = self._carried(run, slope, steps=steps)
                 t = end
             rows.append((t, run.q, run.p, run.v, run.energy))
-            outputs.append(self._carried(run, slope, velocities=[False, True]))
+            # Of (q, v, p).
+            moved = self._carried(run, slope, velocities=[False, True])
+            outputs.append(np.concatenate([moved, slope[len(slope) // 2 :]]))
         t, q, p, v, energy = (np.array(column) for column in zip(*rows, strict=True))
         solution = Solution(self._system(values, 0)._fixed(), t, q, p)
         # With inputs each row has a system of its own.
         solution.__dict__.update(v=fixed(v), energy=fixed(energy))
         solution._values = np.array([self._system(values, row)._values for row in range(len(self.times))])
-        n = len(self.start) // 2
-        indices = [index + n * is_velocity for (is_velocity, index), _ in self.rows.values()]
-        return np.concatenate([q, v], axis=-1)[:, indices], np.array(outputs)[:, indices], solution
+        at = (solution.system, t, np.concatenate([q, v, p], axis=-1), solution._values)
+        computed = [of.values(*at) for of, _ in self.rows.values()]
+        slopes = []
+        for of, _ in self.rows.values():
+            _, of_states, of_parameters = of.slopes(*at, self.indices)
+            changes = np.einsum("ks,ksu->ku", of_states, np.array(outputs))
+            changes[:, self.is_parameter] += of_parameters
+            slopes.append(changes)
+        return np.column_stack(computed), np.stack(slopes, axis=1), solution
 
     def _carried(self, run: Any, slope: Array, **options: Any) -> Array:
         """The derivatives with respect to the unknowns, (2N, U), carried from the node of a run over its steps."""
@@ -372,7 +381,7 @@ class _Model:
         return self.cls._of(values)
 
 
-def _read(data: Any, cls: Any) -> tuple[Array, dict[str, tuple[tuple[bool, int], Array]], dict[str, tuple[int, Array]]]:
+def _read(data: Any, cls: Any) -> tuple[Array, dict[str, tuple[Observed, Array]], dict[str, tuple[int, Array]]]:
     """Times, measured columns with what they measure, and columns of inputs with their index."""
     if hasattr(data, "columns") and hasattr(data, "to_dict"):
         columns = {name: data[name].to_numpy() for name in data.columns}
@@ -389,7 +398,9 @@ def _read(data: Any, cls: Any) -> tuple[Array, dict[str, tuple[tuple[bool, int],
             )
         columns = dict(zip(["t", *cls.coordinates], table.T, strict=True))
     if "t" not in columns:
-        raise ValueError('data has no column "t", the times')
+        named = [name for name in columns if str(name).lower() in ("time", "times")]
+        hint = f": rename {named[0]!r}" if named else ""
+        raise ValueError(f'data has no column "t", the times{hint}')
     times = array(columns.pop("t"), "t")
     if times.ndim != 1 or not len(times):
         raise ValueError(f"the times of the data must be a list, not of shape {times.shape}")
@@ -403,16 +414,30 @@ def _read(data: Any, cls: Any) -> tuple[Array, dict[str, tuple[tuple[bool, int],
             finite(found, name)
             inputs[name] = (of_inputs[name], found)
             continue
-        is_velocity, index = course(name, cls.coordinates, cls.__name__)
-        label = cls.coordinates[index]
+        of = _column(name, cls)
         if np.isinf(found).any():
             finite(found, name)
-        measured[f"dot({label})" if is_velocity else label] = ((is_velocity, index), found)
+        measured[of.text] = (of, found)
     if not measured:
         raise ValueError(
             f"data has no column of a coordinate or a velocity; {cls.__name__} has {_listed(cls.coordinates)}"
         )
     return times, measured, inputs
+
+
+def _column(name: str, cls: Any) -> Observed:
+    """What a column measures."""
+    try:
+        of = observed(name, cls)
+    except KeyError as unknown:
+        raise KeyError(f"{unknown.args[0]}: leave out the column, or rename it") from None
+    except ValueError as error:
+        raise ValueError(
+            f"the column {name!r} of the data is no quantity of {cls.__name__}: leave it out, or correct it\n{error}"
+        ) from None
+    if of.shape:
+        raise ValueError(f"the column {name!r} has the shape {of.shape} in {cls.__name__}: measure one entry of it")
+    return of
 
 
 def _bounds(bounds: Mapping[str, Sequence[float]], cls: Any, guess: Mapping[str, float]) -> tuple[Array, Array]:

@@ -42,11 +42,7 @@ def course(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, 
     Raises KeyError for another name.
     """
     if not isinstance(name, str):
-        raise TypeError(f'{system} has rows by the name of a coordinate, such as ["{coordinates[0]}"], not by {name!r}')
-    if name.startswith("p_") and name not in coordinates:
-        raise KeyError(
-            f"{system} has no row {name!r}: the momenta are the columns of sol.p, in the order {', '.join(coordinates)}"
-        )
+        raise TypeError(f'give the name of a coordinate of {system}, such as "{coordinates[0]}", not {name!r}')
     inner = re.fullmatch(r"\s*dot\((.*)\)\s*", name)
     found = among((inner[1] if inner else name).strip(), coordinates)
     if found not in coordinates:
@@ -106,7 +102,8 @@ def unknowns_of(name: str, cls: Any) -> dict[str, tuple[bool, int]]:
     found = among(name, known)
     if found not in known:
         raise ValueError(
-            f"{cls.__name__} has no parameter or start value {name!r}{meant(name, known)}; "
+            f"{cls.__name__} has no parameter or start value {name!r}{meant(name, known)}"
+            f"{': give several as a list' if ',' in name else ''}; "
             f"it has {', '.join([*cls.parameters, *starts])}"
         )
     return known[found]

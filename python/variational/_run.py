@@ -14,9 +14,11 @@ from numpy.typing import ArrayLike
 from ._arrays import Array, count, fixed, number, ordered, real, vector
 from ._calls import check_arguments, no_attribute, unassignable, unfit
 from ._control import Linearization
-from ._errors import InconsistentStart, StepError, advised  # type: ignore[attr-defined]
-from ._events import Event, Watched, descriptions, listed, periodic
-from ._names import course, meant
+from ._crossing import Crossing
+from ._errors import InconsistentStart, StepError, _invalid, advised  # type: ignore[attr-defined]
+from ._events import Event, Period, Watched, descriptions, listed, periodic
+from ._names import among, meant
+from ._observed import observed
 from ._progress import Report, progress
 from ._solution import BY_SYSTEM, Events, Solution
 
@@ -361,7 +363,7 @@ class Run:
 
             return _finished(self._called(end, None, _count(every, "every", 1), callback, look), on_error)
         wanted = descriptions(events, self, is_first)
-        turns = periodic(events, self._cls)
+        turns = periodic(events)
         while True:
             with progress(self._title) as own:
                 (t, q, p), error, met = self._run.events(wanted, end, is_first, report or own)
@@ -431,17 +433,20 @@ class Run:
         method="adaptive". With `velocities` all are in (q, v): the matrices are "q" and "v", and velocities are
         constant where a parameter changes.
 
-        With an event, a coordinate or a velocity that crosses a value, the run ends at its first time before `until`.
-        A last row then has the derivatives of this time. With constraints the start is the nearest state on them, as of
-        `System.project`: changes of the coordinates or of a parameter move it.
+        With an event, a quantity that crosses a value, the run ends at its first time before `until`. A last row then has
+        the derivatives of this time. With constraints the start is the nearest state on them, as of `System.project`:
+        changes of the coordinates or of a parameter move it.
 
         Raises ValueError if there is no event before `until`.
         """
         n = len(self._cls.coordinates)
         names, indices = self._wrt(wrt, True)
         options = self._end(steps, until, event)
-        with progress(self._title) as report:
-            columns = self._tangent(indices, velocities=[velocities, velocities], report=report, **options)
+        if isinstance(crossing := options.get("event"), Crossing):
+            columns = crossing.tangent(indices, velocities)
+        else:
+            with progress(self._title) as report:
+                columns = self._tangent(indices, velocities=[velocities, velocities], report=report, **options)
         columns = columns if event is not None else columns[: 2 * n]
         second = "v" if velocities else "p"
         found = {"q": columns[:, :n].copy(), second: columns[:, n : 2 * n].copy()}
@@ -456,15 +461,15 @@ class Run:
                 raise TypeError("give until with an event: the time up to which it is looked for")
             if not isinstance(event, (Event, str)) or getattr(event, "period", None) is not None:
                 raise TypeError(
-                    f"an event of a derivative must be a coordinate or velocity that crosses a value, such as "
-                    f'vi.Event("{self._cls.coordinates[0]}", 0.0), not {event!r}'
+                    "an event of a derivative must be a coordinate, a velocity, a momentum or an expression that crosses a "
+                    f'value, such as vi.Event("{self._cls.coordinates[0]}", 0.0), not {event!r}'
                 )
-            # Not an expression.
-            course(event if isinstance(event, str) else event.of, self._cls.coordinates, self._cls.__name__)
             met = self.copy().next_event(event, until)
             if not len(met):
                 raise ValueError(f"there is no event before t = {until:g}")
-            return {"t": float(met.t[0]), "event": descriptions(event, self, True)[0]}
+            t, described = float(met.t[0]), descriptions(event, self, True)[0]
+            of = observed(event if isinstance(event, str) else event.of, self._cls)
+            return {"t": t, "event": Crossing(self, of, t) if callable(described[0]) else described}
         return {"steps": _count(steps, "the number of steps")} if until is None else {"t": number(until, "until")}
 
     def _tangent(self, indices: list[int], **options: Any) -> Array:
@@ -473,11 +478,17 @@ class Run:
         with self._advising():
             return self._run.tangent(indices, **options).T
 
-    def _tangents_at(self, indices: list[int], times: Array) -> Array:
-        """The derivatives of (q, v) at these times with respect to (q, v) and these parameters: (K, 2N, D)."""
+    def _gradient(self, indices: list[int], slope: Array, **options: Any) -> Array:
+        """The gradient of slope·(q, p, t) at the end of steps with respect to (q, p) and these numbers of the system."""
+        with self._advising():
+            return self._run.gradient(indices, slope, **options)
+
+    def _tangents_at(self, indices: list[int], times: Array, velocities: bool = True) -> Array:
+        """The derivatives of (q, v), or of (q, p), at these times with respect to (q, v) of the start and these
+        parameters: (K, 2N, D)."""
         run = self.copy()
         with run._advising(), progress(run._title) as report:
-            found = run._run.tangents_at(indices, times, report)
+            found = run._run.tangents_at(indices, times, velocities, report)
         return np.moveaxis(found, 1, 2)[:, : 2 * len(self._cls.coordinates)]
 
     def lyapunov(self, steps: int, count: int = 1) -> Array:
@@ -526,8 +537,11 @@ class Run:
         slope = np.array([*parts[0], *parts[1], 0.0 if t is None else number(t, "t")])
         names, indices = self._wrt(wrt)
         options = self._end(steps, until, event)
-        with self._advising(), progress(self._title) as report:
-            found = self._run.gradient(indices, slope, velocities=[velocities, velocities], report=report, **options)
+        if isinstance(crossing := options.get("event"), Crossing):
+            found = crossing.gradient(indices, slope, velocities)
+        else:
+            with progress(self._title) as report:
+                found = self._gradient(indices, slope, velocities=[velocities, velocities], report=report, **options)
         columns = self._split(found[2 * n :], names)
         return {"q": found[:n].copy(), second: found[n : 2 * n].copy(), **columns}
 

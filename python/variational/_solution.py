@@ -12,10 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from ._animation import animated
 from ._arrays import Array, array, finite, fixed
 from ._calls import check_arguments, no_attribute, unassignable
-from ._names import among, course, is_plain, unknowns
+from ._names import among, unknowns
+from ._observed import observed
 
 if TYPE_CHECKING:
     from ._errors import StepError
+    from ._events import Event
     from ._run import Run
     from ._system import System
 
@@ -36,8 +38,9 @@ class ByName:
     """The numbers of the system from each row on, or of each run; None if they are those of `system`."""
 
     def __getitem__(self, name: str) -> Array:
-        """A coordinate, `sol["x"]`, its velocity, `sol["dot(x)"]`, the value of a parameter or an input from each row
-        on, `sol["k"]`, or an expression of the language, such as a `let` or `sol["k * x^2 / 2"]`."""
+        """A coordinate, `sol["x"]`, its velocity, `sol["dot(x)"]`, its momentum, `sol["p_x"]`, the value of a parameter
+        or an input from each row on, `sol["k"]`, or an expression of the language, such as a `let` or
+        `sol["k * x^2 / 2"]`."""
         coordinates, constraints = self.system.coordinates, self.system.constraints
         if isinstance(name, str) and name not in coordinates:
             if among(name.partition("[")[0], self.system.parameters) in self.system.parameters:
@@ -48,24 +51,16 @@ class ByName:
                 raise KeyError(f"{constraint} is a constraint: its reaction is reactions[..., {column}]")
             if name in ("t", "q", "v", "p", "energy", "reactions"):
                 raise KeyError(f"{name!r} is no coordinate: it is the attribute .{name}")
-        try:
-            is_velocity, index = course(name, coordinates, type(self.system).__name__)
-        except KeyError as unknown:
-            return self._of_expression(name, unknown)
-        return (self.v if is_velocity else self.q)[..., index]
-
-    def _of_expression(self, text: str, unknown: KeyError) -> Array:
-        """An expression in the names of the system. A wrong one that is a single name is unknown."""
+        of = observed(name, type(self.system))
+        if of.place is not None:
+            column, index = divmod(of.place, len(coordinates))
+            return (self.q, self.v, self.p)[column][..., index]
         if self._values is None:
             values = self.system._values[None]
         else:
             values = np.repeat(self._values, self.t.size // max(len(self._values), 1), axis=0)
-        shape, points = self.system._points(self.t, self.q, self._velocities_from_here())
-        try:
-            found = self.system._evaluated(text, shape, points, values)
-        except ValueError as error:
-            raise (unknown if is_plain(text) else error) from None
-        return fixed(found)
+        points = self.system._points(self.t, self.q, self._velocities_from_here())
+        return fixed(self.system._evaluated(name, *points, values))
 
     def _velocities_from_here(self) -> Array:
         """The velocities from each row on: where a parameter changes, that of the momenta by its new value. `v` has
@@ -247,9 +242,10 @@ class Solution(ByName):
         """The derivatives of coordinates and velocities at the times of the rows, which do not vary, exact to rounding.
 
         wrt names parameters "k", entries "m[0]" and start values "x", "dot(x)"; an array has a column for each entry.
-        The shape is (K, U) for one name of a coordinate "x" or a velocity "dot(x)", and (K, C, U) for several; by
-        default they are all coordinates, then all velocities. Velocities of the start are constant where a parameter
-        changes. With constraints the start is the nearest state on them.
+        `of` names a coordinate "x", a velocity "dot(x)", a momentum "p_x", or an expression of the language; by default
+        they are all coordinates, then all velocities. The shape is (K, U) for one of them, with the axes of a vector or
+        a matrix before the last, and (K, C, U) for several numbers. Velocities of the start are constant where a
+        parameter changes. With constraints the start is the nearest state on them.
 
         Raises ValueError if the solution has no run: those with a callback, of events, and unpickled ones.
         """
@@ -262,13 +258,28 @@ class Solution(ByName):
         indices = [index for is_start, index in varied.values() if not is_start]
         parameters = iter(range(size, size + len(indices)))
         chosen = [index if is_start else next(parameters) for is_start, index in varied.values()]
-        names = [of] if isinstance(of, str) else of
-        rows = list(range(size))
-        if names is not None:
-            places = [course(name, cls.coordinates, cls.__name__) for name in names]
-            rows = [index + is_velocity * size // 2 for is_velocity, index in places]
-        found = self._start._tangents_at(indices, self.t)[:, rows][..., chosen]
-        return found[:, 0] if isinstance(of, str) else found
+        found = [observed(name, cls) for name in ([of] if isinstance(of, str) else of or ())]
+        changes = self._start._tangents_at(indices, self.t)
+        if of is None:
+            return changes[..., chosen]
+        if any(quantity.place is not None and quantity.place >= size for quantity in found):
+            of_p = self._start._tangents_at(indices, self.t, False)[:, size // 2 :]
+        else:
+            of_p = np.zeros((len(self), size // 2, changes.shape[-1]))
+        changes = np.concatenate([changes, of_p], axis=1)
+        states = np.concatenate([self.q, self.v, self.p], axis=1)
+        columns = []
+        for quantity in found:
+            if quantity.shape and not isinstance(of, str):
+                raise ValueError(
+                    f"{quantity.text!r} has the shape {quantity.shape}: ask for it alone, or for its entries"
+                )
+            numbers = self.system._values[None]
+            _, of_states, of_parameters = quantity.slopes(self.system, self.t, states, numbers, indices)
+            column = np.einsum("k...s,ksd->k...d", of_states, changes)
+            column[..., size:] += of_parameters
+            columns.append(column[..., chosen])
+        return columns[0] if isinstance(of, str) else np.stack(columns, axis=1)
 
     def __len__(self) -> int:
         return len(self.t)
@@ -379,11 +390,13 @@ class Events(Solution):
         vars(found).update({name: fixed(vars(self)[name][rows]) for name in BY_SYSTEM if name in vars(self)})
         return found
 
-    def _directed(self, turns: dict[int, tuple[int, int]]) -> Events:
-        """The rows without those of the wrong direction, for the coordinate and the direction of these events."""
+    def _directed(self, turns: dict[int, tuple[Event, float]]) -> Events:
+        """The rows without those of the wrong direction, for these events with a period."""
         rising, is_wanted = self.rising.copy(), np.ones(len(self), dtype=np.bool_)
-        for index, (coordinate, direction) in turns.items():
-            here = self.which == index
-            rising[here] = self.v[here, coordinate] > 0.0
-            is_wanted[here] = (direction == 0) | (rising[here] == (direction > 0))
+        for index, (event, period) in turns.items():
+            here = np.flatnonzero(self.which == index)
+            # The sine of the search falls at odd numbers of periods.
+            turn = np.rint((self[event.of][here] - event.at) / period)
+            rising[here] ^= turn % 2.0 == 1.0
+            is_wanted[here] = (event.direction == 0) | (rising[here] == (event.direction > 0))
         return self._only(is_wanted, rising)

@@ -332,14 +332,15 @@ impl Run {
         Ok(PyArray2::from_vec2(py, &rows)?)
     }
 
-    /// Derivatives of (q, v) with respect to those of the start at times, which are in the order of the run: for each time
-    /// rows as of `tangent`.
-    #[pyo3(signature = (parameters, times, report=None))]
+    /// Derivatives of (q, v) or (q, p) with respect to (q, v) of the start at times, which are in the order of the run:
+    /// for each time rows as of `tangent`.
+    #[pyo3(signature = (parameters, times, has_velocities, report=None))]
     fn tangents_at<'py>(
         &self,
         py: Python<'py>,
         parameters: Vec<usize>,
         times: PyReadonlyArray1<'py, f64>,
+        has_velocities: bool,
         report: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let times = vector(&times, times.len(), "times")?;
@@ -349,7 +350,7 @@ impl Run {
         Self::check_parameters(run, parameters.iter().copied().filter(|index| *index != count))?;
         let mut watch = Watch::new(Report::new(report), self.expected(run, 0, times.last().copied()));
         let wanted = (&times[..], &parameters[..]);
-        let found = py.detach(|| run.tangents_at(wanted, [true; 2], &mut || watch.goes_on())).raise(py)?;
+        let found = py.detach(|| run.tangents_at(wanted, [true, has_velocities], &mut || watch.goes_on())).raise(py)?;
         Ok(PyArray3::from_vec3(py, &watch.unless_raised(found)?)?)
     }
 
