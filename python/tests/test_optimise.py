@@ -299,6 +299,18 @@ def test_an_array_of_inputs():
     both = vi.optimise(Two(), **options, end={"q[0]": 1.0, "q[1]": -1.0}, guess={"w": np.ones((8, 2)), "w[1]": 0.0})
     assert both.inputs == ("w[0]", "w[1]") and both["w"].shape == (8, 2) and both["w[0]"].shape == (8,)
     assert np.abs(both["w"] - one["u"][:, None] * [1.0, -1.0]).max() < 1e-9
+    # The same by arrays: values of all entries at the end, one bound for all of them, one number of each input.
+    again = vi.optimise(Two(), **options, end={"q": [1.0, -1.0]}, bounds={"q": (-2.0, 2.0)}, guess={"w": [1.0, 0.0]})
+    assert np.abs(again["w"] - both["w"]).max() < 1e-9
+    stops = [{"q": [1.0, -1.0], of: 0.0} for of in ("dot(q)", "dot(q[0])", "p_q[0]", "p_q[1]")]
+    at_rest, *halves = (vi.optimise(Two(), **options, end=stop) for stop in stops)
+    assert np.abs(at_rest.solution.v[-1]).max() < 1e-12
+    for half, stopped, other in zip(halves, (0, 0, 1), (1, 1, 0), strict=True):
+        assert np.abs(half["w"][:, stopped] - at_rest["w"][:, stopped]).max() < 1e-9
+        assert np.abs(half["w"][:, other] - both["w"][:, other]).max() < 1e-9
+    for end, words in (({"q": [1.0]}, r"list of the shape \(2,\)"), ({"q + 1 * q": 0.0}, "entries one by one")):
+        with pytest.raises(ValueError, match=words):
+            vi.optimise(Two(), **options, end=end)
     # One of them stays as the system has it.
     single = vi.optimise(Two(w=[0.5, 0.0]), **options, end={"q[1]": 1.0}, inputs="w[1]", guess={"w[1]": 1.0})
     assert single.inputs == ("w[1]",) and (single.solution["w[0]"] == 0.5).all()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,8 +15,9 @@ from numpy.typing import ArrayLike
 from ._arrays import Array, array, count, finite, fixed, number, vector
 from ._calls import checked_call, unassignable
 from ._errors import advised  # type: ignore[attr-defined]
-from ._names import among, course, meant
+from ._names import among, meant
 from ._nlp import Indices, Solved, solve
+from ._observed import observed
 from ._request import checked
 from ._solution import Solution
 
@@ -154,7 +156,8 @@ def optimise(
         The time of all steps; two numbers are the bounds of a free one. By default that of the times in `steps`.
     start, end : pair or dict
         Coordinates and velocities (q, v), or values of some: `{"x": 0.0, "dot(x)": (-1.0, 1.0)}`. A pair is the least
-        and the greatest value. Coordinates, velocities and expressions of the language can be given, others are free.
+        and the greatest value. Coordinates, velocities, momenta "p_x" and expressions of the language can be given,
+        others are free. A list is the values of an array of coordinates: `{"x": [0.0, 1.0, 2.0], "dot(x)": 0.0}`.
     cost : str
         An expression of the language, whose integral is least: `"u^2"`, or `"1"` for the least time. Three Gauss points
         in each step take the integral.
@@ -372,7 +375,7 @@ class _Problem:
             velocities = {f"dot({x})": value for x, value in zip(coordinates, v, strict=True)}
             of = {**dict(zip(coordinates, q, strict=True)), **velocities}
         for key, value in of.items():
-            self._bound(key, _pair(value, key), np.array(nodes), f"{key} of {name}")
+            self._bound(key, value, np.array(nodes), f"{key} of {name}")
 
     def _fix_start(self, q: Array, v: Array) -> None:
         """The start of a system with constraints: its momenta, because the velocities do not determine them."""
@@ -387,23 +390,27 @@ class _Problem:
         for name, pair in (bounds or {}).items():
             if among(name, self.names) in self.names:
                 raise ValueError(f"{name} is an input: write its bounds as inputs={{{name!r}: {pair!r}}}")
-            self._bound(name, _pair(pair, name), np.arange(self.steps + 1), name)
+            self._bound(name, pair, np.arange(self.steps + 1), name)
 
-    def _bound(self, name: str, pair: tuple[float, float], nodes: Indices, title: str) -> None:
-        """Bounds of a coordinate are those of variables; of anything else, those of rows."""
-        try:
-            is_velocity, index = course(name, self.system.coordinates, type(self.system).__name__)
-        except KeyError:
-            function: Any = _Function(self.system, name, self.indices)
-        else:
-            if not is_velocity:
-                at = self.places[nodes, index]
-                self.lower[at] = np.maximum(self.lower[at], pair[0])
-                self.upper[at] = np.minimum(self.upper[at], pair[1])
-                if (self.lower[at] > self.upper[at]).any():
-                    raise ValueError(f"the bounds of {name} exclude its value at the start or at the end")
-                return
-            function = _Velocity(self.n, index, self.m)
+    def _bound(self, name: str, value: Any, nodes: Indices, title: str) -> None:
+        """Bounds of a coordinate or a momentum are those of variables; of anything else, those of rows. Those of an array
+        are of its entries."""
+        of, n = observed(name, type(self.system)), self.n
+        if of.shape:
+            for entry, of_entry in _entries(name, value, of.shape):
+                self._bound(entry, of_entry, nodes, title.replace(name, entry, 1))
+            return
+        pair = _pair(value, name)
+        if of.place is not None and not n <= of.place < 2 * n:
+            at = self.places[nodes, of.place if of.place < n else of.place - n]
+            self.lower[at] = np.maximum(self.lower[at], pair[0])
+            self.upper[at] = np.minimum(self.upper[at], pair[1])
+            if (self.lower[at] > self.upper[at]).any():
+                raise ValueError(f"the bounds of {name} exclude its value at the start or at the end")
+            return
+        function: Any = (
+            _Function(self.system, name, self.indices) if of.place is None else _Velocity(n, of.place - n, self.m)
+        )
         place = sum(len(row.nodes) for row in self.rows)
         self.rows.append(_Row(title, function, nodes, pair, place))
 
@@ -648,9 +655,12 @@ class _Problem:
             numbers = array(value, name)
             finite(numbers, name)
             wanted = u[:, columns].shape
-            if numbers.shape not in ((), wanted):
+            # One number of each entry of an array, for all steps.
+            if numbers.shape not in ((), wanted, wanted[1:]):
+                each = f", {wanted[1]} for all steps," if wanted[1:] else ""
                 raise ValueError(
-                    f"{name} of guess must be a number, or one for each step in the shape {wanted}, not {numbers.shape}"
+                    f"{name} of guess must be a number{each} or one for each step in the shape {wanted}, "
+                    f"not {numbers.shape}"
                 )
             u[:, columns] = numbers
         q, v = self._start()
@@ -712,6 +722,24 @@ def _durations(duration: Any) -> tuple[float, float]:
             f"duration must be positive, not {duration!r}: the least free one may be small, as in (0.1, 10.0)"
         )
     return lower, upper
+
+
+def _entries(name: str, value: Any, shape: tuple[int, ...]) -> Iterator[tuple[str, Any]]:
+    """The entries of an array, with their values: a list of its shape has one for each, anything else is for all."""
+    inner = re.fullmatch(r"\s*(dot\()?\s*(\w+)\s*(\)?)\s*", name)
+    if inner is None:
+        raise ValueError(f"{name!r} has the shape {shape}: give its entries one by one")
+    is_list = isinstance(value, (list, np.ndarray))
+    if is_list and np.shape(value)[: len(shape)] != shape:
+        raise ValueError(
+            f"{name} must be a number, the bounds (least, greatest), or a list of the shape {shape}, not {value!r}"
+        )
+    for index in np.ndindex(shape):
+        entry = f"{inner[1] or ''}{inner[2]}{''.join(f'[{i}]' for i in index)}{inner[3]}"
+        of_entry = value
+        for i in index if is_list else ():
+            of_entry = of_entry[i]
+        yield entry, of_entry
 
 
 def _pair(value: Any, name: str) -> tuple[float, float]:
