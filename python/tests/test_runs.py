@@ -699,6 +699,23 @@ def test_a_solution_has_expressions_of_the_language():
         arm.evaluate(1.0, 0.0, [0.0, 0.0], [0.0, 0.0])
 
 
+def test_a_run_has_values_by_name():
+    arm = vi.System("""struct Arm {
+        param m[2] = 1.5; input u = 0.2;
+        coord x, y;
+        let r = [x, y];
+        L = m[0] * dot(r) * dot(r) / 2 - m[1] * r * r;
+        force x = u;
+    }""")()
+    run = arm.integrate([0.3, 0.1], [0.5, 0.0], h=0.1).step()
+    run.set(u=0.7)
+    assert run["x"] == run.q[0] and run["dot(y)"] == run.v[1] and run["p_x"] == run.p[0]
+    assert run["u"] == 0.7 and run["m"].tolist() == [1.5, 1.5]
+    assert run["r"].tolist() == run.q.tolist() and run["u * x"] == 0.7 * run.q[0]
+    with pytest.raises(KeyError, match="Arm has no coordinate 'z'"):
+        run["z"]
+
+
 def test_an_expression_is_an_event():
     kepler = vi.Kepler(mu=1.2)
     run = kepler.integrate(q=[0.4, 0.0], v=[0.0, 2.0], h=0.05)

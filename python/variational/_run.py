@@ -84,6 +84,14 @@ class Run:
             raise no_attribute(self, name, f"the parameter is run.system.{name}")
         raise no_attribute(self, name)
 
+    def __getitem__(self, name: str) -> Any:
+        """A coordinate, a velocity, a momentum, a parameter or an expression at the last node, as of a solution:
+        `run["x"]`, `run["m * x^2"]`."""
+        return Solution(self.system, np.array([self.t]), self.q[None], self.p[None])[name][0]
+
+    # Otherwise Python would go through a run by numbers.
+    __iter__ = None
+
     @property
     def t(self) -> float:
         """Time of the last node."""
