@@ -16,6 +16,21 @@ def rod():
     return vi.RodPendulum().integrate([0.6, -0.8], h=0.05).steps(1)
 
 
+def pendulum():
+    return vi.Pendulum().integrate([1.0], h=0.05)
+
+
+DATA = {"t": [0.0, 1.0, 2.0], "θ": [1.0, 0.5, 0.0]}
+
+
+def fitted(data=DATA, unknowns="l", **options):
+    return vi.fit(vi.Pendulum(), data, unknowns, **{"q": [1.0], "h": 0.05, **options})
+
+
+def rod_start(start):
+    return vi.RodPendulum().integrate(start, h=0.05)
+
+
 def chain():
     text = "struct Chain { coord x[3]; L = sum(i in 0..3, dot(x[i])^2) / 2; }"
     return vi.System(text)().integrate([0.0, 0.0, 0.0], h=0.05).steps(1)
@@ -69,7 +84,43 @@ TABLE = [
     (lambda: vi.compile("struct S { coord x; L = dot(x)^2; }", methods="gaus 4"), vi.CompileError, "mean 'gauss'"),
     (lambda: vi.fit(vi.Kepler(), {}, "mu", x0=[0.4, 0.0]), TypeError, "fit has no argument 'x0': write q=…"),
     (lambda: vi.Kepler().ensemble(**START, until=1.0).enegry, AttributeError, "did you mean 'energy'"),
+    (lambda: vi.Pendulum().integrate(theta=1.0, h=0.1), TypeError, r"θ is a coordinate, write q=\[…\] in the order θ"),
+    (lambda: vi.Pendulum(θ=1.0), TypeError, r"θ is a coordinate, not a parameter: a run sets it, integrate\(q=…\)"),
+    (lambda: begun(method="RK45"), ValueError, "no method 'RK45': leave method out for Gauss steps; Kepler has"),
+    (lambda: pendulum().steps(n=10), TypeError, "steps has no argument 'n': write count=…"),
+    (lambda: pendulum().until(t_end=1.0), TypeError, "until has no argument 't_end': write t=…"),
+    (lambda: vi.Event("θ", terminal=True), TypeError, r"run.next_event\(event, until\) stops the run there"),
+    (lambda: pendulum().tangent(3, ["θ"]), TypeError, 'θ is no parameter: .* are in the result, as "q"'),
+    (lambda: pendulum().gradient(3, q=[1.0], wrt=["h"]), TypeError, r'run.tangent\(n, \["h"\]\) has it'),
+    (lambda: pendulum().events("θ < 0.1", 1.0), ValueError, r'is a condition: .* such as vi.Event\("θ", 0.1\)'),
+    (lambda: pendulum().events("sin(thet)", 1.0), ValueError, "the names are θ, m, l, g, those of the `let`s"),
+    (lambda: pendulum().events(vi.Event("θ"), vi.Event("θ", 1.0)), TypeError, "several events as a list"),
+    (lambda: pendulum().events(vi.Event(0), 1.0), TypeError, 'name of a coordinate of Pendulum, such as "θ", not 0'),
+    (lambda: pendulum().events("p_x", 1.0), KeyError, "no coordinate 'p_x'"),
+    (lambda: pendulum().events("θ", 1.0).jacobian("l"), ValueError, r"run.tangent\(until=t, event=…\) has those at an"),
+    (lambda: list(pendulum().steps(1)), TypeError, r"rows are in the arrays .t, .q and .v: write t, q = sol.t, sol.q"),
+    (lambda: vi.Pendulum().equilibrium([0.1]).eigenvalues, AttributeError, "'eigenvalues': it is called rates"),
+    (lambda: vi.Pendulum().explain("gauss"), TypeError, "stages must be an integer, not 'gauss'"),
+    (lambda: fitted(p0=[1.0]), TypeError, "'p0': the values of the system, q and v are the first guess"),
+    (lambda: fitted(unknowns="l, θ"), ValueError, "give several as a list"),
+    (lambda: fitted({"time": DATA["t"], "θ": DATA["θ"]}), ValueError, "no column \"t\", the times: rename 'time'"),
+    (lambda: fitted({**DATA, "energy": DATA["θ"]}), KeyError, "no coordinate 'energy'.*leave out the column"),
+    (lambda: fitted({**DATA, "theta (rad)": DATA["θ"]}), ValueError, r"the column 'theta \(rad\)' .* leave it out"),
+    (lambda: fitted({**DATA, "[θ, l]": DATA["θ"]}), ValueError, r"has the shape \(2,\) in Pendulum: measure one entry"),
+    (lambda: vi.Pendulum().ensemble([1.0], h=0.1, until=1.0, l=[1.0]), TypeError, r'write parameters=\{"l": …\} with'),
+    (lambda: vi.Pendulum().ensemble([1.0], h=0.1, until=1.0, n_jobs=2), TypeError, "'n_jobs': write threads=…"),
+    (lambda: vi.Pendulum().ensemble([1.0], h=0.1, at=[1.0]), TypeError, "'at': write times=…"),
+    (lambda: vi.Pendulum().integrate([1.0], [0.0], 0.1), TypeError, "q and v by position: give the others by name.* h=…"),
+    (lambda: vi.Pendulum().copy(1), TypeError, "copy takes no arguments by position"),
+    (lambda: pendulum().events("θ", 9.0).of("θ"), TypeError, "the index of an event must be an integer, not 'θ'"),
+    (lambda: pendulum().events(("θ", 0.3), 9.0), TypeError, r"a value belongs to its event, as in vi.Event\(name, 0.3\)"),
+    (lambda: rod_start(vi.RodPendulum().project([0.6, -0.8])), TypeError, "not Projected: write its .q, and its .v for v"),
+    (lambda: list(pendulum()), TypeError, "not iterable"),
     # Shapes.
+    (lambda: begun(q={"x": 0.4, "y": 0.0}), TypeError, "q must be a list in the order x, y, not a dict"),
+    (lambda: pendulum().until([0.5, 1.0]), TypeError, r"one time, not \[0.5, 1.0\]: at\(times\) returns the states"),
+    (lambda: vi.Pendulum().ensemble([1.0, 2.0], h=0.1, until=1.0), ValueError, r"q\[:, None\] has it"),
+    (lambda: pendulum().steps(3).jacobian("l", of=["[θ, l]"]), ValueError, "ask for it alone, or for its entries"),
     (lambda: begun(q=[0.4]), ValueError, r"q must have 2 entries \(x, y\)"),
     (lambda: begun(q=[[0.4, 0.0]]), ValueError, "q must have 2 entries"),
     (lambda: begun(v=[]), ValueError, "v must have 2 entries"),
@@ -127,7 +178,8 @@ TABLE = [
     (lambda: begun(shift=1.0), ValueError, 'method="energy"'),
     (lambda: begun(method="energy", shift_from=-1.0), vi.InvalidInput, "shift_from must be ahead"),
     (lambda: begun(method="energy", shift_from=1e9), vi.InvalidInput, "at most 1e\\+06 steps"),
-    (lambda: begun().until(-1.0), vi.InvalidInput, "ahead of the run"),
+    (lambda: begun().until(-1.0), vi.InvalidInput, r"ahead of the run, which is at t = 0 with h = 0.05 \(a negative h"),
+    (lambda: begun(h=-0.05).until(1.0), vi.InvalidInput, "ahead of the run, which is at t = 0 with h = -0"),
     (lambda: begun().until(np.inf), vi.InvalidInput, "t must be finite"),
     (lambda: begun().at([2.0, 1.0]), ValueError, "ascending"),
     (lambda: begun().at([-1.0]), vi.InvalidInput, "must be"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,10 @@ def array(value: ArrayLike, name: str) -> Array:
 
 def vector(value: ArrayLike, size: int, name: str, coordinates: tuple[str, ...]) -> Array:
     """The argument as a contiguous vector of this size with finite entries."""
+    if isinstance(value, Mapping):
+        raise TypeError(f"{name} must be a list in the order {', '.join(coordinates)}, not a dict")
+    if isinstance(getattr(value, "q", None), np.ndarray):
+        raise TypeError(f"{name} must be a list of numbers, not {type(value).__name__}: write its .q, and its .v for v")
     found = array(value, name)
     if found.shape != (size,):
         if found.ndim == 0 and size == 1:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import math
 from collections.abc import Callable, Iterable
 from typing import Any, TypeVar, cast
 
@@ -17,7 +18,7 @@ _ELSEWHERE = {
     "h": "dt delta_t deltat step step_size stepsize timestep time_step max_step first_step",
     "until": "t_span tspan t_end tend t_final tfinal t_max tmax t_stop tf duration",
     "t": "t0 t_start tstart start_time",
-    "times": "t_eval teval t_grid",
+    "times": "t_eval teval t_grid at",
     "tolerance": "rtol atol tol reltol abstol eps accuracy",
     "q": "qpos q0 x0 x position positions coordinates",
     "v": "qvel v0 qdot qd dq xdot velocity velocities",
@@ -32,6 +33,7 @@ _ELSEWHERE = {
     "callback": "callbacks",
     "axes": "ax axis",
     "fps": "frame_rate framerate rate",
+    "threads": "n_jobs workers max_workers num_workers processes nthreads n_threads",
 }
 """Words of this package, and what scipy, MuJoCo, sympy and others call the same."""
 
@@ -59,13 +61,17 @@ _ATTRIBUTES = {
     "to_dataframe": "df dataframe to_df to_pandas to_csv",
     "plot": "show draw",
     "animate": "animation movie",
-    "parameters": "params args",
+    "parameters": "params args x popt values best_values",
     "t": "time times ts",
     "q": "qpos position positions states x",
     "v": "qvel qdot qd velocities",
     "p": "momenta momentum",
     "energy": "E H hamiltonian energies",
     "reactions": "multipliers lambdas forces",
+    "rates": "eigenvalues eigs poles",
+    "frequencies": "omega omegas freqs",
+    "covariance": "cov pcov",
+    "errors": "stderr perr standard_errors uncertainties",
 }
 """Attributes of this package, and what other tools or other classes call the same."""
 
@@ -105,7 +111,8 @@ _Class = TypeVar("_Class", bound=type)
 
 def unassignable(message: Callable[[Any, str], str] = _of_a_result) -> Callable[[_Class], _Class]:
     """A decorator of classes whose public attributes cannot be assigned: AttributeError has this message for an object
-    and a name. Their `__init__` writes into `vars(self)`, or is that of a frozen dataclass."""
+    and a name, and a hint for an attribute that they do not have. Their `__init__` writes into `vars(self)`, or is that
+    of a frozen dataclass."""
 
     def decorated(cls: _Class) -> _Class:
         def assign(self: Any, name: str, value: Any) -> None:
@@ -113,7 +120,15 @@ def unassignable(message: Callable[[Any, str], str] = _of_a_result) -> Callable[
                 raise AttributeError(message(self, name), name=name, obj=None)
             object.__setattr__(self, name, value)
 
+        def missing(self: Any, name: str) -> Any:
+            if hasattr(type(self), name):
+                # A property raised the exception.
+                return object.__getattribute__(self, name)
+            raise no_attribute(self, name)
+
         cls.__setattr__ = assign  # type: ignore[method-assign, assignment]
+        if not hasattr(cls, "__getattr__"):
+            cls.__getattr__ = missing  # type: ignore[attr-defined]
         return cls
 
     return decorated
@@ -152,6 +167,8 @@ def _checking(function: Callable[..., Any], cls: type | None) -> Callable[..., A
     takes_any = any(of.kind is of.VAR_KEYWORD for of in parameters.values())
     listed = list(parameters)[0 if cls is None else 1 :]
     known = frozenset(listed)
+    positional = [name for name, of in parameters.items() if of.kind is of.POSITIONAL_OR_KEYWORD]
+    most = math.inf if any(of.kind is of.VAR_POSITIONAL for of in parameters.values()) else len(positional)
     title = function.__name__ if cls is None or function.__name__ != "__init__" else cls.__name__
 
     @functools.wraps(function)
@@ -164,6 +181,11 @@ def _checking(function: Callable[..., Any], cls: type | None) -> Callable[..., A
         if not takes_any and not options.keys() <= known:
             wrong = next(name for name in options if name not in known)
             raise TypeError(_unknown(title, wrong, listed, None if cls is None else arguments[0]))
+        if len(arguments) > most:
+            by_place = " and ".join(positional[0 if cls is None else 1 :]) or "no arguments"
+            others = ", ".join(f"{name}=…" for name in listed if name not in positional)
+            by_name = f": give the others by name, {others}" if others else ""
+            raise TypeError(f"{title} takes {by_place} by position{by_name}")
         return function(*arguments, **options)
 
     return checked
@@ -173,10 +195,21 @@ def _unknown(method: str, wrong: str, known: list[str], owner: Any) -> str:
     """The message of an argument that a method does not have."""
     what = f"{method} has no argument {wrong!r}"
     ours = wrong if wrong in _OF_A_RUN else _WORDS.get(wrong, "")
+    cls = getattr(owner, "_cls", type(owner))
+    if (found := among(wrong, getattr(cls, "coordinates", ()))) in getattr(cls, "coordinates", ()) and "q" in known:
+        return f"{what}: {found} is a coordinate, write q=[…] in the order {', '.join(cls.coordinates)}"
+    if wrong in getattr(owner, "parameters", ()) and method == "ensemble":
+        return f'{what}: {wrong} is a parameter, write parameters={{"{wrong}": …}} with a value for each run'
     if wrong in getattr(owner, "parameters", ()):
         return f"{what}: it is a parameter, write {type(owner).__name__}({wrong}=…).{method}(…)"
     if ours and all(word in known for word in ours.split(" and ")):
         return f"{what}: write {' and '.join(f'{word}=…' for word in ours.split(' and '))}"
+    if wrong == "terminal" and method == "Event":
+        return f"{what}: run.next_event(event, until) stops the run there, run.events(event, until) goes on"
+    if wrong in ("p0", "guess", "initial") and method == "fit":
+        return f"{what}: the values of the system, q and v are the first guess"
+    if ours == method and method in ("until", "steps", "at"):
+        return f"{what}: write {known[0]}=…"
     if ours == "parameters":
         return f"{what}: the parameters belong to the system, as in vi.Pendulum(l=0.5).{method}(…)"
     if ours == "events" and method == "ensemble":

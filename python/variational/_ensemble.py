@@ -254,7 +254,8 @@ def states(value: ArrayLike, name: str, cls: type[System]) -> Array:
     n = len(cls.coordinates)
     if found.ndim not in (1, 2) or found.shape[-1] != n:
         names = ", ".join(cls.coordinates)
-        raise ValueError(f"{name} must have the shape (M, {n}) or ({n},), of {names}, not {found.shape}")
+        hint = f": {name}[:, None] has it" if n == 1 and found.ndim == 1 else ""
+        raise ValueError(f"{name} must have the shape (M, {n}) or ({n},), of {names}, not {found.shape}{hint}")
     finite(found, name)
     return found
 

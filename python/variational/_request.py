@@ -60,6 +60,7 @@ def checked(
     if method not in _core.METHODS:
         known = ", ".join(f'"{name}"' for name in cls._methods)
         close = meant(method, _core.METHODS) if isinstance(method, str) else ""
+        close = close or ": leave method out for Gauss steps"
         raise ValueError(f"there is no method {method!r}{close}; {cls.__name__} has {known}")
     if shift is not None and shift_from is not None:
         raise TypeError("give one of shift and shift_from, not both")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arrays import Array, count, fixed, number, ordered, real, vector
+from ._arrays import Array, _shown, count, fixed, number, ordered, real, vector
 from ._calls import check_arguments, no_attribute, unassignable, unfit
 from ._control import Linearization
 from ._crossing import Crossing
@@ -186,8 +186,9 @@ class Run:
         callback, and KeyboardInterrupt; with `on_error="return"` the solution is returned, and has the StepError as
         `error`. A run that takes longer than two seconds shows its progress, if tqdm is installed.
         """
-        end = number(t, "t")
-        return self._advance(end, None, every, dense, callback, on_error)
+        if np.ndim(t):
+            raise TypeError(f"t must be one time, not {_shown(t)}: at(times) returns the states at several times")
+        return self._advance(self._ahead(t, "t"), None, every, dense, callback, on_error)
 
     def steps(
         self,
@@ -217,6 +218,17 @@ class Run:
         if dense:
             raise ValueError("dense=True and a callback do not go together: the callback may change the motion")
         return _finished(self._called(end, steps, every, callback), on_error)
+
+    def _ahead(self, t: Any, name: str) -> float:
+        """A time that the steps lead to."""
+        found = number(t, name)
+        if (found - self.t) * self.h < 0.0:
+            raise _invalid(
+                name,
+                f"ahead of the run, which is at t = {self.t:g} with h = {self.h:g} (a negative h goes back in time)",
+                found,
+            )
+        return found
 
     @property
     def _title(self) -> str:
@@ -304,6 +316,8 @@ class Run:
         """
         _check_on_error(on_error)
         wanted = ordered(times, self.h)
+        if len(wanted):
+            self._ahead(float(wanted[0]), "times[0]")
         if callback is None:
             start = self.copy()
             with progress(self._title) as report:
@@ -362,7 +376,9 @@ class Run:
         report: Report | None = None,
     ) -> Events:
         _check_on_error(on_error)
-        end, events = number(until, "until"), listed(events)
+        if isinstance(until, (Event, Period, str)) or callable(until):
+            raise TypeError("give several events as a list, and until, the time at which the run ends")
+        end, events = self._ahead(until, "until"), listed(events)
         if callback is not None:
 
             def look(before: Run, t: float) -> tuple[Solution, bool]:
@@ -565,6 +581,13 @@ class Run:
         names = [wrt] if isinstance(wrt, str) else list(wrt)
         if not all(isinstance(name, str) for name in names):
             raise TypeError(f"wrt must be names of parameters, not {wrt!r}")
+        for name in names:
+            if not has_length and name == "h" and name not in self._cls.parameters:
+                raise TypeError('gradient has no derivative with respect to "h": run.tangent(n, ["h"]) has it')
+            if (start := among(name, self._cls.coordinates)) in self._cls.coordinates:
+                raise TypeError(
+                    f'{start} is no parameter: the derivatives with respect to the start are in the result, as "q"'
+                )
         length = range(len(self._cls._defaults), len(self._cls._defaults) + 1)
         is_length = [has_length and name == "h" and name not in self._cls.parameters for name in names]
         if any(is_length) and self._run.integrator[0] == "adaptive":

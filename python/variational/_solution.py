@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._animation import animated
-from ._arrays import Array, array, finite, fixed
+from ._arrays import Array, array, count, finite, fixed
 from ._calls import check_arguments, no_attribute, unassignable
 from ._names import among, unknowns
 from ._observed import observed
@@ -42,7 +42,12 @@ class ByName:
         or an input from each row on, `sol["k"]`, or an expression of the language, such as a `let` or
         `sol["k * x^2 / 2"]`."""
         coordinates, constraints = self.system.coordinates, self.system.constraints
-        if isinstance(name, str) and name not in coordinates:
+        if not isinstance(name, str):
+            raise TypeError(
+                f'give the name of a coordinate, such as ["{coordinates[0]}"], not {name!r}: rows are those of the '
+                "arrays, such as .q[0]"
+            )
+        if name not in coordinates:
             if among(name.partition("[")[0], self.system.parameters) in self.system.parameters:
                 return self._of_parameter(self.system._parameter(name))
             # The quaternions of a rotation have the name of its constraint.
@@ -100,8 +105,9 @@ class ByName:
             if isinstance(values, np.ndarray):
                 fixed(values)
 
-    # `sol["x"]` would otherwise make the rows a sequence of their names.
-    __iter__ = None
+    def __iter__(self) -> NoReturn:
+        # `sol["x"]` would otherwise make the rows a sequence of their names.
+        raise TypeError("rows are in the arrays .t, .q and .v: write t, q = sol.t, sol.q, or zip(sol.t, sol.q)")
 
 
 def columns_of(rows: Any) -> Iterator[tuple[str, Array]]:
@@ -124,7 +130,13 @@ def two_axes(axes: Any) -> Any:
         import matplotlib.pyplot as plt
     except ImportError:
         raise ImportError("plot needs matplotlib: pip install matplotlib") from None
-    return plt.subplots(2, 1, sharex=True, layout="constrained")[1] if axes is None else axes
+    if axes is None:
+        return plt.subplots(2, 1, sharex=True, layout="constrained")[1]
+    if len(np.atleast_1d(np.asarray(axes, dtype=object))) != 2:
+        raise TypeError(
+            f"axes must be two axes of matplotlib, not {axes!r}: draw one coordinate by plot(sol.t, sol[…])"
+        )
+    return axes
 
 
 class Solution(ByName):
@@ -250,8 +262,10 @@ class Solution(ByName):
         Raises ValueError if the solution has no run: those with a callback, of events, and unpickled ones.
         """
         if self._start is None:
+            at_events = "; run.tangent(until=t, event=…) has those at an event" if isinstance(self, Events) else ""
             raise ValueError(
                 "derivatives need a solution of until, steps or at, without a callback and not unpickled: take it again"
+                + at_events
             )
         cls, size = type(self.system), 2 * len(self.system.coordinates)
         varied = unknowns(wrt, cls)
@@ -379,8 +393,8 @@ class Events(Solution):
         vars(self).update(which=fixed(which), rising=fixed(rising))
 
     def of(self, index: int) -> Events:
-        """The rows of one of the given events."""
-        return self._only(self.which == index, self.rising)
+        """The rows of one of the given events, by its index."""
+        return self._only(self.which == count(index, "the index of an event"), self.rising)
 
     def _only(self, rows: NDArray[np.bool_], rising: NDArray[np.bool_]) -> Events:
         found = Events(

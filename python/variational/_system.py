@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Array, array, finite, fixed, number, vector
+from ._arrays import Array, array, count, finite, fixed, number, vector
 from ._calls import check_arguments, no_attribute
 from ._constraints import Projected
 from ._control import Equilibrium, Linearization
@@ -38,6 +38,10 @@ def _observable(
 ) -> _core.Observable:
     """An expression in the names of the system of a text. Each reading keeps some memory, so there is one."""
     return _core.Observable(definition, list(files), expression, None if wrt is None else list(wrt))
+
+
+_DECLARE = "declare it with `param`, `const`, `coord`, or an earlier `let`"
+"""The advice on an unknown name in a text, which an expression cannot follow."""
 
 
 class Parameter:
@@ -245,6 +249,10 @@ class System(metaclass=SystemType):
             raise TypeError(f"the name of a parameter must be a text, not {name!r}")
         whole, bracket, index = name.partition("[")
         whole = among(whole, cls.parameters)
+        if (coordinate := among(name, cls.coordinates)) in cls.coordinates and whole not in cls.parameters:
+            raise TypeError(
+                f"{coordinate} is a coordinate, not a parameter: a run sets it, integrate(q=…) or set_state(q=…)"
+            )
         if whole not in cls.parameters:
             known = ", ".join(cls.parameters) or "none"
             raise TypeError(f"{cls.__name__} has no parameter {name!r}{meant(whole, cls.parameters)}; it has {known}")
@@ -525,7 +533,12 @@ class System(metaclass=SystemType):
         these indices. Raises ValueError for a mistake, with its place."""
         if not isinstance(expression, str):
             raise TypeError(f"an expression is a text, such as 'm * x^2', not {expression!r}")
-        return _observable(*cls._read(), expression, None if wrt is None else tuple(wrt))
+        try:
+            return _observable(*cls._read(), expression, None if wrt is None else tuple(wrt))
+        except ValueError as error:
+            names = ", ".join([*cls.coordinates, *cls.parameters])
+            help = f"the names are {names}, those of the `let`s and functions of the text, `t` and `pi`"
+            raise ValueError(str(error).replace(_DECLARE, help)) from None
 
     @classmethod
     def _read(cls) -> tuple[str, tuple[tuple[str, str], ...]]:
@@ -670,7 +683,7 @@ class System(metaclass=SystemType):
     def explain(self, stages: int | None = None) -> Explanation:
         """The mathematics of the system: L, the discrete Lagrangian, the equations of a step. With stages, those of a
         Gauss step."""
-        return Explanation(*_core.explain(self.definition, stages))
+        return Explanation(*_core.explain(self.definition, None if stages is None else count(stages, "stages", 1)))
 
     def _repr_latex_(self) -> str:
         return self.explain().equations()
