@@ -15,6 +15,9 @@ pub(super) const LARGE: &str = "use fewer coordinates or a simpler Lagrangian; t
 const FUNCTIONS: &str = "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow max min clamp sum cross norm \
     transpose, in a rule L f, elsewhere dot; declare others with `fn` or `table`";
 
+/// Help for a range.
+const RANGE: &str = "`sum(i in 0..3, q[i])` for the indices 0 to 2";
+
 /// The clauses.
 const CLAUSES: &str = "the clauses are const, param, input, coord, angle, rotation, momentum, fn, table, let, L, H, force, torque, space_torque, dissipation, constraint, time_scale, discretize, check";
 
@@ -218,6 +221,7 @@ catalogue! {
         ["«ddot»(x)"] { name: "ddot(…)" },
         ["coord x; let v = x + dot(x), w[i in 0..2] = i * dot(x); L = dot(x)^2; force x = dot(«v»);"]
             { name: "dot(v)" },
+        ["coord x; momentum p of x; let v = dot(«p»); H = p^2; force x = v;"] { name: "dot(p)" },
         ["coord x; let v = x + dot(x), w[i in 0..2] = i * dot(x); L = dot(x)^2; force x = dot(«w»[1]);"]
             { name: "dot(w[…])" },
         ["coord θ; L = dot(θ)^2; force θ = -«θ_ddot»;"] { name: "θ_ddot" }, ["«ẍ»"] { name: "ẍ" };
@@ -542,12 +546,16 @@ catalogue! {
         ["coord z; «z» = 1;", "coord z; «z»(0) = 1;"] { found: "z", near: "", is_defined: false, is_coordinate: true },
         ["«time_scales» = 1;"] { found: "time_scales", near: "time_scale", is_defined: true, is_coordinate: false };
     Expected { what: &'static str } =
-        "expected {what}", "write a clause as `name = expression;` and a sum as `a + 2 * b`",
+        "expected {what}",
+        {
+            let form = if what.contains("range") { RANGE } else { "a clause as `name = expression;` and a sum as `a + 2 * b`" };
+            format!("write {form}")
+        },
         ["sum(i in 0..2, j in 0..i«)»", "sum(i in 0..2 «i»)"] { what: "`,` and what is summed" },
         ["param «,»;", "coord x,«,» y; L = dot(x)^2;", "discretize midpoint, «,»;", "param «1» = 1;"]
             { what: "a name" },
         ["sum(«0»..2, i)"] { what: "a range, as in `i in 0..8`" },
-        ["sum(i in 0«,» 2, i)"] { what: "`..` and the end of the range" },
+        ["sum(i in 0«,» 2, i)", "sum(i in range(3)«,» i)"] { what: "`..` and the end of the range" },
         ["const N = 2; param m[«i» in 0..2] = 1; coord x; L = m[0] * dot(x)^2 / 2 - m[1] * x^2;"]
             { what: "a length, as in `q[8]`" },
         ["check { «sin»(x) = 1; h = 1; };"] { what: "a coordinate, `dot(…)`, a parameter, `t` or `h`" },

@@ -449,8 +449,8 @@ impl Scope {
 
     /// Whether a name denotes numbers independent of time and state.
     fn is_constant(&self, pool: &Pool<Symbol>, name: &str) -> bool {
-        let changes =
-            |expr: &Expr| pool.depends_on(*expr, &|symbol| matches!(symbol, Symbol::Continuous(_) | Symbol::Let(_)));
+        let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(_) | Symbol::Momentum(_) | Symbol::Let(_));
+        let changes = |expr: &Expr| pool.depends_on(*expr, &moves);
         match self.meaning(name) {
             Some(Meaning::Pi) => true,
             Some(Meaning::Number(value)) => !changes(value),
