@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -48,7 +49,10 @@ class ByName:
                 "arrays, such as .q[0]"
             )
         if name not in coordinates:
-            if among(name.partition("[")[0], self.system.parameters) in self.system.parameters:
+            whole, _, rest = name.partition("[")
+            # Behind an entry an expression goes on.
+            is_entry = re.fullmatch(r"[\d\]\[\s]*", rest) is not None
+            if is_entry and among(whole, self.system.parameters) in self.system.parameters:
                 return self._of_parameter(self.system._parameter(name))
             # The quaternions of a rotation have the name of its constraint.
             if (constraint := name.removeprefix("Λ_")) in constraints and f"{name}[0]" not in coordinates:

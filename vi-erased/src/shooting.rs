@@ -41,7 +41,8 @@ impl Shots<'_> {
     /// convert the state: the end is the node, and the Jacobian has the derivatives of its velocities.
     ///
     /// The steps of a system with constraints start from the nearest states on them, since the nodes of an iteration leave
-    /// the constraints. The Jacobian is exact for nodes on the constraints.
+    /// the constraints. The Jacobian is exact for nodes on the constraints. If L is linear in the velocities, steps start
+    /// from the coordinates alone.
     #[must_use]
     pub fn ends(&self, system: &dyn System, plan: &Plan, varied: &[usize], steps: u64, has_velocities: bool) -> Ends {
         let (n, count) = (system.coordinates().len(), system.parameters().len());
@@ -78,7 +79,7 @@ impl Shots<'_> {
         let (n, count) = (system.coordinates().len(), self.parameters.len() / self.t.len());
         let own = system.with_parameters(&of(self.parameters, count));
         let (t, h, q, p) = (self.t[index], self.h[index], of(self.q, n), of(self.p, n));
-        let start = if own.has_constraints() {
+        let start = if own.has_constraints() || own.is_first_order() {
             let mut v = Vec::new();
             own.evaluate(Quantity::Velocity, [&[t], &q, &p], &mut v)?;
             let PhasePoint { q, v, .. } = own.project(&PhasePoint { t, q, v })?.point;
