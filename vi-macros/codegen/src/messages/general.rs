@@ -462,6 +462,8 @@ catalogue! {
             { why: Singular::Allowed(Some("x".to_owned())) },
         ["coord y, z, «x»; constraint c = y - z; L = dot(y)^2 + dot(x) * sin(y);",
          "coord «x», y; L = x * dot(x) + dot(y)^2;"] { why: Singular::Massless("x".to_owned(), Massless::Linear) },
+        ["coord x, «y», z; L = dot(z)^2 / 2 + x * dot(y);"]
+            { why: Singular::Massless("y".to_owned(), Massless::Linear) },
         ["coord x, y, «λ»; constraint c = x; L = dot(x)^2 + dot(y)^2 + λ * y;",
          "coord «λ», x, y; L = (dot(x)^2 + dot(y)^2) / 2 + λ * (x^2 + y^2 - 1);"]
             { why: Singular::Massless("λ".to_owned(), Massless::Multiplier) },

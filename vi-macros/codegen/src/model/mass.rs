@@ -49,7 +49,9 @@ pub(super) fn check(
         return regular;
     }
     let is_empty = |row: &[Expr]| row.iter().all(|entry| pool.is_zero(*entry));
-    let empty = mass.chunks(dimension).position(is_empty);
+    let rows_of_zeros = || (0..dimension).filter(|row| is_empty(&mass[row * dimension..(row + 1) * dimension]));
+    // A velocity without a square says more than a coordinate without a velocity.
+    let empty = rows_of_zeros().find(|row| !pool.is_zero(momenta[*row])).or_else(|| rows_of_zeros().next());
     if empty.is_none() && !is_singular(pool, &mass, dimension, parameters) {
         return regular;
     }
