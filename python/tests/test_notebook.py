@@ -40,6 +40,14 @@ def test_formulas_and_figures(tmp_path):
     assert any("image/png" in data for data in figure)
 
 
+def test_a_long_run_writes_no_warning(tmp_path):
+    pytest.importorskip("tqdm")
+    cell = "import variational as vi\nfrom variational import _progress\n_progress._PATIENCE = 0.0\n"
+    cell += "vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.01).until(300.0, every=1000);"
+    (outputs,) = executed([cell], tmp_path)
+    assert not [output for output in outputs if output.get("name") == "stderr"], outputs
+
+
 def test_a_cell_declares_a_system(warm_cache, tmp_path):
     spring = "struct Spring {\n    param k = 4.0;\n    coord x;\n    L = dot(x)^2/2 - k*x^2/2;\n}"
     *_, result, mistake = executed(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -31,10 +32,13 @@ class _Bar:
             self.bar.update(done - self.bar.n)
 
     def _appear(self, passed: float) -> None:
-        try:
-            from tqdm.auto import tqdm
-        except ImportError:
-            return
+        # In a notebook without ipywidgets tqdm warns, and shows no bar.
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                from tqdm.auto import tqdm
+            except ImportError:
+                return
         shown = "{n_fmt} [{elapsed}]" if self.total is None else "{percentage:3.0f}% |{bar}| {elapsed}<{remaining}"
         layout = {"bar_format": "{desc}: " + shown, "leave": False, "miniters": 0}
         # Nothing is written to a file.
