@@ -183,8 +183,11 @@ def _checking(function: Callable[..., Any], cls: type | None) -> Callable[..., A
             raise TypeError(_unknown(title, wrong, listed, None if cls is None else arguments[0]))
         if len(arguments) > most:
             by_place = " and ".join(positional[0 if cls is None else 1 :]) or "no arguments"
-            others = ", ".join(f"{name}=…" for name in listed if name not in positional)
-            by_name = f": give the others by name, {others}" if others else ""
+            named = ", ".join(f"{name}=…" for name in listed if name not in positional)
+            if takes_any:
+                parameters_of = getattr(getattr(arguments[0], "_cls", arguments[0]), "parameters", ())
+                named = f"them by name, such as {next(iter(parameters_of), 'k')}=…"
+            by_name = f": write {named}" if named else ""
             raise TypeError(f"{title} takes {by_place} by position{by_name}")
         return function(*arguments, **options)
 

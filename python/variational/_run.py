@@ -656,7 +656,9 @@ class Run:
 
 
 # Not `step`, which programs call most.
-check_arguments(Run, ["until", "steps", "at", "events", "next_event", "set_state", "tangent", "gradient", "lyapunov"])
+check_arguments(
+    Run, ["until", "steps", "at", "events", "next_event", "set", "set_state", "tangent", "gradient", "lyapunov"]
+)
 
 
 def _pairs(cls: type[System], parameters: Mapping[str, Any]) -> list[tuple[int, float]]:
