@@ -11,8 +11,8 @@ import pytest
 import variational as vi
 
 
-def test_there_are_twentyseven_systems():
-    assert len(vi.systems) == 27
+def test_there_are_thirtyone_systems():
+    assert len(vi.systems) == 31
     assert all(isinstance(getattr(vi, name)(), vi.System) for name in vi.systems)
 
 

@@ -27,15 +27,19 @@ mod double_well;
 mod double_well_duffing;
 mod four_bar;
 mod fpu_chain;
+mod guiding_centre;
 mod hard_duffing;
 mod harmonic_oscillator;
 mod heavy_top;
 mod henon_heiles;
 mod kepler;
+mod lotka_volterra;
+mod massless_particle;
 mod n_pendulum;
 mod outer_solar_system;
 mod parametric_pendulum;
 mod pendulum;
+mod point_vortices;
 mod rod_chain;
 mod rod_pendulum;
 mod rolling_ball;
@@ -55,15 +59,19 @@ pub use double_well::DoubleWell;
 pub use double_well_duffing::DoubleWellDuffing;
 pub use four_bar::FourBar;
 pub use fpu_chain::FpuChain;
+pub use guiding_centre::GuidingCentre;
 pub use hard_duffing::HardDuffing;
 pub use harmonic_oscillator::HarmonicOscillator;
 pub use heavy_top::HeavyTop;
 pub use henon_heiles::HenonHeiles;
 pub use kepler::Kepler;
+pub use lotka_volterra::LotkaVolterra;
+pub use massless_particle::MasslessParticle;
 pub use n_pendulum::NPendulum;
 pub use outer_solar_system::OuterSolarSystem;
 pub use parametric_pendulum::ParametricPendulum;
 pub use pendulum::Pendulum;
+pub use point_vortices::PointVortices;
 pub use rod_chain::RodChain;
 pub use rod_pendulum::RodPendulum;
 pub use rolling_ball::RollingBall;
@@ -74,7 +82,7 @@ pub use spherical_pendulum::SphericalPendulum;
 pub use three_body::ThreeBody;
 
 /// The declaration of every system, as the text of its file.
-pub const SOURCES: [&str; 27] = [
+pub const SOURCES: [&str; 31] = [
     include_str!("andrews_squeezer.rs"),
     include_str!("chaplygin_sleigh.rs"),
     include_str!("charged_particle.rs"),
@@ -85,15 +93,19 @@ pub const SOURCES: [&str; 27] = [
     include_str!("double_well_duffing.rs"),
     include_str!("four_bar.rs"),
     include_str!("fpu_chain.rs"),
+    include_str!("guiding_centre.rs"),
     include_str!("hard_duffing.rs"),
     include_str!("harmonic_oscillator.rs"),
     include_str!("heavy_top.rs"),
     include_str!("henon_heiles.rs"),
     include_str!("kepler.rs"),
+    include_str!("lotka_volterra.rs"),
+    include_str!("massless_particle.rs"),
     include_str!("n_pendulum.rs"),
     include_str!("outer_solar_system.rs"),
     include_str!("parametric_pendulum.rs"),
     include_str!("pendulum.rs"),
+    include_str!("point_vortices.rs"),
     include_str!("rod_chain.rs"),
     include_str!("rod_pendulum.rs"),
     include_str!("rolling_ball.rs"),

@@ -4,9 +4,9 @@ use vi_core::lagrangian::Described;
 use vi_erased::{System, kind};
 use vi_systems::{
     AndrewsSqueezer, ChaplyginSleigh, ChargedParticle, DampedOscillator, DoublePendulum, DoubleRodPendulum, DoubleWell,
-    DoubleWellDuffing, FourBar, FpuChain, HardDuffing, HarmonicOscillator, HeavyTop, HenonHeiles, Kepler, NPendulum,
-    OuterSolarSystem, ParametricPendulum, Pendulum, RodChain, RodPendulum, RollingBall, RollingDisk, RotatingHoop,
-    SliderCrank, SphericalPendulum, ThreeBody,
+    DoubleWellDuffing, FourBar, FpuChain, GuidingCentre, HardDuffing, HarmonicOscillator, HeavyTop, HenonHeiles,
+    Kepler, LotkaVolterra, MasslessParticle, NPendulum, OuterSolarSystem, ParametricPendulum, Pendulum, PointVortices,
+    RodChain, RodPendulum, RollingBall, RollingDisk, RotatingHoop, SliderCrank, SphericalPendulum, ThreeBody,
 };
 
 macro_rules! systems {
@@ -41,14 +41,18 @@ pub fn texts() -> Vec<(&'static str, &'static str)> {
         DoubleWellDuffing,
         FourBar,
         FpuChain,
+        GuidingCentre,
         HardDuffing,
         HarmonicOscillator,
         HeavyTop,
         HenonHeiles,
+        LotkaVolterra,
+        MasslessParticle,
         NPendulum,
         OuterSolarSystem,
         ParametricPendulum,
         Pendulum,
+        PointVortices,
         RodChain,
         RodPendulum,
         RollingBall,

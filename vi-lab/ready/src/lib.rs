@@ -12,9 +12,9 @@ use text::ready;
 use vi_report::entry::{Entry, start};
 use vi_systems::{
     AndrewsSqueezer, ChaplyginSleigh, ChargedParticle, DampedOscillator, DoublePendulum, DoubleRodPendulum, DoubleWell,
-    DoubleWellDuffing, FourBar, FpuChain, HardDuffing, HarmonicOscillator, HeavyTop, HenonHeiles, Kepler, NPendulum,
-    OuterSolarSystem, ParametricPendulum, Pendulum, RodChain, RodPendulum, RollingBall, RollingDisk, RotatingHoop,
-    SliderCrank, SphericalPendulum, ThreeBody,
+    DoubleWellDuffing, FourBar, FpuChain, GuidingCentre, HardDuffing, HarmonicOscillator, HeavyTop, HenonHeiles,
+    Kepler, LotkaVolterra, MasslessParticle, NPendulum, OuterSolarSystem, ParametricPendulum, Pendulum, PointVortices,
+    RodChain, RodPendulum, RollingBall, RollingDisk, RotatingHoop, SliderCrank, SphericalPendulum, ThreeBody,
 };
 
 /// sin(π (i + 1)/17), to three digits: the lowest mode of 16 masses between walls.
@@ -33,6 +33,9 @@ const EIGHT_V: [f64; 6] = [
     0.432_365_730_460_51,
     -0.864_731_460_921_02,
 ];
+
+/// Positions of the vortices: x, then y.
+const VORTICES: [f64; 8] = [1.0, -0.5, 0.25, -1.25, 0.1, 0.75, -1.0, -0.5];
 
 /// The entry of a text with constraints, whose initial state follows from its parameters.
 macro_rules! placed {
@@ -73,6 +76,18 @@ pub fn systems() -> Vec<Entry> {
             OuterSolarSystem::POSITIONS,
             OuterSolarSystem::VELOCITIES,
             10.0,
+        ),
+        ready::<PointVortices, 8>("four vortices in the plane; first order", (VORTICES, [0.0; 8]), 0.1),
+        ready::<LotkaVolterra, 2>("predators and prey; first order", ([1.0, 1.0], [0.0; 2]), 0.1),
+        ready::<MasslessParticle, 2>(
+            "charge without mass in a strong field; first order",
+            ([0.5, 0.25], [0.0; 2]),
+            0.1,
+        ),
+        ready::<GuidingCentre, 4>(
+            "guiding centre in a tokamak; first order",
+            ([0.0, 0.0, 0.25, 0.005], [0.0; 4]),
+            50.0,
         ),
         placed!(RodPendulum, "mass on a rod, in Cartesian coordinates", 0.01),
         placed!(DoubleRodPendulum, "two masses on two rods", 0.01),
