@@ -1,10 +1,13 @@
 //! Systems whose L is linear in the velocities, compiled and as texts, and Hamiltonians without an L in closed form.
 
+use serde_json::Value;
+use std::path::Path;
 use vi_core::SVector;
 use vi_core::lagrangian;
 use vi_core::prelude::*;
 use vi_erased::plan::{Method, PhasePoint, Plan};
 use vi_erased::{System, kind};
+use vi_systems::{GuidingCentre, MasslessParticle, PointVortices};
 
 lagrangian! {
     /// Predator and prey: the momentum of a is ln(b)/a.
@@ -62,6 +65,78 @@ fn texts_take_the_steps_of_compiled_systems() {
             assert!(distance(&one[..q.len()], q) > 0.1);
         }
     }
+}
+
+/// The compiled system of a reference that has one.
+fn ready(name: &str) -> Option<Box<dyn System>> {
+    Some(match name {
+        "vortices" => kind!(PointVortices, { gauss 1, 2, 4, 8 }),
+        "lotka_volterra" => kind!(vi_systems::LotkaVolterra, { gauss 1, 2, 4, 8 }),
+        "massless_particle" => kind!(MasslessParticle, { gauss 1, 2, 4, 8 }),
+        "guiding_centre" => kind!(GuidingCentre, { gauss 1, 2, 4, 8 }),
+        _ => return None,
+    })
+}
+
+/// The largest difference of a system to its reference, relative to the size of the state, and the number of steps.
+fn off(system: &dyn System, stages: &[usize], case: &Value, coordinates: &[&str]) -> (f64, u64) {
+    let number = |of: &Value| of.as_str().and_then(|text| text.parse::<f64>().ok()).expect("a number");
+    let list = |of: &Value| of.as_array().expect("a list").clone();
+    let names = [list(&case["x"]), list(&case["y"])].concat();
+    // x and y in the order of the system.
+    let state = |of: &Value| {
+        let values = [list(&of["x"]), list(&of["y"])].concat();
+        let place = |name: &str| names.iter().position(|of| of == name).expect("a coordinate");
+        coordinates.iter().map(|name| number(&values[place(name)])).collect::<Vec<_>>()
+    };
+    let start = PhasePoint { t: 0.0, q: state(&case["start"]), v: vec![0.0; coordinates.len()] };
+    let (mut worst, mut taken) = (0.0_f64, 0);
+    for stages in stages {
+        let plan = Plan { stages: Some(*stages), ..Plan::new(Method::Gauss, number(&case["h"]), start.clone()) };
+        let mut run = system.begin(&plan).unwrap_or_else(|error| panic!("{error}"));
+        let mut done = 0;
+        for node in list(&case["gauss"][stages.to_string()]) {
+            let step = node["step"].as_u64().expect("a count");
+            run.advance_by(step - done).unwrap_or_else(|error| panic!("{stages} {step}: {error}"));
+            (taken, done) = (taken + step - done, step);
+            let q = state(&node);
+            let size = q.iter().fold(0.0, |most, q| f64::max(most, q.abs()));
+            worst = worst.max(distance(&run.q(), &q) / size);
+            // The momenta of y are zero.
+            for (name, p) in list(&case["x"]).iter().zip(list(&node["p"])) {
+                let index = coordinates.iter().position(|of| name == of).expect("a coordinate");
+                worst = worst.max((run.p()[index] - number(&p)).abs() / size);
+            }
+        }
+    }
+    (worst, taken)
+}
+
+/// Values of 40 digits that two programs computed in different ways (`tests/reference/first_order.py`).
+#[test]
+fn steps_are_those_of_the_reference() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/reference/first_order.json");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let file: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let mut steps = 0;
+    for (name, case) in file.as_object().expect("systems") {
+        let Some(text) = case["text"].as_str() else { continue };
+        let tape = vi_tape::System::parse(text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let coordinates = tape.coordinates();
+        let mut found = vec![off(&*tape, &[4, 8], case, &coordinates)];
+        if let Some(mut compiled) = ready(name) {
+            for ((of, _), (_, value)) in compiled.parameters().into_iter().zip(tape.parameters()) {
+                assert!(compiled.set(of, value));
+            }
+            found.push(off(&*compiled, &[1, 2, 4, 8], case, &coordinates));
+        }
+        for (off, taken) in found {
+            // Measured: 3.3e-16.
+            assert!(off < 2e-15, "{name}: {off:e}");
+            steps += taken;
+        }
+    }
+    assert_eq!(steps, 10 * (7 * 2 + 4 * 4));
 }
 
 /// A momentum in no square, a coupling of many, a function that is no polynomial: none has an L in closed form.
@@ -176,6 +251,39 @@ fn energies_do_not_drift() -> Result<(), StepError> {
     }
     // Measured: 1.0.
     assert!(off[0] > 1e-9 && off[1] < 1.05 * off[0], "{off:?}");
+    Ok(())
+}
+
+/// Linear and quadratic integrals in coordinates and momenta, and the momentum of a cyclic coordinate.
+#[test]
+fn integrals_are_preserved() -> Result<(), StepError> {
+    let vortices = PointVortices::default();
+    let integrals = |q: &SVector<f64, 8>| {
+        let sum = |of: &dyn Fn(usize) -> f64| (0..4).map(|a| vortices.strength[a] * of(a)).sum::<f64>();
+        [sum(&|a| q[a]), sum(&|a| q[a + 4]), sum(&|a| q[a] * q[a] + q[a + 4] * q[a + 4])]
+    };
+    let mut run = vortices.at(0.0, VORTICES, [0.0; 8]).integrate(Gauss::<2>, 0.2)?;
+    let (before, energy, mut off) = (integrals(&run.state().q), run.energy()?, [0.0_f64; 4]);
+    for _ in 0..2000 {
+        run.step()?;
+        for (off, (found, before)) in off.iter_mut().zip(integrals(&run.state().q).into_iter().zip(before)) {
+            *off = off.max((found - before).abs());
+        }
+        off[3] = off[3].max((run.energy()? - energy).abs());
+    }
+    // Measured: at most 1.8e-15, and 4.3e-8 for the energy.
+    assert!(off[..3].iter().all(|off| *off < 2e-14) && off[3] > 1e-9 && off[3] < 1e-6, "{off:?}");
+
+    let mut run = GuidingCentre::default().at(0.0, [0.0, 0.0, 0.25, 0.005], [0.0; 4]).integrate(Gauss::<2>, 100.0)?;
+    let (momentum, energy, mut off, mut least) = (run.state().p[1], run.energy()?, [0.0_f64; 2], 1.0_f64);
+    for _ in 0..2000 {
+        run.step()?;
+        off[0] = off[0].max((run.state().p[1] / momentum - 1.0).abs());
+        off[1] = off[1].max((run.energy()? / energy - 1.0).abs());
+        least = least.min(run.state().q[3]);
+    }
+    // A banana orbit: the velocity along the field turns back.
+    assert!(off[0] < 1e-14 && off[1] > 1e-9 && off[1] < 1e-5 && least < -0.002, "{off:?} {least}");
     Ok(())
 }
 
