@@ -27,6 +27,6 @@ lagrangian! {
         let B = hypot(toroidal, poloidal);
         let A_θ = B0 * (r^2 / 2 - r^3 * cos(θ) / (3 * R0)), A_φ = -B0 * r^2 / (2 * safety);
         L = (A_θ + u * r * poloidal / B) * dot(θ) + (A_φ + u * R * toroidal / B) * dot(φ) - u^2 / 2 - mu * B;
-        check { θ = 0.3, φ = 0.1, r = 0.25, u = 0.004, dot(φ) = 0.004; h = 20.0; }
+        check { θ = 0.3, φ = 0.1, r = 0.25, u = 0.004; h = 20.0; }
     }
 }

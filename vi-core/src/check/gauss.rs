@@ -67,6 +67,7 @@ pub fn gauss_momenta<const N: usize, S: MotionChecked<N>>(
     place: &Place<N>,
 ) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(system.name(), "gauss momenta");
+    let place = &placed(system, place, &check)?;
     symmetries::kept(&mut check, system, place, |start, h| {
         Called(*system).at_state(start).integrate(Gauss::<STAGES>, h)
     })?;
