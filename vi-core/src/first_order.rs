@@ -13,12 +13,13 @@
 #[cfg(feature = "alloc")]
 use crate::derivatives::{Variation, along_parameters};
 use crate::error::StepError;
+#[cfg(feature = "alloc")]
+use crate::gauss::points::ErasedSystem;
 use crate::lagrangian::Flow;
 #[cfg(feature = "alloc")]
 use crate::lagrangian::Lagrangian as _;
 use crate::linear::{self, Matrix};
 use crate::motion::{Motion, PointDerivatives};
-#[cfg(feature = "alloc")]
 use crate::node::Node;
 #[cfg(feature = "alloc")]
 use crate::real::Dual;
@@ -101,6 +102,28 @@ pub(crate) fn halves<const N: usize>(
     })
 }
 
+/// Checks that the momenta of a system of first order are those of its coordinates.
+///
+/// # Errors
+/// [`StepError::InvalidInput`] with the first momentum that is not.
+pub(crate) fn check_momenta<S: Motion<N>, const N: usize>(system: &S, node: &Node<N>) -> Result<(), StepError> {
+    if !system.is_first_order() {
+        return Ok(());
+    }
+    let momentum = system.momentum(node.t, &node.q, &SVector::zeros());
+    let is_other = |(given, of): &(&f64, &f64)| (*given - *of).abs() > OFF * momentum.amax();
+    match node.p.iter().zip(&momentum).find(is_other) {
+        Some((given, _)) => {
+            let allowed = "that of L at the coordinates, which determine it: L is linear in the velocities";
+            Err(StepError::InvalidInput { input: "a momentum", allowed, value: *given })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Relative error of momenta that were computed elsewhere.
+const OFF: f64 = 1e-9;
+
 /// The momenta of tangent vectors, which follow from their coordinates, time and parameters.
 #[cfg(feature = "alloc")]
 fn momenta<S: Convertible<N>, const N: usize>(system: &S, node: &Node<N>, of: &Variation<N>) -> SVector<f64, N> {
@@ -154,10 +177,8 @@ pub(crate) fn vary<S: Convertible<N>, const N: usize>(
     variations: &mut [Variation<N>],
 ) -> Result<(), StepError> {
     let without_velocity = system.without_velocity();
-    let of = system.convert::<f64>().point_derivatives(node.t, &node.q, &SVector::zeros());
-    let [momentum_dq, mass, force_dq, force_dv] =
-        [of.momentum_dq, of.mass, of.force_dq, of.force_dv].map(|matrix| matrix.dense());
-    let halves = halves(&PointDerivatives { momentum_dq, mass, force_dq, force_dv }, without_velocity);
+    let of = ErasedSystem::of(system).derivatives(node.t, &node.q, &SVector::zeros());
+    let halves = halves(&of, without_velocity);
     let half = |of: &SVector<f64, N>, without: bool| {
         SVector::<f64, N>::from_fn(|k, _| if without_velocity.get(k) == Some(&without) { of[k] } else { 0.0 })
     };

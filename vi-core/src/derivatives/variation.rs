@@ -299,16 +299,15 @@ where
         return constrained::variation::velocity_along(system, state, v, variation);
     }
     let State { t, q, .. } = state;
-    let matrix = system.point(*t, q, v).mass;
     let along = |value: f64, slope: f64| Dual { value, slope };
-    let system = along_parameters(system, variation);
+    let varied = along_parameters(system, variation);
     if system.is_first_order() {
-        let varied = q.zip_map(&variation.q, along);
-        let flow = first_order_flow(&system, along(*t, variation.t), &varied)?;
+        let flow = first_order_flow(&varied, along(*t, variation.t), &q.zip_map(&variation.q, along))?;
         return Ok(flow.v.map(|entry| entry.slope));
     }
+    let matrix = system.point(*t, q, v).mass;
     // L_v(t, q, v) = p
-    let point = system.point(along(*t, variation.t), &q.zip_map(&variation.q, along), &v.map(Dual::fixed));
+    let point = varied.point(along(*t, variation.t), &q.zip_map(&variation.q, along), &v.map(Dual::fixed));
     let of_v = linear::solve(&matrix, &(variation.p - point.momentum.map(|entry| entry.slope)));
     of_v.ok_or(StepError::Singular { t: *t, matrix: "mass matrix" })
 }

@@ -55,12 +55,8 @@ impl<const N: usize> Matrices<N> {
 
 /// The equations of a step; see the [module](self).
 pub(crate) struct FirstOrder<'a, const N: usize, const S: usize> {
-    system: &'a ErasedSystem<'a, N>,
-    node: &'a Node<N>,
-    h: f64,
     general: General<'a, f64, ErasedSystem<'a, N>, SMatrix<f64, N, N>, N, S, false>,
     without_velocity: &'static [bool],
-    is_by_newton: bool,
     /// The inverse of the matrix a_ij.
     inverse: SMatrix<f64, S, S>,
     /// The matrices in the middle of the guess.
@@ -86,12 +82,8 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
         let t = time::<N, S, false, f64>(node, h, middle);
         let kept = Matrices::at(system, t, &stage(&general.positions(), middle), &stage(&guess, middle));
         Self {
-            system,
-            node,
-            h,
             general,
             without_velocity: system.without_velocity(),
-            is_by_newton: newton.is_some(),
             inverse,
             kept,
             terms: SVector::zeros(),
@@ -101,7 +93,7 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
 
     /// The row of slopes of a polynomial through zero at the node and these values at the stages.
     fn slopes(&self, values: &[f64; S]) -> [f64; S] {
-        let slopes = self.inverse * SVector::<f64, S>::from(*values) / self.h;
+        let slopes = self.inverse * SVector::<f64, S>::from(*values) / self.general.h;
         slopes.into()
     }
 
@@ -113,14 +105,14 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
     /// One iteration by `L_y + f = 0` and `ϑ = P`.
     fn iterate_by_halves(&mut self, x: &Stages<N, S>, before: &Convergence) {
         let velocity = self.general.velocity;
-        let time = |i| time::<N, S, false, f64>(self.node, self.h, i);
-        let at_stage = |i| Matrices::at(self.system, time(i), &stage(x, i), &stage(&velocity, i));
+        let time = |i| time::<N, S, false, f64>(self.general.node, self.general.h, i);
+        let at_stage = |i| Matrices::at(self.general.system, time(i), &stage(x, i), &stage(&velocity, i));
         let own: Option<[_; S]> = (before.contraction > FAST).then(|| core::array::from_fn(at_stage));
         let of = |i: usize| own.as_ref().map_or(&self.kept, |own| &own[i]);
         let mut momentum = [[0.0; S]; N];
         for i in 0..S {
             let v = stage(&velocity, i);
-            let sides = self.system.sides_at(time(i), &stage(x, i), &v);
+            let sides = self.general.system.sides_at(time(i), &stage(x, i), &v);
             let change = of(i).halves * self.half(|k| sides.force[k], true);
             set(&mut self.general.velocity, i, &(v + change));
             set(&mut self.general.force, i, &(sides.force + of(i).force_dv * change));
@@ -151,7 +143,7 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
         let mut last = f64::INFINITY;
         let v = stage(&self.general.velocity, S - 1);
         for _ in 0..ITERATIONS {
-            let sides = self.system.sides_at(end.t, &(end.q + (end.q_low + moved)), &v);
+            let sides = self.general.system.sides_at(end.t, &(end.q + (end.q_low + moved)), &v);
             let change = self.kept.halves * self.half(|k| (end.p[k] - sides.momentum[k]) + end.p_low[k], false);
             let size = change.amax();
             if size >= last || size.is_nan() {
@@ -167,7 +159,7 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
 
 impl<const N: usize, const S: usize> Equations<N, S> for FirstOrder<'_, N, S> {
     fn has_another_way(&self) -> bool {
-        !self.is_by_newton
+        self.general.has_another_way()
     }
 
     fn start(&self) -> Stages<N, S> {
@@ -175,7 +167,7 @@ impl<const N: usize, const S: usize> Equations<N, S> for FirstOrder<'_, N, S> {
     }
 
     fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, before: &Convergence) {
-        if self.is_by_newton {
+        if self.general.newton.is_some() {
             self.general.iterate(x, y, before);
         } else {
             self.general.evaluated = self.general.velocity;
@@ -187,11 +179,11 @@ impl<const N: usize, const S: usize> Equations<N, S> for FirstOrder<'_, N, S> {
     fn increment(&self) -> StageIncrement<N> {
         let StageIncrement { velocity, momentum } = self.general.increment();
         let momentum = self.half(|k| momentum[k], false);
-        let mut end = *self.node;
-        end.advance(self.h, &self.half(|k| velocity[k], false), &momentum);
-        let moved = self.end(&end, self.half(|k| self.h * velocity[k], true));
+        let mut end = *self.general.node;
+        end.advance(self.general.h, &self.half(|k| velocity[k], false), &momentum);
+        let moved = self.end(&end, self.half(|k| self.general.h * velocity[k], true));
         StageIncrement {
-            velocity: self.half(|k| velocity[k], false) + self.half(|k| moved[k] / self.h, true),
+            velocity: self.half(|k| velocity[k], false) + self.half(|k| moved[k] / self.general.h, true),
             momentum,
         }
     }
@@ -206,7 +198,8 @@ impl<const N: usize, const S: usize> Equations<N, S> for FirstOrder<'_, N, S> {
 
     fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
         let n = self.without_velocity.len();
-        let before = core::mem::replace(&mut self.roundings, roundings(n, x, &self.node.q.abs().sup(&self.terms)));
+        let before =
+            core::mem::replace(&mut self.roundings, roundings(n, x, &self.general.node.q.abs().sup(&self.terms)));
         growth(n, &before, &self.roundings)
     }
 
@@ -216,6 +209,6 @@ impl<const N: usize, const S: usize> Equations<N, S> for FirstOrder<'_, N, S> {
 
     /// After an iteration by halves, velocities and momenta follow from its positions and share their error.
     fn passed_on(&self, contraction: f64) -> f64 {
-        if self.is_by_newton { 1.0 } else { contraction }
+        if self.general.newton.is_some() { 1.0 } else { contraction }
     }
 }

@@ -34,15 +34,15 @@ pub(crate) type Masses<const N: usize, const S: usize> = Option<[Stages<N, S>; N
 
 /// The equations of a step; see the [module](self).
 pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
-    system: &'a Y,
-    node: &'a Node<N>,
-    h: f64,
+    pub(super) system: &'a Y,
+    pub(super) node: &'a Node<N>,
+    pub(super) h: f64,
     /// M, factored, if it is constant.
     inverse: Option<M::Inverse>,
     /// For many coordinates. Not a value, because a move of the equations would copy it.
     kept: Option<&'a mut Masses<N, S>>,
     /// The linearized equations, if fixed-point iteration does not contract.
-    newton: Option<&'a Newton<N, S>>,
+    pub(super) newton: Option<&'a Newton<N, S>>,
     /// Velocities that determine the positions.
     pub(super) velocity: Stages<N, S>,
     /// Velocities and forces of the last evaluation.

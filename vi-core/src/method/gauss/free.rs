@@ -16,7 +16,6 @@ use super::{Gauss, StageSolver};
 #[cfg(feature = "alloc")]
 use crate::derivatives::{Variation, not_last};
 use crate::error::StepError;
-#[cfg(feature = "alloc")]
 use crate::first_order;
 use crate::gauss::energies::energies;
 use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
@@ -173,28 +172,6 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
     }
 }
 
-/// Checks that the momenta of a system of first order are those of its coordinates.
-///
-/// # Errors
-/// [`StepError::InvalidInput`] with the first momentum that is not.
-fn check_momenta<S: Motion<N>, const N: usize>(system: &S, node: &Node<N>) -> Result<(), StepError> {
-    if !system.is_first_order() {
-        return Ok(());
-    }
-    let momentum = system.momentum(node.t, &node.q, &SVector::zeros());
-    let is_other = |(given, of): &(&f64, &f64)| (*given - *of).abs() > OFF * momentum.amax();
-    match node.p.iter().zip(&momentum).find(is_other) {
-        Some((given, _)) => {
-            let allowed = "that of L at the coordinates, which determine it: L is linear in the velocities";
-            Err(StepError::InvalidInput { input: "a momentum", allowed, value: *given })
-        }
-        None => Ok(()),
-    }
-}
-
-/// Relative error of momenta that were computed elsewhere.
-const OFF: f64 = 1e-9;
-
 /// Takes the next step of a run inside the dispatched function.
 struct Advancing<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
@@ -238,7 +215,7 @@ where
     }
 
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
-        check_momenta(system, node)?;
+        first_order::check_momenta(system, node)?;
         LastStages::constant(system, node, h)
     }
 
