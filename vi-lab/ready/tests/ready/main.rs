@@ -21,7 +21,7 @@ fn every_entry_starts_and_keeps_its_parameters() {
         assert!(follows.is_none_or(|of| of == [entry.q.clone(), entry.v.clone()]), "{name}");
         let methods: &[Method] = if system.has_constraints() {
             &[Method::Gauss, Method::Energy]
-        } else if system.offers((Method::Fixed, None, false)).is_err() {
+        } else if system.is_first_order() {
             &[Method::Gauss]
         } else {
             &[Method::Fixed, Method::KahanLi6, Method::Gauss, Method::Energy]

@@ -4,6 +4,7 @@ use super::Source;
 use super::body::{Body, VelocityFrom, state_parts};
 use super::entries::{self, ResultEntry};
 use super::formula::zero;
+use super::lagrangian::flow_by;
 use super::matrix::{all_columns, literals, sparse};
 use super::state_function::vector;
 use crate::discrete::Constraints;
@@ -134,18 +135,8 @@ pub(super) fn motion(dimension: &Literal) -> [TokenStream; 2] {
             ::vi_core::support::constrained_acceleration::<Self, #dimension, T>(self, t, q, v)
         }
     };
-    let flow = quote! {
-        #[inline]
-        fn flow(
-            &self,
-            t: T,
-            q: &::vi_core::SVector<T, #dimension>,
-            p: &::vi_core::SVector<T, #dimension>,
-        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
-            ::vi_core::support::constrained_flow(self, t, q, p)
-        }
-    };
-    [acceleration, flow]
+    let flow = quote!(::vi_core::support::constrained_flow(self, t, q, p));
+    [acceleration, flow_by(dimension, &quote!(p), &flow)]
 }
 
 /// One formula per constraint that is not identically zero, with the constraint as an index.

@@ -217,17 +217,8 @@ pub(super) fn step_density(source: &Source) -> TokenStream {
 fn flow(source: &Source) -> TokenStream {
     let dimension = source.dimension();
     if !source.model.without_velocity.is_empty() {
-        return quote! {
-            #[inline]
-            fn flow(
-                &self,
-                t: T,
-                q: &::vi_core::SVector<T, #dimension>,
-                _: &::vi_core::SVector<T, #dimension>,
-            ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
-                ::vi_core::support::first_order_flow::<Self, #dimension, T>(self, t, q)
-            }
-        };
+        let flow = quote!(::vi_core::support::first_order_flow::<Self, #dimension, T>(self, t, q));
+        return flow_by(&dimension, &quote!(_), &flow);
     }
     let point = quote!(::vi_core::motion::Motion::point);
     let velocity = if source.system.continuous.quadratic {
@@ -242,18 +233,26 @@ fn flow(source: &Source) -> TokenStream {
             let velocity = ::vi_core::support::velocity(self, &rounded, mass, (t, q, p))?;
         }
     };
+    let flow = quote! {
+        #velocity
+        let force = #point(self, t, q, &velocity).force;
+        let power = ::vi_core::motion::Motion::power(self, t, q, &velocity);
+        ::core::result::Result::Ok(::vi_core::lagrangian::Flow { v: velocity, force, power })
+    };
+    flow_by(&dimension, &quote!(p), &flow)
+}
+
+/// `flow` with this body, which calls its momenta so.
+pub(super) fn flow_by(dimension: &Literal, momenta: &TokenStream, body: &TokenStream) -> TokenStream {
     quote! {
         #[inline]
         fn flow(
             &self,
             t: T,
             q: &::vi_core::SVector<T, #dimension>,
-            p: &::vi_core::SVector<T, #dimension>,
+            #momenta: &::vi_core::SVector<T, #dimension>,
         ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
-            #velocity
-            let force = #point(self, t, q, &velocity).force;
-            let power = ::vi_core::motion::Motion::power(self, t, q, &velocity);
-            ::core::result::Result::Ok(::vi_core::lagrangian::Flow { v: velocity, force, power })
+            #body
         }
     }
 }
