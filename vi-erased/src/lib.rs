@@ -20,7 +20,7 @@
 //! | [`integrator`] | an integrator that is built for a system |
 //! | [`studies`] | exponents, accurate motions, DOP853; feature `studies` |
 //! | [`system`] | a system with its parameters |
-//! | `shooting` | steps from many nodes with their Jacobians, for optimal control; feature `derivatives` |
+//! | `shooting` | steps from many nodes with their Jacobians and second derivatives, for optimal control; feature `derivatives` |
 //! | [`at_rest`] | a system without its coordinates at rest |
 //! | [`check`] | whether the options of a plan go together, in words |
 //!
