@@ -21,6 +21,8 @@
 //! | [`studies`] | exponents, accurate motions, DOP853; feature `studies` |
 //! | [`system`] | a system with its parameters |
 //! | `shooting` | steps from many nodes with their Jacobians and second derivatives, for optimal control; feature `derivatives` |
+//! | [`function`] | smooth functions along a motion |
+//! | `transcription` | optimal control as a nonlinear program; feature `derivatives` |
 //! | [`at_rest`] | a system without its coordinates at rest |
 //! | [`check`] | whether the options of a plan go together, in words |
 //!
@@ -33,6 +35,7 @@ pub mod control;
 #[cfg(feature = "derivatives")]
 mod derivatives;
 pub mod erasable;
+pub mod function;
 pub mod integrator;
 pub mod method;
 pub mod plan;
@@ -47,6 +50,8 @@ pub mod start;
 #[cfg(feature = "studies")]
 pub mod studies;
 pub mod system;
+#[cfg(feature = "derivatives")]
+pub mod transcription;
 
 pub use integrator::Integrator;
 pub use plan::{Built, Method, PhasePoint, Plan};

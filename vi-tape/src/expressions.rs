@@ -1,6 +1,6 @@
 //! Expressions of a system along a motion.
 //!
-//! In: the text of a system; for [`Expressions`] and [`Observable`] further expressions in its names, for [`Terms`] the summands of its L. Out:
+//! In: the text of a system; for [`Expressions`], [`Observable`] and [`Smooth`] further expressions in its names, for [`Terms`] the summands of its L. Out:
 //! their values at one point of a motion after the other. Tables are evaluated as by every method.
 
 use crate::compile::parsed;
@@ -11,6 +11,7 @@ use vi_codegen::model::{Model, check, rate};
 use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::syntax::{self, parse};
 use vi_codegen::terms::{self, Term};
+use vi_erased::function::{Function, Points};
 use vi_expr::{Expr, Opaque, Pool};
 
 /// A point of a motion.
@@ -183,6 +184,53 @@ impl Observable {
     #[must_use]
     pub fn values(&self, at: &Moment<'_>) -> Vec<f64> {
         self.of.values(&self.entries, at)
+    }
+}
+
+/// A number of the time, the coordinates, the velocities and some inputs, with its first and second derivatives: a cost or
+/// a condition of optimal control.
+pub struct Smooth {
+    /// The value, the derivatives, the second derivatives.
+    orders: [Observable; 3],
+    is_of_inputs: bool,
+}
+
+impl Smooth {
+    /// An expression as for [`Observable`]; `inputs` are the indices of the parameters that vary.
+    ///
+    /// # Errors
+    /// As [`Observable::parse`]; a vector or a matrix.
+    pub fn parse(text: &str, files: &[(String, String)], expression: &str, inputs: &[usize]) -> Result<Self, Mistakes> {
+        let [value, first, second] = [(); 3].map(|()| Observable::parse(text, files, expression));
+        let value = value?;
+        if !value.shape().is_empty() {
+            let shape = value.shape();
+            return Err(Mistakes::of(&format!(
+                "error: `{expression}` has the shape {shape:?}\n = help: write a number, such as one of its entries"
+            )));
+        }
+        let first = first?.derivatives(inputs);
+        let is_of_inputs = first.zeros()[..=2 * first.coordinates].iter().all(|is_zero| *is_zero);
+        Ok(Self { orders: [value, first, second?.derivatives(inputs).derivatives(inputs)], is_of_inputs })
+    }
+}
+
+impl Function for Smooth {
+    fn at(&self, points: &Points<'_>, order: u8) -> Vec<f64> {
+        let of = &self.orders[usize::from(order.min(2))];
+        let (n, count) = (of.coordinates, points.parameters.len().checked_div(points.t.len()).unwrap_or(0));
+        let moments = points.t.iter().enumerate().map(|(k, t)| Moment {
+            t: *t,
+            q: &points.q[k * n..(k + 1) * n],
+            v: &points.v[k * n..(k + 1) * n],
+            parameters: &points.parameters[k * count..(k + 1) * count],
+            ..Moment::default()
+        });
+        moments.flat_map(|at| of.values(&at)).collect()
+    }
+
+    fn is_of_inputs(&self) -> bool {
+        self.is_of_inputs
     }
 }
 

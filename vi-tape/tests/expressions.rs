@@ -1,8 +1,9 @@
 //! Expressions in the names of a system, and the summands of L.
 
+use vi_erased::function::{Function as _, Points};
 use vi_erased::system::Quantity;
 use vi_tape::System;
-use vi_tape::expressions::{Expressions, Moment, Observable, Terms, operations};
+use vi_tape::expressions::{Expressions, Moment, Observable, Smooth, Terms, operations};
 
 /// A mass with tables of every kind, and terms that mix velocities, coordinates and the time.
 const TEXT: &str = "struct Tabled {
@@ -133,4 +134,37 @@ fn derivatives_of_an_expression_are_those_of_differences() {
     }
     let of_inputs = Observable::parse(TEXT, &[], "m^2").unwrap_or_else(|error| panic!("{error}")).derivatives(&[0]);
     assert_eq!(of_inputs.zeros(), [true, true, true, true, true, false]);
+}
+
+#[test]
+fn a_cost_has_first_and_second_derivatives() {
+    let text =
+        "struct Mass { param k = 2.0; input u = 0.0; coord x, y; L = (dot(x)^2 + dot(y)^2) / 2 - k * x; force x = u; }";
+    let cost = Smooth::parse(text, &[], "k*u^2*x + sin(t)*dot(y)^2", &[1]).unwrap_or_else(|error| panic!("{error}"));
+    assert!(!cost.is_of_inputs());
+    // Two points; the second has other parameters.
+    let (t, q, v) = ([0.3, 0.7], [0.4, -0.2, 1.5, 0.1], [0.9, 0.5, -0.3, 1.1]);
+    let points = Points { t: &t, q: &q, v: &v, parameters: &[2.0, 0.6, 3.0, -1.2] };
+    let mut expected = [const { Vec::new() }; 3];
+    for (k, (par, t)) in [[2.0, 0.6], [3.0, -1.2]].into_iter().zip(t).enumerate() {
+        let ([k_x, u], (x, w), (sine, cosine)) = (par, (q[2 * k], v[2 * k + 1]), t.sin_cos());
+        expected[0].push(k_x * u * u * x + sine * w * w);
+        // t, x, y, dot(x), dot(y), u
+        expected[1].extend([cosine * w * w, k_x * u * u, 0.0, 0.0, 2.0 * sine * w, 2.0 * k_x * u * x]);
+        let mut second = [[0.0; 6]; 6];
+        (second[0][0], second[4][4], second[5][5]) = (-sine * w * w, 2.0 * sine, 2.0 * k_x * x);
+        for (row, column, value) in [(0, 4, 2.0 * cosine * w), (1, 5, 2.0 * k_x * u)] {
+            (second[row][column], second[column][row]) = (value, value);
+        }
+        expected[2].extend(second.concat());
+    }
+    for (order, expected) in (0..3).zip(expected) {
+        let found = cost.at(&points, order);
+        assert_eq!(found.len(), expected.len());
+        let close = |(found, expected): (&f64, &f64)| (found - expected).abs() < 1e-14; // 1.8e-15
+        assert!(found.iter().zip(&expected).all(close), "{order}: {found:?} {expected:?}");
+    }
+    assert!(Smooth::parse(text, &[], "k*u^2 + 1", &[1]).is_ok_and(|cost| cost.is_of_inputs()));
+    let refused = Smooth::parse(text, &[], "[x, y]", &[1]).err().map(|mistakes| mistakes.to_string());
+    assert!(refused.is_some_and(|words| words.contains("has the shape [2]")));
 }

@@ -1,0 +1,27 @@
+//! Smooth functions along a motion: what a cost or a condition of optimal control is.
+
+/// K points of a motion, with the numbers of the system at each.
+#[derive(Clone, Copy, Debug)]
+pub struct Points<'a> {
+    /// K times.
+    pub t: &'a [f64],
+    /// N coordinates of each.
+    pub q: &'a [f64],
+    /// N velocities of each.
+    pub v: &'a [f64],
+    /// All parameters of the system for each.
+    pub parameters: &'a [f64],
+}
+
+/// A function of the time, the coordinates, the velocities and M inputs.
+pub trait Function: Send {
+    /// Its values at K points (order 0), its derivatives with respect to t, q, v and the inputs (order 1, K times
+    /// D = 1 + 2N + M numbers), or its second derivatives (order 2, K symmetric matrices of D² numbers). NaN where there
+    /// is none.
+    fn at(&self, points: &Points<'_>, order: u8) -> Vec<f64>;
+
+    /// Whether it depends on inputs alone.
+    fn is_of_inputs(&self) -> bool {
+        false
+    }
+}
