@@ -99,22 +99,25 @@ type Points = (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<f64>>);
 #[pyo3(crate = "vi_python::pyo3")]
 impl Observable {
     /// `files` are paths and texts of the files of its tables. With `wrt`, indices of parameters, it is the derivatives of
-    /// the expression: the last axis has t, the coordinates, the velocities and these parameters.
+    /// the expression: the last axis has t, the coordinates, the velocities and these parameters. Twice, it is the second
+    /// derivatives, with two such axes.
     ///
     /// Raises ValueError for a mistake, with its line.
     #[new]
-    #[pyo3(signature = (definition, files, expression, wrt=None))]
+    #[pyo3(signature = (definition, files, expression, wrt=None, twice=false))]
     fn new(
         py: Python<'_>,
         definition: &str,
         files: Vec<(String, String)>,
         expression: &str,
         wrt: Option<Vec<usize>>,
+        twice: bool,
     ) -> PyResult<Self> {
         let parsed = py.detach(|| {
             let of = expressions::Observable::parse(definition, &files, expression)?;
             Ok(Mutex::new(match wrt {
                 None => of,
+                Some(wrt) if twice => of.derivatives(&wrt).derivatives(&wrt),
                 Some(wrt) => of.derivatives(&wrt),
             }))
         });

@@ -227,17 +227,24 @@ def test_derivatives_are_those_of_differences():
     random = np.random.default_rng(1)
     x = random.uniform(-0.5, 0.5, problem.size)
     x[0] = 1.1
-    weights = random.uniform(-1.0, 1.0, len(problem.row_bounds[0]))
+    program = problem.program
+    weights = random.uniform(-1.0, 1.0, len(program.row_bounds()))
+
+    def dense(pattern, entries, height):
+        starts, rows = pattern
+        found = np.zeros((height, problem.size))
+        found[rows, np.repeat(np.arange(problem.size), np.diff(starts))] = entries
+        return found
 
     def gradients(x):
-        total, gradient, values, numbers = problem.evaluated(x)
-        jacobian = np.zeros((len(values), problem.size))
-        np.add.at(jacobian, problem.pattern, numbers)
-        return total, gradient, values, jacobian
+        total, gradient, values, entries, error = program.evaluate(x)
+        assert error is None
+        return total, gradient, values, dense(program.jacobian_pattern(), entries, len(values))
 
     _, gradient, _, jacobian = gradients(x)
-    hessian = np.zeros((problem.size, problem.size))
-    np.add.at(hessian, problem.hessian_pattern, problem.hessian(x, 0.7, weights))
+    half = dense(program.hessian_pattern(), program.hessian(x, 0.7, weights), problem.size)
+    hessian = half + half.T - np.diag(np.diag(half))
+    assert np.abs(np.tril(half, -1)).max() == 0.0
     for column, change in enumerate(1e-5 * np.eye(problem.size)):
         above, below = gradients(x + change), gradients(x - change)
         slopes = [(a - b) / 2e-5 for a, b in zip(above, below, strict=True)]

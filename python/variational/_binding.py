@@ -10,7 +10,7 @@ import numpy as np
 from ._names import spelled
 from ._system import Parameter, System
 
-CONTRACT = 6
+CONTRACT = 7
 """The version of the interface to compiled modules."""
 
 

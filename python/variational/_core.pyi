@@ -14,7 +14,12 @@ def explain(
 def of_text(definition: str, files: list[tuple[str, str]], dropped: list[str]) -> Any: ...
 class Observable:
     def __init__(
-        self, definition: str, files: list[tuple[str, str]], expression: str, wrt: list[int] | None = None
+        self,
+        definition: str,
+        files: list[tuple[str, str]],
+        expression: str,
+        wrt: list[int] | None = None,
+        twice: bool = False,
     ) -> None: ...
     @property
     def shape(self) -> list[int]: ...

@@ -14,27 +14,21 @@ Indices = NDArray[np.intp]
 
 
 class Program(Protocol):
-    """min f(x) with lower <= x <= upper and row_bounds[0] <= g(x) <= row_bounds[1]."""
+    """min f(x) with lower <= x <= upper and row_lower <= g(x) <= row_upper: a `Transcription` of the core."""
 
-    lower: Array
-    upper: Array
+    def row_bounds(self) -> list[tuple[float, float]]: ...
 
-    @property
-    def row_bounds(self) -> tuple[Array, Array]: ...
+    def jacobian_pattern(self) -> tuple[list[int], list[int]]:
+        """The places of the Jacobian of g in compressed columns: starts of columns, and rows."""
 
-    @property
-    def pattern(self) -> tuple[Indices, Indices]:
-        """Rows and columns of the numbers of the Jacobian of g; equal places add up."""
+    def hessian_pattern(self) -> tuple[list[int], list[int]]:
+        """The same of the upper half of the Hessian matrix."""
 
-    @property
-    def hessian_pattern(self) -> tuple[Indices, Indices]:
-        """The same of the symmetric Hessian matrix, with both halves."""
-
-    def evaluated(self, x: Array) -> tuple[float, Array, Array, Array]:
-        """f, its gradient, g, and the numbers of the Jacobian of g; NaN where there are none."""
+    def evaluate(self, x: Array) -> tuple[float, Array, Array, Array, Any]:
+        """f, its gradient, g, and the entries of the Jacobian of g; NaN where there are none."""
 
     def hessian(self, x: Array, weight: float, multipliers: Array) -> Array:
-        """The numbers of the Hessian matrix of weight f + multipliers · g."""
+        """The entries of the Hessian matrix of weight f + multipliers · g."""
 
 
 @dataclass(frozen=True)
@@ -50,40 +44,37 @@ class Solved:
     status: str
 
 
-def solve(program: Program, start: Array, options: dict[str, Any]) -> Solved:
-    """Solves a program from a start. `options` are those of IPOPT."""
+def solve(program: Program, bounds: tuple[Array, Array], start: Array, options: dict[str, Any]) -> Solved:
+    """Solves a program with bounds of its variables from a start. `options` are those of IPOPT."""
     try:
         import casadi
     except ImportError:
         raise ImportError("optimise needs IPOPT of casadi: pip install casadi") from None
     last: dict[str, Any] = {"x": None, "of": None}
 
-    def at(x: Any) -> tuple[float, Array, Array, Array]:
+    def at(x: Any) -> tuple[float, Array, Array, Array, Any]:
         # IPOPT asks for values and derivatives one after the other.
         point = np.asarray(x, dtype=float).ravel()
         if last["x"] is None or not np.array_equal(last["x"], point):
-            last.update(x=point.copy(), of=program.evaluated(point))
+            last.update(x=point.copy(), of=program.evaluate(point))
         return last["of"]
 
-    size, (lower, upper) = len(start), program.row_bounds
-    jacobian = _Matrix(casadi, *program.pattern, len(lower), size)
-    rows, columns = program.hessian_pattern
-    # IPOPT reads one half.
-    half = rows <= columns
-    hessian = _Matrix(casadi, rows[half], columns[half], size, size)
+    size, rows = len(start), np.array(program.row_bounds()).reshape(-1, 2).T
+    jacobian = casadi.Sparsity(rows.shape[1], size, *program.jacobian_pattern())
+    hessian = casadi.Sparsity(size, size, *program.hessian_pattern())
     dense = casadi.Sparsity.dense
-    none, vector, row, number = casadi.Sparsity(0, 0), dense(size), dense(len(lower)), dense(1)
+    none, vector, row, number = casadi.Sparsity(0, 0), dense(size), dense(rows.shape[1]), dense(1)
     values = _callback(casadi, "values", [vector], [number, row], lambda x: (at(x)[0], at(x)[2]))
     gradient = _callback(casadi, "gradient", [vector, none], [number, vector], lambda x, _: at(x)[:2])
     slopes = _callback(
-        casadi, "jacobian", [vector, none], [row, jacobian.sparsity], lambda x, _: (at(x)[2], jacobian(at(x)[3]))
+        casadi, "jacobian", [vector, none], [row, jacobian], lambda x, _: (at(x)[2], casadi.DM(jacobian, at(x)[3]))
     )
 
     def curved(x: Any, _: Any, weight: Any, multipliers: Any) -> tuple[Any]:
         point, of_rows = (np.asarray(of, dtype=float).ravel() for of in (x, multipliers))
-        return (hessian(program.hessian(point, float(weight), of_rows)[half]),)
+        return (casadi.DM(hessian, program.hessian(point, float(weight), of_rows)),)
 
-    curvature = _callback(casadi, "hessian", [vector, none, number, row], [hessian.sparsity], curved)
+    curvature = _callback(casadi, "hessian", [vector, none, number, row], [hessian], curved)
     x = casadi.MX.sym("x", size)
     f, g = values(x)
     # IPOPT relaxes bounds by 1e-8 unless it is told not to.
@@ -104,10 +95,11 @@ def solve(program: Program, start: Array, options: dict[str, Any]) -> Solved:
     except RuntimeError as error:
         # The solver is built from its options alone.
         raise ValueError(f"IPOPT does not take these options: {options}") from error
-    found = solver(x0=start, lbx=program.lower, ubx=program.upper, lbg=lower, ubg=upper)
+    lower, upper = bounds
+    found = solver(x0=start, lbx=lower, ubx=upper, lbg=rows[0], ubg=rows[1])
     stats, point = solver.stats(), np.asarray(found["x"]).ravel()
     of_g = at(point)[2]
-    violated = [lower - of_g, of_g - upper, program.lower - point, point - program.upper]
+    violated = [rows[0] - of_g, of_g - rows[1], lower - point, point - upper]
     return Solved(
         point,
         float(found["f"]),
@@ -117,19 +109,6 @@ def solve(program: Program, start: Array, options: dict[str, Any]) -> Solved:
         bool(stats["success"]),
         stats["return_status"].replace("_", " "),
     )
-
-
-class _Matrix:
-    """A sparse matrix of given places, column by column."""
-
-    def __init__(self, casadi: Any, rows: Indices, columns: Indices, height: int, width: int):
-        places, self.order = np.unique(columns * height + rows, return_inverse=True)
-        self.size, self.dm = len(places), casadi.DM
-        rows, columns = (of.tolist() for of in (places % height, places // height))
-        self.sparsity = casadi.Sparsity.triplet(height, width, rows, columns)
-
-    def __call__(self, numbers: Array) -> Any:
-        return self.dm(self.sparsity, np.bincount(self.order, numbers, self.size))
 
 
 def _callback(casadi: Any, name: str, inputs: list[Any], outputs: list[Any], function: Any) -> Any:

@@ -24,13 +24,8 @@ from ._solution import Solution
 if TYPE_CHECKING:
     from ._system import System
 
-_GAUSS = np.polynomial.legendre.leggauss(3)
-"""Points and weights of the cost of a step, of order 6."""
 _GAUSS_OF_WORK = np.polynomial.legendre.leggauss(8)
-"""The same of the work of a step, of order 16."""
-
-_CHANGE = 1e-5
-"""Change of a variable for a second derivative, relative to its size: the differences are of exact derivatives."""
+"""Points and weights of the work of a step, of order 16."""
 
 
 @unassignable()
@@ -191,7 +186,7 @@ def optimise(
     problem.set_bounds(bounds)
     begin = problem.guessed(guess)
     problem.check(begin)
-    return _optimum(problem, solve(problem, begin, dict(options or {})), given)
+    return _optimum(problem, solve(problem.program, (problem.lower, problem.upper), begin, dict(options or {})), given)
 
 
 def _optimum(problem: _Problem, found: Solved, given: dict[str, Any]) -> Optimum:
@@ -242,50 +237,37 @@ def _replayed(cls: Any, values: Array, t: Array, q: Array, p: Array, options: di
 
 
 class _Function:
-    """A function of the time, the coordinates, the velocities and the inputs: an expression of the language."""
+    """A function of the time, the coordinates, the velocities and the inputs: an expression of the language with its
+    first and second derivatives."""
 
     def __init__(self, system: System, text: str, inputs: list[int]):
-        self.n = len(system.coordinates)
-        self.value = system._observable(text)
-        if self.value.shape:
-            raise ValueError(f"{text!r} must be a number, not of the shape {tuple(self.value.shape)}")
-        self.slope = system._observable(text, inputs)
-        self.is_of_inputs = all(self.slope.zeros[: 1 + 2 * self.n])
+        value = system._observable(text)
+        if value.shape:
+            raise ValueError(f"{text!r} must be a number, not of the shape {tuple(value.shape)}")
+        slope = system._observable(text, inputs)
+        self.orders = [value, slope, system._observable(text, inputs, twice=True)]
+        self.coordinates, self.inputs = len(system.coordinates), len(inputs)
+        self.is_of_inputs = all(slope.zeros[: 1 + 2 * self.coordinates])
         """Whether it depends on inputs alone."""
 
-    def __call__(self, t: Array, q: Array, v: Array, parameters: Array) -> tuple[Array, Array]:
-        """Values (B,), and derivatives (B, 1 + 2N + M) with respect to t, q, v and the inputs."""
-        points, numbers = (t.tolist(), q.tolist(), v.tolist()), parameters.tolist()
-        slopes = np.array(self.slope.values(points, numbers)).reshape(len(t), -1)
-        return np.array(self.value.values(points, numbers)), slopes
 
-
-class _Velocity:
-    """A velocity."""
-
-    def __init__(self, n: int, index: int, inputs: int):
-        self.index, self.slope = index, np.eye(1 + 2 * n + inputs)[1 + n + index]
-
-    def __call__(self, t: Array, q: Array, v: Array, parameters: Array) -> tuple[Array, Array]:
-        return v[:, self.index], np.tile(self.slope, (len(t), 1))
-
-
-class _Row(NamedTuple):
-    """A function with bounds at some nodes. It has rows of the program from `place` on, behind those of the steps."""
+class _Condition(NamedTuple):
+    """Bounds of a function at some nodes. They have rows of the program from `place` on, behind those of the steps."""
 
     name: str
-    function: Any
     nodes: Indices
     bounds: tuple[float, float]
+    velocity: int | None
+    """The index of a velocity; None for an expression."""
     place: int
 
 
 class _Problem:
-    """The nonlinear program. Its variables are the duration, then q, p and the inputs of each node.
+    """The nonlinear program in the names of a system. Its variables are the duration, then q, p and the inputs of each
+    node. The last node has the inputs of the last step."""
 
-    Everything but the equality of nodes is local: the step, the cost and the rows of a node depend on its variables
-    w = (q, p, u, duration). The last node has the inputs of the last step.
-    """
+    program: Any
+    """The steps, the cost and the conditions with their derivatives."""
 
     def __init__(
         self, system: System, steps: Any, duration: Any, t: float | None, method: str | None, stages: int | None
@@ -301,18 +283,12 @@ class _Problem:
         self.shares, first, span = _shares(steps)
         self.t = first if t is None else number(t, "t")
         self.steps = len(self.shares) - 1
-        # The last node has the last step.
-        self.widths = np.diff(self.shares)[[*range(self.steps), -1]]
         self.duration = _durations(span if duration is None else duration)
         self.request = checked(cls, 1.0, None, None, method, stages, None, None, False)
         self.kind = system._for(self.request)._kind
         self.kind.integrator(self.request)
-        self.rows: list[_Row] = []
+        self.rows: list[_Condition] = []
         self.velocities = np.zeros(self.n)
-        self.error: tuple[int, Exception] | None = None
-        """The first failed step of the last evaluation."""
-        self.final: _Row | None = None
-        self.cost: _Function | None = None
 
     def set_inputs(self, inputs: Any) -> None:
         """The inputs to find, and the layout of the variables."""
@@ -350,15 +326,17 @@ class _Problem:
         for column, (_, pair) in enumerate(found.values()):
             at = self.places[:k, 2 * n + column]
             self.lower[at], self.upper[at] = pair
+        self.program = self.kind.transcription(
+            system._values, self.request, self.t, self.shares.tolist(), self.duration, self.indices
+        )
 
     def set_costs(self, cost: str | None, final: str | None) -> None:
         if cost is None and final is None:
             raise ValueError('give cost, such as cost="u^2" or cost="1" for the least time, or final')
         if cost is not None:
-            self.cost = _Function(self.system, cost, self.indices)
+            self.program.set_cost(_Function(self.system, cost, self.indices))
         if final is not None:
-            function = _Function(self.system, final, self.indices)
-            self.final = _Row("final", function, np.array([self.steps]), (-math.inf, math.inf), 0)
+            self.program.set_final_cost(_Function(self.system, final, self.indices))
 
     def set_end(self, name: str, of: Any, nodes: list[int]) -> None:
         """The conditions of the start or of the end."""
@@ -408,11 +386,13 @@ class _Problem:
             if (self.lower[at] > self.upper[at]).any():
                 raise ValueError(f"the bounds of {name} exclude its value at the start or at the end")
             return
-        function: Any = (
-            _Function(self.system, name, self.indices) if of.place is None else _Velocity(n, of.place - n, self.m)
-        )
+        velocity = None if of.place is None else of.place - n
+        if velocity is None:
+            self.program.bound(_Function(self.system, name, self.indices), nodes.tolist(), pair)
+        else:
+            self.program.bound_velocity(velocity, nodes.tolist(), pair)
         place = sum(len(row.nodes) for row in self.rows)
-        self.rows.append(_Row(title, function, nodes, pair, place))
+        self.rows.append(_Condition(title, nodes, pair, velocity, place))
 
     # The variables.
 
@@ -435,86 +415,13 @@ class _Problem:
         values[:, self.indices] = u
         return values
 
-    # Functions of nodes k (B,) and their variables w (B, 2N + M + 1).
-
-    def _shoot(self, k: Indices, w: Array, part: float, steps: int, velocities: bool) -> tuple[Array, Array]:
-        """Steps of a part of the length of each step: their ends (B, 2N), and the derivatives with respect to q, p, u,
-        the length and the time of the start."""
-        n = self.n
-        q, p, u = (np.ascontiguousarray(of) for of in (w[:, :n], w[:, n : 2 * n], w[:, 2 * n : -1]))
-        t, h = self.t + self.shares[k] * w[:, -1], part * self.widths[k] * w[:, -1]
-        ends, slopes, errors = self.kind.shoot(
-            self.parameters(u), self.request, t, q, p, h, self.indices, steps, velocities
-        )
-        self.error = errors[0] if errors else None
-        return ends, slopes
-
-    def _by_duration(self, k: Indices, slopes: Array) -> Array:
-        """The last two columns, the length of the step and the time of its start, as one of the duration."""
-        shape = (-1, *[1] * (slopes.ndim - 2))
-        widths, shares = self.widths[k].reshape(shape), self.shares[k].reshape(shape)
-        column = slopes[..., -2] * widths + slopes[..., -1] * shares
-        return np.concatenate([slopes[..., :-2], column[..., None]], axis=-1)
-
-    def _of_motion(self, function: Any, t: Array, w: Array, ends: Array, slopes: Array) -> tuple[Array, Array]:
-        """A function at (q, v) of `ends`, and its derivatives by the chain rule."""
-        n = self.n
-        value, own = function(t, ends[:, :n], ends[:, n:], self.parameters(w[:, 2 * n : -1]))
-        chained = np.einsum("bi,bij->bj", own[:, 1 : 1 + 2 * n], slopes)
-        chained[:, 2 * n : -2] += own[:, 1 + 2 * n :]
-        # The time of the end depends on the length and on the start.
-        chained[:, -2] += own[:, 0]
-        chained[:, -1] += own[:, 0]
-        return value, chained
-
-    def _step(self, k: Indices, w: Array) -> tuple[Array, Array]:
-        """The ends (q, p) of steps."""
-        ends, slopes = self._shoot(k, w, 1.0, 1, False)
-        return ends, self._by_duration(k, slopes)
-
-    def _at_nodes(self, w: Array) -> Iterator[tuple[_Row, Array, Array]]:
-        """Each row with its values and derivatives at its nodes, from the variables of all nodes, C times."""
-        moved: dict[bytes, Any] = {}
-        for row in self.rows if self.final is None else [*self.rows, self.final]:
-            k, own = np.tile(row.nodes, len(w)), w[:, row.nodes].reshape(-1, w.shape[-1])
-            key = row.nodes.tobytes()
-            if key not in moved:
-                moved[key] = self._shoot(k, own, 1.0, 0, True)
-            value, chained = self._of_motion(row.function, self.t + self.shares[k] * own[:, -1], own, *moved[key])
-            chained[:, -2] = 0.0
-            shape = (len(w), len(row.nodes))
-            yield row, value.reshape(shape), self._by_duration(k, chained).reshape(*shape, -1)
-
-    def _integral(self, k: Indices, w: Array) -> tuple[Array, Array]:
-        """The cost of steps."""
-        n, cost = self.n, self.cost
-        if cost is None:
-            return np.zeros(len(w)), np.zeros_like(w)
-        start, h = self.t + self.shares[k] * w[:, -1], self.widths[k] * w[:, -1]
-        total, slope = np.zeros(len(w)), np.zeros((len(w), w.shape[1] + 1))
-        if cost.is_of_inputs:
-            total, own = cost(start, w[:, :n], w[:, :n], self.parameters(w[:, 2 * n : -1]))
-            slope[:, 2 * n : -2] = own[:, 1 + 2 * n :]
-        else:
-            for place, weight in zip(*_GAUSS, strict=True):
-                part = (1.0 + place) / 2.0
-                value, chained = self._of_motion(cost, start + part * h, w, *self._shoot(k, w, part, 1, True))
-                chained[:, -2] *= part
-                total += weight / 2.0 * value
-                slope += weight / 2.0 * chained
-        slope *= h[:, None]
-        slope[:, -2] += total
-        return h * total, self._by_duration(k, slope)
-
     # The program.
 
     def check(self, x: Array) -> None:
         """Raises the StepError of a step of the guess, and ValueError for a cost or a condition without a value there."""
-        k = np.arange(self.steps)
-        self._step(k, x[self.places[:-1]])
-        if self.error is not None:
-            raise advised(self.error[1], type(self.system))
-        cost, _, conditions, _ = self.evaluated(x)
+        cost, _, conditions, _, error = self.program.evaluate(x)
+        if error is not None:
+            raise advised(error[1], type(self.system))
         if not math.isfinite(cost):
             raise ValueError("the cost has no finite value along the guess: give another guess, or another cost")
         for row in self.rows:
@@ -523,80 +430,6 @@ class _Problem:
             if len(lost):
                 node = row.nodes[lost[0]]
                 raise ValueError(f"{row.name} has no finite value at node {node} of the guess: give another guess")
-
-    @property
-    def row_bounds(self) -> tuple[Array, Array]:
-        zeros = np.zeros(2 * self.n * self.steps)
-        pairs = [np.tile(row.bounds, (len(row.nodes), 1)) for row in self.rows]
-        own = np.concatenate([np.zeros((0, 2)), *pairs])
-        return np.concatenate([zeros, own[:, 0]]), np.concatenate([zeros, own[:, 1]])
-
-    @cached_property
-    def pattern(self) -> tuple[Indices, Indices]:
-        """Rows and columns of the numbers of the Jacobian, in the order of `evaluated`."""
-        n, k, local = self.n, self.steps, self.places.shape[1]
-        steps = np.arange(2 * n * k)
-        rows = [np.repeat(steps, local), steps]
-        columns = [np.repeat(self.places[:-1], 2 * n, axis=0).ravel(), self.places[1:, : 2 * n].ravel()]
-        for row in self.rows:
-            rows.append(np.repeat(2 * n * k + row.place + np.arange(len(row.nodes)), local))
-            columns.append(self.places[row.nodes].ravel())
-        return np.concatenate(rows), np.concatenate(columns)
-
-    def evaluated(self, x: Array) -> tuple[float, Array, Array, Array]:
-        n, k = self.n, np.arange(self.steps)
-        w = x[self.places]
-        ends, slopes = self._step(k, w[:-1])
-        values = [(ends - w[1:, : 2 * n]).ravel()]
-        numbers = [slopes.ravel(), np.full(2 * n * self.steps, -1.0)]
-        costs, slope = self._integral(k, w[:-1])
-        total, gradient = float(costs.sum()), np.zeros(self.size)
-        np.add.at(gradient, self.places[:-1], slope)
-        for row, value, slope in self._at_nodes(w[None]):
-            if row is self.final:
-                total += float(value.sum())
-                np.add.at(gradient, self.places[row.nodes], slope[0])
-            else:
-                values.append(value[0])
-                numbers.append(slope.ravel())
-        return total, gradient, np.concatenate(values), np.concatenate(numbers)
-
-    @cached_property
-    def free(self) -> Indices:
-        """The local variables that vary."""
-        local = np.arange(self.places.shape[1])
-        return local if self.lower[0] < self.upper[0] else local[:-1]
-
-    @cached_property
-    def hessian_pattern(self) -> tuple[Indices, Indices]:
-        places = self.places[:, self.free]
-        shape = (*places.shape, len(self.free))
-        return np.broadcast_to(places[:, :, None], shape).ravel(), np.broadcast_to(places[:, None], shape).ravel()
-
-    def hessian(self, x: Array, weight: float, multipliers: Array) -> Array:
-        """Central differences of the gradient of each node's part of the Lagrangian function."""
-        w, free = x[self.places], self.free
-        changes = _CHANGE * np.maximum(np.abs(w).max(axis=0), 1e-2)[free]
-        moved = np.zeros((len(free), 1, w.shape[1]))
-        moved[np.arange(len(free)), 0, free] = changes
-        found = self._gradients(np.concatenate([w + moved, w - moved]), weight, multipliers)[..., free]
-        above, below = np.split(found, 2)
-        blocks = ((above - below) / (2.0 * changes[:, None, None])).transpose(1, 2, 0)
-        # A changed node whose step fails has no second derivative.
-        return np.nan_to_num((blocks + blocks.transpose(0, 2, 1)) / 2.0, posinf=0.0, neginf=0.0).ravel()
-
-    def _gradients(self, w: Array, weight: float, multipliers: Array) -> Array:
-        """The gradient of each node's part of the Lagrangian function, for C values of all variables: (C, K + 1, L)."""
-        k, steps = np.tile(np.arange(self.steps), len(w)), w[:, :-1].reshape(-1, w.shape[-1])
-        of_steps, others = np.split(multipliers, [2 * self.n * self.steps])
-        slopes = self._step(k, steps)[1].reshape(len(w), self.steps, 2 * self.n, -1)
-        gradient = np.zeros_like(w)
-        gradient[:, :-1] = np.einsum("ki,ckij->ckj", of_steps.reshape(self.steps, -1), slopes)
-        gradient[:, :-1] += weight * self._integral(k, steps)[1].reshape(len(w), self.steps, -1)
-        for row, _, slope in self._at_nodes(w):
-            own = others[row.place : row.place + len(row.nodes), None]
-            gradient[:, row.nodes] += (weight if row is self.final else own) * slope
-        return gradient
 
     # The guess.
 
@@ -676,8 +509,8 @@ class _Problem:
         q = np.array([_middle(self.lower[place], self.upper[place]) or 0.0 for place in at])
         v = self.velocities.copy()
         for row in self.rows:
-            if isinstance(row.function, _Velocity) and 0 in row.nodes:
-                v[row.function.index] = _middle(*row.bounds) or 0.0
+            if row.velocity is not None and 0 in row.nodes:
+                v[row.velocity] = _middle(*row.bounds) or 0.0
         return q, v
 
     def _of_rows(self, t: Array, u: Array, names: Sequence[str], nodes: tuple[Array, Array]) -> Array:

@@ -34,10 +34,10 @@ from ._solution import Solution
 
 @functools.lru_cache(maxsize=256)
 def _observable(
-    definition: str, files: tuple[tuple[str, str], ...], expression: str, wrt: tuple[int, ...] | None
+    definition: str, files: tuple[tuple[str, str], ...], expression: str, wrt: tuple[int, ...] | None, twice: bool
 ) -> _core.Observable:
     """An expression in the names of the system of a text. Each reading keeps some memory, so there is one."""
-    return _core.Observable(definition, list(files), expression, None if wrt is None else list(wrt))
+    return _core.Observable(definition, list(files), expression, None if wrt is None else list(wrt), twice)
 
 
 _DECLARE = "declare it with `param`, `const`, `coord`, or an earlier `let`"
@@ -528,13 +528,13 @@ class System(metaclass=SystemType):
         return np.array(found).reshape(shape) if shape else found[0]
 
     @classmethod
-    def _observable(cls, expression: str, wrt: list[int] | None = None) -> _core.Observable:
-        """An expression in the names of the system, or its derivatives with respect to t, q, v and the parameters of
-        these indices. Raises ValueError for a mistake, with its place."""
+    def _observable(cls, expression: str, wrt: list[int] | None = None, twice: bool = False) -> _core.Observable:
+        """An expression in the names of the system, or its first or second derivatives with respect to t, q, v and the
+        parameters of these indices. Raises ValueError for a mistake, with its place."""
         if not isinstance(expression, str):
             raise TypeError(f"an expression is a text, such as 'm * x^2', not {expression!r}")
         try:
-            return _observable(*cls._read(), expression, None if wrt is None else tuple(wrt))
+            return _observable(*cls._read(), expression, None if wrt is None else tuple(wrt), twice)
         except ValueError as error:
             names = ", ".join([*cls.coordinates, *cls.parameters])
             help = f"the names are {names}, those of the `let`s and functions of the text, `t` and `pi`"

@@ -1,18 +1,19 @@
 //! The pyclass of a system's type.
 
 use crate::ensemble::{Ensemble, Output};
-use crate::failure::{Raise as _, instance, wrong};
+use crate::failure::{Raise as _, wrong};
 use crate::report::{Report, Watch};
 use crate::request::{Request, checked};
 use crate::rows::{Linearized, linearized, matrix, rows, vector};
 use crate::run::Run;
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use crate::transcription::Transcription;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use vi_erased::System;
 use vi_erased::control::Rest;
 use vi_erased::plan::{Method, Named as _, PhasePoint, Plan};
-use vi_erased::shooting::Shots;
 use vi_erased::system::{OnConstraints, Quantity};
+use vi_erased::transcription::Mesh;
 
 /// A system's type.
 #[pyclass(frozen, module = "variational._core")]
@@ -239,33 +240,23 @@ impl Kind {
         Ok(Run::new(run.raise(py)?, plan.wanted(!system.constraints().is_empty())))
     }
 
-    /// Steps of equal length from K nodes, with all parameters of each: their ends (K, 2N); the Jacobians (K, 2N, 2N + M + 2)
-    /// with respect to q, p, the M parameters of these indices, h and t; the index and the exception of each failed one.
-    /// With `velocities` the ends have them in place of momenta.
-    #[allow(clippy::too_many_arguments, clippy::type_complexity)] // Python's keywords
-    fn shoot<'py>(
+    /// The program of an optimal control problem, from the time of the first node, the nodes as shares of the duration, its
+    /// least and greatest value, and the indices of the inputs to find.
+    #[allow(clippy::too_many_arguments)] // Python's keywords
+    fn transcription(
         &self,
-        py: Python<'py>,
-        parameters: PyReadonlyArray2<'py, f64>,
+        py: Python<'_>,
+        parameters: PyReadonlyArray1<'_, f64>,
         request: Request,
-        t: PyReadonlyArray1<'py, f64>,
-        q: PyReadonlyArray2<'py, f64>,
-        p: PyReadonlyArray2<'py, f64>,
-        h: PyReadonlyArray1<'py, f64>,
-        varied: Vec<usize>,
-        steps: u64,
-        velocities: bool,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>, Vec<(usize, Bound<'py, PyAny>)>)> {
-        let (many, n) = (t.len(), self.n);
-        let plan = request.plan(&*self.of, 0.0, Vec::new(), Vec::new())?;
-        let parameters = matrix(&parameters, [many, self.parameters.len()], "parameters")?;
-        let (t, h) = (vector(&t, many, "t")?, vector(&h, many, "h")?);
-        let (q, p) = (matrix(&q, [many, n], "q")?, matrix(&p, [many, n], "p")?);
-        let shots = Shots { t: &t, q: &q, p: &p, h: &h, parameters: &parameters };
-        let ends = py.detach(|| shots.ends(&*self.of, &plan, &varied, steps, velocities));
-        let jacobians = PyArray1::from_vec(py, ends.jacobians).reshape([many, 2 * n, 2 * n + varied.len() + 2])?;
-        let errors = ends.errors.iter().map(|(index, error)| Ok((*index, instance(py, error)?)));
-        Ok((rows(py, ends.states, 2 * n)?, jacobians, errors.collect::<PyResult<_>>()?))
+        start: f64,
+        shares: Vec<f64>,
+        duration: [f64; 2],
+        inputs: Vec<usize>,
+    ) -> PyResult<Transcription> {
+        let system = self.with(parameters.as_slice()?)?;
+        let plan = request.plan(&*system, 0.0, Vec::new(), Vec::new())?;
+        let mesh = Mesh { start, shares, duration };
+        vi_erased::transcription::Transcription::of(&*system, &plan, mesh, &inputs).raise(py).map(Transcription::new)
     }
 
     /// Restarts a stored run.

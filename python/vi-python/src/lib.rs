@@ -9,6 +9,7 @@
 //! | `kind` | the pyclass of a system's type |
 //! | `run` | the pyclass of a run |
 //! | `ensemble` | many runs on all cores |
+//! | `transcription` | the pyclass of a nonlinear program of optimal control |
 //! | `events` | Python functions as events |
 //! | `dense` | the pyclass of dense output |
 //! | `report` | Ctrl-C and progress of long calls |
@@ -32,6 +33,7 @@ mod report;
 mod request;
 mod rows;
 mod run;
+mod transcription;
 
 pub use dense::Dense;
 pub use kind::Kind;
@@ -44,7 +46,7 @@ use vi_erased::System;
 use vi_erased::plan::{Method, Named as _};
 
 /// The version of the interface between these classes and the Python files of the package `variational`.
-pub const CONTRACT: u32 = 6;
+pub const CONTRACT: u32 = 7;
 
 /// Adds systems to a Python module.
 ///
@@ -56,6 +58,7 @@ pub fn populate(module: &Bound<'_, PyModule>, systems: Vec<Box<dyn System>>) -> 
     module.add_class::<Kind>()?;
     module.add_class::<Run>()?;
     module.add_class::<Dense>()?;
+    module.add_class::<transcription::Transcription>()?;
     module.add("_contract", CONTRACT)?;
     module.add("METHODS", Method::ALL.map(Method::name))?;
     module.add("_kinds", kinds)
