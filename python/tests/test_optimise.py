@@ -137,6 +137,33 @@ def test_swing_up_of_a_cart_pole():
     assert finer.energy_balance.other == 0.0
 
 
+def test_steps_with_large_errors_are_halved():
+    found = vi.optimise(CartPole(), steps=25, guess=pushes(25), **SWING)
+    limit = 1e-7
+    large = found.errors.max(axis=1) > limit
+    assert 0 < large.sum() < 25
+    finer = found.refined(limit)
+    assert finer.success and finer.errors.max() <= limit and 25 + large.sum() <= len(finer.u) < 50
+    # Steps with small errors stay.
+    assert all(np.abs(finer.t - t).min() < 1e-14 for t in found.t)
+    assert finer.cost < found.cost
+    assert finer.refined(limit) is finer
+    with pytest.raises(ValueError, match="after 1 rounds .* give more rounds"):
+        found.refined(1e-11, rounds=1)
+    with pytest.raises(ValueError, match="error must be positive"):
+        found.refined(0.0)
+    # A free duration stays free, and given times have their span.
+    options = {"start": ([1.0], [0.0]), "end": ([0.0], [0.0]), "method": "fixed"}
+    Hard = vi.System("""
+    struct Hard { input u = 0.0; coord x; L = dot(x)^2 / 2 - x^4 / 4; force x = u; discretize midpoint; }
+    """)
+    fast = vi.optimise(Hard(), steps=8, duration=(0.1, 9.0), cost="1", inputs={"u": (-2.0, 2.0)}, **options)
+    finer = fast.refined(3e-4)
+    assert len(finer.u) > 8 and 0.0 < abs(finer.t[-1] - fast.t[-1]) < 0.1
+    later = vi.optimise(Hard(), steps=np.linspace(1.0, 3.0, 6), cost="u^2", **options).refined(2e-3)
+    assert len(later.u) > 5 and abs(later.t[0] - 1.0) < 1e-15 and abs(later.t[-1] - 3.0) < 1e-14
+
+
 @pytest.mark.long
 def test_swing_up_is_that_of_the_rust_example(warm_cache):
     pole = CartPole.native(methods="gauss 2")()

@@ -111,6 +111,33 @@ class Optimum:
         """The same problem with other arguments of `optimise`, from this optimum as the guess: `again(steps=50)`."""
         return optimise(**{**self._problem, "guess": self, **changes})
 
+    def refined(self, error: float, rounds: int = 10) -> Optimum:
+        """The same problem with steps whose largest error of a coordinate is at most this one: steps with a larger error
+        are halved, and the optimum before is the guess, at most so many times.
+
+        Raises ValueError if errors are larger still, or if no optimum is found.
+        """
+        if not number(error, "error") > 0.0:
+            raise ValueError(f"error must be positive, not {error!r}")
+        found = self
+        for _ in range(count(rounds, "rounds", 1)):
+            large = found.errors.max(axis=1) > error
+            if not large.any():
+                return found
+            shares = (found.t - found.t[0]) / (found.t[-1] - found.t[0])
+            halves = (shares[1:] + shares[:-1])[large] / 2.0
+            steps = found.t[0] + (found.t[-1] - found.t[0]) * np.sort(np.concatenate([shares, halves]))
+            duration = self._problem["duration"]
+            found = found.again(
+                steps=steps, t=found.t[0], duration=found.t[-1] - found.t[0] if duration is None else duration
+            )
+            if not found.success:
+                raise ValueError(f"no optimum with {len(found.u)} steps: {found.status}")
+        worst = found.errors.max()
+        if worst <= error:
+            return found
+        raise ValueError(f"after {rounds} rounds {len(found.u)} steps have errors up to {worst:.1e}: give more rounds")
+
     def _runs(self) -> Any:
         """A run at the start of each step."""
         system, options = self.solution.system, {key: self._problem[key] for key in ("method", "stages")}
