@@ -22,8 +22,8 @@ catalogue! {
         "write `constraint {name} = x^2 + y^2 - l^2;`: the difference of both sides, which is 0";
     Inequality =
         "inequalities are not supported as constraints",
-        "a constraint is an expression that is 0; write a stiff spring for a stop, `L = … - k * max(-y, 0)^2 / 2;`, or model an impact by \
-         an event with `set_state`",
+        "a constraint is an expression that is 0; write a stiff spring for a stop, `L = … - k * max(-y, 0)^2 / 2;`, model an impact by an \
+         event with `set_state`, or give a bound of optimal control to `vi.optimise`",
         ["constraint c = y «>» 0;", "constraint c = y «<»= x;"];
     Twice { name: String } =
         "the constraint `{name}` is declared twice", "rename one of them, or give it another index",

@@ -32,6 +32,11 @@ pub(super) const CLAUSES: &Table = &[
     ("interp spline lookup lut data", TABLE),
     ("order stages gauss method integrator rule scheme", GAUSS),
     ("h dt step steps until initial start init ic", RUN),
+    (
+        "cost costs objective final terminal minimize minimise maximize maximise bounds",
+        "give costs and bounds to the optimisation: `vi.optimise(system, cost=\"u^2\", bounds={\"x\": (0.0, None)}, …)` in Python, \
+         `Transcription::set_cost` in Rust",
+    ),
 ];
 
 /// Functions.
