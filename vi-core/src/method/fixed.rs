@@ -80,21 +80,86 @@ pub struct FixedSolution<const N: usize, T = f64> {
     is_common: bool,
 }
 
+/// What both methods do with their memory, the velocities of the last steps.
+macro_rules! velocities {
+    () => {
+        type Memory = Velocities<N, T>;
+        type Cache = ();
+        type Step = FixedSolution<N, T>;
+        type Left = ();
+        type DenseOutput = Hermite<N, T>;
+
+        fn order(&self) -> u32 {
+            2
+        }
+
+        fn rule(&self) -> Option<&'static str> {
+            S::RULE
+        }
+
+        #[inline(always)]
+        fn take(
+            &self,
+            _system: &S,
+            h: T,
+            (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>),
+            (): &mut (),
+            step: FixedSolution<N, T>,
+        ) {
+            take(h, node, memory, &step);
+        }
+
+        fn with_length(
+            &self,
+            system: &S,
+            memory: &Velocities<N, T>,
+            node: &Node<N, T>,
+            h: T,
+        ) -> Result<Velocities<N, T>, StepError> {
+            continuation::check_linear(&Called(*system), node, h)?;
+            Ok(memory.with_length(h))
+        }
+
+        fn with_system(
+            &self,
+            [_, after]: [&S; 2],
+            node: &mut Node<N, T>,
+            h: T,
+            memory: &Velocities<N, T>,
+        ) -> Result<Velocities<N, T>, StepError> {
+            continuation::check_linear(&Called(*after), node, h)?;
+            memory.with_system(after, node)
+        }
+
+        fn dense_output(
+            &self,
+            system: &S,
+            before: &State<N, T>,
+            node: &Node<N, T>,
+            h: T,
+            _memory: &Velocities<N, T>,
+        ) -> Result<Hermite<N, T>, StepError> {
+            Hermite::between(system, before, &node.state(), h)
+        }
+
+        fn report(&self, memory: &Velocities<N, T>) -> Report {
+            memory.report()
+        }
+
+        fn discrete_energy(&self, system: &S, node: &Node<N, T>, h: T, memory: &Velocities<N, T>) -> Option<T> {
+            memory.discrete_energy(system, node, h)
+        }
+
+        fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Velocities<N, T>), h: T) -> Result<(), StepError> {
+            memory.check(h, node.t)
+        }
+    };
+}
+
 impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for FixedStep {
     type Prepared = Corrector<S::Jacobian, N, T>;
-    type Memory = Velocities<N, T>;
-    type Cache = ();
-    type Step = FixedSolution<N, T>;
-    type Left = ();
-    type DenseOutput = Hermite<N, T>;
 
-    fn order(&self) -> u32 {
-        2
-    }
-
-    fn rule(&self) -> Option<&'static str> {
-        S::RULE
-    }
+    velocities!();
 
     fn prepare(&self, system: &S, h: T) -> Self::Prepared {
         Corrector::of(&Called(*system), h)
@@ -138,81 +203,13 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
             if is_corrected { None } else { steps.corrected(&Called(*system), node, prepared, steps.guess()) };
         found(at, memory, corrected, Branch::Nearest)
     }
-
-    #[inline(always)]
-    fn take(
-        &self,
-        _system: &S,
-        h: T,
-        (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>),
-        (): &mut (),
-        step: FixedSolution<N, T>,
-    ) {
-        take(h, node, memory, &step);
-    }
-
-    fn with_length(
-        &self,
-        system: &S,
-        memory: &Velocities<N, T>,
-        node: &Node<N, T>,
-        h: T,
-    ) -> Result<Velocities<N, T>, StepError> {
-        continuation::check_linear(&Called(*system), node, h)?;
-        Ok(memory.with_length(h))
-    }
-
-    fn with_system(
-        &self,
-        [_, after]: [&S; 2],
-        node: &mut Node<N, T>,
-        h: T,
-        memory: &Velocities<N, T>,
-    ) -> Result<Velocities<N, T>, StepError> {
-        continuation::check_linear(&Called(*after), node, h)?;
-        memory.with_system(after, node)
-    }
-
-    fn dense_output(
-        &self,
-        system: &S,
-        before: &State<N, T>,
-        node: &Node<N, T>,
-        h: T,
-        _memory: &Velocities<N, T>,
-    ) -> Result<Hermite<N, T>, StepError> {
-        Hermite::between(system, before, &node.state(), h)
-    }
-
-    fn report(&self, memory: &Velocities<N, T>) -> Report {
-        memory.report()
-    }
-
-    fn discrete_energy(&self, system: &S, node: &Node<N, T>, h: T, memory: &Velocities<N, T>) -> Option<T> {
-        memory.discrete_energy(system, node, h)
-    }
-
-    fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Velocities<N, T>), h: T) -> Result<(), StepError> {
-        memory.check(h, node.t)
-    }
 }
 
 /// Only the differences to [`FixedStep`]: steps are not extrapolated.
 impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Connected {
     type Prepared = ();
-    type Memory = Velocities<N, T>;
-    type Cache = ();
-    type Step = FixedSolution<N, T>;
-    type Left = ();
-    type DenseOutput = Hermite<N, T>;
 
-    fn order(&self) -> u32 {
-        2
-    }
-
-    fn rule(&self) -> Option<&'static str> {
-        S::RULE
-    }
+    velocities!();
 
     fn prepare(&self, _system: &S, _h: T) {}
 
@@ -237,62 +234,6 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         (): (),
     ) -> Result<FixedSolution<N, T>, StepError> {
         found(at, memory, None, Branch::Connected)
-    }
-
-    fn take(
-        &self,
-        _system: &S,
-        h: T,
-        (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>),
-        (): &mut (),
-        step: FixedSolution<N, T>,
-    ) {
-        take(h, node, memory, &step);
-    }
-
-    fn with_length(
-        &self,
-        system: &S,
-        memory: &Velocities<N, T>,
-        node: &Node<N, T>,
-        h: T,
-    ) -> Result<Velocities<N, T>, StepError> {
-        continuation::check_linear(&Called(*system), node, h)?;
-        Ok(memory.with_length(h))
-    }
-
-    fn with_system(
-        &self,
-        [_, after]: [&S; 2],
-        node: &mut Node<N, T>,
-        h: T,
-        memory: &Velocities<N, T>,
-    ) -> Result<Velocities<N, T>, StepError> {
-        continuation::check_linear(&Called(*after), node, h)?;
-        memory.with_system(after, node)
-    }
-
-    fn dense_output(
-        &self,
-        system: &S,
-        before: &State<N, T>,
-        node: &Node<N, T>,
-        h: T,
-        _memory: &Velocities<N, T>,
-    ) -> Result<Hermite<N, T>, StepError> {
-        Hermite::between(system, before, &node.state(), h)
-    }
-
-    fn report(&self, memory: &Velocities<N, T>) -> Report {
-        memory.report()
-    }
-
-    fn discrete_energy(&self, system: &S, node: &Node<N, T>, h: T, memory: &Velocities<N, T>) -> Option<T> {
-        memory.discrete_energy(system, node, h)
-    }
-
-    fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Velocities<N, T>), h: T) -> Result<(), StepError> {
-        memory.check(h, node.t)
     }
 }
 
