@@ -91,3 +91,5 @@ def test_optimal_control():
     second = vi.optimise(Second(), start=([1.0], [0.0]), end=([0.0], [0.0]), **options)
     assert first.success and second.success
     assert first.cost == pytest.approx(second.cost, rel=1e-7)
+    with pytest.raises(ValueError, match='the coordinates alone are a state: write start={"x": …}'):
+        vi.optimise(First(), start=([1.0, 0.0], [0.0, 0.0]), end={"x": 0.0}, **options)

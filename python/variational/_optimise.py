@@ -373,6 +373,11 @@ class _Problem:
         if not isinstance(of, Mapping):
             if not isinstance(of, (tuple, list)) or len(of) != 2:
                 raise TypeError(f'{name} must be (q, v), or a dict such as {{"{coordinates[0]}": 0.0}}, not {of!r}')
+            if self.kind.is_first_order:
+                raise ValueError(
+                    f"L of {type(self.system).__name__} is linear in the velocities, so that the coordinates alone are a "
+                    f'state: write {name}={{"{coordinates[0]}": …}}'
+                )
             q, v = (vector(x, self.n, f"{letter} of {name}", coordinates) for x, letter in zip(of, "qv", strict=True))
             if self.system.constraints and name == "start":
                 self._fix_start(q, v)

@@ -42,6 +42,12 @@ impl Kind {
 
 #[pymethods]
 impl Kind {
+    /// Whether L is linear in the velocities: coordinates alone are a state.
+    #[getter]
+    fn is_first_order(&self) -> bool {
+        self.of.is_first_order()
+    }
+
     #[getter]
     fn name(&self) -> &'static str {
         self.of.name()
