@@ -221,6 +221,13 @@ impl Plan {
         Self { method, start, stages: None, shift, fallback: false, dtau: None, h, tolerance, t, q, v, p: None }
     }
 
+    /// Steps of a method, with its default stages or with these, whose starts and lengths are given elsewhere.
+    #[must_use]
+    pub fn anywhere(method: Method, stages: Option<usize>) -> Self {
+        let nowhere = PhasePoint { t: f64::NAN, q: Vec::new(), v: Vec::new() };
+        Self { stages, ..Self::new(method, f64::NAN, nowhere) }
+    }
+
     /// What determines the length of a step.
     #[must_use]
     pub fn length(&self) -> StepLength {

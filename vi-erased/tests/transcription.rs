@@ -2,12 +2,8 @@
 
 use vi_erased::function::{Function, Points};
 use vi_erased::transcription::{Mesh, Pattern, Transcription};
-use vi_erased::{Method, PhasePoint, Plan, System, kind};
+use vi_erased::{Method, Plan, System, kind};
 use vi_systems::{ParametricPendulum, RodPendulum};
-
-fn plan(method: Method, stages: Option<usize>) -> Plan {
-    Plan { stages, ..Plan::new(method, f64::NAN, PhasePoint { t: f64::NAN, q: Vec::new(), v: Vec::new() }) }
-}
 
 /// q² v + u sin(t) v² of one coordinate and one input, the parameter 1.
 struct Cost;
@@ -50,7 +46,7 @@ fn dense(pattern: &Pattern, entries: &[f64], width: usize) -> Vec<Vec<f64>> {
 fn problem() -> Transcription {
     let system = kind!(ParametricPendulum, { gauss 4 });
     let mesh = Mesh { start: 0.3, shares: vec![0.0, 0.3, 0.5, 1.0], duration: [0.5, 5.0] };
-    let mut of = Transcription::of(&*system, &plan(Method::Gauss, Some(4)), mesh, &[1]).expect("a program");
+    let mut of = Transcription::of(&*system, &Plan::anywhere(Method::Gauss, Some(4)), mesh, &[1]).expect("a program");
     of.set_cost(Box::new(Cost));
     of.set_final_cost(Box::new(Cost));
     of.bound_velocity(0, &[0, 3], [0.0, 0.0]);
@@ -112,11 +108,11 @@ fn what_has_no_given_steps_is_refused() {
     let refused = |system: &dyn System, plan: &Plan, mesh: Mesh, inputs: &[usize]| {
         Transcription::of(system, plan, mesh, inputs).err().map(|error| error.to_string()).expect("an error")
     };
-    let (gauss, mesh) = (plan(Method::Gauss, Some(4)), || Mesh::even(4, 1.0..=1.0));
-    assert!(refused(&*system, &plan(Method::Energy, Some(2)), mesh(), &[1]).contains("given length"));
+    let (gauss, mesh) = (Plan::anywhere(Method::Gauss, Some(4)), || Mesh::even(4, 1.0..=1.0));
+    assert!(refused(&*system, &Plan::anywhere(Method::Energy, Some(2)), mesh(), &[1]).contains("given length"));
     assert!(refused(&*system, &gauss, Mesh::even(4, 2.0..=1.0), &[1]).contains("duration"));
     assert!(refused(&*system, &gauss, Mesh { shares: vec![0.0, 0.5], ..mesh() }, &[1]).contains("from 0 to 1"));
     assert!(refused(&*system, &gauss, mesh(), &[99]).contains("index of an input"));
     let rod = kind!(RodPendulum, { gauss 3 });
-    assert!(!refused(&*rod, &plan(Method::Fixed, None), mesh(), &[0]).is_empty());
+    assert!(!refused(&*rod, &Plan::anywhere(Method::Fixed, None), mesh(), &[0]).is_empty());
 }
