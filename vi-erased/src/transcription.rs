@@ -78,6 +78,13 @@ impl Pattern {
         Self { starts, rows, entries }
     }
 
+    /// The row and the column of each entry.
+    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> {
+        let columns = self.starts.windows(2).enumerate();
+        let columns = columns.flat_map(|(column, bounds)| core::iter::repeat_n(column, bounds[1] - bounds[0]));
+        self.rows.iter().copied().zip(columns)
+    }
+
     /// The entries from the numbers.
     fn gathered(&self, numbers: &[f64]) -> Vec<f64> {
         let mut values = vec![0.0; self.rows.len()];

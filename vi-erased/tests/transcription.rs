@@ -34,10 +34,8 @@ impl Function for Cost {
 fn dense(pattern: &Pattern, entries: &[f64], width: usize) -> Vec<Vec<f64>> {
     let height = pattern.rows.iter().max().map_or(0, |last| last + 1);
     let mut rows = vec![vec![0.0; width]; height];
-    for (column, bounds) in pattern.starts.windows(2).enumerate() {
-        for at in bounds[0]..bounds[1] {
-            rows[pattern.rows[at]][column] = entries[at];
-        }
+    for ((row, column), entry) in pattern.places().zip(entries) {
+        rows[row][column] = *entry;
     }
     rows
 }
