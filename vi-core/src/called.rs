@@ -18,7 +18,7 @@ pub struct Called<S>(pub S);
 
 /// A system of generic code, presumed [`Separable`](crate::motion::Separable):
 /// `Presumed(system).at(t, q, v).integrate(Splitting::BLANES_MOAN_6, h)` checks
-/// [`Motion::SEPARABLE`](crate::motion::Motion::SEPARABLE) when a run begins. Its functions are inlined.
+/// [`Motion::SPLITS`](crate::motion::Motion::SPLITS) when a run begins. Its functions are inlined.
 #[derive(Clone, Copy, Debug)]
 pub struct Presumed<S>(pub S);
 

@@ -101,6 +101,7 @@ macro_rules! forward {
         type PointMatrix = <$s as $crate::motion::Motion<$n, $t>>::PointMatrix;
         const CONSTANT_MASS: bool = <$s as $crate::motion::Motion<$n, $t>>::CONSTANT_MASS;
         const SEPARABLE: bool = <$s as $crate::motion::Motion<$n, $t>>::SEPARABLE;
+        const SPLITS: bool = <$s as $crate::motion::Motion<$n, $t>>::SPLITS;
         const SCALES_TIME: bool = <$s as $crate::motion::Motion<$n, $t>>::SCALES_TIME;
         const POINT_MASSES: bool = <$s as $crate::motion::Motion<$n, $t>>::POINT_MASSES;
         const WITHOUT_VELOCITY: &'static [bool] = <$s as $crate::motion::Motion<$n, $t>>::WITHOUT_VELOCITY;
@@ -112,7 +113,7 @@ macro_rules! forward {
     };
     (@motion_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
         $crate::forward! { @facts ($this) ($to) $crate::motion::Motion<$n, $t>, $s,
-            has_constant_mass -> bool, is_separable -> bool, scales_time -> bool, has_point_masses -> bool,
+            has_constant_mass -> bool, is_separable -> bool, splits -> bool, scales_time -> bool, has_point_masses -> bool,
             without_velocity -> &'static [bool], moving -> usize, constraint_names -> &'static [&'static str], holonomic -> usize,
             blocks -> &'static [$crate::linear::Block] }
     };

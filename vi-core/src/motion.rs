@@ -48,6 +48,9 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// Whether `L_v = M v` with constant M, and neither L_q nor f depends on v. The system is then `q'' = M⁻¹ (L_q +
     /// f)`.
     const SEPARABLE: bool = false;
+    /// Whether the motion splits into kicks and drifts: [`Motion::SEPARABLE`], or `L = y·x' − T(y) − V(t, x)` of a system
+    /// of first order with forces of time and x alone, and the y in the order of the x.
+    const SPLITS: bool = Self::SEPARABLE;
     /// Whether the system has a time scale g. It is then a [`TimeScale`], and [`Motion::scaled_point`] returns g.
     const SCALES_TIME: bool = false;
     /// Whether L_v is M v with a constant diagonal M, and `L_q + f` depends on t alone: point masses in a uniform field.
@@ -73,6 +76,11 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     #[inline(always)]
     fn is_separable(&self) -> bool {
         Self::SEPARABLE
+    }
+    /// [`Motion::SPLITS`].
+    #[inline(always)]
+    fn splits(&self) -> bool {
+        Self::SPLITS
     }
     /// [`Motion::SCALES_TIME`].
     #[inline(always)]
@@ -223,12 +231,11 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
 )]
 pub trait TimeScale<const N: usize, T: Real = f64>: Motion<N, T> {}
 
-/// A system with [`Motion::SEPARABLE`] equations, whose motion splits into kicks and drifts
-/// ([`Splitting`](crate::Splitting)). Generated systems with this form implement it.
+/// A system with [`Motion::SPLITS`], whose motion splits into kicks and drifts ([`Splitting`](crate::Splitting)). Generated systems with this form implement it.
 #[diagnostic::on_unimplemented(
     message = "the motion of `{Self}` does not split into kicks and drifts",
     label = "this system has no constant mass matrix, or forces that depend on velocities",
-    note = "`Splitting` takes `L = v·M v/2 − V(t, q)` with a constant M, and forces of time and coordinates alone",
+    note = "`Splitting` takes `L = v·M v/2 − V(t, q)` with a constant M, or `H = T(p) + V(t, q)`, and forces of time and coordinates alone",
     note = "`Gauss` integrates every system without constraints"
 )]
 pub trait Separable<const N: usize, T: Real = f64>: Motion<N, T> {}

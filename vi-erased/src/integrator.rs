@@ -17,6 +17,7 @@ use serde_json::value::RawValue;
 use vi_core::SVector;
 use vi_core::kind::{Free, Kind};
 use vi_core::method::{Controlled, Shiftable, Storable};
+use vi_core::motion::Motion;
 #[cfg(feature = "checkpoints")]
 use vi_core::run::Checkpoint;
 use vi_core::stepping::EnergyStepping;
@@ -72,14 +73,14 @@ fn restarted<S: Runnable<N>, const N: usize>(
     Ok(erased(run, false))
 }
 
-/// An integrator: which one, the system that it takes, its method for a restart, and how a run begins.
+/// An integrator: which one, the system that it takes, its method of a system for a restart, and how a run begins.
 macro_rules! integrator {
-    ($built:expr, $wrapped:expr, $method:expr, $begin:expr) => {
+    ($built:expr, $wrapped:expr, $system:ident => $method:expr, $begin:expr) => {
         Integrator {
             built: $built,
             begin: $begin,
             #[cfg(feature = "checkpoints")]
-            restart: |system, stored| restarted(system, AnyMethod::of($method, $wrapped), stored),
+            restart: |$system: S, stored| restarted($system, AnyMethod::of($method, $wrapped), stored),
             #[cfg(feature = "studies")]
             density: None,
         }
@@ -88,11 +89,19 @@ macro_rules! integrator {
 
 /// An integrator whose runs begin with a plan's step length.
 macro_rules! by_length {
+    ($kind:expr, $stages:expr, $wrapped:expr, $system:ident => $method:expr) => {
+        integrator!(
+            ($kind, $stages, false),
+            $wrapped,
+            $system => $method,
+            |$system: S, plan: &Plan, state: State<N>, _| {
+                let method = AnyMethod::of($method, $wrapped);
+                Ok(erased($system.at_state(state).integrate(method, plan.length())?, false))
+            }
+        )
+    };
     ($kind:expr, $stages:expr, $wrapped:expr, $method:expr) => {
-        integrator!(($kind, $stages, false), $wrapped, $method, |system: S, plan: &Plan, state: State<N>, _| {
-            let method = AnyMethod::of($method, $wrapped);
-            Ok(erased(system.at_state(state).integrate(method, plan.length())?, false))
-        })
+        by_length!($kind, $stages, $wrapped, system => $method)
     };
 }
 
@@ -127,13 +136,26 @@ where
     Presumed<S>: Runnable<N>,
     Splitting: Erasable<Presumed<S>, N>,
 {
-    if const { !S::SEPARABLE && !S::INTERPRETED } {
+    if const { !S::SPLITS && !S::INTERPRETED } {
         return Vec::new();
     }
     vec![
-        by_length!(Method::Splitting4, None, Presumed, Splitting::BLANES_MOAN_4),
-        by_length!(Method::Splitting6, None, Presumed, Splitting::BLANES_MOAN_6),
+        by_length!(Method::Splitting4, None, Presumed, system => weights(
+            &system,
+            Splitting::BLANES_MOAN_4,
+            Splitting::BLANES_MOAN_S4
+        )),
+        by_length!(Method::Splitting6, None, Presumed, system => weights(
+            &system,
+            Splitting::BLANES_MOAN_6,
+            Splitting::BLANES_MOAN_S6
+        )),
     ]
+}
+
+/// The weights for a kinetic energy with a mass matrix, or for any.
+fn weights<const N: usize>(system: &impl Motion<N>, with_mass: Splitting, any: Splitting) -> Splitting {
+    if system.is_first_order() { any } else { with_mass }
 }
 
 /// Gauss steps of the given number of stages.
@@ -176,7 +198,7 @@ where
     integrator!(
         (Method::Gauss, Some(STAGES), true),
         Called,
-        Gauss::<STAGES>.in_transformed_time(),
+        system => Gauss::<STAGES>.in_transformed_time(),
         |system: S, plan: &Plan, state: State<N>, _| {
             // Otherwise they would be built for every system.
             if !system.scales_time() {
@@ -197,7 +219,7 @@ where
     let integrator = integrator!(
         (Method::Energy, None, false),
         identity,
-        EnergyPreserving,
+        system => EnergyPreserving,
         |system: S, plan: &Plan, state: State<N>, _| {
             let method = AnyMethod::of(EnergyPreserving, identity);
             let h = system.at_state(state).length(&method, plan.length())?;
@@ -225,7 +247,7 @@ macro_rules! energy_gauss {
         integrator!(
             (Method::Energy, Some(STAGES), false),
             $wrapped,
-            EnergyPreservingGauss::<STAGES>,
+            system => EnergyPreservingGauss::<STAGES>,
             |system: S, plan: &Plan, state: State<N>, goes_on| {
                 let method = AnyMethod::of(EnergyPreservingGauss::<STAGES>, $wrapped);
                 let h = system.at_state(state).length(&method, plan.length())?;

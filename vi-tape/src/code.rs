@@ -153,6 +153,7 @@ pub(crate) struct Code {
     pub(crate) is_autonomous: bool,
     pub(crate) is_forced: bool,
     pub(crate) is_separable: bool,
+    pub(crate) splits: bool,
     pub(crate) is_quadratic: bool,
     /// For each coordinate, whether L does not contain its velocity; empty unless L is linear in the velocities.
     pub(crate) without_velocity: &'static [bool],

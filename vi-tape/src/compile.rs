@@ -167,6 +167,7 @@ fn of_derived(
         is_autonomous: findings.autonomous,
         is_forced: findings.forced,
         is_separable: findings.force_of_position && model.constraints.is_empty(),
+        splits: findings.force_of_position && model.constraints.is_empty() || findings.canonical_split,
         is_quadratic: continuous.quadratic,
         without_velocity: model.without_velocity.clone().leak(),
         has_constant_mass: findings.constant_mass,

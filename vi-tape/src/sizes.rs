@@ -106,7 +106,7 @@ fn has(code: &Code, (method, stages, is_transformed): Built) -> bool {
     match (method, stages) {
         _ if is_transformed => code.scales_time,
         (Method::Energy, None) => code.has_step_density,
-        (Method::Splitting4 | Method::Splitting6, _) => code.is_separable,
+        (Method::Splitting4 | Method::Splitting6, _) => code.splits,
         (_, None) => code.has_rule,
         (Method::Gauss, Some(_)) => true,
         (_, Some(_)) => code.without_velocity.is_empty(),

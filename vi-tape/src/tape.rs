@@ -273,6 +273,10 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
         self.code.is_separable
     }
 
+    fn splits(&self) -> bool {
+        self.code.splits
+    }
+
     fn scales_time(&self) -> bool {
         self.code.scales_time
     }

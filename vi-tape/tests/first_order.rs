@@ -179,7 +179,7 @@ fn a_hamiltonian_that_is_linear_in_its_momenta_has_the_motion_of_its_closed_form
 
 #[test]
 fn steps_that_need_a_mass_matrix_are_refused() {
-    let system = tape("coord a, b; L = a*dot(b) - a^2 - b^4;");
+    let system = tape("coord a, b; L = a*dot(b) - a^2 - b^4 - a*b^2;");
     for wanted in [
         (Method::Fixed, None, false),
         (Method::Splitting4, None, false),
@@ -300,4 +300,34 @@ fn long_steps_continue_short_ones() -> Result<(), StepError> {
     let mut run = LotkaVolterra::default().at(0.0, [1.1, 0.6], [0.0; 2]).integrate(Gauss::<4>, 4.0)?;
     assert!(matches!(run.step(), Err(StepError::NonFinite { .. })));
     Ok(())
+}
+
+#[test]
+fn kicks_and_drifts_are_those_of_another_method() {
+    let text = "param c = 1.1, k = 0.9;
+        coord x, y;
+        momentum p of x, r of y;
+        H = c * sqrt(c^2 + p^2 + r^2) + p^2 * r^2 / 9 + k * x^4 / 4 + x^2 * y / 4 + y^4 / 2 + sin(1.7 * t) * x / 2;";
+    let system = tape(text);
+    let q = [0.75, -0.25, 0.5, 0.875];
+    let end = after(&*system, 8, 0.05, 40, &q);
+    for (method, order) in [(Method::Splitting4, 4), (Method::Splitting6, 6)] {
+        let error = |steps: u32| {
+            let plan = Plan { method, stages: None, ..plan(8, 2.0 / f64::from(steps), &q) };
+            let mut run = system.begin(&plan).unwrap_or_else(|error| panic!("{error}"));
+            run.advance_by(u64::from(steps)).unwrap_or_else(|error| panic!("{error}"));
+            distance(&[run.q().to_vec(), run.p().to_vec()].concat(), &end)
+        };
+        let slope = (error(24) / error(32)).ln() / (32.0_f64 / 24.0).ln();
+        assert!((slope - f64::from(order)).abs() < 0.4, "{order}: {slope}"); // within 0.2
+    }
+    // Friction, a product of p and x, and another gauge do not split.
+    for text in [
+        "coord x; momentum p of x; H = p^2 + p^4 / 4 + x^4 / 4; force x = -dot(x) / 5;",
+        "coord x; momentum p of x; H = p^2 + p^4 * x^2 / 4;",
+        "coord x, y; L = ln(y) / x * dot(x) - x - y;",
+    ] {
+        let refused = tape(text).begin(&Plan { method: Method::Splitting4, stages: None, ..plan(8, 0.1, &[0.5; 2]) });
+        assert!(matches!(refused, Err(StepError::FirstOrder { .. })), "{text}: {:?}", refused.err());
+    }
 }

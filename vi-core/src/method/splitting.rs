@@ -14,10 +14,14 @@
 //! conditions, of which there are fewer than those of other splittings, hold because kicks of constant M commute with
 //! their second commutators.
 //!
+//! A Hamiltonian system of first order, `L = y·x' − T(y) − V(t, x)`, splits in the same way: kicks change y and the momenta
+//! `p = y` by `b_i h (f − V_x)`, drifts change x by `a_i h T_y`. Its weights have to satisfy the conditions of all
+//! splittings.
+//!
 //! The increments of a step are summed by themselves and added to the node with their low parts: roundings of a step are
 //! those of its increments, as with [`Gauss`](crate::Gauss).
 //!
-//! Source: Blanes and Moan, J. Comput. Appl. Math. 142 (2002) 313, tables 3 and 4; Hairer, Lubich, Wanner, Geometric
+//! Source: Blanes and Moan, J. Comput. Appl. Math. 142 (2002) 313, tables 2 to 4; Hairer, Lubich, Wanner, Geometric
 //! Numerical Integration, section V.3.
 
 use super::{Memory, Method, Problem, Report};
@@ -68,17 +72,48 @@ pub struct Splitting {
     /// The weights a_i of the drifts, whose sum is 1. The longer list begins: kick, drift, …, kick, or drift, kick, …,
     /// drift.
     pub drifts: &'static [f64],
+    /// Whether it has this order for kinetic energies `v·M v/2` alone (Nyström's conditions). It is then refused for
+    /// systems of first order.
+    pub is_nystrom: bool,
 }
 
 impl Splitting {
     /// Störmer and Verlet's method of order 2, with one force a step.
-    pub const VERLET: Self = Self { name: "Verlet", order: 2, kicks: &[0.5, 0.5], drifts: &[1.0] };
+    pub const VERLET: Self = Self { name: "Verlet", order: 2, kicks: &[0.5, 0.5], drifts: &[1.0], is_nystrom: false };
     /// Blanes and Moan's method of order 4, with six forces a step.
     pub const BLANES_MOAN_4: Self = Self {
         name: "Blanes–Moan 4",
         order: 4,
         kicks: &symmetric::<3, 7>([0.082_984_406_417_405_2, 0.396_309_801_498_368, -0.039_056_304_922_348_6]),
         drifts: &symmetric::<2, 6>([0.245_298_957_184_271, 0.604_872_665_711_08]),
+        is_nystrom: true,
+    };
+    /// Blanes and Moan's method of order 4 for any kinetic energy, with six forces a step.
+    pub const BLANES_MOAN_S4: Self = Self {
+        name: "Blanes–Moan S4",
+        order: 4,
+        kicks: &symmetric::<3, 7>([0.079_203_696_431_195_7, 0.353_172_906_049_774, -0.042_065_080_357_719_5]),
+        drifts: &symmetric::<2, 6>([0.209_515_106_613_362, -0.143_851_773_179_818]),
+        is_nystrom: false,
+    };
+    /// Blanes and Moan's method of order 6 for any kinetic energy, with ten forces a step.
+    pub const BLANES_MOAN_S6: Self = Self {
+        name: "Blanes–Moan S6",
+        order: 6,
+        kicks: &symmetric::<5, 11>([
+            0.050_262_764_400_392_2,
+            0.413_514_300_428_344,
+            0.045_079_889_794_397_7,
+            -0.188_054_853_819_569,
+            0.541_960_678_450_78,
+        ]),
+        drifts: &symmetric::<4, 10>([
+            0.148_816_447_901_042,
+            -0.132_385_865_767_784,
+            0.067_307_604_692_185,
+            0.432_666_402_578_175,
+        ]),
+        is_nystrom: false,
     };
     /// Blanes and Moan's method of order 6 with eleven forces a step.
     pub const BLANES_MOAN_6_SHORT: Self = Self {
@@ -98,6 +133,7 @@ impl Splitting {
             -0.246_331_761_062_075,
             0.357_208_872_795_928,
         ]),
+        is_nystrom: true,
     };
     /// Blanes and Moan's method of order 6 with fourteen forces a step: the smallest errors for their time.
     pub const BLANES_MOAN_6: Self = Self {
@@ -120,9 +156,17 @@ impl Splitting {
             0.106_417_700_369_543,
             -0.008_794_243_128_510_58,
         ]),
+        is_nystrom: true,
     };
-    /// All splittings, by order and number of forces.
-    pub const ALL: [Self; 4] = [Self::VERLET, Self::BLANES_MOAN_4, Self::BLANES_MOAN_6_SHORT, Self::BLANES_MOAN_6];
+    /// All splittings: those for a mass matrix by order and number of forces, then those for any kinetic energy.
+    pub const ALL: [Self; 6] = [
+        Self::VERLET,
+        Self::BLANES_MOAN_4,
+        Self::BLANES_MOAN_6_SHORT,
+        Self::BLANES_MOAN_6,
+        Self::BLANES_MOAN_S4,
+        Self::BLANES_MOAN_S6,
+    ];
 
     /// A number that differs between sets of weights.
     fn fingerprint(&self) -> f64 {
@@ -215,6 +259,9 @@ impl<S: Motion<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Split<N, T> {
+        if const { S::INTERPRETED || !S::WITHOUT_VELOCITY.is_empty() } && self.system.is_first_order() {
+            return self.canonical();
+        }
         let Self { scheme, system, inverse, node, h, .. } = self;
         let Splitting { kicks, drifts, .. } = scheme;
         let rest = SVector::zeros();
@@ -241,6 +288,55 @@ impl<S: Motion<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
             let kick = force * (h * T::real(*weight));
             p += kick;
             increment += kick;
+        }
+        let mut after = *node;
+        after.advance_by(h, &displacement, &increment);
+        Split { after, force }
+    }
+}
+
+impl<S: Motion<N, T>, const N: usize, T: Real> Step<'_, S, N, T> {
+    /// The step of a system of first order with `L = y·x' − T(y) − V(t, x)`: `L_x + f` kicks y and the momentum of x, and
+    /// `−L_y`, the velocity T_y at rest, drifts x.
+    fn canonical(self) -> Split<N, T> {
+        let Self { scheme, system, node, h, .. } = self;
+        let Splitting { kicks, drifts, .. } = scheme;
+        let without = system.without_velocity();
+        let half = |without_it: bool| (0..without.len()).filter(move |index| without[*index] == without_it);
+        let pairs = || half(false).zip(half(true));
+        let rates = |passed: f64, q: &SVector<T, N>| {
+            system.point(node.t + (node.t_low + h * T::real(passed)), q, &SVector::zeros()).force
+        };
+        let mut q = node.q + node.q_low;
+        let (mut displacement, mut increment) = (SVector::<T, N>::zeros(), SVector::<T, N>::zeros());
+        let mut force = *self.force;
+        let first = kicks.len() - kicks.len().min(drifts.len());
+        if let Some(weight) = kicks[..first].first() {
+            for (x, y) in pairs() {
+                increment[x] = force[x] * (h * T::real(*weight));
+                displacement[y] = increment[x];
+                q[y] += increment[x];
+            }
+        }
+        let mut passed = 0.0;
+        for (i, weight) in drifts.iter().enumerate() {
+            let velocity = -rates(passed, &q);
+            let is_last = i + 1 == drifts.len();
+            for (x, y) in pairs() {
+                let drift = velocity[y] * (h * T::real(*weight));
+                displacement[x] += drift;
+                // As in the other steps, the last place is that of the node.
+                q[x] = if is_last { node.q[x] + (node.q_low[x] + displacement[x]) } else { q[x] + drift };
+            }
+            passed = if is_last { 1.0 } else { passed + weight };
+            let Some(weight) = kicks.get(first + i) else { break };
+            force = rates(passed, &q);
+            for (x, y) in pairs() {
+                let kick = force[x] * (h * T::real(*weight));
+                increment[x] += kick;
+                displacement[y] += kick;
+                q[y] += kick;
+            }
         }
         let mut after = *node;
         after.advance_by(h, &displacement, &increment);
@@ -321,8 +417,13 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
     }
 
     fn check_length(&self, system: &S, h: T) -> Result<(), StepError> {
-        if !system.is_separable() {
+        if !system.splits() {
             return Err(StepError::NotSeparable { system: system.name() });
+        }
+        if self.is_nystrom && system.is_first_order() {
+            let allowed = "those of any kinetic energy: `VERLET`, `BLANES_MOAN_S4`, `BLANES_MOAN_S6`";
+            let (input, value) = ("the weights of a splitting of first order", f64::from(self.order));
+            return Err(StepError::InvalidInput { input, allowed, value });
         }
         let Self { kicks, drifts, .. } = self;
         if kicks.len().abs_diff(drifts.len()) != 1 {

@@ -50,6 +50,8 @@ pub struct Findings {
     pub separable: bool,
     /// The coordinates whose velocities L contains, if it is linear in them; none otherwise.
     pub linear: Vec<usize>,
+    /// `L = y·x' − T(y) − V(t, x)`, with forces of time and x alone, and the y in the order of the x.
+    pub canonical_split: bool,
     /// The mass matrix L_vv depends on parameters only.
     pub constant_mass: bool,
     /// L_v is M v with a constant mass matrix M, and neither L_q nor f depends on v: the acceleration is a function of t and q.
@@ -153,6 +155,7 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         angles: (0..model.dimension()).filter(|index| model.coordinates[*index].is_angle).collect(),
         separable: momentum.is_some_and(|function| inputs(function, function.results.entries()).iter().all(velocities)),
         linear: (0..model.without_velocity.len()).filter(|index| !model.without_velocity[*index]).collect(),
+        canonical_split: splits_canonically(&model.without_velocity, program),
         constant_mass,
         force_of_position: constant_mass && system.continuous.momentum_is_mass_times_velocity && !rate_moves,
         point_masses: constant_mass
@@ -172,6 +175,40 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         }),
         steps: program.function(FunctionId::MomentumEquation).map(|equation| steps(equation, program)),
     }
+}
+
+/// Whether a system of first order has `L = y·x' − T(y) − V(t, x)`, with forces of time and x alone.
+fn splits_canonically(without_velocity: &[bool], program: &Program) -> bool {
+    let of = |id| program.function(id);
+    let (Some(momentum), Some(force), Some(point)) =
+        (of(FunctionId::Momentum), of(FunctionId::Force), of(FunctionId::Point))
+    else {
+        return false;
+    };
+    let (momenta, forces) =
+        (momentum.results.entries().collect::<Vec<_>>(), force.results.entries().collect::<Vec<_>>());
+    let rates = point.results.vector(Output::AppliedForce);
+    let half = |without: bool| (0..without_velocity.len()).filter(move |index| without_velocity[*index] == without);
+    let is_canonical = |(x, y): (usize, usize)| {
+        let is_y = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Coordinate(y));
+        let momentum_is_y = matches!(momentum.operations.get(*momenta[x]), Operation::Input(symbol) if is_y(symbol));
+        let of_x = |symbol: &Symbol| match symbol {
+            Symbol::Parameter { .. } | Symbol::Continuous(Variable::Time) => true,
+            Symbol::Continuous(Variable::Coordinate(index)) => !without_velocity[*index],
+            _ => false,
+        };
+        // Without a force its only velocity is that of x in y·x'.
+        let of_y = |symbol: &Symbol| match symbol {
+            Symbol::Parameter { .. } | Symbol::Continuous(Variable::Velocity(_)) => true,
+            Symbol::Continuous(Variable::Coordinate(index)) => without_velocity[*index],
+            _ => false,
+        };
+        momentum_is_y
+            && force.operations.as_constant(*forces[y]) == Some(0.0)
+            && inputs(point, [&rates[x]].into_iter()).iter().all(of_x)
+            && inputs(point, [&rates[y]].into_iter()).iter().all(of_y)
+    };
+    !without_velocity.is_empty() && half(false).zip(half(true)).all(is_canonical)
 }
 
 /// Finds the properties of the steps with this momentum equation.
@@ -473,7 +510,8 @@ impl Findings {
         lines.push(match (self.separable, self.constant_mass) {
             _ if !self.linear.is_empty() => {
                 let (of, velocities) = (list(name, &self.linear), if self.linear.len() == 1 { "velocity" } else { "velocities" });
-                format!("`L` is linear in the {velocities} of {of}, without a mass matrix: equations of first order, with Gauss steps")
+                let steps = if self.canonical_split { "Gauss steps, or kicks and drifts" } else { "Gauss steps" };
+                format!("`L` is linear in the {velocities} of {of}, without a mass matrix: equations of first order, with {steps}")
             }
             (true, true) => "`L = T(v) + U(t, q)` with a constant mass matrix".to_owned(),
             (true, false) => "`L = T(v) + U(t, q)`; the mass matrix depends on the velocity".to_owned(),

@@ -32,7 +32,12 @@ pub(super) fn item(source: &Source) -> TokenStream {
             impl<T: ::vi_core::real::Real> ::vi_core::motion::TimeScale<#dimension, T> for #name<T> {}
         }
     });
-    let is_separable = separable.then(|| {
+    let splits = source.findings.canonical_split.then(|| {
+        quote!(
+            const SPLITS: bool = true;
+        )
+    });
+    let is_separable = (separable || source.findings.canonical_split).then(|| {
         quote! {
             impl<T: ::vi_core::real::Real> ::vi_core::motion::Separable<#dimension, T> for #name<T> {}
         }
@@ -46,6 +51,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
             type PointMatrix = #derivatives_form;
             const CONSTANT_MASS: bool = #constant_mass;
             const SEPARABLE: bool = #separable;
+            #splits
             #scales_time
             #point
             #point_derivatives

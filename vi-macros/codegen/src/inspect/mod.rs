@@ -93,7 +93,7 @@ pub struct Properties {
 pub fn properties(tokens: TokenStream) -> Result<Properties> {
     let system = parse::system(tokens)?;
     let is_separable = match Compiled::of(&system)? {
-        Compiled::Lines(of) => of.own.findings.force_of_position,
+        Compiled::Lines(of) => of.own.findings.force_of_position || of.own.findings.canonical_split,
         Compiled::Loops(of) => of.indexed.separable,
     };
     // A written-out rule has one.
