@@ -302,6 +302,10 @@ impl Session for Spoiled<dyn Simulation> {
         Ok(found.map(|of| of.iter().map(|of| of.iter().map(|entry| entry * factor).collect()).collect()))
     }
 
+    fn curvature(&self, wanted: Wanted<'_>, weights: &[f64]) -> Result<Option<Vec<f64>>, StepError> {
+        self.of.curvature(wanted, weights)
+    }
+
     fn tangents_at(
         &mut self,
         times_and_parameters: (&[f64], &[usize]),

@@ -549,6 +549,11 @@ impl Session for Declared<dyn Simulation> {
     }
 
     #[cfg(feature = "derivatives")]
+    fn curvature(&self, wanted: Wanted<'_>, weights: &[f64]) -> Result<Option<Vec<f64>>, StepError> {
+        self.of.curvature(wanted, weights)
+    }
+
+    #[cfg(feature = "derivatives")]
     fn tangents_at(
         &mut self,
         times_and_parameters: (&[f64], &[usize]),

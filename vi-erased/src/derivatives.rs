@@ -8,6 +8,7 @@ use crate::erasable::Runnable;
 use crate::method::{AnyMethod, AnyRun};
 use crate::simulation::{End, Wanted};
 use vi_core::derivatives::{self, Covector, Lyapunov, Objective, Tangent, Variation};
+use vi_core::nalgebra::DMatrix;
 use vi_core::{SVector, State, StepError};
 
 /// A value at the end of some steps, and the run there; `None` if it was interrupted.
@@ -36,6 +37,49 @@ pub(crate) fn tangent<S: Runnable<N>, const N: usize>(
     }
     let rows = ended(&mut tangent, end, at_end)?;
     Ok(Some((tangent.run().clone(), rows)))
+}
+
+/// Second derivatives of the weighted end of at most one step, as [`Session::curvature`](crate::Session::curvature).
+///
+/// # Errors
+/// As there.
+pub(crate) fn curvature<S: Runnable<N>, const N: usize>(
+    run: &AnyRun<S, N>,
+    Wanted { end, parameters, has_velocities }: Wanted<'_>,
+    weights: &[f64],
+) -> Result<Option<DMatrix<f64>>, StepError> {
+    let steps = match end {
+        End::Steps(steps @ ..=1) if !has_velocities[0] => steps,
+        _ => return Ok(None),
+    };
+    let before = *run.node();
+    let varies = |index: &usize| *index >= 2 * N || index % N < weights.len() / 2;
+    let directions = directions(run, parameters).into_iter().enumerate().filter(|(index, _)| varies(index));
+    let directions: Vec<_> = directions.map(|(_, direction)| direction).collect();
+    let mut after = run.clone();
+    if steps == 1 {
+        after.step()?;
+    }
+    // The coordinates at rest have no weight.
+    let (of_q, of_second) = weights.split_at(weights.len() / 2);
+    let [q, second] = [of_q, of_second].map(|of| SVector::from_fn(|row, _| of.get(row).copied().unwrap_or(0.0)));
+    let mut slope = Covector { q, p: second, ..Covector::zero() };
+    let mut sum = DMatrix::zeros(directions.len(), directions.len());
+    if has_velocities[1] {
+        let (state, mut at_end) = (after.node().state(), directions.clone());
+        if steps == 1 {
+            after.vary(&before, &mut at_end)?;
+        }
+        let Some(found) = derivatives::velocity_curvature(after.system(), &state, &at_end, [&q, &second])? else {
+            return Ok(None);
+        };
+        (slope, sum) = found;
+    }
+    if steps == 1 {
+        let Some(of_step) = after.curvature(&before, &directions, &slope)? else { return Ok(None) };
+        sum += of_step;
+    }
+    Ok(Some(sum))
 }
 
 /// Derivatives at times, which do not vary, as [`Session::tangents_at`](crate::Session::tangents_at).

@@ -16,8 +16,10 @@ pub(crate) use known::{GoesOn, Progress};
 pub use output::AnyOutput;
 use std::sync::Arc;
 #[cfg(feature = "derivatives")]
-use vi_core::derivatives::{Differentiable, Variation};
+use vi_core::derivatives::{Covector, Differentiable, Variation};
 use vi_core::method::{Memory, Problem, Report};
+#[cfg(feature = "derivatives")]
+use vi_core::nalgebra::DMatrix;
 use vi_core::node::Node;
 #[cfg(feature = "sessions")]
 use vi_core::run::Crossing;
@@ -334,6 +336,15 @@ impl<S: Runnable<N>, const N: usize> Differentiable<S, N> for AnyMethod<S, N> {
 
     fn vary_step_of(run: &AnyRun<S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         run.memory().0.vary_step_of(run.system(), run.parts(), length, variations)
+    }
+
+    fn curvature(
+        run: &AnyRun<S, N>,
+        before: &Node<N>,
+        directions: &[Variation<N>],
+        weights: &Covector<N>,
+    ) -> Result<Option<DMatrix<f64>>, StepError> {
+        run.memory().0.curvature(run.system(), run.parts(), before, (directions, weights))
     }
 
     fn vary_start(run: &AnyRun<S, N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {

@@ -191,6 +191,15 @@ impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
     }
 
     #[cfg(feature = "derivatives")]
+    fn curvature(&self, wanted: Wanted<'_>, weights: &[f64]) -> Result<Option<Vec<f64>>, StepError> {
+        if !weights.len().is_multiple_of(2) || weights.len() > 2 * N {
+            return Err(wrong_size(weights, "number of coordinates and momenta"));
+        }
+        // Of a symmetric matrix the columns are the rows.
+        Ok(derivatives::curvature(&self.run, wanted, weights)?.map(|matrix| matrix.as_slice().to_vec()))
+    }
+
+    #[cfg(feature = "derivatives")]
     fn tangents_at(
         &mut self,
         times_and_parameters: (&[f64], &[usize]),

@@ -5,7 +5,7 @@
 //! next node.
 
 use crate::plan::{PhasePoint, Plan};
-use crate::simulation::{End, Wanted};
+use crate::simulation::{End, Simulation, Wanted};
 use crate::system::{Quantity, System};
 use vi_core::StepError;
 
@@ -78,7 +78,8 @@ impl Shots<'_> {
     /// The second derivatives of `weights_k · end_k`, with respect to the numbers of the Jacobian, for each end of
     /// [`Shots::ends`]. `weights` has 2N numbers for each.
     ///
-    /// They are central differences of the Jacobians. The change of each variable is 1e-5 of its largest size in all
+    /// They are exact for zero and one step of the methods of [`Run::curvature`](vi_core::Run::curvature). Otherwise
+    /// they are central differences of the Jacobians: the change of each variable is 1e-5 of its largest size in all
     /// nodes.
     #[must_use]
     #[allow(clippy::too_many_arguments)] // those of `ends`, and the weights
@@ -97,7 +98,7 @@ impl Shots<'_> {
         let changes = self.changes();
         let mut curvatures = Curvatures::default();
         for (index, (start, weights)) in self.starts().zip(weights.chunks(rows)).enumerate() {
-            match shooting.differences(start, &changes, weights) {
+            match shooting.curvature(start, &changes, weights) {
                 Ok(matrix) => curvatures.values.extend(matrix),
                 Err(error) => {
                     curvatures.values.resize(curvatures.values.len() + columns * columns, f64::NAN);
@@ -176,14 +177,14 @@ impl<'a> Shooting<'a> {
         (0..state).chain(self.wanted.parameters.iter().map(move |index| state + index))
     }
 
-    /// The end of the steps from one start, and its derivatives in each direction.
-    fn end(&self, start: &[f64]) -> Result<(Vec<f64>, Vec<Vec<f64>>), StepError> {
+    /// The run from one start.
+    fn begin(&self, start: &[f64]) -> Result<Box<dyn Simulation>, StepError> {
         let (q, rest) = start.split_at(self.n());
         let (p, rest) = rest.split_at(self.n());
         let (parameters, rest) = rest.split_at(self.system.parameters().len());
         let (h, t) = (rest[0], rest[1]);
         let own = self.system.with_parameters(parameters);
-        let start = if own.has_constraints() || own.is_first_order() {
+        let plan = if own.has_constraints() || own.is_first_order() {
             let mut v = Vec::new();
             own.evaluate(Quantity::Velocity, [&[t], q, p], &mut v)?;
             let PhasePoint { q, v, .. } = own.project(&PhasePoint { t, q: q.to_vec(), v })?.point;
@@ -191,10 +192,21 @@ impl<'a> Shooting<'a> {
         } else {
             Plan { h, t, q: q.to_vec(), p: Some(p.to_vec()), ..self.plan.clone() }
         };
-        let mut run = own.begin(&start)?;
+        own.begin(&plan)
+    }
+
+    /// The end of the steps from one start, and its derivatives in each direction.
+    fn end(&self, start: &[f64]) -> Result<(Vec<f64>, Vec<Vec<f64>>), StepError> {
+        let mut run = self.begin(start)?;
         let slopes = run.tangent(self.wanted, &mut || true)?.unwrap_or_default();
         let second = if self.wanted.has_velocities[1] { run.velocity()? } else { run.p().to_vec() };
         Ok((run.q().iter().copied().chain(second).collect(), slopes))
+    }
+
+    /// The second derivatives of `weights · end`.
+    fn curvature(&self, start: Vec<f64>, changes: &[f64], weights: &[f64]) -> Result<Vec<f64>, StepError> {
+        let exact = self.begin(&start)?.curvature(self.wanted, weights)?;
+        exact.map_or_else(|| self.differences(start, changes, weights), Ok)
     }
 
     /// The second derivatives of `weights · end`, by differences of these changes of the numbers of a start.

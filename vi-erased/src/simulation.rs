@@ -272,6 +272,15 @@ pub trait Session {
         wanted: Wanted<'_>,
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<Vec<f64>>>, StepError>;
+    /// The second derivatives of `weights·(q, p)`, or of `weights·(q, v)`, at the end that is wanted, with respect to
+    /// each coordinate, each momentum and the parameters at the start: a symmetric matrix, row by row. `weights` has two
+    /// numbers for each coordinate that varies; further ones are at rest. `None` for methods and ends without them. The
+    /// run does not change.
+    ///
+    /// # Errors
+    /// As [`Run::curvature`](vi_core::Run::curvature); the error of a failed step.
+    #[cfg(feature = "derivatives")]
+    fn curvature(&self, wanted: Wanted<'_>, weights: &[f64]) -> Result<Option<Vec<f64>>, StepError>;
     /// As [`Session::tangent`] at each of these times, in the order of the run, which keeps its own steps and is near the
     /// last one after.
     ///

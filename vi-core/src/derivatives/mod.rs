@@ -22,10 +22,12 @@
 //! | `steps` | tangent vectors of one step, for each method |
 //! | `splitting` | those of a splitting step |
 //! | `tangent` | tangent vectors along a run, to times, events and across changes |
+//! | `curvature` | second derivatives of a step |
 //! | `adjoint` | the gradient of an objective, by one backward pass |
 //! | `lyapunov` | Lyapunov exponents |
 
 mod adjoint;
+pub(crate) mod curvature;
 mod lyapunov;
 mod splitting;
 mod steps;
@@ -33,6 +35,7 @@ mod tangent;
 mod variation;
 
 pub use adjoint::{Covector, Gradient, Objective, gradient};
+pub use curvature::velocity_curvature;
 pub use lyapunov::Lyapunov;
 pub use steps::Differentiable;
 pub(crate) use steps::{Sought, check_fallback, not_last, singular};

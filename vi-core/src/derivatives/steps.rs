@@ -4,6 +4,8 @@
 //! unknowns of the step are stored. The system provides the derivatives with respect to them and to the coordinates of
 //! the node; dual numbers provide those with respect to the time and the parameters, if a direction needs them.
 
+use super::adjoint::Covector;
+use super::curvature;
 use super::variation::{TOGETHER, Variation, Varied, more_parameters, not_finite};
 use crate::angles;
 use crate::energy_preserving::interval::Last;
@@ -17,7 +19,7 @@ use crate::run::Run;
 use crate::stepping::{
     Convertible, Discretized, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives,
 };
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// A method whose steps have derivatives.
 pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
@@ -47,6 +49,19 @@ pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
         let mut aside = Run::resumed(method.clone(), *system, (*node, length, memory));
         aside.step()?;
         aside.vary(node, variations)
+    }
+
+    /// [`Run::curvature`]; `None` by default.
+    ///
+    /// # Errors
+    /// As [`Run::curvature`].
+    fn curvature(
+        _run: &Run<Self, S, N>,
+        _before: &Node<N>,
+        _directions: &[Variation<N>],
+        _weights: &Covector<N>,
+    ) -> Result<Option<DMatrix<f64>>, StepError> {
+        Ok(None)
     }
 
     /// Sets `energy` of tangent vectors at the start of a run by [`Start::integrate`](crate::Start::integrate): the
@@ -102,7 +117,7 @@ pub(crate) fn singular(t: f64) -> StepError {
 }
 
 /// The error of an equation `A x = rhs` for tangent vectors without a solution.
-fn unsolved<A: Matrix<N, f64>, const N: usize>(matrix: &A, rhs: &SVector<f64, N>, t: f64) -> StepError {
+pub(super) fn unsolved<A: Matrix<N, f64>, const N: usize>(matrix: &A, rhs: &SVector<f64, N>, t: f64) -> StepError {
     let are_finite = matrix.dense().iter().chain(rhs).all(|entry| entry.is_finite());
     if are_finite { singular(t) } else { not_finite(t) }
 }
@@ -146,7 +161,10 @@ fn slopes<T: Real, const N: usize, const W: usize>(of: &SVector<Along<T, W>, N>)
 }
 
 /// Derivatives of each entry in one direction.
-fn slope_along<const N: usize, const W: usize>(direction: usize, of: &SVector<Varied<W>, N>) -> SVector<f64, N> {
+pub(super) fn slope_along<const N: usize, const W: usize>(
+    direction: usize,
+    of: &SVector<Varied<W>, N>,
+) -> SVector<f64, N> {
     of.map(|entry| entry.slope.0[direction])
 }
 
@@ -241,6 +259,18 @@ where
 {
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         vary_fixed(run, run.memory.steps.v(), run.memory.steps.has_parameters_of_last(), before, variations)
+    }
+
+    fn curvature(
+        run: &Run<Self, S, N>,
+        before: &Node<N>,
+        directions: &[Variation<N>],
+        weights: &Covector<N>,
+    ) -> Result<Option<DMatrix<f64>>, StepError> {
+        let Run { system, node, memory, h, .. } = run;
+        let step = (*h, &memory.steps.v());
+        check_last(before, step, node, memory.steps.has_parameters_of_last())?;
+        curvature::of_momentum_step(system, before, step, directions, weights).map(Some)
     }
 }
 

@@ -309,7 +309,12 @@ where
     // L_v(t, q, v) = p
     let point = varied.point(along(*t, variation.t), &q.zip_map(&variation.q, along), &v.map(Dual::fixed));
     let of_v = linear::solve(&matrix, &(variation.p - point.momentum.map(|entry| entry.slope)));
-    of_v.ok_or(StepError::Singular { t: *t, matrix: "mass matrix" })
+    of_v.ok_or(singular_mass(*t))
+}
+
+/// The mass matrix at the time t is singular.
+pub(super) fn singular_mass(t: f64) -> StepError {
+    StepError::Singular { t, matrix: "mass matrix" }
 }
 
 /// A system with parameters that vary in one direction.

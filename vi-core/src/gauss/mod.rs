@@ -22,7 +22,7 @@
 //! | `density` | the step density of order 2s |
 //! | `history` | the memory of energy-preserving steps |
 //! | `slots` | the discrete Lagrangian of a step, with derivatives, forces and powers, for checks |
-//! | `variation` | derivatives of a step |
+//! | `variation`, `curvature` | first and second derivatives of a step |
 //! | `rounding` | residuals of stalled stages, by running error analysis |
 //! | `transformed` | the same in transformed time |
 
@@ -31,6 +31,8 @@
 
 pub(crate) mod branch;
 mod connected;
+#[cfg(feature = "alloc")]
+pub(crate) mod curvature;
 pub mod density;
 pub(crate) mod energies;
 #[cfg(feature = "alloc")]

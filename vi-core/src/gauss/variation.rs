@@ -21,7 +21,7 @@ use super::stages::{
     AtStages, LOOPED, Stages, add_products, gathered, maximum, product, scaled, set, stage, sum, times, weights,
 };
 use super::tableau::Tableau;
-use crate::derivatives::{Differentiable, Sought, TOGETHER, Variation, Varied, not_finite, singular};
+use crate::derivatives::{Covector, Differentiable, Sought, TOGETHER, Variation, Varied, not_finite, singular};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::linear::{Matrix, row_by_row};
@@ -34,7 +34,7 @@ use crate::real::{Dual, Lane, Lanes, Number};
 use crate::run::Run;
 use crate::stepping::Convertible;
 use alloc::vec::Vec;
-use nalgebra::SVector;
+use nalgebra::{DMatrix, SVector};
 use vi_dispatch::{Instructions, Loop};
 
 impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for Gauss<STAGES>
@@ -44,6 +44,15 @@ where
     /// Allocates the joint matrix of all stages.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         Solver::<S, N, STAGES>::vary(&run.system, (&run.node, &run.memory), before, variations)
+    }
+
+    fn curvature(
+        run: &Run<Self, S, N>,
+        before: &Node<N>,
+        directions: &[Variation<N>],
+        weights: &Covector<N>,
+    ) -> Result<Option<DMatrix<f64>>, StepError> {
+        Solver::<S, N, STAGES>::curvature(&run.system, (&run.node, &run.memory), before, (directions, weights))
     }
 }
 
@@ -163,63 +172,109 @@ where
 /// derivatives of its energies.
 pub(crate) fn vary<S, const N: usize, const STAGES: usize>(
     system: &S,
-    (before, h, stages): (&Node<N>, f64, &Stages<N, STAGES>),
+    step: (&Node<N>, f64, &Stages<N, STAGES>),
     variations: &mut [Variation<N>],
-    mut energies: Option<&mut Vec<VariedEnergies>>,
+    energies: Option<&mut Vec<VariedEnergies>>,
 ) -> Result<(), StepError>
 where
     S: Convertible<N>,
 {
-    let instructions = Instructions::detected();
-    let rare = ErasedSystem::of(system);
-    let equations = equations(&rare, before, h, *stages);
-    let at = Solution {
-        times: times::<N, STAGES, false>(before, h),
-        positions: equations.start(),
-        velocities: equations.velocity(),
+    let mut linearized = Linearized::of(system, step);
+    let Some(energies) = energies else { return linearized.vary(system, variations, None) };
+    let mut add = |Linearized { at, h, .. }: &Linearized<N, STAGES>, from: &[Variation<N>], velocities: &[_]| {
+        energies.extend(varied_energies(system, at, *h, from, velocities));
     };
-    // On the heap: arrays of long systems would overflow the stack of a thread.
-    let mut rows = vec![[[0.0; STAGES]; N]; 4 * N + N * STAGES + TOGETHER];
-    let (derivatives, equations) = rows.split_at_mut(4 * N);
-    let derivatives = derivatives.as_chunks_mut::<N>().0;
-    let are_found = S::SIDE_BY_SIDE && instructions.run(Differentiate { system, at: &at, derivatives });
-    if !are_found || !are_finite(derivatives) {
-        // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
-        differentiate_in_scalars(&rare, &at, derivatives);
-    }
-    for variations in variations.chunks_mut(TOGETHER) {
-        let explicit = explicit(system, &at, variations, before.t)?;
-        let from = if energies.is_some() { variations.to_vec() } else { Vec::new() };
-        let are_found = instructions.run(Vary { derivatives, equations, h, explicit, variations });
-        if !are_found {
-            // Excludes singular equations, and input that was not finite.
-            Variation::check_finite(variations, before.t)?;
-            return Err(if are_finite(derivatives) { singular(before.t) } else { not_finite(before.t) });
+    linearized.vary(system, variations, Some(&mut add))
+}
+
+/// Takes the velocities of the stages along tangent vectors at the start of a step.
+pub(super) type Take<'a, const N: usize, const S: usize> =
+    &'a mut dyn FnMut(&Linearized<N, S>, &[Variation<N>], &[Stages<N, S>]);
+
+/// A solved step with the derivatives of its equations.
+pub(super) struct Linearized<const N: usize, const S: usize> {
+    /// Time of the start.
+    t: f64,
+    pub(super) h: f64,
+    pub(super) at: Solution<N, S>,
+    /// The derivatives at the stages, then a buffer for the equations. On the heap: arrays of long systems would
+    /// overflow the stack of a thread.
+    rows: Vec<Stages<N, S>>,
+}
+
+impl<const N: usize, const STAGES: usize> Linearized<N, STAGES> {
+    /// The step of length h from a node, with these stages.
+    pub(super) fn of<S: Convertible<N>>(system: &S, (before, h, stages): (&Node<N>, f64, &Stages<N, STAGES>)) -> Self {
+        let rare = ErasedSystem::of(system);
+        let equations = equations(&rare, before, h, *stages);
+        let at = Solution {
+            times: times::<N, STAGES, false>(before, h),
+            positions: equations.start(),
+            velocities: equations.velocity(),
+        };
+        let mut rows = vec![[[0.0; STAGES]; N]; 4 * N + N * STAGES + TOGETHER];
+        let derivatives = rows[..4 * N].as_chunks_mut::<N>().0;
+        let are_found = S::SIDE_BY_SIDE && Instructions::detected().run(Differentiate { system, at: &at, derivatives });
+        if !are_found || !are_finite(derivatives) {
+            // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
+            differentiate_in_scalars(&rare, &at, derivatives);
         }
-        if let Some(energies) = &mut energies {
-            energies.extend(varied_energies(system, &at, h, &from, &equations[N * STAGES..]));
-        }
+        Self { t: before.t, h, at, rows }
     }
-    Variation::check_finite(variations, before.t)
+
+    /// C, M, K and B at the stages.
+    pub(super) fn derivatives(&self) -> &Derivatives<N, STAGES> {
+        self.rows[..4 * N].as_chunks().0
+    }
+
+    /// Maps tangent vectors at the start of the step to those at its end.
+    pub(super) fn vary<S: Convertible<N>>(
+        &mut self,
+        system: &S,
+        variations: &mut [Variation<N>],
+        mut take: Option<Take<'_, N, STAGES>>,
+    ) -> Result<(), StepError> {
+        let Self { t, h, .. } = *self;
+        for variations in variations.chunks_mut(TOGETHER) {
+            let explicit = explicit(system, &self.at, variations, t)?;
+            let from = if take.is_some() { variations.to_vec() } else { Vec::new() };
+            let (derivatives, equations) = self.rows.split_at_mut(4 * N);
+            let derivatives = derivatives.as_chunks().0;
+            if !Instructions::detected().run(Vary { derivatives, equations, h, explicit, variations }) {
+                // Excludes singular equations, and input that was not finite.
+                Variation::check_finite(variations, t)?;
+                return Err(self.unsolved());
+            }
+            if let Some(take) = &mut take {
+                take(self, &from, &self.rows[4 * N + N * STAGES..]);
+            }
+        }
+        Variation::check_finite(variations, t)
+    }
+
+    /// The error of equations without a solution.
+    pub(super) fn unsolved(&self) -> StepError {
+        if are_finite(self.derivatives()) { singular(self.t) } else { not_finite(self.t) }
+    }
 }
 
 /// The stages of a solved step.
-struct Solution<const N: usize, const S: usize> {
-    times: [f64; S],
+pub(super) struct Solution<const N: usize, const S: usize> {
+    pub(super) times: [f64; S],
     positions: Stages<N, S>,
-    velocities: Stages<N, S>,
+    pub(super) velocities: Stages<N, S>,
 }
 
 impl<const N: usize, const S: usize> Solution<N, S> {
     /// Derivative of the positions with respect to the length of the step at fixed velocities: `Σ_j a_ij V_j`.
-    fn moved(&self) -> Stages<N, S> {
+    pub(super) fn moved(&self) -> Stages<N, S> {
         integrals::<N, S, false>(&self.velocities, &weights(1.0))
     }
 }
 
 /// Derivatives of L_v and F at the stages: C, M, K and B. Entry (k, l) is the derivative of component k with respect to
 /// coordinate or velocity l, as a row of stages.
-type Derivatives<const N: usize, const S: usize> = [[Stages<N, S>; N]];
+pub(super) type Derivatives<const N: usize, const S: usize> = [[Stages<N, S>; N]];
 
 /// Whether every number is finite.
 fn are_finite<const N: usize, const S: usize>(derivatives: &Derivatives<N, S>) -> bool {
@@ -413,7 +468,7 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
 /// The column of the matrix for the velocity of coordinate l at stage j. Its entry i is `δ_ij M_i + h a_ij (C_i − B_j)
 /// − h² Σ_m a_im a_mj K_m`.
 #[inline(always)]
-fn column<const N: usize, const S: usize, const FUSED: bool>(
+pub(super) fn column<const N: usize, const S: usize, const FUSED: bool>(
     [momentum_dq, mass, force_dq, force_dv]: [&[Stages<N, S>; N]; 4],
     weights: &[f64; S],
     [l, j]: [usize; 2],
@@ -454,7 +509,10 @@ fn constant<const N: usize, const S: usize>(vector: &SVector<f64, N>) -> Stages<
 
 /// `h Σ_j a_ij x_j` at the stages i.
 #[inline(always)]
-fn integrals<const N: usize, const S: usize, const FUSED: bool>(x: &Stages<N, S>, weights: &[f64; S]) -> Stages<N, S> {
+pub(super) fn integrals<const N: usize, const S: usize, const FUSED: bool>(
+    x: &Stages<N, S>,
+    weights: &[f64; S],
+) -> Stages<N, S> {
     let first = const { &Tableau::<S>::VALUES.first };
     let mut integrals = [[0.0; S]; N];
     for k in 0..N {
@@ -504,7 +562,7 @@ fn comparable<const N: usize, const S: usize>(mass: &[Stages<N, S>; N]) -> [f64;
 /// among rows scaled by the mass matrix; the right sides become the solutions. Returns whether all are finite, which is
 /// false for a singular matrix.
 #[inline(always)]
-fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
+pub(super) fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
     equations: &mut [Stages<N, S>],
     mass: &[Stages<N, S>; N],
 ) -> bool {

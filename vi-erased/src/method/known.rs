@@ -6,8 +6,10 @@ use crate::simulation::ShiftedEnergy;
 use core::fmt::Debug;
 use core::marker::PhantomData;
 #[cfg(feature = "derivatives")]
-use vi_core::derivatives::{Differentiable, Variation};
+use vi_core::derivatives::{Covector, Differentiable, Variation};
 use vi_core::method::{Memory as _, Problem, Report};
+#[cfg(feature = "derivatives")]
+use vi_core::nalgebra::DMatrix;
 use vi_core::node::Node;
 #[cfg(feature = "sessions")]
 use vi_core::run::Crossing;
@@ -155,6 +157,14 @@ pub(super) trait ErasedMemory<S, const N: usize>: Debug + Send + Sync {
     ) -> Result<(), StepError>;
     #[cfg(feature = "derivatives")]
     fn vary_start(&self, system: &S, parts: Parts<(), N>, variations: &mut [Variation<N>]) -> Result<(), StepError>;
+    #[cfg(feature = "derivatives")]
+    fn curvature(
+        &self,
+        system: &S,
+        parts: Parts<(), N>,
+        before: &Node<N>,
+        of: (&[Variation<N>], &Covector<N>),
+    ) -> Result<Option<DMatrix<f64>>, StepError>;
 }
 
 /// A system S as a method takes it: itself, or in a wrapper.
@@ -462,5 +472,16 @@ impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usiz
     #[cfg(feature = "derivatives")]
     fn vary_start(&self, system: &S, parts: Parts<(), N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         M::vary_start(&self.run(system, parts), variations)
+    }
+
+    #[cfg(feature = "derivatives")]
+    fn curvature(
+        &self,
+        system: &S,
+        parts: Parts<(), N>,
+        before: &Node<N>,
+        (directions, weights): (&[Variation<N>], &Covector<N>),
+    ) -> Result<Option<DMatrix<f64>>, StepError> {
+        M::curvature(&self.run(system, parts), before, directions, weights)
     }
 }

@@ -14,9 +14,11 @@
 
 use super::{Gauss, StageSolver};
 #[cfg(feature = "alloc")]
-use crate::derivatives::{Variation, not_last};
+use crate::derivatives::{Covector, Variation, not_last};
 use crate::error::StepError;
 use crate::first_order;
+#[cfg(feature = "alloc")]
+use crate::gauss::curvature::curvature;
 use crate::gauss::energies::energies;
 use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
 use crate::gauss::general::equations;
@@ -35,6 +37,8 @@ use crate::node::Node;
 use crate::run::{DenseOutput, Hermite, Run};
 use crate::state::State;
 use crate::stepping::Convertible;
+#[cfg(feature = "alloc")]
+use nalgebra::DMatrix;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 use vi_dispatch::{Instructions, Loop};
 
@@ -87,6 +91,20 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
     /// Whether the stages belong to the step that led to the node. After a change of parameters they do not.
     pub(crate) fn has_step(&self, node: &Node<N>) -> bool {
         self.convergence.has_begun() && self.before != *node
+    }
+
+    /// The step that led to the node, if it began at `before`.
+    ///
+    /// # Errors
+    /// [`StepError::NoDerivative`] otherwise.
+    #[cfg(feature = "alloc")]
+    fn last<'a>(
+        &'a self,
+        node: &Node<N>,
+        before: &'a Node<N>,
+    ) -> Result<(&'a Node<N>, f64, &'a Stages<N, S>), StepError> {
+        let is_last = self.has_step(node) && self.before == *before;
+        if is_last { Ok((before, self.h, &self.stages.data.0)) } else { Err(not_last(before.t)) }
     }
 
     /// The initial data of the next step of equal length.
@@ -375,12 +393,21 @@ where
         before: &Node<N>,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError> {
-        let LastStages { h, stages, before: start, .. } = memory;
-        if !memory.has_step(node) || start != before {
-            return Err(not_last(before.t));
-        }
-        vary(system, (before, *h, &stages.data.0), variations, None)?;
+        vary(system, memory.last(node, before)?, variations, None)?;
         if system.is_first_order() { first_order::vary(system, node, variations) } else { Ok(()) }
+    }
+
+    #[cfg(feature = "alloc")]
+    fn curvature(
+        system: &S,
+        (node, memory): (&Node<N>, &LastStages<N, STAGES>),
+        before: &Node<N>,
+        (directions, weights): (&[Variation<N>], &Covector<N>),
+    ) -> Result<Option<DMatrix<f64>>, StepError> {
+        if system.is_first_order() {
+            return Ok(None);
+        }
+        curvature(system, memory.last(node, before)?, directions, weights).map(Some)
     }
 }
 

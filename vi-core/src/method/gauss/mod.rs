@@ -14,7 +14,7 @@ pub mod free;
 
 use super::{Method, Problem, Report, Storable};
 #[cfg(feature = "alloc")]
-use crate::derivatives::Variation;
+use crate::derivatives::{Covector, Variation};
 use crate::error::StepError;
 use crate::gauss::stages::Stages;
 use crate::kind::Kind;
@@ -25,6 +25,8 @@ use crate::stepping::Convertible;
 #[cfg(feature = "alloc")]
 pub use bound::BoundGauss;
 pub use free::FreeGauss;
+#[cfg(feature = "alloc")]
+use nalgebra::DMatrix;
 
 /// Fixed steps of order 2 STAGES, with 1 to 16 stages: `Gauss::<8>`. See the [module](self).
 ///
@@ -64,6 +66,21 @@ pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memo
         before: &Node<N>,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError>;
+
+    /// [`Run::curvature`](crate::Run::curvature) along directions, with weights of the end.
+    ///
+    /// # Errors
+    /// As there.
+    #[cfg(feature = "alloc")]
+    #[doc(hidden)]
+    fn curvature(
+        _system: &S,
+        _run: (&Node<N>, &Self::Memory),
+        _before: &Node<N>,
+        _of: (&[Variation<N>], &Covector<N>),
+    ) -> Result<Option<DMatrix<f64>>, StepError> {
+        Ok(None)
+    }
 }
 
 /// The solver of the kind of a system.
