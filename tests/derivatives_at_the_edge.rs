@@ -106,8 +106,10 @@ fn only_the_last_step_is_differentiated() {
     let mut run = fixed;
     let first = *run.node();
     let one = Variation::of_coordinate(0).expect("a coordinate");
-    let second =
-        |run: &Run<FixedStep, Hill, 1>, other: &Variation<1>| run.second_variation(&first, &one, other).map(drop);
+    let end = Covector { q: [1.0].into(), p: [-1.0].into(), ..Covector::zero() };
+    let second = |run: &Run<FixedStep, Hill, 1>, other: &Variation<1>| {
+        run.curvature(&first, &[one.clone(), other.clone()], &end).map(drop)
+    };
     assert!(has_none(&second(&run, &one), 0.7, "last"));
     run.step().expect("solvable");
     second(&run, &one).expect("the last step");
@@ -212,10 +214,15 @@ fn what_grows_beyond_the_range_of_numbers_is_told() {
     run.step().expect("solvable");
     let huge = Variation { q: SVector::from([1e155]), parameters: vec![1e155], ..Variation::zero() };
     let one = Variation::of_coordinate(0).expect("a coordinate");
-    assert!(run.second_variation(&before, &one, &one).is_ok());
-    assert!(is_not_finite(&run.second_variation(&before, &huge, &huge), "tangent vector"));
+    let end = Covector { q: [1.0].into(), p: [-1.0].into(), ..Covector::zero() };
+    assert!(run.curvature(&before, &[one], &end).is_ok());
+    assert!(is_not_finite(&run.curvature(&before, &[huge.clone()], &end), "tangent vector"));
+    let mut collocated = gauss.clone();
+    let first = *collocated.node();
+    collocated.step().expect("solvable");
+    assert!(is_not_finite(&collocated.curvature(&first, &[huge], &end), "tangent vector"));
     let large = Variation { q: SVector::from([1e154]), parameters: vec![1e154], ..Variation::zero() };
-    assert!(is_not_finite(&run.second_variation(&before, &large, &large), "tangent vector"));
+    assert!(is_not_finite(&run.curvature(&before, &[large], &end), "tangent vector"));
     // The input is not a number.
     let none = Variation { q: SVector::from([f64::NAN]), ..Variation::zero() };
     assert!(is_not_finite(&Tangent::new(fixed, vec![none.clone()]).step(), "tangent vector"));

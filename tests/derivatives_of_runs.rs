@@ -147,43 +147,6 @@ fn an_energy_preserving_step_varies_in_its_length() {
     assert!(matches!(refused, Err(StepError::NoDerivative { .. })), "{refused:?}");
 }
 
-#[test]
-fn second_variations_are_differences_of_first_ones() {
-    let system = |a: f64| Everything { a: 1.4 + a, ..Everything::default() };
-    let start = State { t: 0.1, q: SVector::from([0.6, -0.4]), p: SVector::from([0.3, 0.5]) };
-    let mut directions = Variation::of_state();
-    directions.push(Variation::of_parameter::<Everything>("a").expect("a parameter"));
-    let mut worst = 0.0_f64;
-    let mut largest = 0.0_f64;
-    for one in &directions {
-        for other in &directions {
-            let varied = |s: f64| {
-                let a = if other.parameters.is_empty() { 0.0 } else { s };
-                let state = State { q: start.q + other.q * s, p: start.p + other.p * s, ..start };
-                let mut tangent = Tangent::new(
-                    system(a).at_state(state).integrate(FixedStep, 0.2).expect("valid"),
-                    vec![one.clone()],
-                );
-                tangent.step().expect("solvable");
-                let variation = &tangent.variations()[0];
-                (variation.q, variation.p)
-            };
-            let s = 1e-3;
-            let [a, b, c, d] = [s, -s, 2.0 * s, -2.0 * s].map(varied);
-            let q = ((a.0 - b.0) * 8.0 - (c.0 - d.0)) / (12.0 * s);
-            let p = ((a.1 - b.1) * 8.0 - (c.1 - d.1)) / (12.0 * s);
-            let mut run = system(0.0).at_state(start).integrate(FixedStep, 0.2).expect("valid");
-            let before = *run.node();
-            run.step().expect("solvable");
-            let (found_q, found_p) = run.second_variation(&before, one, other).expect("regular");
-            worst = worst.max((q - found_q).norm() + (p - found_p).norm());
-            largest = largest.max(found_q.norm() + found_p.norm());
-        }
-    }
-    // 2.5e-13 and 0.47.
-    assert!(worst < 1e-12 && largest > 0.1, "{worst} {largest}");
-}
-
 /// The squared distances from a trajectory, at every node.
 struct SquaredDistances;
 

@@ -6,7 +6,7 @@
 
 use super::adjoint::Covector;
 use super::curvature;
-use super::variation::{TOGETHER, Variation, Varied, more_parameters, not_finite};
+use super::variation::{TOGETHER, Variation, Varied, not_finite};
 use crate::angles;
 use crate::energy_preserving::interval::Last;
 use crate::error::StepError;
@@ -14,12 +14,12 @@ use crate::linear::{self, Matrix};
 use crate::method::{Composition, Connected, EnergyPreserving, Fallback, FixedStep, Method};
 use crate::momentum::steps::Steps;
 use crate::node::Node;
-use crate::real::{Dual, Real, Slopes};
+use crate::real::Dual;
 use crate::run::Run;
 use crate::stepping::{
     Convertible, Discretized, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives,
 };
-use nalgebra::{DMatrix, SMatrix, SVector};
+use nalgebra::{DMatrix, SVector};
 
 /// A method whose steps have derivatives.
 pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
@@ -152,55 +152,12 @@ pub(crate) fn not_last(t: f64) -> StepError {
     StepError::NoDerivative { t, because }
 }
 
-/// A number with derivatives in W directions; its value may itself be dual.
-type Along<T, const W: usize> = Dual<T, Slopes<T, W>>;
-
-/// Derivatives of each entry, one column per direction.
-fn slopes<T: Real, const N: usize, const W: usize>(of: &SVector<Along<T, W>, N>) -> SMatrix<T, N, W> {
-    SMatrix::from_fn(|row, direction| of[row].slope.0[direction])
-}
-
 /// Derivatives of each entry in one direction.
 pub(super) fn slope_along<const N: usize, const W: usize>(
     direction: usize,
     of: &SVector<Varied<W>, N>,
 ) -> SVector<f64, N> {
     of.map(|entry| entry.slope.0[direction])
-}
-
-/// A vector with these derivatives in each direction.
-fn varied<T: Real, const N: usize, const W: usize>(
-    value: &SVector<T, N>,
-    slopes: &SMatrix<T, N, W>,
-) -> SVector<Along<T, W>, N> {
-    SVector::from_fn(|row, _| Dual {
-        value: value[row],
-        slope: Slopes(slopes.row(row).into_owned().data.0.map(|[slope]| slope)),
-    })
-}
-
-/// The node after the momentum step `(v, h)` of a system, in dual numbers whose values solve it. One Newton step with
-/// the Jacobian over the numbers T sets the derivatives of v. `None` if the Jacobian is singular.
-fn momentum_step<T, P, S, const N: usize, const W: usize>(
-    plain: &P,
-    system: &S,
-    mut node: Node<N, Along<T, W>>,
-    h: T,
-    v: &SVector<T, N>,
-) -> Option<Node<N, Along<T, W>>>
-where
-    T: Real,
-    P: FixedStepping<N, T>,
-    S: FixedStepping<N, Along<T, W>>,
-{
-    let jacobian = plain.momentum_equation(&node.map(|number| number.value), h, v).jacobian;
-    let h = Dual::fixed(h);
-    let residual = system.momentum_residual(&node, h, &v.map(Dual::fixed)).residual;
-    let change = linear::solve(&jacobian, &slopes(&residual))?;
-    let v = varied(v, &-change);
-    let increment = system.momentum_residual(&node, h, &v).increment;
-    node.advance(h, &v, &increment);
-    Some(node)
 }
 
 /// Solves `A x = rhs` by the inverse of A, or by A itself if the inverse lost a pivot.
@@ -293,74 +250,6 @@ fn vary_fixed<M: Method<S, N>, S: Discretized<N>, const N: usize>(
 ) -> Result<(), StepError> {
     check_last(before, (run.h, &v), &run.node, has_its_parameters)?;
     vary(&run.system, before, [run.h, 1.0], &v, variations)
-}
-
-impl<S, const N: usize> Run<FixedStep, S, N>
-where
-    S: Discretized<N>,
-{
-    /// Second derivatives of the last step, which began at `before`: the derivative, along `other`, of the tangent
-    /// vector at the end node that belongs to `one`; coordinates, then momenta. Both are tangent vectors at `before`
-    /// and constant.
-    ///
-    /// # Errors
-    /// As [`Differentiable::vary`].
-    pub fn second_variation(
-        &self,
-        before: &Node<N>,
-        one: &Variation<N>,
-        other: &Variation<N>,
-    ) -> Result<(SVector<f64, N>, SVector<f64, N>), StepError> {
-        let (h, v) = (self.h, self.memory.steps.v());
-        let before = &angles::reduced_node(self.system(), before);
-        check_last(before, (h, &v), &self.node, self.memory.steps.has_parameters_of_last())?;
-        // With a regular matrix, the tangent vectors themselves are out of range.
-        let unsolved = || {
-            let equation = self.system().momentum_equation(before, h, &v);
-            linear::solve(&equation.jacobian, &v)
-                .map_or_else(|| unsolved(&equation.jacobian, &v, before.t), |_| not_finite(before.t))
-        };
-        let directions = [one, other];
-        if directions.iter().any(|of| of.parameters.len() > self.system.parameters().len()) {
-            return Err(more_parameters(before.t));
-        }
-        let mut system = self.system().steps::<Along<Varied<1>, 1>>();
-        for (index, name) in self.system.parameters().iter().enumerate() {
-            if let Some(parameter) = crate::lagrangian::Parameters::parameter_mut(&mut system, name) {
-                parameter.slope.0[0].value = one.parameters.get(index).copied().unwrap_or(0.0);
-                parameter.value.slope.0[0] = other.parameters.get(index).copied().unwrap_or(0.0);
-            }
-        }
-        let [one, other] = [one, other].map(core::slice::from_ref);
-        let inner = Variation::node::<1>(other, before);
-        let node = nested(&Variation::node(one, before), &inner);
-        // The velocity along the other direction; the dual numbers of the first differentiate its equation again.
-        let plain = Variation::steps::<_, 1>(other, self.system());
-        let equation = plain.momentum_equation(&inner, Dual::fixed(h), &v.map(Dual::fixed));
-        let change = linear::solve(&equation.jacobian, &equation.residual).ok_or_else(unsolved)?;
-        let varied = v.zip_map(&change, |value, change| Dual { value, slope: -change.slope });
-        let node = momentum_step(&plain, &system, node, Dual::fixed(h), &varied).ok_or_else(unsolved)?;
-        let second = |number: Along<Varied<1>, 1>| number.slope.0[0].slope.0[0];
-        let q: SVector<f64, N> = SVector::from_fn(|k, _| second(node.q[k]) + second(node.q_low[k]));
-        let p: SVector<f64, N> = SVector::from_fn(|k, _| second(node.p[k]) + second(node.p_low[k]));
-        let are_finite = q.iter().chain(&p).all(|entry| entry.is_finite());
-        if are_finite { Ok((q, p)) } else { Err(not_finite(before.t)) }
-    }
-}
-
-/// A node with derivatives in two directions.
-fn nested<const N: usize>(one: &Node<N, Varied<1>>, other: &Node<N, Varied<1>>) -> Node<N, Along<Varied<1>, 1>> {
-    let both = |one: Varied<1>, other: Varied<1>| Dual { value: other, slope: Slopes(one.slope.0.map(Dual::fixed)) };
-    Node {
-        t: both(one.t, other.t),
-        t_low: both(one.t_low, other.t_low),
-        q: one.q.zip_map(&other.q, both),
-        q_low: one.q_low.zip_map(&other.q_low, both),
-        p: one.p.zip_map(&other.p, both),
-        p_low: one.p_low.zip_map(&other.p_low, both),
-        energy: both(one.energy, other.energy),
-        energy_low: both(one.energy_low, other.energy_low),
-    }
 }
 
 impl<S, const N: usize> Differentiable<S, N> for Composition
