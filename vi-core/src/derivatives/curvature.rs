@@ -107,9 +107,9 @@ pub(crate) fn sides<Y: Motion<N, Curved>, const N: usize>(
 
 impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Run<M, S, N> {
     /// The second derivatives of `weights·z` with respect to pairs of tangent vectors at `before`, where z is the end
-    /// node of the last step, which began at `before`: a symmetric matrix, exact to rounding. `None` for methods without
-    /// them; those of [`Gauss`](crate::Gauss) and [`FixedStep`](crate::FixedStep) exist for systems without constraints
-    /// whose L is not linear in the velocities.
+    /// node of the last step, which began at `before`: a symmetric matrix, exact to rounding. [`FixedStep`](crate::FixedStep),
+    /// [`Composition`](crate::Composition) and [`Gauss`](crate::Gauss) have them, for systems without constraints whose L
+    /// is not linear in the velocities; otherwise `None`.
     ///
     /// # Errors
     /// As [`Run::vary`].
@@ -169,22 +169,25 @@ pub fn velocity_curvature<S: Convertible<N>, const N: usize>(
     Ok(Some((Covector { q, p: -multipliers, ..Covector::zero() }, matrix)))
 }
 
-/// The second derivatives of the weighted end of the momentum step `(v, h)` of a system from a node.
+/// The first derivatives of the weighted end of the momentum step `(v, h)` from a node with respect to q and p, and its
+/// second derivatives along pairs of tangent vectors. The length h is `part` times that of a whole step.
 pub(super) fn of_momentum_step<S: Discretized<N>, const N: usize>(
     system: &S,
     node: &Node<N>,
-    (h, v): (f64, &SVector<f64, N>),
+    [h, part]: [f64; 2],
+    v: &SVector<f64, N>,
     variations: &[Variation<N>],
     end: &Covector<N>,
-) -> Result<DMatrix<f64>, StepError> {
-    let MomentumDerivatives { residual_dv, increment_dv, .. } = &system.momentum_derivatives(node, h, v);
+) -> Result<(Covector<N>, DMatrix<f64>), StepError> {
+    let derivatives = &system.momentum_derivatives(node, h, v);
+    let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = derivatives;
     let right = -(end.q * h + increment_dv.dense().tr_mul(&end.p));
     let unsolved = |right: &_| unsolved(residual_dv, right, node.t);
     let multipliers = linear::solve(&residual_dv.dense().transpose(), &right).ok_or_else(|| unsolved(&right))?;
     let mut directions = Vec::with_capacity(variations.len());
     for variations in variations.chunks(TOGETHER) {
         let system: S::Steps<Varied> = Variation::steps(variations, system);
-        let length = Variation::number(variations, h, |variation| variation.h);
+        let length = Variation::number(variations, h, |variation| part * variation.h);
         let varied = system.momentum_residual(&Variation::node(variations, node), length, &v.map(Dual::fixed));
         for (direction, start) in variations.iter().enumerate() {
             let residual = slope_along(direction, &varied.residual);
@@ -193,16 +196,18 @@ pub(super) fn of_momentum_step<S: Discretized<N>, const N: usize>(
         }
     }
     let curved = system.steps::<Curved>();
-    second_derivatives(&directions, node.t, |pairs| {
+    let matrix = second_derivatives(&directions, node.t, |pairs| {
         let system = pairs.vary(system.parameters(), curved, |of| &of.start.parameters);
         let t = pairs.number(node.t, |of| of.start.t);
         let q = pairs.vector(&node.q, |of| &of.start.q);
-        let h = pairs.number(h, |of| of.start.h);
+        let h = pairs.number(h, |of| part * of.start.h);
         let v = pairs.vector(v, |of| &of.v);
         // Momenta are in the residual alone, linearly.
         let node = Node { t, q, ..node.map(Curved::real) };
         let MomentumResidual { residual, increment, .. } = system.momentum_residual(&node, h, &v);
         let [drift, kick] = [&end.q, &end.p].map(|weights| weights.map(Curved::real));
         residual.dot(&multipliers.map(Curved::real)) + increment.dot(&kick) + h * v.dot(&drift)
-    })
+    })?;
+    let q = end.q + residual_dq.dense().tr_mul(&multipliers) + increment_dq.dense().tr_mul(&end.p);
+    Ok((Covector { q, p: end.p - multipliers, ..Covector::zero() }, matrix))
 }

@@ -19,6 +19,7 @@ use crate::run::Run;
 use crate::stepping::{
     Convertible, Discretized, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives,
 };
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, SVector};
 
 /// A method whose steps have derivatives.
@@ -225,9 +226,10 @@ where
         weights: &Covector<N>,
     ) -> Result<Option<DMatrix<f64>>, StepError> {
         let Run { system, node, memory, h, .. } = run;
-        let step = (*h, &memory.steps.v());
-        check_last(before, step, node, memory.steps.has_parameters_of_last())?;
-        curvature::of_momentum_step(system, before, step, directions, weights).map(Some)
+        let v = memory.steps.v();
+        check_last(before, (*h, &v), node, memory.steps.has_parameters_of_last())?;
+        let (_, matrix) = curvature::of_momentum_step(system, before, [*h, 1.0], &v, directions, weights)?;
+        Ok(Some(matrix))
     }
 }
 
@@ -269,6 +271,35 @@ where
             node.advance(h, &v, &increment);
         }
         if is_last(&node, &run.node) { Ok(()) } else { Err(not_last(before.t)) }
+    }
+
+    /// Goes back over the substeps, with the weights at the end of each.
+    fn curvature(
+        run: &Run<Self, S, N>,
+        before: &Node<N>,
+        directions: &[Variation<N>],
+        weights: &Covector<N>,
+    ) -> Result<Option<DMatrix<f64>>, StepError> {
+        let Run { system, memory, .. } = run;
+        let mut starts = Vec::with_capacity(memory.all.len());
+        let (mut node, mut variations) = (*before, directions.to_vec());
+        for substep in &memory.all {
+            let (lengths, v) = ([substep.h, substep.h / run.h], substep.v());
+            starts.push((node, lengths, v, variations.clone()));
+            vary(system, &node, lengths, &v, &mut variations)?;
+            let increment = system.momentum_residual(&node, substep.h, &v).increment;
+            node.advance(substep.h, &v, &increment);
+        }
+        if !(memory.all.iter().all(Steps::has_parameters_of_last) && is_last(&node, &run.node)) {
+            return Err(not_last(before.t));
+        }
+        let (mut weights, mut sum) = (*weights, DMatrix::zeros(directions.len(), directions.len()));
+        for (node, lengths, v, variations) in starts.iter().rev() {
+            let (at_start, matrix) = curvature::of_momentum_step(system, node, *lengths, v, variations, &weights)?;
+            weights = at_start;
+            sum += matrix;
+        }
+        Ok(Some(sum))
     }
 }
 
