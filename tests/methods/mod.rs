@@ -11,7 +11,7 @@
 //! | `steps` | latched errors, single steps of any length, refused lengths |
 //! | `output` | output at times, dense output, events |
 //! | `changes` | checkpoints, changes of parameters and states |
-//! | `derivatives` | tangent vectors, gradients, linearizations |
+//! | `derivatives` | tangent vectors, second derivatives, gradients, linearizations |
 //! | `estimates` | error of a step, monitor |
 //! | `accurate` | the motion that they compare with |
 
