@@ -200,7 +200,8 @@ def optimise(
     options : dict
         Options of IPOPT, such as `{"max_iter": 500, "print_level": 5}`.
 
-    Second derivatives are differences of the exact first ones. If no optimum is found, `success` is False. Raises
+    Second derivatives are exact for Gauss steps, fixed ones and their compositions without constraints, otherwise
+    differences of the exact first ones. If no optimum is found, `success` is False. Raises
     StepError if the motion of the guess fails.
     """
     given = {name: value for name, value in locals().items() if name != "guess"}

@@ -7,6 +7,9 @@
 use crate::plan::{PhasePoint, Plan};
 use crate::simulation::{End, Simulation, Wanted};
 use crate::system::{Quantity, System};
+use core::num::NonZero;
+use std::panic::resume_unwind;
+use std::thread;
 use vi_core::StepError;
 
 /// The starts of K independent steps, one after the other.
@@ -59,8 +62,9 @@ impl Shots<'_> {
         let shooting = Shooting::of((system, plan), &parameters, steps, has_velocities);
         let (rows, columns) = (2 * shooting.n(), shooting.places().count());
         let mut ends = Ends::default();
-        for (index, start) in self.starts().enumerate() {
-            match shooting.end(&start) {
+        let found = each(&self.starts().collect::<Vec<_>>(), |start| shooting.end(start));
+        for (index, end) in found.into_iter().enumerate() {
+            match end {
                 Ok((state, slopes)) => {
                     ends.states.extend(state);
                     ends.jacobians.extend((0..rows).flat_map(|row| slopes.iter().map(move |of| of[row])));
@@ -97,8 +101,10 @@ impl Shots<'_> {
         let (rows, columns) = (2 * shooting.n(), shooting.places().count());
         let changes = self.changes();
         let mut curvatures = Curvatures::default();
-        for (index, (start, weights)) in self.starts().zip(weights.chunks(rows)).enumerate() {
-            match shooting.curvature(start, &changes, weights) {
+        let starts: Vec<_> = self.starts().zip(weights.chunks(rows)).collect();
+        let found = each(&starts, |(start, weights)| shooting.curvature(start.clone(), &changes, weights));
+        for (index, curvature) in found.into_iter().enumerate() {
+            match curvature {
                 Ok(matrix) => curvatures.values.extend(matrix),
                 Err(error) => {
                     curvatures.values.resize(curvatures.values.len() + columns * columns, f64::NAN);
@@ -140,6 +146,21 @@ impl Shots<'_> {
         }
         sizes.iter().map(|size| PART * size).collect()
     }
+}
+
+/// A function of each start, by the threads of the machine; the results are in the order of the starts.
+fn each<S: Sync, R: Send>(starts: &[S], of: impl Fn(&S) -> R + Sync) -> Vec<R> {
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    let share = starts.len().div_ceil(threads).max(1);
+    if share >= starts.len() {
+        return starts.iter().map(of).collect();
+    }
+    let of = &of;
+    thread::scope(|scope| {
+        let parts: Vec<_> =
+            starts.chunks(share).map(|part| scope.spawn(move || part.iter().map(of).collect::<Vec<R>>())).collect();
+        parts.into_iter().flat_map(|part| part.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
+    })
 }
 
 /// Indices as in [`Wanted`]: behind the parameters are the length of the steps and the time of the start.
