@@ -19,33 +19,11 @@ const FINENESS: u32 = 4000;
 /// Half a period of the energy error: the energy error oscillates with twice the frequency of the motion.
 const WINDOW: f64 = PI / OMEGA;
 
-/// Names of the figures of a damping ratio.
-struct Names {
-    trajectory: &'static str,
-    error: &'static str,
-    absolute: &'static str,
-    relative: &'static str,
-}
-
-const NAMES: [Names; 3] = [
-    Names {
-        trajectory: "damped-trajectory-0.001",
-        error: "damped-trajectory-error-0.001",
-        absolute: "damped-energy-error-0.001",
-        relative: "damped-energy-relative-0.001",
-    },
-    Names {
-        trajectory: "damped-trajectory-0.005",
-        error: "damped-trajectory-error-0.005",
-        absolute: "damped-energy-error-0.005",
-        relative: "damped-energy-relative-0.005",
-    },
-    Names {
-        trajectory: "damped-trajectory-0.01",
-        error: "damped-trajectory-error-0.01",
-        absolute: "damped-energy-error-0.01",
-        relative: "damped-energy-relative-0.01",
-    },
+/// Names of the figures of the trajectory and of the energy error, for each damping ratio.
+const NAMES: [[&str; 2]; 3] = [
+    ["damped-trajectory-0.001", "damped-energy-error-0.001"],
+    ["damped-trajectory-0.005", "damped-energy-error-0.005"],
+    ["damped-trajectory-0.01", "damped-energy-error-0.01"],
 ];
 
 /// Both runs with one damping ratio.
@@ -53,13 +31,13 @@ struct Damped {
     zeta: f64,
     adaptive: Sampled,
     constant: Sampled,
-    names: &'static Names,
+    names: [&'static str; 2],
 }
 
-/// The sections: trajectories and their errors, energies and their errors.
+/// The sections: trajectories, energy errors and their amplitudes.
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     let mut runs = Vec::new();
-    for (zeta, names) in DAMPING.into_iter().zip(&NAMES) {
+    for (zeta, names) in DAMPING.into_iter().zip(NAMES) {
         let adaptive = energy_preserving(zeta, UNTIL, u32::MAX).map_err(unexpected("damped oscillator"))?;
         let constant = fixed(zeta, UNTIL).map_err(unexpected("damped oscillator"))?;
         runs.push(Damped { zeta, adaptive, constant, names });
@@ -67,13 +45,12 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.section("Damped trajectories");
     for run in &runs {
         trajectory(book, run);
-        error(book, run);
     }
     book.section("Damped energy");
     book.prose(
         "With a force <i>E<sub>k</sub></i> is not constant: it changes by the discrete work of the force. The paper defines the \
          energy error as the difference of <i>E<sub>k</sub></i> and the energy of the exact motion at the same time, \
-         <i>E<sub>k</sub></i> − <i>E</i>(<i>t<sub>k</sub></i>). The relative error divides it by <i>E</i>(<i>t<sub>k</sub></i>).",
+         <i>E<sub>k</sub></i> − <i>E</i>(<i>t<sub>k</sub></i>).",
     );
     for run in &runs {
         energy_error(book, run);
@@ -90,45 +67,22 @@ fn curve(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
     (0..=FINENESS).map(|index| UNTIL * f64::from(index) / f64::from(FINENESS)).map(|t| (t, value(t))).collect()
 }
 
-/// A figure with a line for each integrator.
-fn both(name: &'static str, title: String, y: Axis, [adaptive, constant]: [Vec<(f64, f64)>; 2]) -> Chart {
-    Chart::new(
-        name,
-        title,
-        [Axis::linear("t"), y],
-        vec![
-            Series::line("energy-preserving", Look::ENERGY.line(), adaptive),
-            Series::line("fixed step", Look::FIXED.line(), constant),
-        ],
-    )
-}
-
 impl Damped {
     /// A quantity of each node of both runs: energy-preserving, fixed step.
     fn each(&self, value: impl Fn(&Sample) -> f64) -> [Vec<(f64, f64)>; 2] {
         [pairs(&self.adaptive, &value), pairs(&self.constant, &value)]
     }
 
-    /// Distance of a node from the exact motion in (q, v/ω).
-    fn distance(&self, sample: &Sample) -> f64 {
-        let (q, v) = exact(self.zeta, sample.t);
-        (sample.q - q).hypot((sample.v - v) / OMEGA)
-    }
-
     /// The paper's energy error.
     fn absolute(&self, sample: &Sample) -> f64 {
         sample.energy - exact_energy(self.zeta, sample.t)
-    }
-
-    fn relative(&self, sample: &Sample) -> f64 {
-        sample.energy / exact_energy(self.zeta, sample.t) - 1.0
     }
 }
 
 fn trajectory(book: &mut Book, run: &Damped) {
     let [adaptive, constant] = run.each(|sample| sample.q);
     let chart = Chart::new(
-        run.names.trajectory,
+        run.names[0],
         format!("Damped trajectory, ζ = {}", run.zeta),
         [Axis::linear("t"), Axis::linear("q")],
         vec![
@@ -155,7 +109,7 @@ fn trajectory(book: &mut Book, run: &Damped) {
         format!("largest error of q: {} energy-preserving, {} fixed", scientific(adaptive), scientific(constant)),
         // The lines of the figure are up to 3.4 pixels wide, and a pixel is 0.006.
         Verdict::Agrees.when(adaptive.max(constant) < 0.02),
-        run.names.trajectory,
+        run.names[0],
     );
 }
 
@@ -163,40 +117,22 @@ fn largest(points: Vec<(f64, f64)>) -> f64 {
     points.into_iter().map(|(_, value)| value.abs()).fold(0.0, f64::max)
 }
 
-fn error(book: &mut Book, run: &Damped) {
-    let chart = both(
-        run.names.error,
-        format!("Error of the damped trajectory, ζ = {}", run.zeta),
-        Axis::linear("distance in the phase plane"),
-        run.each(|sample| run.distance(sample)),
-    );
-    book.figure(
-        &chart,
-        "Distance in (<i>q</i>, <i>v</i>/<i>ω</i>) from the exact motion at the time of each node. The phase error of the fixed \
-         step grows in proportion to <i>t</i>, and the amplitude of the motion decays. The energy-preserving step grows while \
-         the motion decays.",
-    );
-}
-
 fn energy_error(book: &mut Book, run: &Damped) {
-    let chart = both(
-        run.names.absolute,
+    let [adaptive, constant] = run.each(|sample| run.absolute(sample));
+    let chart = Chart::new(
+        run.names[1],
         format!("Energy error as the paper defines it, ζ = {}", run.zeta),
-        Axis::linear("Eₖ − E(t)"),
-        run.each(|sample| run.absolute(sample)),
+        [Axis::linear("t"), Axis::linear("Eₖ − E(t)")],
+        vec![
+            Series::line("energy-preserving", Look::ENERGY.line(), adaptive),
+            Series::line("fixed step", Look::FIXED.line(), constant),
+        ],
     );
     book.figure(
         &chart,
         "Difference of the discrete energy and the energy of the exact motion. Both errors start at \
          −<i>h</i><sub>0</sub>²<i>D</i>/8, because both runs start from the same interval.",
     );
-    let chart = both(
-        run.names.relative,
-        format!("Relative energy error, ζ = {}", run.zeta),
-        Axis::linear("Eₖ / E(t) − 1"),
-        run.each(|sample| run.relative(sample)),
-    );
-    book.figure(&chart, "The same error relative to the energy of the exact motion.");
 }
 
 /// Amplitude of the oscillation of an error in windows of half a period: half of its range, at the middle of the window.
@@ -313,7 +249,7 @@ fn row(book: &mut Book, table: &mut Table, run: &Damped, amplitudes: &Amplitudes
         Verdict::Agrees.when(
             last > ratio && (late / expected - 1.0).abs() < 0.1 && (late_fixed / expected_fixed - 1.0).abs() < 0.1,
         ),
-        run.names.absolute,
+        run.names[1],
     );
     let [mean, mean_fixed] = [&run.adaptive, &run.constant].map(|sampled| {
         let early = sampled.samples.iter().take_while(|sample| sample.t < EARLY);
@@ -335,7 +271,7 @@ fn row(book: &mut Book, table: &mut Table, run: &Damped, amplitudes: &Amplitudes
             scientific(mean_fixed)
         ),
         Verdict::InPart.when(start.total_cmp(&start_fixed).is_eq() && early < early_fixed),
-        run.names.absolute,
+        run.names[1],
     );
 }
 
@@ -421,7 +357,7 @@ mod tests {
 
     #[test]
     fn the_phase_error_explains_both_amplitudes() {
-        for (zeta, names) in DAMPING.into_iter().zip(&NAMES) {
+        for (zeta, names) in DAMPING.into_iter().zip(NAMES) {
             let adaptive = energy_preserving(zeta, UNTIL, u32::MAX).expect("a run");
             let constant = fixed(zeta, UNTIL).expect("a run");
             let amplitudes = Amplitudes::of(&Damped { zeta, adaptive, constant, names });

@@ -14,8 +14,6 @@ pub(super) struct Sample {
     pub(super) t: f64,
     /// Coordinate.
     pub(super) q: f64,
-    /// Velocity that belongs to the momentum, m = 1.
-    pub(super) v: f64,
     /// Discrete energy.
     pub(super) energy: f64,
     /// Energy at the middle of the step that led here, without the work of the force.
@@ -63,7 +61,7 @@ fn first(zeta: f64, run: &Run<EnergyPreserving, DampedOscillator, 1>) -> Sample 
     let state = run.state();
     let middle = [f64::midpoint(1.0, state.q.x)].into();
     let middle = system(zeta).energy(H0 / 2.0, &middle, &run.v());
-    Sample { t: state.t, q: state.q.x, v: state.p.x, energy: run.node().energy, middle, h: H0 }
+    Sample { t: state.t, q: state.q.x, energy: run.node().energy, middle, h: H0 }
 }
 
 /// The energy-preserving run until a time is passed, the steps are used up, or a step fails.
@@ -76,7 +74,7 @@ pub(super) fn energy_preserving(zeta: f64, until: f64, most: u32) -> Result<Samp
             Ok(step) => {
                 let (t, q, v) = step.midpoint;
                 let middle = system.energy(t, &q, &v);
-                samples.push(Sample { t: step.t, q: step.q.x, v: step.p.x, energy: step.energy, middle, h: step.h });
+                samples.push(Sample { t: step.t, q: step.q.x, energy: step.energy, middle, h: step.h });
             }
             Err(error) => return Ok(Sampled { samples, end: Some(error) }),
         }
@@ -99,7 +97,7 @@ pub(super) fn fixed(zeta: f64, until: f64) -> Result<Sampled, StepError> {
         let energy = integrator.discrete_energy().unwrap_or(f64::NAN);
         let v = integrator.v();
         let middle = system.energy(before.t + H0 / 2.0, &(before.q + v * (H0 / 2.0)), &v);
-        samples.push(Sample { t: state.t, q: state.q.x, v: state.p.x, energy, middle, h: H0 });
+        samples.push(Sample { t: state.t, q: state.q.x, energy, middle, h: H0 });
     }
     Ok(Sampled { samples, end: None })
 }
