@@ -1,7 +1,7 @@
 //! The oscillator of the study: its exact motion, and its runs.
 
 use super::H0;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian as _, Run, SVector, Starts, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Run, SVector, Starts, StepError};
 use vi_systems::DampedOscillator;
 
 /// Natural frequency √(k/m).
@@ -16,8 +16,6 @@ pub(super) struct Sample {
     pub(super) q: f64,
     /// Discrete energy.
     pub(super) energy: f64,
-    /// Energy at the middle of the step that led here, without the work of the force.
-    pub(super) middle: f64,
     /// Length of the step that led here.
     pub(super) h: f64,
 }
@@ -57,24 +55,19 @@ pub(super) fn start(zeta: f64) -> Result<Run<EnergyPreserving, DampedOscillator,
 }
 
 /// The first node of both runs: the end of the first interval.
-fn first(zeta: f64, run: &Run<EnergyPreserving, DampedOscillator, 1>) -> Sample {
+fn first(run: &Run<EnergyPreserving, DampedOscillator, 1>) -> Sample {
     let state = run.state();
-    let middle = [f64::midpoint(1.0, state.q.x)].into();
-    let middle = system(zeta).energy(H0 / 2.0, &middle, &run.v());
-    Sample { t: state.t, q: state.q.x, energy: run.node().energy, middle, h: H0 }
+    Sample { t: state.t, q: state.q.x, energy: run.node().energy, h: H0 }
 }
 
 /// The energy-preserving run until a time is passed, the steps are used up, or a step fails.
 pub(super) fn energy_preserving(zeta: f64, until: f64, most: u32) -> Result<Sampled, StepError> {
     let mut integrator = start(zeta)?;
-    let system = system(zeta);
-    let mut samples = vec![first(zeta, &integrator)];
+    let mut samples = vec![first(&integrator)];
     for step in integrator.detailed_steps().take(usize::try_from(most).unwrap_or(usize::MAX)) {
         match step {
             Ok(step) => {
-                let (t, q, v) = step.midpoint;
-                let middle = system.energy(t, &q, &v);
-                samples.push(Sample { t: step.t, q: step.q.x, energy: step.energy, middle, h: step.h });
+                samples.push(Sample { t: step.t, q: step.q.x, energy: step.energy, h: step.h });
             }
             Err(error) => return Ok(Sampled { samples, end: Some(error) }),
         }
@@ -87,17 +80,13 @@ pub(super) fn energy_preserving(zeta: f64, until: f64, most: u32) -> Result<Samp
 
 /// The fixed-step run from the same first interval.
 pub(super) fn fixed(zeta: f64, until: f64) -> Result<Sampled, StepError> {
-    let system = system(zeta);
     let start = start(zeta)?;
-    let mut samples = vec![first(zeta, &start)];
-    let mut integrator = system.at_state(start.state()).integrate(FixedStep, H0)?;
+    let mut samples = vec![first(&start)];
+    let mut integrator = system(zeta).at_state(start.state()).integrate(FixedStep, H0)?;
     while integrator.state().t <= until {
-        let before = integrator.state();
         let state = integrator.step()?;
         let energy = integrator.discrete_energy().unwrap_or(f64::NAN);
-        let v = integrator.v();
-        let middle = system.energy(before.t + H0 / 2.0, &(before.q + v * (H0 / 2.0)), &v);
-        samples.push(Sample { t: state.t, q: state.q.x, energy, middle, h: H0 });
+        samples.push(Sample { t: state.t, q: state.q.x, energy, h: H0 });
     }
     Ok(Sampled { samples, end: None })
 }
