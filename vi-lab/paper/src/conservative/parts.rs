@@ -2,12 +2,11 @@
 
 use super::super::book::{Book, Verdict};
 use super::plain::density;
-use super::runs::{Pair, Track};
-use vi_report::chart::{Axis, Chart, Look, Series};
+use super::runs::Pair;
 use vi_report::numbers::scientific;
 use vi_report::table::Table;
 
-/// The section: one figure with both parts, and a table for all cases.
+/// The section: a table of both parts for all cases.
 pub(super) fn section(book: &mut Book, runs: &[Pair]) {
     book.section("The two parts of the energy error");
     book.prose(
@@ -39,9 +38,6 @@ pub(super) fn section(book: &mut Book, runs: &[Pair]) {
         ]);
         holds &= run.energy.error < 1e-6 * run.start.abs() && (run.start / law - 1.0).abs() < 0.03;
     }
-    if let Some(run) = runs.iter().find(|run| run.case.q0 > 0.9 && run.case.h0 < 0.05) {
-        figure(book, run);
-    }
     book.table(table, "Both parts for all cases, over the whole runs.");
     let ratios = runs.iter().map(|run| scientific(run.start.abs() / run.energy.error));
     book.item(
@@ -49,30 +45,6 @@ pub(super) fn section(book: &mut Book, runs: &[Pair]) {
         "—",
         format!("larger by factors of {}", ratios.collect::<Vec<_>>().join(", ")),
         Verdict::Agrees.when(holds),
-        "energy-parts-figure",
-    );
-}
-
-fn figure(book: &mut Book, run: &Pair) {
-    let points = |track: &Track| {
-        let sizes = track.samples.iter().map(|sample| (sample.t, sample.error.abs()));
-        sizes.filter(|(_, error)| *error > 0.0).collect::<Vec<_>>()
-    };
-    let end = run.fixed.samples.last().map_or(0.0, |sample| sample.t);
-    let constant = vec![(0.0, run.start.abs()), (end, run.start.abs())];
-    let chart = Chart::new(
-        "energy-parts-figure",
-        format!("Both parts of the energy error, {}", run.case.label()),
-        [Axis::linear("t"), Axis::log10("size").over(1e-18, 1e-3)],
-        vec![
-            Series::line("|E₁ − H₀|, both", Look::EXACT, constant),
-            Series::scatter("|Eₖ − E₁|, fixed", Look::FIXED.dots(1.6), points(&run.fixed)),
-            Series::scatter("|Eₖ − E₁|, energy", Look::ENERGY.dots(1.6), points(&run.energy)),
-        ],
-    );
-    book.figure(
-        &chart,
-        "Dashed: the discretization error, constant and the same for both, because both start from the same interval. Points: the \
-         discrete energy error of each step. Steps with <i>E<sub>k</sub></i> = <i>E</i><sub>1</sub> in every bit have no point.",
+        "energy-parts",
     );
 }

@@ -22,7 +22,7 @@ const STAGES: [(usize, f64); 3] = [(1, 0.01), (2, 0.05), (3, 0.2)];
 /// Time over which their growth is measured.
 const MEASURED: f64 = 50.0;
 
-/// The section: growth in time, and to the end in iterations.
+/// The section: growth in time, and the last step of each run.
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.section("Step growth");
     book.prose("The paper observes that the step of the damped oscillator grows monotonically, and leaves open why. The \
@@ -39,7 +39,6 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         runs.push((zeta, energy_preserving(zeta, f64::INFINITY, MOST).map_err(unexpected("step growth"))?));
     }
     in_time(book, &runs, SHOWN, "step-growth", "Step growth with damping");
-    to_the_end(book, &runs);
     table(book, &runs);
     proof(book)?;
     orders(book)
@@ -259,26 +258,6 @@ fn in_time(book: &mut Book, runs: &[(f64, Sampled)], until: f64, name: &'static 
     book.figure(&chart, &caption);
 }
 
-/// h against the iteration, to the last step.
-fn to_the_end(book: &mut Book, runs: &[(f64, Sampled)]) {
-    let mut series = Vec::new();
-    for ((zeta, run), look) in runs.iter().zip(Look::OTHERS) {
-        let points = run.samples.iter().zip(1_u32..).map(|(sample, k)| (f64::from(k), sample.h)).collect();
-        series.push(Series::line(format!("ζ = {zeta}"), look.line(), points));
-    }
-    let chart = Chart::new(
-        "step-growth-end",
-        "Step length to the last step",
-        [Axis::linear("iteration k"), Axis::log10("h")],
-        series,
-    );
-    book.figure(
-        &chart,
-        "Against the iteration the step is <i>h</i><sub>0</sub>/(1 − <i>ζωh</i><sub>0</sub><i>k</i>): each run ends where it \
-         would become infinite.",
-    );
-}
-
 fn table(book: &mut Book, runs: &[(f64, Sampled)]) {
     let head = ["ζ", "h/h₀ at t = 100", "exp(ζωt)", "last step", "1/(ζωh₀)", "last h", "how it ends"];
     let mut table = Table::new("step-growth-table", head);
@@ -301,7 +280,11 @@ fn table(book: &mut Book, runs: &[(f64, Sampled)]) {
             run.end.map_or_else(|| "it does not".to_owned(), |error| error.reason().to_string()),
         ]);
     }
-    book.table(table, "Step growth, the law, and the end of each run.");
+    book.table(
+        table,
+        "Step growth, the law, and the end of each run. Against the iteration <i>k</i> the step is \
+         <i>h</i><sub>0</sub>/(1 − <i>ζωh</i><sub>0</sub><i>k</i>).",
+    );
     for (zeta, run) in runs {
         book.item(
             &format!("figure: adaptive step against time, ζ = {zeta}: monotonically increasing"),
@@ -320,7 +303,7 @@ fn table(book: &mut Book, runs: &[(f64, Sampled)]) {
             join(runs.iter().map(|(zeta, _)| format!("{:.0}", 1.0 / (zeta * OMEGA * H0))))
         ),
         Verdict::Answered.when(as_predicted),
-        "step-growth-end",
+        "step-growth-table",
     );
 }
 
