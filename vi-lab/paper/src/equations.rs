@@ -83,126 +83,93 @@ fn oscillator(sample: &Sample) -> [f64; 4] {
     slots(&OSCILLATOR, &sample.interval)
 }
 
+/// An equation that is printed as it is derived.
+const fn agrees(name: &'static str, printed: &'static str, sides: fn(&Sample) -> [f64; 2]) -> Equation {
+    Equation { name, printed, derived: "the same", sides }
+}
+
+const fn misprint(
+    name: &'static str,
+    printed: &'static str,
+    derived: &'static str,
+    sides: fn(&Sample) -> [f64; 2],
+) -> Equation {
+    Equation { name, printed, derived, sides }
+}
+
 /// The equations of the two examples, in the paper's order.
 const EQUATIONS: [Equation; 17] = [
-    Equation {
-        name: "section 2.4, discrete energy Eₖ",
-        printed: "Eₖ = D₃ L_d",
-        derived: "Eₖ = −D₃ L_d",
-        sides: |s| [DoubleWell::default().d3_ld(&s.interval), well(s)[3]],
-    },
-    Equation {
-        name: "double well, L_d",
-        printed: "h [m v²/2 − (q̄⁴ − q̄²)/2]",
-        derived: "the same",
-        sides: |s| [s.h * (s.v * s.v / 2.0 - s.potential()), DoubleWell::default().ld(&s.interval)],
-    },
-    Equation {
-        name: "double well, pₖ₊₁",
-        printed: "m v + h ((qₖ₊₁ + qₖ)/4 − q̄³)",
-        derived: "the same",
-        sides: |s| [s.v + s.h * (s.sum() / 4.0 - s.middle.powi(3)), well(s)[2]],
-    },
-    Equation {
-        name: "double well, Eₖ₊₁",
-        printed: "m v²/2 + (q̄⁴ − q̄²)/2",
-        derived: "the same",
-        sides: |s| [s.v * s.v / 2.0 + s.potential(), well(s)[3]],
-    },
-    Equation {
-        name: "double well, implicit momentum equation",
-        printed: "m v − h ((qₖ₊₁ + qₖ)/4 − q̄³) = pₖ",
-        derived: "the same",
-        sides: |s| [s.v - s.h * (s.sum() / 4.0 - s.middle.powi(3)), well(s)[0]],
-    },
-    Equation {
-        name: "double well, implicit energy equation",
-        printed: "m v²/2 + (q̄⁴ − q̄²)/2 = Eₖ",
-        derived: "the same",
-        sides: |s| [s.v * s.v / 2.0 + s.potential(), well(s)[1]],
-    },
-    Equation {
-        name: "double well, F(q, p, h, v)",
-        printed: "m v − h [(v h + 2 q)/4 − (q + v h/2)³] − p",
-        derived: "the same",
-        sides: |s| {
-            let middle = s.q0() + s.v * s.h / 2.0;
-            [s.v - s.h * ((s.v * s.h + 2.0 * s.q0()) / 4.0 - middle.powi(3)), well(s)[0]]
-        },
-    },
-    Equation {
-        name: "double well, G(q, E, h, v)",
-        printed: "m v²/2 + [(q + v h/2)⁴ − (q + v h/2)²]/2 − E",
-        derived: "the same",
-        sides: |s| {
-            let middle = s.q0() + s.v * s.h / 2.0;
-            [s.v * s.v / 2.0 + (middle.powi(4) - middle.powi(2)) / 2.0, well(s)[1]]
-        },
-    },
-    Equation {
-        name: "oscillator, f_d±",
-        printed: "−c h v/2",
-        derived: "the same",
-        sides: |s| [-OSCILLATOR.c * s.h * s.v / 2.0, OSCILLATOR.fd_plus(&s.interval).x],
-    },
-    Equation {
-        name: "oscillator, g_d±",
-        printed: "c h v²/2",
-        derived: "the same",
-        sides: |s| [OSCILLATOR.c * s.h * s.v * s.v / 2.0, OSCILLATOR.gd_plus(&s.interval)],
-    },
-    Equation {
-        name: "oscillator, pₖ₊₁",
-        printed: "m v − k h (qₖ + qₖ₊₁)/4 − c (qₖ₊₁ − qₖ)/2",
-        derived: "the same",
-        sides: |s| [s.v - OSCILLATOR.k * s.h * s.sum() / 4.0 - OSCILLATOR.c * s.way() / 2.0, oscillator(s)[2]],
-    },
-    Equation {
-        name: "oscillator, Eₖ₊₁",
-        printed: "… − c (qₖ₊₁ − qₖ)²/h",
-        derived: "… − (c/2) (qₖ₊₁ − qₖ)²/h",
-        sides: |s| [total(s) - OSCILLATOR.c * s.way().powi(2) / s.h, oscillator(s)[3]],
-    },
-    Equation {
-        name: "oscillator, implicit momentum equation, first term",
-        printed: "m (qₖ₊₁ + qₖ)/h",
-        derived: "m (qₖ₊₁ − qₖ)/h",
-        sides: |s| [s.sum() / s.h, s.way() / s.h],
-    },
-    Equation {
-        name: "oscillator, implicit momentum equation, damping",
-        printed: "… − c h (qₖ₊₁ − qₖ)/2",
-        derived: "… + c (qₖ₊₁ − qₖ)/2",
-        sides: |s| {
+    misprint("section 2.4, discrete energy Eₖ", "Eₖ = D₃ L_d", "Eₖ = −D₃ L_d", |s| {
+        [DoubleWell::default().d3_ld(&s.interval), well(s)[3]]
+    }),
+    agrees("double well, L_d", "h [m v²/2 − (q̄⁴ − q̄²)/2]", |s| {
+        [s.h * (s.v * s.v / 2.0 - s.potential()), DoubleWell::default().ld(&s.interval)]
+    }),
+    agrees("double well, pₖ₊₁", "m v + h ((qₖ₊₁ + qₖ)/4 − q̄³)", |s| {
+        [s.v + s.h * (s.sum() / 4.0 - s.middle.powi(3)), well(s)[2]]
+    }),
+    agrees("double well, Eₖ₊₁", "m v²/2 + (q̄⁴ − q̄²)/2", |s| {
+        [s.v * s.v / 2.0 + s.potential(), well(s)[3]]
+    }),
+    agrees("double well, implicit momentum equation", "m v − h ((qₖ₊₁ + qₖ)/4 − q̄³) = pₖ", |s| {
+        [s.v - s.h * (s.sum() / 4.0 - s.middle.powi(3)), well(s)[0]]
+    }),
+    agrees("double well, implicit energy equation", "m v²/2 + (q̄⁴ − q̄²)/2 = Eₖ", |s| {
+        [s.v * s.v / 2.0 + s.potential(), well(s)[1]]
+    }),
+    agrees("double well, F(q, p, h, v)", "m v − h [(v h + 2 q)/4 − (q + v h/2)³] − p", |s| {
+        let middle = s.q0() + s.v * s.h / 2.0;
+        [s.v - s.h * ((s.v * s.h + 2.0 * s.q0()) / 4.0 - middle.powi(3)), well(s)[0]]
+    }),
+    agrees("double well, G(q, E, h, v)", "m v²/2 + [(q + v h/2)⁴ − (q + v h/2)²]/2 − E", |s| {
+        let middle = s.q0() + s.v * s.h / 2.0;
+        [s.v * s.v / 2.0 + (middle.powi(4) - middle.powi(2)) / 2.0, well(s)[1]]
+    }),
+    agrees("oscillator, f_d±", "−c h v/2", |s| [-OSCILLATOR.c * s.h * s.v / 2.0, OSCILLATOR.fd_plus(&s.interval).x]),
+    agrees("oscillator, g_d±", "c h v²/2", |s| {
+        [OSCILLATOR.c * s.h * s.v * s.v / 2.0, OSCILLATOR.gd_plus(&s.interval)]
+    }),
+    agrees("oscillator, pₖ₊₁", "m v − k h (qₖ + qₖ₊₁)/4 − c (qₖ₊₁ − qₖ)/2", |s| {
+        [s.v - OSCILLATOR.k * s.h * s.sum() / 4.0 - OSCILLATOR.c * s.way() / 2.0, oscillator(s)[2]]
+    }),
+    misprint(
+        "oscillator, Eₖ₊₁",
+        "… − c (qₖ₊₁ − qₖ)²/h",
+        "… − (c/2) (qₖ₊₁ − qₖ)²/h",
+        |s| [total(s) - OSCILLATOR.c * s.way().powi(2) / s.h, oscillator(s)[3]],
+    ),
+    misprint(
+        "oscillator, implicit momentum equation, first term",
+        "m (qₖ₊₁ + qₖ)/h",
+        "m (qₖ₊₁ − qₖ)/h",
+        |s| [s.sum() / s.h, s.way() / s.h],
+    ),
+    misprint(
+        "oscillator, implicit momentum equation, damping",
+        "… − c h (qₖ₊₁ − qₖ)/2",
+        "… + c (qₖ₊₁ − qₖ)/2",
+        |s| {
             let elastic = s.v + OSCILLATOR.k * s.h * s.sum() / 4.0;
             [elastic - OSCILLATOR.c * s.h * s.way() / 2.0, oscillator(s)[0]]
         },
-    },
-    Equation {
-        name: "oscillator, implicit energy equation",
-        printed: "m v²/2 + c h v²/2 + k q̄²/2 = Eₖ",
-        derived: "the same",
-        sides: |s| [total(s) + OSCILLATOR.c * s.h * s.v * s.v / 2.0, oscillator(s)[1]],
-    },
-    Equation {
-        name: "oscillator, F(q, p, h, v)",
-        printed: "m v + (h/4)(2 q + h v) + c h v/2 − p",
-        derived: "m v + k (h/4)(2 q + h v) + c h v/2 − p",
-        sides: |s| {
+    ),
+    agrees("oscillator, implicit energy equation", "m v²/2 + c h v²/2 + k q̄²/2 = Eₖ", |s| {
+        [total(s) + OSCILLATOR.c * s.h * s.v * s.v / 2.0, oscillator(s)[1]]
+    }),
+    misprint(
+        "oscillator, F(q, p, h, v)",
+        "m v + (h/4)(2 q + h v) + c h v/2 − p",
+        "m v + k (h/4)(2 q + h v) + c h v/2 − p",
+        |s| {
             let spring = s.h / 4.0 * (2.0 * s.q0() + s.h * s.v);
             [s.v + spring + OSCILLATOR.c * s.h * s.v / 2.0, oscillator(s)[0]]
         },
-    },
-    Equation {
-        name: "oscillator, G(q, E, h, v)",
-        printed: "m v²/2 + c h v²/2 + k (q + h v/2)²/2 − E",
-        derived: "the same",
-        sides: |s| {
-            let middle = s.q0() + s.h * s.v / 2.0;
-            let work = OSCILLATOR.c * s.h * s.v * s.v / 2.0;
-            [s.v * s.v / 2.0 + work + OSCILLATOR.k * middle * middle / 2.0, oscillator(s)[1]]
-        },
-    },
+    ),
+    agrees("oscillator, G(q, E, h, v)", "m v²/2 + c h v²/2 + k (q + h v/2)²/2 − E", |s| {
+        let middle = s.q0() + s.h * s.v / 2.0;
+        let work = OSCILLATOR.c * s.h * s.v * s.v / 2.0;
+        [s.v * s.v / 2.0 + work + OSCILLATOR.k * middle * middle / 2.0, oscillator(s)[1]]
+    }),
 ];
 
 /// `m v²/2 + k q̄²/2`.
