@@ -109,8 +109,8 @@ mod tests {
         let files: Vec<String> =
             page.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next()).map(String::from).collect();
         let named: Vec<&String> = files.iter().filter(|name| !name.starts_with('#')).collect();
-        // 26 figures in two forms, 10 tables.
-        assert_eq!(named.len(), 2 * 26 + 10);
+        // 26 figures in two forms, 9 tables.
+        assert_eq!(named.len(), 2 * 26 + 9);
         for target in files.iter().filter_map(|name| name.strip_prefix('#')) {
             assert!(page.contains(&format!("id=\"{target}\"")), "no part of the page is named {target}");
         }

@@ -28,14 +28,16 @@ const SUBSTEPS: u32 = 20_000;
 const PLAIN: Solver = Solver { tolerance: None, is_carried: false };
 /// The same with a carried E.
 const CARRIED: Solver = Solver { tolerance: None, is_carried: true };
-/// Initial steps at which the paper runs the double well.
-const PAPER: [f64; 2] = [0.01, 0.1];
+/// The smaller initial step of the paper.
+const PAPER: f64 = 0.01;
 
 /// What a solver makes of one initial step.
 #[derive(Clone, Copy, Debug)]
 struct Outcome {
     /// Steps until the end of the run.
     steps: u32,
+    /// Whether every step exists.
+    is_complete: bool,
     /// Largest `|E_k − E_1|`.
     energy: f64,
     /// Largest relative deviation of h from the step law.
@@ -60,8 +62,8 @@ struct Rung {
     trajectory: Option<(f64, f64)>,
 }
 
-/// One of the solvers.
-type Pick = fn(&Rung) -> Outcome;
+/// A quantity of a rung; `None` if it has no point in a figure.
+type Pick = fn(&Rung) -> Option<f64>;
 
 /// The runs from one amplitude, by their initial steps.
 struct Ladder {
@@ -81,16 +83,16 @@ pub(super) fn section(book: &mut Book, study: &Study) -> Result<(), Failure> {
          rows, compensated sums and a carried energy. The plain solvers recompute <i>E<sub>k</sub></i> and iterate until the \
          residual no longer decreases.",
     );
+    let most = LENGTH.min(study.steps);
     let mut ladders = Vec::new();
     for q0 in [0.74, 0.995] {
-        let rungs = LADDER.map(|h0| Rung::of(Case { q0, h0 }, study).map_err(unexpected("initial step")));
+        let rungs = LADDER.map(|h0| Rung::of(Case { q0, h0 }, most, study.steps).map_err(unexpected("initial step")));
         ladders.push(Ladder { q0, rungs: rungs.into_iter().collect::<Result<_, _>>()? });
     }
-    energy(book, &ladders);
-    let errors = solvers(book, study)?;
+    energy(book, &ladders, most);
+    let errors = solvers(book, most)?;
     length(book, &ladders);
     trajectory(book, &ladders);
-    table(book, &ladders);
     verdict(book, &ladders, errors);
     Ok(())
 }
@@ -99,7 +101,8 @@ impl Outcome {
     /// Follows a run to its end, or over this many steps. `first` is the interval of the start, with E_1.
     fn of(first: Seen, most: u32, mut next: impl FnMut() -> Option<Seen>) -> Self {
         let start = density(first.q, first.v);
-        let mut outcome = Self { steps: 0, energy: 0.0, deviation: 0.0, law: 0.0, lengths: (first.h, first.h) };
+        let lengths = (first.h, first.h);
+        let mut outcome = Self { steps: 0, is_complete: false, energy: 0.0, deviation: 0.0, law: 0.0, lengths };
         for _ in 0..most {
             let Some(seen) = next() else { break };
             let density = density(seen.q, seen.v);
@@ -111,17 +114,19 @@ impl Outcome {
             outcome.law = outcome.law.max(law);
             outcome.lengths = extremes([outcome.lengths.0, outcome.lengths.1, seen.h]);
         }
+        outcome.is_complete = outcome.steps == most;
         outcome
     }
 
-    /// Whether the energy determined the steps. If all have the same length to ten digits, the run took its predictions.
-    fn is_determined(&self) -> bool {
-        self.lengths.1 / self.lengths.0 > 1.0 + 1e-10
+    /// The largest deviation from the step law, if the energy determined the steps. If all have the same length to ten
+    /// digits, the run took its predictions.
+    fn determined(&self) -> Option<f64> {
+        (self.lengths.1 / self.lengths.0 > 1.0 + 1e-10).then_some(self.deviation)
     }
 
     /// The largest energy error of a run that did not end early.
-    fn complete(&self, most: u32) -> Option<f64> {
-        (self.steps == most).then_some(self.energy)
+    fn complete(&self) -> Option<f64> {
+        self.is_complete.then_some(self.energy)
     }
 }
 
@@ -132,11 +137,6 @@ fn first(case: Case) -> Result<(Seen, f64), StepError> {
     let v = integrator.v().x;
     let q = f64::midpoint(case.q0, q1);
     Ok((Seen { q, v, h: case.h0, energy: integrator.node().energy }, q1))
-}
-
-/// Steps of a run.
-fn steps(study: &Study) -> u32 {
-    LENGTH.min(study.steps)
 }
 
 /// The run of this project.
@@ -174,22 +174,22 @@ fn by_velocity(case: Case, most: u32, solver: Solver) -> Result<Outcome, StepErr
 }
 
 impl Rung {
-    fn of(case: Case, study: &Study) -> Result<Self, StepError> {
-        let most = steps(study);
+    /// Runs of `most` steps, and of up to `longest` for the trajectory.
+    fn of(case: Case, most: u32, longest: u32) -> Result<Self, StepError> {
         Ok(Self {
             h0: case.h0,
             points: by_points(case, most)?,
             plain: by_velocity(case, most, PLAIN)?,
             carried: by_velocity(case, most, CARRIED)?,
             ours: ours(case, most)?,
-            trajectory: errors(case, study)?,
+            trajectory: errors(case, longest)?,
         })
     }
 }
 
 /// Errors of the trajectory at the first nodes after the time of comparison: energy-preserving and fixed step.
-fn errors(case: Case, study: &Study) -> Result<Option<(f64, f64)>, StepError> {
-    if case.h0 < SHORTEST || COMPARED / case.h0 > f64::from(study.steps) {
+fn errors(case: Case, longest: u32) -> Result<Option<(f64, f64)>, StepError> {
+    if case.h0 < SHORTEST || COMPARED / case.h0 > f64::from(longest) {
         return Ok(None);
     }
     let mut integrator = case.start()?;
@@ -212,33 +212,35 @@ fn error(q0: f64, t: f64, q: f64) -> Result<f64, StepError> {
     Ok((q - (q0 + deviation.x)).abs())
 }
 
-/// The looks of the three solvers, lines for the smaller amplitude and dashes for the larger one.
-fn look(solver: usize, q0: f64) -> Look {
-    let look = [Look::OTHERS[1], Look::OTHERS[0], Look::ENERGY][solver];
-    if q0 > 0.9 { Look { marker: look.marker, ..look.dashed() } } else { look }
+impl Ladder {
+    /// The points of a quantity, from every rung that has one.
+    fn curve(&self, pick: Pick) -> Vec<(f64, f64)> {
+        self.rungs.iter().filter_map(|rung| Some((rung.h0, pick(rung)?))).collect()
+    }
 }
 
-/// The points of a ladder, from every rung that has one.
-fn curve(ladder: &Ladder, pick: impl Fn(&Rung) -> Option<f64>) -> Vec<(f64, f64)> {
-    ladder.rungs.iter().filter_map(|rung| Some((rung.h0, pick(rung)?))).collect()
-}
-
-/// The most steps that a run of the ladders takes.
-fn most(ladders: &[Ladder]) -> u32 {
-    ladders.iter().flat_map(|ladder| &ladder.rungs).map(|rung| rung.ours.steps).max().unwrap_or(0)
+/// A line for each quantity and amplitude, dotted for the larger amplitude.
+fn lines(ladders: &[Ladder], quantities: &[(&str, Look, Pick)]) -> Vec<Series> {
+    let mut series = Vec::new();
+    for &(name, look, pick) in quantities {
+        for ladder in ladders {
+            let look = if ladder.q0 > 0.9 { Look { marker: look.marker, ..look.dotted() } } else { look };
+            series.push(Series::line(format!("{name}, {}", ladder.q0), look, ladder.curve(pick)));
+        }
+    }
+    series
 }
 
 /// Energy error against h0 with the three solvers.
-fn energy(book: &mut Book, ladders: &[Ladder]) {
-    let most = most(ladders);
-    let pick = |solver: usize| move |rung: &Rung| [rung.points, rung.plain, rung.ours][solver].complete(most);
-    let mut series = Vec::new();
-    for (solver, name) in ["(q₁, t₁), plain", "(v, h), plain", "this project"].into_iter().enumerate() {
-        for ladder in ladders {
-            let label = format!("{name}, {}", ladder.q0);
-            series.push(Series::line(label, look(solver, ladder.q0), curve(ladder, pick(solver))));
-        }
-    }
+fn energy(book: &mut Book, ladders: &[Ladder], most: u32) {
+    let series = lines(
+        ladders,
+        &[
+            ("(q₁, t₁), plain", Look::OTHERS[1], |rung| rung.points.complete()),
+            ("(v, h), plain", Look::OTHERS[0], |rung| rung.plain.complete()),
+            ("this project", Look::ENERGY, |rung| rung.ours.complete()),
+        ],
+    );
     let chart = Chart::new(
         "initial-step-energy",
         "Energy error against the initial step",
@@ -251,23 +253,19 @@ fn energy(book: &mut Book, ladders: &[Ladder]) {
             "Over {most} steps. In (<i>v</i>, <i>h</i>) the energy error has no trend in <i>h</i><sub>0</sub>. In \
              (<i>q</i><sub>1</sub>, <i>t</i><sub>1</sub>) the quotient \
              (<i>q</i><sub>1</sub> − <i>q</i><sub>0</sub>)/(<i>t</i><sub>1</sub> − <i>t</i><sub>0</sub>) cancels, and below \
-             <i>h</i><sub>0</sub> = {} the error grows at <i>q</i><sub>0</sub> = 0.74. Runs that end early have no point; <a href=\"#initial-step\">the \
-             table</a> names their last step.",
-            growth_from(ladders).map_or_else(|| "–".to_owned(), scientific)
+             <i>h</i><sub>0</sub> = {} the error grows at <i>q</i><sub>0</sub> = 0.74. Runs that end early have no point.",
+            ladders.first().and_then(growth_from).map_or_else(|| "–".to_owned(), scientific)
         ),
     );
-    let all = || ladders.iter().flat_map(|ladder| &ladder.rungs);
-    let in_range =
-        |pick: Pick| extremes(all().filter(|rung| rung.h0 > 9e-6).filter_map(|rung| pick(rung).complete(most)));
-    let plain = in_range(|rung| rung.plain);
-    let ours = in_range(|rung| rung.ours);
-    let powers: Vec<f64> = ladders
-        .iter()
-        .map(|ladder| {
-            let points = curve(ladder, |rung| rung.plain.complete(most));
-            order(&points.into_iter().filter(|(h0, error)| *h0 > 9e-6 && *error > 0.0).collect::<Vec<_>>())
-        })
-        .collect();
+    let coarse = |pick: Pick| {
+        let curves = ladders.iter().map(move |ladder| ladder.curve(pick));
+        curves.map(|points| points.into_iter().filter(|(h0, _)| *h0 > 9e-6).collect::<Vec<_>>())
+    };
+    let range = |pick: Pick| extremes(coarse(pick).flatten().map(|(_, error)| error));
+    let plain = range(|rung| rung.plain.complete());
+    let ours = range(|rung| rung.ours.complete());
+    let powers: Vec<f64> =
+        coarse(|rung| rung.plain.complete().filter(|error| *error > 0.0)).map(|points| order(&points)).collect();
     let text = powers.iter().map(|power| format!("{power:.2}")).collect::<Vec<_>>().join(" and ");
     book.item(
         "a smaller initial step spoils the energy: 0.1 slightly better than 0.01",
@@ -285,54 +283,41 @@ fn energy(book: &mut Book, ladders: &[Ladder]) {
     );
 }
 
-/// The longest initial step from which the energy error in (q1, t1) is twice that at 0.01, for the smaller amplitude.
-fn growth_from(ladders: &[Ladder]) -> Option<f64> {
-    let rungs = &ladders.first()?.rungs;
-    let usual = rungs.iter().find(|rung| rung.h0.total_cmp(&PAPER[0]).is_eq())?.points.energy;
-    let grown = rungs.iter().rev().find(|rung| rung.h0 < PAPER[0] && rung.points.energy > 2.0 * usual);
-    let index = rungs.iter().position(|rung| Some(rung.h0) == grown.map(|grown| grown.h0))?;
-    rungs.get(index + 1).map(|rung| rung.h0)
+/// The initial step below which the energy error in (q1, t1) is more than twice that at 0.01.
+fn growth_from(ladder: &Ladder) -> Option<f64> {
+    let mut finer = ladder.rungs.iter().rev().skip_while(|rung| rung.h0 > PAPER).peekable();
+    let usual = finer.peek()?.points.energy;
+    let level = finer.take_while(|rung| rung.points.energy <= 2.0 * usual);
+    level.last().map(|rung| rung.h0).filter(|h0| *h0 > LADDER[0])
 }
 
 /// What tolerance, unknowns and a carried energy change, at the paper's initial steps.
 ///
 /// Returns the smallest and the largest error of the solvers in (v, h) that recompute E.
-fn solvers(book: &mut Book, study: &Study) -> Result<(f64, f64), Failure> {
-    let most = steps(study);
-    let plain = |tolerance, is_carried| Solver { tolerance, is_carried };
-    let rows: [(&str, Option<Solver>); 5] = [
-        ("(v, h), E recomputed, |(F, G)| < 10⁻¹³", Some(plain(Some(1e-13), false))),
-        ("(v, h), E recomputed, |(F, G)| < 10⁻¹⁴", Some(plain(Some(1e-14), false))),
-        ("(v, h), E recomputed, until the residual no longer decreases", Some(PLAIN)),
-        ("(v, h), E carried, until the residual no longer decreases", Some(CARRIED)),
-        ("this project: E carried, acceptance by measured rounding", None),
+fn solvers(book: &mut Book, most: u32) -> Result<(f64, f64), Failure> {
+    type Way<'a> = &'a dyn Fn(Case) -> Result<Outcome, StepError>;
+    let recomputing = |tolerance| move |case| by_velocity(case, most, Solver { tolerance, is_carried: false });
+    let rows: [(&str, Way<'_>); 6] = [
+        ("(q₁, t₁), E recomputed, until the residual no longer decreases", &|case| by_points(case, most)),
+        ("(v, h), E recomputed, |(F, G)| < 10⁻¹³", &recomputing(Some(1e-13))),
+        ("(v, h), E recomputed, |(F, G)| < 10⁻¹⁴", &recomputing(Some(1e-14))),
+        ("(v, h), E recomputed, until the residual no longer decreases", &recomputing(None)),
+        ("(v, h), E carried, until the residual no longer decreases", &|case| by_velocity(case, most, CARRIED)),
+        ("this project: E carried, acceptance by measured rounding", &|case| ours(case, most)),
     ];
-    let labels = CASES.map(|case| case.label());
-    let mut table = Table::new(
-        "initial-step-solver",
-        ["solver", labels[0].as_str(), labels[1].as_str(), labels[2].as_str(), labels[3].as_str()],
-    );
+    let [a, b, c, d] = CASES.map(|case| case.label());
+    let mut table = Table::new("initial-step-solver", ["solver", &a, &b, &c, &d]);
     let mut recomputed = Vec::new();
-    let mut add = |name: &str, outcomes: [Result<Outcome, StepError>; 4]| {
-        let mut cells = vec![name.to_owned()];
-        let mut errors = Vec::new();
-        for outcome in outcomes {
-            let outcome = outcome.map_err(unexpected("initial step"))?;
-            let text = outcome.complete(most).map_or_else(|| format!("ends at step {}", outcome.steps), scientific);
-            cells.push(text);
-            errors.push(outcome.energy);
+    for (name, run) in rows {
+        let outcomes = CASES.into_iter().map(run).collect::<Result<Vec<_>, _>>().map_err(unexpected("initial step"))?;
+        if name.starts_with("(v, h), E recomputed") {
+            recomputed.extend(outcomes.iter().map(|outcome| outcome.energy));
         }
-        let [name, a, b, c, d] = <[String; 5]>::try_from(cells).unwrap_or_default();
-        table.row([name, a, b, c, d]);
-        Ok::<Vec<f64>, Failure>(errors)
-    };
-    add("(q₁, t₁), E recomputed, until the residual no longer decreases", CASES.map(|case| by_points(case, most)))?;
-    for (name, solver) in rows {
-        let run = |case| solver.map_or_else(|| ours(case, most), |solver| by_velocity(case, most, solver));
-        let errors = add(name, CASES.map(run))?;
-        if solver.is_some_and(|solver| !solver.is_carried) {
-            recomputed.extend(errors);
-        }
+        let cells = outcomes
+            .iter()
+            .map(|outcome| outcome.complete().map_or_else(|| format!("ends at step {}", outcome.steps), scientific));
+        let [a, b, c, d] = <[String; 4]>::try_from(cells.collect::<Vec<_>>()).unwrap_or_default();
+        table.row([name.to_owned(), a, b, c, d]);
     }
     book.table(
         table,
@@ -353,58 +338,34 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
          of about <i>ε</i> times the sum <i>S</i> of the absolute values of its terms. So",
     );
     book.formula("\\frac{δh}{h} ≈ \\frac{4εS}{h^2 |D|}, ~ ε = 2^{−52}");
-    let solvers: [(&str, Look, Pick); 3] = [
-        ("E recomputed", Look::OTHERS[0], |rung| rung.plain),
-        ("E carried", Look::OTHERS[3], |rung| rung.carried),
-        ("this project", Look::ENERGY, |rung| rung.ours),
-    ];
-    let deviation = |pick: Pick| {
-        move |rung: &Rung| {
-            let outcome = pick(rung);
-            outcome.is_determined().then_some(outcome.deviation)
-        }
-    };
-    let mut series = Vec::new();
-    for (name, look, pick) in solvers {
-        for ladder in ladders {
-            let look = if ladder.q0 > 0.9 { Look { marker: look.marker, ..look.dashed() } } else { look };
-            series.push(Series::line(format!("{name}, {}", ladder.q0), look, curve(ladder, deviation(pick))));
-        }
-    }
-    for ladder in ladders {
-        let law = curve(ladder, |rung| Some(rung.ours.law).filter(|law| *law > 0.0));
-        let look = if ladder.q0 > 0.9 { Look::EXACT.dotted() } else { Look::EXACT };
-        series.push(Series::line(format!("4εS/(h²|D|), {}", ladder.q0), look, law));
-    }
+    let series = lines(
+        ladders,
+        &[
+            ("E recomputed", Look::OTHERS[0], |rung| rung.plain.determined()),
+            ("E carried", Look::OTHERS[3], |rung| rung.carried.determined()),
+            ("this project", Look::ENERGY, |rung| rung.ours.determined()),
+            ("4εS/(h²|D|)", Look::EXACT, |rung| Some(rung.ours.law).filter(|law| *law > 0.0)),
+        ],
+    );
     let chart = Chart::new(
         "initial-step-length",
         "Deviation of the step length from the step law",
         [Axis::log10("h₀"), Axis::log10("max |δh/h|").over(1e-10, 10.0)],
         series,
     );
-    let at = |h0: f64| {
-        let rung = ladders.first().and_then(|ladder| ladder.rungs.iter().find(|rung| rung.h0.total_cmp(&h0).is_eq()));
-        rung.map_or((f64::NAN, f64::NAN), |rung| (rung.ours.lengths.0 / rung.h0, rung.ours.lengths.1 / rung.h0))
-    };
-    let (low, high) = at(1e-6);
-    let (lowest, highest) = at(1e-7);
-    let least = if highest / lowest > 1.0 + 1e-10 {
-        format!("At 10⁻⁷ it ranges from {lowest:.3} to {highest:.3}")
-    } else {
-        "At 10⁻⁷ every step keeps the length of the last one".to_owned()
-    };
     book.figure(
         &chart,
-        &format!(
-            "The largest relative deviation of <i>h<sub>k</sub></i> from \
-             <i>h</i><sub>0</sub>(<i>D</i><sub>0</sub>/<i>D<sub>k</sub></i>)<sup>1/3</sup>. Right of the minimum it is the \
-             <i>O</i>(<i>h</i>²) of the step law, left of it rounding. At <i>h</i><sub>0</sub> = 10⁻⁶ and \
-             <i>q</i><sub>0</sub> = 0.74 the <i>h</i>/<i>h</i><sub>0</sub> of this project ranges from {low:.4} to {high:.4}. \
-             {least}: the energy no longer determines it. Such runs have no point."
-        ),
+        "The largest relative deviation of <i>h<sub>k</sub></i> from \
+         <i>h</i><sub>0</sub>(<i>D</i><sub>0</sub>/<i>D<sub>k</sub></i>)<sup>1/3</sup>. Right of the minimum it is the \
+         <i>O</i>(<i>h</i>²) of the step law, left of it rounding. If every step keeps the length of the last one, the energy \
+         does not determine it. Such runs have no point.",
     );
-    let (least, largest) = extremes(fine(ladders).map(|rung| rung.ours.deviation / rung.ours.law));
-    let (plain, _) = extremes(fine(ladders).map(|rung| rung.carried.deviation / rung.carried.law));
+    let ratios = |pick: fn(&Rung) -> Outcome| {
+        let outcomes = fine(ladders).map(pick);
+        extremes(outcomes.map(|outcome| outcome.deviation / outcome.law))
+    };
+    let (least, largest) = ratios(|rung| rung.ours);
+    let (plain, _) = ratios(|rung| rung.carried);
     book.prose(&format!(
         "Between <i>h</i><sub>0</sub> = 10⁻⁶ and 10⁻⁴ the steps of this project deviate by {} to {} of the law. Plain double precision \
          deviates by at least {} times the law, even with a carried energy: the roundings of <i>q</i> and <i>p</i> accumulate in \
@@ -430,121 +391,57 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
 /// The rungs in which rounding dominates the step length and the energy still determines it.
 fn fine(ladders: &[Ladder]) -> impl Iterator<Item = &Rung> {
     let all = ladders.iter().flat_map(|ladder| &ladder.rungs);
-    all.filter(|rung| (9e-7..2e-4).contains(&rung.h0) && rung.ours.is_determined())
+    all.filter(|rung| (9e-7..2e-4).contains(&rung.h0) && rung.ours.determined().is_some())
 }
 
 /// Error of the trajectory against h0.
 fn trajectory(book: &mut Book, ladders: &[Ladder]) {
-    let mut series = Vec::new();
-    let mut orders = Vec::new();
-    for ladder in ladders {
-        let adaptive = curve(ladder, |rung| Some(rung.trajectory?.0));
-        let fixed = curve(ladder, |rung| Some(rung.trajectory?.1));
-        // Above 0.01 the leading term is not yet alone.
-        let fine: Vec<(f64, f64)> = adaptive.iter().copied().filter(|(h0, _)| *h0 < 0.02).collect();
-        if fine.len() > 2 {
-            orders.push(order(&fine));
-        }
-        let q0 = ladder.q0;
-        let look = |look: Look| if q0 > 0.9 { look.dashed() } else { look };
-        series.push(Series::line(format!("energy, q₀ = {q0}"), look(Look::ENERGY), adaptive));
-        series.push(Series::line(format!("fixed, q₀ = {q0}"), look(Look::FIXED), fixed));
-    }
+    let adaptive: Pick = |rung| Some(rung.trajectory?.0);
+    let series =
+        lines(ladders, &[("energy", Look::ENERGY, adaptive), ("fixed", Look::FIXED, |rung| Some(rung.trajectory?.1))]);
+    // Above 0.01 the leading term is not yet alone.
+    let fine = ladders.iter().map(|ladder| ladder.curve(adaptive).into_iter().filter(|(h0, _)| *h0 < 0.02));
+    let fine = fine.map(Iterator::collect::<Vec<_>>).filter(|points| points.len() > 2);
+    let orders: Vec<f64> = fine.map(|points| order(&points)).collect();
+    let text = if orders.is_empty() {
+        "– (a longer study measures it)".to_owned()
+    } else {
+        orders.iter().map(|order| format!("{order:.2}")).collect::<Vec<_>>().join(" and ")
+    };
     let chart = Chart::new(
         "initial-step-trajectory",
         "Error of the trajectory at t = 10 against the initial step",
         [Axis::log10("h₀"), Axis::log10("|q − q(t)|")],
         series,
     );
-    let text = if orders.is_empty() {
-        vec!["– (a longer study measures it)".to_owned()]
-    } else {
-        orders.iter().map(|order| format!("{order:.2}")).collect()
-    };
     book.figure(
         &chart,
         &format!(
             "At the first node after <i>t</i> = 10, against the exact motion at the time of that node. Both integrators are of \
-             second order (measured for the energy-preserving one: {}).",
-            text.join(" and ")
+             second order (measured for the energy-preserving one: {text})."
         ),
     );
     book.item(
         "a smaller initial step gives more accurate trajectories",
         "—",
-        format!("the error falls with order {} in h₀", text.join(" and ")),
+        format!("the error falls with order {text} in h₀"),
         Verdict::Agrees.when(orders.iter().all(|order| (order - 2.0).abs() < 0.1)),
         "initial-step-trajectory",
     );
 }
 
-fn table(book: &mut Book, ladders: &[Ladder]) {
-    let head = [
-        "q₀",
-        "h₀",
-        "h_min/h₀",
-        "h_max/h₀",
-        "|Eₖ − E₁|, ours",
-        "(v, h), plain",
-        "(q₁, t₁), plain",
-        "δh/h, ours",
-        "(v, h), plain",
-        "4εS/(h²|D|)",
-        "|q − q(t)|, energy",
-        "fixed",
-    ];
-    let most = most(ladders);
-    let energy =
-        |outcome: &Outcome| outcome.complete(most).map_or_else(|| format!("ends at {}", outcome.steps), scientific);
-    let mut table = Table::new("initial-step", head);
-    for Ladder { q0, rungs } in ladders {
-        for rung in rungs {
-            let (adaptive, fixed) =
-                rung.trajectory.map_or_else(Default::default, |(a, f)| (scientific(a), scientific(f)));
-            table.row([
-                q0.to_string(),
-                scientific(rung.h0),
-                format!("{:.4}", rung.ours.lengths.0 / rung.h0),
-                format!("{:.4}", rung.ours.lengths.1 / rung.h0),
-                energy(&rung.ours),
-                energy(&rung.plain),
-                energy(&rung.points),
-                scientific(rung.ours.deviation),
-                scientific(rung.plain.deviation),
-                scientific(rung.ours.law),
-                adaptive,
-                fixed,
-            ]);
-        }
-    }
-    book.table(
-        table,
-        "The initial step. Columns: range of the steps of this project, largest energy error of the three solvers, largest deviation \
-         from the step law, error of the trajectory.",
-    );
-}
-
 /// What follows from the figures.
 fn verdict(book: &mut Book, ladders: &[Ladder], (least, largest): (f64, f64)) {
-    let all = || ladders.iter().flat_map(|ladder| ladder.rungs.iter().map(move |rung| (ladder.q0, rung)));
-    let points = |h0: f64| {
-        let errors = all().filter(|(_, rung)| rung.h0.total_cmp(&h0).is_eq()).map(|(_, rung)| rung.points.energy);
-        errors.map(scientific).collect::<Vec<_>>().join(" and ")
-    };
-    let ours = extremes(all().map(|(_, rung)| rung.ours.energy)).1;
     book.prose(&format!(
         "<b>What is in the solver.</b> The energy error. In (<i>v</i>, <i>h</i>) with a recomputed energy it is {} to {}, depending on \
          where the iteration stops, and it has no trend in <i>h</i><sub>0</sub>. The 10⁻¹⁴ of the paper lie in this range. The paper \
          does not print its tolerance; that its iteration stopped near the floor is a guess from the size of its errors. \
          (<i>q</i><sub>1</sub>, <i>t</i><sub>1</sub>) adds a cancellation, whose growth is visible for small steps only. At the \
-         initial steps of the paper it shows none: {} at {} and {} at {}, for both amplitudes.",
+         initial steps of the paper it shows none.",
         scientific(least),
         scientific(largest),
-        points(PAPER[0]),
-        PAPER[0],
-        points(PAPER[1]),
-        PAPER[1],
     ));
+    let ours = extremes(ladders.iter().flat_map(|ladder| &ladder.rungs).map(|rung| rung.ours.energy)).1;
     let limits = ladders.iter().filter_map(|ladder| {
         let rung = ladder.rungs.first()?;
         // The law at the first rung, scaled to a deviation of 1 %.
