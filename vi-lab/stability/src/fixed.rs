@@ -1,8 +1,8 @@
-//! Where fixed steps fail: the linear limit, resonances, the number of solutions, stiff springs, a chain.
+//! Where fixed steps fail: the linear limit, resonances, the number of solutions, stiff springs.
 
 use super::atlas::{Map, Part, Section};
 use super::ending::{Course, Ending, LASTING, Limit, OWN, oscillation};
-use super::trial::{Bent, Chain, Oscillator, SpringPendulum, trapezoidal};
+use super::trial::{Bent, Oscillator, SpringPendulum, trapezoidal};
 use core::f64::consts::{PI, SQRT_2};
 use vi_core::node::Node;
 use vi_core::stepping::FixedStepping;
@@ -312,68 +312,9 @@ pub(super) fn stiff() -> Section<'static> {
     }
 }
 
-/// A chain of springs: where fixed steps blow up, over amplitude and step.
-///
-/// Eight masses between walls on springs with the force r + r³. At small amplitude the fastest mode has
-/// `ω = 2 sin(4π/9)`: the trapezoidal rule is stable up to h = 2/ω = 1.0154. At larger amplitude the springs stiffen.
-pub(super) fn chain() -> Section<'static> {
-    let axes = || [Axis::log10("amplitude").over(0.01, 10.0), Axis::linear("h").over(0.1, 3.0)];
-    let verlet = Map::new(
-        "chain-trapezoidal",
-        "Chain of springs: trapezoidal rule",
-        "Trapezoidal rule, 1000 steps. Dashed: 2/<i>ω</i><sub>max</sub> of the linear chain, which holds at small \
-         amplitude only.",
-        axes(),
-        |amplitude, h| lowest_mode(trapezoidal(Chain::default()), amplitude, h),
-    );
-    let midpoint = Map::new(
-        "chain-midpoint",
-        "Chain of springs: midpoint rule",
-        "Midpoint rule, 1000 steps: no limit at small amplitude. The springs have no negative curvature, so that \
-         every step has one solution; yet a violent motion may still run away.",
-        axes(),
-        |amplitude, h| lowest_mode(Chain::default(), amplitude, h),
-    );
-    Section {
-        heading: "A chain of springs",
-        prose: "Eight masses between walls, on springs that stiffen (the <i>β</i>-chain of Fermi, Pasta, Ulam and Tsingou), \
-                started in their lowest mode. The energy spreads to faster modes, and with the amplitude all frequencies rise: a \
-                step that is stable for a gentle motion blows up in a violent one."
-            .to_owned(),
-        parts: vec![
-            Part::Map(verlet.coarser(2).with_theory("linear limit, h = 1.015", |_, h| h - linear_limit())),
-            Part::Map(midpoint.coarser(2)),
-        ],
-        advice: "Take the highest frequency at the largest amplitude that will occur, not that of the chain at rest, and keep a \
-                 factor of two below its limit; or take the midpoint rule, whose steps cost one banded solve per iteration.",
-    }
-}
-
-/// 2/ω of the fastest mode, `ω = 2 sin(8π/18)`.
-fn linear_limit() -> f64 {
-    1.0 / (4.0 * PI / 9.0).sin()
-}
-
-/// How a run from the lowest mode ends.
-fn lowest_mode<S: FixedStepping<8>>(system: S, amplitude: f64, h: f64) -> Class {
-    const LIMIT: Limit = Limit { steps: 1000, until: f64::INFINITY, bound: 100.0 };
-    let mode = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0].map(|place| amplitude * (PI * place / 9.0).sin());
-    Course::fixed(system, mode, [0.0; 8], h, LIMIT).ending.class()
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::ending::UNBOUNDED;
     use super::*;
-
-    #[test]
-    fn gentle_motion_has_the_linear_limit() {
-        // 1.0154266118857451 in `stability.json`, found by bisection to 5e-14.
-        assert!((linear_limit() - 1.015_426_611_885_745_1).abs() < 1e-13);
-        let ends = |h: f64| lowest_mode(trapezoidal(Chain::default()), 0.01, h);
-        assert_eq!((ends(0.99 * linear_limit()), ends(1.03 * linear_limit())), (LASTING, UNBOUNDED));
-        assert_eq!(lowest_mode(Chain::default(), 0.01, 3.0), LASTING);
-    }
 
     #[test]
     fn the_midpoint_rule_has_no_limit() {

@@ -102,7 +102,6 @@ fn sections<'a>(well: &'a Entry, pendulum: &'a Entry) -> Result<Vec<Section<'a>>
         energy::kepler(),
         energy::separatrix(well, pendulum)?,
         energy::orders(pendulum.system.as_ref()),
-        fixed::chain(),
     ])
 }
 
@@ -129,8 +128,8 @@ pub(crate) mod tests {
             .filter_map(|rest| rest.split('"').next())
             .filter(|name| !name.starts_with('#'))
             .collect();
-        // 27 maps and a chart, in two forms each, and a table.
-        assert_eq!(files.len(), 2 * 28 + 1);
+        // 25 maps and a chart, in two forms each, and a table.
+        assert_eq!(files.len(), 2 * 26 + 1);
         for name in files {
             let text = fs::read_to_string(out.join(name)).unwrap_or_default();
             assert!(text.len() > 100 && !text.contains("NaN"), "{name}");

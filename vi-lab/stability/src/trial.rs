@@ -36,19 +36,6 @@ lagrangian! {
     }
 }
 
-lagrangian! {
-    /// Eight masses between walls on springs with the force r + r³: the β-chain of Fermi, Pasta, Ulam and Tsingou.
-    pub(super) struct Chain {
-        const N = 8;
-        coord q[N];
-        let r[i in 1..N] = q[i] - q[i - 1];
-        let squares = q[0]^2 + sum(i in 1..N, r[i]^2) + q[N - 1]^2;
-        let fourths = q[0]^4 + sum(i in 1..N, r[i]^4) + q[N - 1]^4;
-        L = sum(i in 0..N, dot(q[i])^2) / 2 - squares / 2 - fourths / 4;
-        discretize midpoint, trapezoidal;
-    }
-}
-
 /// A system by the trapezoidal rule.
 pub(super) fn trapezoidal<S>(system: S) -> By<S, Trapezoidal> {
     By::new(system, Trapezoidal)
