@@ -9,41 +9,23 @@
 //!
 //! A damped mode has `Re z < 0`; a negative weight then has its pole at `z = 2/γ`, on the side of damping.
 
-use super::atlas::{Map, Part, Section};
-use super::ending::{Ending, LASTING, Limit, oscillation};
+use super::atlas::{Part, Section};
 use vi_core::{Composition, Starts, State};
-use vi_report::chart::{Axis, Chart, Class, Look, Series};
+use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::table::Table;
 use vi_systems::DampedOscillator;
 
-const DECAYS: Class = Class { label: "decays, as the motion", ..LASTING };
 /// What the chart shows of `c h`.
 const WIDEST: f64 = 6.0;
-/// What the map of each scheme shows: the instability is a band beside a pole; the map shows the widest band. Stem of the
-/// file names, the range of `c h`, the largest `h ω`.
-const BANDS: [(Composition, &str, (f64, f64), f64); 4] = [
-    (Composition::TRIPLE_JUMP_4, "composed-triple", (1.1, 1.4), 0.6),
-    (Composition::SUZUKI_4, "composed-suzuki", (3.0, 3.2), 0.6),
-    (Composition::KAHAN_LI_6, "composed-kl6", (2.5, 4.0), 2.0),
-    (Composition::KAHAN_LI_8, "composed-kl8", (4.5, 7.0), 3.0),
-];
 
-/// The section: the factor of a whole step, the largest stable steps, and a map for each scheme.
+/// The section: the factor of a whole step, and the largest stable steps.
 pub(super) fn section() -> Section<'static> {
     let mut table = Table::new("composed-limits", ["scheme", "order", "c h from the product", "c h of runs"]);
     for scheme in Composition::ALL {
-        let theory = limit(|ch| factor(scheme, -ch, 0.0) <= 1.0);
+        let theory = limit(|ch| factor(scheme, -ch) <= 1.0);
         let runs = limit(|ch| slows_down(scheme, ch));
         table.row([scheme.name.to_owned(), scheme.order.to_string(), format!("{theory:.4}"), format!("{runs:.4}")]);
     }
-    let maps = BANDS.into_iter().map(|(scheme, name, (least, largest), fastest)| {
-        let axes = [Axis::linear("c h").over(least, largest), Axis::linear("h ω").over(0.0, fastest)];
-        let caption = "Runs of the composition on an oscillator: pale decays, as it should; orange grows. The band follows the \
-                       faster of the two modes of an overdamped oscillator, <i>c</i> > 2<i>ω</i>.";
-        let title = format!("Damped oscillator: {}", scheme.name);
-        let map = Map::new(name, title, caption, axes, move |ch, h_omega| class(scheme, ch, h_omega)).coarser(2);
-        Part::Map(map.with_theory("|R| = 1", move |ch, h_omega| radius(scheme, ch, h_omega) - 1.0 - 1e-9))
-    });
     let table = Part::Table(
         table,
         "The <i>ch</i> up to which each composition is stable, from the product and from runs of its steps.",
@@ -54,7 +36,7 @@ pub(super) fn section() -> Section<'static> {
                 for the force −<i>cv</i> a substep <i>γh</i> multiplies the speed by (1 − <i>z</i>/2)/(1 + <i>z</i>/2), \
                 <i>z</i> = <i>cγh</i>, which has a pole where <i>γ</i> is negative."
             .to_owned(),
-        parts: [factors(), table].into_iter().chain(maps).collect(),
+        parts: vec![factors(), table],
         advice: "Keep <i>ch</i>, the damping rate of the fastest decay times the whole step, below the limit of the scheme, and \
                  for accuracy far below. Where damping is stronger than that, take fixed steps of order 2: they damp whatever \
                  is damped.",
@@ -69,7 +51,7 @@ fn factors() -> Part<'static> {
     let places = |count: u32| (1..=count).map(move |i| WIDEST * f64::from(i) / f64::from(count));
     let mut series = vec![Series::line("limit: 1", Look::EXACT, vec![(0.0, 1.0), (WIDEST, 1.0)])];
     for (scheme, look) in looks {
-        let line = places(800).map(|ch| (ch, factor(scheme, -ch, 0.0))).collect();
+        let line = places(800).map(|ch| (ch, factor(scheme, -ch))).collect();
         series.push(Series::line(scheme.name, look.line(), line));
         let dots = places(40).filter_map(|ch| Some((ch, after_one_step(scheme, ch)?))).collect();
         series.push(Series::scatter("", look.dots(3.0), dots).unlabelled());
@@ -88,26 +70,10 @@ fn factors() -> Part<'static> {
     )
 }
 
-/// `|R(z)|`, `z` by its real and its imaginary part.
-fn factor(scheme: Composition, re: f64, im: f64) -> f64 {
-    // |1 + γz/2| / |1 − γz/2|
-    let of = |weight: &f64| {
-        let re = weight * re / 2.0;
-        let im = weight * im / 2.0;
-        (1.0 + re).hypot(im) / (1.0 - re).hypot(im)
-    };
+/// `|R(z)|` for a real `z`.
+fn factor(scheme: Composition, z: f64) -> f64 {
+    let of = |weight: &f64| ((1.0 + weight * z / 2.0) / (1.0 - weight * z / 2.0)).abs();
     scheme.weights.iter().map(of).product()
-}
-
-/// The larger of `|R(z)|` over the two modes of an oscillator, `z² + (c h) z + (h ω)² = 0`.
-fn radius(scheme: Composition, ch: f64, h_omega: f64) -> f64 {
-    let discriminant = ch * ch / 4.0 - h_omega * h_omega;
-    if discriminant < 0.0 {
-        factor(scheme, -ch / 2.0, (-discriminant).sqrt())
-    } else {
-        let root = discriminant.sqrt();
-        factor(scheme, -ch / 2.0 - root, 0.0).max(factor(scheme, -ch / 2.0 + root, 0.0))
-    }
 }
 
 /// The first `c h` at which `stable` fails, to 1e-6; zero where it holds up to 10.
@@ -134,16 +100,6 @@ fn slows_down(scheme: Composition, ch: f64) -> bool {
     after_one_step(scheme, ch).is_some_and(|factor| factor <= 1.0)
 }
 
-/// How a run of the oscillator with the whole step 1 ends. No growth is allowed to a motion that decays.
-fn class(scheme: Composition, ch: f64, h_omega: f64) -> Class {
-    let system = DampedOscillator { m: 1.0, k: h_omega * h_omega, c: ch };
-    let limit = Limit { steps: 500, until: f64::INFINITY, bound: 10.0 };
-    match oscillation(system, scheme, 1.0, limit, 0.0) {
-        Ending::Lasting => DECAYS,
-        ending => ending.class(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,7 +107,7 @@ mod tests {
     #[test]
     fn the_product_and_the_runs_have_the_documented_limits() {
         for (scheme, documented) in Composition::ALL.into_iter().zip([1.13, 3.02, 2.73, 3.30]) {
-            let theory = limit(|ch| factor(scheme, -ch, 0.0) <= 1.0);
+            let theory = limit(|ch| factor(scheme, -ch) <= 1.0);
             let runs = limit(|ch| slows_down(scheme, ch));
             // The documentation of the compositions has two decimals.
             assert!((theory - documented).abs() <= 0.005, "{}: {theory}", scheme.name);
@@ -165,7 +121,7 @@ mod tests {
         for scheme in Composition::ALL {
             for ch in [0.1, 0.5, 1.0, 2.0, 3.5] {
                 let run = after_one_step(scheme, ch).expect("a step");
-                let product = factor(scheme, -ch, 0.0);
+                let product = factor(scheme, -ch);
                 assert!((run / product - 1.0).abs() < 1e-13, "{} at {ch}: {run}, {product}", scheme.name);
             }
         }

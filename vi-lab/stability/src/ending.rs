@@ -4,7 +4,7 @@
 //! distinguishes a solver that fails from a motion that grows without bound: each typed error has a colour of its own.
 
 use vi_core::stepping::{EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Method, SVector, Starts, State, StepError};
+use vi_core::{EnergyPreserving, FixedStep, SVector, Starts, State, StepError};
 use vi_erased::System;
 use vi_erased::plan::Plan;
 use vi_report::chart::Class;
@@ -153,16 +153,10 @@ impl Course {
 
 /// How fixed steps of an oscillator from (1, 0) end, whose motion itself may grow at this rate. Displacement and momentum
 /// are both looked at: at an extreme one of them vanishes.
-pub(super) fn oscillation<S: Lagrangian<1> + Copy, M: Method<S, 1>>(
-    system: S,
-    method: M,
-    h: f64,
-    limit: Limit,
-    rate: f64,
-) -> Ending {
+pub(super) fn oscillation<S: FixedStepping<1>>(system: S, h: f64, limit: Limit, rate: f64) -> Ending {
     /// Amplitude of a motion that has come to rest: far above the smallest numbers, where rounding is no longer relative.
     const REST: f64 = 1e-200;
-    let course = Course::begun(system.at(0.0, [1.0], [0.0]).integrate(method, h), limit, |run| {
+    let course = Course::begun(system.at(0.0, [1.0], [0.0]).integrate(FixedStep, h), limit, |run| {
         let state = run.step()?;
         let size = state.q.x.hypot(state.p.x);
         Ok((if size < REST { f64::INFINITY } else { state.t }, size * (-rate * state.t).exp()))

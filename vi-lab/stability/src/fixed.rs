@@ -6,7 +6,7 @@ use super::trial::{Bent, Oscillator, SpringPendulum, trapezoidal};
 use core::f64::consts::{PI, SQRT_2};
 use vi_core::node::Node;
 use vi_core::stepping::FixedStepping;
-use vi_core::{FixedStep, SVector, State, StepError};
+use vi_core::{SVector, State, StepError};
 use vi_report::chart::{Axis, Class};
 use vi_systems::{DoubleWell, Kepler, Pendulum};
 
@@ -80,7 +80,7 @@ pub(super) fn linear() -> Section<'static> {
 fn damped<S: FixedStepping<1>>(system: S, h: f64, zeta: f64) -> Class {
     let rate = (-zeta).max(0.0);
     let limit = Limit { steps: 2000, until: 100.0 / rate, bound: 1e4 };
-    match oscillation(system, FixedStep, h, limit, 2.0 * rate) {
+    match oscillation(system, h, limit, 2.0 * rate) {
         Ending::Lasting if zeta < 0.0 => GROWS,
         Ending::Lasting => DECAYS,
         ending => ending.class(),
