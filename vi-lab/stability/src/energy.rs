@@ -10,13 +10,12 @@ use super::atlas::{Map, Part, Section};
 use super::ending::{Course, Limit};
 use super::system;
 use core::f64::consts::{FRAC_PI_2, TAU};
-use vi_core::stepping::EnergyStepping;
 use vi_erased::System;
 use vi_erased::plan::{Method, PhasePoint, Plan, Shift};
-use vi_report::chart::{Axis, Class};
+use vi_report::chart::Axis;
 use vi_report::entry::Entry;
 use vi_report::failure::Failure;
-use vi_systems::{DoubleWell, Kepler, Pendulum};
+use vi_systems::Kepler;
 
 /// Eccentricity against the first step.
 pub(super) fn kepler() -> Section<'static> {
@@ -59,28 +58,11 @@ pub(super) fn kepler() -> Section<'static> {
     }
 }
 
-/// The double well above its barrier, the pendulum from libration to rotation, over the first step and in the phase plane.
+/// The double well above its barrier, the pendulum from libration to rotation, in the phase plane.
 ///
 /// # Errors
 /// The entries are not those of the double well and of the pendulum.
 pub(super) fn separatrix<'a>(well: &'a Entry, pendulum: &'a Entry) -> Result<Section<'a>, Failure> {
-    let axes =
-        |label: &str, low: f64, high: f64| [Axis::linear(label).over(low, high), Axis::log10("h₀").over(0.003, 0.6)];
-    let from_rest = Map::new(
-        "separatrix-well",
-        "Double well: initial place against the first step",
-        "Double well, energy-preserving: from <i>q</i><sub>0</sub> = 1 on the particle has the energy of the \
-         barrier. Below, the run goes on for 25 units of time.",
-        axes("q₀, from rest", 0.72, 1.3),
-        |q, h| across(DoubleWell::default(), q, 0.0, h),
-    );
-    let from_below = Map::new(
-        "separatrix-pendulum",
-        "Pendulum: initial velocity against the first step",
-        "Pendulum, energy-preserving: every libration runs, every rotation ends.",
-        axes("v₀, from the lowest point", 0.1, 3.0),
-        |v, h| across(Pendulum::default(), 0.0, v, h),
-    );
     let plane = |name, title, caption, entry, [x, y]: [&str; 2]| {
         let axes = system::axes(entry, Some(x), Some(y))?;
         Ok::<_, Failure>(Part::Map(system::energy(name, title, caption, entry, axes)))
@@ -92,8 +74,6 @@ pub(super) fn separatrix<'a>(well: &'a Entry, pendulum: &'a Entry) -> Result<Sec
                 <i>V</i>′²/<i>m</i> + <i>V</i>″<i>v</i>² does not."
             .to_owned(),
         parts: vec![
-            Part::Map(from_rest.with_theory("separatrix, q₀ = 1", |q, _| q - 1.0)),
-            Part::Map(from_below.with_theory("separatrix, v₀ = 2", |v, _| v - 2.0)),
             plane(
                 "plane-well",
                 "Double well: phase plane",
@@ -114,12 +94,6 @@ pub(super) fn separatrix<'a>(well: &'a Entry, pendulum: &'a Entry) -> Result<Sec
         advice: "Ask <code>vi-lab stability SYSTEM</code> before a long run: a motion that stays clear of <i>D</i> = 0 runs. For \
                  a motion across a barrier take fixed steps, at least while <i>D</i> has the wrong sign.",
     })
-}
-
-/// How a run ends, with steps enough for the time even where the first one, close to D = 0, is by far the longest.
-fn across<S: EnergyStepping<1>>(system: S, q: f64, v: f64, h: f64) -> Class {
-    const LIMIT: Limit = Limit { steps: 100_000, until: 25.0, bound: 1e3 };
-    Course::energy(system, [q], [v], h, LIMIT).ending.class()
 }
 
 /// The pendulum from rest: a map for each number of stages, and one with a shift.

@@ -3,12 +3,12 @@
 use super::atlas::{Map, Part, Section};
 use super::ending::{Course, Ending, LASTING, Limit, OWN, oscillation};
 use super::trial::{Bent, Oscillator, SpringPendulum, trapezoidal};
-use core::f64::consts::{PI, SQRT_2};
+use core::f64::consts::SQRT_2;
 use vi_core::node::Node;
 use vi_core::stepping::FixedStepping;
 use vi_core::{SVector, State, StepError};
 use vi_report::chart::{Axis, Class};
-use vi_systems::{DoubleWell, Kepler, Pendulum};
+use vi_systems::{DoubleWell, Kepler};
 
 const DECAYS: Class = Class { label: "bounded, as the motion", ..LASTING };
 const GROWS: Class = Class { number: OWN, label: "grows, as the motion", colour: "#CDE8DC" };
@@ -186,22 +186,13 @@ const KEPLER: (f64, f64) = (0.5, 1.0);
 /// solutions meet where `1 + (h²/4) V''(x) = 0`: from `h = 2/√(−V''_min)` on. For Kepler's problem a step exists iff
 /// `|q + h p/2|³ ≥ (27/16) μ h²`.
 pub(super) fn roots() -> Section<'static> {
-    let axes =
-        |label: &str, low: f64, high: f64| [Axis::linear(label).over(low, high), Axis::linear("h").over(1.0, 4.0)];
     let well = Map::new(
         "roots-well",
         "Solutions of one fixed step: double well",
         "Double well: solutions of the momentum equation, counted. The dashed curve is theory’s: beyond \
          <i>h</i> = 2/√(−<i>V</i>″<sub>min</sub>/<i>m</i>) = 2 a step from near the barrier has three.",
-        axes("w = q + h p/2", -1.0, 1.0),
-        |w, h| count(&DoubleWell::default(), w, h),
-    );
-    let pendulum = Map::new(
-        "roots-pendulum",
-        "Solutions of one fixed step: pendulum",
-        "Pendulum: the same near its highest point, <i>θ</i> = π.",
-        axes("w = θ + h p/2", 0.0, 2.0 * PI),
-        |w, h| count(&Pendulum::default(), w, h),
+        [Axis::linear("w = q + h p/2").over(-1.0, 1.0), Axis::linear("h").over(1.0, 4.0)],
+        count,
     );
     let kepler = Map::new(
         "roots-kepler",
@@ -224,11 +215,6 @@ pub(super) fn roots() -> Section<'static> {
                 let (b, c) = ((1.0 - h * h / 4.0) * 2.0 / (h * h), 2.0 * w / (h * h));
                 4.0 * b.powi(3) + 27.0 * c * c
             })),
-            Part::Map(pendulum.with_theory("two solutions meet", |w, h| {
-                // At cos x = −4/h² on both sides of π, where x + (h²/4) sin x = x − tan x.
-                let aside = (4.0 / (h * h)).min(1.0).acos();
-                (w - PI).abs() - (aside.tan() - aside)
-            })),
             Part::Map(
                 kepler.square().with_theory("(27/16) μ h²", move |x, y| x.hypot(y + h * p / 2.0) - (27.0 / 16.0 * h * h).cbrt()),
             ),
@@ -239,13 +225,13 @@ pub(super) fn roots() -> Section<'static> {
     }
 }
 
-/// Solutions of a fixed step from `w` at rest, within 4 of it on either side, counted by changes of sign.
-fn count<S: FixedStepping<1>>(system: &S, w: f64, h: f64) -> Class {
+/// Solutions of a fixed step of the double well from `w` at rest, within 4 of it on either side, counted by changes of sign.
+fn count(w: f64, h: f64) -> Class {
     const SAMPLES: u32 = 1200;
     let node = Node::new(State { t: 0.0, q: [w].into(), p: SVector::zeros() }, 0.0);
     let residual = |index: u32| {
         let middle = 4.0 * (2.0 * (f64::from(index) + 0.5) / f64::from(SAMPLES) - 1.0);
-        system.momentum_equation(&node, h, &SVector::from([2.0 * middle / h])).residual.x < 0.0
+        DoubleWell::default().momentum_equation(&node, h, &SVector::from([2.0 * middle / h])).residual.x < 0.0
     };
     let changes = (1..SAMPLES).filter(|&index| residual(index) != residual(index - 1)).count();
     if changes > 1 { SEVERAL } else { ONE }

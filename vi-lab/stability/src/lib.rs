@@ -128,8 +128,8 @@ pub(crate) mod tests {
             .filter_map(|rest| rest.split('"').next())
             .filter(|name| !name.starts_with('#'))
             .collect();
-        // 21 maps and a chart, in two forms each, and a table.
-        assert_eq!(files.len(), 2 * 22 + 1);
+        // 18 maps and a chart, in two forms each, and a table.
+        assert_eq!(files.len(), 2 * 19 + 1);
         for name in files {
             let text = fs::read_to_string(out.join(name)).unwrap_or_default();
             assert!(text.len() > 100 && !text.contains("NaN"), "{name}");
