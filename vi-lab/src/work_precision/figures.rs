@@ -1,12 +1,11 @@
-//! The four figures and the tables of a comparison, with their captions.
+//! The figures and the tables of a comparison, with their captions.
 //!
 //! In: [`Findings`]. Out: charts and tables. Runs with an error over [`LOST`] appear only in the table.
 
-use super::drift::Drift;
 use super::method::Method;
 use super::study::{Findings, Point, fitted_order};
 use vi_report::chart::{Axis, Chart, Look, Series};
-use vi_report::numbers::{about, extremes, scientific};
+use vi_report::numbers::{extremes, scientific};
 use vi_report::table::Table;
 
 /// An error above this is no approximation of the motion.
@@ -84,28 +83,6 @@ impl Findings {
         )
     }
 
-    /// Running maximum of the energy error against time.
-    pub(super) fn energy(&self, system: &str) -> Chart {
-        let series = self.drifts.iter().map(|drift| {
-            let line = drift.method.look().line();
-            let (label, look) = match drift.method {
-                Method::Rival if drift.setting > 1e-8 => (rival(drift), line),
-                Method::Rival if drift.setting > 1e-11 => (rival(drift), drift.method.look().dashed()),
-                Method::Rival => (rival(drift), drift.method.look().dotted()),
-                Method::Own(_) | Method::Gauss(_) => (drift.method.name().to_owned(), line),
-            };
-            Series::curve(label, look, drift.worst.clone())
-        });
-        let label =
-            if self.conserved { "max |H − H₀| / |H₀| so far" } else { "max |H − H_ref(t)| / |H₀| so far" };
-        Chart::new(
-            "energy",
-            format!("{system}: energy error over a long time"),
-            [Axis::log10("t"), Axis::log10(label)],
-            series.collect(),
-        )
-    }
-
     /// The least time that reaches an error, by method.
     pub(super) fn prices(&self) -> Table {
         let head = ["method", "error 1e-3", "1e-6", "1e-9", "1e-12"];
@@ -143,23 +120,6 @@ impl Findings {
             reasons if reasons.is_empty() => format!("all errors are above {}", scientific(PRICED[0])),
             reasons => reasons.join(" "),
         })
-    }
-
-    /// Energy errors and their growth.
-    pub(super) fn drift_table(&self) -> Table {
-        let head = ["method", "setting", "evaluations per time", "error at the end", "grows as", "ended"];
-        let mut table = Table::new("drift", head);
-        for drift in &self.drifts {
-            table.row([
-                drift.method.name().to_owned(),
-                drift.method.setting(drift.setting),
-                about(drift.rate),
-                drift.last().map_or_else(|| "—".to_owned(), |(_, error)| format!("{error:.2e}")),
-                drift.growth().map_or_else(|| "—".to_owned(), |power| format!("t^{power:.2}")),
-                drift.ended.map_or_else(String::new, |ended| ended.to_string()),
-            ]);
-        }
-        table
     }
 
     /// Every run.
@@ -212,12 +172,6 @@ impl Findings {
                 ));
             }
         }
-        for Drift { method, setting, ended, .. } in &self.drifts {
-            if let Some(ended) = ended {
-                let setting = method.setting(*setting);
-                sentences.push(format!("Over the long time {} at {setting} ended early: {ended}.", method.name()));
-            }
-        }
         sentences
     }
 
@@ -229,10 +183,6 @@ impl Findings {
     fn error_label(&self) -> String {
         format!("relative error of q and p at t = {}", self.until)
     }
-}
-
-fn rival(drift: &Drift) -> String {
-    format!("{}, {:.0e}", drift.method.name(), drift.setting)
 }
 
 /// Seconds in a suitable unit.
@@ -266,9 +216,6 @@ mod tests {
                 run(0.05, Ok(point(1e-14, 1e-3))),
                 run(0.02, Ok(point(3.0, 1e-2))),
             ],
-            drifts: Vec::new(),
-            conserved: true,
-            long: 100.0,
         }
     }
 

@@ -136,14 +136,14 @@ pub(super) struct FinalState {
 
 impl Task<'_> {
     /// Number of steps of length `setting`.
-    pub(super) fn steps(&self) -> u64 {
+    fn steps(&self) -> u64 {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive count far below 2⁵³
         let count = ((self.end - self.start.t) / self.setting).round() as u64;
         count.max(1)
     }
 
     /// The plan of a run of one of this project's integrators; `None` for the rival.
-    pub(super) fn plan(&self) -> Option<Plan> {
+    fn plan(&self) -> Option<Plan> {
         let (method, stages) = match self.method {
             Method::Own(method) => (method, None),
             Method::Gauss(stages) => (plan::Method::Gauss, Some(stages)),
@@ -184,7 +184,7 @@ impl Task<'_> {
 }
 
 /// An energy-preserving run is stopped at this multiple of the steps of its initial length.
-pub(super) const TOO_MANY: u64 = 10;
+const TOO_MANY: u64 = 10;
 
 /// The methods that run here and integrate the system.
 pub(super) fn methods(system: &dyn System) -> impl Iterator<Item = Method> + '_ {

@@ -1,8 +1,7 @@
 //! `vi-lab work-precision SYSTEM`: error against work, for every method.
 //!
-//! In: a predefined system and a folder. Out: in the folder a page `index.html` with four figures (error against time,
-//! against evaluations, against the step; energy over a long time), each as SVG and CSV, and tables of all runs. The
-//! methods are the fixed step, its compositions of order 4, 6 and 8, Gauss methods, the energy-preserving integrator, and
+//! In: a predefined system and a folder. Out: in the folder a page `index.html` with three figures (error against time,
+//! against evaluations, against the step), each as SVG and CSV, and tables of all runs. The methods are the fixed step, its compositions of order 4, 6 and 8, Gauss methods, the energy-preserving integrator, and
 //! DOP853 of another library.
 //!
 //! | module | product |
@@ -10,10 +9,8 @@
 //! | [`study`] | every run: error, evaluations, seconds |
 //! | [`method`] | one run of one method |
 //! | [`mod@reference`] | the reference solution, and its accuracy |
-//! | [`drift`] | the energy over a long time |
 //! | [`figures`] | charts, tables, and the runs that charts omit |
 
-mod drift;
 mod figures;
 mod method;
 mod reference;
@@ -69,7 +66,6 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     introduction(&mut report, &entry, &found);
     work(&mut report, &name, &found)?;
     order(&mut report, &name, &found)?;
-    energy(&mut report, &name, &found)?;
     report.section("Every run");
     let missing = found.missing();
     report.prose(&if missing.is_empty() {
@@ -155,29 +151,5 @@ fn order(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failur
         &found.orders(name).figure(),
         "The number in the legend is the slope over the four finest steps whose error is below 10<sup>−2</sup> and at least \
          30 times that of the reference; it is absent for fewer than four. DOP853 has no given step.",
-    )
-}
-
-fn energy(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure> {
-    report.section("Energy over a long time");
-    let compared = if found.conserved {
-        "The energy is conserved, and is compared with its initial value."
-    } else {
-        "The energy is not conserved here, and is compared with that of the reference at the same time, as long as the \
-         reference is accurate."
-    };
-    report.figure(
-        &found.energy(name).figure(),
-        &format!(
-            "Largest energy error so far, up to t = {}. {compared} Substeps of compositions have the same average length \
-             as the fixed step. The energy is <i>H</i> at the nodes; for the energy-preserving integrator <i>H</i> at the \
-             midpoints of its steps, at which its rule preserves it (at its nodes <i>H</i> deviates by <i>h</i>²<i>D</i>/8).",
-            found.long
-        ),
-    )?;
-    report.table(
-        &found.drift_table(),
-        "The same in numbers. The power of t is fitted over the last factor 100 in time: 0 is a bounded error, 1/2 \
-         random rounding, 1 linear drift.",
     )
 }

@@ -68,7 +68,7 @@ impl<'a> Reference<'a> {
     ///
     /// # Errors
     /// The motion cannot be computed.
-    pub(super) fn at(&self, t: f64) -> Result<PhasePoint, Ended> {
+    fn at(&self, t: f64) -> Result<PhasePoint, Ended> {
         let later = self.track.partition_point(|point| point.t <= t);
         let before = self.track.get(later.saturating_sub(1)).ok_or(Ended::NonFinite)?;
         Ok(self.system.studies().follow(before, t)?)

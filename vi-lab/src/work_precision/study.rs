@@ -2,7 +2,6 @@
 //!
 //! In: a system, its initial state, its default step. Out: [`Findings`]. Everything except the seconds is reproducible.
 
-use super::drift::{self, Drift};
 use super::method::{Method, Task, methods};
 use super::reference::{Agreement, Reference};
 use std::time::Instant;
@@ -31,12 +30,6 @@ pub(super) struct Findings {
     pub(super) agreement: Agreement,
     /// Every run.
     pub(super) runs: Vec<TimedRun>,
-    /// Energy errors over the long time.
-    pub(super) drifts: Vec<Drift>,
-    /// Whether the energy is conserved, so that the long time is long.
-    pub(super) conserved: bool,
-    /// The long time.
-    pub(super) long: f64,
 }
 
 /// One run.
@@ -126,27 +119,16 @@ pub(super) fn findings(entry: &Entry, quick: bool, progress: &mut Progress) -> R
         }
     }
     time(system, &start, until, &mut runs, if quick { 1 } else { ROUNDS }, progress);
-    let conserved = system.conserves_energy();
-    // A thousand times as long for one degree of freedom, with equal work for many.
-    let longer = match (conserved, quick) {
-        (false, _) => 1,
-        (true, true) => 5,
-        (true, false) => (1000 / coordinates.pow(2)).max(10),
-    };
-    #[allow(clippy::cast_precision_loss)] // at most a thousand
-    let long = until * longer as f64;
-    progress.message("energy over a long time");
-    let drifts = drift::all(system, &start, entry.h, long, (!conserved).then_some(&reference), progress)?;
-    Ok(Findings { until, agreement, runs, drifts, conserved, long })
+    Ok(Findings { until, agreement, runs })
 }
 
 /// Number of runs of [`findings`], for a progress bar.
 pub(super) fn length(entry: &Entry, quick: bool) -> u64 {
     let finest = finest(entry.q.len(), quick);
-    let methods = || methods(entry.system.as_ref());
-    let settings: usize = methods().map(|method| settings(method, STEPS * entry.h, finest).len()).sum();
+    let settings: usize =
+        methods(entry.system.as_ref()).map(|method| settings(method, STEPS * entry.h, finest).len()).sum();
     let rounds = if quick { 1 } else { u64::from(ROUNDS) };
-    (1 + rounds) * settings as u64 + methods().count() as u64 + 2
+    (1 + rounds) * settings as u64
 }
 
 /// Error and evaluations of one run, without its times.
@@ -254,7 +236,6 @@ mod tests {
         };
         assert_eq!(plain(&one), plain(&other));
         assert_eq!(one.agreement, other.agreement);
-        assert!(one.drifts.iter().zip(&other.drifts).all(|(one, other)| one.worst == other.worst));
         let timed = one.runs.iter().filter_map(|run| run.outcome.ok());
         assert!(timed.clone().count() > 40 && timed.clone().all(|point| point.seconds > 0.0));
     }
