@@ -216,7 +216,7 @@ fn what_grows_beyond_the_range_of_numbers_is_told() {
     let one = Variation::of_coordinate(0).expect("a coordinate");
     let end = Covector { q: [1.0].into(), p: [-1.0].into(), ..Covector::zero() };
     assert!(run.curvature(&before, &[one], &end).is_ok());
-    assert!(is_not_finite(&run.curvature(&before, &[huge.clone()], &end), "tangent vector"));
+    assert!(is_not_finite(&run.curvature(&before, std::slice::from_ref(&huge), &end), "tangent vector"));
     let mut collocated = gauss.clone();
     let first = *collocated.node();
     collocated.step().expect("solvable");
