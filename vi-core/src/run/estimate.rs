@@ -24,8 +24,8 @@
 //! Three further measurements only add to this. A step that changes a conserved H by more than [`GROSS`] of the energy has
 //! at least that error. A half step whose dense output does not begin with the velocity of its node misses the motion.
 //! At the end of each window a conserved H is compared with that at the start, relative to the energies on the way
-//! ([`EnergyPath`]): small parts of the large energies of a near collision, or rounding there, may be all that the orbit
-//! has.
+//! ([`EnergyPath`]): small parts of the large energies of a near collision or an escape, or rounding there, may be all that
+//! the orbit has.
 //!
 //! The first stretch ends when every counted coordinate with a turning point has covered four times its excursion, or,
 //! if none turns back, its force that of its range, or after [`STRETCH`] steps. Until then the scales grow, so the largest
@@ -71,6 +71,9 @@ const GROSS: f64 = 1e-3;
 /// Relative change of H since the start from which on the motion counts as lost. The energy errors of steps that resolve a
 /// motion oscillate below it.
 const DRIFTED: f64 = 0.01;
+/// The same relative to H and to the usual `Σ |p v|`: in an escape a small part of the energy there is many times H. It is
+/// larger than [`DRIFTED`], because a near collision changes H for a short time.
+const BROKEN: f64 = 0.03;
 /// `Σ |p v|` of a motion that only gathers speed, relative to its mean, is larger.
 const RISEN: f64 = 2.0;
 /// A step is measured at once if its indicator exceeds the largest one before its window by this factor.
@@ -225,6 +228,9 @@ struct EnergyPath {
     action: f64,
     /// The time integral of `Σ |p v|`, by the smaller value of each window: a near collision counts for its own time only.
     integral: f64,
+    /// The time integral of its logarithm, and the time without rest, for which it has one.
+    logarithms: f64,
+    moving: f64,
     /// Whether `Σ |p v|` has a mean: it does not only rise.
     has_mean: bool,
 }
@@ -236,26 +242,38 @@ impl EnergyPath {
     ) -> Option<Self> {
         let Energies { energy, action, .. } = Energies::at(run)?;
         let t = run.node.t.to_f64();
-        Some(Self { start: energy, from: t, until: t, action, integral: 0.0, has_mean: false })
+        let (integral, logarithms, moving) = (0.0, 0.0, 0.0);
+        Some(Self { start: energy, from: t, until: t, action, integral, logarithms, moving, has_mean: false })
     }
 
     /// `|H − H(start)|` at the current node of a run, relative to the mean of `Σ |p v|` so far, or to its value there if that
-    /// is larger. Zero unless it exceeds [`DRIFTED`] and rounding. Zero too in the first rise of `Σ |p v|`, which has no mean
-    /// to compare with: a fall from rest.
+    /// is larger, if it exceeds [`DRIFTED`]; or relative to the geometric mean of `Σ |p v|`, or to `|H(start)|` if that is
+    /// larger, if it exceeds [`BROKEN`]. Zero otherwise, and for rounding. Zero too in the first rise of `Σ |p v|`, which has
+    /// no mean to compare with: a fall from rest.
     fn drift<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
         &mut self,
         run: &Run<M, S, N, T>,
     ) -> f64 {
         let Some(Energies { energy, action, terms }) = Energies::at(run) else { return 0.0 };
         let t = run.node.t.to_f64();
-        self.integral += self.action.min(action) * (t - self.until).abs();
+        let (least, duration) = (self.action.min(action), (t - self.until).abs());
+        self.integral += least * duration;
+        if least > 0.0 {
+            self.logarithms += least.ln() * duration;
+            self.moving += duration;
+        }
         (self.until, self.action) = (t, action);
         let mean = self.integral / (t - self.from).abs();
         self.has_mean |= action <= RISEN * mean;
         let size = if mean < action { action } else { mean };
         let change = (energy - self.start).abs();
         let is_visible = change > FAINT * T::EPSILON * (self.start.abs() + terms);
-        if self.has_mean && is_visible && change > DRIFTED * size { change / size } else { 0.0 }
+        if !(self.has_mean && is_visible) {
+            return 0.0;
+        }
+        let usual = (self.logarithms / self.moving).exp().max(self.start.abs());
+        let part = |size: f64, from: f64| if change > from * size { change / size } else { 0.0 };
+        part(size, DRIFTED).max(part(usual, BROKEN))
     }
 }
 
