@@ -154,7 +154,8 @@ ADVICE: dict[str, str] = {
     "NotAssembled": "check lengths and anchors of `{constraint}` and its neighbours, or start from another guess",
     "InconsistentTangent": "choose changes of the start that keep the constraint",
     "Redundant": "start from system.independent(q, t=…), which drops the constraints that follow from the others, "
-    "here {dependent} of {of}, such as `{constraint}`, or start elsewhere",
+    "here {dependent} of {of}, such as `{constraint}`; start elsewhere if bars are in one line, where several "
+    "motions may begin",
     "Undefined": "take shorter steps, or stop the run before it gets there",
     "CannotLeave": "set the velocity toward the zero to zero with run.set_state, or search without event {event}",
     "OtherSystem": "restart with the parameters of the checkpoint",
@@ -202,10 +203,10 @@ def _message(
         return f"{reason}; correct its lengths, or start elsewhere"
     if variant == "Singular" and fields.get("matrix") == "mass matrix bordered by the constraints":
         return (
-            f"{reason}; there the constraints depend on each other, as at a dead point with bars in one line, or a "
-            "motion along them has no mass: a step may pass such a place, but none ends there; take another length or "
-            "time, or run.events(…), which passes it; a mechanism with more constraints than it needs moves as "
-            "system.independent(q, t=…), and system.project(q) finds such q"
+            f"{reason}; there the constraints depend on each other, as at a dead point with bars in one line, where "
+            "several motions may begin, or a motion along them has no mass: a step may pass such a place, but none "
+            "ends there; take another length or time, or run.events(…), which passes it; a mechanism with more "
+            "constraints than it needs moves as system.independent(q, t=…), and system.project(q) finds such q"
         )
     if variant == "Tolerance" and not fields.get("estimate"):
         return f"{reason}; give a step length h"

@@ -622,7 +622,7 @@ impl fmt::Display for StepError {
             Self::Redundant { rank: 0, .. } => f.write_str("; correct its lengths, or start elsewhere"),
             Self::Redundant { constraint, .. } => write!(
                 f,
-                "; drop `{constraint}`, start elsewhere, or integrate `Independent::at(system, t, q)`, which keeps an independent subset"
+                "; drop `{constraint}`, or integrate `Independent::at(system, t, q)`, which keeps an independent subset; start elsewhere if bars are in one line, where several motions may begin"
             ),
             Self::NoEquilibrium { coordinate, .. } => write!(
                 f,
@@ -633,7 +633,7 @@ impl fmt::Display for StepError {
                 "; start nearer to an equilibrium; if the equilibria form a family, hold `{coordinate}` by a weak spring"
             ),
             Self::Singular { matrix: BORDERED_MASS, .. } => f.write_str(
-                "; there the constraints depend on each other, as at a dead point with bars in one line, or a motion along them has no mass: \
+                "; there the constraints depend on each other, as at a dead point with bars in one line, where several motions may begin, or a motion along them has no mass: \
                  a step may pass such a place, but none ends there; take another length or time, or the iterator `events`, which passes it; \
                  a mechanism with more constraints than it needs moves as `Independent::at(system, t, q)`",
             ),

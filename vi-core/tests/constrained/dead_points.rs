@@ -1,7 +1,7 @@
-//! Events at a dead point: a run passes it between two nodes, while no step ends there.
+//! Dead points: events where a run passes one between two nodes, while no step ends there; linkages that have two ways on.
 
 use vi_core::run::Event;
-use vi_core::{Gauss, Starts, StepError, lagrangian};
+use vi_core::{EnergyPreservingGauss, Gauss, Method, Starts, State, StepError, lagrangian};
 
 lagrangian! {
     /// Three posts with two beams, as high as they are apart: all bars are in one line where the posts lie flat.
@@ -70,4 +70,104 @@ fn events_at_a_dead_point_are_found() {
         assert!(failure.to_string().contains("the iterator `events`"), "{failure}");
         assert!(stopped.step().is_ok());
     }
+}
+
+lagrangian! {
+    /// Two cranks of equal length at a bar as long as the distance of their pivots: a parallelogram, or an
+    /// antiparallelogram, whose bars are in one line at the same places.
+    struct Cranks {
+        coord p[2], q[2];
+        L = (dot(p) * dot(p) + dot(q) * dot(q)) / 2 - p[1] - q[1];
+        constraint left = p * p - 1, right = (q[0] - 2)^2 + q[1]^2 - 1, bar = (q - p) * (q - p) - 4;
+    }
+}
+
+/// A start with the left crank at an angle from the right, turning at a speed.
+fn cranks(is_parallel: bool, angle: f64, speed: f64) -> Result<State<4>, StepError> {
+    let [y, x] = angle.sin_cos().into();
+    // The end of the right crank, or its mirror image at the diagonal from the left end to the right pivot.
+    let [along, across] = [2.0 - x, -y];
+    let part = if is_parallel { 0.0 } else { 4.0 * y / along.hypot(across).powi(2) };
+    let q = [x, y, x + 2.0 + part * across, y - part * along];
+    let turn = if is_parallel { 1.0 } else { 0.0 };
+    let v = [-y, x, -y * turn, x * turn].map(|v| v * speed);
+    State::projected(&Cranks::default(), 0.0, q, v).map(|found| found.state)
+}
+
+/// Runs into the dead points from both sides, and on both ways. Returns the height of the left crank and the error where
+/// a run ends.
+fn ends<M: Method<Cranks, 4> + Copy>(method: M, h: f64) -> Vec<(f64, StepError)> {
+    let starts =
+        [(1.2, -1.0), (-1.2, 1.0), (1.9, 1.0), (-1.9, -1.0), (0.001, -2.0), (core::f64::consts::PI - 0.0016, 0.5)];
+    let mut ends = Vec::new();
+    for (is_parallel, (angle, speed)) in [true, false].into_iter().flat_map(|way| starts.map(|start| (way, start))) {
+        let start = cranks(is_parallel, angle, speed).unwrap_or_else(|failure| panic!("{failure}"));
+        let mut run = match Cranks::default().at_state(start).integrate(method, h) {
+            Ok(run) => run,
+            Err(failure) => {
+                ends.push((start.q[1], failure));
+                continue;
+            }
+        };
+        while run.t() < 3.0 {
+            match run.step() {
+                Ok(State { q, .. }) => {
+                    // On the other way the right crank is off by at least 4/3 of the height of the left one.
+                    let apart = (q[2] - q[0] - 2.0).hypot(q[3] - q[1]);
+                    let is_kept = if is_parallel { apart < 1e-7 } else { apart > q[1].abs() };
+                    assert!(is_kept, "{is_parallel}, {angle}, {speed}, {h}: {q}");
+                }
+                Err(failure) => {
+                    ends.push((run.state().q[1], failure));
+                    break;
+                }
+            }
+        }
+    }
+    ends
+}
+
+#[test]
+fn no_step_leaves_its_way_at_a_dead_point() {
+    for h in [0.1, 0.03, 0.01] {
+        for ends in [ends(Gauss::<1>, h), ends(Gauss::<2>, h), ends(Gauss::<3>, h), ends(Gauss::<4>, h)] {
+            // The other four starts turn back before.
+            assert_eq!(ends.len(), 8, "{ends:?}");
+            for (y, failure) in ends {
+                assert!(matches!(failure, StepError::Singular { .. }) && y.abs() < 4.0 * h, "{h}: {y}, {failure}");
+                assert!(failure.to_string().contains("dead point"), "{failure}");
+            }
+        }
+        // They may end before, for want of a step that keeps H.
+        let preserving = [
+            ends(EnergyPreservingGauss::<1>, h),
+            ends(EnergyPreservingGauss::<2>, h),
+            ends(EnergyPreservingGauss::<3>, h),
+        ];
+        for (_, failure) in preserving.iter().flatten() {
+            let is_known = matches!(
+                failure,
+                StepError::Singular { .. }
+                    | StepError::NoForwardGaussStep { .. }
+                    | StepError::DegenerateStep { .. }
+                    | StepError::StepRatio { .. }
+            );
+            assert!(is_known, "{h}: {failure}");
+        }
+    }
+}
+
+#[test]
+fn no_motion_is_chosen_at_a_dead_point() {
+    // Both velocities are admissible there, one for each way.
+    for v in [[0.0, 1.0, 0.0, 1.0], [0.0, 1.0, 0.0, -1.0]] {
+        let refused = Cranks::default().at(0.0, [1.0, 0.0, 3.0, 0.0], v).integrate(Gauss::<2>, 0.01).err();
+        let Some(failure @ StepError::Redundant { of: 3, rank: 2, .. }) = refused else { panic!("{refused:?}") };
+        assert!(failure.to_string().contains("several motions may begin"), "{failure}");
+    }
+    // Beside it one way is left, but rounding hides which.
+    let refused =
+        cranks(true, 1e-9, 1.0).and_then(|start| Cranks::default().at_state(start).integrate(Gauss::<2>, 0.01));
+    let Some(failure) = refused.err() else { panic!("a run at a dead point") };
+    assert!(failure.to_string().contains("several motions may begin"), "{failure}");
 }

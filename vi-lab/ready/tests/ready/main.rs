@@ -72,3 +72,31 @@ fn starts_with_constraints_follow_the_parameters() {
     }
     assert!(system.begin(&plan(&found.point.q)).is_ok());
 }
+
+#[test]
+fn a_parallelogram_does_not_leave_its_way_at_a_dead_point() {
+    let entry = vi_ready::systems().into_iter().find(|entry| entry.name == "FourBar").expect("a system");
+    let mut system = entry.system.copy();
+    // Opposite bars of equal length: at a height of zero an antiparallelogram begins, too.
+    assert!(system.set("b", 3.0) && system.set("c", 1.0));
+    let [q, v] = entry.start.expect("a start")(&system.parameters());
+    let methods = [1, 2, 3, 4].map(|stages| (Method::Gauss, Some(stages)));
+    for (method, stages) in methods.into_iter().chain([(Method::Adaptive, None), (Method::Energy, Some(2))]) {
+        for (sign, h) in [1.0, -1.0].into_iter().flat_map(|sign| [(sign, 0.02), (sign, 0.005)]) {
+            let start = PhasePoint { t: 0.0, q: q.clone(), v: v.iter().map(|v| sign * v).collect() };
+            let plan = Plan { stages, ..Plan::new(method, h, start) };
+            let mut run = system.begin(&plan).unwrap_or_else(|failure| panic!("{failure}"));
+            let failure = loop {
+                let q = run.q();
+                let apart = (q[2] - q[0] - 3.0).abs() + (q[3] - q[1]).abs();
+                assert!(apart < 1e-7 && run.t() < 1.0, "{method:?}, {stages:?}, {h}: {q:?}");
+                if let Err(failure) = run.advance() {
+                    break failure;
+                }
+            };
+            let is_known = matches!(failure, StepError::Singular { .. })
+                || method == Method::Energy && matches!(failure, StepError::NoForwardGaussStep { .. });
+            assert!(is_known, "{method:?}, {stages:?}, {h}: {failure}");
+        }
+    }
+}
