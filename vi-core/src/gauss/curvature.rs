@@ -109,5 +109,9 @@ fn multipliers<const N: usize, const S: usize>(
             equations[N * S][l][j] = -weights[j] * of_end;
         }
     }
-    if eliminate::<N, S, false>(&mut equations, mass) { Ok(equations[N * S]) } else { Err(step.unsolved()) }
+    if eliminate::<N, S, false>(step.moving, &mut equations, mass) {
+        Ok(equations[N * S])
+    } else {
+        Err(step.unsolved())
+    }
 }

@@ -196,6 +196,8 @@ pub(super) struct Linearized<const N: usize, const S: usize> {
     /// Time of the start.
     t: f64,
     pub(super) h: f64,
+    /// Coordinates behind these are at rest: they have no equations.
+    pub(super) moving: usize,
     pub(super) at: Solution<N, S>,
     /// The derivatives at the stages, then a buffer for the equations. On the heap: arrays of long systems would
     /// overflow the stack of a thread.
@@ -219,7 +221,7 @@ impl<const N: usize, const STAGES: usize> Linearized<N, STAGES> {
             // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
             differentiate_in_scalars(&rare, &at, derivatives);
         }
-        Self { t: before.t, h, at, rows }
+        Self { t: before.t, h, moving: system.moving(), at, rows }
     }
 
     /// C, M, K and B at the stages.
@@ -234,13 +236,19 @@ impl<const N: usize, const STAGES: usize> Linearized<N, STAGES> {
         variations: &mut [Variation<N>],
         mut take: Option<Take<'_, N, STAGES>>,
     ) -> Result<(), StepError> {
-        let Self { t, h, .. } = *self;
+        let Self { t, h, moving, .. } = *self;
         for variations in variations.chunks_mut(TOGETHER) {
             let explicit = explicit(system, &self.at, variations, t)?;
             let from = if take.is_some() { variations.to_vec() } else { Vec::new() };
             let (derivatives, equations) = self.rows.split_at_mut(4 * N);
             let derivatives = derivatives.as_chunks().0;
-            if !Instructions::detected().run(Vary { derivatives, equations, h, explicit, variations }) {
+            let instructions = Instructions::detected();
+            let are_found = if const { S::INTERPRETED } {
+                instructions.run(Vary::<true, N, STAGES> { moving, derivatives, equations, h, explicit, variations })
+            } else {
+                instructions.run(Vary::<false, N, STAGES> { moving, derivatives, equations, h, explicit, variations })
+            };
+            if !are_found {
                 // Excludes singular equations, and input that was not finite.
                 Variation::check_finite(variations, t)?;
                 return Err(self.unsolved());
@@ -403,8 +411,9 @@ fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize, const STAGES: usi
 }
 
 /// Maps tangent vectors at the start of a step to those at its end. Returns false, with unspecified vectors, if the
-/// equations are singular.
-struct Vary<'a, const N: usize, const S: usize> {
+/// equations are singular. Coordinates may be at rest (`SOME_REST`) in systems that are known at run time only.
+struct Vary<'a, const SOME_REST: bool, const N: usize, const S: usize> {
+    moving: usize,
     derivatives: &'a Derivatives<N, S>,
     /// Buffer for the columns of the matrix and the right sides.
     equations: &'a mut [Stages<N, S>],
@@ -413,16 +422,17 @@ struct Vary<'a, const N: usize, const S: usize> {
     variations: &'a mut [Variation<N>],
 }
 
-impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
+impl<const SOME_REST: bool, const N: usize, const S: usize> Loop for Vary<'_, SOME_REST, N, S> {
     type Output = bool;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> bool {
-        let Self { derivatives, equations, h, explicit, variations } = self;
+        let Self { moving, derivatives, equations, h, explicit, variations } = self;
+        let n = if const { SOME_REST } { moving } else { N };
         let [momentum_dq, mass, force_dq, force_dv] = derivatives else { return false };
         let weights = weights::<S>(h);
         let (columns, right) = equations.split_at_mut(N * S);
-        for (l, columns) in columns.chunks_exact_mut(S).enumerate() {
+        for (l, columns) in columns.chunks_exact_mut(S).enumerate().take(n) {
             for (j, column) in columns.iter_mut().enumerate() {
                 *column = self::column::<N, S, FUSED>([momentum_dq, mass, force_dq, force_dv], &weights, [l, j]);
             }
@@ -440,17 +450,17 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
                     }
                 }
             }
-            add_products::<N, S, FUSED>(N, &mut momentum, momentum_dq, &position);
-            add_products::<N, S, FUSED>(N, &mut force, force_dq, &position);
+            add_products::<N, S, FUSED>(n, &mut momentum, momentum_dq, &position);
+            add_products::<N, S, FUSED>(n, &mut force, force_dq, &position);
             right[direction] = missing::<N, S, FUSED>(&variation.p, &momentum, &force, &weights);
             forces[direction] = force;
         }
-        let are_finite = eliminate::<N, S, FUSED>(&mut equations[..N * S + variations.len()], mass);
+        let are_finite = eliminate::<N, S, FUSED>(n, &mut equations[..N * S + variations.len()], mass);
         for (direction, variation) in variations.iter_mut().enumerate() {
             let velocities = &equations[N * S + direction];
             let force = &mut forces[direction];
-            add_products::<N, S, FUSED>(N, force, force_dq, &integrals::<N, S, FUSED>(velocities, &weights));
-            add_products::<N, S, FUSED>(N, force, force_dv, velocities);
+            add_products::<N, S, FUSED>(n, force, force_dq, &integrals::<N, S, FUSED>(velocities, &weights));
+            add_products::<N, S, FUSED>(n, force, force_dv, velocities);
             for k in 0..N {
                 variation.q[k] += sum(&scaled(&weights, &velocities[k]));
                 variation.p[k] += sum(&scaled(&weights, &force[k]));
@@ -560,17 +570,20 @@ fn comparable<const N: usize, const S: usize>(mass: &[Stages<N, S>; N]) -> [f64;
 
 /// Solves equations whose columns precede their right sides. Eliminates all rows but the pivot's, with partial pivoting
 /// among rows scaled by the mass matrix; the right sides become the solutions. Returns whether all are finite, which is
-/// false for a singular matrix.
+/// false for a singular matrix. The coordinates behind the first `n` are at rest, with the mass 1: their right sides are
+/// their solutions.
 #[inline(always)]
 pub(super) fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
+    n: usize,
     equations: &mut [Stages<N, S>],
     mass: &[Stages<N, S>; N],
 ) -> bool {
     // 1 for rows without a pivot so far, else 0.
-    let mut free = [[1.0; S]; N];
+    let mut free = [[0.0; S]; N];
+    free[..n].fill([1.0; S]);
     let mut pivots = [[(0, 0); S]; N];
     let mut scales = [[0.0; S]; N];
-    for l in 0..N {
+    for l in 0..n {
         for j in 0..S {
             let (done, rest) = equations.split_at_mut(l * S + j + 1);
             let Some(column) = done.last() else { return false };
@@ -580,17 +593,18 @@ pub(super) fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
             pivots[l][j] = (row, at);
             scales[l][j] = scale;
             let mut factors = [[0.0; S]; N];
-            for k in 0..N {
+            for k in 0..n {
                 for i in 0..S {
                     factors[k][i] = -column[k][i] * scale;
                 }
             }
             factors[row][at] = 0.0;
-            for other in rest {
+            let (columns, others) = rest.split_at_mut((n - l) * S - j - 1);
+            for other in columns.iter_mut().chain(&mut others[(N - n) * S..]) {
                 let pivotal = other[row][at];
                 // A copy cannot alias, so that the compiler vectorizes the loop.
                 let mut eliminated = *other;
-                for k in 0..N {
+                for k in 0..n {
                     for i in 0..S {
                         eliminated[k][i] = Lane::<FUSED>::multiply_add(factors[k][i], pivotal, eliminated[k][i]);
                     }
@@ -602,7 +616,7 @@ pub(super) fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
     let mut are_finite = true;
     for right in equations.iter_mut().skip(N * S) {
         let eliminated = *right;
-        for l in 0..N {
+        for l in 0..n {
             for j in 0..S {
                 let (row, at) = pivots[l][j];
                 right[l][j] = eliminated[row][at] * scales[l][j];
