@@ -224,7 +224,9 @@ fn near<S: Motion<N, T>, const N: usize, T: Real>(
         let rate = row.dot(v) + offset;
         let of_value = row.terms(&sizes) + (offset * t).abs();
         let of_rate = row.terms(v) + row.terms(&velocities) + offset.abs();
-        if is_off(value, of_value) || is_off(rate, of_rate) {
+        // At rest a velocity is the rounding of a rounding: no motion sees it, in any unit of time.
+        let floor = T::real(f64::EPSILON * f64::EPSILON / part) * of_value;
+        if is_off(value, of_value) || is_off(rate, of_rate + floor) {
             let (residual, rate) = (value.to_f64(), rate.to_f64());
             return Err(StepError::InconsistentStart { constraint, residual, rate });
         }

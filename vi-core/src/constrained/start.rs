@@ -123,8 +123,9 @@ where
         let of_momentum = row.terms(&uncertainty) + row.terms(&velocities);
         let of_value = value.ulps() + row.terms(&positions);
         let rate = -row.dot(&excess);
-        let is_consistent =
-            roundings(value.to_f64(), of_value) <= limit && roundings(rate, bound + of_momentum) <= limit;
+        // At rest a velocity is the rounding of a rounding: no motion sees it, in any unit of time.
+        let of_rate = bound + of_momentum + f64::EPSILON * of_value;
+        let is_consistent = roundings(value.to_f64(), of_value) <= limit && roundings(rate, of_rate) <= limit;
         if !is_consistent {
             return Err(StepError::InconsistentStart { constraint, residual: value.to_f64(), rate });
         }

@@ -21,6 +21,9 @@ fn a_start_off_the_constraint_is_inconsistent() {
     );
     let text = failure.to_string();
     assert!(text.contains("`rod`") && text.contains("-1.600e-1") && text.contains("State::projected"), "{text}");
+    // At rest but for the rounding of a rounding.
+    assert_eq!(begin([0.6, -0.8], [0.0, 1.44e-32]), None);
+    assert!(begin([0.6, -0.8], [0.0, 1e-25]).is_some());
     // Sixteen roundings are the limit.
     assert_eq!(begin([0.6, -0.8 * (1.0 + 4e-16)], [0.8, 0.6]), None);
     assert!(begin([0.6, -0.8 * (1.0 + 4e-14)], [0.8, 0.6]).is_some());
