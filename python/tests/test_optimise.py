@@ -377,6 +377,25 @@ def test_what_is_not_found_is_told():
     }
     found = vi.optimise(Mass(), steps=10, inputs={"u": (-1.0, 1.0)}, **options)
     assert not found.success and found.residual > 0.1 and "not converged" in repr(found)
+    # Inputs of the second iteration, which no step can follow: the rope would have a negative length.
+    Crane = vi.System("""
+    struct Crane {
+        param M = 1.0, m = 0.5, g = 9.81;
+        input F = 0.0, W = 0.0;
+        coord x, l, a;
+        let X = x + l * sin(a);
+        let Y = -l * cos(a);
+        L = M * dot(x)^2 / 2 + m * (dot(X)^2 + dot(Y)^2) / 2 - m * g * Y;
+        force x = F;
+        force l = W;
+    }
+    """)
+    found = vi.optimise(
+        Crane(), steps=40, stages=4, duration=(0.5, 10.0), start=([0.0, 1.0, 0.0], np.zeros(3)),
+        end=([2.0, 1.0, 0.0], np.zeros(3)), cost="1", inputs={"F": (-5.0, 5.0), "W": (-10.0, 0.0)},
+        guess={"W": -4.905, "duration": 3.0}, options={"max_iter": 2},
+    )  # fmt: skip
+    assert not found.success and "not converged" in repr(found) and found.solution.q.shape == (41, 3)
 
 
 @pytest.mark.parametrize(
@@ -395,6 +414,8 @@ def test_what_is_not_found_is_told():
         ({"cost": "w^2"}, ValueError, "w"),
         ({"cost": "[u, u]"}, ValueError, "must be a number"),
         ({"inputs": ["w"]}, ValueError, "has no input 'w'"),
+        ({"inputs": {"u": 5.0}}, ValueError, "must be two numbers or None, as in inputs={'u': .*set a constant input"),
+        ({"inputs": {"u": [(0, 1), (0, 2)]}}, ValueError, "for each entry {'u\\[0\\]': …}"),
         ({"bounds": {"u": (0.0, 1.0)}}, ValueError, "is an input: write its bounds as inputs="),
         ({"bounds": {"x": (0.5, 1.0)}}, ValueError, "exclude its value at the start"),
         ({"bounds": {"x": (0.5,)}}, ValueError, "two numbers or None"),

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ._arrays import Array, array, count, finite, fixed, number, vector
 from ._calls import checked_call, unassignable
-from ._errors import advised  # type: ignore[attr-defined]
+from ._errors import StepError, advised  # type: ignore[attr-defined]
 from ._names import among, meant
 from ._nlp import Indices, Solved, solve
 from ._observed import observed
@@ -80,12 +80,11 @@ class Optimum:
 
     def __repr__(self) -> str:
         name = type(self.solution.system).__name__
-        lines = [
-            f"Optimum of {name}: cost {self.cost:.8g} in {self.iterations} iterations",
-            f"{len(self.u)} steps to t = {self.t[-1]:g}, largest residual {self.residual:.1e}, error of a step "
-            f"{self.errors.max():.1e}",
-        ]
-        return "\n".join(lines if self.success else [*lines, f"not converged: {self.status}"])
+        first = f"Optimum of {name}: cost {self.cost:.8g} in {self.iterations} iterations"
+        second = f"{len(self.u)} steps to t = {self.t[-1]:g}, largest residual {self.residual:.1e}"
+        if not self.success:
+            return f"{first}\n{second}\nnot converged: {self.status}"
+        return f"{first}\n{second}, error of a step {self.errors.max():.1e}"
 
     @cached_property
     def errors(self) -> Array:
@@ -223,8 +222,14 @@ def _optimum(problem: _Problem, found: Solved, given: dict[str, Any]) -> Optimum
     duration, q, p, u = problem.split(found.x)
     t = problem.times(duration)
     values = problem.parameters(np.vstack([u, u[-1:]]))
-    cls = type(problem.system)
-    solution = _replayed(cls, values, t, q[0], p[0], {"method": given["method"], "stages": given["stages"]})
+    cls, options = type(problem.system), {"method": given["method"], "stages": given["stages"]}
+    try:
+        solution = _replayed(cls, values, t, q[0], p[0], options)
+    except StepError:
+        if found.success:
+            raise
+        # Inputs that are no optimum may have no motion: the nodes are all there is.
+        solution = _of_nodes(cls, values, t, q, p)
     own = found.multipliers[2 * n * k :]
     multipliers: dict[str, Array] = {}
     for row in problem.rows:
@@ -260,6 +265,14 @@ def _replayed(cls: Any, values: Array, t: Array, q: Array, p: Array, options: di
     solution = Solution(cls._of(values[0])._fixed(), t, q, p)
     # Each row has a system of its own.
     solution.__dict__.update(v=fixed(v), energy=fixed(energy))
+    solution._values = values
+    return solution
+
+
+def _of_nodes(cls: Any, values: Array, t: Array, q: Array, p: Array) -> Solution:
+    """The nodes of a solver that found no optimum, without velocities and energies."""
+    solution = Solution(cls._of(values[0])._fixed(), t, q, p)
+    solution.__dict__.update(v=fixed(np.full_like(q, np.nan)), energy=fixed(np.full_like(t, np.nan)))
     solution._values = values
     return solution
 
@@ -338,7 +351,7 @@ class _Problem:
                     f"{type(system).__name__} has no input {name!r}{meant(name, known)}; it has "
                     f"{', '.join(system.inputs)}"
                 )
-            pair = _pair(wanted[name], name) if isinstance(wanted, Mapping) else (-math.inf, math.inf)
+            pair = _bounds_of_input(wanted[name], name) if isinstance(wanted, Mapping) else (-math.inf, math.inf)
             found |= {entry: (index, pair) for entry, index in known[meaning].items()}
         self.names = list(found)
         self.indices = [index for index, _ in found.values()]
@@ -372,13 +385,13 @@ class _Problem:
             return
         coordinates = self.system.coordinates
         if not isinstance(of, Mapping):
-            if not isinstance(of, (tuple, list)) or len(of) != 2:
-                raise TypeError(f'{name} must be (q, v), or a dict such as {{"{coordinates[0]}": 0.0}}, not {of!r}')
             if self.kind.is_first_order:
                 raise ValueError(
                     f"L of {type(self.system).__name__} is linear in the velocities, so that the coordinates alone are a "
                     f'state: write {name}={{"{coordinates[0]}": …}}'
                 )
+            if not isinstance(of, (tuple, list)) or len(of) != 2:
+                raise TypeError(f'{name} must be (q, v), or a dict such as {{"{coordinates[0]}": 0.0}}, not {of!r}')
             q, v = (vector(x, self.n, f"{letter} of {name}", coordinates) for x, letter in zip(of, "qv", strict=True))
             if self.system.constraints and name == "start":
                 self._fix_start(q, v)
@@ -619,6 +632,17 @@ def _pair(value: Any, name: str) -> tuple[float, float]:
     if not lower <= upper:
         raise ValueError(f"the bounds of {name} must be ascending, not {value!r}")
     return lower, upper
+
+
+def _bounds_of_input(value: Any, name: str) -> tuple[float, float]:
+    """The bounds of an input, which are a pair: a number would leave nothing to find."""
+    if not isinstance(value, (tuple, list)) or len(value) != 2 or any(isinstance(of, (tuple, list)) for of in value):
+        entries = f", for each entry {{'{name}[0]': …}}" if isinstance(value, (tuple, list)) else ""
+        raise ValueError(
+            f"the bounds of the input {name} must be two numbers or None, as in inputs={{{name!r}: (-1.0, 1.0)}}"
+            f"{entries}, not {value!r}; set a constant input in the system"
+        )
+    return _pair(value, name)
 
 
 def _middle(lower: float, upper: float) -> float | None:
