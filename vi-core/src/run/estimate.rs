@@ -71,11 +71,12 @@ const GROSS: f64 = 1e-3;
 /// Relative change of H since the start from which on the motion counts as lost. The energy errors of steps that resolve a
 /// motion oscillate below it.
 const DRIFTED: f64 = 0.01;
-/// The same relative to H and to the usual `Σ |p v|`: in an escape a small part of the energy there is many times H. It is
-/// larger than [`DRIFTED`], because a near collision changes H for a short time.
+/// The same relative to H and to the usual `Σ |p v|`: in an escape a small part of the energy there is many times H.
 const BROKEN: f64 = 0.03;
 /// `Σ |p v|` of a motion that only gathers speed, relative to its mean, is larger.
 const RISEN: f64 = 2.0;
+/// `Σ |p v|` of an escape, relative to the largest one before its rise, is larger. Swings are as large as earlier ones.
+const ESCAPED: f64 = 100.0;
 /// A step is measured at once if its indicator exceeds the largest one before its window by this factor.
 const SUSPICIOUS: f64 = 1.25;
 /// Part of the largest change of `h v` that the scale of an error has at least.
@@ -231,6 +232,9 @@ struct EnergyPath {
     /// The time integral of its logarithm, and the time without rest, for which it has one.
     logarithms: f64,
     moving: f64,
+    /// The largest `Σ |p v|` so far, and that before its present rise.
+    largest: f64,
+    before: f64,
     /// Whether `Σ |p v|` has a mean: it does not only rise.
     has_mean: bool,
 }
@@ -242,19 +246,31 @@ impl EnergyPath {
     ) -> Option<Self> {
         let Energies { energy, action, .. } = Energies::at(run)?;
         let t = run.node.t.to_f64();
-        let (integral, logarithms, moving) = (0.0, 0.0, 0.0);
-        Some(Self { start: energy, from: t, until: t, action, integral, logarithms, moving, has_mean: false })
+        Some(Self {
+            start: energy,
+            from: t,
+            until: t,
+            action,
+            integral: 0.0,
+            logarithms: 0.0,
+            moving: 0.0,
+            largest: action,
+            before: action,
+            has_mean: false,
+        })
     }
 
-    /// `|H − H(start)|` at the current node of a run, relative to the mean of `Σ |p v|` so far, or to its value there if that
-    /// is larger, if it exceeds [`DRIFTED`]; or relative to the geometric mean of `Σ |p v|`, or to `|H(start)|` if that is
-    /// larger, if it exceeds [`BROKEN`]. Zero otherwise, and for rounding. Zero too in the first rise of `Σ |p v|`, which has
-    /// no mean to compare with: a fall from rest.
+    /// Two parts of `|H − H(start)|` at the current node of a run. The first one is relative to the mean of `Σ |p v|` so far,
+    /// or to its value there if that is larger, and zero unless it exceeds [`DRIFTED`]. The second one is that of an escape,
+    /// where `Σ |p v|` is [`ESCAPED`] times what it was before its present rise: relative to the geometric mean of `Σ |p v|`,
+    /// or to `|H(start)|` if that is larger, and zero unless it exceeds [`BROKEN`]. It holds for the state of the run there:
+    /// if it was a near collision, the energy returns. Both are zero for rounding, and in the first rise of `Σ |p v|`, which
+    /// has no mean to compare with: a fall from rest.
     fn drift<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
         &mut self,
         run: &Run<M, S, N, T>,
-    ) -> f64 {
-        let Some(Energies { energy, action, terms }) = Energies::at(run) else { return 0.0 };
+    ) -> [f64; 2] {
+        let Some(Energies { energy, action, terms }) = Energies::at(run) else { return [0.0; 2] };
         let t = run.node.t.to_f64();
         let (least, duration) = (self.action.min(action), (t - self.until).abs());
         self.integral += least * duration;
@@ -262,6 +278,10 @@ impl EnergyPath {
             self.logarithms += least.ln() * duration;
             self.moving += duration;
         }
+        if action < self.action {
+            self.before = self.largest;
+        }
+        self.largest = self.largest.max(action);
         (self.until, self.action) = (t, action);
         let mean = self.integral / (t - self.from).abs();
         self.has_mean |= action <= RISEN * mean;
@@ -269,11 +289,12 @@ impl EnergyPath {
         let change = (energy - self.start).abs();
         let is_visible = change > FAINT * T::EPSILON * (self.start.abs() + terms);
         if !(self.has_mean && is_visible) {
-            return 0.0;
+            return [0.0; 2];
         }
         let usual = (self.logarithms / self.moving).exp().max(self.start.abs());
         let part = |size: f64, from: f64| if change > from * size { change / size } else { 0.0 };
-        part(size, DRIFTED).max(part(usual, BROKEN))
+        let escapes = action > ESCAPED * self.before;
+        [part(size, DRIFTED), if escapes { part(usual, BROKEN) } else { 0.0 }]
     }
 }
 
@@ -428,6 +449,8 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     /// H along the run, and its largest error.
     energy: Option<EnergyPath>,
     of_energy: ErrorEstimate,
+    /// The error of H that the end of the last window has, and that may pass.
+    passing: ErrorEstimate,
     measurements: u64,
 }
 
@@ -477,6 +500,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             counted: 0,
             energy: None,
             of_energy: nothing,
+            passing: nothing,
             measurements: 0,
         }
     }
@@ -657,16 +681,17 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
         let t = before.t.to_f64();
         let coordinate = found.action.imax();
-        let drift = self.energy.as_mut().map_or(0.0, |energy| energy.drift(run));
-        let estimate = found.energy.max(drift);
-        self.of_energy = self.of_energy.or_larger(ErrorEstimate { estimate, t, coordinate, sum: 0.0 });
+        let [lasting, passing] = self.energy.as_mut().map_or([0.0; 2], |energy| energy.drift(run));
+        let of_energy = |estimate: f64| ErrorEstimate { estimate, t, coordinate, sum: 0.0 };
+        self.of_energy = self.of_energy.or_larger(of_energy(found.energy.max(lasting)));
+        self.passing = of_energy(passing);
         if let Some(stretch) = &mut self.stretch {
             for i in 0..N {
                 if found.error[i] > stretch.errors[i] {
                     (stretch.errors[i], stretch.times[i]) = (found.error[i], t);
                 }
             }
-            self.largest = self.found();
+            self.largest = self.lasting();
             if self.steps >= STRETCH || self.has_turned() {
                 self.stretch = None;
             }
@@ -728,6 +753,11 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 
     /// The largest relative error so far.
     fn found(&self) -> ErrorEstimate {
+        self.lasting().or_larger(self.passing)
+    }
+
+    /// The same without an error of H that may pass.
+    fn lasting(&self) -> ErrorEstimate {
         let found = match &self.stretch {
             Some(stretch) => self.relative(&stretch.errors, &stretch.times),
             None => self.largest,
