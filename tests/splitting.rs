@@ -188,6 +188,10 @@ fn a_hamiltonian_of_first_order_splits() {
         let found = tangent.variations()[variation].q;
         assert!((difference - found).amax() < 1e-9, "{difference} {found}"); // 5e-11
     }
+    // Other momenta than those of L.
+    let other = State { p: [9.0, 0.875, 0.0, 0.0].into(), ..fast.at(0.0, q, [0.0; 4]).state };
+    let refused = fast.at_state(other).integrate(Splitting::BLANES_MOAN_S4, 0.1).map(drop);
+    assert!(matches!(refused, Err(StepError::InvalidInput { .. })), "{refused:?}");
     // Weights for a mass matrix lose their order here.
     for scheme in [Splitting::BLANES_MOAN_4, Splitting::BLANES_MOAN_6_SHORT, Splitting::BLANES_MOAN_6] {
         let refused = start().integrate(scheme, 0.1).map(drop);

@@ -23,7 +23,7 @@ use crate::motion::{Motion, PointDerivatives};
 use crate::node::Node;
 #[cfg(feature = "alloc")]
 use crate::real::Dual;
-use crate::real::Real;
+use crate::real::{Real, Scalar};
 #[cfg(feature = "alloc")]
 use crate::stepping::Convertible;
 use crate::vector::Vector;
@@ -106,16 +106,20 @@ pub(crate) fn halves<const N: usize>(
 ///
 /// # Errors
 /// [`StepError::InvalidInput`] with the first momentum that is not.
-pub(crate) fn check_momenta<S: Motion<N>, const N: usize>(system: &S, node: &Node<N>) -> Result<(), StepError> {
+pub(crate) fn check_momenta<S: Motion<N, T>, const N: usize, T: Scalar>(
+    system: &S,
+    node: &Node<N, T>,
+) -> Result<(), StepError> {
     if !system.is_first_order() {
         return Ok(());
     }
     let momentum = system.momentum(node.t, &node.q, &SVector::zeros());
-    let is_other = |(given, of): &(&f64, &f64)| (*given - *of).abs() > OFF * momentum.amax();
+    let largest = momentum.longest().to_f64();
+    let is_other = |(given, of): &(&T, &T)| (**given - **of).to_f64().abs() > OFF.max(4.0 * T::EPSILON) * largest;
     match node.p.iter().zip(&momentum).find(is_other) {
         Some((given, _)) => {
             let allowed = "that of L at the coordinates, which determine it: L is linear in the velocities";
-            Err(StepError::InvalidInput { input: "a momentum", allowed, value: *given })
+            Err(StepError::InvalidInput { input: "a momentum", allowed, value: given.to_f64() })
         }
         None => Ok(()),
     }

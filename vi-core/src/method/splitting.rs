@@ -26,6 +26,7 @@
 
 use super::{Memory, Method, Problem, Report};
 use crate::error::StepError;
+use crate::first_order::check_momenta;
 use crate::linear::Matrix;
 use crate::motion::{Motion, Separable};
 use crate::node::Node;
@@ -456,6 +457,7 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
     }
 
     fn begin(&self, system: &S, node: &mut Node<N, T>, _h: T) -> Result<Kicked<N, T>, StepError> {
+        check_momenta(system, node)?;
         node.state().velocity(system)?;
         let force = if self.begins_with_kick() { force_at(system, node) } else { SVector::zeros() };
         checked(&force, node.t)?;
