@@ -93,3 +93,9 @@ def test_optimal_control():
     assert first.cost == pytest.approx(second.cost, rel=1e-7)
     with pytest.raises(ValueError, match='the coordinates alone are a state: write start={"x": …}'):
         vi.optimise(First(), start=([1.0, 0.0], [0.0, 0.0]), end={"x": 0.0}, **options)
+    for bound in ({"start": {"x": 1.0, "p_x": 0.3}}, {"start": {"x": 1.0, "p": 0.0}, "bounds": {"p_x": (-0.2, 0.3)}}):
+        with pytest.raises(ValueError, match="p_x follows from the coordinates"):
+            vi.optimise(First(), end={"x": 0.0}, **bound, **options)
+    # The momentum at the end is that of the motion.
+    by_momentum = vi.optimise(First(), start={"x": 1.0, "p": 0.0}, end={"x": 0.0, "p_x": 0.0}, **options)
+    assert by_momentum.cost == pytest.approx(first.cost, rel=1e-9)

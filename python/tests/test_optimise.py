@@ -161,6 +161,8 @@ def test_steps_with_large_errors_are_halved():
     finer = fast.refined(3e-4)
     assert len(finer.u) > 8 and 0.0 < abs(finer.t[-1] - fast.t[-1]) < 0.1
     later = vi.optimise(Hard(), steps=np.linspace(1.0, 3.0, 6), cost="u^2", **options).refined(2e-3)
+    again = later.again(steps=4)
+    assert len(again.u) == 4 and abs(again.t[0] - 1.0) < 1e-15 and abs(again.t[-1] - 3.0) < 1e-14
     assert len(later.u) > 5 and abs(later.t[0] - 1.0) < 1e-15 and abs(later.t[-1] - 3.0) < 1e-14
 
 
@@ -396,6 +398,9 @@ def test_what_is_not_found_is_told():
         guess={"W": -4.905, "duration": 3.0}, options={"max_iter": 2},
     )  # fmt: skip
     assert not found.success and "not converged" in repr(found) and found.solution.q.shape == (41, 3)
+    assert np.isfinite(found["dot(l)"]).sum() > 30
+    with pytest.raises(ValueError, match="no optimum to refine"):
+        found.refined(1.0)
 
 
 @pytest.mark.parametrize(

@@ -108,7 +108,11 @@ class Optimum:
 
     def again(self, **changes: Any) -> Optimum:
         """The same problem with other arguments of `optimise`, from this optimum as the guess: `again(steps=50)`."""
-        return optimise(**{**self._problem, "guess": self, **changes})
+        given = dict(self._problem)
+        if "steps" in changes and given["duration"] is None:
+            # The times of the nodes were those of the duration.
+            given.update(duration=float(self.t[-1] - self.t[0]), t=float(self.t[0]))
+        return optimise(**{**given, "guess": self, **changes})
 
     def refined(self, error: float, rounds: int = 10) -> Optimum:
         """The same problem with steps whose largest error of a coordinate is at most this one: steps with a larger error
@@ -118,6 +122,8 @@ class Optimum:
         """
         if not number(error, "error") > 0.0:
             raise ValueError(f"error must be positive, not {error!r}")
+        if not self.success:
+            raise ValueError(f"this is no optimum to refine: {self.status}")
         found = self
         for _ in range(count(rounds, "rounds", 1)):
             large = found.errors.max(axis=1) > error
@@ -126,10 +132,7 @@ class Optimum:
             shares = (found.t - found.t[0]) / (found.t[-1] - found.t[0])
             halves = (shares[1:] + shares[:-1])[large] / 2.0
             steps = found.t[0] + (found.t[-1] - found.t[0]) * np.sort(np.concatenate([shares, halves]))
-            duration = self._problem["duration"]
-            found = found.again(
-                steps=steps, t=found.t[0], duration=found.t[-1] - found.t[0] if duration is None else duration
-            )
+            found = found.again(steps=steps, t=float(found.t[0]))
             if not found.success:
                 raise ValueError(f"no optimum with {len(found.u)} steps: {found.status}")
         worst = found.errors.max()
@@ -229,7 +232,7 @@ def _optimum(problem: _Problem, found: Solved, given: dict[str, Any]) -> Optimum
         if found.success:
             raise
         # Inputs that are no optimum may have no motion: the nodes are all there is.
-        solution = _of_nodes(cls, values, t, q, p)
+        solution = _of_nodes(cls, values, t, q, p, options)
     own = found.multipliers[2 * n * k :]
     multipliers: dict[str, Array] = {}
     for row in problem.rows:
@@ -269,10 +272,17 @@ def _replayed(cls: Any, values: Array, t: Array, q: Array, p: Array, options: di
     return solution
 
 
-def _of_nodes(cls: Any, values: Array, t: Array, q: Array, p: Array) -> Solution:
-    """The nodes of a solver that found no optimum, without velocities and energies."""
+def _of_nodes(cls: Any, values: Array, t: Array, q: Array, p: Array, options: dict[str, Any]) -> Solution:
+    """The nodes of a solver that found no optimum. Velocity and energy of a node without motion are NaN."""
     solution = Solution(cls._of(values[0])._fixed(), t, q, p)
-    solution.__dict__.update(v=fixed(np.full_like(q, np.nan)), energy=fixed(np.full_like(t, np.nan)))
+    v, energy = np.full_like(q, np.nan), np.full_like(t, np.nan)
+    for k in range(len(t)):
+        try:
+            run = cls._of(values[k]).integrate(q[k], p=p[k], t=t[k], h=1.0, **options)
+        except StepError:
+            continue
+        v[k], energy[k] = run.v, run.energy
+    solution.__dict__.update(v=fixed(v), energy=fixed(energy))
     solution._values = values
     return solution
 
@@ -425,6 +435,11 @@ class _Problem:
                 self._bound(entry, of_entry, nodes, title.replace(name, entry, 1))
             return
         pair = _pair(value, name)
+        if of.place is not None and of.place >= 2 * n and 0 in nodes and self.kind.is_first_order:
+            raise ValueError(
+                f"{name} follows from the coordinates, because L is linear in the velocities: bound a coordinate, "
+                "or an expression of coordinates"
+            )
         if of.place is not None and not n <= of.place < 2 * n:
             at = self.places[nodes, of.place if of.place < n else of.place - n]
             self.lower[at] = np.maximum(self.lower[at], pair[0])
