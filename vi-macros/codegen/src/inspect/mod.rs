@@ -79,8 +79,8 @@ pub fn stage(tokens: TokenStream, stage: Stage) -> Result<String> {
 /// What integrators ask of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Properties {
-    /// Whether its motion splits into kicks and drifts: `L = v·M v/2 − V(t, q)` with a constant M, and forces of time and
-    /// coordinates alone.
+    /// Whether its motion splits into kicks and drifts: `L = v·M v/2 − V(t, q)` with a constant M, or `H = T(p) + V(t, q)`, and
+    /// forces of time and coordinates alone.
     pub is_separable: bool,
     /// Whether its own rule has a step density, which energy-preserving steps of this rule need.
     pub has_step_density: bool,
