@@ -17,7 +17,7 @@
 //! a covector is that of admissible tangent vectors.
 
 use super::steps::Differentiable;
-use super::variation::{Variation, changes_of_energy};
+use super::variation::{Covector, Variation, changes_of_energy};
 use crate::constrained::variation;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -27,34 +27,6 @@ use crate::state::State;
 use crate::stepping::Convertible;
 use alloc::vec::Vec;
 use nalgebra::SVector;
-
-/// Derivatives of a number with respect to a node.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Covector<const N: usize> {
-    /// With respect to the time.
-    pub t: f64,
-    /// With respect to the coordinates.
-    pub q: SVector<f64, N>,
-    /// With respect to the momenta.
-    pub p: SVector<f64, N>,
-    /// With respect to the energy that an energy-preserving run preserves.
-    pub energy: f64,
-}
-
-impl<const N: usize> Covector<N> {
-    /// The zero covector.
-    #[must_use]
-    pub fn zero() -> Self {
-        Self { t: 0.0, q: SVector::zeros(), p: SVector::zeros(), energy: 0.0 }
-    }
-
-    /// The derivative of the number along a tangent vector.
-    #[must_use]
-    pub fn of(&self, variation: &Variation<N>) -> f64 {
-        let of_energy = self.energy * variation.energy;
-        self.q.dot(&variation.q) + self.p.dot(&variation.p) + of_energy + self.t * variation.t
-    }
-}
 
 /// An objective: a sum of functions of the nodes of a run, with inputs on the way.
 pub trait Objective<M: Method<S, N>, S, const N: usize> {

@@ -10,10 +10,9 @@
 //! Then the second derivative of `w·Z(u(z), z)` along δz and δz' is that of Φ along (δu, δz) and (δu', δz'), where δu
 //! belongs to the tangent vector δz. No second derivative of u is needed. Nested dual numbers differentiate Φ.
 
-use super::adjoint::Covector;
-use super::steps::{Differentiable, slope_along, unsolved};
-use super::variation::{TOGETHER, Variation, Varied, more_parameters, not_finite, singular_mass, velocity_along};
-use crate::angles;
+use super::variation::{
+    Covector, TOGETHER, Variation, Varied, not_finite, singular_mass, slope_along, unsolved, velocity_along,
+};
 use crate::error::StepError;
 use crate::kind::Kind;
 use crate::lagrangian::Parameters;
@@ -21,7 +20,6 @@ use crate::linear::{self, Matrix};
 use crate::motion::{Motion, Sides};
 use crate::node::Node;
 use crate::real::{Dual, Number as _, Real as _};
-use crate::run::Run;
 use crate::state::State;
 use crate::stepping::{Convertible, Discretized, FixedStepping as _, MomentumDerivatives, MomentumResidual};
 use alloc::vec::Vec;
@@ -103,28 +101,6 @@ pub(crate) fn sides<Y: Motion<N, Curved>, const N: usize>(
     v: &SVector<Curved, N>,
 ) -> Sides<N, Curved> {
     system.sides(t, q, v)
-}
-
-impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Run<M, S, N> {
-    /// The second derivatives of `weights·z` with respect to pairs of tangent vectors at `before`, where z is the end
-    /// node of the last step, which began at `before`: a symmetric matrix, exact to rounding. [`FixedStep`](crate::FixedStep),
-    /// [`Composition`](crate::Composition) and [`Gauss`](crate::Gauss) have them, for systems without constraints whose L
-    /// is not linear in the velocities; otherwise `None`.
-    ///
-    /// # Errors
-    /// As [`Run::vary`].
-    pub fn curvature(
-        &self,
-        before: &Node<N>,
-        directions: &[Variation<N>],
-        weights: &Covector<N>,
-    ) -> Result<Option<DMatrix<f64>>, StepError> {
-        if directions.iter().any(|direction| direction.parameters.len() > self.system().parameters().len()) {
-            return Err(more_parameters(before.t));
-        }
-        // The step began at reduced angles.
-        M::curvature(self, &angles::reduced_node(self.system(), before), directions, weights)
-    }
 }
 
 /// A tangent vector with the velocity along it.

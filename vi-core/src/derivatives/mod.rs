@@ -34,12 +34,12 @@ mod steps;
 mod tangent;
 mod variation;
 
-pub use adjoint::{Covector, Gradient, Objective, gradient};
+pub use adjoint::{Gradient, Objective, gradient};
 pub use curvature::velocity_curvature;
 pub use lyapunov::Lyapunov;
 pub use steps::Differentiable;
-pub(crate) use steps::{Sought, check_fallback, not_last, singular};
+pub(crate) use steps::{Sought, check_fallback, not_last};
 pub use tangent::Tangent;
-pub use variation::Variation;
 pub(crate) use variation::along_parameters;
-pub(crate) use variation::{TOGETHER, Varied, changes_of_energy, more_parameters, not_finite};
+pub use variation::{Covector, Variation};
+pub(crate) use variation::{TOGETHER, Varied, changes_of_energy, more_parameters, not_finite, singular};

@@ -4,9 +4,8 @@
 //! unknowns of the step are stored. The system provides the derivatives with respect to them and to the coordinates of
 //! the node; dual numbers provide those with respect to the time and the parameters, if a direction needs them.
 
-use super::adjoint::Covector;
 use super::curvature;
-use super::variation::{TOGETHER, Variation, Varied, not_finite};
+use super::variation::{Covector, TOGETHER, Variation, Varied, more_parameters, singular, slope_along, unsolved};
 use crate::angles;
 use crate::energy_preserving::interval::Last;
 use crate::error::StepError;
@@ -110,17 +109,26 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Run<M, S, N> {
         // The step began at reduced angles.
         M::vary(self, &angles::reduced_node(self.system(), before), variations)
     }
-}
 
-/// The Jacobian of the step equations is singular.
-pub(crate) fn singular(t: f64) -> StepError {
-    StepError::Singular { t, matrix: "derivative of the equations of a step" }
-}
-
-/// The error of an equation `A x = rhs` for tangent vectors without a solution.
-pub(super) fn unsolved<A: Matrix<N, f64>, const N: usize>(matrix: &A, rhs: &SVector<f64, N>, t: f64) -> StepError {
-    let are_finite = matrix.dense().iter().chain(rhs).all(|entry| entry.is_finite());
-    if are_finite { singular(t) } else { not_finite(t) }
+    /// The second derivatives of `weights·z` with respect to pairs of tangent vectors at `before`, where z is the end
+    /// node of the last step, which began at `before`: a symmetric matrix, exact to rounding. [`FixedStep`](crate::FixedStep),
+    /// [`Composition`](crate::Composition) and [`Gauss`](crate::Gauss) have them, for systems without constraints whose L
+    /// is not linear in the velocities; otherwise `None`.
+    ///
+    /// # Errors
+    /// As [`Run::vary`].
+    pub fn curvature(
+        &self,
+        before: &Node<N>,
+        directions: &[Variation<N>],
+        weights: &Covector<N>,
+    ) -> Result<Option<DMatrix<f64>>, StepError> {
+        if directions.iter().any(|direction| direction.parameters.len() > self.system().parameters().len()) {
+            return Err(more_parameters(before.t));
+        }
+        // The step began at reduced angles.
+        M::curvature(self, &angles::reduced_node(self.system(), before), directions, weights)
+    }
 }
 
 /// Whether a step that ends at the time and the coordinates of `end` is the one that led to the node `reached`.
@@ -151,14 +159,6 @@ fn check_last<const N: usize>(
 pub(crate) fn not_last(t: f64) -> StepError {
     let because = "it is not the last step of the run with its current parameters; pass the start node of the last step, before any change of parameters";
     StepError::NoDerivative { t, because }
-}
-
-/// Derivatives of each entry in one direction.
-pub(super) fn slope_along<const N: usize, const W: usize>(
-    direction: usize,
-    of: &SVector<Varied<W>, N>,
-) -> SVector<f64, N> {
-    of.map(|entry| entry.slope.0[direction])
 }
 
 /// Solves `A x = rhs` by the inverse of A, or by A itself if the inverse lost a pivot.

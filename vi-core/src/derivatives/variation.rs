@@ -5,7 +5,7 @@ use crate::error::StepError;
 use crate::first_order::first_order_flow;
 use crate::kind::Kind;
 use crate::lagrangian::{Lagrangian, Parameters};
-use crate::linear;
+use crate::linear::{self, Matrix};
 use crate::motion::Motion;
 use crate::node::Node;
 use crate::real::{Dual, Slopes};
@@ -25,10 +25,29 @@ pub(crate) fn not_finite(t: f64) -> StepError {
     StepError::NonFinite { t, quantity: "tangent vector of a step", expression: None }
 }
 
+/// The Jacobian of the step equations is singular.
+pub(crate) fn singular(t: f64) -> StepError {
+    StepError::Singular { t, matrix: "derivative of the equations of a step" }
+}
+
+/// The error of an equation `A x = rhs` for tangent vectors without a solution.
+pub(super) fn unsolved<A: Matrix<N, f64>, const N: usize>(matrix: &A, rhs: &SVector<f64, N>, t: f64) -> StepError {
+    let are_finite = matrix.dense().iter().chain(rhs).all(|entry| entry.is_finite());
+    if are_finite { singular(t) } else { not_finite(t) }
+}
+
 /// A tangent vector has more parameters than the system of the step from the time `t`.
 pub(crate) fn more_parameters(t: f64) -> StepError {
     let because = "a tangent vector has more parameters than the system; `PARAMETERS` lists them";
     StepError::NoDerivative { t, because }
+}
+
+/// Derivatives of each entry in one direction.
+pub(super) fn slope_along<const N: usize, const W: usize>(
+    direction: usize,
+    of: &SVector<Varied<W>, N>,
+) -> SVector<f64, N> {
+    of.map(|entry| entry.slope.0[direction])
 }
 
 /// A tangent vector: derivatives of a node and of the parameters of its system in one direction.
@@ -310,6 +329,34 @@ where
     let point = varied.point(along(*t, variation.t), &q.zip_map(&variation.q, along), &v.map(Dual::fixed));
     let of_v = linear::solve(&matrix, &(variation.p - point.momentum.map(|entry| entry.slope)));
     of_v.ok_or(singular_mass(*t))
+}
+
+/// Derivatives of a number with respect to a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Covector<const N: usize> {
+    /// With respect to the time.
+    pub t: f64,
+    /// With respect to the coordinates.
+    pub q: SVector<f64, N>,
+    /// With respect to the momenta.
+    pub p: SVector<f64, N>,
+    /// With respect to the energy that an energy-preserving run preserves.
+    pub energy: f64,
+}
+
+impl<const N: usize> Covector<N> {
+    /// The zero covector.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self { t: 0.0, q: SVector::zeros(), p: SVector::zeros(), energy: 0.0 }
+    }
+
+    /// The derivative of the number along a tangent vector.
+    #[must_use]
+    pub fn of(&self, variation: &Variation<N>) -> f64 {
+        let of_energy = self.energy * variation.energy;
+        self.q.dot(&variation.q) + self.p.dot(&variation.p) + of_energy + self.t * variation.t
+    }
 }
 
 /// The mass matrix at the time t is singular.
