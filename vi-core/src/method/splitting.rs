@@ -260,11 +260,17 @@ impl<S: Motion<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Split<N, T> {
-        if const { S::INTERPRETED || !S::WITHOUT_VELOCITY.is_empty() } && self.system.is_first_order() {
-            return self.canonical();
-        }
         let Self { scheme, system, inverse, node, h, .. } = self;
         let Splitting { kicks, drifts, .. } = scheme;
+        // `L = y·x' − T(y) − V(t, x)`: L_x + f kicks the momenta of x, and with them y; −L_y is the velocity T_y of x.
+        let is_canonical = const { S::INTERPRETED || !S::WITHOUT_VELOCITY.is_empty() } && system.is_first_order();
+        let without = system.without_velocity();
+        let half = |without_it: bool| (0..without.len()).filter(move |index| without[*index] == without_it);
+        let moved = |of: &SVector<T, N>, from: bool, to: bool| {
+            let mut moved = SVector::<T, N>::zeros();
+            half(from).zip(half(to)).for_each(|(from, to)| moved[to] = of[from]);
+            moved
+        };
         let rest = SVector::zeros();
         // The next kick waits for q and p alone: both sums beside them are more accurate.
         let (mut q, mut p) = (node.q + node.q_low, node.p + node.p_low);
@@ -273,12 +279,23 @@ impl<S: Motion<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
         // The first kick needs no drift.
         let first = kicks.len() - kicks.len().min(drifts.len());
         if let Some(weight) = kicks[..first].first() {
-            increment = force * (h * T::real(*weight));
+            let of_momenta = if is_canonical { moved(&force, false, false) } else { force };
+            increment = of_momenta * (h * T::real(*weight));
             p += increment;
+            if is_canonical {
+                displacement = moved(&increment, false, true);
+                q += displacement;
+            }
         }
         let mut passed = 0.0;
         for (i, weight) in drifts.iter().enumerate() {
-            let drift = S::Mass::apply(inverse, &p) * (h * T::real(*weight));
+            // T depends on no time.
+            let velocity = if is_canonical {
+                moved(&-system.point(node.t, &q, &rest).force, true, false)
+            } else {
+                S::Mass::apply(inverse, &p)
+            };
+            let drift = velocity * (h * T::real(*weight));
             displacement += drift;
             let is_last = i + 1 == drifts.len();
             // The last place is that of the node, where the next step has the same force.
@@ -286,57 +303,14 @@ impl<S: Motion<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
             passed = if is_last { 1.0 } else { passed + weight };
             let Some(weight) = kicks.get(first + i) else { break };
             force = system.point(node.t + (node.t_low + h * T::real(passed)), &q, &rest).force;
-            let kick = force * (h * T::real(*weight));
+            let of_momenta = if is_canonical { moved(&force, false, false) } else { force };
+            let kick = of_momenta * (h * T::real(*weight));
             p += kick;
             increment += kick;
-        }
-        let mut after = *node;
-        after.advance_by(h, &displacement, &increment);
-        Split { after, force }
-    }
-}
-
-impl<S: Motion<N, T>, const N: usize, T: Real> Step<'_, S, N, T> {
-    /// The step of a system of first order with `L = y·x' − T(y) − V(t, x)`: `L_x + f` kicks y and the momentum of x, and
-    /// `−L_y`, the velocity T_y at rest, drifts x.
-    fn canonical(self) -> Split<N, T> {
-        let Self { scheme, system, node, h, .. } = self;
-        let Splitting { kicks, drifts, .. } = scheme;
-        let without = system.without_velocity();
-        let half = |without_it: bool| (0..without.len()).filter(move |index| without[*index] == without_it);
-        let pairs = || half(false).zip(half(true));
-        let rates = |passed: f64, q: &SVector<T, N>| {
-            system.point(node.t + (node.t_low + h * T::real(passed)), q, &SVector::zeros()).force
-        };
-        let mut q = node.q + node.q_low;
-        let (mut displacement, mut increment) = (SVector::<T, N>::zeros(), SVector::<T, N>::zeros());
-        let mut force = *self.force;
-        let first = kicks.len() - kicks.len().min(drifts.len());
-        if let Some(weight) = kicks[..first].first() {
-            for (x, y) in pairs() {
-                increment[x] = force[x] * (h * T::real(*weight));
-                displacement[y] = increment[x];
-                q[y] += increment[x];
-            }
-        }
-        let mut passed = 0.0;
-        for (i, weight) in drifts.iter().enumerate() {
-            let velocity = -rates(passed, &q);
-            let is_last = i + 1 == drifts.len();
-            for (x, y) in pairs() {
-                let drift = velocity[y] * (h * T::real(*weight));
-                displacement[x] += drift;
-                // As in the other steps, the last place is that of the node.
-                q[x] = if is_last { node.q[x] + (node.q_low[x] + displacement[x]) } else { q[x] + drift };
-            }
-            passed = if is_last { 1.0 } else { passed + weight };
-            let Some(weight) = kicks.get(first + i) else { break };
-            force = rates(passed, &q);
-            for (x, y) in pairs() {
-                let kick = force[x] * (h * T::real(*weight));
-                increment[x] += kick;
-                displacement[y] += kick;
-                q[y] += kick;
+            if is_canonical {
+                let of_y = moved(&kick, false, true);
+                displacement += of_y;
+                q += of_y;
             }
         }
         let mut after = *node;
