@@ -18,6 +18,7 @@ use crate::function::{Function, Points};
 use crate::plan::{Method, PhasePoint, Plan};
 use crate::shooting::{Curvatures, Ends, Shots};
 use crate::system::System;
+use core::cell::OnceCell;
 use core::ops::RangeInclusive;
 use vi_core::StepError;
 
@@ -135,6 +136,8 @@ struct Local {
 /// The last node has the inputs of the last step.
 pub struct Transcription {
     system: Box<dyn System>,
+    /// Its number of coordinates.
+    n: usize,
     plan: Plan,
     mesh: Mesh,
     /// The length of each step as a share of the duration; the last node has the last one.
@@ -146,7 +149,8 @@ pub struct Transcription {
     cost: Option<Box<dyn Function>>,
     final_cost: Option<Box<dyn Function>>,
     rows: Vec<Row>,
-    jacobian: Pattern,
+    /// Found when it is asked for, since each condition changes it.
+    jacobian: OnceCell<Pattern>,
     hessian: Pattern,
 }
 
@@ -189,6 +193,7 @@ impl Transcription {
         bounds[0] = mesh.duration;
         let mut of = Self {
             system: system.copy(),
+            n,
             plan: plan.clone(),
             mesh,
             widths,
@@ -198,10 +203,10 @@ impl Transcription {
             cost: None,
             final_cost: None,
             rows: Vec::new(),
-            jacobian: Pattern::default(),
+            jacobian: OnceCell::new(),
             hessian: Pattern::default(),
         };
-        of.find_patterns();
+        of.hessian = of.upper_half();
         Ok(of)
     }
 
@@ -218,12 +223,12 @@ impl Transcription {
     /// Adds bounds of a function at these nodes: one row for each, in this order, behind the rows so far.
     pub fn bound(&mut self, of: Box<dyn Function>, nodes: &[usize], bounds: [f64; 2]) {
         self.rows.push(Row { nodes: nodes.to_vec(), of, bounds });
-        self.find_patterns();
+        self.jacobian = OnceCell::new();
     }
 
     /// The same of a velocity, by the index of its coordinate.
     pub fn bound_velocity(&mut self, index: usize, nodes: &[usize], bounds: [f64; 2]) {
-        self.bound(Box::new(Velocity { index, n: self.n(), inputs: self.inputs.len() }), nodes, bounds);
+        self.bound(Box::new(Velocity { index, n: self.n, inputs: self.inputs.len() }), nodes, bounds);
     }
 
     /// The bounds of the variables: those of the duration, and no others to begin with.
@@ -240,7 +245,7 @@ impl Transcription {
     /// The place among the variables of the local one of a node: its q, p and inputs, then the duration.
     #[must_use]
     pub fn place(&self, node: usize, local: usize) -> usize {
-        let (each, state) = (self.locals() - 1, 2 * self.n());
+        let (each, state) = (self.locals() - 1, 2 * self.n);
         match local {
             _ if local == each => 0,
             _ if local >= state && node == self.steps() => 1 + each * (node - 1) + local,
@@ -258,7 +263,7 @@ impl Transcription {
     /// The places of the Jacobian of g.
     #[must_use]
     pub fn jacobian_pattern(&self) -> &Pattern {
-        &self.jacobian
+        self.jacobian.get_or_init(|| self.derivatives_of_rows())
     }
 
     /// The places of the upper half of the Hessian matrix, the diagonal included.
@@ -296,7 +301,7 @@ impl Transcription {
     #[must_use]
     pub fn evaluate(&self, x: &[f64]) -> Evaluation {
         let steps = self.steps();
-        let ends = self.ends(x, &self.all_steps(), 1.0, (1, false));
+        let ends = self.ends(x, self.whole_steps());
         let (mut rows, mut numbers) = (Vec::new(), Vec::new());
         for k in 0..steps {
             for (entry, end) in ends.state(k).iter().enumerate() {
@@ -325,7 +330,7 @@ impl Transcription {
         if let Some(of) = &self.final_cost {
             self.composed(x, &nodes.picked(&[steps]), &**of, None).iter().for_each(|of| add(steps, of));
         }
-        let jacobian = self.jacobian.gathered(&numbers);
+        let jacobian = self.jacobian_pattern().gathered(&numbers);
         Evaluation { cost, gradient, rows, jacobian, error: ends.of.errors.first().copied() }
     }
 
@@ -339,8 +344,7 @@ impl Transcription {
         let mut add = |k: usize, factor: f64, of: &[f64]| {
             blocks[k].iter_mut().zip(of).for_each(|(sum, number)| *sum += factor * number);
         };
-        let ends = self.ends(x, &self.all_steps(), 1.0, (1, false));
-        for (k, of) in self.curved(x, &ends, of_steps).iter().enumerate() {
+        for (k, of) in self.curved(x, &self.whole_steps(), of_steps).iter().enumerate() {
             add(k, 1.0, of);
         }
         for (k, of) in self.integrals(x, true).iter().enumerate() {
@@ -364,10 +368,6 @@ impl Transcription {
         self.hessian.gathered(&numbers)
     }
 
-    fn n(&self) -> usize {
-        (self.bounds.len() - 1 - self.steps() * self.inputs.len()) / (2 * (self.steps() + 1))
-    }
-
     fn steps(&self) -> usize {
         self.mesh.shares.len() - 1
     }
@@ -377,12 +377,12 @@ impl Transcription {
     }
 
     fn step_rows(&self) -> usize {
-        2 * self.n() * self.steps()
+        2 * self.n * self.steps()
     }
 
     /// The number of variables of a node: q, p, its inputs, and the duration.
     fn locals(&self) -> usize {
-        2 * self.n() + self.inputs.len() + 1
+        2 * self.n + self.inputs.len() + 1
     }
 
     /// The values of all parameters with these inputs.
@@ -412,9 +412,9 @@ impl Transcription {
         (0..=self.steps()).flat_map(move |k| (0..free).flat_map(move |a| (a..free).map(move |b| [k, a, b])))
     }
 
-    /// The patterns of what `evaluate` and `hessian` find, in their order.
-    fn find_patterns(&mut self) {
-        let (locals, each) = (self.locals(), 2 * self.n());
+    /// The places of the derivatives that `evaluate` finds, in their order.
+    fn derivatives_of_rows(&self) -> Pattern {
+        let (locals, each) = (self.locals(), 2 * self.n);
         let mut places = Vec::new();
         for row in 0..self.step_rows() {
             let (k, entry) = (row / each, row % each);
@@ -424,31 +424,42 @@ impl Transcription {
         for (row, k) in self.rows.iter().flat_map(|row| &row.nodes).enumerate() {
             places.extend((0..locals).map(|local| (self.step_rows() + row, self.place(*k, local))));
         }
-        self.jacobian = Pattern::of(&places, self.bounds.len());
+        Pattern::of(&places, self.bounds.len())
+    }
+
+    /// The places of the second derivatives that `hessian` finds, in their order.
+    fn upper_half(&self) -> Pattern {
         let upper = |[k, a, b]: [usize; 3]| {
             let (a, b) = (self.place(k, a), self.place(k, b));
             (a.min(b), a.max(b))
         };
-        self.hessian = Pattern::of(&self.halves().map(upper).collect::<Vec<_>>(), self.bounds.len());
+        Pattern::of(&self.halves().map(upper).collect::<Vec<_>>(), self.bounds.len())
     }
 
-    /// The ends of a part of some steps; zero steps convert momenta to velocities.
-    fn ends(&self, x: &[f64], nodes: &[usize], part: f64, (steps, has_velocities): (u64, bool)) -> Stops {
-        let of = self
-            .shoot(x, nodes, part, |shots| shots.ends(&*self.system, &self.plan, &self.inputs, steps, has_velocities));
-        Stops { nodes: nodes.to_vec(), part, steps, has_velocities, of }
+    /// All steps, as the rows have them.
+    fn whole_steps(&self) -> Legs {
+        Legs { nodes: self.all_steps(), part: 1.0, steps: 1, has_velocities: false }
+    }
+
+    /// The ends of these parts of steps.
+    fn ends(&self, x: &[f64], legs: Legs) -> Stops {
+        let Legs { nodes, part, steps, has_velocities } = &legs;
+        let of = self.shoot(x, nodes, *part, |shots| {
+            shots.ends(&*self.system, &self.plan, &self.inputs, *steps, *has_velocities)
+        });
+        Stops { legs, of }
     }
 
     /// Coordinates and velocities of all nodes.
     fn at_nodes(&self, x: &[f64]) -> Stops {
         let nodes: Vec<usize> =
             if self.rows.is_empty() && self.final_cost.is_none() { Vec::new() } else { (0..=self.steps()).collect() };
-        self.ends(x, &nodes, 0.0, (0, true))
+        self.ends(x, Legs { nodes, ..Legs::CONVERSION })
     }
 
     /// Shots from some nodes over a part of their steps.
     fn shoot<R>(&self, x: &[f64], nodes: &[usize], part: f64, shoot: impl FnOnce(&Shots<'_>) -> R) -> R {
-        let (n, duration) = (self.n(), x[0]);
+        let (n, duration) = (self.n, x[0]);
         let [mut t, mut h, mut q, mut p, mut parameters] = [const { Vec::new() }; 5];
         for &k in nodes {
             t.push(self.time(k, 0.0, duration));
@@ -462,23 +473,23 @@ impl Transcription {
     }
 
     fn inputs_at(&self, x: &[f64], k: usize) -> Vec<f64> {
-        (2 * self.n()..self.locals() - 1).map(|local| x[self.place(k, local)]).collect()
+        (2 * self.n..self.locals() - 1).map(|local| x[self.place(k, local)]).collect()
     }
 
     /// The derivatives of an entry of an end with respect to the local variables: the length of the step and the time of
     /// its start depend on the duration.
     fn by_duration(&self, at: &Stops, index: usize, entry: usize) -> Vec<f64> {
-        let (k, columns) = (at.nodes[index], self.locals() + 1);
-        let row = (index * 2 * self.n() + entry) * columns;
+        let (k, columns) = (at.legs.nodes[index], self.locals() + 1);
+        let row = (index * 2 * self.n + entry) * columns;
         let slope = &at.of.jacobians[row..row + columns];
         let (own, others) = slope.split_at(columns - 2);
-        let of_duration = others[0] * at.part * self.widths[k] + others[1] * self.mesh.shares[k];
+        let of_duration = others[0] * at.legs.part * self.widths[k] + others[1] * self.mesh.shares[k];
         own.iter().copied().chain([of_duration]).collect()
     }
 
     /// The second derivatives of weighted ends with respect to the local variables, row by row.
-    fn curved(&self, x: &[f64], at: &Stops, weights: &[f64]) -> Vec<Vec<f64>> {
-        let (n, locals) = (self.n(), self.locals());
+    fn curved(&self, x: &[f64], at: &Legs, weights: &[f64]) -> Vec<Vec<f64>> {
+        let (n, locals) = (self.n, self.locals());
         // Coordinates are variables themselves at zero steps.
         let counts = |of: &[f64]| of[if at.steps == 0 { n } else { 0 }..].iter().any(|weight| *weight != 0.0);
         let shot: Vec<usize> = (0..at.nodes.len()).filter(|index| counts(&weights[2 * n * index..][..2 * n])).collect();
@@ -509,23 +520,24 @@ impl Transcription {
 
     /// A function at the ends (q, v) of `at`, by the chain rule. With weights each curvature has one.
     fn composed(&self, x: &[f64], at: &Stops, of: &dyn Function, weights: Option<&[f64]>) -> Vec<Local> {
-        let (n, m, locals) = (self.n(), self.inputs.len(), self.locals());
-        let t: Vec<f64> = at.nodes.iter().map(|k| self.time(*k, at.part, x[0])).collect();
+        let (n, m, locals) = (self.n, self.inputs.len(), self.locals());
+        let Legs { nodes, part, .. } = &at.legs;
+        let t: Vec<f64> = nodes.iter().map(|k| self.time(*k, *part, x[0])).collect();
         let entries =
             |first: usize| at.of.states.chunks_exact(2 * n).flat_map(move |of| &of[first..first + n]).copied();
         let (q, v): (Vec<f64>, Vec<f64>) = (entries(0).collect(), entries(n).collect());
-        let parameters: Vec<f64> = at.nodes.iter().flat_map(|k| self.numbers(&self.inputs_at(x, *k))).collect();
+        let parameters: Vec<f64> = nodes.iter().flat_map(|k| self.numbers(&self.inputs_at(x, *k))).collect();
         let points = Points { t: &t, q: &q, v: &v, parameters: &parameters };
         let [values, slopes] = [0, 1].map(|order| of.at(&points, order));
         let arguments = 1 + 2 * n + m;
-        let by_arguments: Vec<Vec<Vec<f64>>> = (0..at.nodes.len())
+        let by_arguments: Vec<Vec<Vec<f64>>> = (0..nodes.len())
             .map(|index| {
                 let unit = |place: usize, value: f64| {
                     let mut row = vec![0.0; locals];
                     row[place] = value;
                     row
                 };
-                let time = unit(locals - 1, self.share(at.nodes[index], at.part));
+                let time = unit(locals - 1, self.share(nodes[index], *part));
                 let state = (0..2 * n).map(|entry| self.by_duration(at, index, entry));
                 let inputs = (2 * n..2 * n + m).map(|place| unit(place, 1.0));
                 [time].into_iter().chain(state).chain(inputs).collect()
@@ -546,7 +558,7 @@ impl Transcription {
             .zip(weights)
             .flat_map(|(slope, weight)| slope[1..=2 * n].iter().map(move |slope| slope * weight))
             .collect();
-        let curved = self.curved(x, at, &scaled);
+        let curved = self.curved(x, &at.legs, &scaled);
         let second = of.at(&points, 2);
         for (index, (own, mut sum)) in locals_of.iter_mut().zip(curved).enumerate() {
             let (by, second) = (&by_arguments[index], &second[index * arguments * arguments..]);
@@ -573,9 +585,9 @@ impl Transcription {
         let points: &[(f64, f64)] = if cost.is_of_inputs() { &[(0.0, 1.0)] } else { &GAUSS };
         for (part, weight) in points {
             let at = if cost.is_of_inputs() {
-                Stops::nowhere(&nodes, 2 * self.n(), locals + 1)
+                Stops::nowhere(&nodes, 2 * self.n, locals + 1)
             } else {
-                self.ends(x, &nodes, *part, (1, true))
+                self.ends(x, Legs { nodes: nodes.clone(), part: *part, steps: 1, has_velocities: true })
             };
             let found = self.composed(x, &at, &**cost, has_curvature.then_some(&*ones));
             for (sum, of) in total.iter_mut().zip(found) {
@@ -600,12 +612,23 @@ impl Transcription {
     }
 }
 
-/// The ends of a part of the steps from some nodes.
-struct Stops {
+/// The same part of the steps from some nodes.
+struct Legs {
     nodes: Vec<usize>,
     part: f64,
+    /// One; zero convert momenta to velocities.
     steps: u64,
     has_velocities: bool,
+}
+
+impl Legs {
+    /// No step: the velocities of nodes.
+    const CONVERSION: Self = Self { nodes: Vec::new(), part: 0.0, steps: 0, has_velocities: true };
+}
+
+/// Their ends.
+struct Stops {
+    legs: Legs,
     of: Ends,
 }
 
@@ -615,23 +638,23 @@ impl Stops {
         let states = vec![0.0; nodes.len() * entries];
         let jacobians = vec![0.0; states.len() * columns];
         let of = Ends { states, jacobians, errors: Vec::new() };
-        Self { nodes: nodes.to_vec(), part: 0.0, steps: 0, has_velocities: true, of }
+        Self { legs: Legs { nodes: nodes.to_vec(), ..Legs::CONVERSION }, of }
     }
 
     /// The entries of one end.
     fn state(&self, index: usize) -> &[f64] {
-        let each = self.of.states.len() / self.nodes.len();
+        let each = self.of.states.len() / self.legs.nodes.len();
         &self.of.states[index * each..(index + 1) * each]
     }
 
     /// Those of some of all nodes.
     fn picked(&self, nodes: &[usize]) -> Self {
         let picked = |of: &[f64]| -> Vec<f64> {
-            let each = of.len() / self.nodes.len();
+            let each = of.len() / self.legs.nodes.len();
             nodes.iter().flat_map(|k| &of[k * each..(k + 1) * each]).copied().collect()
         };
         let of = Ends { states: picked(&self.of.states), jacobians: picked(&self.of.jacobians), errors: Vec::new() };
-        Self { nodes: nodes.to_vec(), of, ..*self }
+        Self { legs: Legs { nodes: nodes.to_vec(), ..self.legs }, of }
     }
 }
 
