@@ -5,7 +5,7 @@ use super::body::{Body, VelocityFrom, body, state_parts};
 use super::constraints;
 use super::formula::item_name;
 use super::matrix::matrix;
-use super::state_function::{number, vector, vector_of};
+use super::state_function::{flow_by, number, vector, vector_of};
 use crate::findings::Pattern;
 use crate::model::{Coordinate, Model, Parameter};
 use crate::program::{FunctionId, Output};
@@ -240,21 +240,6 @@ fn flow(source: &Source) -> TokenStream {
         ::core::result::Result::Ok(::vi_core::lagrangian::Flow { v: velocity, force, power })
     };
     flow_by(&dimension, &quote!(p), &flow)
-}
-
-/// `flow` with this body, which calls its momenta so.
-pub(super) fn flow_by(dimension: &Literal, momenta: &TokenStream, body: &TokenStream) -> TokenStream {
-    quote! {
-        #[inline]
-        fn flow(
-            &self,
-            t: T,
-            q: &::vi_core::SVector<T, #dimension>,
-            #momenta: &::vi_core::SVector<T, #dimension>,
-        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
-            #body
-        }
-    }
 }
 
 /// The function that names the first call of a Rust function or a table without a value.

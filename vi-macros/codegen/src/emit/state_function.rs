@@ -1,10 +1,10 @@
-//! Functions of (t, q, v) with one result.
+//! Functions of (t, q, v) with one result, and `flow`.
 
 use super::Source;
 use super::body::{Body, VelocityFrom, state_parts};
 use super::entries::{self, ResultEntry};
 use crate::program::{FunctionId, Output};
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens as _, format_ident, quote};
 
 /// The vector of one group of results; inference supplies its type.
@@ -47,6 +47,21 @@ fn function(
             v: &::vi_core::SVector<T, #dimension>,
         ) -> #of {
             #inputs #statements #result
+        }
+    }
+}
+
+/// `flow` with this body, which calls its momenta so.
+pub(super) fn flow_by(dimension: &Literal, momenta: &TokenStream, body: &TokenStream) -> TokenStream {
+    quote! {
+        #[inline]
+        fn flow(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, #dimension>,
+            #momenta: &::vi_core::SVector<T, #dimension>,
+        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
+            #body
         }
     }
 }
