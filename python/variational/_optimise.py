@@ -265,16 +265,11 @@ def _replayed(cls: Any, values: Array, t: Array, q: Array, p: Array, options: di
         run.step(end - run.t)
         rows.append((end, run.q, run.p, run.v, run.energy))
     t, q, p, v, energy = (np.array(column) for column in zip(*rows, strict=True))
-    solution = Solution(cls._of(values[0])._fixed(), t, q, p)
-    # Each row has a system of its own.
-    solution.__dict__.update(v=fixed(v), energy=fixed(energy))
-    solution._values = values
-    return solution
+    return _solution(cls, values, t, q, p, v, energy)
 
 
 def _of_nodes(cls: Any, values: Array, t: Array, q: Array, p: Array, options: dict[str, Any]) -> Solution:
     """The nodes of a solver that found no optimum. Velocity and energy of a node without motion are NaN."""
-    solution = Solution(cls._of(values[0])._fixed(), t, q, p)
     v, energy = np.full_like(q, np.nan), np.full_like(t, np.nan)
     for k in range(len(t)):
         try:
@@ -282,6 +277,12 @@ def _of_nodes(cls: Any, values: Array, t: Array, q: Array, p: Array, options: di
         except StepError:
             continue
         v[k], energy[k] = run.v, run.energy
+    return _solution(cls, values, t, q, p, v, energy)
+
+
+def _solution(cls: Any, values: Array, t: Array, q: Array, p: Array, v: Array, energy: Array) -> Solution:
+    """A solution each row of which has a system of its own."""
+    solution = Solution(cls._of(values[0])._fixed(), t, q, p)
     solution.__dict__.update(v=fixed(v), energy=fixed(energy))
     solution._values = values
     return solution
