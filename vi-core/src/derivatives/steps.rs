@@ -111,8 +111,8 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Run<M, S, N> {
     }
 
     /// The second derivatives of `weights·z` with respect to pairs of tangent vectors at `before`, where z is the end
-    /// node of the last step, which began at `before`: a symmetric matrix, exact to rounding. [`FixedStep`](crate::FixedStep),
-    /// [`Composition`](crate::Composition) and [`Gauss`](crate::Gauss) have them, for systems without constraints whose L
+    /// node of the last step, which began at `before`: a symmetric matrix, exact to rounding. [`FixedStep`],
+    /// [`Composition`] and [`Gauss`](crate::Gauss) have them, for systems without constraints whose L
     /// is not linear in the velocities; otherwise `None`.
     ///
     /// # Errors
