@@ -12,7 +12,7 @@ use super::context::Context;
 use super::force::{self, Entries};
 use super::point::Point;
 use super::rule::Rule;
-use super::{Constraint, Coordinate, Parameter, mass, probe};
+use super::{Constraint, Coordinate, Parameter, probe, slope};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, System};
@@ -148,7 +148,7 @@ pub(super) fn outside_periods(pool: &mut Pool<Symbol>, expr: Expr, are_angles: &
 /// A parameter in the constant factor of an angle.
 fn ratio(pool: &mut Pool<Symbol>, expr: Expr, are_angles: &[bool]) -> Option<usize> {
     (0..are_angles.len()).filter(|angle| are_angles[*angle]).find_map(|angle| {
-        let symbols = mass::slope(pool, expr, Variable::Coordinate(angle));
+        let symbols = slope(pool, expr, Variable::Coordinate(angle));
         let symbols = pool.symbols(symbols);
         let is_constant = !symbols.iter().any(|symbol| matches!(symbol, Symbol::Continuous(_)));
         symbols.into_iter().filter(|_| is_constant).find_map(|symbol| match symbol {

@@ -16,12 +16,13 @@ use super::angles::outside_periods;
 use super::closed::Closed;
 use super::context::Context;
 use super::force::{over, path};
-use super::mass::{self, slope, vanish};
+use super::probe::vanish;
 use super::rotation;
 use super::scope::{Meaning, Scope};
+use super::singular::is_singular;
 use super::smoothness::{jump, with_conditions};
 use super::value::Value;
-use super::{Constraint, Coordinate, FunctionKind, Model, Parameter, TableKind, indices, mobility};
+use super::{Constraint, Coordinate, FunctionKind, Model, Parameter, TableKind, indices, mass, mobility, slope};
 use crate::limits::bounded;
 use crate::messages::{ConstraintMistake, Errors, Message, bracketed, error};
 use crate::symbol::{Symbol, Variable};
@@ -339,7 +340,7 @@ fn is_dependent(pool: &Pool<Symbol>, rows: &[Vec<Expr>], dimension: usize, param
         unit[index * dimension + index] = pool.one();
     }
     let bordered = mass::bordered(pool, &unit, rows, dimension);
-    mass::is_singular(pool, &bordered, dimension + rows.len(), parameters)
+    is_singular(pool, &bordered, dimension + rows.len(), parameters)
 }
 
 /// Whether A v + a is d/dt of a function of time and coordinates: ∂A_i/∂q_j = ∂A_j/∂q_i and ∂A_i/∂t = ∂a/∂q_i at all

@@ -6,10 +6,8 @@
 //! alone. Parameters have their defaults. All other symbols have either sign and sizes from 1e-6 to 1e6, so that an R
 //! of indefinite sign is accepted.
 
-use super::Parameter;
 use super::context::Context;
-use super::mass::slope;
-use super::probe;
+use super::{Parameter, probe, slope};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Expression, Kind, Operator};

@@ -4,7 +4,8 @@
 //! velocity. The coordinates y without one have to be half of all, and ϑ_y of the others regular: then (x, ϑ) are canonical
 //! variables.
 
-use super::{Coordinate, Parameter, mass};
+use super::singular::is_singular;
+use super::{Coordinate, Parameter, slope};
 use crate::messages::{FirstOrder, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::System;
@@ -33,13 +34,12 @@ pub(super) fn without_velocity(
     let mut matrix = vec![pool.zero(); dimension * dimension];
     for row in (0..dimension).filter(|row| !without[*row]) {
         for column in (0..dimension).filter(|column| without[*column]) {
-            let entry = mass::slope(pool, momenta[row], Variable::Coordinate(column));
+            let entry = slope(pool, momenta[row], Variable::Coordinate(column));
             matrix[row * dimension + column] = entry;
             matrix[column * dimension + row] = entry;
         }
     }
-    let is_singular = mass::is_singular(pool, &matrix, dimension, parameters);
-    if is_singular { Err(FirstOrder::Singular) } else { Ok(without) }
+    if is_singular(pool, &matrix, dimension, parameters) { Err(FirstOrder::Singular) } else { Ok(without) }
 }
 
 /// Checks the clauses of a system of first order.

@@ -9,10 +9,9 @@
 use super::array::{part, spelled};
 use super::context::Context;
 use super::dissipation;
-use super::mass::slope;
 use super::scope::{Meaning, Scope};
 use super::value::not_a_number;
-use super::{Coordinate, Parameter};
+use super::{Coordinate, Parameter, slope};
 use crate::messages::{ArrayMistake, ConstraintMistake, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Indices};

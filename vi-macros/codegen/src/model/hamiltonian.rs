@@ -10,7 +10,7 @@ use super::legendre::transform;
 use super::lets;
 use super::scope::Meaning;
 use super::value::Value;
-use super::{Coordinate, Parameter, mass};
+use super::{Coordinate, Parameter, slope};
 use crate::limits::bounded;
 use crate::messages::{HamiltonianMistake, Message};
 use crate::symbol::{Symbol, Variable};
@@ -119,7 +119,7 @@ pub(super) fn lagrangian(
         Some(lagrangian) => {
             let momenta: Vec<Expr> = (0..coordinates.len())
                 .map(|index| {
-                    let momentum = mass::slope(context.pool, lagrangian, Variable::Velocity(index));
+                    let momentum = slope(context.pool, lagrangian, Variable::Velocity(index));
                     context.closed(momentum)
                 })
                 .collect();

@@ -12,7 +12,8 @@
 //! smallest form is taken.
 
 use super::inverse::inverse;
-use super::{Parameter, mass};
+use super::singular::is_singular;
+use super::{Parameter, probe};
 use crate::discrete::summands;
 use crate::symbol::Symbol;
 use num_traits::One;
@@ -138,10 +139,10 @@ impl Legendre<'_> {
     /// Whether an expression is negative at no point of a fixed sequence.
     fn is_positive(&self, expr: Expr) -> bool {
         let is_negative = |point: u32| {
-            let values = mass::values(self.pool, &[expr], point, self.parameters);
+            let values = probe::values(self.pool, &[expr], point, self.parameters);
             values.iter().any(|value| value.value < 0.0)
         };
-        !(0..mass::POINTS).any(is_negative)
+        !(0..probe::POINTS).any(is_negative)
     }
 
     fn of_quadratic(&mut self, function: Expr, places: &[usize]) -> Option<Expr> {
@@ -197,7 +198,7 @@ impl Legendre<'_> {
             }
             let rest = self.pool.combination(rest);
             let is_linear = self.pool.is_zero(rest)
-                || !self.pool.is_undefined(rest) && mass::vanish(self.pool, &[rest], self.parameters);
+                || !self.pool.is_undefined(rest) && probe::vanish(self.pool, &[rest], self.parameters);
             if !is_linear {
                 return None;
             }
@@ -261,7 +262,7 @@ impl Legendre<'_> {
 
     /// The inverse of a block of A.
     fn inverted(&mut self, block: &[Vec<Expr>]) -> Option<Vec<Vec<Expr>>> {
-        if mass::is_singular(self.pool, &block.concat(), block.len(), self.parameters) {
+        if is_singular(self.pool, &block.concat(), block.len(), self.parameters) {
             return None;
         }
         inverse(self.pool, block)

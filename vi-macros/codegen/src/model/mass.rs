@@ -6,28 +6,16 @@
 //! A  0
 //! ```
 //!
-//! In: L and A. Out: nothing, or a message that M is singular in every state. M is evaluated at points of a fixed sequence.
-//! If a pivot vanishes to rounding at all of them, M is singular everywhere, except with negligible probability.
-//! Scaling rows and columns to entries of about 1 makes the test independent of units: masses of 1 and 1e-12 are as
-//! good as two of 1. The points have several sizes: at one of them an angle of 1e15 times a coordinate keeps its
-//! digits, and at some of them a root such as sqrt(c^2*dot(T)^2 - dot(x)^2) has a value.
+//! In: L and A. Out: nothing, or a message that M is singular in every state.
 
-use super::{Coordinate, Parameter, first_order, probe};
+use super::probe::{MARGIN, POINTS, values};
+use super::singular::is_singular;
+use super::{Coordinate, Parameter, first_order};
 use crate::messages::{Massless, Message, Singular, error};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Span;
-use std::collections::BTreeMap;
 use syn::Result;
-use vi_expr::{Expr, Pool, Rounded};
-
-/// Maximum number of points, used while the matrix has no value or is singular.
-pub(super) const POINTS: u32 = 42;
-/// Sizes of the first points. Symbols are positive at every other point, and of both signs at the rest.
-const SIZES: [f64; 10] = [1.0, 1.0, 1.0, 1.0, 1e-8, 1e-8, 1e-16, 1e-16, 1e-40, 1e-40];
-/// A pivot below this multiple of the rounding of the entries, per row, counts as zero.
-pub(super) const MARGIN: f64 = 64.0;
-/// Rounds of scaling. Each takes the square root of the distance of a row from its size: ratios of 1e300 become 1.2.
-const ROUNDS: usize = 12;
+use vi_expr::{Expr, Pool};
 
 /// Reports an M that is singular in every state. An M with an entry without a value in any state is left to the check
 /// of its derivatives. If M is zero, returns which coordinates have no velocity in L.
@@ -170,113 +158,4 @@ fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Option<(
     let mass = pool.collect_constants(&mass);
     let is_defined = !momenta.iter().chain(&mass).any(|entry| pool.is_undefined(*entry));
     is_defined.then_some((momenta, mass))
-}
-
-/// Whether a matrix is singular at every point with a value, and at one such point at least.
-pub(super) fn is_singular(pool: &Pool<Symbol>, mass: &[Expr], dimension: usize, parameters: &[Parameter]) -> bool {
-    let mut singular_somewhere = false;
-    for point in 0..POINTS {
-        let entries = values(pool, mass, point, parameters);
-        if entries.iter().any(|entry| entry.value.is_nan()) {
-            continue;
-        }
-        if is_regular(&entries, dimension) {
-            return false;
-        }
-        singular_somewhere = true;
-    }
-    singular_somewhere
-}
-
-/// The values of expressions at a point.
-pub(super) fn values(pool: &Pool<Symbol>, exprs: &[Expr], point: u32, parameters: &[Parameter]) -> Vec<Rounded> {
-    let mut values = BTreeMap::new();
-    pool.evaluate_rounded(exprs, &mut |symbol| {
-        let drawn = number(point, values.len(), symbol, parameters);
-        *values.entry(symbol.clone()).or_insert(drawn)
-    })
-}
-
-/// The number of a symbol at a point. At the first points all numbers have one size; at the others each has its own
-/// size, and at every other of these the parameters have their defaults.
-fn number(point: u32, index: usize, symbol: &Symbol, parameters: &[Parameter]) -> f64 {
-    if let Some(size) = usize::try_from(point).ok().and_then(|point| SIZES.get(point)) {
-        return size * probe::near_one(point, index);
-    }
-    let default = match symbol {
-        Symbol::Parameter { index, .. } if point.is_multiple_of(2) => {
-            parameters.get(*index).map(|parameter| parameter.default)
-        }
-        _ => None,
-    };
-    default.filter(|default| *default != 0.0).unwrap_or_else(|| probe::of_any_size(point, index))
-}
-
-/// Elimination of the scaled matrix with complete pivoting, which keeps the growth of errors small.
-fn is_regular(entries: &[Rounded], dimension: usize) -> bool {
-    let scales = scales(entries, dimension);
-    let scaled = |place: usize, number: f64| number * scales[place / dimension] * scales[place % dimension];
-    let mut matrix: Vec<f64> = entries.iter().enumerate().map(|(place, entry)| scaled(place, entry.value)).collect();
-    let errors = entries.iter().enumerate().map(|(place, entry)| scaled(place, entry.error));
-    let count = u32::try_from(dimension).map_or(f64::INFINITY, f64::from);
-    let zero = MARGIN * count * errors.fold(f64::EPSILON, f64::max);
-    let (mut rows, mut columns): (Vec<usize>, Vec<usize>) = ((0..dimension).collect(), (0..dimension).collect());
-    while !rows.is_empty() {
-        let size = |row: usize, column: usize| matrix[row * dimension + column].abs();
-        let places = rows.iter().flat_map(|row| columns.iter().map(|column| (*row, *column)));
-        let largest = places.max_by(|left, right| size(left.0, left.1).total_cmp(&size(right.0, right.1)));
-        let Some((pivot, of)) = largest.filter(|(row, column)| size(*row, *column) > zero) else {
-            return false;
-        };
-        rows.retain(|row| *row != pivot);
-        for row in &rows {
-            let factor = matrix[row * dimension + of] / matrix[pivot * dimension + of];
-            if factor == 0.0 {
-                continue;
-            }
-            for column in &columns {
-                matrix[row * dimension + column] -= factor * matrix[pivot * dimension + column];
-            }
-        }
-        columns.retain(|column| *column != of);
-    }
-    true
-}
-
-/// Factors of rows and columns that scale the largest entry of each row to about 1.
-fn scales(entries: &[Rounded], dimension: usize) -> Vec<f64> {
-    let mut scales = vec![1.0; dimension];
-    for _ in 0..ROUNDS {
-        let largest: Vec<f64> = (0..dimension)
-            .map(|row| {
-                let sizes = (0..dimension).map(|column| entries[row * dimension + column].value.abs() * scales[column]);
-                sizes.fold(0.0, f64::max) * scales[row]
-            })
-            .collect();
-        for (scale, largest) in scales.iter_mut().zip(largest).filter(|(_, largest)| *largest > 0.0) {
-            *scale /= largest.sqrt();
-        }
-    }
-    scales
-}
-
-/// The partial derivative with respect to a variable.
-pub(crate) fn slope(pool: &mut Pool<Symbol>, expr: Expr, by: Variable) -> Expr {
-    pool.partial_derivative(expr, &Symbol::Continuous(by))
-}
-
-/// Whether expressions are zero to rounding at every point with values, and at one such point at least.
-pub(super) fn vanish(pool: &Pool<Symbol>, exprs: &[Expr], parameters: &[Parameter]) -> bool {
-    let mut is_known = exprs.is_empty();
-    for point in 0..POINTS {
-        let values = values(pool, exprs, point, parameters);
-        if values.iter().any(|value| value.value.is_nan()) {
-            continue;
-        }
-        if values.iter().any(|value| value.value.abs() > MARGIN * value.error) {
-            return false;
-        }
-        is_known = true;
-    }
-    is_known
 }

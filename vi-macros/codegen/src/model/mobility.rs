@@ -11,7 +11,7 @@
 //!
 //! The mechanism moves if the rank of A is below the number of coordinates at one of these places.
 
-use super::mass::MARGIN;
+use super::probe::MARGIN;
 use super::{Constraint, Parameter, probe};
 use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Pool};

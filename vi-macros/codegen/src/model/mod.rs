@@ -30,6 +30,7 @@ mod resolve;
 mod rotation;
 pub(crate) mod rule;
 mod scope;
+mod singular;
 mod smoothness;
 mod table;
 mod time_scale;
@@ -40,7 +41,6 @@ mod vector;
 pub use check_state::CheckState;
 pub use closed::{LetArray, rate};
 pub use function::{Function, FunctionKind};
-pub(crate) use mass::slope;
 pub use point::Point;
 pub(crate) use rotation::COMPONENTS;
 pub use rule::{DiscreteForces, Rule};
@@ -48,7 +48,7 @@ pub use smoothness::Smoothness;
 pub use table::{Outside, Table, TableKind, Values};
 
 use crate::messages::bracketed;
-use crate::symbol::{LetEntry, Symbol};
+use crate::symbol::{LetEntry, Symbol, Variable};
 use proc_macro2::{Ident, Span};
 use vi_expr::{Expr, Node, Pool};
 
@@ -320,4 +320,9 @@ impl Model {
 fn slot(coordinate: &str, end: u8) -> String {
     let separator = if coordinate.ends_with(char::is_alphabetic) { "" } else { "_" };
     format!("{coordinate}{separator}{end}")
+}
+
+/// The partial derivative with respect to a variable.
+pub(crate) fn slope(pool: &mut Pool<Symbol>, expr: Expr, by: Variable) -> Expr {
+    pool.partial_derivative(expr, &Symbol::Continuous(by))
 }
