@@ -17,7 +17,7 @@ pub use output::AnyOutput;
 use std::sync::Arc;
 #[cfg(feature = "derivatives")]
 use vi_core::derivatives::{Covector, Differentiable, Variation};
-use vi_core::method::{Memory, Problem, Report};
+use vi_core::method::{Change, Facts, Memory, Problem, Status};
 #[cfg(feature = "derivatives")]
 use vi_core::nalgebra::DMatrix;
 use vi_core::node::Node;
@@ -179,20 +179,8 @@ impl<S: Runnable<N>, const N: usize> Method<S, N> for AnyMethod<S, N> {
     type Left = StepError;
     type DenseOutput = AnyOutput<N>;
 
-    fn finds_length(&self) -> bool {
-        self.0.finds_length()
-    }
-
-    fn has_reactions(&self) -> bool {
-        self.0.has_reactions()
-    }
-
-    fn rule(&self) -> Option<&'static str> {
-        self.0.rule()
-    }
-
-    fn order(&self) -> u32 {
-        self.0.order()
+    fn facts(&self) -> Facts {
+        self.0.facts()
     }
 
     fn check_length(&self, system: &S, h: f64) -> Result<(), StepError> {
@@ -257,35 +245,15 @@ impl<S: Runnable<N>, const N: usize> Method<S, N> for AnyMethod<S, N> {
         memory.0.step_of(system, node, lengths)
     }
 
-    fn with_length(
+    fn restarted(
         &self,
         system: &S,
-        memory: &Self::Memory,
-        node: &Node<N>,
-        h: f64,
-    ) -> Result<Self::Memory, StepError> {
-        memory.0.with_length(system, node, h)
-    }
-
-    fn with_system(
-        &self,
-        systems: [&S; 2],
+        change: &Change<'_, S, N>,
         node: &mut Node<N>,
         h: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        memory.0.with_system(systems, node, h)
-    }
-
-    fn with_state(
-        &self,
-        systems: [&S; 2],
-        node: &mut Node<N>,
-        h: f64,
-        memory: &Self::Memory,
-        state: State<N>,
-    ) -> Result<Self::Memory, StepError> {
-        memory.0.with_state(systems, node, h, state)
+        memory.0.restarted(system, change, node, h)
     }
 
     fn dense_output(
@@ -299,16 +267,8 @@ impl<S: Runnable<N>, const N: usize> Method<S, N> for AnyMethod<S, N> {
         memory.0.dense_output(system, before, node, h)
     }
 
-    fn length(&self, h: f64, memory: &Self::Memory) -> f64 {
-        memory.0.length(h)
-    }
-
-    fn longest(&self, h: f64, memory: &Self::Memory) -> f64 {
-        memory.0.longest(h)
-    }
-
-    fn report(&self, memory: &Self::Memory) -> Report {
-        memory.0.report()
+    fn status(&self, h: f64, memory: &Self::Memory) -> Status {
+        memory.0.status(h)
     }
 
     fn discrete_energy(&self, system: &S, node: &Node<N>, h: f64, memory: &Self::Memory) -> Option<f64> {

@@ -179,7 +179,7 @@ impl<S: Runnable<N>, const N: usize> Steps for Simulated<S, N> {
         let is_beyond = |left: f64| left * h.signum() < -rounding;
         if is_beyond(left - self.run.longest()) {
             // Steps that solve for their length must be taken to know it.
-            let ahead = if self.run.method().finds_length() { Some(self.run.after_a_step()?) } else { None };
+            let ahead = if self.run.method().facts().finds_length { Some(self.run.after_a_step()?) } else { None };
             let Some(ahead) = ahead.filter(|ahead| !is_beyond(ahead.time_to(end))) else {
                 self.run.end_at(end)?;
                 self.shortened = Some(left);

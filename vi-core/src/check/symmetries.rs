@@ -142,13 +142,13 @@ fn bare<const N: usize, S: Checked<N>>(sample: &Sample<S, N>) -> Node<N> {
     Node::new(State { t: sample.t, q: sample.q, p: SVector::zeros() }, 0.0)
 }
 
-/// Changes of coordinates and momenta.
-type Change<const N: usize> = (SVector<Bounded, N>, SVector<Bounded, N>);
+/// A change of coordinates and momenta.
+type Displacement<const N: usize> = (SVector<Bounded, N>, SVector<Bounded, N>);
 
 /// Derivatives with respect to one entry of (q0, v), before and after a step.
 pub(super) struct Column<const N: usize> {
-    before: Change<N>,
-    after: Change<N>,
+    before: Displacement<N>,
+    after: Displacement<N>,
 }
 
 impl<const N: usize> Column<N> {
@@ -184,6 +184,6 @@ fn ends<const N: usize, S: Checked<N>>(
 }
 
 /// The symplectic form of two changes.
-fn area<const N: usize>(one: &Change<N>, other: &Change<N>) -> Bounded {
+fn area<const N: usize>(one: &Displacement<N>, other: &Displacement<N>) -> Bounded {
     one.0.dot(&other.1) - one.1.dot(&other.0)
 }

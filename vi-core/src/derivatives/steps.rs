@@ -10,7 +10,7 @@ use crate::angles;
 use crate::energy_preserving::interval::Last;
 use crate::error::StepError;
 use crate::linear::{self, Matrix};
-use crate::method::{Composition, Connected, EnergyPreserving, Fallback, FixedStep, Method};
+use crate::method::{Change, Composition, Connected, EnergyPreserving, Fallback, FixedStep, Method};
 use crate::momentum::steps::Steps;
 use crate::node::Node;
 use crate::real::Dual;
@@ -45,8 +45,9 @@ pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
     /// As [`Run::step_of`] and [`Run::vary`].
     fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { method, system, node, memory, .. } = run;
-        let memory = method.with_length(system, memory, node, length)?;
-        let mut aside = Run::resumed(method.clone(), *system, (*node, length, memory));
+        let mut start = *node;
+        let memory = method.restarted(system, &Change::Length, &mut start, length, memory)?;
+        let mut aside = Run::resumed(method.clone(), *system, (start, length, memory));
         aside.step()?;
         aside.vary(node, variations)
     }

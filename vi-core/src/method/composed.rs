@@ -7,7 +7,7 @@
 //! Each substep is extrapolated from the same substep of earlier steps.
 
 use super::gauss::bound::{ConstrainedStep, ConstrainedSteps};
-use super::{Composition, Gauss, Memory, Method, Problem, Report};
+use super::{Change, Composition, Facts, Gauss, Memory, Method, Problem, Status};
 use crate::constrained::solve::Workspace;
 use crate::constrained::variation::vary;
 use crate::derivatives::{Differentiable, Variation, not_last};
@@ -17,6 +17,7 @@ use crate::node::Node;
 use crate::run::{Hermite, Run};
 use crate::state::State;
 use crate::stepping::Convertible;
+use alloc::borrow::Cow;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
@@ -96,12 +97,8 @@ where
     type Left = StepError;
     type DenseOutput = Hermite<N>;
 
-    fn has_reactions(&self) -> bool {
-        true
-    }
-
-    fn order(&self) -> u32 {
-        self.scheme.order
+    fn facts(&self) -> Facts {
+        Facts { has_reactions: true, order: self.scheme.order, ..Facts::default() }
     }
 
     fn prepare(&self, _system: &S, _h: f64) {}
@@ -122,17 +119,17 @@ where
         let SubstepBuffers { workspace, steps, unknowns } = cache;
         let mut steps = core::mem::take(steps);
         for (own, h) in memory.all.iter().zip(self.scheme.lengths(h)) {
-            let problem = Problem { system, prepared: &(), node: &after, h };
             if let (Some(workspace), Some(unknowns)) = (workspace.as_mut(), unknowns.pop()) {
                 workspace.unknowns = unknowns;
             }
-            let step = if memory.is_new {
-                // Before the first step, a substep is guessed from its own start.
-                let own = self.method.with_length(system, own, &after, h);
-                own.and_then(|own| self.method.solve(problem, &own, workspace))
+            // Before the first step, a substep is guessed from its own start.
+            let own = if memory.is_new {
+                self.method.restarted(system, &Change::Length, &mut after, h, own).map(Cow::Owned)
             } else {
-                self.method.solve(problem, own, workspace)
+                Ok(Cow::Borrowed(own))
             };
+            let problem = Problem { system, prepared: &(), node: &after, h };
+            let step = own.and_then(|own| self.method.solve(problem, &own, workspace));
             let step = step.map_err(|failure| failure.explained_at(system, &after, h))?;
             after = step.end;
             steps.push(step);
@@ -168,15 +165,19 @@ where
         memory.is_new = false;
     }
 
-    fn with_length(
+    fn restarted(
         &self,
         system: &S,
-        memory: &Self::Memory,
-        node: &Node<N>,
+        change: &Change<'_, S, N>,
+        node: &mut Node<N>,
         h: f64,
+        memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
+        if !matches!(change, Change::Length) {
+            return change.begun(self, system, node, h);
+        }
         let substeps = memory.all.iter().zip(self.scheme.lengths(h));
-        let all = substeps.map(|(memory, h)| self.method.with_length(system, memory, node, h));
+        let all = substeps.map(|(memory, h)| self.method.restarted(system, change, node, h, memory));
         Ok(ComposedSteps { all: all.collect::<Result<_, _>>()?, is_new: true })
     }
 
@@ -191,11 +192,12 @@ where
         Hermite::between(system, before, &node.state(), h)
     }
 
-    fn report(&self, memory: &Self::Memory) -> Report {
-        let reports = memory.all.iter().map(|memory| Method::<S, N>::report(&self.method, memory));
-        reports.fold(Report::default(), |sum, report| Report {
-            residual: sum.residual.max(report.residual),
-            iterations: sum.iterations + report.iterations,
+    fn status(&self, h: f64, memory: &Self::Memory) -> Status {
+        let all = memory.all.iter().map(|memory| Method::<S, N>::status(&self.method, h, memory));
+        all.fold(Status::of_length(h), |sum, of| Status {
+            residual: sum.residual.max(of.residual),
+            iterations: sum.iterations + of.iterations,
+            ..sum
         })
     }
 

@@ -17,7 +17,7 @@
 //! Computation 66 (1997) 1089.
 
 use super::fixed::check_steps;
-use super::{Memory, Method, Problem, Report};
+use super::{Change, Facts, Memory, Method, Problem, Status};
 use crate::branch::Branch;
 use crate::called::Called;
 use crate::error::StepError;
@@ -152,12 +152,8 @@ where
     type Left = StepError;
     type DenseOutput = Hermite<N, T>;
 
-    fn order(&self) -> u32 {
-        self.order
-    }
-
-    fn rule(&self) -> Option<&'static str> {
-        S::RULE
+    fn facts(&self) -> Facts {
+        Facts { order: self.order, rule: S::RULE, ..Facts::default() }
     }
 
     fn prepare(&self, system: &S, h: T) -> Self::Prepared {
@@ -225,26 +221,25 @@ where
         memory.iterations = step.iterations;
     }
 
-    fn with_length(
+    fn restarted(
         &self,
-        _system: &S,
-        memory: &Substeps<N, T>,
-        _node: &Node<N, T>,
-        h: T,
-    ) -> Result<Substeps<N, T>, StepError> {
-        let substeps = memory.all.iter().zip(self.lengths(h));
-        Ok(Substeps::of(substeps.map(|(substep, h)| substep.with_length(h)).collect()))
-    }
-
-    fn with_system(
-        &self,
-        [_, after]: [&S; 2],
+        system: &S,
+        change: &Change<'_, S, N, T>,
         node: &mut Node<N, T>,
-        _h: T,
+        h: T,
         memory: &Substeps<N, T>,
     ) -> Result<Substeps<N, T>, StepError> {
-        node.state().velocity(after)?;
-        Ok(Substeps::of(memory.all.iter().map(|substep| substep.with_other_parameters()).collect()))
+        let substeps = memory.all.iter();
+        match change {
+            Change::Length => {
+                Ok(Substeps::of(substeps.zip(self.lengths(h)).map(|(substep, h)| substep.with_length(h)).collect()))
+            }
+            Change::System(_) => {
+                node.state().velocity(system)?;
+                Ok(Substeps::of(substeps.map(|substep| substep.with_other_parameters()).collect()))
+            }
+            Change::State(..) => change.begun(self, system, node, h),
+        }
     }
 
     fn dense_output(
@@ -258,9 +253,9 @@ where
         Hermite::between(system, before, &node.state(), h)
     }
 
-    fn report(&self, memory: &Substeps<N, T>) -> Report {
+    fn status(&self, h: T, memory: &Substeps<N, T>) -> Status<T> {
         let residual = memory.all.iter().map(|substep| substep.measured().roundings()).fold(0.0, f64::max);
-        Report { residual, iterations: memory.iterations }
+        Status { residual, iterations: memory.iterations, ..Status::of_length(h) }
     }
 
     fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Substeps<N, T>), h: T) -> Result<(), StepError> {

@@ -14,7 +14,7 @@
 //! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
 
 use super::bounds::{Alternating, FORWARD, Fallback, FirstStep, check_forward, too_long};
-use super::{Method, Problem, Report};
+use super::{Change, Facts, Method, Problem, Status};
 use crate::angles;
 use crate::called::Called;
 #[cfg(feature = "alloc")]
@@ -55,16 +55,8 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
-    fn finds_length(&self) -> bool {
-        true
-    }
-
-    fn order(&self) -> u32 {
-        2
-    }
-
-    fn rule(&self) -> Option<&'static str> {
-        S::RULE
+    fn facts(&self) -> Facts {
+        Facts { finds_length: true, rule: S::RULE, ..Facts::of_order(2) }
     }
 
     fn check_length(&self, _system: &S, h: T) -> Result<(), StepError> {
@@ -145,42 +137,25 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         after.map(|After { node, lengths }| (node, lengths)).map_err(|failure| explained(failure, system, node, memory))
     }
 
-    fn with_length(
+    fn restarted(
         &self,
-        _system: &S,
-        memory: &Lengths<N, T>,
-        _node: &Node<N, T>,
-        _h: T,
-    ) -> Result<Lengths<N, T>, StepError> {
-        Ok(*memory)
-    }
-
-    fn with_system(
-        &self,
-        [before, after]: [&S; 2],
+        system: &S,
+        change: &Change<'_, S, N, T>,
         node: &mut Node<N, T>,
         _h: T,
         memory: &Lengths<N, T>,
     ) -> Result<Lengths<N, T>, StepError> {
-        let state = node.state();
-        node.add_energy(state.energy(after)? - state.energy(before)?);
-        Ok(Lengths { last: Last { is_step: false, ..memory.last }, ..*memory })
-    }
-
-    fn with_state(
-        &self,
-        [before, system]: [&S; 2],
-        node: &mut Node<N, T>,
-        _h: T,
-        memory: &Lengths<N, T>,
-        state: State<N, T>,
-    ) -> Result<Lengths<N, T>, StepError> {
-        let brought = state.energy(system)? - node.state().energy(before)?;
-        let v = state.velocity(system)?;
-        *node = node.with_state(state);
-        node.add_energy(brought);
-        let mut lengths = Lengths { last: Last { v, ..memory.last }, ..*memory };
-        lengths.resume_after(&memory.last);
+        let changed = change.moved_with_energy(system, node)?;
+        let mut lengths = *memory;
+        match change {
+            Change::Length => {}
+            Change::System(_) => lengths.last.is_step = false,
+            Change::State(_, state) => {
+                lengths.last.v = state.velocity(system)?;
+                lengths.resume_after(&memory.last);
+            }
+        }
+        *node = changed;
         Ok(lengths)
     }
 
@@ -195,16 +170,10 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         Hermite::between(system, before, &node.state(), h)
     }
 
-    fn length(&self, _h: T, memory: &Lengths<N, T>) -> T {
-        memory.last.h
-    }
-
-    fn longest(&self, _h: T, memory: &Lengths<N, T>) -> T {
-        memory.control.longest(memory.last.h)
-    }
-
-    fn report(&self, memory: &Lengths<N, T>) -> Report {
-        Report { residual: memory.last.measured.roundings(), iterations: memory.last.iterations }
+    fn status(&self, _h: T, memory: &Lengths<N, T>) -> Status<T> {
+        let Lengths { last, control, .. } = memory;
+        let Last { h, measured, iterations, .. } = last;
+        Status { length: *h, longest: control.longest(*h), residual: measured.roundings(), iterations: *iterations }
     }
 
     fn discrete_energy(&self, _system: &S, node: &Node<N, T>, _h: T, memory: &Lengths<N, T>) -> Option<T> {

@@ -17,7 +17,7 @@
 //! and the midpoint rule the Jacobian is `M + (h²/4) ∇²V`, and the root is unique for `h < 2/√(−V''_min/m)`. Beyond,
 //! roots appear and vanish in pairs.
 
-use super::{Memory, Method, Problem, Report};
+use super::{Change, Facts, Memory, Method, Problem, Status};
 use crate::branch::Branch;
 use crate::called::Called;
 use crate::error::StepError;
@@ -89,12 +89,8 @@ macro_rules! velocities {
         type Left = ();
         type DenseOutput = Hermite<N, T>;
 
-        fn order(&self) -> u32 {
-            2
-        }
-
-        fn rule(&self) -> Option<&'static str> {
-            S::RULE
+        fn facts(&self) -> Facts {
+            Facts { rule: S::RULE, ..Facts::of_order(2) }
         }
 
         #[inline(always)]
@@ -109,26 +105,26 @@ macro_rules! velocities {
             take(h, node, memory, &step);
         }
 
-        fn with_length(
+        fn restarted(
             &self,
             system: &S,
-            memory: &Velocities<N, T>,
-            node: &Node<N, T>,
-            h: T,
-        ) -> Result<Velocities<N, T>, StepError> {
-            continuation::check_linear(&Called(*system), node, h)?;
-            Ok(memory.with_length(h))
-        }
-
-        fn with_system(
-            &self,
-            [_, after]: [&S; 2],
+            change: &Change<'_, S, N, T>,
             node: &mut Node<N, T>,
             h: T,
             memory: &Velocities<N, T>,
         ) -> Result<Velocities<N, T>, StepError> {
-            continuation::check_linear(&Called(*after), node, h)?;
-            memory.with_system(after, node)
+            if let Change::State(..) = change {
+                return change.begun(self, system, node, h);
+            }
+            continuation::check_linear(&Called(*system), node, h)?;
+            let steps = match change {
+                Change::Length => memory.steps.with_length(h),
+                _ => {
+                    node.state().velocity(system)?;
+                    memory.steps.with_other_parameters()
+                }
+            };
+            Ok(Velocities { steps, ..*memory })
         }
 
         fn dense_output(
@@ -142,8 +138,9 @@ macro_rules! velocities {
             Hermite::between(system, before, &node.state(), h)
         }
 
-        fn report(&self, memory: &Velocities<N, T>) -> Report {
-            memory.report()
+        fn status(&self, h: T, memory: &Velocities<N, T>) -> Status<T> {
+            let Velocities { steps, iterations } = memory;
+            Status { residual: steps.measured().roundings(), iterations: *iterations, ..Status::of_length(h) }
         }
 
         fn discrete_energy(&self, system: &S, node: &Node<N, T>, h: T, memory: &Velocities<N, T>) -> Option<T> {
@@ -238,19 +235,6 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
 }
 
 impl<const N: usize, T: Scalar> Velocities<N, T> {
-    fn with_length(&self, h: T) -> Self {
-        Self { steps: self.steps.with_length(h), ..*self }
-    }
-
-    fn with_system<S: FixedStepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Result<Self, StepError> {
-        node.state().velocity(system)?;
-        Ok(Self { steps: self.steps.with_other_parameters(), ..*self })
-    }
-
-    fn report(&self) -> Report {
-        Report { residual: self.steps.measured().roundings(), iterations: self.iterations }
-    }
-
     /// Discrete energy of the last interval; `None` if it is not finite, since forces may be finite although L is not.
     /// Evaluated from v, because the stored nodes would add the cancellation of `(q1 − q0)/h`.
     fn discrete_energy<S: FixedStepping<N, T>>(&self, system: &S, node: &Node<N, T>, h: T) -> Option<T> {

@@ -15,6 +15,7 @@
 //! | `transformed` | [`InTransformedTime`]: Gauss steps of constant length in transformed time |
 //! | `energy` | [`EnergyPreserving`]: steps of order 2 whose length preserves the discrete energy |
 //! | `energy_gauss` | [`EnergyPreservingGauss`]: the same with Gauss steps, order 2S |
+//! | `change` | what changes between two steps, beside the motion |
 //! | `bounds` | bounds of a step length, and fixed steps if no energy-preserving step exists |
 //! | `preserving` | energy-preserving steps among steps of any length |
 //! | `shift` | the shift of the step density |
@@ -22,6 +23,7 @@
 
 pub mod adaptive;
 pub mod bounds;
+pub mod change;
 #[cfg(feature = "alloc")]
 pub mod composed;
 #[cfg(feature = "alloc")]
@@ -38,6 +40,7 @@ pub mod transformed;
 
 pub use adaptive::Adaptive;
 pub use bounds::{Control, Controlled, Fallback, Switches};
+pub use change::Change;
 #[cfg(feature = "alloc")]
 pub use composed::Composed;
 #[cfg(feature = "alloc")]
@@ -112,13 +115,45 @@ pub trait Memory: Clone + Debug + Send + Sync {
     }
 }
 
-/// Residual and cost of the last step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Report {
+/// What a method is, for every system.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Facts {
+    /// The order p: the error of a step is O(h^(p+1)).
+    pub order: u32,
+    /// Name of the rule, unless it is the first rule of the system. A checkpoint stores it.
+    pub rule: Option<&'static str>,
+    /// Whether [`Method::solve`] finds the step length itself.
+    pub finds_length: bool,
+    /// Whether the method takes systems with constraints, whose reactions may do work.
+    pub has_reactions: bool,
+}
+
+impl Facts {
+    /// Steps of a given length and of this order, without constraints.
+    #[allow(clippy::cast_possible_truncation)] // twice the stages
+    pub(crate) fn of_order(order: usize) -> Self {
+        Self { order: order as u32, ..Self::default() }
+    }
+}
+
+/// Length, residual and cost of the last step, and a bound of the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Status<T = f64> {
+    /// Length of a step in time; that of the last step if the method finds it.
+    pub length: T,
+    /// Upper bound of the next step length in time, with the sign of h.
+    pub longest: T,
     /// Largest residual of the step, in units of its rounding-error bound. Zero before the first step.
     pub residual: f64,
     /// Newton or fixed-point iterations.
     pub iterations: u32,
+}
+
+impl<T: Copy> Status<T> {
+    /// Of steps of a given length.
+    pub(crate) fn of_length(h: T) -> Self {
+        Self { length: h, longest: h, residual: 0.0, iterations: 0 }
+    }
 }
 
 /// A method of stepping a system S of N coordinates over the numbers T.
@@ -144,23 +179,8 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
     /// Dense output of a step.
     type DenseOutput: DenseOutput<N, T> + Send + Sync + 'static;
 
-    /// Whether [`Method::solve`] finds the step length itself.
-    fn finds_length(&self) -> bool {
-        false
-    }
-
-    /// Whether the method takes systems with constraints, whose reactions may do work.
-    fn has_reactions(&self) -> bool {
-        false
-    }
-
-    /// Name of the rule, unless it is the first rule of the system. A checkpoint stores it.
-    fn rule(&self) -> Option<&'static str> {
-        None
-    }
-
-    /// The order p: the error of a step is O(h^(p+1)).
-    fn order(&self) -> u32;
+    /// What the method is, for every system.
+    fn facts(&self) -> Facts;
 
     /// Checks the given step length.
     ///
@@ -257,53 +277,24 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
         [h, next]: [T; 2],
     ) -> Result<(Node<N, T>, Self::Memory), StepError> {
         check_step(h)?;
-        let memory = self.with_length(system, memory, node, h)?;
-        step_from(self, system, (node, memory), [h, next])
+        let mut node = *node;
+        let memory = self.restarted(system, &Change::Length, &mut node, h, memory)?;
+        step_from(self, system, (&node, memory), [h, next])
     }
 
-    /// The memory for steps of another length from a node.
-    ///
-    /// # Errors
-    /// The reason why no step can start there.
-    fn with_length(
-        &self,
-        system: &S,
-        memory: &Self::Memory,
-        node: &Node<N, T>,
-        h: T,
-    ) -> Result<Self::Memory, StepError>;
-
-    /// The memory after a change of the system from the first to the second; h is the step of the run. By default that of
-    /// a new run from the node. A method that preserves an energy adds the change of H to it.
-    ///
-    /// # Errors
-    /// The reason why the run cannot continue with the new system.
-    fn with_system(
-        &self,
-        [_, system]: [&S; 2],
-        node: &mut Node<N, T>,
-        h: T,
-        _memory: &Self::Memory,
-    ) -> Result<Self::Memory, StepError> {
-        self.begin(system, node, h)
-    }
-
-    /// The memory for a run that continues from another state with the second system; moves the node there. A method that
+    /// The memory of a run that continues after a change with the system and the length h; moves the node. A method that
     /// preserves an energy adds the change of H to it.
     ///
     /// # Errors
-    /// The reason why no run can begin there.
-    fn with_state(
+    /// The reason why no step can start there.
+    fn restarted(
         &self,
-        [_, system]: [&S; 2],
+        system: &S,
+        change: &Change<'_, S, N, T>,
         node: &mut Node<N, T>,
         h: T,
-        _memory: &Self::Memory,
-        state: State<N, T>,
-    ) -> Result<Self::Memory, StepError> {
-        *node = Node::new(state, T::zero());
-        self.begin(system, node, h)
-    }
+        memory: &Self::Memory,
+    ) -> Result<Self::Memory, StepError>;
 
     /// Dense output of the last step, from `before` to the node.
     ///
@@ -318,18 +309,8 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
         memory: &Self::Memory,
     ) -> Result<Self::DenseOutput, StepError>;
 
-    /// Length of a step in time; that of the last step if the method finds it.
-    fn length(&self, h: T, _memory: &Self::Memory) -> T {
-        h
-    }
-
-    /// Upper bound of the next step length in time, with the sign of h.
-    fn longest(&self, h: T, _memory: &Self::Memory) -> T {
-        h
-    }
-
-    /// Residual and cost of the last step.
-    fn report(&self, memory: &Self::Memory) -> Report;
+    /// What the memory tells of the last step and the next, if h is the length of the steps in the unit of the method.
+    fn status(&self, h: T, memory: &Self::Memory) -> Status<T>;
 
     /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step, if there is one.
     fn discrete_energy(&self, _system: &S, _node: &Node<N, T>, _h: T, _memory: &Self::Memory) -> Option<T> {
@@ -363,7 +344,7 @@ pub(crate) fn step_from<M: Method<S, N, T>, S, const N: usize, T: Scalar>(
     let cache = &mut M::Cache::default();
     let step = method.solve(at, &memory, cache)?;
     method.take(system, h, (&mut node, &mut memory), cache, step);
-    let memory = method.with_length(system, &memory, &node, next)?;
+    let memory = method.restarted(system, &Change::Length, &mut node, next, &memory)?;
     Ok((node, memory))
 }
 

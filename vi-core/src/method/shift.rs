@@ -108,7 +108,7 @@ where
                 let shift = 2.0 * density;
                 let course = M::course_mut(&mut self.memory);
                 let first = course.h();
-                check_shift(self.node.t, [first, M::power(first)], shift, scale, f64::from(self.method.order()))?;
+                check_shift(self.node.t, [first, M::power(first)], shift, scale, f64::from(self.method.facts().order))?;
                 course.largest_size = course.largest_size.max(size);
                 return self.with_shift(shift);
             }

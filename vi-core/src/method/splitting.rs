@@ -24,7 +24,7 @@
 //! Source: Blanes and Moan, J. Comput. Appl. Math. 142 (2002) 313, tables 2 to 4; Hairer, Lubich, Wanner, Geometric
 //! Numerical Integration, section V.3.
 
-use super::{Memory, Method, Problem, Report};
+use super::{Change, Facts, Memory, Method, Problem, Status};
 use crate::error::StepError;
 use crate::first_order::check_momenta;
 use crate::linear::Matrix;
@@ -383,12 +383,8 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
     type Left = ();
     type DenseOutput = Hermite<N, T>;
 
-    fn rule(&self) -> Option<&'static str> {
-        Some(self.name)
-    }
-
-    fn order(&self) -> u32 {
-        self.order.clamp(1, HIGHEST)
+    fn facts(&self) -> Facts {
+        Facts { order: self.order.clamp(1, HIGHEST), rule: Some(self.name), ..Facts::default() }
     }
 
     fn check_length(&self, system: &S, h: T) -> Result<(), StepError> {
@@ -487,13 +483,17 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
         memory.force = step.force;
     }
 
-    fn with_length(
+    fn restarted(
         &self,
         system: &S,
+        change: &Change<'_, S, N, T>,
+        node: &mut Node<N, T>,
+        h: T,
         memory: &Kicked<N, T>,
-        node: &Node<N, T>,
-        _h: T,
     ) -> Result<Kicked<N, T>, StepError> {
+        if !matches!(change, Change::Length) {
+            return change.begun(self, system, node, h);
+        }
         // The node may be another one than that of the memory: a monitor halves steps that are past.
         let force = if self.begins_with_kick() { force_at(system, node) } else { memory.force };
         checked(&force, node.t)?;
@@ -512,8 +512,8 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
     }
 
     #[allow(clippy::cast_possible_truncation)] // a few forces
-    fn report(&self, _memory: &Kicked<N, T>) -> Report {
-        Report { residual: 0.0, iterations: self.forces() as u32 }
+    fn status(&self, h: T, _memory: &Kicked<N, T>) -> Status<T> {
+        Status { iterations: self.forces() as u32, ..Status::of_length(h) }
     }
 
     fn check(&self, _system: &S, (node, memory): (&Node<N, T>, &Kicked<N, T>), _h: T) -> Result<(), StepError> {

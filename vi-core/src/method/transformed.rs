@@ -16,8 +16,9 @@
 //! The stages of every accepted step satisfy their equations to rounding, and g is positive and finite at all of them
 //! and at the end.
 
-use super::{Gauss, Method, Problem, Report, check_step};
+use super::{Change, Facts, Gauss, Method, Problem, Status, check_step};
 use crate::error::{Residuals, StepError};
+use crate::gauss::fixed_point::Convergence;
 use crate::gauss::newton::Buffer;
 use crate::gauss::transformed::{
     After, LastRates, Start, TransformedPolynomial, TransformedStages, check_time_scale, time_scale,
@@ -60,13 +61,8 @@ where
     type DenseOutput = TransformedPolynomial<N, STAGES>;
 
     // No bound of the change of g from step to step is known.
-    fn finds_length(&self) -> bool {
-        true
-    }
-
-    #[allow(clippy::cast_possible_truncation)] // 16 stages at most
-    fn order(&self) -> u32 {
-        2 * STAGES as u32
+    fn facts(&self) -> Facts {
+        Facts { finds_length: true, ..Facts::of_order(2 * STAGES) }
     }
 
     fn check_length(&self, system: &S, dtau: f64) -> Result<(), StepError> {
@@ -170,43 +166,21 @@ where
         Err(StepError::NotConverged { t, h, iterations: TRIALS, residual, residuals, turn: 0.0 })
     }
 
-    fn with_length(
+    fn restarted(
         &self,
-        _system: &S,
-        memory: &Self::Memory,
-        _node: &Node<N>,
-        _dtau: f64,
-    ) -> Result<Self::Memory, StepError> {
-        Ok(*memory)
-    }
-
-    fn with_system(
-        &self,
-        [before, after]: [&S; 2],
+        system: &S,
+        change: &Change<'_, S, N>,
         node: &mut Node<N>,
         dtau: f64,
-        _memory: &Self::Memory,
+        memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        let state = node.state();
-        let mut changed = *node;
-        changed.add_energy(state.energy(after)? - state.energy(before)?);
-        let rates = LastRates::constant(after, &changed, dtau)?;
+        if matches!(change, Change::Length) {
+            return Ok(*memory);
+        }
+        let changed = change.moved_with_energy(system, node)?;
+        let rates = LastRates::constant(system, &changed, dtau)?;
         *node = changed;
         Ok(rates)
-    }
-
-    fn with_state(
-        &self,
-        [before, system]: [&S; 2],
-        node: &mut Node<N>,
-        dtau: f64,
-        _memory: &Self::Memory,
-        state: State<N>,
-    ) -> Result<Self::Memory, StepError> {
-        let brought = state.energy(system)? - node.state().energy(before)?;
-        *node = node.with_state(state);
-        node.add_energy(brought);
-        LastRates::constant(system, node, dtau)
     }
 
     fn dense_output(
@@ -220,16 +194,9 @@ where
         Ok(TransformedPolynomial::of(system, node.energy, memory, *before))
     }
 
-    fn length(&self, _dtau: f64, memory: &Self::Memory) -> f64 {
-        memory.h
-    }
-
-    fn longest(&self, dtau: f64, _memory: &Self::Memory) -> f64 {
-        f64::INFINITY.copysign(dtau)
-    }
-
-    fn report(&self, memory: &Self::Memory) -> Report {
-        Report { residual: memory.convergence.change, iterations: memory.convergence.iterations }
+    fn status(&self, dtau: f64, memory: &Self::Memory) -> Status {
+        let Convergence { change: residual, iterations, .. } = memory.convergence;
+        Status { length: memory.h, longest: f64::INFINITY.copysign(dtau), residual, iterations }
     }
 
     fn discrete_energy(&self, _system: &S, node: &Node<N>, _dtau: f64, memory: &Self::Memory) -> Option<f64> {

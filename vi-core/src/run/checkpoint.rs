@@ -64,7 +64,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         let named = system.parameters().iter().enumerate();
         Checkpoint {
             system: system.name().to_owned(),
-            rule: self.method.rule().map(str::to_owned),
+            rule: self.method.facts().rule.map(str::to_owned),
             parameters: named.map(|(index, name)| ((*name).to_owned(), system.parameter(index))).collect(),
             tables: system.tables(),
             run: Stored { node: self.node, turns: self.turns, h: self.h, memory: self.memory.stored() },
@@ -78,7 +78,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// and [`StepError::InvalidInput`] for data that no run of this method can produce;
     /// [`StepError::InconsistentStart`] and [`StepError::DroppedConstraint`] for a node off the constraints.
     pub fn restart(system: S, method: M, checkpoint: Checkpoint<M::Memory, N, T>) -> Result<Self, StepError> {
-        let Stored { node, turns, h, memory } = checkpoint.run_of(&system, method.rule())?;
+        let Stored { node, turns, h, memory } = checkpoint.run_of(&system, method.facts().rule)?;
         method.check_length(&system, h)?;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;

@@ -159,7 +159,7 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let (end, _) = method.step_of(system, (&middle, &memory), [duration(&middle, after), *of_run])?;
     let v = after.state().velocity(system)?;
     let better = end.state().velocity(system)?;
-    let halved = 2.0_f64.powi(i32::try_from(method.order()).unwrap_or(i32::MAX));
+    let halved = 2.0_f64.powi(i32::try_from(method.facts().order).unwrap_or(i32::MAX));
     let factor = halved / (halved - 1.0);
     let length = h.to_f64();
     // The low parts carry the digits beyond the precision of a number.
@@ -205,7 +205,7 @@ fn energy_error<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
     ends: [(State<N, T>, SVector<T, N>); 2],
     action: f64,
 ) -> f64 {
-    if !system.conserves_energy() || method.has_reactions() {
+    if !system.conserves_energy() || method.facts().has_reactions {
         return 0.0;
     }
     let [before, after] = ends.map(|(State { t, q, .. }, v)| system.energy(t, &q, &v).to_f64());
@@ -309,7 +309,7 @@ impl Energies {
     fn at<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
         Run { method, system, node, .. }: &Run<M, S, N, T>,
     ) -> Option<Self> {
-        if !system.conserves_energy() || method.has_reactions() {
+        if !system.conserves_energy() || method.facts().has_reactions {
             return None;
         }
         let Flow { v, force, .. } = system.flow(node.t, &node.q, &node.p).ok()?;
@@ -520,7 +520,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         }
         // The change of the mean force, as a displacement. The steps of a damped motion grow: their errors increase
         // while its momenta decay.
-        let unit = if run.method.finds_length() { h * h * h * h } else { h * h };
+        let unit = if run.method.facts().finds_length { h * h * h * h } else { h * h };
         let mut indicator = T::zero();
         for i in 0..N {
             let excursion = (node.q[i] - self.start.q[i]).abs();

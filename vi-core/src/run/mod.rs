@@ -54,7 +54,7 @@ pub use tolerance::{Length, Tolerance, check_tolerance};
 use crate::angles::{self, Turns};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
-use crate::method::{Memory, Method, Problem};
+use crate::method::{Change, Memory, Method, Problem};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
 use crate::state::{Numbers, State};
@@ -243,17 +243,17 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 
     /// Length of a step in time: the given one, or that of the last step if the method finds it.
     pub fn h(&self) -> T {
-        self.method.length(self.h, &self.memory)
+        self.method.status(self.h, &self.memory).length
     }
 
     /// Largest residual of the last step, in units of its rounding-error bound. Zero before the first step.
     pub fn residual(&self) -> f64 {
-        self.method.report(&self.memory).residual
+        self.method.status(self.h, &self.memory).residual
     }
 
     /// Newton or fixed-point iterations of the last step.
     pub fn iterations(&self) -> u32 {
-        self.method.report(&self.memory).iterations
+        self.method.status(self.h, &self.memory).iterations
     }
 
     /// Velocity at the last state, from its momenta.
@@ -311,7 +311,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     pub fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
         let system = changed(&self.system, change)?;
         let mut node = self.node;
-        self.memory = self.method.with_system([&self.system, &system], &mut node, self.h, &self.memory)?;
+        let change = Change::System(&self.system);
+        self.memory = self.method.restarted(&system, &change, &mut node, self.h, &self.memory)?;
         self.prepared = self.method.prepare(&system, self.h);
         (self.node, self.system, self.failure) = (node, system, None);
         Ok(())
@@ -343,7 +344,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         angles::check(&self.system, &state.q, &Turns::zeros())?;
         let system = changed(&self.system, change)?;
         let mut node = self.node;
-        self.memory = self.method.with_state([&self.system, &system], &mut node, self.h, &self.memory, state)?;
+        let change = Change::State(&self.system, state);
+        self.memory = self.method.restarted(&system, &change, &mut node, self.h, &self.memory)?;
         self.prepared = self.method.prepare(&system, self.h);
         (self.node, self.system, self.turns, self.failure) = (node, system, Turns::zeros(), None);
         Ok(())
@@ -424,7 +426,7 @@ fn cold_step<M: Method<S, N, T>, S: Lagrangian<N, T>, const N: usize, T: Scalar>
             (node, memory, cache, None)
         }
         Err(failure) => {
-            let failure = failure.explained_at(&system, &node, method.length(h, &memory));
+            let failure = failure.explained_at(&system, &node, method.status(h, &memory).length);
             (node, memory, cache, Some(failure))
         }
     }

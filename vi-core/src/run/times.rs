@@ -104,7 +104,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
         if beyond < 0.0 {
             return step(self).map(|_| false);
         }
-        if self.method.finds_length() {
+        if self.method.facts().finds_length {
             let ahead = self.after_a_step()?;
             if ahead.time_to(t) * direction >= 0.0 {
                 *self = ahead;
@@ -117,7 +117,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     /// Upper bound of the next step length, with the sign of [`Run::h`].
     #[doc(hidden)]
     pub fn longest(&self) -> f64 {
-        self.method.longest(self.h, &self.memory)
+        self.method.status(self.h, &self.memory).longest
     }
 
     /// Takes one step that ends at the time `t`.
@@ -133,7 +133,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
             return Ok(());
         }
         // A remainder of exactly one step is the next step.
-        let is_next = !self.method.finds_length() && left.to_bits() == self.h().to_bits();
+        let is_next = !self.method.facts().finds_length && left.to_bits() == self.h().to_bits();
         let outcome = if is_next { self.single_step() } else { self.step_of(left) };
         outcome.map(|_| self.set_time(t))
     }

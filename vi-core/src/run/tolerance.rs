@@ -133,7 +133,7 @@ impl<T: Scalar> Length<T> for Tolerance {
             if low > 0.0 && high < 1.05 * low {
                 break;
             }
-            let exponent = 1.0 / f64::from(method.order() + 1);
+            let exponent = 1.0 / f64::from(method.facts().order + 1);
             let factor = (AIM * tolerance / estimate).powf(exponent).clamp(1.0 / FACTOR, FACTOR);
             let next = h * factor;
             h = if next > low && next < high { next } else { bisected(low, high) };

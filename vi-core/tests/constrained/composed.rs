@@ -37,7 +37,7 @@ fn check_order<M: Model<N, K>, const N: usize, const K: usize>(
     for (errors, counts) in errors.windows(2).zip(counts.windows(2)) {
         let slope = (errors[0] / errors[1]).ln() / (f64::from(counts[1]) / f64::from(counts[0])).ln();
         println!("{} {}: {errors:?} {slope:.3}", M::NAME, scheme.name);
-        let order = Method::<Auto<M, K>, N>::order(&Gauss::<1>.composed(scheme));
+        let order = Method::<Auto<M, K>, N>::facts(&Gauss::<1>.composed(scheme)).order;
         assert!((slope - f64::from(order)).abs() < 0.1, "{} {}: {slope}", M::NAME, scheme.name);
     }
 }

@@ -184,7 +184,7 @@ fn check_order<M: Model<N, K>, const N: usize, const K: usize, const STAGES: usi
     for (errors, counts) in errors.windows(2).zip(counts.windows(2)) {
         let slope = (errors[0] / errors[1]).ln() / (f64::from(counts[1]) / f64::from(counts[0])).ln();
         println!("{} s = {STAGES}: {errors:?} {slope:.3}", M::NAME);
-        let order = f64::from(Method::<Auto<M, K>, N>::order(&EnergyPreservingGauss::<STAGES>));
+        let order = f64::from(Method::<Auto<M, K>, N>::facts(&EnergyPreservingGauss::<STAGES>).order);
         assert!((slope - order).abs() < 0.1, "{} s = {STAGES}: {slope}", M::NAME);
     }
 }
@@ -338,7 +338,7 @@ fn law<const STAGES: usize>(h: f64, shift: f64) -> f64 {
     let mut range = [f64::INFINITY, 0.0_f64];
     for _ in 0..1000 {
         run.step().unwrap_or_else(|error| panic!("{error}"));
-        let order = f64::from(Method::<Auto<Pendulum, 1>, 2>::order(run.method()));
+        let order = f64::from(Method::<Auto<Pendulum, 1>, 2>::facts(run.method()).order);
         let law = run.h() * (run.density() + shift).powf(1.0 / (order + 1.0));
         range = [range[0].min(law), range[1].max(law)];
     }

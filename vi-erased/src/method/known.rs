@@ -7,7 +7,7 @@ use core::fmt::Debug;
 use core::marker::PhantomData;
 #[cfg(feature = "derivatives")]
 use vi_core::derivatives::{Covector, Differentiable, Variation};
-use vi_core::method::{Memory as _, Problem, Report};
+use vi_core::method::{Change, Facts, Memory as _, Problem, Status};
 #[cfg(feature = "derivatives")]
 use vi_core::nalgebra::DMatrix;
 use vi_core::node::Node;
@@ -65,10 +65,7 @@ pub(crate) type GoesOn<'a, const N: usize> = &'a mut dyn FnMut(&dyn Progress<N>)
 
 /// The functions of a method that need no memory.
 pub(super) trait ErasedMethod<S, const N: usize>: Debug + Send + Sync {
-    fn rule(&self) -> Option<&'static str>;
-    fn order(&self) -> u32;
-    fn finds_length(&self) -> bool;
-    fn has_reactions(&self) -> bool;
+    fn facts(&self) -> Facts;
     fn check_length(&self, system: &S, h: f64) -> Result<(), StepError>;
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError>;
     fn evaluations(&self, iterations: u32) -> u64;
@@ -120,19 +117,15 @@ pub(super) trait ErasedMemory<S, const N: usize>: Debug + Send + Sync {
         events: (&[Event<N>], f64),
     ) -> (Parts<(), N>, Result<Option<Crossing<N>>, StepError>);
     fn step_of(&self, system: &S, node: &Node<N>, lengths: [f64; 2]) -> Result<(Node<N>, AnyMemory<S, N>), StepError>;
-    fn with_length(&self, system: &S, node: &Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError>;
-    fn with_system(&self, systems: [&S; 2], node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError>;
-    fn with_state(
+    fn restarted(
         &self,
-        systems: [&S; 2],
+        system: &S,
+        change: &Change<'_, S, N>,
         node: &mut Node<N>,
         h: f64,
-        state: State<N>,
     ) -> Result<AnyMemory<S, N>, StepError>;
     fn dense_output(&self, system: &S, before: &State<N>, node: &Node<N>, h: f64) -> Result<AnyOutput<N>, StepError>;
-    fn length(&self, h: f64) -> f64;
-    fn longest(&self, h: f64) -> f64;
-    fn report(&self) -> Report;
+    fn status(&self, h: f64) -> Status;
     fn discrete_energy(&self, system: &S, node: &Node<N>, h: f64) -> Option<f64>;
     fn check(&self, system: &S, node: &Node<N>, h: f64) -> Result<(), StepError>;
     fn sampled_energy(&self, system: &S, parts: Parts<(), N>) -> Result<(f64, f64), StepError>;
@@ -211,20 +204,8 @@ impl<M: Debug, W> Debug for Known<M, W> {
 }
 
 impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usize> ErasedMethod<S, N> for Known<M, W> {
-    fn rule(&self) -> Option<&'static str> {
-        Method::<W, N>::rule(&self.method)
-    }
-
-    fn order(&self) -> u32 {
-        Method::<W, N>::order(&self.method)
-    }
-
-    fn finds_length(&self) -> bool {
-        Method::<W, N>::finds_length(&self.method)
-    }
-
-    fn has_reactions(&self) -> bool {
-        Method::<W, N>::has_reactions(&self.method)
+    fn facts(&self) -> Facts {
+        Method::<W, N>::facts(&self.method)
     }
 
     fn check_length(&self, system: &S, h: f64) -> Result<(), StepError> {
@@ -382,27 +363,17 @@ impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usiz
         Ok((node, Self::of(method, memory)))
     }
 
-    fn with_length(&self, system: &S, node: &Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError> {
-        let Self { method, memory, .. } = self;
-        Ok(Self::of(method, method.with_length(&W::wrapped(*system), memory, node, h)?))
-    }
-
-    fn with_system(&self, systems: [&S; 2], node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError> {
-        let Self { method, memory, .. } = self;
-        let [before, after] = systems.map(|system| W::wrapped(*system));
-        Ok(Self::of(method, method.with_system([&before, &after], node, h, memory)?))
-    }
-
-    fn with_state(
+    fn restarted(
         &self,
-        systems: [&S; 2],
+        system: &S,
+        change: &Change<'_, S, N>,
         node: &mut Node<N>,
         h: f64,
-        state: State<N>,
     ) -> Result<AnyMemory<S, N>, StepError> {
         let Self { method, memory, .. } = self;
-        let [before, after] = systems.map(|system| W::wrapped(*system));
-        Ok(Self::of(method, method.with_state([&before, &after], node, h, memory, state)?))
+        let system = W::wrapped(*system);
+        let before = change.before().map_or(system, |before| W::wrapped(*before));
+        Ok(Self::of(method, method.restarted(&system, &change.of(&before), node, h, memory)?))
     }
 
     fn dense_output(&self, system: &S, before: &State<N>, node: &Node<N>, h: f64) -> Result<AnyOutput<N>, StepError> {
@@ -411,16 +382,8 @@ impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usiz
         Ok(AnyOutput::of(output))
     }
 
-    fn length(&self, h: f64) -> f64 {
-        Method::<W, N>::length(&self.method, h, &self.memory)
-    }
-
-    fn longest(&self, h: f64) -> f64 {
-        Method::<W, N>::longest(&self.method, h, &self.memory)
-    }
-
-    fn report(&self) -> Report {
-        Method::<W, N>::report(&self.method, &self.memory)
+    fn status(&self, h: f64) -> Status {
+        Method::<W, N>::status(&self.method, h, &self.memory)
     }
 
     fn discrete_energy(&self, system: &S, node: &Node<N>, h: f64) -> Option<f64> {

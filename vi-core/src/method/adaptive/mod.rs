@@ -13,7 +13,7 @@ mod phase;
 mod reversible;
 
 use super::gauss::{Solver, StageSolver, solver};
-use super::{Gauss, Memory, Method, Problem, Report, check_step, step_from};
+use super::{Change, Facts, Gauss, Memory, Method, Problem, Status, check_step, step_from};
 #[cfg(feature = "alloc")]
 use crate::derivatives::{Differentiable, Variation};
 use crate::error::StepError;
@@ -150,16 +150,8 @@ where
     type Left = StepError;
     type DenseOutput = <Solver<S, N, STAGES> as Method<S, N>>::DenseOutput;
 
-    fn finds_length(&self) -> bool {
-        true
-    }
-
-    fn has_reactions(&self) -> bool {
-        Method::<S, N>::has_reactions(&self.0)
-    }
-
-    fn order(&self) -> u32 {
-        Method::<S, N>::order(&self.0)
+    fn facts(&self) -> Facts {
+        Facts { finds_length: true, ..Method::<S, N>::facts(&self.0) }
     }
 
     fn prepare(&self, system: &S, h: f64) -> Self::Prepared {
@@ -221,36 +213,18 @@ where
         Ok((node, Following { steps, ..*memory }))
     }
 
-    fn with_length(
+    fn restarted(
         &self,
-        _system: &S,
-        memory: &Self::Memory,
-        _node: &Node<N>,
-        _h: f64,
-    ) -> Result<Self::Memory, StepError> {
-        Ok(memory.clone())
-    }
-
-    fn with_system(
-        &self,
-        systems: [&S; 2],
+        system: &S,
+        change: &Change<'_, S, N>,
         node: &mut Node<N>,
         _h: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        let steps = solver::<S, N, STAGES>().with_system(systems, node, memory.h, &memory.steps)?;
-        Ok(Following { steps, h: memory.h, law: memory.law.map(Law::resumed) })
-    }
-
-    fn with_state(
-        &self,
-        systems: [&S; 2],
-        node: &mut Node<N>,
-        _h: f64,
-        memory: &Self::Memory,
-        state: State<N>,
-    ) -> Result<Self::Memory, StepError> {
-        let steps = solver::<S, N, STAGES>().with_state(systems, node, memory.h, &memory.steps, state)?;
+        if matches!(change, Change::Length) {
+            return Ok(memory.clone());
+        }
+        let steps = solver::<S, N, STAGES>().restarted(system, change, node, memory.h, &memory.steps)?;
         Ok(Following { steps, h: memory.h, law: memory.law.map(Law::resumed) })
     }
 
@@ -265,17 +239,10 @@ where
         solver::<S, N, STAGES>().dense_output(system, before, node, h, &memory.steps)
     }
 
-    fn length(&self, _h: f64, memory: &Self::Memory) -> f64 {
-        memory.h
-    }
-
-    // The next length is known after its step.
-    fn longest(&self, h: f64, _memory: &Self::Memory) -> f64 {
-        f64::INFINITY.copysign(h)
-    }
-
-    fn report(&self, memory: &Self::Memory) -> Report {
-        Method::<S, N>::report(&solver::<S, N, STAGES>(), &memory.steps)
+    fn status(&self, h: f64, memory: &Self::Memory) -> Status {
+        let solved = Method::<S, N>::status(&solver::<S, N, STAGES>(), memory.h, &memory.steps);
+        // The next length is known after its step.
+        Status { longest: f64::INFINITY.copysign(h), ..solved }
     }
 
     fn discrete_energy(&self, system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {

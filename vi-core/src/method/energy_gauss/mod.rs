@@ -56,7 +56,7 @@ use super::bounds::{Control, Controlled, FORWARD, Phase, check_forward};
 use super::gauss::Gauss;
 use super::preserving::{PreservingStep, StepsOfAnyLength, check_power, failed, measured, order};
 use super::shift::{Shiftable, StepPower};
-use super::{Memory, Method, Problem, Report, Storable};
+use super::{Change, Facts, Memory, Method, Problem, Status, Storable};
 #[cfg(feature = "alloc")]
 use crate::derivatives::{Sought, Variation};
 use crate::energy_preserving::start::check_density;
@@ -270,17 +270,8 @@ where
     type Left = StepError;
     type DenseOutput = <Solver<S, N, STAGES> as LengthSolver<S, N, STAGES>>::DenseOutput;
 
-    fn finds_length(&self) -> bool {
-        true
-    }
-
-    fn has_reactions(&self) -> bool {
-        S::Kind::COUNT > 0
-    }
-
-    #[allow(clippy::cast_possible_truncation)] // 3 stages at most
-    fn order(&self) -> u32 {
-        2 * STAGES as u32
+    fn facts(&self) -> Facts {
+        Facts { finds_length: true, has_reactions: S::Kind::COUNT > 0, ..Facts::of_order(2 * STAGES) }
     }
 
     fn check_length(&self, _system: &S, h: f64) -> Result<(), StepError> {
@@ -359,48 +350,25 @@ where
         Ok((after, Lengths { steps, course }))
     }
 
-    fn with_length(
+    fn restarted(
         &self,
-        _system: &S,
-        memory: &Self::Memory,
-        _node: &Node<N>,
-        _h: f64,
-    ) -> Result<Self::Memory, StepError> {
-        Ok(memory.clone())
-    }
-
-    fn with_system(
-        &self,
-        [before, after]: [&S; 2],
+        system: &S,
+        change: &Change<'_, S, N>,
         node: &mut Node<N>,
         _h: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        Solver::<S, N, STAGES>::check_start(after, node)?;
-        let state = node.state();
-        let mut changed = *node;
-        changed.add_energy(state.energy(after)? - state.energy(before)?);
-        let mut course = memory.course;
-        course.set_excess(measured(after, &changed)?);
-        let steps = Solver::<S, N, STAGES>::changed(after, &changed, course.h(), &memory.steps)?;
-        *node = changed;
-        Ok(Lengths { steps, course })
-    }
-
-    fn with_state(
-        &self,
-        [before, system]: [&S; 2],
-        node: &mut Node<N>,
-        _h: f64,
-        memory: &Self::Memory,
-        state: State<N>,
-    ) -> Result<Self::Memory, StepError> {
-        let mut changed = node.with_state(state);
-        Solver::<S, N, STAGES>::check_start(system, &changed)?;
-        changed.add_energy(state.energy(system)? - node.state().energy(before)?);
+        if matches!(change, Change::Length) {
+            return Ok(memory.clone());
+        }
+        Solver::<S, N, STAGES>::check_start(system, &change.moved(node))?;
+        let changed = change.moved_with_energy(system, node)?;
         let mut course = memory.course;
         course.set_excess(measured(system, &changed)?);
-        let steps = Solver::<S, N, STAGES>::fresh(system, &changed, course.h())?;
+        let steps = match change {
+            Change::State(..) => Solver::<S, N, STAGES>::fresh(system, &changed, course.h())?,
+            _ => Solver::<S, N, STAGES>::changed(system, &changed, course.h(), &memory.steps)?,
+        };
         *node = changed;
         Ok(Lengths { steps, course })
     }
@@ -416,17 +384,14 @@ where
         Solver::<S, N, STAGES>::dense_output(system, &memory.steps, before, node, h)
     }
 
-    fn length(&self, _h: f64, memory: &Self::Memory) -> f64 {
-        memory.course.h()
-    }
-
-    fn longest(&self, _h: f64, memory: &Self::Memory) -> f64 {
-        memory.course.control.longest(memory.course.h())
-    }
-
-    fn report(&self, memory: &Self::Memory) -> Report {
+    fn status(&self, _h: f64, memory: &Self::Memory) -> Status {
         let Lengths { steps, course } = memory;
-        Report { residual: Solver::<S, N, STAGES>::residual(steps).max(course.residual), iterations: course.iterations }
+        Status {
+            length: course.h(),
+            longest: course.control.longest(course.h()),
+            residual: Solver::<S, N, STAGES>::residual(steps).max(course.residual),
+            iterations: course.iterations,
+        }
     }
 
     fn discrete_energy(&self, _system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {

@@ -32,7 +32,7 @@ use crate::error::StepError;
 use crate::gauss::stages::{Stages, at, stage};
 use crate::kind::{Bound, Form, Multipliers};
 use crate::linear::Bordered;
-use crate::method::{Memory, Method, Problem, Report};
+use crate::method::{Change, Facts, Memory, Method, Problem, Status};
 use crate::motion::Motion;
 use crate::node::Node;
 use crate::run::{Hermite, Run};
@@ -177,9 +177,8 @@ where
     type Left = StepError;
     type DenseOutput = Hermite<N>;
 
-    #[allow(clippy::cast_possible_truncation)] // 16 stages at most
-    fn order(&self) -> u32 {
-        2 * STAGES as u32
+    fn facts(&self) -> Facts {
+        Facts { has_reactions: true, ..Facts::of_order(2 * STAGES) }
     }
 
     fn prepare(&self, _system: &S, _h: f64) {}
@@ -244,16 +243,18 @@ where
         }
     }
 
-    fn with_length(
+    fn restarted(
         &self,
         system: &S,
-        _memory: &Self::Memory,
-        node: &Node<N>,
+        change: &Change<'_, S, N>,
+        node: &mut Node<N>,
         h: f64,
+        _memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        let v = node.state().velocity(system)?;
-        let bordered = &mut bordered(system);
-        ConstrainedSteps::from_node::<S, STAGES>(system, (node, h, &v), bordered)
+        match change {
+            Change::Length => fresh::<S, N, STAGES>(system, node, h),
+            _ => change.begun(self, system, node, h),
+        }
     }
 
     fn dense_output(
@@ -267,8 +268,8 @@ where
         Hermite::between(system, before, &node.state(), h)
     }
 
-    fn report(&self, memory: &Self::Memory) -> Report {
-        Report { residual: memory.residual, iterations: memory.iterations }
+    fn status(&self, h: f64, memory: &Self::Memory) -> Status {
+        Status { residual: memory.residual, iterations: memory.iterations, ..Status::of_length(h) }
     }
 
     fn discrete_energy(&self, system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {
@@ -288,6 +289,16 @@ where
     }
 }
 
+/// The memory for a step of the length h from a node.
+fn fresh<S: Convertible<N>, const N: usize, const STAGES: usize>(
+    system: &S,
+    node: &Node<N>,
+    h: f64,
+) -> Result<ConstrainedSteps<N>, StepError> {
+    let v = node.state().velocity(system)?;
+    ConstrainedSteps::from_node::<S, STAGES>(system, (node, h, &v), &mut bordered(system))
+}
+
 /// The memory for a step of the length h, with the velocities of the polynomials of the last step. The step begins at the
 /// part `since` of the last one. The impulses are those of the node.
 fn continued<S: Convertible<N>, const N: usize, const STAGES: usize>(
@@ -296,14 +307,14 @@ fn continued<S: Convertible<N>, const N: usize, const STAGES: usize>(
     node: &Node<N>,
     (h, since): (f64, f64),
 ) -> Result<ConstrainedSteps<N>, StepError> {
-    let fresh = BoundGauss::<STAGES>.with_length(system, memory, node, h)?;
+    let anew = fresh::<S, N, STAGES>(system, node, h)?;
     let ratio = h / memory.h;
     let stages = at(&velocities::<N, STAGES>(memory.unknowns.newest()), |c| since + ratio * c);
-    let mut guess = fresh.unknowns.newest().to_vec();
+    let mut guess = anew.unknowns.newest().to_vec();
     for (i, velocity) in guess.chunks_exact_mut(N).take(STAGES).enumerate() {
         velocity.copy_from_slice(stage(&stages, i).as_slice());
     }
-    Ok(ConstrainedSteps { unknowns: Extrapolation::new(&guess), ..fresh })
+    Ok(ConstrainedSteps { unknowns: Extrapolation::new(&guess), ..anew })
 }
 
 impl<S, const N: usize, const STAGES: usize> StageSolver<S, N, STAGES> for BoundGauss<STAGES>
@@ -317,7 +328,7 @@ where
         h: f64,
     ) -> Result<ConstrainedSteps<N>, StepError> {
         if !(memory.has_step(node) && h / memory.h > 0.0) {
-            return Self.with_length(system, memory, node, h);
+            return fresh::<S, N, STAGES>(system, node, h);
         }
         continued::<S, N, STAGES>(system, memory, node, (h, 1.0))
     }

@@ -31,7 +31,7 @@ use crate::gauss::stages::{LOOPED, Stages, at};
 use crate::gauss::variation::vary;
 use crate::gauss::{CollocationPolynomial, Slots};
 use crate::kind::Free;
-use crate::method::{Memory, Method, Problem, Report};
+use crate::method::{Change, Facts, Memory, Method, Problem, Status};
 use crate::motion::Motion;
 use crate::node::Node;
 use crate::run::{DenseOutput, Hermite, Run};
@@ -223,9 +223,8 @@ where
     type Left = Option<StageSolution<N, STAGES>>;
     type DenseOutput = GaussOutput<N, STAGES>;
 
-    #[allow(clippy::cast_possible_truncation)] // 16 stages at most
-    fn order(&self) -> u32 {
-        2 * STAGES as u32
+    fn facts(&self) -> Facts {
+        Facts::of_order(2 * STAGES)
     }
 
     fn prepare(&self, _system: &S, _h: f64) -> Instructions {
@@ -302,31 +301,28 @@ where
         memory.take(node, &step);
     }
 
-    fn with_length(
+    fn restarted(
         &self,
         system: &S,
-        _memory: &Self::Memory,
-        node: &Node<N>,
-        h: f64,
-    ) -> Result<Self::Memory, StepError> {
-        LastStages::constant(system, node, h)
-    }
-
-    fn with_system(
-        &self,
-        [system, after]: [&S; 2],
+        change: &Change<'_, S, N>,
         node: &mut Node<N>,
-        _h: f64,
+        h: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        if after.is_first_order() {
-            // The momenta follow from the coordinates, which stay.
-            let momentum = |of: &S| of.momentum(node.t, &node.q, &SVector::zeros());
-            let change = momentum(after) - momentum(system);
-            node.add_momentum(&change);
+        match change {
+            Change::Length => LastStages::constant(system, node, h),
+            Change::System(before) => {
+                if system.is_first_order() {
+                    // The momenta follow from the coordinates, which stay.
+                    let momentum = |of: &S| of.momentum(node.t, &node.q, &SVector::zeros());
+                    let change = momentum(system) - momentum(before);
+                    node.add_momentum(&change);
+                }
+                node.state().velocity(system)?;
+                Ok(LastStages { before: *node, linearization: None, ..*memory })
+            }
+            Change::State(..) => change.begun(self, system, node, h),
         }
-        node.state().velocity(after)?;
-        Ok(LastStages { before: *node, linearization: None, ..*memory })
     }
 
     fn dense_output(
@@ -340,8 +336,9 @@ where
         memory.dense_output(system, before, node, h)
     }
 
-    fn report(&self, memory: &Self::Memory) -> Report {
-        Report { residual: memory.convergence.change, iterations: memory.convergence.iterations }
+    fn status(&self, h: f64, memory: &Self::Memory) -> Status {
+        let Convergence { change: residual, iterations, .. } = memory.convergence;
+        Status { residual, iterations, ..Status::of_length(h) }
     }
 
     fn discrete_energy(&self, system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {

@@ -12,7 +12,7 @@
 pub mod bound;
 pub mod free;
 
-use super::{Method, Problem, Report, Storable};
+use super::{Change, Facts, Method, Problem, Status, Storable};
 #[cfg(feature = "alloc")]
 use crate::derivatives::{Covector, Variation};
 use crate::error::StepError;
@@ -103,13 +103,8 @@ where
     type Left = <Solver<S, N, STAGES> as Method<S, N>>::Left;
     type DenseOutput = <Solver<S, N, STAGES> as Method<S, N>>::DenseOutput;
 
-    fn has_reactions(&self) -> bool {
-        S::Kind::COUNT > 0
-    }
-
-    #[allow(clippy::cast_possible_truncation)] // 16 stages at most
-    fn order(&self) -> u32 {
-        2 * STAGES as u32
+    fn facts(&self) -> Facts {
+        Method::<S, N>::facts(&solver::<S, N, STAGES>())
     }
 
     fn prepare(&self, system: &S, h: f64) -> Self::Prepared {
@@ -164,24 +159,15 @@ where
         Method::<S, N>::take(&solver::<S, N, STAGES>(), system, h, run, cache, step);
     }
 
-    fn with_length(
+    fn restarted(
         &self,
         system: &S,
-        memory: &Self::Memory,
-        node: &Node<N>,
-        h: f64,
-    ) -> Result<Self::Memory, StepError> {
-        solver::<S, N, STAGES>().with_length(system, memory, node, h)
-    }
-
-    fn with_system(
-        &self,
-        systems: [&S; 2],
+        change: &Change<'_, S, N>,
         node: &mut Node<N>,
         h: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        solver::<S, N, STAGES>().with_system(systems, node, h, memory)
+        solver::<S, N, STAGES>().restarted(system, change, node, h, memory)
     }
 
     fn dense_output(
@@ -195,8 +181,8 @@ where
         solver::<S, N, STAGES>().dense_output(system, before, node, h, memory)
     }
 
-    fn report(&self, memory: &Self::Memory) -> Report {
-        Method::<S, N>::report(&solver::<S, N, STAGES>(), memory)
+    fn status(&self, h: f64, memory: &Self::Memory) -> Status {
+        Method::<S, N>::status(&solver::<S, N, STAGES>(), h, memory)
     }
 
     fn discrete_energy(&self, system: &S, node: &Node<N>, h: f64, memory: &Self::Memory) -> Option<f64> {

@@ -1,0 +1,78 @@
+//! What changes between two steps, beside the motion.
+
+use super::Method;
+use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::state::State;
+
+/// A change between two steps. The system and the length that come with it are those after the change.
+#[derive(Debug)]
+pub enum Change<'a, S, const N: usize, T = f64> {
+    /// Of the length of the steps.
+    Length,
+    /// Of parameters: the system before.
+    System(&'a S),
+    /// Of the state, and perhaps of parameters: the system before, and the state after.
+    State(&'a S, State<N, T>),
+}
+
+impl<'a, S, const N: usize, T: Scalar> Change<'a, S, N, T> {
+    /// The same change of a system that `system` is in another wrapper.
+    pub fn of<'b, W>(&self, system: &'b W) -> Change<'b, W, N, T> {
+        match self {
+            Self::Length => Change::Length,
+            Self::System(_) => Change::System(system),
+            Self::State(_, state) => Change::State(system, *state),
+        }
+    }
+
+    /// The system before; `None` if it stays.
+    pub fn before(&self) -> Option<&'a S> {
+        match self {
+            Self::Length => None,
+            Self::System(before) | Self::State(before, _) => Some(before),
+        }
+    }
+
+    /// The node after the change, with the energy of before.
+    pub(crate) fn moved(&self, node: &Node<N, T>) -> Node<N, T> {
+        match self {
+            Self::Length | Self::System(_) => *node,
+            Self::State(_, state) => node.with_state(*state),
+        }
+    }
+
+    /// The node after the change: a method that preserves an energy adds the change of H to it.
+    ///
+    /// # Errors
+    /// A state without a velocity, and thus without H.
+    pub(crate) fn moved_with_energy(&self, system: &S, node: &Node<N, T>) -> Result<Node<N, T>, StepError>
+    where
+        S: Lagrangian<N, T>,
+    {
+        let mut moved = self.moved(node);
+        if let Some(before) = self.before() {
+            moved.add_energy(moved.state().energy(system)? - node.state().energy(before)?);
+        }
+        Ok(moved)
+    }
+
+    /// The memory of a new run: for a method that carries nothing over a change. Moves the node.
+    ///
+    /// # Errors
+    /// Those of [`Method::begin`].
+    pub(crate) fn begun<M: Method<S, N, T>>(
+        &self,
+        method: &M,
+        system: &S,
+        node: &mut Node<N, T>,
+        h: T,
+    ) -> Result<M::Memory, StepError> {
+        if let Self::State(_, state) = self {
+            *node = Node::new(*state, T::zero());
+        }
+        method.begin(system, node, h)
+    }
+}
