@@ -17,12 +17,11 @@
 use crate::constrained::{accelerations, border, bordered};
 use crate::error::StepError;
 use crate::gauss::transformed::check_time_scale;
-#[cfg(feature = "alloc")]
-use crate::kind::Kind;
+use crate::kind::Kind as _;
 #[cfg(feature = "alloc")]
 use crate::linear::Rectangular;
 use crate::linear::{Matrix, solve};
-use crate::motion::PointDerivatives;
+use crate::motion::{Motion, PointDerivatives};
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::Convertible;
@@ -33,76 +32,188 @@ use num_traits::Float as _;
 /// The phase of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Phase {
-    /// h Ω.
-    pub(super) value: f64,
-    /// The logarithmic slope of h Ω in h, with the start fixed.
-    pub(super) slope: f64,
-    /// The next length divided by that of the step, by the explicit law.
-    pub(super) ratio: f64,
+    /// (h ω)⁶ at the start, in the middle and at the end of the step; positive.
+    powers: [f64; 3],
 }
 
 impl Phase {
-    /// From (h ω)⁶ at the start, in the middle and at the end of a step.
+    /// `None` for a power that is zero or not finite.
     fn of(powers: [f64; 3]) -> Option<Self> {
-        let mean = simpson(powers);
-        // ln ω is a quadratic polynomial: its slopes in the middle and at the end, in units of 1/h.
-        let [start, middle, end] = powers.map(|power| power.ln() / 6.0);
-        let slopes = [end - start, 3.0 * end - 4.0 * middle + start];
-        let slope = 1.0 + (2.0 * powers[1] * slopes[0] + powers[2] * slopes[1]) / (6.0 * mean);
-        let value = mean.powf(1.0 / 6.0);
-        let ratio = (1.0 + slopes[1]).max(0.3).recip();
-        (value.is_normal() && slope.is_finite()).then_some(Self { value, slope, ratio })
+        let is_known = powers.iter().all(|power| *power > 0.0) && simpson(powers).is_finite();
+        is_known.then_some(Self { powers })
+    }
+
+    /// The same phase all along the step.
+    pub(super) fn constant(value: f64) -> Self {
+        Self { powers: [value.powi(6); 3] }
+    }
+
+    /// h Ω.
+    pub(super) fn value(&self) -> f64 {
+        simpson(self.powers).powf(1.0 / 6.0)
+    }
+
+    /// The logarithm of h Ω over a phase.
+    pub(super) fn off(&self, wanted: f64) -> f64 {
+        (simpson(self.powers) / wanted.powi(6)).ln() / 6.0
+    }
+
+    /// Slopes of ln ω, a quadratic polynomial, in the middle and at the end, in units of 1/h.
+    fn slopes(&self) -> [f64; 2] {
+        let [start, middle, end] = self.powers.map(|power| power.ln() / 6.0);
+        [end - start, 3.0 * end - 4.0 * middle + start]
+    }
+
+    /// The logarithmic slope of h Ω in h, with the start fixed.
+    pub(super) fn slope(&self) -> f64 {
+        let ([_, middle, end], slopes) = (self.powers, self.slopes());
+        1.0 + (2.0 * middle * slopes[0] + end * slopes[1]) / (6.0 * simpson(self.powers))
+    }
+
+    /// The next length divided by that of the step, by the explicit law.
+    pub(super) fn ratio(&self) -> f64 {
+        (1.0 + self.slopes()[1]).max(0.3).recip()
     }
 }
 
+fn simpson([start, middle, end]: [f64; 3]) -> f64 {
+    (start + 4.0 * middle + end) / 6.0
+}
+
 /// A place of the motion.
-pub(super) struct Place<const N: usize> {
+pub(super) struct Place<S: Motion<N>, const N: usize> {
     t: f64,
     q: SVector<f64, N>,
     v: SVector<f64, N>,
-    forces: Option<Forces<N>>,
+    forces: Option<Forces<S::Mass, N>>,
 }
 
 /// The linear forces at a place.
-struct Forces<const N: usize> {
-    /// K, symmetric.
-    stiffness: SMatrix<f64, N, N>,
-    /// `M⁻¹`, in the directions that the constraints allow.
-    compliance: SMatrix<f64, N, N>,
+struct Forces<M, const N: usize> {
+    compliance: Compliance<M, N>,
+    /// K, symmetric, and M⁻¹K.
+    stiffness: [SMatrix<f64, N, N>; 2],
     /// `tr((M⁻¹K)²)`
     of_stiffness: f64,
     /// `tr(M⁻¹B M⁻¹Bᵀ)`
     of_damping: f64,
 }
 
-impl<const N: usize> Forces<N> {
+/// M⁻¹, in the directions that the constraints allow.
+enum Compliance<M, const N: usize> {
+    /// In all directions.
+    Free(M),
+    /// Those of constraints.
+    #[cfg(feature = "alloc")]
+    Bound(SMatrix<f64, N, N>),
+}
+
+impl<M: Matrix<N, f64>, const N: usize> Compliance<M, N> {
+    #[cfg_attr(not(feature = "alloc"), allow(clippy::unnecessary_wraps, reason = "constraints may be dependent"))]
+    fn of<S: Convertible<N> + Motion<N, Mass = M>>(
+        system: &S,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+    ) -> Option<Self> {
+        let mass = system.point(t, q, v).mass;
+        #[cfg(feature = "alloc")]
+        if const { <S as Motion<N>>::Kind::COUNT > 0 } {
+            let mut bordered = bordered(system);
+            let (gradients, mut none) = system.constraint_gradients(t, q);
+            border(&mut bordered, system, &mass, &gradients).ok()?;
+            let mut compliance = SMatrix::<f64, N, N>::identity();
+            for mut column in compliance.column_iter_mut() {
+                let mut entries: SVector<f64, N> = column.clone_owned();
+                none.as_mut().fill(0.0);
+                bordered.solve(&mut entries, none.as_mut());
+                column.copy_from(&entries);
+            }
+            return Some(Self::Bound(compliance));
+        }
+        Some(Self::Free(mass))
+    }
+
+    /// `M⁻¹X`
+    fn times(&self, x: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>> {
+        match self {
+            Self::Free(mass) => solve(mass, x),
+            #[cfg(feature = "alloc")]
+            Self::Bound(compliance) => Some(compliance * x),
+        }
+    }
+}
+
+/// `tr(XY)` of X = M⁻¹K and Y = M⁻¹Kᵀ: not negative but for rounding.
+fn trace<const N: usize>(x: &SMatrix<f64, N, N>, y: &SMatrix<f64, N, N>) -> f64 {
+    x.dot(&y.transpose()).max(0.0)
+}
+
+impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
+    fn of<S: Convertible<N> + Motion<N, Mass = M>>(
+        system: &S,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+    ) -> Option<Self> {
+        let PointDerivatives { momentum_dq, force_dq, force_dv, .. } = system.point_derivatives(t, q, v);
+        #[cfg_attr(not(feature = "alloc"), allow(unused_mut, reason = "reactions need it"))]
+        let mut stiffness = force_dq.dense();
+        #[cfg(feature = "alloc")]
+        if const { <S as Motion<N>>::Kind::COUNT > 0 } {
+            let (_, multipliers) = accelerations(system, (t, q, v), &mut bordered(system)).ok()?;
+            for (i, row) in system.reaction_derivatives(t, q, &multipliers).rows().enumerate() {
+                row.iter().for_each(|(j, slope)| stiffness[(i, j)] += slope);
+            }
+        }
+        let stiffness = (stiffness + stiffness.transpose()) * 0.5;
+        let compliance = Compliance::of(system, t, q, v)?;
+        let response = compliance.times(&stiffness)?;
+        let damping = force_dv.dense() - momentum_dq.dense();
+        let has_damping = damping.iter().any(|entry| *entry != 0.0);
+        let of_damping = if has_damping {
+            trace(&compliance.times(&damping)?, &compliance.times(&damping.transpose())?)
+        } else {
+            0.0
+        };
+        Some(Self {
+            of_stiffness: trace(&response, &response),
+            stiffness: [stiffness, response],
+            compliance,
+            of_damping,
+        })
+    }
+
     /// (h ω)⁶ without the change of K.
     fn power(&self, h: f64) -> f64 {
         let (of_stiffness, of_damping) = (self.of_stiffness * h.powi(4), self.of_damping * (h * h));
         of_stiffness * of_stiffness.sqrt() + of_damping * of_damping * of_damping
     }
 
-    /// `tr((M⁻¹X)²)` of X = K − K'.
-    fn change(&self, compliance: &SMatrix<f64, N, N>, other: &Self) -> f64 {
-        let change = self.stiffness - other.stiffness;
-        size(compliance, &change, &change)
+    /// `tr((M⁻¹X)²)` of X = K − K' with the mass here, which may be that of all places.
+    fn change(&self, other: &Self, has_constant_mass: bool) -> Option<f64> {
+        let [[stiffness, response], [others, other_response]] = [&self.stiffness, &other.stiffness];
+        let change =
+            if has_constant_mass { response - other_response } else { self.compliance.times(&(stiffness - others))? };
+        Some(trace(&change, &change))
     }
 }
 
-impl<const N: usize> Place<N> {
+impl<S: Convertible<N>, const N: usize> Place<S, N> {
     /// That of a node.
     ///
     /// # Errors
     /// As [`State::velocity`].
-    pub(super) fn of<S: Convertible<N>>(system: &S, node: &Node<N>) -> Result<Self, StepError> {
+    pub(super) fn of(system: &S, node: &Node<N>) -> Result<Self, StepError> {
         let state = node.state();
         let v = state.velocity(system)?;
         let State { t, q, .. } = state;
         Ok(Self::at(system, (t, q, v)))
     }
 
-    fn at<S: Convertible<N>>(system: &S, (t, q, v): (f64, SVector<f64, N>, SVector<f64, N>)) -> Self {
-        let forces = if system.scales_time() { None } else { forces(system, t, &q, &v) };
+    /// That with a velocity.
+    pub(super) fn at(system: &S, (t, q, v): (f64, SVector<f64, N>, SVector<f64, N>)) -> Self {
+        let forces = if system.scales_time() { None } else { Forces::of(system, t, &q, &v) };
         Self { t, q, v, forces }
     }
 
@@ -122,7 +233,7 @@ impl<const N: usize> Place<N> {
 /// [`StepError::TimeScale`] for a time scale that is not positive.
 pub(super) fn phase<S: Convertible<N>, const N: usize>(
     system: &S,
-    [start, end]: [&Place<N>; 2],
+    [start, end]: [&Place<S, N>; 2],
     [h, floor]: [f64; 2],
 ) -> Result<Option<Phase>, StepError> {
     let (t, q, v) = start.middle(end);
@@ -137,71 +248,15 @@ pub(super) fn phase<S: Convertible<N>, const N: usize>(
         }
         return Ok(Phase::of(powers));
     }
-    let middle = Place::at(system, (t, q, v));
-    let [Some(start), Some(middle), Some(end)] = [&start.forces, &middle.forces, &end.forces] else { return Ok(None) };
+    let middle = Forces::of(system, t, &q, &v);
+    let (Some(start), Some(middle), Some(end)) = (&start.forces, &middle, &end.forces) else { return Ok(None) };
+    let has_constant_mass = S::Kind::COUNT == 0 && system.has_constant_mass();
     let powers = [start, middle, end].map(|forces| forces.power(h));
     let per_half = (2.0 * h * h).powi(2);
-    let changes = [(middle, start), (end, middle)].map(|(one, other)| one.change(&middle.compliance, other) * per_half);
+    let [Some(before), Some(after)] = [start, end].map(|other| middle.change(other, has_constant_mass)) else {
+        return Ok(None);
+    };
+    let [before, after] = [before * per_half, after * per_half];
     let [start, middle, end] = powers.map(|power| power + least);
-    let in_middle = 0.5 * (changes[0] + changes[1]);
-    Ok(Phase::of([start + changes[0], middle + in_middle, end + changes[1]]))
-}
-
-fn simpson([start, middle, end]: [f64; 3]) -> f64 {
-    (start + 4.0 * middle + end) / 6.0
-}
-
-fn forces<S: Convertible<N>, const N: usize>(
-    system: &S,
-    t: f64,
-    q: &SVector<f64, N>,
-    v: &SVector<f64, N>,
-) -> Option<Forces<N>> {
-    let PointDerivatives { momentum_dq, force_dq, force_dv, .. } = system.point_derivatives(t, q, v);
-    #[cfg_attr(not(feature = "alloc"), allow(unused_mut, reason = "reactions need it"))]
-    let mut stiffness = force_dq.dense();
-    #[cfg(feature = "alloc")]
-    if const { S::Kind::COUNT > 0 } {
-        let (_, multipliers) = accelerations(system, (t, q, v), &mut bordered(system)).ok()?;
-        for (i, row) in system.reaction_derivatives(t, q, &multipliers).rows().enumerate() {
-            row.iter().for_each(|(j, slope)| stiffness[(i, j)] += slope);
-        }
-    }
-    let stiffness = (stiffness + stiffness.transpose()) * 0.5;
-    let damping = force_dv.dense() - momentum_dq.dense();
-    let compliance = compliance(system, t, q, v)?;
-    let has_damping = damping.iter().any(|entry| *entry != 0.0);
-    let of_damping = if has_damping { size(&compliance, &damping, &damping.transpose()) } else { 0.0 };
-    let of_stiffness = size(&compliance, &stiffness, &stiffness);
-    Some(Forces { stiffness, compliance, of_stiffness, of_damping })
-}
-
-/// `M⁻¹`, in the directions that the constraints allow.
-fn compliance<S: Convertible<N>, const N: usize>(
-    system: &S,
-    t: f64,
-    q: &SVector<f64, N>,
-    v: &SVector<f64, N>,
-) -> Option<SMatrix<f64, N, N>> {
-    let mass = system.point(t, q, v).mass;
-    #[cfg(feature = "alloc")]
-    if const { S::Kind::COUNT > 0 } {
-        let mut bordered = bordered(system);
-        let (gradients, mut none) = system.constraint_gradients(t, q);
-        border(&mut bordered, system, &mass, &gradients).ok()?;
-        let mut compliance = SMatrix::<f64, N, N>::identity();
-        for mut column in compliance.column_iter_mut() {
-            let mut entries: SVector<f64, N> = column.clone_owned();
-            none.as_mut().fill(0.0);
-            bordered.solve(&mut entries, none.as_mut());
-            column.copy_from(&entries);
-        }
-        return Some(compliance);
-    }
-    solve(&mass, &SMatrix::identity())
-}
-
-/// `tr(M⁻¹X M⁻¹Y)` with `Y = Xᵀ`: not negative but for rounding.
-fn size<const N: usize>(compliance: &SMatrix<f64, N, N>, x: &SMatrix<f64, N, N>, y: &SMatrix<f64, N, N>) -> f64 {
-    (compliance * x).dot(&(compliance * y).transpose()).max(0.0)
+    Ok(Phase::of([start + before, middle + 0.5 * (before + after), end + after]))
 }

@@ -10,16 +10,19 @@
 //! is time-symmetric: a reversible motion keeps its energy without drift, which steps that follow a measured error lose.
 //! Source: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, VIII.3.1.
 //!
-//! The equation is solved by secants: each length tried is a step from the stages of the one before. The explicit law of
-//! Hairer and Söderlind (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of four.
+//! The equation is solved by secants: first on the polynomials of a solved step, which tell where shorter and longer ones
+//! end, then by steps of these lengths, each from the stages of the one before. The explicit law of Hairer and Söderlind
+//! (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of three and a half.
 //! But ρ leaves ω where a step is long for the changes of ω, as with few steps in the period of an oscillator.
 //!
 //! With terms that are linear in the velocities a motion is not reversible: steps back still return, but no law bounds
 //! the energy error.
 
+use super::decaying::FEWEST;
 use super::phase::{Phase, Place, phase};
 use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, moves_time, solved};
 use crate::error::StepError;
+use crate::gauss::polynomial::{coefficients, integrals, polynomials, sum};
 use crate::method::gauss::StageSolver as _;
 use crate::method::{Method, Problem};
 use crate::node::Node;
@@ -37,6 +40,12 @@ const USUAL: f64 = 0.1;
 const NEAR: f64 = 1e-10;
 const ROUGH: f64 = 1e-8;
 const FEW: usize = 15;
+/// The deviation up to which lengths are tried on the polynomials of a step.
+const CLOSE: f64 = 1e-3;
+/// The longest length that the polynomials of a step tell, in units of its own.
+const BEYOND: f64 = 2.0;
+/// Most lengths that are tried on them.
+const FORESEEN: usize = 8;
 
 /// What the law keeps between steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +65,7 @@ pub struct Reversible {
 }
 
 /// The search for the length of a step.
+#[derive(Clone)]
 struct Search {
     /// A length that is too short, and one that is too long or has no step.
     between: [f64; 2],
@@ -106,12 +116,12 @@ impl Reversible {
         let [start, end] = [Place::of(system, start)?, Place::of(system, end)?];
         #[allow(clippy::cast_precision_loss)] // 16 stages at most
         let stages = STAGES as f64;
-        let is_felt = |found: &Phase| system.scales_time() || found.value.powf(2.0 * stages) > FREE;
+        let is_felt = |found: &Phase| system.scales_time() || found.value().powf(2.0 * stages) > FREE;
         let found = phase(system, [&start, &end], [h.abs(), 0.0])?.filter(is_felt);
         let usual = USUAL * stages;
-        let Phase { value, slope, .. } = found.unwrap_or(Phase { value: usual, slope: 1.0, ratio: 1.0 });
         let floor = if found.is_some() { LONGEST.recip() } else { usual } / h.abs();
-        Ok(Self { phase: value.copysign(h), floor, ahead: 1.0, ratio: 1.0, slope })
+        let found = found.unwrap_or(Phase::constant(usual));
+        Ok(Self { phase: found.value().copysign(h), floor, ahead: 1.0, ratio: 1.0, slope: found.slope() })
     }
 
     /// The law after a change of the system or of the state.
@@ -143,6 +153,8 @@ impl Reversible {
         let mut h = last * ahead;
         let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
         let mut failure = StepError::LengthsLost { t: node.t, h: *last };
+        // The polynomials of fewer stages are too rough.
+        let mut is_first = STAGES >= FEWEST;
         for trial in 0..TRIALS {
             if !moves_time(h, node.t)? {
                 break;
@@ -160,19 +172,55 @@ impl Reversible {
             };
             // Where the stiffness has no value, the length is taken.
             let found = phase(system, [&start, &there], [h.abs(), floor])?;
-            let found = found.unwrap_or(Phase { value: wanted.abs(), slope: 1.0, ratio: 1.0 });
-            let off = (found.value / wanted.abs()).ln();
+            let found = found.unwrap_or(Phase::constant(wanted));
+            let off = found.off(wanted);
             search.learn(h, off);
             if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
                 let ratio = h / last;
                 // Ratios change by nearly equal factors, until the forces turn.
-                let ahead = found.ratio.min(ratio * (ratio / before).clamp(0.7, 1.4));
+                let ahead = found.ratio().min(ratio * (ratio / before).clamp(0.7, 1.4));
                 let law = Law::Reversible(Self { ahead, ratio, slope: search.slope, ..*self });
                 return Ok((end, Following { steps, h, law: Some(law) }));
             }
-            h = search.beside(h, off);
+            h = if core::mem::take(&mut is_first) {
+                self.foreseen::<S, N, STAGES>(system, (&start, node), (&steps, h), (&mut search, off))
+            } else {
+                search.beside(h, off)
+            };
             guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
         }
         Err(failure)
+    }
+
+    /// The length to try after the step of the length h, by secants on the polynomials of that step: they tell the places
+    /// of shorter and somewhat longer steps, up to their error.
+    fn foreseen<S: Convertible<N>, const N: usize, const STAGES: usize>(
+        &self,
+        system: &S,
+        (start, node): (&Place<S, N>, &Node<N>),
+        (steps, h): (&Steps<S, N, STAGES>, f64),
+        (search, mut off): (&mut Search, f64),
+    ) -> f64 {
+        let mut tried = search.beside(h, off);
+        let mut on = search.clone();
+        let velocity = coefficients(&Solver::<S, N, STAGES>::velocities(system, steps));
+        for _ in 0..FORESEEN {
+            let part = tried / h;
+            if part > BEYOND {
+                break;
+            }
+            let q = node.q + sum(&velocity, &integrals(part)) * h;
+            let there = Place::at(system, (node.t + tried, q, sum(&velocity, &polynomials(part))));
+            let Ok(Some(found)) = phase(system, [start, &there], [tried.abs(), self.floor]) else { break };
+            off = found.off(self.phase);
+            on.learn(tried, off);
+            tried = on.beside(tried, off);
+            // The slope here is that of the steps, up to the error of the polynomials.
+            (search.slope, search.last) = (on.slope, None);
+            if off.abs() < CLOSE {
+                break;
+            }
+        }
+        tried
     }
 }
