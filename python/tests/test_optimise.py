@@ -379,6 +379,18 @@ def test_what_is_not_found_is_told():
     }
     found = vi.optimise(Mass(), steps=10, inputs={"u": (-1.0, 1.0)}, **options)
     assert not found.success and found.residual > 0.1 and "not converged" in repr(found)
+    assert f", of {found.worst}\n" in repr(found)
+    assert found.advice == (
+        "no motion that keeps the conditions was found (u is at a bound in 10 of 10 steps): "
+        "give more time, wider bounds or another guess"
+    )
+    # A cost with a kink where its least value is.
+    kink = vi.optimise(Mass(), steps=10, inputs={"u": (-4.0, 4.0)}, **{**options, "duration": 3.0, "cost": "abs(u)"})
+    assert not kink.success and kink.residual < 1e-9
+    assert kink.advice == "abs in the cost has a kink: take a square, or sqrt(x^2 + e^2) for abs(x)"
+    # Places of the program by name: the unreached end of a mass without force.
+    still = vi.optimise(Mass(), steps=2, inputs={"u": (0.0, 1e-9)}, **options)
+    assert not still.success and still.worst in ("step 0", "step 1", "dot(x) of end at node 2")
     # Inputs of the second iteration, which no step can follow: the rope would have a negative length.
     Crane = vi.System("""
     struct Crane {

@@ -38,7 +38,8 @@ class Solved:
     x: Array
     cost: float
     multipliers: Array
-    residual: float
+    violations: Array
+    """Of the rows, then of the bounds: by how much each is missed, or 0."""
     iterations: int
     success: bool
     status: str
@@ -99,12 +100,12 @@ def solve(program: Program, bounds: tuple[Array, Array], start: Array, options: 
     found = solver(x0=start, lbx=lower, ubx=upper, lbg=rows[0], ubg=rows[1])
     stats, point = solver.stats(), np.asarray(found["x"]).ravel()
     of_g = at(point)[2]
-    violated = [rows[0] - of_g, of_g - rows[1], lower - point, point - upper]
+    missed = [np.maximum(rows[0] - of_g, of_g - rows[1]), np.maximum(lower - point, point - upper)]
     return Solved(
         point,
         float(found["f"]),
         np.asarray(found["lam_g"]).ravel(),
-        float(np.concatenate([[0.0], *violated]).max()),
+        np.maximum(np.concatenate(missed), 0.0),
         int(stats["iter_count"]),
         bool(stats["success"]),
         stats["return_status"].replace("_", " "),

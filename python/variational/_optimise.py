@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 
 _GAUSS_OF_WORK = np.polynomial.legendre.leggauss(8)
 """Points and weights of the work of a step, of order 16."""
+_KINK = re.compile(r"\b(?:abs|sign|max|min|clamp)\b(?=\s*\()")
+"""Functions of the language without a derivative somewhere."""
+_MISSED = 1e-6
+"""The violation from which on conditions do not hold."""
 
 
 @unassignable()
@@ -64,11 +68,15 @@ class Optimum:
     """The last words of the solver."""
     residual: float
     """The largest violation of a step, of an end or of a bound."""
+    worst: str
+    """What is violated most, such as "x of end at node 50" or "step 3"."""
     costates: Array
     """Derivatives of the cost with respect to (q, p) at the end of each step, (K, 2N)."""
     multipliers: dict[str, Array]
     """Multipliers of the other conditions by name: one for each node that has the condition. A positive one pushes
     against an upper bound."""
+    advice: str
+    """What to change if no optimum was found; empty otherwise."""
     _nodes: tuple[Array, Array]
     _problem: dict[str, Any]
 
@@ -83,7 +91,7 @@ class Optimum:
         first = f"Optimum of {name}: cost {self.cost:.8g} in {self.iterations} iterations"
         second = f"{len(self.u)} steps to t = {self.t[-1]:g}, largest residual {self.residual:.1e}"
         if not self.success:
-            return f"{first}\n{second}\nnot converged: {self.status}"
+            return f"{first}\n{second}, of {self.worst}\nnot converged: {self.status}\n{self.advice}"
         return f"{first}\n{second}, error of a step {self.errors.max():.1e}"
 
     @cached_property
@@ -233,7 +241,7 @@ def _optimum(problem: _Problem, found: Solved, given: dict[str, Any]) -> Optimum
             raise
         # Inputs that are no optimum may have no motion: the nodes are all there is.
         solution = _of_nodes(cls, values, t, q, p, options)
-    own = found.multipliers[2 * n * k :]
+    own, most = found.multipliers[2 * n * k :], int(np.argmax(found.violations))
     multipliers: dict[str, Array] = {}
     for row in problem.rows:
         multipliers[row.name] = fixed(own[row.place : row.place + len(row.nodes)].copy())
@@ -246,12 +254,26 @@ def _optimum(problem: _Problem, found: Solved, given: dict[str, Any]) -> Optimum
         found.iterations,
         found.success,
         found.status,
-        found.residual,
+        float(found.violations[most]),
+        problem.place(most),
         fixed(found.multipliers[: 2 * n * k].reshape(k, 2 * n)),
         multipliers,
+        "" if found.success else _advice(problem, found),
         (fixed(q), fixed(p)),
         given,
     )
+
+
+def _advice(problem: _Problem, found: Solved) -> str:
+    """What to change where the solver found no optimum."""
+    kinks = sorted({of for text in problem.costs for of in _KINK.findall(text)})
+    if kinks:
+        return f"{', '.join(kinks)} in the cost has a kink: take a square, or sqrt(x^2 + e^2) for abs(x)"
+    if found.violations.max() < _MISSED:
+        return "the conditions hold, the cost may fall further: give another guess, or options={\"max_iter\": …}"
+    bound = ", ".join(f"{name} is at a bound in {places}" for name, places in problem.at_bounds(found.x))
+    where = f" ({bound})" if bound else ""
+    return f"no motion that keeps the conditions was found{where}: give more time, wider bounds or another guess"
 
 
 def _replayed(cls: Any, values: Array, t: Array, q: Array, p: Array, options: dict[str, Any]) -> Solution:
@@ -385,6 +407,7 @@ class _Problem:
     def set_costs(self, cost: str | None, final: str | None) -> None:
         if cost is None and final is None:
             raise ValueError('give cost, such as cost="u^2" or cost="1" for the least time, or final')
+        self.costs = [text for text in (cost, final) if text is not None]
         if cost is not None:
             self.program.set_cost(_Function(self.system, cost, self.indices))
         if final is not None:
@@ -478,6 +501,29 @@ class _Problem:
         return values
 
     # The program.
+
+    def place(self, at: int) -> str:
+        """The name of a row, or of a variable behind the rows."""
+        n, steps = self.n, 2 * self.n * self.steps
+        if at < steps:
+            return f"step {at // (2 * n)}"
+        for row in self.rows:
+            if at < steps + row.place + len(row.nodes):
+                return f"{row.name} at node {row.nodes[at - steps - row.place]}"
+        node, column = np.argwhere(self.places == at - steps - sum(len(row.nodes) for row in self.rows))[0]
+        coordinates = self.system.coordinates
+        names = [*coordinates, *(f"p_{x}" for x in coordinates), *self.names]
+        return f"{names[column]} at node {node}" if column < len(names) else "the duration"
+
+    def at_bounds(self, x: Array) -> Iterator[tuple[str, str]]:
+        """The coordinates and inputs that are at a bound in most nodes or steps, and in how many."""
+        at = np.minimum(x - self.lower, self.upper - x) < _MISSED * (1.0 + np.abs(x))
+        at &= self.lower < self.upper
+        columns = [*range(self.n), *range(2 * self.n, 2 * self.n + len(self.names))]
+        for name, column in zip([*self.system.coordinates, *self.names], columns, strict=True):
+            places, of = (self.places[:, column], "nodes") if column < self.n else (self.places[:-1, column], "steps")
+            if 2 * at[places].sum() > len(places):
+                yield name, f"{at[places].sum()} of {len(places)} {of}"
 
     def check(self, x: Array) -> None:
         """Raises the StepError of a step of the guess, and ValueError for a cost or a condition without a value there."""

@@ -289,6 +289,10 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
     fn integrator(&self, wanted: Built) -> Result<&Integrator<S, N>, StepError> {
         let found = self.integrators.iter().find(|integrator| integrator.built == wanted);
         let has_method = self.integrators.iter().any(|integrator| integrator.built.0 == wanted.0);
+        let unbuilt = |input, value| StepError::InvalidInput { input, allowed: "one that is built", value };
+        if let Some(splitting) = wanted.0.splitting().filter(|_| found.is_none() && self.system.splits()) {
+            return Err(unbuilt("order of a splitting", f64::from(splitting.order)));
+        }
         found.ok_or(match wanted {
             (method, ..) if self.system.is_first_order() && (method != Method::Gauss || !has_method) => {
                 StepError::FirstOrder { system: self.system.name() }
@@ -300,11 +304,7 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
             (.., true) if !self.system.scales_time() => StepError::NoTimeScale { system: self.system.name() },
             (method, ..) if method.splitting().is_some() => StepError::NotSeparable { system: self.system.name() },
             #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
-            (_, Some(stages), _) => StepError::InvalidInput {
-                input: "number of stages",
-                allowed: "one that is built",
-                value: stages as f64,
-            },
+            (_, Some(stages), _) => unbuilt("number of stages", stages as f64),
             // Every system has Gauss steps of some stages; methods without stages need a rule.
             (_, None, _) => StepError::NoRule { system: self.system.name() },
         })

@@ -14,6 +14,14 @@ vi_core::lagrangian! {
     }
 }
 
+vi_core::lagrangian! {
+    /// Linear in the velocities, and of kicks and drifts.
+    struct Flow {
+        coord x, p;
+        L = p * dot(x) - cosh(p) - x^4 / 4;
+    }
+}
+
 fn plan(method: Method) -> Plan {
     Plan::new(method, 0.1, PhasePoint { t: 0.0, q: vec![1.0], v: vec![0.0] })
 }
@@ -102,6 +110,7 @@ fn options_of_other_methods_are_refused() {
 fn an_integrator_that_a_system_lacks_is_told_with_those_that_it_has() {
     let pendulum = kind!(Pendulum, { fixed; gauss 4, 8; energy; energy 2 });
     let alone = kind!(Alone, { gauss 4, 8; energy 2 });
+    let flow = kind!(Flow, { gauss 4 });
     let rod = kind!(RodPendulum, { gauss 1, 3; energy 2 });
     assert_told(&[
         (
@@ -142,6 +151,22 @@ fn an_integrator_that_a_system_lacks_is_told_with_those_that_it_has() {
             [
                 "--method splitting-4: the motion of `Alone` does not split into kicks and drifts: its mass matrix is not constant, or a force depends on velocities",
                 "method=\"splitting-4\": the motion of `Alone` does not split into kicks and drifts: its mass matrix is not constant, or a force depends on velocities",
+            ],
+        ),
+        (
+            &*pendulum,
+            plan(Method::Splitting4),
+            [
+                "Pendulum has no integrator --method splitting-4; it has --method fixed, --method suzuki-4, --method kahan-li-6, --method kahan-li-8, --method gauss (--stages 4, 8) or --method energy (--stages 2)",
+                "Pendulum has no integrator method=\"splitting-4\"; it has method=\"fixed\", method=\"suzuki-4\", method=\"kahan-li-6\", method=\"kahan-li-8\", method=\"gauss\" (stages=4, 8) or method=\"energy\" (stages=2). The argument methods of compile and of native builds others",
+            ],
+        ),
+        (
+            &*flow,
+            plan(Method::Splitting6),
+            [
+                "Flow has no integrator --method splitting-6; it has --method gauss (--stages 4)",
+                "Flow has no integrator method=\"splitting-6\"; it has method=\"gauss\" (stages=4). The argument methods of compile and of native builds others",
             ],
         ),
         (
