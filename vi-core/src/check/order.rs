@@ -52,8 +52,8 @@ pub(super) fn judged<const N: usize, S: Lagrangian<N>, M: Method<Y, N>, Y: Lagra
     order: u32,
     begin: impl Fn(State<N>, f64) -> Result<Run<M, Y, N>, StepError>,
 ) -> Result<Report, CheckFailure> {
-    let course = SampledMotion::from(system, place, check)?;
-    if !course.accelerates() {
+    let motion = SampledMotion::from(system, place, check)?;
+    if !motion.accelerates() {
         return Err(check.vacuous("nothing accelerates, so that steps of any rule are exact; choose another place"));
     }
     let start = Trajectory { t: place.t, q: place.q, v: place.v };
@@ -71,7 +71,7 @@ pub(super) fn judged<const N: usize, S: Lagrangian<N>, M: Method<Y, N>, Y: Lagra
     };
     let quantities = system.coordinates().map(|name| format!("the error of `{name}`")).to_vec();
     let law = Law { name: "the order", quantities, slope: f64::from(order), every: false };
-    law.judge(check, [place.h, course.h], paths, measure)
+    law.judge(check, [place.h, motion.h], paths, measure)
 }
 
 /// The error of each coordinate, and its rounding error, from the errors along two runs.

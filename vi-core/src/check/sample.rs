@@ -74,21 +74,21 @@ impl<const N: usize> SampledMotion<N> {
             let why = format!("t = {:.0e} is rounded by {resolution:.0e}", place.t);
             return Err(check.too_small("steps", Some(LOST * LOST * resolution), why));
         }
-        let mut course = Self::over(system, place, place.h, u32::MAX).map_err(|error| check.step(error))?;
+        let mut motion = Self::over(system, place, place.h, u32::MAX).map_err(|error| check.step(error))?;
         for _ in 0..DOUBLINGS {
-            if course.has_turned(system).map_err(|error| check.step(error))? {
+            if motion.has_turned(system).map_err(|error| check.step(error))? {
                 break;
             }
             // The place guarantees only its own steps.
-            match Self::over(system, place, 2.0 * course.h, TRIALS) {
-                Ok(longer) => course = longer,
+            match Self::over(system, place, 2.0 * motion.h, TRIALS) {
+                Ok(longer) => motion = longer,
                 Err(_) => break,
             }
         }
-        if course.range(|state| state.q).amax() == 0.0 {
+        if motion.range(|state| state.q).amax() == 0.0 {
             return Err(check.vacuous("nothing moves from this place; choose another place"));
         }
-        Ok(course)
+        Ok(motion)
     }
 
     /// The trajectory over [`STEPS`] steps h, with a limit of trial steps from one state to the next.

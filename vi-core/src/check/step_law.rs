@@ -46,7 +46,7 @@ pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N
     if system.is_forced() {
         return Err(check.not_applicable("the law requires a system without a force"));
     }
-    let course = SampledMotion::from(system, place, &check)?;
+    let motion = SampledMotion::from(system, place, &check)?;
     let density = density(system, &(place.t, place.q, place.v)).map_err(|error| check.step(error))?;
     if !density.is_seen() {
         return Err(check.vacuous(
@@ -73,7 +73,7 @@ pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N
     };
     let quantities = ["the deviation of h D^(1/3)", "the deviation of D"].map(str::to_owned).to_vec();
     let law = Law { name: "the step law", quantities, slope: SLOPE, every: true };
-    law.judge(&check, [place.h, LONGEST * course.h], prepare, measure)
+    law.judge(&check, [place.h, LONGEST * motion.h], prepare, measure)
 }
 
 /// Whether the step density keeps its sign and size along the trajectory over the time of a sequence. Near a zero of

@@ -74,7 +74,7 @@ pub struct PreservingStep<T> {
     pub(crate) taken: T,
     /// Increment of the energy of the node.
     pub(crate) gain: f64,
-    pub(crate) course: StepHistory,
+    pub(crate) history: StepHistory,
 }
 
 /// Change of `h^(2s+1) |D|` from step to step from which a step may have passed a sign change of D: the step law says that
@@ -103,12 +103,12 @@ fn least_excess<const K: usize>(rounding: f64) -> f64 {
 pub(crate) struct Preserving<'a, P, const N: usize, const K: usize> {
     pub(crate) steps: &'a P,
     pub(crate) node: &'a Node<N>,
-    pub(crate) course: &'a StepHistory,
+    pub(crate) history: &'a StepHistory,
 }
 
 impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P, N, K> {
     fn tried(&self, h: f64, beside: Option<&P::Trial>) -> Result<P::Trial, StepError> {
-        self.steps.tried(self.node, h, self.course.shift, beside)
+        self.steps.tried(self.node, h, self.history.shift, beside)
     }
 
     /// Whether the energy of a trial equals the preserved one within its rounding error.
@@ -119,40 +119,40 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
     fn is_kept(&self, trial: &P::Trial) -> Result<bool, StepError> {
         let rounding = f64::EPSILON * self.steps.rounding_of(self.node, trial);
         // At a turning point H may be zero although the energies of the trajectory are not.
-        let size = trial.size().max(self.course.largest_size);
+        let size = trial.size().max(self.history.largest_size);
         if !(trial.residual().abs() <= FLOOR * rounding && rounding <= KNOWN * size) {
             return Ok(false);
         }
-        if self.course.excess.abs() < least_excess::<K>(rounding) { Err(self.degenerate()) } else { Ok(true) }
+        if self.history.excess.abs() < least_excess::<K>(rounding) { Err(self.degenerate()) } else { Ok(true) }
     }
 
     /// The error if `H − E` does not determine a length.
     fn degenerate(&self) -> StepError {
-        let h = self.course.h();
-        StepError::DegenerateStep { t: self.node.t, h, density: self.course.excess / power::<K>(h) }
+        let h = self.history.h();
+        StepError::DegenerateStep { t: self.node.t, h, density: self.history.excess / power::<K>(h) }
     }
 
     /// The error if no forward step exists.
     #[cold]
     fn no_step(&self) -> StepError {
-        let told = || self.course.initial_density::<K>() - self.course.shift;
+        let told = || self.history.initial_density::<K>() - self.history.shift;
         self.no_step_at(self.steps.density(&self.node.state()).unwrap_or_else(|_| told()))
     }
 
     /// The same because of this density D_s.
     fn no_step_at(&self, density: f64) -> StepError {
-        let Self { node, course, .. } = *self;
-        let StepHistory { excess, shift, largest, .. } = *course;
+        let Self { node, history, .. } = *self;
+        let StepHistory { excess, shift, largest, .. } = *history;
         let largest = largest.max(density.abs());
-        StepError::NoForwardGaussStep { t: node.t, h: course.h(), stages: K, excess, density, shift, largest }
+        StepError::NoForwardGaussStep { t: node.t, h: history.h(), stages: K, excess, density, shift, largest }
     }
 
     /// The energy-preserving step within the bounds, the slope of its energy over its length, and the iterations of all
     /// trials.
     fn found(&self) -> Result<(P::Trial, f64, u32), StepError> {
-        let Self { node, course, .. } = *self;
-        let (t, last) = (node.t, course.h());
-        let StepHistory { excess, size, largest_size, shift, .. } = *course;
+        let Self { node, history, .. } = *self;
+        let (t, last) = (node.t, history.h());
+        let StepHistory { excess, size, largest_size, shift, .. } = *history;
         if excess.abs() < least_excess::<K>(f64::EPSILON * size) {
             return Err(self.degenerate());
         }
@@ -161,7 +161,7 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
             check_shift(t, [last, power::<K>(last)], shift, largest_size, order::<K>())?;
         }
         // Beyond a sign change of D lies another root.
-        if course.density().is_some_and(|density| excess * density < 0.0) {
+        if history.density().is_some_and(|density| excess * density < 0.0) {
             return Err(self.no_step());
         }
         let iterations = Cell::new(0);
@@ -173,18 +173,18 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
             },
             is_rounding: &|trial| self.is_kept(trial),
             t,
-            predicted: course.predicted_length(),
+            predicted: history.predicted_length(),
             last,
             ratio: RATIO,
             excess,
             noise: 0.0,
-            slope: course.slope,
+            slope: history.slope,
             order: order::<K>(),
         };
         let (step, slope) = match search.root() {
             Some(found) => found,
             None => match search.smallest() {
-                Ok(found) => (found.ok_or_else(|| self.no_step())?, course.slope),
+                Ok(found) => (found.ok_or_else(|| self.no_step())?, history.slope),
                 // With constraints longer steps do not exist: a constraint turns too far.
                 Err(StepError::NotConverged { h, turn, .. }) if turn > 0.0 && h > last => return Err(self.no_step()),
                 Err(failure) => return Err(failure),
@@ -194,14 +194,14 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
         if h > last * RATIO || last > h * RATIO {
             return Err(StepError::StepRatio { t, previous: last, found: h });
         }
-        course.control.check_bounds(t, h)?;
+        history.control.check_bounds(t, h)?;
         Ok((step, slope, iterations.get()))
     }
 
     /// Whether `h^(2s+1) |D|` has changed since the last step as it does not where steps resolve D.
     fn is_irregular(&self, after: &StepHistory) -> bool {
-        let (Some([density, last]), false) = (after.densities, self.course.is_first()) else { return false };
-        let ratio = after.h() / self.course.h();
+        let (Some([density, last]), false) = (after.densities, self.history.is_first()) else { return false };
+        let ratio = after.h() / self.history.h();
         let change = (power::<K>(ratio) / power::<K>(1.0) * ratio * (density / last)).abs();
         !(IRREGULAR.recip()..=IRREGULAR).contains(&change)
     }
@@ -213,9 +213,9 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
     /// [`StepError::NoForwardGaussStep`].
     #[cold]
     fn check_sign(&self, end: &State<N>, h: f64) -> Result<(), StepError> {
-        let Self { steps, node, course } = *self;
+        let Self { steps, node, history } = *self;
         let before = node.state();
-        let is_other = |density: f64| (density + course.shift) * course.excess < 0.0;
+        let is_other = |density: f64| (density + history.shift) * history.excess < 0.0;
         // Without a density there is no sign.
         let (Ok(path), Ok(last)) = (steps.between(&before, end, h), steps.density(end)) else { return Ok(()) };
         let at = |part: u32| path.state(before.t + h * (f64::from(part) / f64::from(PARTS)));
@@ -228,14 +228,14 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
 
     /// Computes the energies at the end of a step.
     fn after(&self, trial: &P::Trial) -> Result<(PreservingStep<P::Taken>, State<N>), StepError> {
-        let Self { steps, node, course } = *self;
+        let Self { steps, node, history } = *self;
         let Ended { taken, state, gain, measured } = steps.ended(node, trial)?;
-        let mut course = *course;
+        let mut history = *history;
         // The mean of `H − E0` at the start and of `H − E1` at the end.
-        let mean = 0.5 * (course.excess + measured[0]) - trial.residual();
-        course.push(trial.h(), mean / power::<K>(trial.h()));
-        course.set_excess(measured);
-        Ok((PreservingStep { taken, gain, course }, state))
+        let mean = 0.5 * (history.excess + measured[0]) - trial.residual();
+        history.push(trial.h(), mean / power::<K>(trial.h()));
+        history.set_excess(measured);
+        Ok((PreservingStep { taken, gain, history }, state))
     }
 }
 
@@ -244,7 +244,7 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Alternating<f64>
     type StepSolution = PreservingStep<P::Taken>;
 
     fn control(&self) -> &Control {
-        &self.course.control
+        &self.history.control
     }
 
     fn t(&self) -> f64 {
@@ -252,44 +252,44 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Alternating<f64>
     }
 
     fn last(&self) -> [f64; 2] {
-        [self.course.h(), self.course.initial_density::<K>()]
+        [self.history.h(), self.history.initial_density::<K>()]
     }
 
     fn preserving(&self, gap: f64) -> Result<(PreservingStep<P::Taken>, f64), StepError> {
-        let (mut node, mut course) = (*self.node, *self.course);
+        let (mut node, mut history) = (*self.node, *self.history);
         if gap != 0.0 {
             node.add_energy(gap);
-            course.set_excess(self.steps.measured(&node)?);
+            history.set_excess(self.steps.measured(&node)?);
         }
-        let here = Preserving { steps: self.steps, node: &node, course: &course };
+        let here = Preserving { steps: self.steps, node: &node, history: &history };
         let (trial, slope, iterations) = here.found()?;
         let (mut found, end) = here.after(&trial)?;
-        if here.is_irregular(&found.course) {
+        if here.is_irregular(&found.history) {
             here.check_sign(&end, trial.h())?;
         }
         found.gain += gap;
-        found.course.residual = match trial.roundings() {
+        found.history.residual = match trial.roundings() {
             few if few <= FLOOR => few,
             _ => roundings(trial.residual(), self.steps.rounding_of(&node, &trial)),
         };
-        (found.course.slope, found.course.iterations) = (slope, iterations);
+        (found.history.slope, found.history.iterations) = (slope, iterations);
         Ok((found, trial.h()))
     }
 
     fn fixed(&self, h: f64) -> Result<(PreservingStep<P::Taken>, [f64; 2]), StepError> {
         let trial = self.tried(h, None)?;
-        let last = self.course.initial_density::<K>();
+        let last = self.history.initial_density::<K>();
         let (mut found, _) = self.after(&trial)?;
-        found.course.residual = 0.0;
-        found.course.forget_lengths();
-        found.course.iterations = P::iterations(&trial);
-        let density = found.course.initial_density::<K>();
+        found.history.residual = 0.0;
+        found.history.forget_lengths();
+        found.history.iterations = P::iterations(&trial);
+        let density = found.history.initial_density::<K>();
         // The next interval has the same length.
         Ok((found, [trial.residual(), density + (density - last)]))
     }
 
     fn control_of(found: &mut PreservingStep<P::Taken>) -> &mut Control {
-        &mut found.course.control
+        &mut found.history.control
     }
 }
 
@@ -298,16 +298,16 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Alternating<f64>
 pub(super) fn failed<M: Method<S, N>, S, const N: usize>(
     method: &M,
     at: Problem<'_, S, M::Prepared, N>,
-    course: &StepHistory,
+    history: &StepHistory,
     cache: &mut M::Cache,
     failure: StepError,
 ) -> StepError {
     // A start of another length has no shift.
-    if !course.is_first() || course.shift != 0.0 {
+    if !history.is_first() || history.shift != 0.0 {
         return failure;
     }
     let Problem { system, prepared, node, .. } = at;
-    too_long(failure, ([node.t, course.h()], [node.energy, course.excess]), |h| {
+    too_long(failure, ([node.t, history.h()], [node.energy, history.excess]), |h| {
         let mut node = Node::new(node.state(), 0.0);
         let memory = method.begin(system, &mut node, h).ok()?;
         let at = Problem { system, prepared, node: &node, h };

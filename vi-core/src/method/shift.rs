@@ -29,7 +29,7 @@ pub trait Shiftable<S, const N: usize>: Method<S, N> + StepPower {
 
     /// Lengths, energies and densities of the last steps.
     #[doc(hidden)]
-    fn course(memory: &Self::Memory) -> &StepHistory;
+    fn history(memory: &Self::Memory) -> &StepHistory;
     /// The same, mutably.
     #[doc(hidden)]
     fn course_mut(memory: &mut Self::Memory) -> &mut StepHistory;
@@ -65,12 +65,12 @@ where
             let (input, allowed) = ("the shift of the step density", "finite");
             return Err(StepError::InvalidInput { input, allowed, value: shift });
         }
-        let course = M::course_mut(&mut self.memory);
-        let change = shift - course.shift;
-        self.node.add_energy(-M::power(course.h()) * change);
-        course.shift = shift;
-        course.densities = course.densities.map(|densities| densities.map(|density| density + change));
-        course.set_excess(measured(&self.system, &self.node)?);
+        let history = M::course_mut(&mut self.memory);
+        let change = shift - history.shift;
+        self.node.add_energy(-M::power(history.h()) * change);
+        history.shift = shift;
+        history.densities = history.densities.map(|densities| densities.map(|density| density + change));
+        history.set_excess(measured(&self.system, &self.node)?);
         self.failure = None;
         Ok(self)
     }
@@ -102,14 +102,14 @@ where
         goes_on: &mut dyn FnMut() -> bool,
     ) -> Result<Self, StepError> {
         check_forward("the duration over which the step density is measured", duration)?;
-        let mut h = M::course(&self.memory).h();
+        let mut h = M::history(&self.memory).h();
         for _ in 0..HALVINGS {
             if let Some(Maxima { density, scale, size }) = self.met_along(h, duration, goes_on)? {
                 let shift = 2.0 * density;
-                let course = M::course_mut(&mut self.memory);
-                let first = course.h();
+                let history = M::course_mut(&mut self.memory);
+                let first = history.h();
                 check_shift(self.node.t, [first, M::power(first)], shift, scale, f64::from(self.method.facts().order))?;
-                course.largest_size = course.largest_size.max(size);
+                history.largest_size = history.largest_size.max(size);
                 return self.with_shift(shift);
             }
             h *= 0.5;
@@ -170,14 +170,14 @@ where
 
     /// The shift D_* of the step density.
     pub fn shift(&self) -> f64 {
-        M::course(&self.memory).shift
+        M::history(&self.memory).shift
     }
 
     /// Step density D_s of the last step, without the shift, from its energy: the mean of `H − E` at both ends over
     /// `C_s h^2s`. Before the first step, at its start.
     pub fn density(&self) -> f64 {
-        let course = M::course(&self.memory);
-        course.density().unwrap_or_else(|| course.excess / M::power(course.h())) - course.shift
+        let history = M::history(&self.memory);
+        history.density().unwrap_or_else(|| history.excess / M::power(history.h())) - history.shift
     }
 }
 

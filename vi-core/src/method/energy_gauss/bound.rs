@@ -74,19 +74,19 @@ where
     fn next(
         system: &S,
         _instructions: Instructions,
-        (node, steps, course): (&Node<N>, &Self::Steps, &StepHistory),
+        (node, steps, history): (&Node<N>, &Self::Steps, &StepHistory),
         cache: &mut Self::Cache,
     ) -> Result<PreservingStep<Self::Taken>, StepError> {
         let steps = &lengths::<S, N, STAGES>(system, steps, cache);
-        Preserving::<_, N, STAGES> { steps, node, course }.next()
+        Preserving::<_, N, STAGES> { steps, node, history }.next()
     }
 
     fn given(
         system: &S,
-        (node, steps, course): (&Node<N>, &Self::Steps, &StepHistory),
+        (node, steps, history): (&Node<N>, &Self::Steps, &StepHistory),
         h: f64,
     ) -> Result<GivenStep<Self::Taken>, StepError> {
-        super::given::<_, N, STAGES>(&lengths::<S, N, STAGES>(system, steps, &mut None), node, h, course.shift)
+        super::given::<_, N, STAGES>(&lengths::<S, N, STAGES>(system, steps, &mut None), node, h, history.shift)
     }
 
     fn end(node: &Node<N>, taken: &Self::Taken) -> Node<N> {
@@ -143,30 +143,30 @@ where
     }
 
     fn vary(
-        Run { system, node, memory: Lengths { steps, course }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        Run { system, node, memory: Lengths { steps, history }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
         before: &Node<N>,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError> {
-        check_fallback(course.control.fallback, before.t)?;
+        check_fallback(history.control.fallback, before.t)?;
         let (start, h, u, mu) = steps.last(node).ok_or_else(|| not_last(before.t))?;
         // The energy differs if `set_parameters` came between `before` and the step.
         let (Some((_, u)), true, StepKind::EnergyPreserving) =
-            (u.split_last(), start.is_at(before), course.control.kind)
+            (u.split_last(), start.is_at(before), history.control.kind)
         else {
             return Err(not_last(before.t));
         };
-        vary_length::<N, STAGES>((before.t, h), course.shift, Sought::Length, variations, |all, energies| {
+        vary_length::<N, STAGES>((before.t, h), history.shift, Sought::Length, variations, |all, energies| {
             vary::<S, N, STAGES>(system, (before, h), (u, mu), all, Some(energies))
         })
     }
 
     fn vary_given(
-        Run { system, node, memory: Lengths { steps, course }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        Run { system, node, memory: Lengths { steps, history }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
         h: f64,
         sought: Sought,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError> {
-        let (shift, cache) = (course.shift, &mut None);
+        let (shift, cache) = (history.shift, &mut None);
         let steps = lengths::<S, N, STAGES>(system, steps, cache);
         let tried: TriedLength<N, STAGES, Multipliers<S, N>> = steps.tried(node, h, shift, None)?;
         let TakenLength { mu, .. } = steps.ended(node, &tried)?.taken;

@@ -198,20 +198,20 @@ where
     fn next(
         system: &S,
         instructions: Instructions,
-        (node, stages, course): (&Node<N>, &Self::Steps, &StepHistory),
+        (node, stages, history): (&Node<N>, &Self::Steps, &StepHistory),
         cache: &mut Self::Cache,
     ) -> Result<PreservingStep<Step<N, STAGES>>, StepError> {
         let steps = &LengthsOfStages::of(system, instructions, stages, cache);
-        Preserving { steps, node, course }.next()
+        Preserving { steps, node, history }.next()
     }
 
     fn given(
         system: &S,
-        (node, stages, course): (&Node<N>, &Self::Steps, &StepHistory),
+        (node, stages, history): (&Node<N>, &Self::Steps, &StepHistory),
         h: f64,
     ) -> Result<GivenStep<Step<N, STAGES>>, StepError> {
         let cache = &mut Buffer::default();
-        super::given(&LengthsOfStages::of(system, Instructions::detected(), stages, cache), node, h, course.shift)
+        super::given(&LengthsOfStages::of(system, Instructions::detected(), stages, cache), node, h, history.shift)
     }
 
     fn end(node: &Node<N>, step: &Step<N, STAGES>) -> Node<N> {
@@ -262,27 +262,27 @@ where
         before: &Node<N>,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError> {
-        let Lengths { steps: last, course } = &run.memory;
-        check_fallback(course.control.fallback, before.t)?;
+        let Lengths { steps: last, history } = &run.memory;
+        check_fallback(history.control.fallback, before.t)?;
         // The energy differs if `set_parameters` came between `before` and the step.
-        if !last.has_step(&run.node) || !last.before.is_at(before) || course.control.kind != StepKind::EnergyPreserving
+        if !last.has_step(&run.node) || !last.before.is_at(before) || history.control.kind != StepKind::EnergyPreserving
         {
             return Err(not_last(before.t));
         }
-        vary_length::<N, STAGES>((before.t, last.h), course.shift, Sought::Length, variations, |all, energies| {
+        vary_length::<N, STAGES>((before.t, last.h), history.shift, Sought::Length, variations, |all, energies| {
             vary(&run.system, (before, last.h, &last.stages.data.0), all, Some(energies))
         })
     }
 
     #[cfg(feature = "alloc")]
     fn vary_given(
-        Run { system, node, memory: Lengths { steps, course }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
+        Run { system, node, memory: Lengths { steps, history }, .. }: &Run<EnergyPreservingGauss<STAGES>, S, N>,
         h: f64,
         sought: Sought,
         variations: &mut [Variation<N>],
     ) -> Result<(), StepError> {
-        let stages = alone(system, (node, steps), h, course.shift)?.step.stages;
-        vary_length::<N, STAGES>((node.t, h), course.shift, sought, variations, |all, energies| {
+        let stages = alone(system, (node, steps), h, history.shift)?.step.stages;
+        vary_length::<N, STAGES>((node.t, h), history.shift, sought, variations, |all, energies| {
             vary(system, (node, h, &stages), all, Some(energies))
         })
     }

@@ -217,18 +217,19 @@ fn given<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize>(
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lengths<Steps> {
     pub(crate) steps: Steps,
-    pub(crate) course: StepHistory,
+    #[cfg_attr(feature = "serde", serde(alias = "course"))]
+    pub(crate) history: StepHistory,
 }
 
 impl<Steps: Clone + Debug + Send + Sync> Memory for Lengths<Steps> {}
 
 impl<Steps: Clone + Debug + Send + Sync> Controlled<f64> for Lengths<Steps> {
     fn control(&self) -> &Control {
-        &self.course.control
+        &self.history.control
     }
 
     fn control_mut(&mut self) -> &mut Control {
-        &mut self.course.control
+        &mut self.history.control
     }
 }
 
@@ -253,10 +254,10 @@ where
     S: Convertible<N>,
 {
     Solver::<S, N, STAGES>::check_start(system, node)?;
-    let mut course = StepHistory::new(h, order::<STAGES>());
+    let mut history = StepHistory::new(h, order::<STAGES>());
     let steps = Solver::<S, N, STAGES>::fresh(system, node, h)?;
-    course.set_excess(measured(system, node)?);
-    Ok(Lengths { steps, course })
+    history.set_excess(measured(system, node)?);
+    Ok(Lengths { steps, history })
 }
 
 impl<S, const N: usize, const STAGES: usize> Method<S, N> for EnergyPreservingGauss<STAGES>
@@ -292,7 +293,7 @@ where
         let mut memory = begun(system, node, h)?;
         // The start has already solved the stages of the first step.
         node.energy = Solver::<S, N, STAGES>::first(system, node, h, &mut memory.steps)?;
-        memory.course.set_excess(measured(system, node)?);
+        memory.history.set_excess(measured(system, node)?);
         Ok(memory)
     }
 
@@ -304,7 +305,7 @@ where
         memory: &Self::Memory,
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, StepError> {
-        Solver::<S, N, STAGES>::next(at.system, *at.prepared, (at.node, &memory.steps, &memory.course), cache)
+        Solver::<S, N, STAGES>::next(at.system, *at.prepared, (at.node, &memory.steps, &memory.history), cache)
     }
 
     fn recover(
@@ -314,7 +315,7 @@ where
         cache: &mut Self::Cache,
         left: StepError,
     ) -> Result<Self::Step, StepError> {
-        Err(failed(self, at, &memory.course, cache, left))
+        Err(failed(self, at, &memory.history, cache, left))
     }
 
     fn take(
@@ -323,13 +324,13 @@ where
         _h: f64,
         (node, memory): (&mut Node<N>, &mut Self::Memory),
         cache: &mut Self::Cache,
-        PreservingStep { taken, gain, course }: Self::Step,
+        PreservingStep { taken, gain, history }: Self::Step,
     ) {
         let before = *node;
         *node = Solver::<S, N, STAGES>::end(&before, &taken);
         Solver::<S, N, STAGES>::take(&mut memory.steps, &before, &taken, cache);
         node.add_energy(gain);
-        memory.course = course;
+        memory.history = history;
     }
 
     fn step_of(
@@ -339,15 +340,15 @@ where
         [h, _]: [f64; 2],
     ) -> Result<(Node<N>, Self::Memory), StepError> {
         check_forward("the step h", h)?;
-        let Lengths { steps, mut course } = memory.clone();
+        let Lengths { steps, mut history } = memory.clone();
         let GivenStep { taken, residual, gain, measured } =
-            Solver::<S, N, STAGES>::given(system, (node, &steps, &course), h)?;
+            Solver::<S, N, STAGES>::given(system, (node, &steps, &history), h)?;
         let mut after = Solver::<S, N, STAGES>::end(node, &taken);
         after.add_energy(gain);
-        course.set_excess(measured);
-        course.control.phase = course.control.phase.map(|phase| Phase { gap: residual, ..phase });
-        let steps = Solver::<S, N, STAGES>::fresh(system, &after, course.h())?;
-        Ok((after, Lengths { steps, course }))
+        history.set_excess(measured);
+        history.control.phase = history.control.phase.map(|phase| Phase { gap: residual, ..phase });
+        let steps = Solver::<S, N, STAGES>::fresh(system, &after, history.h())?;
+        Ok((after, Lengths { steps, history }))
     }
 
     fn restarted(
@@ -363,14 +364,14 @@ where
         }
         Solver::<S, N, STAGES>::check_start(system, &change.moved(node))?;
         let changed = change.moved_with_energy(system, node)?;
-        let mut course = memory.course;
-        course.set_excess(measured(system, &changed)?);
+        let mut history = memory.history;
+        history.set_excess(measured(system, &changed)?);
         let steps = match change {
-            Change::State(..) => Solver::<S, N, STAGES>::fresh(system, &changed, course.h())?,
-            _ => Solver::<S, N, STAGES>::changed(system, &changed, course.h(), &memory.steps)?,
+            Change::State(..) => Solver::<S, N, STAGES>::fresh(system, &changed, history.h())?,
+            _ => Solver::<S, N, STAGES>::changed(system, &changed, history.h(), &memory.steps)?,
         };
         *node = changed;
-        Ok(Lengths { steps, course })
+        Ok(Lengths { steps, history })
     }
 
     fn dense_output(
@@ -385,22 +386,22 @@ where
     }
 
     fn status(&self, _h: f64, memory: &Self::Memory) -> Status {
-        let Lengths { steps, course } = memory;
+        let Lengths { steps, history } = memory;
         Status {
-            length: course.h(),
-            longest: course.control.longest(course.h()),
-            residual: Solver::<S, N, STAGES>::residual(steps).max(course.residual),
-            iterations: course.iterations,
+            length: history.h(),
+            longest: history.control.longest(history.h()),
+            residual: Solver::<S, N, STAGES>::residual(steps).max(history.residual),
+            iterations: history.iterations,
         }
     }
 
     fn discrete_energy(&self, _system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {
-        let course = &memory.course;
-        Some(node.energy + course.control.gap() + power::<STAGES>(course.h()) * course.shift)
+        let history = &memory.history;
+        Some(node.energy + history.control.gap() + power::<STAGES>(history.h()) * history.shift)
     }
 
     fn check(&self, system: &S, (node, memory): (&Node<N>, &Self::Memory), _h: f64) -> Result<(), StepError> {
-        memory.course.check(node.t)?;
+        memory.history.check(node.t)?;
         Solver::<S, N, STAGES>::check(system, node, &memory.steps)
     }
 }
@@ -442,12 +443,12 @@ where
     type Fixed = Gauss<STAGES>;
     const FIXED: Gauss<STAGES> = Gauss;
 
-    fn course(memory: &Self::Memory) -> &StepHistory {
-        &memory.course
+    fn history(memory: &Self::Memory) -> &StepHistory {
+        &memory.history
     }
 
     fn course_mut(memory: &mut Self::Memory) -> &mut StepHistory {
-        &mut memory.course
+        &mut memory.history
     }
 
     fn step_density(system: &S, state: &State<N>) -> Result<f64, StepError> {
