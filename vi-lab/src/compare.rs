@@ -17,9 +17,8 @@ use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::{Failure, advice};
 use vi_report::html::escape;
 use vi_report::input::{count, number};
-use vi_report::machine::Machine;
 use vi_report::numbers::{about, larger, short};
-use vi_report::page::{Page, Report};
+use vi_report::page::Report;
 use vi_report::table::Table;
 
 /// `vi-lab compare FULL REDUCED`.
@@ -79,11 +78,13 @@ const TIMED: (f64, usize) = (0.1, 3);
 /// # Errors
 /// Wrong input, a failed step, a failed file.
 pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
-    let (machine, (reduced, steps)) = (Machine::here(), reduced(arguments, catalogue)?);
+    let (reduced, steps) = reduced(arguments, catalogue)?;
     let mut full = full(arguments, &reduced, catalogue)?;
     let map = Map::of(arguments, &full, &reduced)?;
     map.place(&mut full, &reduced.plan);
     run::check(full.system.as_ref(), &full.plan, Length::Steps(steps))?;
+    let title = format!("{} beside {}", kebab(reduced.system.name()), kebab(full.system.name()));
+    let mut report = Report::new(&arguments.out, &title, "Two models of one motion")?;
     let every = steps.div_ceil(TIMES);
     let [of_full, of_reduced] = [nodes(&full, steps, every)?, nodes(&reduced, steps, every)?];
     let times: Vec<f64> = of_full.iter().map(|(t, _)| *t).collect();
@@ -94,7 +95,6 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     });
     let off: Vec<Vec<f64>> = off.collect();
     let names = map.names(&full);
-    let title = format!("{} beside {}", kebab(reduced.system.name()), kebab(full.system.name()));
     let chart = chart(&title, &names, (&times, &off));
     let costs = costs([&full, &reduced], steps)?;
     let [begin, end] = [times.first(), times.last()].map(|t| about(t.copied().unwrap_or_default()));
@@ -102,17 +102,15 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     let most = |index: usize| off.iter().fold(0.0, |most, of| larger(most, of[index].abs()));
     let largest: Vec<String> =
         names.iter().enumerate().map(|(index, name)| format!("{name}: off by up to {}", about(most(index)))).collect();
-    let mut report = Report::new(&arguments.out, Page::new(&title, "Two models of one motion"))?;
     report.section("Difference");
     report.prose(&escape(&format!("{head}. {}", largest.join("; "))));
     report.figure(
-        &chart.figure(),
+        chart.figure(),
         "Size of the difference of each coordinate against time. Equal values have no logarithm and no point.",
-    )?;
+    );
     report.section("Cost");
-    report
-        .table(&costs, "Operations of the equations of motion at one point, and the time of a step on this machine.")?;
-    let page = report.finish(&machine)?;
+    report.table(&costs, "Operations of the equations of motion at one point, and the time of a step on this machine.");
+    let page = report.finish()?;
     Ok(format!("{head}\n  {}\n{}\n{}", largest.join("\n  "), costs.text(), page.display()))
 }
 

@@ -198,8 +198,8 @@ impl Equation {
 
 /// The section: a table of all equations.
 pub(super) fn section(book: &mut Book) {
-    book.section("The equations");
-    book.prose(&format!(
+    book.page.section("The equations");
+    book.page.prose(&format!(
         "The compiler derives the integrators of this page from the Lagrangian and the force. So every printed equation of \
          the examples can be checked: both formulas are evaluated on the same {INTERVALS} intervals. \
          <i>v</i> = (<i>q</i><sub><i>k</i>+1</sub> − <i>q<sub>k</sub></i>)/<i>h</i>, \
@@ -228,8 +228,8 @@ pub(super) fn section(book: &mut Book) {
         };
         book.item(equation.name, equation.printed, ours, verdict.when(holds), "equations");
     }
-    book.table(
-        table,
+    book.page.table(
+        &table,
         "Printed and derived equations. Differences below 10⁻¹⁴ are rounding. A computer algebra system and 50-digit \
          arithmetic confirm the derived ones.",
     );

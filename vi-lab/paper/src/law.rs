@@ -17,15 +17,15 @@ const UNTIL: f64 = 40.0;
 
 /// The section: the law, what follows from it, and its measured constancy.
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
-    book.section("The step law");
-    book.prose(
+    book.page.section("The step law");
+    book.page.prose(
         "A quantity of second order determines the length of the energy-preserving step: <i>H</i>(<i>t<sub>k</sub></i>, <i>q<sub>k</sub></i>, <i>p<sub>k</sub></i>) − \
          <i>E<sub>k</sub></i> = <i>h</i>²<i>D</i>/8 + <i>O</i>(<i>h</i>³). So, for small \
          <i>h</i><sub>0</sub>, a step exists while <i>D</i> keeps its sign. As <i>D</i> → 0 the length diverges, and beyond that \
          point no solver finds a step. The first law below holds without forces, in any number of degrees of freedom. The second \
          one holds for quadratic Lagrangians, damping included.",
     );
-    book.formula("h_k D_k^{1/3} = \\const + O(h^2) ~ ~ h_k \\sqrt{D_k} = \\const");
+    book.page.formula("h_k D_k^{1/3} = \\const + O(h^2) ~ ~ h_k \\sqrt{D_k} = \\const");
     let well = |q0: f64| LADDER.map(|h0| Ok((h0, spread(DoubleWell::default(), q0, h0, f64::cbrt)?)));
     let oscillator = LADDER
         .map(|h0| Ok((h0, spread(DampedOscillator { c: 0.04, ..DampedOscillator::default() }, 1.0, h0, f64::sqrt)?)));
@@ -53,8 +53,8 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         let [a, b, c] = <[String; 3]>::try_from(cells).unwrap_or_default();
         table.row([system.to_owned(), quantity.to_owned(), a, b, c, power]);
     }
-    book.table(
-        table,
+    book.page.table(
+        &table,
         "Relative spread, largest over smallest minus one, along the motion up to <i>t</i> = 40; <i>D</i> at the midpoints.",
     );
     book.item(

@@ -19,7 +19,6 @@ use std::path::PathBuf;
 use vi_core::StepError;
 use vi_report::failure::Failure;
 use vi_report::input::count;
-use vi_report::machine::Machine;
 use vi_report::progress::Progress;
 
 /// Steps of the long runs.
@@ -53,8 +52,7 @@ fn steps(text: &str) -> Result<u32, String> {
 /// # Errors
 /// [`Failure::File`] where a file cannot be written, [`Failure::Step`] where a step fails that must not.
 pub fn write(study: &Study) -> Result<String, Failure> {
-    let machine = Machine::here();
-    let mut book = Book::new(study.out.clone());
+    let mut book = Book::new(&study.out)?;
     {
         // Two long runs of each of the four cases make almost all of the work.
         let mut progress = Progress::new(8 * u64::from(study.steps));
@@ -65,7 +63,7 @@ pub fn write(study: &Study) -> Result<String, Failure> {
         progress.message("step law");
         law::section(&mut book)?;
     }
-    book.finish(&machine)
+    book.finish()
 }
 
 /// A step that failed where the study needs one.
@@ -75,18 +73,18 @@ fn unexpected(what: &str) -> impl Fn(StepError) -> Failure {
 }
 
 fn introduction(book: &mut Book, study: &Study) {
-    book.prose(
+    book.page.prose(
         "The paper derives variational integrators for forced Lagrangian systems in which time is a discrete variable: one step \
          solves the momentum equation and the energy equation together and so finds its own length. It then studies two examples \
          numerically. This page runs both again. The integrators are generated from ten lines that state the Lagrangian and the force.",
     );
-    book.prose(&format!(
+    book.page.prose(&format!(
         "The long runs have {} steps. Colours mean the same everywhere: <b style=\"color:#D55E00\">energy-preserving</b>, \
          <b style=\"color:#0072B2\">fixed step</b>. Each figure links to its SVG and to the points that it shows as CSV.",
         study.steps
     ));
-    book.section("The paper, item by item");
-    book.prose(
+    book.page.section("The paper, item by item");
+    book.page.prose(
         "The table lists figures by their content. The revised text of the study is chapter 3 of H. Sharma’s dissertation \
          <i>Structure-preserving Numerical Methods for Engineering Applications</i> (Virginia Tech, 2020); printed magnitudes and \
          sentences are compared with it too. Every number of the column “this run” was computed for this page.",

@@ -24,9 +24,8 @@ use vi_report::entry::Entry;
 use vi_report::failure::Failure;
 use vi_report::html::escape;
 use vi_report::input::number;
-use vi_report::machine::Machine;
 use vi_report::numbers::scientific;
-use vi_report::page::{Page, Report};
+use vi_report::page::Report;
 use vi_report::progress::Progress;
 
 /// `vi-lab work-precision SYSTEM`.
@@ -54,18 +53,16 @@ pub(crate) struct Arguments {
 /// [`Failure::Input`] for an unknown system, a motion that cannot be computed, or if no method can be compared.
 /// [`Failure::File`] if a file cannot be written.
 pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
-    let machine = Machine::here();
     let entry = with_rule(entry(arguments, catalogue)?, "work-precision")?;
     let name = kebab(entry.name);
-    let page = Page::new(&format!("Error against work: {name}"), entry.about);
-    let mut report = Report::new(&arguments.out, page)?;
+    let mut report = Report::new(&arguments.out, &format!("Error against work: {name}"), entry.about)?;
     let mut progress = Progress::new(study::length(&entry, arguments.quick));
     let found = study::findings(&entry, arguments.quick, &mut progress)
         .map_err(|ended| Failure::Input(format!("the motion of {name} cannot be computed: {ended}")))?;
     drop(progress);
     introduction(&mut report, &entry, &found);
-    work(&mut report, &name, &found)?;
-    order(&mut report, &name, &found)?;
+    work(&mut report, &name, &found);
+    order(&mut report, &name, &found);
     report.section("Every run");
     let missing = found.missing();
     report.prose(&if missing.is_empty() {
@@ -73,8 +70,8 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     } else {
         format!("Runs that the figures omit. {}", escape(&missing.join(" ")))
     });
-    report.table(&found.run_table(), "All runs, coarse to fine; the setting is a step, or the tolerance of DOP853.")?;
-    let page = report.finish(&machine)?;
+    report.table(&found.run_table(), "All runs, coarse to fine; the setting is a step, or the tolerance of DOP853.");
+    let page = report.finish()?;
     match found.uncompared() {
         None => Ok(format!("{}\n{}", found.prices().text(), page.display())),
         Some(why) => Err(Failure::Input(format!(
@@ -129,27 +126,27 @@ fn introduction(report: &mut Report, entry: &Entry, found: &Findings) {
     );
 }
 
-fn work(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure> {
+fn work(report: &mut Report, name: &str, found: &Findings) {
     report.section("Error against work");
     report.figure(
-        &found.time(name).figure(),
+        found.time(name).figure(),
         "The lower left is best. Each marker is the fastest repetition of a run; its whisker ends at the median. \
          Runs of all methods alternate.",
-    )?;
-    report.table(&found.prices(), "The least time of a run with at most this error; a dash if no run reaches it.")?;
+    );
+    report.table(&found.prices(), "The least time of a run with at most this error; a dash if no run reaches it.");
     report.figure(
-        &found.evaluations(name).figure(),
+        found.evaluations(name).figure(),
         "The same runs by a measure that repeats exactly. One evaluation is one residual with its Jacobian, one \
          residual with the increment of the step, the equations at one stage of a Gauss iteration, or one acceleration. An acceleration is the cheapest of these for few degrees of freedom; for many it requires \
          the solution of a linear system.",
-    )
+    );
 }
 
-fn order(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure> {
+fn order(report: &mut Report, name: &str, found: &Findings) {
     report.section("Order");
     report.figure(
-        &found.orders(name).figure(),
+        found.orders(name).figure(),
         "The number in the legend is the slope over the four finest steps whose error is below 10<sup>−2</sup> and at least \
          30 times that of the reference; it is absent for fewer than four. DOP853 has no given step.",
-    )
+    );
 }

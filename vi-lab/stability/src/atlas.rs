@@ -6,7 +6,6 @@
 use super::contour;
 use rayon::prelude::*;
 use vi_report::chart::{Axis, Chart, Class, Figure, Series, boundary, middles};
-use vi_report::failure::Failure;
 use vi_report::page::Report;
 use vi_report::progress::Progress;
 use vi_report::table::Table;
@@ -148,10 +147,7 @@ impl<'a> Map<'a> {
 }
 
 /// Adds sections to a report, with maps of this many columns.
-///
-/// # Errors
-/// [`Failure::File`] if a file cannot be written.
-pub(super) fn write(report: &mut Report, columns: u16, sections: Vec<Section>) -> Result<(), Failure> {
+pub(super) fn write(report: &mut Report, columns: u16, sections: Vec<Section>) {
     let columns = usize::from(columns);
     let cells = sections.iter().flat_map(|section| &section.parts).map(|part| match part {
         Part::Map(map) => map.size(columns).iter().product::<usize>(),
@@ -169,17 +165,16 @@ pub(super) fn write(report: &mut Report, columns: u16, sections: Vec<Section>) -
             match part {
                 Part::Map(map) => {
                     let caption = map.caption;
-                    report.figure(&map.figure(columns, |cells| progress.advance_by(count(cells))), caption)?;
+                    report.figure(map.figure(columns, |cells| progress.advance_by(count(cells))), caption);
                 }
-                Part::Chart(chart, caption) => report.figure(&chart.figure(), caption)?,
-                Part::Table(table, caption) => report.table(&table, caption)?,
+                Part::Chart(chart, caption) => report.figure(chart.figure(), caption),
+                Part::Table(table, caption) => report.table(&table, caption),
             }
         }
         if !advice.is_empty() {
             report.prose(&format!("<b>What to do.</b> {advice}"));
         }
     }
-    Ok(())
 }
 
 #[cfg(test)]

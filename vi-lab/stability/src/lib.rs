@@ -29,8 +29,7 @@ use std::path::PathBuf;
 use vi_report::catalogue::{Catalogue, kebab, with_rule};
 use vi_report::entry::Entry;
 use vi_report::failure::Failure;
-use vi_report::machine::Machine;
-use vi_report::page::{Page, Report};
+use vi_report::page::Report;
 
 /// `vi-lab stability [SYSTEM]`.
 #[derive(Debug, Args)]
@@ -56,7 +55,6 @@ pub struct Arguments {
 /// # Errors
 /// [`Failure::Input`] for a system or an axis that does not exist, [`Failure::File`] where a file cannot be written.
 pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
-    let machine = Machine::here();
     let entry = match &arguments.system {
         Some(name) => Some(catalogue.find(name)?),
         None => catalogue.own(),
@@ -69,16 +67,16 @@ pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Fai
         let entry = with_rule(entry, "stability")?;
         let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
         let title = format!("Where runs of the system {} end", kebab(entry.name));
-        report = Report::new(&arguments.out, Page::new(&title, entry.about))?;
-        atlas::write(&mut report, arguments.columns, system::sections(&entry, &axes))?;
+        report = Report::new(&arguments.out, &title, entry.about)?;
+        atlas::write(&mut report, arguments.columns, system::sections(&entry, &axes));
     } else {
-        report = Report::new(&arguments.out, Page::new("Where methods fail", SUBTITLE))?;
+        report = Report::new(&arguments.out, "Where methods fail", SUBTITLE)?;
         report.prose(INTRODUCTION);
         let [well, pendulum] = ["double-well", "pendulum"].map(|name| catalogue.find(name));
         let (well, pendulum) = (well?, pendulum?);
-        atlas::write(&mut report, arguments.columns, sections(&well, &pendulum)?)?;
+        atlas::write(&mut report, arguments.columns, sections(&well, &pendulum)?);
     }
-    Ok(report.finish(&machine)?.display().to_string())
+    Ok(report.finish()?.display().to_string())
 }
 
 const SUBTITLE: &str = "Variational integrators with fixed and with energy-preserving steps: before, at, and after the step that \

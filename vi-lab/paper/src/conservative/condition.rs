@@ -27,8 +27,8 @@ type Pick = fn(&Condition) -> f64;
 
 /// The section: a figure for each amplitude with both initial steps, and a table of medians.
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
-    book.section("Condition numbers");
-    book.prose(
+    book.page.section("Condition numbers");
+    book.page.prose(
         "The paper explains its trade-off by the condition of the equations, which grows as the step shrinks. In the \
          unknowns (<i>q</i><sub>1</sub>, <i>t</i><sub>1</sub>) it grows as 1/<i>h</i><sup>2</sup>, in \
          (<i>v</i>, <i>h</i>) as 1/<i>h</i>, because the determinant is −(<i>h</i>/4) <i>m</i> <i>D</i>: exactly so for one \
@@ -53,7 +53,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
             medians.push((case.h0, row));
         }
     }
-    book.table(table, "Condition numbers in the 2-norm, over ten thousand steps.");
+    book.page.table(&table, "Condition numbers in the 2-norm, over ten thousand steps.");
     let orders = orders(&medians);
     let [raw, unknowns, scaled] = orders.map(|order| format!("{order:.2}"));
     let holds = orders.iter().zip([-2.0, -1.0, 0.0]).all(|(order, theory)| (order - theory).abs() < 0.1);
@@ -124,8 +124,8 @@ fn figure(book: &mut Book, runs: &[(Case, Along)], name: &'static str) {
         [Axis::linear("t"), Axis::log10("condition number")],
         series,
     );
-    book.figure(
-        &chart,
+    book.page.figure(
+        chart.figure(),
         "The same equations in three forms, at the same solutions. Lines: <i>h</i><sub>0</sub> = 0.01, dashes: \
          <i>h</i><sub>0</sub> = 0.1. Scaled, the two are close.",
     );

@@ -14,9 +14,9 @@ const FIGURES: [&str; 4] = ["energy-0.74-0.01", "energy-0.74-0.1", "energy-0.995
 
 /// The section: the error over some oscillations, its growth over the long run, and a table.
 pub(super) fn section(book: &mut Book, runs: &[Pair]) {
-    book.section("Discrete energy");
+    book.page.section("Discrete energy");
     let (least, most) = extremes(runs.iter().map(|run| run.stored));
-    book.prose(&format!(
+    book.page.prose(&format!(
         "The integrator preserves the discrete energy <i>E<sub>k</sub></i> = −<i>D</i><sub>3</sub><i>L<sub>d</sub></i>. With \
          the midpoint rule <i>E<sub>k</sub></i> is the energy at the middle of the step. Every figure evaluates it there, with the \
          velocity of the step. Recomputed from stored nodes, the quotient \
@@ -55,8 +55,8 @@ fn table(book: &mut Book, runs: &[Pair]) {
             format!("{:.2}", run.energy.mean_iterations()),
         ]);
     }
-    book.table(
-        table,
+    book.page.table(
+        &table,
         "Largest deviation of the discrete energy. The fixed step of the third column has the length <i>h</i><sub>0</sub>. In the \
          fourth column both integrators take the same number of steps in the same time, as in the revised text of the paper.",
     );
@@ -133,7 +133,7 @@ fn oscillation(book: &mut Book, run: &Pair, name: &'static str) {
         scientific(run.fixed.error),
         scientific(run.energy.error)
     );
-    book.figure(&chart, &caption);
+    book.page.figure(chart.figure(), &caption);
 }
 
 /// The largest error so far against the iteration, both logarithmic.
@@ -159,8 +159,8 @@ fn growth(book: &mut Book, runs: &[Pair]) {
             [Axis::log10("iteration k"), Axis::log10("max |Eₖ − E₁|").over(1e-17, 1e-2)],
             series,
         );
-        book.figure(
-            &chart,
+        book.page.figure(
+            chart.figure(),
             "Neither integrator drifts. The energy-preserving one stays at a few units in the last place of <i>E</i>. Dotted: the \
              magnitudes that the paper prints.",
         );

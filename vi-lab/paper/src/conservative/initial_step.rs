@@ -73,8 +73,8 @@ struct Ladder {
 
 /// The section: energy, step length and trajectory against the initial step.
 pub(super) fn section(book: &mut Book, study: &Study) -> Result<(), Failure> {
-    book.section("The initial step");
-    book.prose(
+    book.page.section("The initial step");
+    book.page.prose(
         "The first step is free, and all others follow from it. The paper finds a trade-off: a small <i>h</i><sub>0</sub> gives \
          accurate trajectories, but the energy error grows, because the equations become ill-conditioned. The ladder below \
          separates the two parts of this statement. Every run takes the same number of steps. There are three solvers: \
@@ -247,8 +247,8 @@ fn energy(book: &mut Book, ladders: &[Ladder], most: u32) {
         [Axis::log10("h₀"), Axis::log10("max |Eₖ − E₁|").over(1e-17, 1e-8)],
         series,
     );
-    book.figure(
-        &chart,
+    book.page.figure(
+        chart.figure(),
         &format!(
             "Over {most} steps. In (<i>v</i>, <i>h</i>) the energy error has no trend in <i>h</i><sub>0</sub>. In \
              (<i>q</i><sub>1</sub>, <i>t</i><sub>1</sub>) the quotient \
@@ -319,8 +319,8 @@ fn solvers(book: &mut Book, most: u32) -> Result<(f64, f64), Failure> {
         let [a, b, c, d] = <[String; 4]>::try_from(cells.collect::<Vec<_>>()).unwrap_or_default();
         table.row([name.to_owned(), a, b, c, d]);
     }
-    book.table(
-        table,
+    book.page.table(
+        &table,
         &format!(
             "Largest |<i>E<sub>k</sub></i> − <i>E</i><sub>1</sub>| over {most} steps at the paper’s initial steps. A recomputed \
              energy sums the residuals of all steps; the tolerance sets the size of each."
@@ -331,13 +331,13 @@ fn solvers(book: &mut Book, most: u32) -> Result<(f64, f64), Failure> {
 
 /// How well h is determined: the law, and the measurement.
 fn length(book: &mut Book, ladders: &[Ladder]) {
-    book.prose(
+    book.page.prose(
         "<b>What is in the equations.</b> The condition of the equations does become worse as <i>h</i><sub>0</sub> shrinks. It \
          affects the step length. By <i>H</i> − <i>E</i> = <i>h</i>²<i>D</i>/8 an error δ<i>E</i> of the energy equation changes \
          the length by δ<i>h</i>, with δ<i>E</i> = −<i>h</i> <i>D</i> δ<i>h</i>/4. Double precision evaluates the energy with an error \
          of about <i>ε</i> times the sum <i>S</i> of the absolute values of its terms. So",
     );
-    book.formula("\\frac{δh}{h} ≈ \\frac{4εS}{h^2 |D|}, ~ ε = 2^{−52}");
+    book.page.formula("\\frac{δh}{h} ≈ \\frac{4εS}{h^2 |D|}, ~ ε = 2^{−52}");
     let series = lines(
         ladders,
         &[
@@ -353,8 +353,8 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
         [Axis::log10("h₀"), Axis::log10("max |δh/h|").over(1e-10, 10.0)],
         series,
     );
-    book.figure(
-        &chart,
+    book.page.figure(
+        chart.figure(),
         "The largest relative deviation of <i>h<sub>k</sub></i> from \
          <i>h</i><sub>0</sub>(<i>D</i><sub>0</sub>/<i>D<sub>k</sub></i>)<sup>1/3</sup>. Right of the minimum it is the \
          <i>O</i>(<i>h</i>²) of the step law, left of it rounding. If every step keeps the length of the last one, the energy \
@@ -366,7 +366,7 @@ fn length(book: &mut Book, ladders: &[Ladder]) {
     };
     let (least, largest) = ratios(|rung| rung.ours);
     let (plain, _) = ratios(|rung| rung.carried);
-    book.prose(&format!(
+    book.page.prose(&format!(
         "Between <i>h</i><sub>0</sub> = 10⁻⁶ and 10⁻⁴ the steps of this project deviate by {} to {} of the law. Plain double precision \
          deviates by at least {} times the law, even with a carried energy: the roundings of <i>q</i> and <i>p</i> accumulate in \
          <i>H</i>, while <i>E</i> stays.",
@@ -414,8 +414,8 @@ fn trajectory(book: &mut Book, ladders: &[Ladder]) {
         [Axis::log10("h₀"), Axis::log10("|q − q(t)|")],
         series,
     );
-    book.figure(
-        &chart,
+    book.page.figure(
+        chart.figure(),
         &format!(
             "At the first node after <i>t</i> = 10, against the exact motion at the time of that node. Both integrators are of \
              second order (measured for the energy-preserving one: {text})."
@@ -432,7 +432,7 @@ fn trajectory(book: &mut Book, ladders: &[Ladder]) {
 
 /// What follows from the figures.
 fn verdict(book: &mut Book, ladders: &[Ladder], (least, largest): (f64, f64)) {
-    book.prose(&format!(
+    book.page.prose(&format!(
         "<b>What is in the solver.</b> The energy error. In (<i>v</i>, <i>h</i>) with a recomputed energy it is {} to {}, depending on \
          where the iteration stops, and it has no trend in <i>h</i><sub>0</sub>. The 10⁻¹⁴ of the paper lie in this range. The paper \
          does not print its tolerance; that its iteration stopped near the floor is a guess from the size of its errors. \
@@ -447,7 +447,7 @@ fn verdict(book: &mut Book, ladders: &[Ladder], (least, largest): (f64, f64)) {
         // The law at the first rung, scaled to a deviation of 1 %.
         Some(scientific(rung.h0 * (rung.ours.law / 0.01).sqrt()))
     });
-    book.prose(&format!(
+    book.page.prose(&format!(
         "<b>What this project changes.</b> It accepts a step only if the residual is below the rounding error of its own \
          evaluation, and it carries the energy instead of recomputing it. So the residuals of the steps do not add up in \
          <i>E<sub>k</sub></i>, and the energy error is at most {} for every <i>h</i><sub>0</sub> of the ladder. Compensated sums of \

@@ -33,9 +33,9 @@ pub(super) fn chapter(book: &mut Book, study: &Study, progress: &mut Progress) -
         progress.message(format!("double well, {}", case.label()));
         runs.push(Pair::of(case, study.steps, progress).map_err(unexpected("double well"))?);
     }
-    book.section("A particle in a double well");
-    book.formula("L = \\frac{1}{2} m v^2 − \\frac{q^4 − q^2}{2}");
-    book.prose(
+    book.page.section("A particle in a double well");
+    book.page.formula("L = \\frac{1}{2} m v^2 − \\frac{q^4 − q^2}{2}");
+    book.page.prose(
         "The particle of mass <i>m</i> = 1 starts from rest. From <i>q</i><sub>0</sub> = 0.74 it oscillates nearly harmonically in \
          the right well. From <i>q</i><sub>0</sub> = 0.995, just below the barrier, it almost stops near the saddle at the \
          origin. Each motion is run with <i>h</i><sub>0</sub> = 0.01 and 0.1.",

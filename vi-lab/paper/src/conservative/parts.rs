@@ -8,8 +8,8 @@ use vi_report::table::Table;
 
 /// The section: a table of both parts for all cases.
 pub(super) fn section(book: &mut Book, runs: &[Pair]) {
-    book.section("The two parts of the energy error");
-    book.prose(
+    book.page.section("The two parts of the energy error");
+    book.page.prose(
         "Remark 5 of the paper splits the usual energy error <i>E<sub>k</sub></i> − <i>H</i><sub>0</sub>: the discrete energy \
          error <i>E<sub>k</sub></i> − <i>E</i><sub>1</sub> comes from the solver and from the method, the discretization error \
          <i>E</i><sub>1</sub> − <i>H</i><sub>0</sub> from the start. Here \
@@ -38,7 +38,7 @@ pub(super) fn section(book: &mut Book, runs: &[Pair]) {
         ]);
         holds &= run.energy.error < 1e-6 * run.start.abs() && (run.start / law - 1.0).abs() < 0.03;
     }
-    book.table(table, "Both parts for all cases, over the whole runs.");
+    book.page.table(&table, "Both parts for all cases, over the whole runs.");
     let ratios = runs.iter().map(|run| scientific(run.start.abs() / run.energy.error));
     book.item(
         "Remarks 5 and 6: the discretization error is constant, and orders of magnitude larger than the discrete error",

@@ -39,8 +39,8 @@ const FINENESS: u32 = 400;
 
 /// The section: one portrait for each case.
 pub(super) fn section(book: &mut Book, runs: &[Pair]) {
-    book.section("Phase portraits");
-    book.prose(
+    book.page.section("Phase portraits");
+    book.page.prose(
         "Both integrators stay on a closed curve. The exact orbit is the level set of <i>H</i> through the initial state; it \
          is the benchmark. The energy-preserving integrator takes longer steps near the saddle, where the motion is slow.",
     );
@@ -94,7 +94,7 @@ fn figure(book: &mut Book, portrait: &Portrait, run: &Pair) {
             series,
         )
     };
-    book.figure(&chart, &caption);
+    book.page.figure(chart.figure(), &caption);
     // The widest visible deviation: a hundredth of the depth of the well, 1/8.
     let worst = off_fixed.max(off_adaptive);
     book.item(

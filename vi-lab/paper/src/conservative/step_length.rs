@@ -11,14 +11,14 @@ use vi_systems::DoubleWell;
 
 /// The section: h/h0 against the iteration, with the step law over it.
 pub(super) fn section(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
-    book.section("Step length");
-    book.prose(
+    book.page.section("Step length");
+    book.page.prose(
         "The step length is a function of the place on the orbit. The paper observes that it oscillates with the motion. It \
          follows a law. With the acceleration <i>a</i> and derivatives along the motion, the step density is",
     );
-    book.formula("D = a·(L_q + f) − v·\\frac{d}{dt} L_q − \\frac{d}{dt} L_t");
-    book.prose("Here the force <i>f</i> is zero, and without forces");
-    book.formula("h_k = h_0 {(\\frac{D_0}{D_k})}^{1/3} (1 + O(h^2))");
+    book.page.formula("D = a·(L_q + f) − v·\\frac{d}{dt} L_q − \\frac{d}{dt} L_t");
+    book.page.prose("Here the force <i>f</i> is zero, and without forces");
+    book.page.formula("h_k = h_0 {(\\frac{D_0}{D_k})}^{1/3} (1 + O(h^2))");
     for run in runs.iter().filter(|run| run.case.h0 < 0.05) {
         let name = if run.case.q0 < 0.9 { "step-length-0.74" } else { "step-length-0.995" };
         let mut series = vec![Series::line("computed", Look::ENERGY.line(), computed(run))];
@@ -35,7 +35,7 @@ pub(super) fn section(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
             run.energy.steps.0 / run.case.h0,
             run.energy.steps.1 / run.case.h0
         );
-        book.figure(&chart, &caption);
+        book.page.figure(chart.figure(), &caption);
         let longest = run.energy.steps.1 / run.case.h0;
         let is_near = run.case.q0 > 0.9;
         book.item(

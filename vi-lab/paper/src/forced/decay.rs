@@ -41,12 +41,12 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         let constant = fixed(zeta, UNTIL).map_err(unexpected("damped oscillator"))?;
         runs.push(Damped { zeta, adaptive, constant, names });
     }
-    book.section("Damped trajectories");
+    book.page.section("Damped trajectories");
     for run in &runs {
         trajectory(book, run);
     }
-    book.section("Damped energy");
-    book.prose(
+    book.page.section("Damped energy");
+    book.page.prose(
         "With a force <i>E<sub>k</sub></i> is not constant: it changes by the discrete work of the force. The paper defines the \
          energy error as the difference of <i>E<sub>k</sub></i> and the energy of the exact motion at the same time, \
          <i>E<sub>k</sub></i> − <i>E</i>(<i>t<sub>k</sub></i>).",
@@ -91,8 +91,8 @@ fn trajectory(book: &mut Book, run: &Damped) {
         ],
     );
     let [adaptive, constant] = run.each(|sample| (sample.q - exact(run.zeta, sample.t).0).abs()).map(largest);
-    book.figure(
-        &chart,
+    book.page.figure(
+        chart.figure(),
         &format!(
             "The three curves coincide: the energy-preserving <i>q</i> is off by at most {}, the fixed step by {}. Up to \
              <i>t</i> = {UNTIL} the energy-preserving integrator takes {} steps, the fixed step {}.",
@@ -127,8 +127,8 @@ fn energy_error(book: &mut Book, run: &Damped) {
             Series::line("fixed step", Look::FIXED.line(), constant),
         ],
     );
-    book.figure(
-        &chart,
+    book.page.figure(
+        chart.figure(),
         "Difference of the discrete energy and the energy of the exact motion. Both errors start at \
          −<i>h</i><sub>0</sub>²<i>D</i>/8, because both runs start from the same interval.",
     );
@@ -181,8 +181,8 @@ fn ends(envelope: &[(f64, f64)]) -> [f64; 2] {
 
 /// How fast both amplitudes decay, beside the law.
 fn amplitudes(book: &mut Book, runs: &[Damped]) {
-    book.section("The amplitude of the damped energy error");
-    book.prose(
+    book.page.section("The amplitude of the damped energy error");
+    book.page.prose(
         "The paper states that the amplitude of the fixed step’s error decays faster. This run confirms it, and the growing step \
          explains it. The exact energy oscillates by <i>ζE</i> about its decay, with twice the phase of the motion. The midpoint rule is late by \
          the phase δ<i>φ</i> = (<i>ω</i>³/12) ∫<i>h</i>² d<i>t</i>. So the energy error oscillates with the amplitude \
@@ -291,8 +291,8 @@ fn figure(book: &mut Book, all: &[Amplitudes]) {
         [Axis::linear("t"), Axis::log10("amplitude of Eₖ − E(t)").over(1e-7, 1e-3)],
         series,
     );
-    book.figure(
-        &chart,
+    book.page.figure(
+        chart.figure(),
         "Half of the range of <i>E<sub>k</sub></i> − <i>E</i>(<i>t<sub>k</sub></i>) in windows of half a period. Small, middle \
          and large points: <i>ζ</i> = 0.001, 0.005, 0.01. Dashed: the law.",
     );

@@ -24,12 +24,12 @@ const MEASURED: f64 = 50.0;
 
 /// The section: growth in time, and the last step of each run.
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
-    book.section("Step growth");
-    book.prose("The paper observes that the step of the damped oscillator grows monotonically, and leaves open why. The \
+    book.page.section("Step growth");
+    book.page.prose("The paper observes that the step of the damped oscillator grows monotonically, and leaves open why. The \
                 energy of the motion decays as e<sup>−2<i>ζωt</i></sup>, and so does the step density <i>D</i>. For a \
                 quadratic Lagrangian <i>h</i><sub><i>k</i></sub>√<i>D</i><sub><i>k</i></sub> is constant exactly. Hence");
-    book.formula("h_k ≈ h_0 e^{ζωt}");
-    book.prose(
+    book.page.formula("h_k ≈ h_0 e^{ζωt}");
+    book.page.prose(
         "Since <i>t</i> advances by <i>h</i>, the step would be infinite after about 1/(<i>ζωh</i><sub>0</sub>) steps. Near that \
          step no further step exists, or only one many times as long. This is a property of the method. The integrator reports \
          it as an error with its numbers.",
@@ -46,24 +46,24 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
 
 /// Why the step grows monotonically.
 fn proof(book: &mut Book) -> Result<(), Failure> {
-    book.prose(
+    book.page.prose(
         "<b>Why the growth is monotonic.</b> The step density of the oscillator is <i>D</i> = <i>ma</i>² + <i>kv</i>². The \
          derivative of the equation of motion is <i>m</i><i>a</i>′ = −<i>kv</i> − <i>ca</i>. So, exactly and at every state,",
     );
-    book.formula("D^′ = 2 m a a^′ + 2 k v a = −2 c a^2 ≤ 0");
-    book.prose(
+    book.page.formula("D^′ = 2 m a a^′ + 2 k v a = −2 c a^2 ≤ 0");
+    book.page.prose(
         "In words: the velocity of a motion is itself a motion of the same linear system, and <i>D</i> is twice its energy. Damping \
          dissipates that energy too. The same proof holds for every linear system <i>Ma</i> + (<i>C</i> + <i>G</i>)<i>v</i> + \
          <i>Kq</i> = 0 with symmetric <i>M</i>, <i>C</i>, <i>K</i> and a gyroscopic <i>G</i>: \
          <i>D</i> = <i>a·Ma</i> + <i>v·Kv</i> and <i>D</i>′ = −2 <i>a·Ca</i>. So <i>D</i> does not increase if <i>C</i> is positive \
          semidefinite, and with negative damping it does not decrease.",
     );
-    book.prose(
+    book.page.prose(
         "The steps inherit this. For the midpoints of two consecutive steps the equations of the method give \
          <i>h</i><sub><i>k</i></sub>²<i>D<sub>k</sub></i> = <i>h</i><sub><i>k</i>+1</sub>²<i>D</i><sub><i>k</i>+1</sub>, with \
          symmetric <i>M</i>, <i>C</i>, <i>K</i>, and from it",
     );
-    book.formula(
+    book.page.formula(
         "h_{k+1} − h_k = \\frac{h_k s·C s}{2B}, ~ s = a_k + a_{k+1}, ~ B = \\frac{D_k (h_k + h_{k+1})}{h_{k+1}^2} \
          − \\frac{1}{2} a_{k+1}·C s − \\frac{1}{2} (a_k·K v_{k+1} − v_k·K a_{k+1})",
     );
@@ -76,7 +76,7 @@ fn proof(book: &mut Book) -> Result<(), Failure> {
         least = least.min(measured.bracket);
         drop = drop.max(measured.drop);
     }
-    book.prose(&format!(
+    book.page.prose(&format!(
         "<i>B</i> ≈ 2<i>D</i>/<i>h</i> is large and positive for small <i>h</i>. So with a positive semidefinite <i>C</i> no step is \
          shorter than the one before: the growth of <i>h</i> is monotonic in the discrete motion, not only on average. Along the three runs up to <i>t</i> = {SHOWN}, \
          <i>B</i> is at least {}, the identity holds to {} of <i>h</i>, and {}.",
@@ -88,7 +88,7 @@ fn proof(book: &mut Book) -> Result<(), Failure> {
             "no step is shorter than the one before".to_owned()
         }
     ));
-    book.prose(
+    book.page.prose(
         "<b>What it needs elsewhere.</b> For <i>L</i> = <i>v·Mv</i>/2 − <i>V</i>(<i>q</i>) and the forces −<i>Cv</i> + \
          <i>F</i>(<i>t</i>), <i>D</i>′ = −2 <i>a·Ca</i> + ∇³<i>V</i>[<i>v</i>, <i>v</i>, <i>v</i>] + 2 <i>a·F</i>′. Growth is \
          monotonic only if the damping outweighs both other terms at every state. ∇³<i>V</i>[<i>v</i>, <i>v</i>, <i>v</i>] changes its \
@@ -147,7 +147,7 @@ fn increments(zeta: f64) -> Result<Increments, StepError> {
 
 /// Growth of steps of order 2, 4 and 6: the paper expects that a better approximation of the discrete power stops it.
 fn orders(book: &mut Book) -> Result<(), Failure> {
-    book.prose(
+    book.page.prose(
         "<b>A better approximation of the power does not stop the growth.</b> The paper supposes that the low order of the midpoint          rule for the discrete power causes it. With <i>s</i> stages the power is integrated with order 2<i>s</i>. The step still grows,          as e<sup><i>ζωt</i>/<i>s</i></sup>, because <i>H</i> − <i>E</i> ∝ <i>h</i><sup>2<i>s</i></sup><i>D<sub>s</sub></i> is          constant and <i>D<sub>s</sub></i> decays.",
     );
     let mut table = Table::new("step-growth-orders", ["stages", "order", "first step", "h(50)/h(0)", "exp(ζωt/s)"]);
@@ -164,7 +164,7 @@ fn orders(book: &mut Book) -> Result<(), Failure> {
             format!("{predicted:.4}"),
         ]);
     }
-    book.table(table, &format!("Growth of the step over {MEASURED} units of time, ζ = {zeta}."));
+    book.page.table(&table, &format!("Growth of the step over {MEASURED} units of time, ζ = {zeta}."));
     let (_, worst) = extremes(deviations);
     book.item(
         "supposed cause of the growth: the midpoint approximation of the discrete power",
@@ -195,8 +195,8 @@ fn grown(stages: usize, zeta: f64, h: f64) -> Result<(f64, f64), StepError> {
 
 /// The section on negative damping.
 pub(super) fn negative(book: &mut Book) -> Result<(), Failure> {
-    book.section("Negative damping");
-    book.prose(
+    book.page.section("Negative damping");
+    book.page.prose(
         "With <i>ζ</i> &lt; 0 the motion grows, <i>D</i>′ = −2<i>ca</i>² is positive, and the same law makes the step shrink. The          integrator takes more and more steps for the same time.",
     );
     let mut runs = Vec::new();
@@ -255,7 +255,7 @@ fn in_time(book: &mut Book, runs: &[(f64, Sampled)], until: f64, name: &'static 
         "Computed, and dashed the law. They differ by at most {} of <i>h</i> for the three damping ratios.",
         worst.join(", ")
     );
-    book.figure(&chart, &caption);
+    book.page.figure(chart.figure(), &caption);
 }
 
 fn table(book: &mut Book, runs: &[(f64, Sampled)]) {
@@ -280,8 +280,8 @@ fn table(book: &mut Book, runs: &[(f64, Sampled)]) {
             run.end.map_or_else(|| "it does not".to_owned(), |error| error.reason().to_string()),
         ]);
     }
-    book.table(
-        table,
+    book.page.table(
+        &table,
         "Step growth, the law, and the end of each run. Against the iteration <i>k</i> the step is \
          <i>h</i><sub>0</sub>/(1 − <i>ζωh</i><sub>0</sub><i>k</i>).",
     );

@@ -22,9 +22,9 @@ const DAMPING: [f64; 3] = [0.001, 0.005, 0.01];
 /// The sections on the forced example.
 pub(super) fn chapter(book: &mut Book, progress: &mut Progress) -> Result<(), Failure> {
     progress.message("damped oscillator");
-    book.section("A damped oscillator");
-    book.formula("L = \\frac{1}{2} m v^2 − \\frac{1}{2} k q^2, ~ f = −c v");
-    book.prose(
+    book.page.section("A damped oscillator");
+    book.page.formula("L = \\frac{1}{2} m v^2 − \\frac{1}{2} k q^2, ~ f = −c v");
+    book.page.prose(
         "with <i>m</i> = 1, <i>k</i> = 4, so <i>ω</i> = 2, and <i>c</i> = 4<i>ζ</i>; <i>q</i>(0) = 1, <i>v</i>(0) = 0, \
          <i>h</i><sub>0</sub> = 0.01. The exact motion is known, and all errors are against it.",
     );
