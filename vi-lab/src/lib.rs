@@ -113,14 +113,14 @@ macro_rules! main {
 
 /// The predefined systems, without those of a program.
 pub(crate) fn ready() -> Catalogue {
-    Catalogue::new(Systems { sources: &vi_systems::SOURCES, entries: vi_ready::systems })
-        .with_texts(vi_ready::text::entry)
+    let ready = Systems { sources: &vi_systems::SOURCES, entries: vi_ready::systems };
+    Catalogue { own: None, ready, of_text: Some(vi_ready::text::entry) }
 }
 
 /// Runs the command line of this process, including the systems of the program.
 #[must_use]
 pub fn main_with(own: Systems) -> ExitCode {
-    command(&ready().with_own(own))
+    command(&Catalogue { own: Some(own), ..ready() })
 }
 
 /// Runs the command line of this process.

@@ -311,6 +311,7 @@ fn wrong_input_is_one_line_and_status_2() {
         (&["explain"], "name a system of `vi-lab list`"),
         (&["work-precision"], "name a system of `vi-lab list`"),
         (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
+        (&["run", "xyz"], "there is no system `xyz`; `vi-lab list` shows all systems"),
         (&["run"], "name a system of `vi-lab list`"),
         (
             &["run", "double-well", "--steps", "one"],
@@ -964,7 +965,7 @@ fn a_system_is_explained_in_text_and_in_latex() {
     }
     // The columns are as wide as the longest name.
     assert!(text.lines().any(|shown| shown.split_whitespace().eq(["momentum", "1"])), "{text}");
-    let latex = success(&["explain", "DampedOscillator", "--latex"]);
+    let latex = success(&["explain", "DAMPED_Oscillator", "--latex"]);
     assert!(latex.contains("A_{x,x} &= m + \\frac{k h^{2}}{4} + \\frac{c h}{2}"), "{latex}");
     let own = concat!(env!("CARGO_MANIFEST_DIR"), "/../vi-systems/src/damped_oscillator.rs");
     assert_eq!(lab(&["explain", own]).1, text, "a file is explained as a ready system is");

@@ -22,47 +22,30 @@ pub struct Systems {
 /// The systems of a program of one's own, if it has some, and the ready ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Catalogue {
-    own: Option<Systems>,
-    ready: Systems,
-    of_text: Option<OfText>,
+    /// Those of the program; they hide ready ones of the same names.
+    pub own: Option<Systems>,
+    /// The ready ones.
+    pub ready: Systems,
+    /// Those of files.
+    pub of_text: Option<OfText>,
 }
 
 /// The system of a file, by its name and its text; or the mistakes of the text, at their places in the file.
 pub type OfText = fn(&str, &str) -> Result<Entry, String>;
 
 impl Catalogue {
-    /// The catalogue of a program without systems of its own.
-    #[must_use]
-    pub fn new(ready: Systems) -> Self {
-        Self { own: None, ready, of_text: None }
-    }
-
-    /// The same, with systems of one's own.
-    #[must_use]
-    pub fn with_own(self, own: Systems) -> Self {
-        Self { own: Some(own), ..self }
-    }
-
-    /// The same, with systems of files.
-    #[must_use]
-    pub fn with_texts(self, of_text: OfText) -> Self {
-        Self { of_text: Some(of_text), ..self }
-    }
-
     /// The text of the files that declare the systems.
     pub fn sources(&self) -> impl Iterator<Item = &'static str> + use<> {
-        let own = self.own.map_or(&[][..], |own| own.sources);
-        own.iter().chain(self.ready.sources).copied()
+        self.own.into_iter().chain([self.ready]).flat_map(|systems| systems.sources).copied()
     }
 
-    /// All systems in the order of the list; a system of the program hides a predefined one of the same name.
+    /// All systems in the order of the list.
     #[must_use]
     pub fn entries(&self) -> Vec<Entry> {
         let mut all = self.own.map_or_else(Vec::new, |own| (own.entries)());
-        let own: Vec<&str> = all.iter().map(|entry| entry.name).collect();
-        let ready = (self.ready.entries)();
-        let others: Vec<Entry> = ready.into_iter().filter(|entry| !own.contains(&entry.name)).collect();
-        all.extend(others);
+        let mut ready = (self.ready.entries)();
+        ready.retain(|entry| all.iter().all(|own| own.name != entry.name));
+        all.append(&mut ready);
         all
     }
 
@@ -72,20 +55,13 @@ impl Catalogue {
         self.own.and_then(|own| (own.entries)().into_iter().next())
     }
 
-    /// The first system of the program: the default of every command.
+    /// The entry with this name; by default the first one of the program.
     ///
     /// # Errors
-    /// [`Failure::Input`] if the program has none.
-    pub fn first_own(&self) -> Result<Entry, Failure> {
-        self.own().ok_or_else(|| Failure::Input(format!("name a system of `{} list`", program())))
-    }
-
-    /// The entry with this name, or the first one of the program.
-    ///
-    /// # Errors
-    /// As [`Self::find`] and [`Self::first_own`].
+    /// As [`Self::find`]; [`Failure::Input`] without a name, if the program has no systems.
     pub fn named(&self, name: Option<&str>) -> Result<Entry, Failure> {
-        name.map_or_else(|| self.first_own(), |name| self.find(name))
+        let first = || self.own().ok_or_else(|| Failure::Input(format!("name a system of `{} list`", program())));
+        name.map_or_else(first, |name| self.find(name))
     }
 
     /// The entry with this name, or the system of a file that ends in `.rs` or `.vi`.
@@ -141,20 +117,15 @@ pub fn with_rule(entry: Entry, page: &str) -> Result<Entry, Failure> {
     if entry.system.has_rule() {
         return Ok(entry);
     }
-    let name = entry.name;
-    if entry.system.has_constraints() {
-        return Err(Failure::Input(format!(
-            "{page} compares steps by a rule, which {name} cannot have because of its constraints"
-        )));
-    }
-    if entry.system.is_first_order() {
-        return Err(Failure::Input(format!(
-            "{page} compares steps by a rule, which {name} cannot have, since its `L` is linear in the velocities"
-        )));
-    }
-    Err(Failure::Input(format!(
-        "{page} compares steps by a rule, and {name} has none: add `discretize midpoint;` to it"
-    )))
+    let Entry { name, system, .. } = entry;
+    let why = if system.has_constraints() {
+        format!("which {name} cannot have because of its constraints")
+    } else if system.is_first_order() {
+        format!("which {name} cannot have, since its `L` is linear in the velocities")
+    } else {
+        format!("and {name} has none: add `discretize midpoint;` to it")
+    };
+    Err(Failure::Input(format!("{page} compares steps by a rule, {why}")))
 }
 
 fn list(values: &[f64]) -> String {
@@ -192,23 +163,6 @@ mod tests {
     use super::*;
     use vi_systems::{DoubleWell, Kepler};
 
-    fn catalogue() -> Catalogue {
-        let entries = || {
-            vec![
-                Entry::new::<DoubleWell, 1>("well", [0.74], [0.0], 0.01),
-                Entry::new::<Kepler, 2>("planet", [0.4, 0.0], [0.0, 2.0], 0.005),
-            ]
-        };
-        Catalogue::new(Systems { sources: &[], entries })
-    }
-
-    #[test]
-    fn names_are_found_in_any_spelling() {
-        for name in ["double-well", "DoubleWell", "double_well", "DOUBLEWELL"] {
-            assert!(catalogue().find(name).is_ok_and(|entry| entry.name == "DoubleWell"), "{name}");
-        }
-    }
-
     #[test]
     fn a_list_builds_no_system() {
         let entries = || {
@@ -218,25 +172,10 @@ mod tests {
                 Entry::new::<Kepler, 2>("planet", [0.4, 0.0], [0.0, 2.0], 0.005),
             ]
         };
-        let catalogue = Catalogue::new(Systems { sources: &[], entries });
+        let catalogue = Catalogue { own: None, ready: Systems { sources: &[], entries }, of_text: None };
         let shown = catalogue.table().text();
         assert!(shown.contains("double-well") && shown.contains("(x, y) = (0.4, 0), v = (0, 2)"), "{shown}");
         assert!(catalogue.find("double-wel").is_err());
         assert_eq!(catalogue.find("kepler").ok().map(|entry| entry.system.coordinates()), Some(vec!["x", "y"]));
-    }
-
-    #[test]
-    fn a_near_name_is_offered() {
-        let message = |name: &str| catalogue().find(name).err().map(|failure| failure.to_string());
-        assert_eq!(
-            message("double-wel").as_deref(),
-            Some("there is no system `double-wel`; did you mean `double-well`?")
-        );
-        assert_eq!(
-            message("folder/xyz.yml").as_deref(),
-            Some("there is no system `folder/xyz.yml`; a scene file ends in .toml, a declaration in .rs or .vi")
-        );
-        let listed = format!("there is no system `xyz`; `{} list` shows all systems", program());
-        assert_eq!(message("xyz"), Some(listed));
     }
 }

@@ -181,7 +181,7 @@ impl Request {
     fn read(arguments: &Arguments, catalogue: &Catalogue) -> Result<(Self, Option<Sweep>), Failure> {
         let target = match &arguments.target {
             Some(target) => target.clone(),
-            None => catalogue.first_own()?.name.to_owned(),
+            None => catalogue.named(None)?.name.to_owned(),
         };
         let scene = if is_scene(&target) { Scene::read(&target)? } else { Scene::of_system(&target) };
         let entry = catalogue.find(&scene.system)?;

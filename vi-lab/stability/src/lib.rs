@@ -111,7 +111,7 @@ pub(crate) mod tests {
 
     /// The ready systems.
     pub(crate) fn catalogue() -> Catalogue {
-        Catalogue::new(Systems { sources: &[], entries: vi_ready::systems })
+        Catalogue { own: None, ready: Systems { sources: &[], entries: vi_ready::systems }, of_text: None }
     }
 
     #[test]
