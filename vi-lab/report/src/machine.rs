@@ -11,40 +11,20 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Version of the compiler.
 const RUSTC: &str = env!("VI_RUSTC");
 
-/// The machine and the start time.
-#[derive(Clone, Debug)]
-pub struct Machine {
-    processor: String,
-    threads: usize,
-    started: Instant,
-}
-
-impl Machine {
-    /// This machine at this time.
-    pub fn here() -> Self {
-        Self {
-            processor: processor().unwrap_or_else(|| "unknown processor".to_owned()),
-            threads: std::thread::available_parallelism().map_or(1, Into::into),
-            started: Instant::now(),
-        }
-    }
-
-    /// One paragraph for a footer.
-    #[must_use]
-    pub fn describe(&self) -> String {
-        let build = if cfg!(debug_assertions) { "debug" } else { "release" };
-        format!(
-            "Made by vi-lab {VERSION} ({build} build, {RUSTC}) with “{command}” in {seconds:.1} s on {processor}, \
-             {threads} threads, {os} {architecture}. Charts drawn by kuva {kuva}.",
-            command = command_line(),
-            seconds = self.started.elapsed().as_secs_f64(),
-            processor = self.processor,
-            threads = self.threads,
-            os = env::consts::OS,
-            architecture = env::consts::ARCH,
-            kuva = kuva::VERSION,
-        )
-    }
+/// The versions, the command line, the time since its start, and the machine, for a footer.
+pub(crate) fn origin(started: Instant) -> String {
+    let build = if cfg!(debug_assertions) { "debug" } else { "release" };
+    format!(
+        "Made by vi-lab {VERSION} ({build} build, {RUSTC}) with “{command}” in {seconds:.1} s on {processor}, \
+         {threads} threads, {os} {architecture}. Charts drawn by kuva {kuva}.",
+        command = command_line(),
+        seconds = started.elapsed().as_secs_f64(),
+        processor = processor().unwrap_or_else(|| "unknown processor".to_owned()),
+        threads = std::thread::available_parallelism().map_or(1, usize::from),
+        os = env::consts::OS,
+        architecture = env::consts::ARCH,
+        kuva = kuva::VERSION,
+    )
 }
 
 /// The name of the running program: `vi-lab`, or the user's own.

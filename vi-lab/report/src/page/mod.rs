@@ -9,17 +9,18 @@ mod math;
 use crate::chart::Figure;
 use crate::failure::Failure;
 use crate::html::escape;
-use crate::machine::Machine;
+use crate::machine::origin;
 use crate::table::Table;
 use core::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// A page under construction, and its files.
 #[derive(Debug)]
 pub struct Report {
     folder: PathBuf,
-    machine: Machine,
+    started: Instant,
     title: String,
     subtitle: String,
     contents: String,
@@ -40,7 +41,7 @@ impl Report {
         fs::create_dir_all(folder).map_err(|error| Failure::file(folder, error))?;
         Ok(Self {
             folder: folder.to_owned(),
-            machine: Machine::here(),
+            started: Instant::now(),
             title: escape(title),
             subtitle: subtitle.to_owned(),
             contents: String::new(),
@@ -131,7 +132,7 @@ impl Report {
         Ok(self.folder.join("index.html"))
     }
 
-    /// The page with the machine and the versions in its footer.
+    /// The page with its origin in the footer.
     fn html(&self) -> String {
         let Self { title, subtitle, contents, body, .. } = self;
         format!(
@@ -141,7 +142,7 @@ impl Report {
              <header><h1>{title}</h1>\n<p class=\"subtitle\">{subtitle}</p></header>\n<nav><ol>\n{contents}</ol></nav>\n\
              {body}</main>\n<footer>{footer}</footer>\n</body>\n</html>\n",
             style = include_str!("style.css"),
-            footer = escape(&self.machine.describe()),
+            footer = escape(&origin(self.started)),
         )
     }
 }
