@@ -26,28 +26,23 @@ impl Quantity {
     /// # Errors
     /// [`Failure::Input`] with the existing names.
     pub fn named(system: &dyn System, name: &str) -> Result<Self, Failure> {
-        let coordinates = system.coordinates();
-        let place = |name: &str| coordinates.iter().position(|coordinate| *coordinate == name);
-        if let Some(index) = place(name) {
-            return Ok(Self::Coordinate(index));
-        }
-        if let Some(index) = name.strip_prefix("v_").and_then(place) {
-            return Ok(Self::Velocity(index));
-        }
-        let parameters: Vec<&str> = system.parameters().iter().map(|(parameter, _)| *parameter).collect();
-        match name {
-            _ if parameters.contains(&name) => Ok(Self::Parameter(name.to_owned())),
-            "h" => Ok(Self::Step),
-            _ => {
-                let velocities: Vec<String> = coordinates.iter().map(|coordinate| format!("v_{coordinate}")).collect();
-                let names = [coordinates.join(", "), velocities.join(", "), parameters.join(", "), "h".to_owned()];
-                let names: Vec<&str> = names.iter().map(String::as_str).filter(|names| !names.is_empty()).collect();
-                Err(Failure::Input(format!(
-                    "there is no quantity `{name}` to vary; the quantities are {}",
-                    names.join(", ")
-                )))
-            }
-        }
+        let all = Self::all(system);
+        let named = all.iter().find(|(known, _)| known == name);
+        named.map(|(_, quantity)| quantity.clone()).ok_or_else(|| {
+            let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
+            Failure::Input(format!("there is no quantity `{name}` to vary; the quantities are {}", names.join(", ")))
+        })
+    }
+
+    /// All quantities by name.
+    fn all(system: &dyn System) -> Vec<(String, Self)> {
+        let coordinates =
+            (0..).zip(system.coordinates()).map(|(index, name)| (name.to_owned(), Self::Coordinate(index)));
+        let velocities =
+            (0..).zip(system.coordinates()).map(|(index, name)| (format!("v_{name}"), Self::Velocity(index)));
+        let parameters =
+            system.parameters().into_iter().map(|(name, _)| (name.to_owned(), Self::Parameter(name.to_owned())));
+        coordinates.chain(velocities).chain(parameters).chain([("h".to_owned(), Self::Step)]).collect()
     }
 
     /// Sets the quantity in this system and this plan.
