@@ -192,7 +192,8 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
         (StepError::Redundant { rank: 0, .. }, _) => "set another length with --set, or start elsewhere with --q",
         (StepError::Redundant { constraint, .. }, _) => {
             return Some(format!(
-                "leave it out with --drop '{constraint}', if the system is one of a file; or start elsewhere with --q"
+                "start elsewhere with --q if bars are in one line, where several motions may begin; otherwise leave it out with \
+                 --drop '{constraint}', if the system is one of a file"
             ));
         }
         _ => return None,
