@@ -8,7 +8,7 @@ use vi_erased::System;
 use vi_erased::system::Quantity;
 use vi_ready::expressions::{Moment, Terms};
 use vi_report::catalogue::{Catalogue, kebab};
-use vi_report::failure::{Failure, advice};
+use vi_report::failure::Failure;
 use vi_report::numbers::{about, larger, scientific, short};
 use vi_report::table::Table;
 
@@ -84,10 +84,8 @@ impl Shares {
             if is_end {
                 break;
             }
-            length.advance(run.as_mut()).map_err(|error| Failure::Step {
-                advice: advice(&error, plan),
-                error: Box::new(error),
-                before: format!("t = {}, q = {:?}, after {steps} steps", short(run.t()), run.q()),
+            length.advance(run.as_mut()).map_err(|error| {
+                Failure::step(error, plan, format!("t = {}, q = {:?}, after {steps} steps", short(run.t()), run.q()))
             })?;
             steps += 1;
         }

@@ -14,7 +14,7 @@ use vi_erased::{Simulation, System};
 use vi_ready::expressions::{Expressions, Moment, operations};
 use vi_report::catalogue::{Catalogue, kebab};
 use vi_report::chart::{Axis, Chart, Look, Series};
-use vi_report::failure::{Failure, advice};
+use vi_report::failure::Failure;
 use vi_report::html::escape;
 use vi_report::input::{count, number};
 use vi_report::numbers::{about, larger, short};
@@ -274,11 +274,8 @@ fn nodes(of: &Request, steps: u64, every: u64) -> Result<Vec<(f64, Vec<f64>)>, F
 }
 
 fn failed(of: &Request, run: &dyn Simulation, error: vi_core::StepError) -> Failure {
-    Failure::Step {
-        advice: advice(&error, &of.plan),
-        error: Box::new(error),
-        before: format!("{} at t = {}, q = {:?}", kebab(of.system.name()), short(run.t()), run.q()),
-    }
+    let before = format!("{} at t = {}, q = {:?}", kebab(of.system.name()), short(run.t()), run.q());
+    Failure::step(error, &of.plan, before)
 }
 
 /// Operations and nanoseconds of both models.

@@ -8,7 +8,7 @@ use crate::run;
 use clap::Args;
 use vi_erased::plan::Method;
 use vi_report::catalogue::{Catalogue, kebab};
-use vi_report::failure::{Failure, advice};
+use vi_report::failure::Failure;
 use vi_report::input::{count, number};
 use vi_report::numbers::short;
 use vi_report::terminal::print;
@@ -84,10 +84,9 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), 
     let mut next = FIRST;
     while taken < *steps {
         let part = next.min(*steps) - taken;
-        exponents.advance(part).map_err(|error| Failure::Step {
-            advice: advice(&error, &plan),
-            error: Box::new(error),
-            before: format!("t = {}, q = {:?}, after {taken} steps or more", short(exponents.t()), exponents.q()),
+        exponents.advance(part).map_err(|error| {
+            let before = format!("t = {}, q = {:?}, after {taken} steps or more", short(exponents.t()), exponents.q());
+            Failure::step(error, &plan, before)
         })?;
         taken += part;
         next *= 2;

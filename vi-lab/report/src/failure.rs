@@ -85,10 +85,10 @@ impl Failure {
         }
     }
 
-    /// Combines two failures.
+    /// A failed step of a run by this plan; `before` is the last good state.
     #[must_use]
-    pub fn both(first: Self, second: Self) -> Self {
-        Self::Both(Box::new([first, second]))
+    pub fn step(error: StepError, plan: &Plan, before: String) -> Self {
+        Self::Step { advice: advice(&error, plan), error: Box::new(error), before }
     }
 
     /// A failed start from the initial state; an input that no integrator accepts is wrong input.
@@ -100,11 +100,7 @@ impl Failure {
             StepError::InconsistentStart { .. } => {
                 Self::Input(format!("{}; --project moves the initial state onto the constraints", error.reason()))
             }
-            _ => Self::Step {
-                advice: advice(&error, plan),
-                error: Box::new(error),
-                before: format!("t = {}, q = {q:?}, v = {v:?}, the initial state", short(*t)),
-            },
+            _ => Self::step(error, plan, format!("t = {}, q = {q:?}, v = {v:?}, the initial state", short(*t))),
         }
     }
 

@@ -246,7 +246,7 @@ pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     }
     // After any end, and if one output failed, each sink writes what it can.
     sinks.iter_mut().fold(outcome, |outcome, sink| match (outcome, sink.finish()) {
-        (Err(first), Err(second)) => Err(Failure::both(first, second)),
+        (Err(first), Err(second)) => Err(Failure::Both(Box::new([first, second]))),
         (outcome, finished) => outcome.and(finished),
     })
 }
