@@ -68,19 +68,9 @@ pub fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
 /// Least-squares slope of `(log x, log y)`: the exponent of a power law.
 #[must_use]
 pub fn order(points: &[(f64, f64)]) -> f64 {
-    let mut n = 0.0;
-    let mut sx = 0.0;
-    let mut sy = 0.0;
-    let mut sxx = 0.0;
-    let mut sxy = 0.0;
-    for (x, y) in points.iter().map(|(x, y)| (x.ln(), y.ln())) {
-        n += 1.0;
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
-    }
-    (n * sxy - sx * sy) / (n * sxx - sx * sx)
+    let sum = |of: fn(f64, f64) -> f64| points.iter().map(|(x, y)| of(x.ln(), y.ln())).sum::<f64>();
+    let [n, x, y, xx, xy] = [|_, _| 1.0, |x, _| x, |_, y| y, |x, _| x * x, |x, y| x * y].map(sum);
+    (n * xy - x * y) / (n * xx - x * x)
 }
 
 #[cfg(test)]

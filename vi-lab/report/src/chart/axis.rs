@@ -2,7 +2,7 @@
 //!
 //! In: the values of all series. Out: a [`Ruler`] with the coordinate of the figure: the value, or its log10.
 
-use crate::numbers::superscript;
+use crate::numbers::{extremes, superscript};
 
 /// An axis.
 #[derive(Clone, Debug)]
@@ -74,12 +74,7 @@ impl Axis {
     /// The ruler for these coordinates, with a margin around data but not around a given range.
     pub(super) fn ruler(&self, coordinates: impl Iterator<Item = f64>) -> Ruler {
         let given = self.range.and_then(|(low, high)| Some((self.coordinate(low)?, self.coordinate(high)?)));
-        let range = given.unwrap_or_else(|| {
-            let (low, high) =
-                coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-            widen(low, high, self.scale)
-        });
-        Ruler::over(range, self.scale)
+        Ruler::over(given.unwrap_or_else(|| widen(extremes(coordinates), self.scale)), self.scale)
     }
 }
 
@@ -134,23 +129,18 @@ impl Ruler {
 }
 
 /// The range `[low, high]` with a margin of 4 %; a single value, or none, gets a range around it.
-fn widen(low: f64, high: f64, scale: Scale) -> (f64, f64) {
+fn widen((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
     if low > high {
         return (0.0, 1.0);
     }
-    let smallest = match scale {
-        Scale::Linear => low.abs().max(high.abs()) * 1e-12 + f64::MIN_POSITIVE,
-        Scale::Log10 => 1.0,
+    let (smallest, around) = match scale {
+        Scale::Linear => {
+            let smallest = low.abs().max(high.abs()) * 1e-12 + f64::MIN_POSITIVE;
+            (smallest, if high == 0.0 { 1.0 } else { high.abs() * 0.05 })
+        }
+        Scale::Log10 => (1.0, 1.0),
     };
-    if high - low < smallest {
-        let half = match scale {
-            Scale::Linear if high == 0.0 => 1.0,
-            Scale::Linear => high.abs() * 0.05,
-            Scale::Log10 => 1.0,
-        };
-        return (low - half, high + half);
-    }
-    let margin = 0.04 * (high - low);
+    let margin = if high - low < smallest { around } else { 0.04 * (high - low) };
     (low - margin, high + margin)
 }
 

@@ -3,7 +3,6 @@
 //! The plot area has fixed margins, so that thinning knows the pixel of a coordinate.
 
 use super::axis::Ruler;
-use super::palette::Stroke;
 use super::{Chart, Figure, Look, Series};
 use core::fmt::Write as _;
 use kuva::prelude::{
@@ -59,34 +58,35 @@ impl Chart {
 
     /// The same over a map, whose entries come first in the legend and whose cells hide the grid.
     pub(super) fn figure_over(&self, map: Option<Vec<LegendEntry>>) -> Figure {
-        let placed: Vec<Drawn<'_>> = self.series.iter().map(|series| self.place(series)).collect();
-        let x = self.x.ruler(placed.iter().flat_map(|drawn| drawn.coordinates.iter().map(|point| point.0)));
-        let ordinates = |drawn: &Drawn<'_>| -> Vec<f64> {
-            drawn.coordinates.iter().map(|point| point.1).chain(drawn.whiskers.iter().map(|end| end.0)).collect()
-        };
-        let y = self.y.ruler(placed.iter().flat_map(ordinates));
-        let area = self.area(&x, &y);
-        let drawn: Vec<Drawn<'_>> = placed.into_iter().map(|drawn| thinned(&drawn, &x, &y, area)).collect();
-        let place = Frame { x, y, area, margins: MARGINS };
-        Figure { name: self.name, svg: self.svg(&drawn, &place, map), csv: self.csv(&drawn) }
+        let (placed, [x, y]) = self.placed();
+        let frame = Frame { area: self.area(&x, &y), x, y, margins: MARGINS };
+        let drawn = frame.thinned(&placed);
+        Figure { name: self.name, svg: self.svg(&drawn, &frame, map), csv: self.csv(&drawn) }
     }
 
     /// The chart as an SVG figure with a given plot area and margins. With equal aspect the shorter range is widened.
     pub(super) fn svg_in(&self, area: Area, margins: Margins) -> String {
-        let placed: Vec<Drawn<'_>> = self.series.iter().map(|series| self.place(series)).collect();
-        let points = || placed.iter().flat_map(|drawn| &drawn.coordinates);
-        let mut x = self.x.ruler(points().map(|point| point.0));
-        let mut y = self.y.ruler(points().map(|point| point.1));
+        let (placed, [mut x, mut y]) = self.placed();
         if self.equal_aspect {
             let unit = (x.length() / area.width).max(y.length() / area.height);
             x = x.widened_to(unit * area.width);
             y = y.widened_to(unit * area.height);
         }
-        let drawn: Vec<Drawn<'_>> = placed.iter().map(|drawn| thinned(drawn, &x, &y, area)).collect();
-        self.svg(&drawn, &Frame { x, y, area, margins }, None)
+        let frame = Frame { x, y, area, margins };
+        self.svg(&frame.thinned(&placed), &frame, None)
     }
 
-    /// The points inside the axes.
+    /// The points inside the axes, and the rulers around them.
+    fn placed(&self) -> (Vec<Drawn<'_>>, [Ruler; 2]) {
+        let placed: Vec<Drawn<'_>> = self.series.iter().map(|series| self.place(series)).collect();
+        let points = || placed.iter().flat_map(|drawn| &drawn.coordinates);
+        let ends = placed.iter().flat_map(|drawn| &drawn.whiskers);
+        let x = self.x.ruler(points().map(|point| point.0));
+        let y = self.y.ruler(points().map(|point| point.1).chain(ends.map(|end| end.0)));
+        (placed, [x, y])
+    }
+
+    /// The points of a series inside the axes.
     fn place<'a>(&self, series: &'a Series) -> Drawn<'a> {
         let both = |&(x, y): &(f64, f64)| Some((self.x.coordinate(x)?, self.y.coordinate(y)?));
         let mut drawn = Drawn { series, coordinates: Vec::new(), values: Vec::new(), whiskers: Vec::new() };
@@ -111,8 +111,7 @@ impl Chart {
         if !self.equal_aspect {
             return AREA;
         }
-        let width = x.range.1 - x.range.0;
-        let height = y.range.1 - y.range.0;
+        let [width, height] = [x, y].map(Ruler::length);
         let scale = (AREA.width / width).min(1.5 * AREA.height / height);
         Area { width: scale * width, height: scale * height }
     }
@@ -164,18 +163,19 @@ impl Chart {
 
     fn csv(&self, drawn: &[Drawn<'_>]) -> String {
         let mut csv = format!("# {}: {}\n", self.name, self.title);
+        let name = |(number, drawn): (usize, &Drawn<'_>)| {
+            drawn.series.label.clone().unwrap_or_else(|| format!("background {number}"))
+        };
+        let named: Vec<(String, &Drawn<'_>)> = drawn.iter().enumerate().map(|of| (name(of), of.1)).collect();
         // Writing to a string cannot fail.
-        for (number, drawn) in drawn.iter().enumerate() {
-            let name = drawn.series.label.clone().unwrap_or_else(|| format!("background {number}"));
-            let shown = drawn.values.len();
-            let computed = drawn.series.points.len();
+        for (name, drawn) in &named {
+            let [shown, computed] = [drawn.values.len(), drawn.series.points.len()];
             let _ = writeln!(csv, "# {name}: {shown} of {computed} points, those that the figure shows");
         }
         let whiskers = drawn.iter().any(|drawn| !drawn.whiskers.is_empty());
         let third = if whiskers { ",whisker" } else { "" };
         let _ = writeln!(csv, "series,\"{}\",\"{}\"{third}", self.x.label, self.y.label);
-        for (number, drawn) in drawn.iter().enumerate() {
-            let name = drawn.series.label.clone().unwrap_or_else(|| format!("background {number}"));
+        for (name, drawn) in named {
             for (index, (x, y)) in drawn.values.iter().enumerate() {
                 let end = drawn.whiskers.get(index).map_or_else(String::new, |(_, end)| format!("{end:e}"));
                 let third = if whiskers { format!(",{end}") } else { end };
@@ -189,48 +189,36 @@ impl Chart {
 /// The entry of a labelled series: its marker, or its line.
 fn legend_entry(series: &Series) -> Option<LegendEntry> {
     let label = series.label.clone()?;
-    let Look { colour, stroke, marker, .. } = series.look;
+    let Look { colour, dashes, marker, .. } = series.look;
     let shape = marker.map_or(LegendShape::Line, |(shape, _)| LegendShape::Marker(shape));
-    // The sample is ten pixels long: its patterns are shorter than those of the lines.
-    let dasharray = match stroke {
-        Stroke::Solid => None,
-        Stroke::Dashed => Some("4 2".to_owned()),
-        Stroke::Dotted => Some("1.5 1.5".to_owned()),
-    };
+    let dasharray = dashes.map(|[_, sample]| sample.to_owned());
     Some(LegendEntry { label, color: colour.to_owned(), shape, dasharray })
 }
 
-fn line_style(stroke: Stroke) -> LineStyle {
-    match stroke {
-        Stroke::Solid => LineStyle::Solid,
-        Stroke::Dashed => LineStyle::Dashed,
-        Stroke::Dotted => LineStyle::Dotted,
-    }
-}
-
-/// The points of a series that the figure can resolve.
-fn thinned<'a>(drawn: &Drawn<'a>, x: &Ruler, y: &Ruler, area: Area) -> Drawn<'a> {
-    let pixel = |ruler: &Ruler, length: f64, c: f64| (c - ruler.range.0) / (ruler.range.1 - ruler.range.0) * length;
-    let pixels: Vec<(f64, f64)> =
-        drawn.coordinates.iter().map(|&(a, b)| (pixel(x, area.width, a), pixel(y, area.height, b))).collect();
-    let kept = drawn.series.thinning.keep(&pixels);
-    let pick = |points: &[(f64, f64)]| kept.iter().filter_map(|&index| points.get(index).copied()).collect();
-    Drawn {
-        series: drawn.series,
-        coordinates: pick(&drawn.coordinates),
-        values: pick(&drawn.values),
-        whiskers: pick(&drawn.whiskers),
+impl Frame {
+    /// The points of each series that the figure can resolve.
+    fn thinned<'a>(&self, placed: &[Drawn<'a>]) -> Vec<Drawn<'a>> {
+        let Self { x, y, area, .. } = self;
+        let pixel = |ruler: &Ruler, length: f64, c: f64| (c - ruler.range.0) / ruler.length() * length;
+        let one = |&Drawn { series, ref coordinates, ref values, ref whiskers }: &Drawn<'a>| {
+            let pixels = coordinates.iter().map(|&(a, b)| (pixel(x, area.width, a), pixel(y, area.height, b)));
+            let kept = series.thinning.keep(&pixels.collect::<Vec<_>>());
+            let pick = |points: &[(f64, f64)]| kept.iter().filter_map(|&index| points.get(index).copied()).collect();
+            Drawn { series, coordinates: pick(coordinates), values: pick(values), whiskers: pick(whiskers) }
+        };
+        placed.iter().map(one).collect()
     }
 }
 
 /// The library's plots for one series, in units of the axes: a line, markers, or both.
 fn plots(drawn: &Drawn<'_>, units: (f64, f64)) -> Vec<Plot> {
-    let Look { colour, width, stroke, marker } = drawn.series.look;
+    let Look { colour, width, dashes, marker } = drawn.series.look;
     let points = || drawn.coordinates.iter().map(|(x, y)| (x / units.0, y / units.1));
     let mut plots = Vec::new();
     if width > 0.0 {
         let line = LinePlot::new().with_data(points()).with_color(colour).with_stroke_width(width);
-        plots.push(Plot::Line(line.with_line_style(line_style(stroke))));
+        let style = dashes.map_or(LineStyle::Solid, |[pattern, _]| LineStyle::Custom(pattern.to_owned()));
+        plots.push(Plot::Line(line.with_line_style(style)));
     }
     if let Some((shape, radius)) = marker {
         let scatter = ScatterPlot::new().with_data(points()).with_color(colour).with_size(radius);

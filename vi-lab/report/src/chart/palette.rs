@@ -5,28 +5,21 @@
 use kuva::prelude::MarkerShape;
 
 /// How a series is drawn.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// Colour as hexadecimal RGB.
     pub colour: &'static str,
     /// Width of the line in pixels; zero draws none.
     pub width: f64,
-    /// Pattern of the line.
-    pub stroke: Stroke,
+    /// Lengths of dashes and gaps, in the figure and in the legend, whose sample is ten pixels long; `None` for a line
+    /// without gaps.
+    pub dashes: Option<[&'static str; 2]>,
     /// Marker at each point, with its radius in pixels.
     pub marker: Option<(MarkerShape, f64)>,
 }
 
-/// Pattern of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stroke {
-    /// Without gaps.
-    Solid,
-    /// Dashes.
-    Dashed,
-    /// Dots.
-    Dotted,
-}
+const DASHED: Option<[&str; 2]> = Some(["8 4", "4 2"]);
+const DOTTED: Option<[&str; 2]> = Some(["2 4", "1.5 1.5"]);
 
 impl Look {
     /// The energy-preserving integrator.
@@ -35,19 +28,19 @@ impl Look {
     pub const FIXED: Self = Self::of("#0072B2", MarkerShape::Square);
     /// Gauss methods of few stages, and of many.
     pub const GAUSS: [Self; 2] = [
-        Self { stroke: Stroke::Dashed, ..Self::of("#56B4E9", MarkerShape::Plus) },
+        Self { dashes: DASHED, ..Self::of("#56B4E9", MarkerShape::Plus) },
         Self { width: 2.6, ..Self::of("#56B4E9", MarkerShape::Circle) },
     ];
     /// A method of another library.
     pub const RIVAL: Self = Self::of("#000000", MarkerShape::Cross);
     /// The exact solution, or a theoretical law.
-    pub const EXACT: Self = Self { colour: "#333333", width: 1.4, stroke: Stroke::Dashed, marker: None };
+    pub const EXACT: Self = Self { colour: "#333333", width: 1.4, dashes: DASHED, marker: None };
     /// Outline of [`Look::EXACT`] on a coloured background.
-    pub const HALO: Self = Self { colour: "#FFFFFF", width: 4.0, stroke: Stroke::Solid, marker: None };
+    pub const HALO: Self = Self { colour: "#FFFFFF", width: 4.0, dashes: None, marker: None };
     /// A published number.
-    pub const PUBLISHED: Self = Self { colour: "#777777", width: 1.4, stroke: Stroke::Dotted, marker: None };
+    pub const PUBLISHED: Self = Self { colour: "#777777", width: 1.4, dashes: DOTTED, marker: None };
     /// Level sets and similar curves.
-    pub const BACKGROUND: Self = Self { colour: "#C9CED6", width: 1.0, stroke: Stroke::Solid, marker: None };
+    pub const BACKGROUND: Self = Self { colour: "#C9CED6", width: 1.0, dashes: None, marker: None };
     /// Further series in order.
     pub const OTHERS: [Self; 4] = [
         Self::of("#009E73", MarkerShape::Triangle),
@@ -57,7 +50,7 @@ impl Look {
     ];
 
     const fn of(colour: &'static str, marker: MarkerShape) -> Self {
-        Self { colour, width: 1.8, stroke: Stroke::Solid, marker: Some((marker, 4.0)) }
+        Self { colour, width: 1.8, dashes: None, marker: Some((marker, 4.0)) }
     }
 
     /// The line alone.
@@ -69,13 +62,13 @@ impl Look {
     /// The line alone, dashed.
     #[must_use]
     pub const fn dashed(self) -> Self {
-        Self { marker: None, stroke: Stroke::Dashed, ..self }
+        Self { marker: None, dashes: DASHED, ..self }
     }
 
     /// The line alone, dotted.
     #[must_use]
     pub const fn dotted(self) -> Self {
-        Self { marker: None, stroke: Stroke::Dotted, ..self }
+        Self { marker: None, dashes: DOTTED, ..self }
     }
 
     /// The markers alone, of the given radius.

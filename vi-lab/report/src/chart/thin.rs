@@ -35,38 +35,27 @@ fn column(x: f64) -> i32 {
 
 /// First, lowest, highest and last point of each run of points in one column.
 fn envelope(points: &[(f64, f64)]) -> Vec<usize> {
-    let mut kept = Vec::new();
-    let mut runs = points.iter().enumerate().peekable();
-    while let Some((first, &(x, y))) = runs.next() {
-        let mut low = (first, y);
-        let mut high = (first, y);
-        let mut last = first;
-        while let Some((index, &(_, y))) = runs.next_if(|(_, (next, _))| column(*next) == column(x)) {
-            if y < low.1 {
-                low = (index, y);
-            }
-            if y > high.1 {
-                high = (index, y);
-            }
-            last = index;
-        }
-        kept.extend(BTreeSet::from([first, low.0, high.0, last]));
+    let (mut kept, mut first) = (Vec::new(), 0);
+    for run in points.chunk_by(|one, next| column(one.0) == column(next.0)) {
+        let end = first + run.len();
+        let below = |one: &usize, other: &usize| points[*one].1.total_cmp(&points[*other].1);
+        let low = (first..end).min_by(below);
+        let high = (first..end).min_by(|one, other| below(other, one));
+        kept.extend(BTreeSet::from_iter([Some(first), low, high, Some(end - 1)]).into_iter().flatten());
+        first = end;
     }
     kept
 }
 
 /// Points at least half a pixel from the last kept one; the end is always kept.
 fn curve(points: &[(f64, f64)]) -> Vec<usize> {
-    let mut kept: Vec<usize> = Vec::new();
     let mut last: Option<(f64, f64)> = None;
-    for (index, &(x, y)) in points.iter().enumerate() {
-        let far = last.is_none_or(|(x0, y0)| (x - x0).hypot(y - y0) >= 0.5);
-        if far || index + 1 == points.len() {
-            kept.push(index);
-            last = Some((x, y));
-        }
-    }
-    kept
+    let is_kept = |&(index, &(x, y)): &(usize, &(f64, f64))| {
+        let is_far = last.is_none_or(|(x0, y0)| (x - x0).hypot(y - y0) >= 0.5);
+        last = if is_far { Some((x, y)) } else { last };
+        is_far || index + 1 == points.len()
+    };
+    points.iter().enumerate().filter(is_kept).map(|(index, _)| index).collect()
 }
 
 /// The first point of each cell of two by two pixels.
