@@ -54,7 +54,7 @@ impl Findings {
             if points.is_empty() {
                 continue;
             }
-            let line = Series::curve(method.name(), method.look(), points);
+            let line = Series::curve(method.name, method.look, points);
             series.push(line.with_whiskers(shown.iter().filter_map(&whisker).collect()));
         }
         let (low, high) = extremes(series.iter().flat_map(|line| line.points.iter().map(|(_, y)| *y)));
@@ -66,14 +66,14 @@ impl Findings {
 
     /// Error against the step, for the methods with a given step.
     pub(super) fn orders(&self, system: &str) -> Chart {
-        let stepping = self.methods().filter(|method| *method != Method::Rival);
+        let stepping = self.methods().filter(|method| *method != Method::RIVAL);
         let series = stepping.map(|method| {
             let order = fitted_order(self.points(method), self.agreement.floor());
             let label = order.map_or_else(
-                || method.name().to_owned(),
-                |order| format!("{}: {order:.2}", method.name().replace("energy-preserving", "energy-pres.")),
+                || method.name.to_owned(),
+                |order| format!("{}: {order:.2}", method.name.replace("energy-preserving", "energy-pres.")),
             );
-            Series::curve(label, method.look(), self.shown(method).map(|(h, point)| (h, point.error)).collect())
+            Series::curve(label, method.look, self.shown(method).map(|(h, point)| (h, point.error)).collect())
         });
         Chart::new(
             "order",
@@ -90,7 +90,7 @@ impl Findings {
         for method in self.methods() {
             let price = |error: f64| self.price(method, error).map_or_else(|| "—".to_owned(), duration);
             let [a, b, c, d] = PRICED.map(price);
-            table.row([method.name().to_owned(), a, b, c, d]);
+            table.row([method.name.to_owned(), a, b, c, d]);
         }
         table
     }
@@ -127,7 +127,7 @@ impl Findings {
         let head = ["method", "setting", "error", "evaluations", "seconds, least", "seconds, median", "ended"];
         let mut table = Table::new("runs", head);
         for run in &self.runs {
-            let name = run.method.name().to_owned();
+            let name = run.method.name.to_owned();
             let setting = format!("{:e}", run.setting);
             table.row(match &run.outcome {
                 Ok(point) => [
@@ -160,7 +160,7 @@ impl Findings {
                 sentences.push(format!(
                     "{which} {} runs of {} ended early; at {setting}: {first}.",
                     of.len(),
-                    method.name()
+                    method.name
                 ));
             }
             let lost = self.points(method).filter(|(_, point)| point.error > LOST).count();
@@ -168,7 +168,7 @@ impl Findings {
                 sentences.push(format!(
                     "{lost} of the {} runs of {} have an error above {LOST}.",
                     of.len(),
-                    method.name()
+                    method.name
                 ));
             }
         }

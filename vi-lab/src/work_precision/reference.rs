@@ -97,7 +97,7 @@ impl<'a> Reference<'a> {
             let task = Task { start, end, method, setting };
             self.error(&task.reached(self.system)?.0)
         };
-        Ok(Agreement { composed: error(Method::KAHAN_LI_8, h)?, h, rival: error(Method::Rival, TOLERANCE)? })
+        Ok(Agreement { composed: error(Method::KAHAN_LI_8, h)?, h, rival: error(Method::RIVAL, TOLERANCE)? })
     }
 }
 

@@ -75,20 +75,14 @@ fn finest(coordinates: usize, quick: bool) -> i32 {
     if quick { 1 } else { (5 - doublings).max(2) }
 }
 
-/// Number of steps per factor of 2 in a ladder. Errors of Gauss methods change by up to 60 000 in this interval: with
-/// two steps the least time for an error would be off by two fifths, of the fast steps of splittings by a quarter.
-fn rungs(method: Method) -> i32 {
-    if matches!(method, Method::Gauss(_)) || method.is_splitting() { 4 } else { 2 }
-}
-
 /// The settings of a method, coarse to fine. Methods with substeps take longer steps.
 fn settings(method: Method, until: f64, finest: i32) -> Vec<f64> {
-    if method == Method::Rival {
+    if method == Method::RIVAL {
         return TOLERANCES.rev().map(|power| 10_f64.powf(0.5 * f64::from(power))).collect();
     }
     #[allow(clippy::cast_precision_loss)] // at most 32
     let parts = method.parts() as f64;
-    let rungs = rungs(method);
+    let rungs = method.rungs();
     // Splittings are fast, also with the short steps of small errors.
     let finest = if method.is_splitting() { finest + 3 } else { finest };
     (-COARSEST * rungs..=finest * rungs)
@@ -150,7 +144,7 @@ fn time(
     let mut times = vec![Vec::new(); runs.len()];
     for _ in 0..rounds {
         for (run, times) in runs.iter().zip(&mut times) {
-            progress.message(run.method.name());
+            progress.message(run.method.name);
             progress.advance_by(1);
             if run.outcome.is_ok() {
                 let task = Task { start, end, method: run.method, setting: run.setting };
@@ -206,7 +200,7 @@ mod tests {
         let orders = [(fixed, 2.0), (four, 4.0), (six, 6.0), (eight, 8.0), (split, 6.0), (gauss, 8.0), (energy, 2.0)];
         for (method, order) in orders {
             let fitted = fitted_order(found.points(method), floor).expect("an order");
-            assert!((fitted - order).abs() < 0.3, "{}: order {fitted}", method.name());
+            assert!((fitted - order).abs() < 0.3, "{}: order {fitted}", method.name);
         }
     }
 
