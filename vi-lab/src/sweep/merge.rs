@@ -67,7 +67,6 @@ pub(super) fn write(first: &Chunks, folders: &[Chunks], output: &Path) -> Result
     let mut tally = Tally::default();
     for number in 0..chunks {
         tally += source(&number).unwrap_or(first).read(number, &mut |table, row| {
-            // A file without this table has been changed, which its checksum will show.
             targets.iter_mut().find(|target| target.table == table).map_or(Ok(()), |target| target.write(row))
         })?;
     }

@@ -20,7 +20,7 @@ const STEPS: f64 = 2e5;
 const MOST_ITEMS: u64 = 1 << 14;
 /// Minimum number of chunks, if there are enough runs, so that all cores have work.
 const FEWEST_CHUNKS: u64 = 256;
-/// Maximum bytes of the series of one run, which is held in memory.
+/// Maximum bytes of the series of a chunk, which is held in memory.
 const MOST_BYTES: f64 = 3.8e7;
 /// Bytes of a number with its comma, measured.
 const BYTES: f64 = 19.0;
@@ -54,10 +54,8 @@ impl Study {
     /// Rejects a series that may not fit into memory.
     #[allow(clippy::cast_precision_loss)] // an estimate
     fn check_series(&self) -> Result<(), Failure> {
-        let columns = self.request.columns().len() + 1;
-        let rows = self.request.length.steps(&self.request.plan) / self.request.every as f64;
-        let bytes = BYTES * rows * columns as f64;
-        if !self.kept.has(Keep::Series) || bytes <= MOST_BYTES {
+        let (rows, bytes) = self.series();
+        if bytes <= MOST_BYTES {
             return Ok(());
         }
         let every = (self.request.every as f64 * bytes / MOST_BYTES).ceil();
@@ -69,13 +67,21 @@ impl Study {
         )))
     }
 
+    /// Rows and bytes of the series of a run.
+    #[allow(clippy::cast_precision_loss)] // an estimate
+    fn series(&self) -> (f64, f64) {
+        let Request { plan, length, every, .. } = &self.request;
+        let rows = if self.kept.has(Keep::Series) { length.steps(plan) / *every as f64 } else { 0.0 };
+        (rows, BYTES * rows * (self.request.columns().len() + 1) as f64)
+    }
+
     /// All inputs of its tables.
     pub(super) fn description(&self) -> Description {
         let Request { system, plan, length, every, .. } = &self.request;
         let items = self.items.count();
         let balanced = items.div_ceil(FEWEST_CHUNKS).clamp(1, MOST_ITEMS);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at least 1
-        let chunk = balanced.min((STEPS / length.steps(plan).max(1.0)).max(1.0) as u64);
+        let chunk = balanced.min((STEPS / length.steps(plan)).min(MOST_BYTES / self.series().1).max(1.0) as u64);
         let length = match length {
             Length::Steps(steps) => format!("{steps} steps"),
             Length::Until(end) => format!("until t = {}", short(*end)),

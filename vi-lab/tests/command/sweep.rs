@@ -70,6 +70,12 @@ impl Folder {
         success(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat())
     }
 
+    /// Starts a sweep of its scene, or of a shard.
+    fn start(&self, output: &str, shard: &[&str]) -> Child {
+        let (scene, output) = (self.scene(), self.at(output));
+        start(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat())
+    }
+
     /// Whether the tables of a sweep of `MIXED` equal those of an undivided one.
     fn is_whole(&self, name: &str, what: &str) {
         for file in ["csv", "section.csv", "series.csv"] {
@@ -172,6 +178,12 @@ fn shards_are_the_whole_byte_for_byte() {
     folder.sweep("a.csv", &["--shard", "0/2"]);
     assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], "c.csv"), (Some(0), String::new()));
     folder.is_whole("c", "two folders");
+    // Two processes that write the same chunks.
+    for child in ["0/1", "0/1"].map(|shard| folder.start("d.csv", &["--shard", shard])) {
+        assert!(child.wait_with_output().expect("the command ends").status.success());
+    }
+    assert_eq!(folder.merge(&["d.csv.part"], "d.csv"), (Some(0), String::new()));
+    folder.is_whole("d", "two processes");
     // Without --shard the sweep computes the missing chunks, merges and removes the folder.
     folder.sweep("b.csv", &[]);
     folder.is_whole("b", "a sweep that goes on from shards");
@@ -374,22 +386,29 @@ fn a_disk_that_is_full_keeps_the_chunks_before() {
 fn a_second_process_is_refused_while_the_first_works() {
     let folder = Folder::new("second", ENDLESS);
     let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.part");
-    let first = start(&["sweep", &scene, "-o", &output]);
-    while folder.chunks(part).is_empty() {
-        sleep(Duration::from_millis(1));
+    let shard = ["--shard", "0/2"].as_slice();
+    // A process that computes all is alone; shards are not.
+    for (options, others) in [([].as_slice(), vec![[].as_slice(), shard]), (shard, vec![[].as_slice()])] {
+        let before = folder.chunks(part);
+        let first = folder.start("a.csv", options);
+        while folder.chunks(part).len() < before.len() + 1 {
+            sleep(Duration::from_millis(1));
+        }
+        for other in others {
+            let second = lab(&[["sweep", &scene, "-o", &output].as_slice(), other].concat());
+            let message = format!("error: another process uses {}; wait for it\n", folder.at(part));
+            assert_eq!(second, (Some(2), String::new(), message));
+        }
+        let before = folder.chunks(part);
+        while folder.chunks(part).len() < before.len() + 2 {
+            sleep(Duration::from_millis(1));
+        }
+        send("-INT", &first);
+        let ended = first.wait_with_output().expect("the command ends");
+        assert_eq!(ended.status.code(), Some(130));
+        let after = folder.chunks(part);
+        assert!(before.iter().all(|(name, chunk)| after[name] == *chunk));
     }
-    let second = lab(&["sweep", &scene, "-o", &output]);
-    let message = format!("error: another process uses {}; wait for it\n", folder.at(part));
-    assert_eq!(second, (Some(2), String::new(), message));
-    let before = folder.chunks(part);
-    while folder.chunks(part).len() < before.len() + 2 {
-        sleep(Duration::from_millis(1));
-    }
-    send("-INT", &first);
-    let ended = first.wait_with_output().expect("the command ends");
-    assert_eq!(ended.status.code(), Some(130));
-    let after = folder.chunks(part);
-    assert!(before.iter().all(|(name, chunk)| after[name] == *chunk));
 }
 
 #[cfg(target_os = "linux")]
@@ -459,6 +478,10 @@ fn a_chunk_that_was_changed_is_named_and_made_again() {
     for bad in [
         good.replacen("series,7,0.0,", "series,7,0.035,", 1),
         good.replacen("\nseries,", "\nseries,7,0.0,0.0,0.0,0.0,0.0,0.0\nseries,", 1),
+        good.replacen("failed", "lost", 1),
+        good.replacen("# 0 failed", "# 1 failed", 1),
+        good[..good.rfind('#').expect("a last line")].to_owned(),
+        good.clone() + "\n",
         good.trim_end().to_owned(),
     ] {
         assert!(bad != good);
