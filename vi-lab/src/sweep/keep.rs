@@ -50,6 +50,11 @@ impl Kept {
         self.kinds.contains(&keep)
     }
 
+    /// The results in the order of their columns.
+    pub(super) fn in_order(&self) -> impl Iterator<Item = Keep> {
+        Keep::ALL.into_iter().filter(|keep| self.has(*keep))
+    }
+
     /// The heading of each of [`TABLES`] that is kept.
     pub(super) fn headings<'a>(
         &self,
@@ -57,23 +62,18 @@ impl Kept {
         coordinates: &[&str],
     ) -> [Option<String>; TABLES.len()] {
         let nodes = Row::columns(coordinates, self.constraints, self.is_shifted);
-        let mut runs: Vec<String> = swept.map(str::to_owned).collect();
-        if self.has(Keep::Ending) {
-            runs.extend(["ending", "steps"].map(str::to_owned));
-        }
-        if self.has(Keep::Accuracy) {
-            runs.push(STEP_ERROR.to_owned());
-        }
-        if self.has(Keep::End) {
-            runs.extend(nodes.iter().map(|name| format!("end_{name}")));
-        }
-        if self.has(Keep::Extremes) {
-            let ranged = coordinates.iter().copied().chain(["H"]);
-            runs.extend(ranged.flat_map(|name| ["min", "max"].map(|which| format!("{which}_{name}"))));
-        }
-        if self.has(Keep::Energy) {
-            runs.extend(["error_H", "error_E"].map(str::to_owned));
-        }
+        let kept = |keep: Keep| match keep {
+            Keep::Ending => ["ending", "steps"].map(str::to_owned).to_vec(),
+            Keep::Accuracy => vec![STEP_ERROR.to_owned()],
+            Keep::End => nodes.iter().map(|name| format!("end_{name}")).collect(),
+            Keep::Extremes => {
+                let ranged = coordinates.iter().copied().chain(["H"]);
+                ranged.flat_map(|name| ["min", "max"].map(|which| format!("{which}_{name}"))).collect()
+            }
+            Keep::Energy => ["error_H", "error_E"].map(str::to_owned).to_vec(),
+            Keep::Series => Vec::new(),
+        };
+        let runs: Vec<String> = swept.map(str::to_owned).chain(self.in_order().flat_map(kept)).collect();
         // A crossing is not a node: it has no discrete energies and no h.
         let crossings = &nodes[..nodes.len() - if self.is_shifted { 3 } else { 2 }];
         let heading = |columns: &[String]| {

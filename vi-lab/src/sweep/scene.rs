@@ -83,6 +83,11 @@ pub(crate) enum Keep {
     Series,
 }
 
+impl Keep {
+    pub(super) const ALL: [Self; 6] =
+        [Self::Ending, Self::Accuracy, Self::End, Self::Extremes, Self::Energy, Self::Series];
+}
+
 /// A section: a coordinate crosses a value, or a period of time passes.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -125,21 +125,14 @@ impl Study {
             }
         }
         let _ = write!(text, "runs,{item}{}", entries(self.items.values(item)));
-        if self.kept.has(Keep::Ending) {
-            let _ = write!(text, ",{},{}", outcome.ending, outcome.steps);
-        }
-        if self.kept.has(Keep::Accuracy) {
-            text.push_str(&entries([outcome.step_error]));
-        }
-        if self.kept.has(Keep::End) {
-            text.push_str(&entries(outcome.end(self.request.columns().len())));
-        }
-        if self.kept.has(Keep::Extremes) {
-            text.push_str(&entries(outcome.extremes()));
-        }
-        if self.kept.has(Keep::Energy) {
-            text.push_str(&entries(outcome.errors()));
-        }
+        text.extend(self.kept.in_order().map(|keep| match keep {
+            Keep::Ending => format!(",{},{}", outcome.ending, outcome.steps),
+            Keep::Accuracy => entries([outcome.step_error]),
+            Keep::End => entries(outcome.end(self.request.columns().len())),
+            Keep::Extremes => entries(outcome.extremes()),
+            Keep::Energy => entries(outcome.errors()),
+            Keep::Series => String::new(),
+        }));
         text.push('\n');
         // NaN, if no error was measured, is not above it.
         let is_inaccurate = outcome.step_error > POOR;
