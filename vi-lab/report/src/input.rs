@@ -90,11 +90,4 @@ mod tests {
             assert_eq!(count(text).ok(), expected, "{text}");
         }
     }
-
-    #[test]
-    fn a_printed_minus_is_explained() {
-        assert_eq!(number(" -1.5e-3 "), Ok(-1.5e-3));
-        assert_eq!(number("one"), Err("write a number such as 0.5 or 1e-3".to_owned()));
-        assert!(number("−1").is_err_and(|message| message.ends_with("; write the minus sign as a hyphen `-`")));
-    }
 }

@@ -289,17 +289,6 @@ mod tests {
     }
 
     #[test]
-    fn a_million_points_make_a_small_file_the_same_every_time() {
-        let points: Vec<(f64, f64)> = (0..1_000_000).map(|i| f64::from(i) * 1e-3).map(|x| (x, x.sin())).collect();
-        let chart = chart(Axis::linear("y"), vec![Series::line("sine", Look::FIXED.line(), points)]);
-        let first = chart.figure();
-        let second = chart.figure();
-        // Measured 26 kB.
-        assert!(first.svg.len() < 60_000, "{} bytes", first.svg.len());
-        assert_eq!(first.csv, second.csv);
-    }
-
-    #[test]
     fn equal_aspect_draws_circles_as_circles() {
         let circle: Vec<(f64, f64)> =
             (0..=360).map(|i| f64::from(i).to_radians()).map(|a| (a.cos(), a.sin())).collect();
