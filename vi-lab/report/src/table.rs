@@ -15,14 +15,8 @@ pub struct Table {
     /// Stem of the file name.
     pub name: &'static str,
     head: Vec<String>,
-    rows: Vec<Row>,
-}
-
-/// The cells of a row, and the part of the page to which the last one links.
-#[derive(Clone, Debug)]
-struct Row {
-    cells: Vec<String>,
-    target: Option<&'static str>,
+    /// The cells of each row, and the part of the page to which the last one links.
+    rows: Vec<(Vec<String>, Option<&'static str>)>,
 }
 
 impl Table {
@@ -33,12 +27,12 @@ impl Table {
 
     /// Adds a row.
     pub fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.rows.push(Row { cells: Vec::from(cells), target: None });
+        self.rows.push((cells.into(), None));
     }
 
     /// Adds a row whose last cell links to a figure, table or section of the same page.
     pub fn linked_row<const N: usize>(&mut self, cells: [String; N], target: &'static str) {
-        self.rows.push(Row { cells: Vec::from(cells), target: Some(target) });
+        self.rows.push((cells.into(), Some(target)));
     }
 
     /// The table as an HTML element.
@@ -50,11 +44,11 @@ impl Table {
             let _ = write!(html, "<th>{}</th>", escape(cell));
         }
         html.push_str("</tr></thead>\n<tbody>\n");
-        for row in &self.rows {
+        for (cells, target) in &self.rows {
             html.push_str("<tr>");
-            for (index, cell) in row.cells.iter().enumerate() {
+            for (index, cell) in cells.iter().enumerate() {
                 let text = escape(cell);
-                let _ = match row.target.filter(|_| index + 1 == row.cells.len()) {
+                let _ = match target.filter(|_| index + 1 == cells.len()) {
                     Some(target) => write!(html, "<td><a href=\"#{target}\">{text}</a></td>"),
                     None => write!(html, "<td>{text}</td>"),
                 };
@@ -69,7 +63,7 @@ impl Table {
     #[must_use]
     pub fn csv(&self) -> String {
         let mut csv = String::new();
-        for row in core::iter::once(&self.head).chain(self.rows.iter().map(|row| &row.cells)) {
+        for row in core::iter::once(&self.head).chain(self.rows.iter().map(|(cells, _)| cells)) {
             csv.push_str(&row.iter().map(|cell| csv_field(cell)).collect::<Vec<_>>().join(","));
             csv.push('\n');
         }
@@ -84,8 +78,8 @@ impl Table {
             .set_content_arrangement(ContentArrangement::Dynamic)
             .set_width(WIDTH)
             .set_header(&self.head);
-        for row in &self.rows {
-            text.add_row(&row.cells);
+        for (cells, _) in &self.rows {
+            text.add_row(cells);
         }
         text.trim_fmt()
     }

@@ -18,14 +18,8 @@ pub struct Trace {
     count: u64,
 }
 
-/// Consecutive points.
-#[derive(Clone, Copy, Debug)]
-struct Stretch {
-    first: Point,
-    low: Point,
-    high: Point,
-    last: Point,
-}
+/// The first, lowest, highest and last of consecutive points.
+type Stretch = [Point; 4];
 
 /// A point with its index.
 #[derive(Clone, Copy, Debug)]
@@ -34,35 +28,26 @@ struct Point {
     at: (f64, f64),
 }
 
-impl Stretch {
-    fn of(point: Point) -> Self {
-        Self { first: point, low: point, high: point, last: point }
-    }
-
-    /// Merges two stretches.
-    fn joined(self, next: Self) -> Self {
-        Self {
-            first: self.first,
-            low: if next.low.at.1 < self.low.at.1 { next.low } else { self.low },
-            high: if next.high.at.1 > self.high.at.1 { next.high } else { self.high },
-            last: next.last,
-        }
-    }
+/// Merges a stretch and the next.
+fn joined([first, low, high, _]: Stretch, [_, next_low, next_high, last]: Stretch) -> Stretch {
+    let low = if next_low.at.1 < low.at.1 { next_low } else { low };
+    let high = if next_high.at.1 > high.at.1 { next_high } else { high };
+    [first, low, high, last]
 }
 
 impl Trace {
     /// Adds a point.
     pub fn push(&mut self, at: (f64, f64)) {
-        let next = Stretch::of(Point { number: self.count, at });
+        let next = [Point { number: self.count, at }; 4];
         let begins = self.count.is_multiple_of(1 << self.doublings);
         self.count += 1;
         match self.stretches.last_mut() {
-            Some(last) if !begins => *last = last.joined(next),
+            Some(last) if !begins => *last = joined(*last, next),
             _ => self.stretches.push(next),
         }
         if self.stretches.len() > STRETCHES {
             // The number of points is a multiple of a stretch plus one: all pairs except the last are complete.
-            let pair = |pair: &[Stretch]| pair.iter().copied().reduce(Stretch::joined);
+            let pair = |pair: &[Stretch]| pair.iter().copied().reduce(joined);
             self.stretches = self.stretches.chunks(2).filter_map(pair).collect();
             self.doublings += 1;
         }
@@ -71,19 +56,10 @@ impl Trace {
     /// The kept points.
     #[must_use]
     pub fn points(&self) -> Vec<(f64, f64)> {
-        let mut points = Vec::new();
-        for Stretch { first, low, high, last } in &self.stretches {
-            let mut stretch = [first, low, high, last];
-            stretch.sort_by_key(|point| point.number);
-            let mut before = None;
-            for Point { number, at } in stretch {
-                if before != Some(number) {
-                    points.push(*at);
-                }
-                before = Some(number);
-            }
-        }
-        points
+        let mut points = self.stretches.concat();
+        points.sort_by_key(|point| point.number);
+        points.dedup_by_key(|point| point.number);
+        points.into_iter().map(|point| point.at).collect()
     }
 }
 
