@@ -112,16 +112,25 @@ impl Sink for Csv {
 
 /// Adds the line of a row.
 fn line(block: &mut String, row: &Row) {
-    for (index, entry) in row.entries().enumerate() {
-        if index > 0 {
-            block.push(',');
-        }
-        if let Some(value) = entry {
-            // Writing to a string cannot fail.
-            let _ = write!(block, "{value:?}");
+    // Writing to a string cannot fail.
+    let _ = write!(block, "{:?}", row.t);
+    entries(block, numbers(row).skip(1));
+    block.push('\n');
+}
+
+/// The numbers of a row; NaN where it has none.
+pub(crate) fn numbers(row: &Row) -> impl Iterator<Item = f64> + '_ {
+    row.entries().map(|entry| entry.unwrap_or(f64::NAN))
+}
+
+/// Adds numbers, each after a comma, with the fewest digits that read back to the same bits. NaN is an empty entry.
+pub(crate) fn entries(text: &mut String, numbers: impl IntoIterator<Item = f64>) {
+    for number in numbers {
+        text.push(',');
+        if !number.is_nan() {
+            let _ = write!(text, "{number:?}");
         }
     }
-    block.push('\n');
 }
 
 #[cfg(test)]

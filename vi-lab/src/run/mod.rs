@@ -15,7 +15,7 @@
 //! | [`ways_out`] | alternatives if an energy-preserving step does not exist |
 //! | [`csv`], [`plot`] | destinations of rows |
 
-mod csv;
+pub(crate) mod csv;
 mod extent;
 pub(crate) mod method;
 pub(crate) mod placement;

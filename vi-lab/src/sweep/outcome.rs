@@ -1,6 +1,7 @@
 //! One run of a sweep. A failed start or step is not an error: the [`Outcome`] has an ending.
 
 use super::keep::STEPS_OF_A_PERIOD;
+use crate::run::csv::numbers;
 use crate::run::{self, Length};
 use vi_core::StepError;
 use vi_erased::System;
@@ -187,8 +188,7 @@ impl Outcome {
 
     /// The entries of the last node in `columns` columns.
     pub(super) fn end(&self, columns: usize) -> Vec<f64> {
-        let entries = |row: &Row| row.entries().map(|entry| entry.unwrap_or(f64::NAN)).collect();
-        self.last.as_ref().map_or_else(|| vec![f64::NAN; columns], entries)
+        self.last.as_ref().map_or_else(|| vec![f64::NAN; columns], |row| numbers(row).collect())
     }
 
     /// Smallest and largest value of each coordinate, then of H.

@@ -5,10 +5,10 @@ use super::items::Items;
 use super::keep::Kept;
 use super::outcome::{Member, NO_SECTION, Outcome, REACHED};
 use super::scene::Keep;
+use crate::run::csv::{entries, numbers};
 use crate::run::{Length, POOR, Request, method};
 use core::fmt::Write as _;
 use core::num::NonZeroU64;
-use vi_erased::Row;
 use vi_report::catalogue::Catalogue;
 use vi_report::failure::Failure;
 use vi_report::machine::VERSION;
@@ -111,28 +111,37 @@ impl Study {
         // Writing to a string cannot fail.
         let mut outcome = Outcome::of(&member, &mut |simulation| {
             if has_series {
-                let _ = writeln!(text, "series,{item}{}", entries(numbers(&simulation.row())));
+                let _ = write!(text, "series,{item}");
+                entries(text, numbers(&simulation.row()));
+                text.push('\n');
             }
         });
         if let Some(section) = &self.kept.section {
             let crossed = outcome.cross(&member, section, &mut |row| {
                 // As a node, but for E, E' and h.
                 let columns = row.entries().count() - 2;
-                let _ = writeln!(text, "section,{item}{}", entries(numbers(&row).take(columns)));
+                let _ = write!(text, "section,{item}");
+                entries(text, numbers(&row).take(columns));
+                text.push('\n');
             });
             if outcome.ending == REACHED && crossed.is_err() {
                 outcome.ending = NO_SECTION;
             }
         }
-        let _ = write!(text, "runs,{item}{}", entries(self.items.values(item)));
-        text.extend(self.kept.in_order().map(|keep| match keep {
-            Keep::Ending => format!(",{},{}", outcome.ending, outcome.steps),
-            Keep::Accuracy => entries([outcome.step_error]),
-            Keep::End => entries(outcome.end(self.request.columns().len())),
-            Keep::Extremes => entries(outcome.extremes()),
-            Keep::Energy => entries(outcome.errors()),
-            Keep::Series => String::new(),
-        }));
+        let _ = write!(text, "runs,{item}");
+        entries(text, self.items.values(item));
+        for keep in self.kept.in_order() {
+            match keep {
+                Keep::Ending => {
+                    let _ = write!(text, ",{},{}", outcome.ending, outcome.steps);
+                }
+                Keep::Accuracy => entries(text, [outcome.step_error]),
+                Keep::End => entries(text, outcome.end(self.request.columns().len())),
+                Keep::Extremes => entries(text, outcome.extremes()),
+                Keep::Energy => entries(text, outcome.errors()),
+                Keep::Series => {}
+            }
+        }
         text.push('\n');
         // NaN, if no error was measured, is not above it.
         let is_inaccurate = outcome.step_error > POOR;
@@ -148,31 +157,5 @@ impl Study {
         let is_watched = self.kept.has(Keep::Extremes) || self.kept.has(Keep::Energy);
         let is_measured = self.kept.has(Keep::Accuracy);
         Member { system, plan, length: *length, every: *every, is_watched, is_measured }
-    }
-}
-
-/// The numbers of a row; NaN where it has none.
-fn numbers(row: &Row) -> impl Iterator<Item = f64> + '_ {
-    row.entries().map(|entry| entry.unwrap_or(f64::NAN))
-}
-
-/// Numbers as entries of a row, each after a comma, with the fewest digits that read back to the same bits. NaN is an
-/// empty entry.
-fn entries(numbers: impl IntoIterator<Item = f64>) -> String {
-    let entry = |number: f64| if number.is_nan() { ",".to_owned() } else { format!(",{number:?}") };
-    numbers.into_iter().map(entry).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::entries;
-
-    #[test]
-    fn an_entry_reads_back_to_the_same_bits() {
-        let numbers = [0.1, -0.0, 5e-324, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, 1e16];
-        let text = entries(numbers);
-        let read = text.split(',').skip(1).map(|entry| entry.parse().expect("a number"));
-        assert!(read.map(f64::to_bits).eq(numbers.map(f64::to_bits)), "{text}");
-        assert_eq!(entries([1.0, f64::NAN, 2.5]), ",1.0,,2.5");
     }
 }
