@@ -43,15 +43,17 @@
 //! | [`derivatives`] | sensitivities to initial conditions and parameters, gradients, Lyapunov exponents |
 //! | `momentum`, [`energy_preserving`], [`gauss`] | solvers of the step equations |
 //! | `newton`, `solve`, [`linear`] | Newton iteration, root bracketing, small linear systems with their zero patterns |
+//! | `vector`, `branch` | the unknowns of a step as one vector; the root that a fixed step takes if there are several |
 //! | `predictor` | the initial guess of a step, extrapolated from the last steps |
 //! | `legendre` | velocities from momenta |
 //! | [`condition`] | condition numbers of the step equations |
-//! | [`error`] | the typed failures of a step, with their numbers |
+//! | [`error`], `explained` | the typed failures of a step, with their numbers; the reason why an expression is not finite |
 //! | [`check`] | tests of a system: derivatives, order, momenta, symplecticity; also from `check { … }` |
 //! | [`function`], [`table`] | derivatives of Rust functions; functions given by points |
 //! | [`real`] | number types: `f64`, duals, series, running error analysis, SIMD lanes |
 //! | `compensated`, `angles` | compensated summation; angles as a reduced angle and a count of turns |
 //! | [`called`], `delegate`, `forward` | wrappers of a system, for example with functions that are not inlined |
+//! | `support` | internals for the other crates of this project |
 //!
 //! | feature | adds |
 //! |---|---|

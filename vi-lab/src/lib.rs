@@ -16,7 +16,8 @@
 //! | `compare` | `vi-lab compare`: two models of one motion |
 //! | `expand`, `explain` | the products of the compiler; the mathematics of a system |
 //! | `along` | the summands of L that matter along a run |
-//! | `place`, `entries` | checks of files to read and write; entries of scenes |
+//! | `place`, `entries` | checks of files to write; entries of scenes |
+//! | `declared` | the systems of a user, listed in `main!` |
 //! | `vi_report` | output shared by all subcommands; the systems by name |
 //! | `vi_ready` | the predefined systems |
 

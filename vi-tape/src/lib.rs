@@ -11,7 +11,6 @@
 //! | `tables` | the tables of a system |
 //! | `code` | the facts and functions of a system |
 //! | `compile` | the code of a text |
-//! | `matrix` | matrices whose form is known at run time |
 //! | `kinds` | what differs between systems without and with constraints |
 //! | `tape` | a code as a system of N coordinates |
 //! | [`expressions`] | expressions in the names of a system, and the summands of L, along a motion |

@@ -27,7 +27,7 @@
 //! | `projection` | the state on the constraints nearest to a given one, [`State::projected`](crate::State::projected) |
 //! | `assembly` | a state on the constraints from a far guess, [`State::assembled`](crate::State::assembled) |
 //! | `equations` | the equations of a step of [`GaussLobatto`](crate::GaussLobatto), and their Jacobian |
-//! | `solve` | their solution to the rounding floor |
+//! | `solve`, `solved` | their solution to the rounding floor; a solved step |
 //! | `connected` | whether a long step continues short ones |
 //! | `reduced` | the same for point masses in a uniform field, in the impulses alone |
 //! | `guess` | the initial guess of a step |

@@ -15,7 +15,7 @@
 //! | `points` | the equations of motion at a point, generic and type-erased |
 //! | `linearization` | the point of a linearization, and how stiff a step is there |
 //! | `newton` | simplified Newton iteration, linearized at the middle of the step |
-//! | `modes` | the eigenbasis that splits its equations into small systems |
+//! | `modes`, `factors` | the eigenbasis that splits its equations into small systems; their factors |
 //! | `fixed_point_only` | in place of `newton` without the feature `alloc` |
 //! | `polynomial` | dense output |
 //! | `energies` | the discrete energies of a step |

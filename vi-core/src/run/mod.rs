@@ -9,8 +9,9 @@
 //! | `dense_output` | polynomials between the two nodes of a step |
 //! | `times` | states at given times |
 //! | `solution` | states with times and energies, as CSV |
-//! | `events` | states at sign changes of event functions |
+//! | `event`, `events` | event functions; states at their sign changes |
 //! | `search` | event search within one step |
+//! | `reached` | a run at a part of its next step, type-erased for the search |
 //! | `side` | sign of an event function just after a node |
 //! | `estimate` | measured error of a step, and of the steps of a run |
 //! | `tolerance` | a step length from a tolerance |

@@ -10,7 +10,7 @@
 //! |---|---|
 //! | [`request`], [`scene`] | the request: command line and scene, checked |
 //! | [`placement`] | initial states that follow from parameters, or move onto constraints |
-//! | [`shift`] | the notation of a shift |
+//! | [`shift`], [`method`] | the notation of a shift; the integrator in words |
 //! | [`resolution`], [`extent`] | rejected runs: steps below rounding, outputs of gigabytes |
 //! | [`ways_out`] | alternatives if an energy-preserving step does not exist |
 //! | [`csv`], [`plot`] | destinations of rows |

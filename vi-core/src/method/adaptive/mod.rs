@@ -5,6 +5,8 @@
 //! | `reversible` | that conserve energy, or have a `time_scale` | the length depends on the step alone, and not on its direction: no drift |
 //! | `decaying` | with friction, inputs or a dependence on time | the length keeps the error: fast modes that have died out do not count |
 //!
+//! `phase` measures the frequency of the forces along a step, for `reversible`.
+//!
 //! No map of them is symplectic: that needs [`InTransformedTime`](super::InTransformedTime) and a `time_scale`, which
 //! [`Adaptive`] takes too.
 

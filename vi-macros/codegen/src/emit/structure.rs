@@ -1,4 +1,5 @@
-//! The struct of a system: its parameters as public fields, their defaults, their names.
+//! The struct of a system: its parameters as public fields, their defaults, their names. A system with mistakes gets a
+//! stub: the struct with every trait that its clauses may give it, so that the surrounding code has no further errors.
 
 use super::constraints::Members;
 use super::formula::number;

@@ -7,7 +7,7 @@
 //! | file | what it shows |
 //! |---|---|
 //! | `syntax` | the clauses as they were parsed |
-//! | `model`, `discrete`, `findings` | chapters of the explanation |
+//! | `model`, `discrete`, `findings`, `functions` | chapters of the explanation |
 //! | `gauss` | a chapter: the equations of a Gauss step |
 //! | `loops` | chapters of a large system, and its functions |
 //! | `index` | a number in a loop by the user's names |
