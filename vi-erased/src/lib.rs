@@ -75,8 +75,8 @@ pub use system::{System, Typed};
 /// | `energy 2, 3` | energy-preserving Gauss steps of 2 and of 3 stages, which keep constraints |
 ///
 /// `fixed` and `fixed_2` need a rule, as by the clause `discretize trapezoidal;`, and `energy` without stages one with a
-/// step density, as `discretize midpoint;`. A system with constraints has
-/// only `gauss` and `energy` with stages.
+/// step density, as `discretize midpoint;`. A system with constraints has only `gauss`, `adaptive`, and `energy` with
+/// stages.
 #[macro_export]
 macro_rules! kind {
     ($system:ty, { $($method:ident $($stages:literal),*);* $(;)? }) => {
