@@ -11,7 +11,8 @@ use crate::real::Real;
 use crate::rules::{By, Own, Rule};
 use crate::stepping::{Batch, Convertible, Discretized, EnergyStepping, FixedStepping};
 
-/// Implements the motion traits by the dereferenced system, with this attribute on the functions of a point.
+/// Implements the motion traits by the dereferenced system, with this attribute on the functions of a point. A function
+/// that has a default and is in no list compiles, and returns the default: add each new one, as in `independent.rs`.
 macro_rules! motion {
     ($wrapper:ty, $attribute:tt $(, $rule:ident)?) => {
         impl<const N: usize, T: Real, S: Lagrangian<N, T>$(, $rule: Rule)?> Lagrangian<N, T> for $wrapper {
