@@ -378,6 +378,12 @@ fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
             "a step of h = 0.01 is below rounding at t = 1e30, where double-precision numbers are 141000000000000 apart; use \
              a larger --h, or times closer to zero",
         ),
+        // Whether the length at the end is below rounding is not known: the length of the first step would be.
+        (
+            &["run", "pendulum", "--method", "adaptive", "--h", "1e-3", "--until", "1e14"],
+            "the output would have about 1e17 rows, 11400000000 GB; write fewer rows with --every 11400000000, or allow more \
+             than 1 GB with --large-output",
+        ),
         (
             &["run", "pendulum", "--method", "energy", "--t", "1e17", "--steps", "1"],
             "a step of h = 0.01 is below rounding at t = 1e17, where double-precision numbers are 16 apart; use a larger --h, \

@@ -13,7 +13,7 @@ use vi_report::numbers::{about, short};
 pub(super) fn check_times(plan: &Plan, length: Length) -> Result<(), Failure> {
     square(plan.h)?;
     time(plan.t, plan.h)?;
-    let finds_its_length = plan.method == Method::Energy || plan.dtau.is_some();
+    let finds_its_length = matches!(plan.method, Method::Energy | Method::Adaptive) || plan.dtau.is_some();
     if finds_its_length { Ok(()) } else { time(length.end(plan), plan.h) }
 }
 
