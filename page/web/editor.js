@@ -10,7 +10,7 @@ const TOKENS = new RegExp(
     'gu',
 );
 const CLAUSES = new Set(
-    'pub struct const param input coord angle rotation momentum let L H force dissipation time_scale constraint table fn discretize check if else in'.split(' '),
+    'pub struct const param input coord angle rotation momentum let L H force torque space_torque dissipation time_scale constraint table fn discretize check if else in'.split(' '),
 );
 const FUNCTIONS = new Set(
     'dot sum sin cos tan asin acos atan atan2 sinh cosh tanh exp ln sqrt abs sign hypot norm cross transpose max min clamp pi'.split(' '),
