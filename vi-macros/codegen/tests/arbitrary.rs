@@ -38,7 +38,7 @@ const WORDS: &str = "struct const param coord let momentum of L H force dissipat
     gd_plus f h t t0 t1 q0 q1 q x y θ i in dot sum pi sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign \
     hypot pow cross norm transpose self Self r#type fn _ + - * / ^ = ; , : . .. # ! & 0 1 2 3 7 0.5 1e3 1e-3 1e308 1e400 1e-400 0x10 1f64 2x 100 256 257 \
     1000 20000 65536 4294967296 18446744073709551616 99999999999999999999999999999999999999999999999999 1_0 1e-30 2.5e-200 0.1234567890123456789012345678901234567890 \
-    if as for max log xdot e λ time constraint 1.5f64 | .. [1,2] [3] m l k \"text\" 'c' b\"b\" true";
+    if as for max log xdot e λ time constraint input angle rotation table torque space_torque time_scale check min clamp else 1.5f64 | .. [1,2] [3] m l k \"text\" 'c' b\"b\" true";
 
 /// The next number of a fixed pseudo-random sequence: a linear congruence (Knuth, MMIX).
 struct Sequence(u64);
