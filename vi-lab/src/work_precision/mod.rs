@@ -26,7 +26,6 @@ use vi_report::html::escape;
 use vi_report::input::number;
 use vi_report::numbers::scientific;
 use vi_report::page::Report;
-use vi_report::progress::Progress;
 
 /// `vi-lab work-precision SYSTEM`.
 #[derive(Debug, Args)]
@@ -56,10 +55,8 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     let entry = with_rule(entry(arguments, catalogue)?, "work-precision")?;
     let name = kebab(entry.name);
     let mut report = Report::new(&arguments.out, &format!("Error against work: {name}"), entry.about)?;
-    let mut progress = Progress::new(study::length(&entry, arguments.quick));
-    let found = study::findings(&entry, arguments.quick, &mut progress)
+    let found = study::findings(&entry, arguments.quick)
         .map_err(|ended| Failure::Input(format!("the motion of {name} cannot be computed: {ended}")))?;
-    drop(progress);
     introduction(&mut report, &entry, &found);
     work(&mut report, &name, &found);
     order(&mut report, &name, &found);

@@ -95,41 +95,29 @@ fn settings(method: Method, until: f64, finest: i32) -> Vec<f64> {
 ///
 /// # Errors
 /// The reason why the reference ended.
-pub(super) fn findings(entry: &Entry, quick: bool, progress: &mut Progress) -> Result<Findings, Ended> {
+pub(super) fn findings(entry: &Entry, quick: bool) -> Result<Findings, Ended> {
     let system = entry.system.as_ref();
     let start = PhasePoint { t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
-    let coordinates = start.q.len();
     let until = STEPS * entry.h;
+    let finest = finest(start.q.len(), quick);
+    let all = methods(system).flat_map(|of| settings(of, until, finest).into_iter().map(move |setting| (of, setting)));
+    let all: Vec<(Method, f64)> = all.collect();
+    let rounds = if quick { 1 } else { ROUNDS };
+    let mut progress = Progress::new((1 + u64::from(rounds)) * all.len() as u64);
     progress.message("reference");
     let reference = Reference::new(system, &start, until)?;
     let agreement = reference.agreement(entry.h)?;
-    let finest = finest(coordinates, quick);
-    let mut runs = Vec::new();
-    for method in methods(system) {
-        for setting in settings(method, until, finest) {
-            progress.advance_by(1);
-            let task = Task { start: &start, end: until, method, setting };
-            runs.push(TimedRun { method, setting, outcome: untimed(system, &task, &reference) });
-        }
+    let untimed = |method, setting| -> Result<Point, Ended> {
+        let (state, evaluations) = Task { start: &start, end: until, method, setting }.reached(system)?;
+        Ok(Point { error: reference.error(&state)?, evaluations, seconds: f64::INFINITY, median: f64::INFINITY })
+    };
+    let mut runs = Vec::with_capacity(all.len());
+    for (method, setting) in all {
+        progress.advance_by(1);
+        runs.push(TimedRun { method, setting, outcome: untimed(method, setting) });
     }
-    time(system, &start, until, &mut runs, if quick { 1 } else { ROUNDS }, progress);
+    time(system, &start, until, &mut runs, rounds, &mut progress);
     Ok(Findings { until, agreement, runs })
-}
-
-/// Number of runs of [`findings`], for a progress bar.
-pub(super) fn length(entry: &Entry, quick: bool) -> u64 {
-    let finest = finest(entry.q.len(), quick);
-    let settings: usize =
-        methods(entry.system.as_ref()).map(|method| settings(method, STEPS * entry.h, finest).len()).sum();
-    let rounds = if quick { 1 } else { u64::from(ROUNDS) };
-    (1 + rounds) * settings as u64
-}
-
-/// Error and evaluations of one run, without its times.
-fn untimed(system: &dyn System, task: &Task<'_>, reference: &Reference<'_>) -> Result<Point, Ended> {
-    let (state, evaluations) = task.reached(system)?;
-    let error = reference.error(&state)?;
-    Ok(Point { error, evaluations, seconds: f64::INFINITY, median: f64::INFINITY })
 }
 
 /// Times every completed run in rounds: a temporary disturbance of the machine then affects all runs alike.
@@ -188,7 +176,7 @@ mod tests {
     fn quick(name: &str, q: &[f64]) -> Findings {
         let entry = ready().find(name).expect("the system");
         let entry = Entry { q: q.to_vec(), v: vec![0.0; q.len()], ..entry };
-        findings(&entry, true, &mut Progress::new(length(&entry, true))).unwrap_or_else(|error| panic!("{error}"))
+        findings(&entry, true).unwrap_or_else(|error| panic!("{error}"))
     }
 
     #[test]
