@@ -22,6 +22,8 @@ pub(super) const STEP_ERROR: &str = "step_error";
 pub(super) struct Kept {
     kinds: Vec<Keep>,
     pub(super) section: Option<Section>,
+    /// The same in words.
+    pub(super) words: String,
     /// The constraints of the system, which add columns to rows.
     constraints: &'static [&'static str],
     /// Whether rows contain the shifted energy.
@@ -43,7 +45,10 @@ impl Kept {
         if sweep.keep.is_empty() && section.is_none() {
             return Err(Failure::Input("`keep` is empty; remove it to keep the end of each run".to_owned()));
         }
-        Ok(Self { kinds: sweep.keep.clone(), section, constraints, is_shifted: plan.shift.is_some() })
+        let kinds = sweep.keep.iter().map(|keep| format!("{keep:?}").to_lowercase());
+        let (section, of_section) = section.unzip();
+        let words = kinds.chain(of_section).collect::<Vec<_>>().join(", ");
+        Ok(Self { kinds: sweep.keep.clone(), section, words, constraints, is_shifted: plan.shift.is_some() })
     }
 
     pub(super) fn has(&self, keep: Keep) -> bool {
@@ -86,28 +91,10 @@ impl Kept {
             self.has(Keep::Series).then(|| heading(&nodes)),
         ]
     }
-
-    /// A description in words.
-    pub(super) fn words(&self, coordinates: &[&str]) -> String {
-        let kinds = self.kinds.iter().map(|keep| format!("{keep:?}").to_lowercase());
-        let name = |index: usize| coordinates.get(index).copied().unwrap_or_default();
-        let way = |direction: &Direction| format!("{direction:?}").to_lowercase();
-        let section = self.section.iter().map(|section| match section {
-            Section::Coordinate { index, at, direction } => {
-                format!("section {} = {}, {}", name(*index), short(*at), way(direction))
-            }
-            Section::Velocity { index, at, direction } => {
-                format!("section dot({}) = {}, {}", name(*index), short(*at), way(direction))
-            }
-            Section::Period { period, .. } => format!("section every {} of time", short(*period)),
-            Section::Function(_, direction) => format!("section of a function, {}", way(direction)),
-        });
-        kinds.chain(section).collect::<Vec<_>>().join(", ")
-    }
 }
 
-/// The section of a scene.
-fn section(cut: &Cut, coordinates: &[&str], plan: &Plan) -> Result<Section, String> {
+/// The section of a scene, and the same in words.
+fn section(cut: &Cut, coordinates: &[&str], plan: &Plan) -> Result<(Section, String), String> {
     let Cut { coordinate, at, direction, period } = cut;
     match (coordinate, period) {
         (Some(name), None) => {
@@ -119,16 +106,18 @@ fn section(cut: &Cut, coordinates: &[&str], plan: &Plan) -> Result<Section, Stri
             if !at.is_finite() {
                 return Err(format!("must be `at` a finite number, not {at}"));
             }
-            let direction = match direction.unwrap_or(Passing::Rising) {
-                Passing::Rising => Direction::Rising,
-                Passing::Falling => Direction::Falling,
-                Passing::Both => Direction::Both,
+            let (direction, way) = match direction.unwrap_or(Passing::Rising) {
+                Passing::Rising => (Direction::Rising, "rising"),
+                Passing::Falling => (Direction::Falling, "falling"),
+                Passing::Both => (Direction::Both, "both"),
             };
-            Ok(Section::Coordinate { index, at, direction })
+            let words = format!("section {name} = {}, {way}", short(at));
+            Ok((Section::Coordinate { index, at, direction }, words))
         }
         (None, Some(period)) if at.is_none() && direction.is_none() => {
             if period.is_finite() && *period >= STEPS_OF_A_PERIOD * plan.h.abs() {
-                Ok(Section::Period { start: plan.t, period: *period })
+                let words = format!("section every {} of time", short(*period));
+                Ok((Section::Period { start: plan.t, period: *period }, words))
             } else {
                 Err(format!("has the period {period}; it must be at least four steps long"))
             }

@@ -96,7 +96,7 @@ impl Study {
             ("start", format!("t = {}, q = {:?}, v = {:?}", short(plan.t), plan.q, plan.v)),
             ("length", format!("{length}, series of one node in {every}, and the last")),
             ("sweep", self.items.words().join("; ")),
-            ("keep", self.kept.words(&system.coordinates())),
+            ("keep", self.kept.words.clone()),
         ];
         let facts = facts.map(|(name, fact)| (name.to_owned(), fact)).to_vec();
         let headings = self.kept.headings(self.items.names(), &system.coordinates());
