@@ -80,4 +80,11 @@ mod tests {
         let shown = ["kepler", "a b.csv", "", "x\ny"].map(quoted);
         assert_eq!(shown, ["kepler", "'a b.csv'", "''", "'x\\ny'"]);
     }
+
+    #[test]
+    fn a_text_cannot_steer_the_terminal() {
+        let raw = "line\n\ttab \u{1b}[31mred\u{1b}[0m \r\u{7}\u{9b}2J\u{7f} π";
+        assert_eq!(visible(raw), "line\n\ttab \\u{1b}[31mred\\u{1b}[0m \\r\\u{7}\\u{9b}2J\\u{7f} π");
+        assert!(matches!(visible("plain\n"), Cow::Borrowed(_)));
+    }
 }
