@@ -98,14 +98,18 @@ impl<T: Real> Bordered<T> {
     /// Replaces b and c by x and y.
     pub(crate) fn solve<const N: usize>(&mut self, b: &mut SVector<T, N>, c: &mut [T]) {
         let Self { factors, solution, .. } = self;
-        for (unknown, known) in b.iter().chain(c.iter()).enumerate() {
-            let (position, scale) = factors.position(unknown);
-            solution[position] = *known * T::real(scale);
+        for (first, known) in [(0, b.as_slice()), (N, c)] {
+            for (unknown, known) in known.iter().enumerate() {
+                let (position, scale) = factors.position(first + unknown);
+                solution[position] = *known * T::real(scale);
+            }
         }
         factors.solve(solution);
-        for (unknown, entry) in b.iter_mut().chain(c).enumerate() {
-            let (position, scale) = factors.position(unknown);
-            *entry = solution[position] * T::real(scale);
+        for (first, entries) in [(0, b.as_mut_slice()), (N, c)] {
+            for (unknown, entry) in entries.iter_mut().enumerate() {
+                let (position, scale) = factors.position(first + unknown);
+                *entry = solution[position] * T::real(scale);
+            }
         }
     }
 

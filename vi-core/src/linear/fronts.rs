@@ -22,6 +22,41 @@ use alloc::vec::Vec;
 /// Largest multiple of a pivot in its column. Beyond, elimination could lose three digits.
 const GROWTH: f64 = 1024.0;
 
+/// Calls a function with the size of a front, as a constant if it is small.
+macro_rules! with_constant {
+    ($size:ident => $call:expr) => {
+        with_constant!($size => $call; 1 2 3 4 5 6 7 8)
+    };
+    ($size:ident => $call:expr; $($constant:literal)*) => {
+        match $size {
+            $($constant => {
+                let $size = $constant;
+                $call
+            })*
+            _ => $call,
+        }
+    };
+}
+
+/// Runs a block for each column, as a constant if the front is small: the compiler then unrolls the loops in it.
+macro_rules! for_each_column {
+    ($size:expr, $column:ident => $block:expr) => {
+        for_each_column!($size, $column => $block; 0 1 2 3 4 5 6 7)
+    };
+    ($size:expr, $column:ident => $block:expr; $($constant:literal)*) => {
+        if $size <= 8 {
+            $(if $constant < $size {
+                let $column = $constant;
+                $block
+            })*
+        } else {
+            for $column in 0..$size {
+                $block
+            }
+        }
+    };
+}
+
 /// One front. Matrices are stored by columns.
 #[derive(Clone, Copy, Debug)]
 struct Front {
@@ -221,29 +256,9 @@ impl<T: Real> Fronts<T> {
         }
         for Front { own, size, values: start, first, border, parent } in matrices.iter().copied() {
             let (front, later) = values[start..].split_at_mut(size * size);
-            for column in 0..own {
-                let Some((pivot, reciprocal)) = pivot(&front[column * size..][..size], column, own) else {
-                    return false;
-                };
-                pivots[first + column] = pivot;
-                reciprocals[first + column] = reciprocal;
-                if pivot != column {
-                    for entries in front.chunks_exact_mut(size) {
-                        entries.swap(column, pivot);
-                    }
-                }
-                let (left, right) = front.split_at_mut((column + 1) * size);
-                let multipliers = &mut left[column * size + column + 1..];
-                for entry in &mut *multipliers {
-                    *entry *= reciprocal;
-                }
-                for next in right.chunks_exact_mut(size) {
-                    let (upper, below) = next.split_at_mut(column + 1);
-                    // Rows of constraints have many zeros.
-                    if upper[column] != T::zero() {
-                        subtract(below, upper[column], multipliers);
-                    }
-                }
+            let (pivots, reciprocals) = (&mut pivots[first..][..own], &mut reciprocals[first..][..own]);
+            if !with_constant!(size => eliminate([own, size], front, pivots, reciprocals)) {
+                return false;
             }
             if own == size {
                 continue;
@@ -266,6 +281,13 @@ impl<T: Real> Fronts<T> {
     pub(crate) fn solve(&self, b: &mut [T]) {
         let Self { matrices, values, borders, pivots, reciprocals, .. } = self;
         for Front { own, size, values: start, first, border, .. } in matrices.iter().copied() {
+            if own == size {
+                // No later unknown.
+                let (front, b) = (&values[start..][..size * size], &mut b[first..][..size]);
+                let (pivots, reciprocals) = (&pivots[first..][..size], &reciprocals[first..][..size]);
+                with_constant!(size => substitute(size, front, (pivots, reciprocals), b));
+                continue;
+            }
             let border = &borders[border..][..size - own];
             for (column, pivot) in pivots[first..][..own].iter().enumerate() {
                 b.swap(first + column, first + pivot);
@@ -280,6 +302,9 @@ impl<T: Real> Fronts<T> {
             }
         }
         for Front { own, size, values: start, first, border, .. } in matrices.iter().copied().rev() {
+            if own == size {
+                continue;
+            }
             for (column, position) in borders[border..][..size - own].iter().enumerate() {
                 let known = b[*position];
                 subtract(&mut b[first..first + own], known, &values[start + (own + column) * size..][..own]);
@@ -326,6 +351,66 @@ impl Place {
     fn is_none(self) -> bool {
         self.start == u32::MAX
     }
+}
+
+/// Eliminates the unknowns of a block. False if a pivot is too small.
+#[inline(always)]
+fn eliminate<T: Real>([own, size]: [usize; 2], front: &mut [T], pivots: &mut [usize], reciprocals: &mut [T]) -> bool {
+    let front = &mut front[..size * size];
+    for_each_column!(size, column => {
+        if column < own && !eliminate_column([column, own, size], front, pivots, reciprocals) {
+            return false;
+        }
+    });
+    true
+}
+
+/// Eliminates one unknown.
+#[inline(always)]
+fn eliminate_column<T: Real>(
+    [column, own, size]: [usize; 3],
+    front: &mut [T],
+    pivots: &mut [usize],
+    reciprocals: &mut [T],
+) -> bool {
+    let Some((pivot, reciprocal)) = pivot(&front[column * size..][..size], column, own) else { return false };
+    pivots[column] = pivot;
+    reciprocals[column] = reciprocal;
+    if pivot != column {
+        for entries in front.chunks_exact_mut(size) {
+            entries.swap(column, pivot);
+        }
+    }
+    let (left, right) = front.split_at_mut((column + 1) * size);
+    let multipliers = &mut left[column * size + column + 1..];
+    for entry in &mut *multipliers {
+        *entry *= reciprocal;
+    }
+    for next in right.chunks_exact_mut(size) {
+        let (upper, below) = next.split_at_mut(column + 1);
+        // Rows of constraints have many zeros.
+        if upper[column] != T::zero() {
+            subtract(below, upper[column], multipliers);
+        }
+    }
+    true
+}
+
+/// Replaces b by the x with `A x = b`, with the factors of a front without border.
+#[inline(always)]
+fn substitute<T: Real>(size: usize, front: &[T], (pivots, reciprocals): (&[usize], &[T]), b: &mut [T]) {
+    let (front, b) = (&front[..size * size], &mut b[..size]);
+    for_each_column!(size, column => b.swap(column, pivots[column]));
+    for_each_column!(size, column => {
+        let (known, below) = b.split_at_mut(column + 1);
+        subtract(below, known[column], &front[column * size..][column + 1..size]);
+    });
+    for_each_column!(size, column => {
+        let column = size - 1 - column;
+        let (above, known) = b.split_at_mut(column);
+        known[0] *= reciprocals[column];
+        subtract(above, known[0], &front[column * size..][..column]);
+    });
 }
 
 /// The pivot of a column among the rows of the block, and its reciprocal; `None` if it is too small.
