@@ -68,6 +68,9 @@ struct Schur {
     later: Vec<[u32; 3]>,
     /// For each pivot, the entries of S in these rows and columns, by rows.
     targets: Vec<u32>,
+    /// Whether S has three diagonals: the values are those of one row after the other, with the entry below the diagonal
+    /// after the one above it.
+    is_tridiagonal: bool,
 }
 
 /// A step of the elimination.
@@ -137,6 +140,8 @@ impl Schur {
                 return None;
             }
         }
+        schur.is_tridiagonal =
+            pairs.len() + 2 == 3 * count && pairs.keys().all(|[row, column]| row.abs_diff(*column) < 2);
         schur.values = vec![0.0; places.len()];
         schur.reciprocals = vec![0.0; count];
         Some(schur)
@@ -144,7 +149,7 @@ impl Schur {
 
     /// Forms S from rows of A and columns of M⁻¹Aᵀ, and factors it. False if a pivot is not positive.
     fn factor(&mut self, left: &[f64], right: &[f64]) -> bool {
-        let Self { values, reciprocals, products, sums, pivots, later, targets } = self;
+        let Self { values, products, sums, .. } = self;
         // Entries of the elimination follow those of S.
         values[sums.len()..].fill(0.0);
         let mut start = 0;
@@ -154,6 +159,10 @@ impl Schur {
                 pairs.iter().fold(0.0, |sum, [a, b]| sum + left[*a as usize] * right[*b as usize]);
             start = *end as usize;
         }
+        if self.is_tridiagonal {
+            return tridiagonal::factor(&mut self.values, &mut self.reciprocals);
+        }
+        let Self { values, reciprocals, pivots, later, targets, .. } = self;
         let (mut start, mut first_target) = (0, 0);
         let mut is_positive = true;
         for pivot in pivots.iter() {
@@ -181,7 +190,10 @@ impl Schur {
 
     /// Replaces b by the x with `S x = b`.
     fn solve(&self, b: &mut [f64]) {
-        let Self { values, reciprocals, pivots, later, .. } = self;
+        let Self { values, reciprocals, pivots, later, is_tridiagonal, .. } = self;
+        if *is_tridiagonal {
+            return tridiagonal::solve(values, reciprocals, b);
+        }
         let mut start = 0;
         for pivot in pivots {
             let known = b[pivot.unknown as usize];
@@ -197,6 +209,51 @@ impl Schur {
             let rest =
                 rows.iter().fold(known, |rest, [row, _, upper]| rest - values[*upper as usize] * b[*row as usize]);
             b[pivot.unknown as usize] = rest * reciprocals[pivot.unknown as usize];
+        }
+    }
+}
+
+/// S of a chain, in three diagonals.
+mod tridiagonal {
+    use super::KEPT;
+
+    /// Diagonal, above it and below it, in a row and below the diagonal of this row.
+    const WIDTH: usize = 3;
+
+    /// As [`Schur::factor`](super::Schur::factor).
+    pub(super) fn factor(values: &mut [f64], reciprocals: &mut [f64]) -> bool {
+        let (mut diagonal, mut is_positive) = (values[0], true);
+        let (rows, _) = values[1..].as_chunks_mut::<WIDTH>();
+        for ([upper, lower, next], reciprocal) in rows.iter_mut().zip(&mut *reciprocals) {
+            *reciprocal = diagonal.recip();
+            is_positive &= diagonal > 0.0;
+            *lower *= *reciprocal;
+            let eliminated = *lower * *upper;
+            *next -= eliminated;
+            // A small rest of the diagonal has lost its digits.
+            is_positive &= *next > KEPT * eliminated.abs();
+            diagonal = *next;
+        }
+        if let Some(reciprocal) = reciprocals.last_mut() {
+            *reciprocal = diagonal.recip();
+        }
+        is_positive && diagonal > 0.0
+    }
+
+    /// As [`Schur::solve`](super::Schur::solve).
+    pub(super) fn solve(values: &[f64], reciprocals: &[f64], b: &mut [f64]) {
+        let (rows, _) = values[1..].as_chunks::<WIDTH>();
+        let mut known = b[0];
+        for ([_, lower, _], b) in rows.iter().zip(&mut b[1..]) {
+            *b -= lower * known;
+            known = *b;
+        }
+        let last = b.len() - 1;
+        known *= reciprocals[last];
+        b[last] = known;
+        for (([upper, ..], reciprocal), b) in rows.iter().zip(reciprocals).zip(b).rev() {
+            *b = (*b - upper * known) * reciprocal;
+            known = *b;
         }
     }
 }
@@ -415,4 +472,29 @@ fn projected<S: Motion<N>, const N: usize>(
     end.add_momentum(&rest);
     let residual = reduced.rate(&(end.p + end.p_low));
     end.is_finite().then_some((end, mu, residual))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Schur;
+
+    #[test]
+    fn three_diagonals_have_the_bits_of_any_order() {
+        // Rows of a chain of four points on a line, the first one at a fixed end.
+        let (columns, rows) = ([0, 0, 1, 1, 2, 2, 3], [0, 1, 3, 5, 7]);
+        let left = [1.1, -0.9, 1.2, -0.8, 1.3, -0.7, 1.4];
+        let right = [0.9, -1.1, 1.0, -1.2, 0.8, -0.6, 1.5];
+        let solved = |is_tridiagonal: bool| {
+            let mut schur = Schur::new(&columns, &rows).expect("no fill");
+            assert!(schur.is_tridiagonal);
+            schur.is_tridiagonal = is_tridiagonal;
+            assert!(schur.factor(&left, &right));
+            let mut b = [1.0, -2.0, 3.0, 0.5];
+            schur.solve(&mut b);
+            b.map(f64::to_bits)
+        };
+        assert_eq!(solved(true), solved(false));
+        // A star has no three diagonals.
+        assert!(!Schur::new(&[0, 0, 1, 0, 2], &[0, 1, 3, 5]).expect("no fill").is_tridiagonal);
+    }
 }
