@@ -40,10 +40,13 @@ const USUAL: f64 = 0.1;
 const NEAR: f64 = 1e-10;
 const ROUGH: f64 = 1e-8;
 const FEW: usize = 15;
+/// The least logarithmic slope of the phase in the length. Where ω falls along a step it may be negative; lengths then
+/// follow from halving.
+const LEAST_SLOPE: f64 = 0.25;
 /// The deviation up to which lengths are tried on the polynomials of a step.
 const CLOSE: f64 = 1e-3;
 /// The longest length that the polynomials of a step tell, in units of its own.
-const BEYOND: f64 = 2.0;
+const BEYOND: f64 = 1.25;
 /// Most lengths that are tried on them.
 const FORESEEN: usize = 8;
 
@@ -85,7 +88,7 @@ impl Search {
     /// The slope by the last two lengths.
     fn learn(&mut self, h: f64, off: f64) {
         if let Some([before, off_before]) = self.last.replace([h, off]) {
-            self.slope = ((off - off_before) / (h / before).ln()).max(0.25);
+            self.slope = ((off - off_before) / (h / before).ln()).max(LEAST_SLOPE);
         }
     }
 
@@ -121,7 +124,8 @@ impl Reversible {
         let usual = USUAL * stages;
         let floor = if found.is_some() { LONGEST.recip() } else { usual } / h.abs();
         let found = found.unwrap_or(Phase::constant(usual));
-        Ok(Self { phase: found.value().copysign(h), floor, ahead: 1.0, ratio: 1.0, slope: found.slope() })
+        let slope = found.slope().max(LEAST_SLOPE);
+        Ok(Self { phase: found.value().copysign(h), floor, ahead: 1.0, ratio: 1.0, slope })
     }
 
     /// The law after a change of the system or of the state.
