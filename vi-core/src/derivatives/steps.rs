@@ -46,7 +46,7 @@ pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
     fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { method, system, node, memory, .. } = run;
         let mut start = *node;
-        let memory = method.restarted(system, &Change::Length, &mut start, length, memory)?;
+        let memory = method.restarted(system, &Change::NewLength, &mut start, length, memory)?;
         let mut aside = Run::resumed(method.clone(), *system, (start, length, memory));
         aside.step()?;
         aside.vary(node, variations)

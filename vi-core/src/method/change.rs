@@ -11,36 +11,36 @@ use crate::state::State;
 #[derive(Debug)]
 pub enum Change<'a, S, const N: usize, T = f64> {
     /// Of the length of the steps.
-    Length,
+    NewLength,
     /// Of parameters: the system before.
-    System(&'a S),
+    NewSystem(&'a S),
     /// Of the state, and perhaps of parameters: the system before, and the state after.
-    State(&'a S, State<N, T>),
+    NewState(&'a S, State<N, T>),
 }
 
 impl<'a, S, const N: usize, T: Scalar> Change<'a, S, N, T> {
     /// The same change of a system that `system` is in another wrapper.
     pub fn of<'b, W>(&self, system: &'b W) -> Change<'b, W, N, T> {
         match self {
-            Self::Length => Change::Length,
-            Self::System(_) => Change::System(system),
-            Self::State(_, state) => Change::State(system, *state),
+            Self::NewLength => Change::NewLength,
+            Self::NewSystem(_) => Change::NewSystem(system),
+            Self::NewState(_, state) => Change::NewState(system, *state),
         }
     }
 
     /// The system before; `None` if it stays.
     pub fn before(&self) -> Option<&'a S> {
         match self {
-            Self::Length => None,
-            Self::System(before) | Self::State(before, _) => Some(before),
+            Self::NewLength => None,
+            Self::NewSystem(before) | Self::NewState(before, _) => Some(before),
         }
     }
 
     /// The node after the change, with the energy of before.
     pub(crate) fn moved(&self, node: &Node<N, T>) -> Node<N, T> {
         match self {
-            Self::Length | Self::System(_) => *node,
-            Self::State(_, state) => node.with_state(*state),
+            Self::NewLength | Self::NewSystem(_) => *node,
+            Self::NewState(_, state) => node.with_state(*state),
         }
     }
 
@@ -70,7 +70,7 @@ impl<'a, S, const N: usize, T: Scalar> Change<'a, S, N, T> {
         node: &mut Node<N, T>,
         h: T,
     ) -> Result<M::Memory, StepError> {
-        if let Self::State(_, state) = self {
+        if let Self::NewState(_, state) = self {
             *node = Node::new(*state, T::zero());
         }
         method.begin(system, node, h)

@@ -124,7 +124,7 @@ where
             }
             // Before the first step, a substep is guessed from its own start.
             let own = if memory.is_new {
-                self.method.restarted(system, &Change::Length, &mut after, h, own).map(Cow::Owned)
+                self.method.restarted(system, &Change::NewLength, &mut after, h, own).map(Cow::Owned)
             } else {
                 Ok(Cow::Borrowed(own))
             };
@@ -173,7 +173,7 @@ where
         h: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        if !matches!(change, Change::Length) {
+        if !matches!(change, Change::NewLength) {
             return change.begun(self, system, node, h);
         }
         let substeps = memory.all.iter().zip(self.scheme.lengths(h));

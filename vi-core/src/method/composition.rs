@@ -231,14 +231,14 @@ where
     ) -> Result<Substeps<N, T>, StepError> {
         let substeps = memory.all.iter();
         match change {
-            Change::Length => {
+            Change::NewLength => {
                 Ok(Substeps::of(substeps.zip(self.lengths(h)).map(|(substep, h)| substep.with_length(h)).collect()))
             }
-            Change::System(_) => {
+            Change::NewSystem(_) => {
                 node.state().velocity(system)?;
                 Ok(Substeps::of(substeps.map(|substep| substep.with_other_parameters()).collect()))
             }
-            Change::State(..) => change.begun(self, system, node, h),
+            Change::NewState(..) => change.begun(self, system, node, h),
         }
     }
 

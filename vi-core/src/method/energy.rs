@@ -14,7 +14,7 @@
 //! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
 
 use super::bounds::{Alternating, FORWARD, Fallback, FirstStep, check_forward, too_long};
-use super::{Change, Facts, Method, Problem, Status};
+use super::{Change, Facts, FixedStep, Method, Problem, Status};
 use crate::angles;
 use crate::called::Called;
 #[cfg(feature = "alloc")]
@@ -36,6 +36,14 @@ use nalgebra::SVector;
 /// A run from a state starts with a step of the length h, and preserves the discrete energy of that step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnergyPreserving;
+
+impl FixedStep {
+    /// Steps whose length preserves the discrete energy.
+    #[must_use]
+    pub fn preserving_energy(self) -> EnergyPreserving {
+        EnergyPreserving
+    }
+}
 
 /// A solved step.
 #[derive(Clone, Copy, Debug)]
@@ -148,9 +156,9 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
         let changed = change.moved_with_energy(system, node)?;
         let mut lengths = *memory;
         match change {
-            Change::Length => {}
-            Change::System(_) => lengths.last.is_step = false,
-            Change::State(_, state) => {
+            Change::NewLength => {}
+            Change::NewSystem(_) => lengths.last.is_step = false,
+            Change::NewState(_, state) => {
                 lengths.last.v = state.velocity(system)?;
                 lengths.resume_after(&memory.last);
             }

@@ -113,12 +113,12 @@ macro_rules! velocities {
             h: T,
             memory: &Velocities<N, T>,
         ) -> Result<Velocities<N, T>, StepError> {
-            if let Change::State(..) = change {
+            if let Change::NewState(..) = change {
                 return change.begun(self, system, node, h);
             }
             continuation::check_linear(&Called(*system), node, h)?;
             let steps = match change {
-                Change::Length => memory.steps.with_length(h),
+                Change::NewLength => memory.steps.with_length(h),
                 _ => {
                     node.state().velocity(system)?;
                     memory.steps.with_other_parameters()

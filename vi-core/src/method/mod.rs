@@ -278,7 +278,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
     ) -> Result<(Node<N, T>, Self::Memory), StepError> {
         check_step(h)?;
         let mut node = *node;
-        let memory = self.restarted(system, &Change::Length, &mut node, h, memory)?;
+        let memory = self.restarted(system, &Change::NewLength, &mut node, h, memory)?;
         step_from(self, system, (&node, memory), [h, next])
     }
 
@@ -344,7 +344,7 @@ pub(crate) fn step_from<M: Method<S, N, T>, S, const N: usize, T: Scalar>(
     let cache = &mut M::Cache::default();
     let step = method.solve(at, &memory, cache)?;
     method.take(system, h, (&mut node, &mut memory), cache, step);
-    let memory = method.restarted(system, &Change::Length, &mut node, next, &memory)?;
+    let memory = method.restarted(system, &Change::NewLength, &mut node, next, &memory)?;
     Ok((node, memory))
 }
 

@@ -32,7 +32,7 @@ pub trait Shiftable<S, const N: usize>: Method<S, N> + StepPower {
     fn history(memory: &Self::Memory) -> &StepHistory;
     /// The same, mutably.
     #[doc(hidden)]
-    fn course_mut(memory: &mut Self::Memory) -> &mut StepHistory;
+    fn history_mut(memory: &mut Self::Memory) -> &mut StepHistory;
     /// The step density D_s at a state.
     ///
     /// # Errors
@@ -65,7 +65,7 @@ where
             let (input, allowed) = ("the shift of the step density", "finite");
             return Err(StepError::InvalidInput { input, allowed, value: shift });
         }
-        let history = M::course_mut(&mut self.memory);
+        let history = M::history_mut(&mut self.memory);
         let change = shift - history.shift;
         self.node.add_energy(-M::power(history.h()) * change);
         history.shift = shift;
@@ -106,7 +106,7 @@ where
         for _ in 0..HALVINGS {
             if let Some(Maxima { density, scale, size }) = self.met_along(h, duration, goes_on)? {
                 let shift = 2.0 * density;
-                let history = M::course_mut(&mut self.memory);
+                let history = M::history_mut(&mut self.memory);
                 let first = history.h();
                 check_shift(self.node.t, [first, M::power(first)], shift, scale, f64::from(self.method.facts().order))?;
                 history.largest_size = history.largest_size.max(size);

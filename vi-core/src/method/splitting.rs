@@ -491,7 +491,7 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
         h: T,
         memory: &Kicked<N, T>,
     ) -> Result<Kicked<N, T>, StepError> {
-        if !matches!(change, Change::Length) {
+        if !matches!(change, Change::NewLength) {
             return change.begun(self, system, node, h);
         }
         // The node may be another one than that of the memory: a monitor halves steps that are past.

@@ -174,7 +174,7 @@ where
         dtau: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        if matches!(change, Change::Length) {
+        if matches!(change, Change::NewLength) {
             return Ok(*memory);
         }
         let changed = change.moved_with_energy(system, node)?;

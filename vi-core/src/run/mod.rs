@@ -312,7 +312,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     pub fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
         let system = changed(&self.system, change)?;
         let mut node = self.node;
-        let change = Change::System(&self.system);
+        let change = Change::NewSystem(&self.system);
         self.memory = self.method.restarted(&system, &change, &mut node, self.h, &self.memory)?;
         self.prepared = self.method.prepare(&system, self.h);
         (self.node, self.system, self.failure) = (node, system, None);
@@ -345,7 +345,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         angles::check(&self.system, &state.q, &Turns::zeros())?;
         let system = changed(&self.system, change)?;
         let mut node = self.node;
-        let change = Change::State(&self.system, state);
+        let change = Change::NewState(&self.system, state);
         self.memory = self.method.restarted(&system, &change, &mut node, self.h, &self.memory)?;
         self.prepared = self.method.prepare(&system, self.h);
         (self.node, self.system, self.turns, self.failure) = (node, system, Turns::zeros(), None);

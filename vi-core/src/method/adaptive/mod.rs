@@ -223,7 +223,7 @@ where
         _h: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        if matches!(change, Change::Length) {
+        if matches!(change, Change::NewLength) {
             return Ok(memory.clone());
         }
         let steps = solver::<S, N, STAGES>().restarted(system, change, node, memory.h, &memory.steps)?;

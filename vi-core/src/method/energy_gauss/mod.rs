@@ -82,6 +82,14 @@ use vi_dispatch::Instructions;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnergyPreservingGauss<const STAGES: usize>;
 
+impl<const STAGES: usize> Gauss<STAGES> {
+    /// Steps of one to three stages whose length preserves the discrete energy.
+    #[must_use]
+    pub fn preserving_energy(self) -> EnergyPreservingGauss<STAGES> {
+        EnergyPreservingGauss
+    }
+}
+
 /// A solver of Gauss steps of any length.
 pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     /// The last steps, from which the next one is guessed.
@@ -359,7 +367,7 @@ where
         _h: f64,
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
-        if matches!(change, Change::Length) {
+        if matches!(change, Change::NewLength) {
             return Ok(memory.clone());
         }
         Solver::<S, N, STAGES>::check_start(system, &change.moved(node))?;
@@ -367,7 +375,7 @@ where
         let mut history = memory.history;
         history.set_excess(measured(system, &changed)?);
         let steps = match change {
-            Change::State(..) => Solver::<S, N, STAGES>::fresh(system, &changed, history.h())?,
+            Change::NewState(..) => Solver::<S, N, STAGES>::fresh(system, &changed, history.h())?,
             _ => Solver::<S, N, STAGES>::changed(system, &changed, history.h(), &memory.steps)?,
         };
         *node = changed;
@@ -447,7 +455,7 @@ where
         &memory.history
     }
 
-    fn course_mut(memory: &mut Self::Memory) -> &mut StepHistory {
+    fn history_mut(memory: &mut Self::Memory) -> &mut StepHistory {
         &mut memory.history
     }
 

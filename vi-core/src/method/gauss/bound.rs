@@ -252,7 +252,7 @@ where
         _memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
         match change {
-            Change::Length => fresh::<S, N, STAGES>(system, node, h),
+            Change::NewLength => fresh::<S, N, STAGES>(system, node, h),
             _ => change.begun(self, system, node, h),
         }
     }

@@ -310,8 +310,8 @@ where
         memory: &Self::Memory,
     ) -> Result<Self::Memory, StepError> {
         match change {
-            Change::Length => LastStages::constant(system, node, h),
-            Change::System(before) => {
+            Change::NewLength => LastStages::constant(system, node, h),
+            Change::NewSystem(before) => {
                 if system.is_first_order() {
                     // The momenta follow from the coordinates, which stay.
                     let momentum = |of: &S| of.momentum(node.t, &node.q, &SVector::zeros());
@@ -321,7 +321,7 @@ where
                 node.state().velocity(system)?;
                 Ok(LastStages { before: *node, linearization: None, ..*memory })
             }
-            Change::State(..) => change.begun(self, system, node, h),
+            Change::NewState(..) => change.begun(self, system, node, h),
         }
     }
 
