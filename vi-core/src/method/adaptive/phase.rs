@@ -14,7 +14,7 @@
 //! same phase.
 
 #[cfg(feature = "alloc")]
-use crate::constrained::{accelerations, border, bordered};
+use crate::constrained::{accelerations, bordered};
 use crate::error::StepError;
 use crate::gauss::transformed::check_time_scale;
 use crate::kind::Kind as _;
@@ -109,31 +109,6 @@ enum Compliance<M, const N: usize> {
 }
 
 impl<M: Matrix<N, f64>, const N: usize> Compliance<M, N> {
-    #[cfg_attr(not(feature = "alloc"), allow(clippy::unnecessary_wraps, reason = "constraints may be dependent"))]
-    fn of<S: Convertible<N> + Motion<N, Mass = M>>(
-        system: &S,
-        t: f64,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-    ) -> Option<Self> {
-        let mass = system.point(t, q, v).mass;
-        #[cfg(feature = "alloc")]
-        if const { <S as Motion<N>>::Kind::COUNT > 0 } {
-            let mut bordered = bordered(system);
-            let (gradients, mut none) = system.constraint_gradients(t, q);
-            border(&mut bordered, system, &mass, &gradients).ok()?;
-            let mut compliance = SMatrix::<f64, N, N>::identity();
-            for mut column in compliance.column_iter_mut() {
-                let mut entries: SVector<f64, N> = column.clone_owned();
-                none.as_mut().fill(0.0);
-                bordered.solve(&mut entries, none.as_mut());
-                column.copy_from(&entries);
-            }
-            return Some(Self::Bound(compliance));
-        }
-        Some(Self::Free(mass))
-    }
-
     /// `M⁻¹X`
     fn times(&self, x: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>> {
         match self {
@@ -144,30 +119,48 @@ impl<M: Matrix<N, f64>, const N: usize> Compliance<M, N> {
     }
 }
 
+/// A time, coordinates and velocities.
+type At<'a, const N: usize> = (f64, &'a SVector<f64, N>, &'a SVector<f64, N>);
+
+/// The compliance at a place. Adds the reactions of constraints to K.
+#[cfg_attr(not(feature = "alloc"), allow(unused_variables, clippy::unnecessary_wraps, reason = "constraints need it"))]
+fn compliance<S: Convertible<N>, const N: usize>(
+    system: &S,
+    at: At<'_, N>,
+    stiffness: &mut SMatrix<f64, N, N>,
+) -> Option<Compliance<S::Mass, N>> {
+    let (t, q, v) = at;
+    #[cfg(feature = "alloc")]
+    if const { S::Kind::COUNT > 0 } {
+        let mut bordered = bordered(system);
+        let (_, mut multipliers) = accelerations(system, at, &mut bordered).ok()?;
+        for (i, row) in system.reaction_derivatives(t, q, &multipliers).rows().enumerate() {
+            row.iter().for_each(|(j, slope)| stiffness[(i, j)] += slope);
+        }
+        let mut compliance = SMatrix::<f64, N, N>::identity();
+        for mut column in compliance.column_iter_mut() {
+            let mut entries: SVector<f64, N> = column.clone_owned();
+            multipliers.as_mut().fill(0.0);
+            bordered.solve(&mut entries, multipliers.as_mut());
+            column.copy_from(&entries);
+        }
+        return Some(Compliance::Bound(compliance));
+    }
+    Some(Compliance::Free(system.point(t, q, v).mass))
+}
+
 /// `tr(XY)` of X = M⁻¹K and Y = M⁻¹Kᵀ: not negative but for rounding.
 fn trace<const N: usize>(x: &SMatrix<f64, N, N>, y: &SMatrix<f64, N, N>) -> f64 {
     x.dot(&y.transpose()).max(0.0)
 }
 
 impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
-    fn of<S: Convertible<N> + Motion<N, Mass = M>>(
-        system: &S,
-        t: f64,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-    ) -> Option<Self> {
+    fn of<S: Convertible<N> + Motion<N, Mass = M>>(system: &S, at: At<'_, N>) -> Option<Self> {
+        let (t, q, v) = at;
         let PointDerivatives { momentum_dq, force_dq, force_dv, .. } = system.point_derivatives(t, q, v);
-        #[cfg_attr(not(feature = "alloc"), allow(unused_mut, reason = "reactions need it"))]
         let mut stiffness = force_dq.dense();
-        #[cfg(feature = "alloc")]
-        if const { <S as Motion<N>>::Kind::COUNT > 0 } {
-            let (_, multipliers) = accelerations(system, (t, q, v), &mut bordered(system)).ok()?;
-            for (i, row) in system.reaction_derivatives(t, q, &multipliers).rows().enumerate() {
-                row.iter().for_each(|(j, slope)| stiffness[(i, j)] += slope);
-            }
-        }
+        let compliance = compliance(system, at, &mut stiffness)?;
         let stiffness = (stiffness + stiffness.transpose()) * 0.5;
-        let compliance = Compliance::of(system, t, q, v)?;
         let response = compliance.times(&stiffness)?;
         let damping = force_dv.dense() - momentum_dq.dense();
         let has_damping = damping.iter().any(|entry| *entry != 0.0);
@@ -213,7 +206,7 @@ impl<S: Convertible<N>, const N: usize> Place<S, N> {
 
     /// That with a velocity.
     pub(super) fn at(system: &S, (t, q, v): (f64, SVector<f64, N>, SVector<f64, N>)) -> Self {
-        let forces = if system.scales_time() { None } else { Forces::of(system, t, &q, &v) };
+        let forces = if system.scales_time() { None } else { Forces::of(system, (t, &q, &v)) };
         Self { t, q, v, forces }
     }
 
@@ -248,7 +241,7 @@ pub(super) fn phase<S: Convertible<N>, const N: usize>(
         }
         return Ok(Phase::of(powers));
     }
-    let middle = Forces::of(system, t, &q, &v);
+    let middle = Forces::of(system, (t, &q, &v));
     let (Some(start), Some(middle), Some(end)) = (&start.forces, &middle, &end.forces) else { return Ok(None) };
     let has_constant_mass = S::Kind::COUNT == 0 && system.has_constant_mass();
     let powers = [start, middle, end].map(|forces| forces.power(h));
