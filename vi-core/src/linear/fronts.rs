@@ -281,39 +281,25 @@ impl<T: Real> Fronts<T> {
     pub(crate) fn solve(&self, b: &mut [T]) {
         let Self { matrices, values, borders, pivots, reciprocals, .. } = self;
         for Front { own, size, values: start, first, border, .. } in matrices.iter().copied() {
-            if own == size {
-                // No later unknown.
-                let (front, b) = (&values[start..][..size * size], &mut b[first..][..size]);
-                let (pivots, reciprocals) = (&pivots[first..][..size], &reciprocals[first..][..size]);
-                with_constant!(size => substitute(size, front, (pivots, reciprocals), b));
-                continue;
-            }
-            let border = &borders[border..][..size - own];
-            for (column, pivot) in pivots[first..][..own].iter().enumerate() {
-                b.swap(first + column, first + pivot);
-            }
-            for column in 0..own {
-                let multipliers = &values[start + column * size..][..size];
-                let known = b[first + column];
-                subtract(&mut b[first + column + 1..first + own], known, &multipliers[column + 1..own]);
-                for (position, multiplier) in border.iter().zip(&multipliers[own..]) {
-                    b[*position] -= known * *multiplier;
+            let front = &values[start..][..size * size];
+            let (pivots, known) = (&pivots[first..][..own], &mut b[first..][..own]);
+            with_constant!(own => forward([own, size], front, pivots, known));
+            for (column, position) in borders[border..][..size - own].iter().enumerate() {
+                let row = own + column;
+                for column in 0..own {
+                    let known = b[first + column];
+                    b[*position] -= known * front[column * size + row];
                 }
             }
         }
         for Front { own, size, values: start, first, border, .. } in matrices.iter().copied().rev() {
-            if own == size {
-                continue;
-            }
+            let front = &values[start..][..size * size];
             for (column, position) in borders[border..][..size - own].iter().enumerate() {
                 let known = b[*position];
-                subtract(&mut b[first..first + own], known, &values[start + (own + column) * size..][..own]);
+                subtract(&mut b[first..first + own], known, &front[(own + column) * size..][..own]);
             }
-            for column in (0..own).rev() {
-                let known = b[first + column] * reciprocals[first + column];
-                b[first + column] = known;
-                subtract(&mut b[first..first + column], known, &values[start + column * size..][..column]);
-            }
+            let (reciprocals, b) = (&reciprocals[first..][..own], &mut b[first..][..own]);
+            with_constant!(own => backward([own, size], front, reciprocals, b));
         }
     }
 
@@ -396,17 +382,23 @@ fn eliminate_column<T: Real>(
     true
 }
 
-/// Replaces b by the x with `A x = b`, with the factors of a front without border.
+/// Eliminates the unknowns of a block from its right-hand side.
 #[inline(always)]
-fn substitute<T: Real>(size: usize, front: &[T], (pivots, reciprocals): (&[usize], &[T]), b: &mut [T]) {
-    let (front, b) = (&front[..size * size], &mut b[..size]);
-    for_each_column!(size, column => b.swap(column, pivots[column]));
-    for_each_column!(size, column => {
+fn forward<T: Real>([own, size]: [usize; 2], front: &[T], pivots: &[usize], b: &mut [T]) {
+    let (pivots, b) = (&pivots[..own], &mut b[..own]);
+    for_each_column!(own, column => b.swap(column, pivots[column]));
+    for_each_column!(own, column => {
         let (known, below) = b.split_at_mut(column + 1);
-        subtract(below, known[column], &front[column * size..][column + 1..size]);
+        subtract(below, known[column], &front[column * size..][column + 1..own]);
     });
-    for_each_column!(size, column => {
-        let column = size - 1 - column;
+}
+
+/// Solves for the unknowns of a block, from which those behind it are subtracted.
+#[inline(always)]
+fn backward<T: Real>([own, size]: [usize; 2], front: &[T], reciprocals: &[T], b: &mut [T]) {
+    let (reciprocals, b) = (&reciprocals[..own], &mut b[..own]);
+    for_each_column!(own, column => {
+        let column = own - 1 - column;
         let (above, known) = b.split_at_mut(column);
         known[0] *= reciprocals[column];
         subtract(above, known[0], &front[column * size..][..column]);
