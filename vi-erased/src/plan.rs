@@ -57,6 +57,12 @@ impl Method {
         Self::Energy,
     ];
 
+    /// Whether each step finds its length.
+    #[must_use]
+    pub fn finds_length(self) -> bool {
+        matches!(self, Self::Energy | Self::Adaptive)
+    }
+
     /// The scheme of a composition.
     #[must_use]
     pub fn scheme(self) -> Option<Composition> {
@@ -232,6 +238,12 @@ impl Plan {
     #[must_use]
     pub fn length(&self) -> StepLength {
         self.tolerance.map_or(StepLength::Given(self.h), StepLength::Found)
+    }
+
+    /// Whether the lengths of the steps in time are known after them only.
+    #[must_use]
+    pub fn finds_length(&self) -> bool {
+        self.method.finds_length() || self.dtau.is_some()
     }
 
     /// The integrator that it asks for, of a system with or without constraints.

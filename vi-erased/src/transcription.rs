@@ -15,7 +15,7 @@
 //! Ober-Blöbaum, Junge and Marsden, Discrete mechanics and optimal control, ESAIM: COCV 17 (2011).
 
 use crate::function::{Function, Points};
-use crate::plan::{Method, PhasePoint, Plan};
+use crate::plan::{PhasePoint, Plan};
 use crate::shooting::{Curvatures, Ends, Shots};
 use crate::system::System;
 use core::cell::OnceCell;
@@ -163,7 +163,7 @@ impl Transcription {
     /// to 1, for a duration that is not positive, and for an input that is no parameter. Those of [`System::offers`].
     pub fn of(system: &dyn System, plan: &Plan, mesh: Mesh, inputs: &[usize]) -> Result<Self, StepError> {
         let wrong = |input, allowed, value| Err(StepError::InvalidInput { input, allowed, value });
-        if matches!(plan.method, Method::Energy | Method::Adaptive) || plan.dtau.is_some() || plan.tolerance.is_some() {
+        if plan.finds_length() || plan.tolerance.is_some() {
             return wrong(
                 "steps of optimal control",
                 "of a given length: not energy, adaptive or transformed",

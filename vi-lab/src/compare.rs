@@ -129,11 +129,11 @@ fn reduced(arguments: &Arguments, catalogue: &Catalogue) -> Result<(Request, u64
         ..run::Arguments::default()
     };
     let mut request = Request::of(&wanted, catalogue)?;
-    if request.plan.method == Method::Energy {
-        return Err(Failure::Input(
-            "steps of --method energy have lengths of their own, so that two models have no times in common; take gauss"
-                .to_owned(),
-        ));
+    if request.plan.finds_length() {
+        return Err(Failure::Input(format!(
+            "steps of --method {} have lengths of their own, so that two models have no times in common; take gauss",
+            request.plan.method.name()
+        )));
     }
     let steps = request.length.steps(&request.plan);
     if let Length::Until(end) = request.length {

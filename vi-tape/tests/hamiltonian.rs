@@ -143,8 +143,7 @@ fn steps_by_h_are_those_by_l() {
             let Some((by_h, by_l)) = by_h.zip(by_l) else { continue };
             let off = distance(&by_h, &by_l);
             // Steps that solve for their length multiply roundings.
-            let finds_length = matches!(method.0, Method::Energy | Method::Adaptive);
-            let allowed = if finds_length { 3e-7 } else { 1e-15 }; // 6.9e-8, 1.1e-16
+            let allowed = if method.0.finds_length() { 3e-7 } else { 1e-15 }; // 6.9e-8, 1.1e-16
             assert!(off <= allowed, "{method:?} {off:e}: {h}");
             taken += 1;
         }

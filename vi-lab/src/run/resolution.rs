@@ -5,7 +5,7 @@
 //! at rest.
 
 use super::request::{Length, Request};
-use vi_erased::plan::{Method, Plan};
+use vi_erased::plan::Plan;
 use vi_report::failure::Failure;
 use vi_report::numbers::{about, short};
 
@@ -13,8 +13,7 @@ use vi_report::numbers::{about, short};
 pub(super) fn check_times(plan: &Plan, length: Length) -> Result<(), Failure> {
     square(plan.h)?;
     time(plan.t, plan.h)?;
-    let finds_its_length = matches!(plan.method, Method::Energy | Method::Adaptive) || plan.dtau.is_some();
-    if finds_its_length { Ok(()) } else { time(length.end(plan), plan.h) }
+    if plan.finds_length() { Ok(()) } else { time(length.end(plan), plan.h) }
 }
 
 /// The equations of a step contain h².

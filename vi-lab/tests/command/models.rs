@@ -77,6 +77,10 @@ fn wrong_comparisons_are_refused() {
             &["pendulum", "pendulum", "--method", "energy"],
             "steps of --method energy have lengths of their own, so that two models have no times in common; take gauss",
         ),
+        (
+            &["pendulum", "pendulum", "--method", "adaptive"],
+            "steps of --method adaptive have lengths of their own, so that two models have no times in common; take gauss",
+        ),
         (&["pendulum", "pendulun"], "there is no system `pendulun`; did you mean `pendulum`?"),
     ] {
         assert_eq!(at(arguments), (Some(2), format!("error: {message}\n")), "{arguments:?}");

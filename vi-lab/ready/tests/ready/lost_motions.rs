@@ -117,7 +117,7 @@ impl Counts {
                     steps += 1;
                     // Energy-preserving and adaptive steps have nodes of their own.
                     let is_end = run.t() >= end * (1.0 - 1e-12);
-                    let has_own = matches!(method, Method::Energy | Method::Adaptive);
+                    let has_own = method.finds_length();
                     let place = if has_own { 2 * DURATION } else { (2 * ratio * steps).min(2 * DURATION) };
                     if is_end || !has_own {
                         let energy = run.energy().unwrap_or(f64::INFINITY);
