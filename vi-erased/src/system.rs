@@ -290,23 +290,21 @@ impl<S: Runnable<N> + Described, const N: usize> Typed<S, N> {
         let found = self.integrators.iter().find(|integrator| integrator.built == wanted);
         let has_method = self.integrators.iter().any(|integrator| integrator.built.0 == wanted.0);
         let unbuilt = |input, value| StepError::InvalidInput { input, allowed: "one that is built", value };
-        if let Some(splitting) = wanted.0.splitting().filter(|_| found.is_none() && self.system.splits()) {
-            return Err(unbuilt("order of a splitting", f64::from(splitting.order)));
-        }
-        found.ok_or(match wanted {
-            (method, ..) if self.system.is_first_order() && (method != Method::Gauss || !has_method) => {
+        found.ok_or(match (wanted, wanted.0.splitting()) {
+            (_, Some(splitting)) if self.system.splits() => unbuilt("order of a splitting", f64::from(splitting.order)),
+            ((method, ..), _) if self.system.is_first_order() && (method != Method::Gauss || !has_method) => {
                 StepError::FirstOrder { system: self.system.name() }
             }
             // Methods that keep constraints have stages.
-            (_, stages, _) if !self.system.constraint_names().is_empty() && (!has_method || stages.is_none()) => {
+            ((_, stages, _), _) if !self.system.constraint_names().is_empty() && (!has_method || stages.is_none()) => {
                 StepError::HasConstraints { system: self.system.name() }
             }
-            (.., true) if !self.system.scales_time() => StepError::NoTimeScale { system: self.system.name() },
-            (method, ..) if method.splitting().is_some() => StepError::NotSeparable { system: self.system.name() },
+            ((.., true), _) if !self.system.scales_time() => StepError::NoTimeScale { system: self.system.name() },
+            (_, Some(_)) => StepError::NotSeparable { system: self.system.name() },
             #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
-            (_, Some(stages), _) => unbuilt("number of stages", stages as f64),
+            ((_, Some(stages), _), None) => unbuilt("number of stages", stages as f64),
             // Every system has Gauss steps of some stages; methods without stages need a rule.
-            (_, None, _) => StepError::NoRule { system: self.system.name() },
+            ((_, None, _), None) => StepError::NoRule { system: self.system.name() },
         })
     }
 }
