@@ -476,7 +476,7 @@ class _Problem:
             self.program.bound(_Function(self.system, name, self.indices), nodes.tolist(), pair)
         else:
             self.program.bound_velocity(velocity, nodes.tolist(), pair)
-        place = sum(len(row.nodes) for row in self.rows)
+        place = self.condition_count
         self.rows.append(_Condition(title, nodes, pair, velocity, place))
 
     # The variables.
@@ -502,6 +502,11 @@ class _Problem:
 
     # The program.
 
+    @property
+    def condition_count(self) -> int:
+        """The number of rows behind those of the steps."""
+        return sum(len(row.nodes) for row in self.rows)
+
     def place(self, at: int) -> str:
         """The name of a row, or of a variable behind the rows."""
         n, steps = self.n, 2 * self.n * self.steps
@@ -510,7 +515,7 @@ class _Problem:
         for row in self.rows:
             if at < steps + row.place + len(row.nodes):
                 return f"{row.name} at node {row.nodes[at - steps - row.place]}"
-        node, column = np.argwhere(self.places == at - steps - sum(len(row.nodes) for row in self.rows))[0]
+        node, column = np.argwhere(self.places == at - steps - self.condition_count)[0]
         coordinates = self.system.coordinates
         names = [*coordinates, *(f"p_{x}" for x in coordinates), *self.names]
         return f"{names[column]} at node {node}" if column < len(names) else "the duration"
