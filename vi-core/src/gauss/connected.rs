@@ -86,6 +86,49 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
     }
 
+    /// The same from the stages of a step of nearly this length that continues short ones: then a solution close to them
+    /// does, too.
+    ///
+    /// # Errors
+    /// As [`Start::recover`].
+    #[cold]
+    pub(crate) fn beside<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+        left: (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
+        cache: &mut Buffer<N, S>,
+    ) -> Result<Step<N, S>, StepError>
+    where
+        Y: Convertible<N>,
+    {
+        let step = self.recovered(system, instructions, left, cache)?;
+        let rare = &ErasedSystem::of(system);
+        let weights = &weights(rare, self.node, &step);
+        let is_near = distance([self.stages, &step.stages], self.stages, weights) <= NEAR;
+        let is_proven = is_near || is_proven(rare, self.node, &step);
+        if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
+    }
+
+    /// The step, if its fixed-point iteration came to its end, and no continuation is needed to prove it.
+    #[cold]
+    pub(crate) fn quickly<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+        left: &StageSolution<N, S>,
+        cache: &mut Buffer<N, S>,
+    ) -> Option<Step<N, S>>
+    where
+        Y: Convertible<N>,
+    {
+        if !left.is_near() {
+            return None;
+        }
+        let step = self.recovered(system, instructions, (Some(left), None), cache).ok()?;
+        is_proven(&ErasedSystem::of(system), self.node, &step).then_some(step)
+    }
+
     /// The step of this length that continues those of short lengths: `taken` itself, bit for bit, if it does.
     ///
     /// # Errors

@@ -108,6 +108,11 @@ impl Pause {
         self.left == 0
     }
 
+    /// Whether Newton iteration solved one of the last steps.
+    pub(crate) fn has_been(self) -> bool {
+        self.next > 1
+    }
+
     /// No pause until fixed-point iteration converges: it stalls above rounding, and so does Newton iteration.
     pub(crate) const USELESS: Self = Self { left: 0, next: 0 };
 

@@ -15,7 +15,6 @@ use super::separable::Separable;
 use super::stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
 use crate::error::StepError;
 use crate::motion::{Motion, Point};
-use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::{Lane, Lanes};
 use crate::stepping::Convertible;
@@ -69,10 +68,14 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
         convergence.is_at_floor() && convergence.is_fast() && node.stays_finite(h, velocity, momentum)
     }
 
-    /// Whether the stages are finite and near a solution, but not at the rounding floor.
+    /// Whether the stages are finite and near a solution.
+    pub(super) fn is_near(&self) -> bool {
+        self.increment.is_finite() && self.iteration.convergence.change < fixed_point::FAR
+    }
+
+    /// Whether they are near a solution, but not at the rounding floor.
     fn has_stalled(&self) -> bool {
-        let Convergence { change, .. } = self.iteration.convergence;
-        self.increment.is_finite() && change > FLOOR && change < fixed_point::FAR
+        self.is_near() && !self.iteration.convergence.is_at_floor()
     }
 
     /// Converts the stages to a step, after which fixed-point iteration pauses.

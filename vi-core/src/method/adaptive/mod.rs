@@ -116,11 +116,21 @@ fn solved<S: Convertible<N>, const N: usize, const STAGES: usize>(
     guess: &Steps<S, N, STAGES>,
     cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
 ) -> Result<(Node<N>, Steps<S, N, STAGES>), StepError> {
-    let (solver, Problem { system, node, h, .. }) = (solver::<S, N, STAGES>(), at);
-    let step = solver.solve(at, guess, cache)?;
+    let step = solver::<S, N, STAGES>().solve(at, guess, cache)?;
+    Ok(taken::<S, N, STAGES>(at, guess, cache, step))
+}
+
+/// The end of a step.
+fn taken<S: Convertible<N>, const N: usize, const STAGES: usize>(
+    at: Of<'_, S, N, STAGES>,
+    guess: &Steps<S, N, STAGES>,
+    cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
+    step: <Solver<S, N, STAGES> as Method<S, N>>::Step,
+) -> (Node<N>, Steps<S, N, STAGES>) {
+    let Problem { system, node, h, .. } = at;
     let (mut end, mut steps) = (*node, guess.clone());
-    solver.take(system, h, (&mut end, &mut steps), cache, step);
-    Ok((end, steps))
+    solver::<S, N, STAGES>().take(system, h, (&mut end, &mut steps), cache, step);
+    (end, steps)
 }
 
 /// The first step, which sets the law of all others.

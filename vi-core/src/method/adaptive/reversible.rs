@@ -12,7 +12,7 @@
 //!
 //! The equation is solved by secants: first on the polynomials of a solved step, which tell where shorter and longer ones
 //! end, then by steps of these lengths, each from the stages of the one before. The explicit law of Hairer and Söderlind
-//! (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of three and a half.
+//! (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of three.
 //! But ρ leaves ω where a step is long for the changes of ω, as with few steps in the period of an oscillator.
 //!
 //! With terms that are linear in the velocities a motion is not reversible: steps back still return, but no law bounds
@@ -20,10 +20,11 @@
 
 use super::decaying::FEWEST;
 use super::phase::{Phase, Place, phase};
-use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, moves_time, solved};
+use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, moves_time, taken};
 use crate::error::StepError;
 use crate::gauss::polynomial::{coefficients, integrals, polynomials, sum};
-use crate::method::gauss::StageSolver as _;
+use crate::gauss::stages::Stages;
+use crate::method::gauss::{StageSolver as _, solver};
 use crate::method::{Method, Problem};
 use crate::node::Node;
 use crate::stepping::Convertible;
@@ -44,11 +45,22 @@ const FEW: usize = 15;
 /// follow from halving.
 const LEAST_SLOPE: f64 = 0.25;
 /// The deviation up to which lengths are tried on the polynomials of a step.
-const CLOSE: f64 = 1e-3;
+const CLOSE: f64 = 1e-4;
 /// The longest length that the polynomials of a step tell, in units of its own.
 const BEYOND: f64 = 1.25;
 /// Most lengths that are tried on them.
 const FORESEEN: usize = 8;
+/// The logarithm of the phase of the first half of a step over that of the step, above which its measure misses an
+/// oscillation: exact means give at most −0.58, those of steps that keep their errors at most −0.4.
+const HALF: f64 = -0.3;
+/// The largest phase of steps after the first one: three places measure longer ones poorly.
+const MOST: f64 = 2.0;
+/// A phase that three places measure in any case.
+const SHORT: f64 = 1.5;
+/// Lengths without a quick step, mostly much too long, after which a step is solved in any way.
+const QUICK: usize = 4;
+/// The largest factor between the lengths of two steps of which one proves the other.
+const BESIDE: f64 = 1.5;
 
 /// What the law keeps between steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,8 +84,10 @@ pub struct Reversible {
 struct Search {
     /// A length that is too short, and one that is too long or has no step.
     between: [f64; 2],
-    /// The last length tried, and the logarithm of its phase over ε.
+    /// The logarithm of the last length tried, and that of its phase over ε.
     last: Option<[f64; 2]>,
+    /// The logarithm of the length before, and the slope between both.
+    chord: Option<[f64; 2]>,
     /// Logarithmic slope of the phase in the length.
     slope: f64,
 }
@@ -82,13 +96,22 @@ impl Search {
     /// The length to try after one without a step.
     fn shorter(&mut self, h: f64) -> f64 {
         self.between[1] = h;
+        self.halved(h)
+    }
+
+    /// The length halfway from those that are too short to this one.
+    fn halved(&self, h: f64) -> f64 {
         0.5 * (self.between[0] + h)
     }
 
-    /// The slope by the last two lengths.
+    /// The slope at a length, by the last three.
     fn learn(&mut self, h: f64, off: f64) {
-        if let Some([before, off_before]) = self.last.replace([h, off]) {
-            self.slope = ((off - off_before) / (h / before).ln()).max(LEAST_SLOPE);
+        let length = h.abs().ln();
+        if let Some([last, off_last]) = self.last.replace([length, off]) {
+            let chord = (off - off_last) / (length - last);
+            let bend = self.chord.map_or(0.0, |[first, before]| (chord - before) / (length - first));
+            self.slope = (chord + bend * (length - last)).max(LEAST_SLOPE);
+            self.chord = Some([last, chord]);
         }
     }
 
@@ -125,7 +148,7 @@ impl Reversible {
         let floor = if found.is_some() { LONGEST.recip() } else { usual } / h.abs();
         let found = found.unwrap_or(Phase::constant(usual));
         let slope = found.slope().max(LEAST_SLOPE);
-        Ok(Self { phase: found.value().copysign(h), floor, ahead: 1.0, ratio: 1.0, slope })
+        Ok(Self { phase: found.value().min(MOST).copysign(h), floor, ahead: 1.0, ratio: 1.0, slope })
     }
 
     /// The law after a change of the system or of the state.
@@ -153,23 +176,39 @@ impl Reversible {
         let Self { phase: wanted, floor, ahead, ratio: before, slope } = *self;
         let Following { steps, h: last, .. } = memory;
         let start = Place::of(system, node)?;
-        let mut search = Search { between: [0.0, wanted / floor], last: None, slope };
+        let mut search = Search { between: [0.0, wanted / floor], last: None, chord: None, slope };
         let mut h = last * ahead;
         let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
         let mut failure = StepError::LengthsLost { t: node.t, h: *last };
         // The polynomials of fewer stages are too rough.
         let mut is_first = STAGES >= FEWEST;
+        let (mut quick, mut is_beside) = (QUICK, false);
         for trial in 0..TRIALS {
             if !moves_time(h, node.t)? {
                 break;
             }
-            let tried = solved(Problem { h, ..at }, &guess, cache)
-                .and_then(|(end, steps)| Ok((Place::of(system, &end)?, end, steps)));
+            let (solver, at) = (solver::<S, N, STAGES>(), Problem { h, ..at });
+            let step = match (is_beside, quick) {
+                (true, _) => solver.beside(at, &guess, cache).map(Some),
+                (false, 0) => solver.solve(at, &guess, cache).map(Some),
+                (false, _) => Ok(solver.quickly(at, &guess, cache)),
+            };
+            let tried = step.and_then(|step| {
+                let Some(step) = step else { return Ok(None) };
+                let (end, steps) = taken::<S, N, STAGES>(at, &guess, cache, step);
+                Ok(Some((Place::of(system, &end)?, end, steps)))
+            });
             let (there, end, steps) = match tried {
-                Ok(found) => found,
-                Err(error) => {
-                    failure = error;
-                    h = search.shorter(h);
+                Ok(Some(found)) => found,
+                left => {
+                    h = if let Err(error) = left {
+                        failure = error;
+                        search.shorter(h)
+                    } else {
+                        quick -= 1;
+                        search.halved(h)
+                    };
+                    is_beside = false;
                     guess = Solver::<S, N, STAGES>::resized(system, &memory.steps, node, h)?;
                     continue;
                 }
@@ -179,21 +218,60 @@ impl Reversible {
             let found = found.unwrap_or(Phase::constant(wanted));
             let off = found.off(wanted);
             search.learn(h, off);
-            if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
+            let is_found = off.abs() < if trial < FEW { NEAR } else { ROUGH };
+            if is_found && self.is_too_long::<S, N, STAGES>(system, (&start, node), (&steps, h)) {
+                search = Search { between: [0.0, h], last: None, chord: None, slope };
+                (h, is_beside) = (0.5 * h, false);
+                guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
+                continue;
+            }
+            if is_found {
                 let ratio = h / last;
                 // Ratios change by nearly equal factors, until the forces turn.
                 let ahead = found.ratio().min(ratio * (ratio / before).clamp(0.7, 1.4));
                 let law = Law::Reversible(Self { ahead, ratio, slope: search.slope, ..*self });
                 return Ok((end, Following { steps, h, law: Some(law) }));
             }
+            let solved = h;
             h = if core::mem::take(&mut is_first) {
                 self.foreseen::<S, N, STAGES>(system, (&start, node), (&steps, h), (&mut search, off))
             } else {
                 search.beside(h, off)
             };
+            is_beside = h / solved < BESIDE && solved / h < BESIDE;
             guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
         }
         Err(failure)
+    }
+
+    /// Whether the first half of a step has nearly its phase or more, so that the places where the phase is measured miss
+    /// an oscillation.
+    fn is_too_long<S: Convertible<N>, const N: usize, const STAGES: usize>(
+        &self,
+        system: &S,
+        start: (&Place<S, N>, &Node<N>),
+        (steps, h): (&Steps<S, N, STAGES>, f64),
+    ) -> bool {
+        if self.phase.abs() < SHORT {
+            return false;
+        }
+        let velocity = coefficients(&Solver::<S, N, STAGES>::velocities(system, steps));
+        let half = self.on_polynomial(system, start, (&velocity, h), 0.5 * h);
+        half.is_some_and(|half| half.off(self.phase) > HALF)
+    }
+
+    /// The phase of a step of some length, on the polynomials of the velocity in a step of the length h.
+    fn on_polynomial<S: Convertible<N>, const N: usize, const STAGES: usize>(
+        &self,
+        system: &S,
+        (start, node): (&Place<S, N>, &Node<N>),
+        (velocity, h): (&Stages<N, STAGES>, f64),
+        length: f64,
+    ) -> Option<Phase> {
+        let part = length / h;
+        let q = node.q + sum(velocity, &integrals(part)) * h;
+        let there = Place::at(system, (node.t + length, q, sum(velocity, &polynomials(part))));
+        phase(system, [start, &there], [length.abs(), self.floor]).ok()?
     }
 
     /// The length to try after the step of the length h, by secants on the polynomials of that step: they tell the places
@@ -209,18 +287,15 @@ impl Reversible {
         let mut on = search.clone();
         let velocity = coefficients(&Solver::<S, N, STAGES>::velocities(system, steps));
         for _ in 0..FORESEEN {
-            let part = tried / h;
-            if part > BEYOND {
+            if tried / h > BEYOND {
                 break;
             }
-            let q = node.q + sum(&velocity, &integrals(part)) * h;
-            let there = Place::at(system, (node.t + tried, q, sum(&velocity, &polynomials(part))));
-            let Ok(Some(found)) = phase(system, [start, &there], [tried.abs(), self.floor]) else { break };
+            let Some(found) = self.on_polynomial(system, (start, node), (&velocity, h), tried) else { break };
             off = found.off(self.phase);
             on.learn(tried, off);
             tried = on.beside(tried, off);
             // The slope here is that of the steps, up to the error of the polynomials.
-            (search.slope, search.last) = (on.slope, None);
+            (search.slope, search.last, search.chord) = (on.slope, None, None);
             if off.abs() < CLOSE {
                 break;
             }

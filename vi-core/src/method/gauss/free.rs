@@ -378,6 +378,34 @@ where
         Ok(LastStages { stages, before: *node, h, convergence: Convergence::NONE, linearization: None, ..*memory })
     }
 
+    fn quickly(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &LastStages<N, STAGES>,
+        cache: &mut Buffer<N, STAGES>,
+    ) -> Option<Step<N, STAGES>> {
+        match self.attempt(at, memory, cache) {
+            Ok(step) => Some(step),
+            Err(Some(left)) if !memory.pause.has_been() => {
+                memory.start(at.node).quickly(at.system, *at.prepared, &left, cache)
+            }
+            // The steps of a stiff system are Newton's.
+            Err(left) => self.recover(at, memory, cache, left).ok(),
+        }
+    }
+
+    fn beside(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &LastStages<N, STAGES>,
+        cache: &mut Buffer<N, STAGES>,
+    ) -> Result<Step<N, STAGES>, StepError> {
+        self.attempt(at, memory, cache).or_else(|left| {
+            let last = memory.linearization;
+            memory.start(at.node).beside(at.system, *at.prepared, (left.as_ref(), last), cache)
+        })
+    }
+
     fn velocities(system: &S, memory: &LastStages<N, STAGES>) -> Stages<N, STAGES> {
         let LastStages { before, h, stages, .. } = memory;
         equations(&ErasedSystem::of(system), before, *h, stages.data.0).velocity()

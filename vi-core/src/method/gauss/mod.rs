@@ -50,6 +50,31 @@ pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memo
     #[doc(hidden)]
     fn again(system: &S, memory: &Self::Memory, node: &Node<N>, h: f64) -> Result<Self::Memory, StepError>;
 
+    /// The next step, if neither Newton's iteration nor a proof that it continues short steps takes long.
+    #[doc(hidden)]
+    fn quickly(
+        &self,
+        at: Problem<'_, S, Self::Prepared, N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
+    ) -> Option<Self::Step> {
+        self.solve(at, memory, cache).ok()
+    }
+
+    /// The next step, from the stages of one of nearly its length, which continues short ones.
+    ///
+    /// # Errors
+    /// As [`Method::solve`].
+    #[doc(hidden)]
+    fn beside(
+        &self,
+        at: Problem<'_, S, Self::Prepared, N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
+    ) -> Result<Self::Step, StepError> {
+        self.solve(at, memory, cache)
+    }
+
     /// The velocities at the stages of the last step.
     #[doc(hidden)]
     fn velocities(system: &S, memory: &Self::Memory) -> Stages<N, STAGES>;
