@@ -1,6 +1,6 @@
 //! The tables of `docs/benchmarks.md`.
 //!
-//! In: what was measured. Out: one table for a kind of build, which takes the place of the last one between its two markers; the
+//! In: what was measured. Out: one table, which takes the place of the last one between its two markers; the
 //! text around is written by hand.
 
 use crate::contest::{Contest, Target};

@@ -30,7 +30,7 @@ macro_rules! rods {
 /// The coordinates after `count` steps to t = 1 from rest, and the least time of a run in seconds.
 ///
 /// # Errors
-/// That of the failed step.
+/// The error of the failed step.
 pub fn run<M, Y, const N: usize>(
     system: Y,
     start: SVector<f64, N>,
