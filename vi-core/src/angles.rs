@@ -130,7 +130,7 @@ pub(crate) fn without_turns<const N: usize, T: Scalar>(state: &State<N, T>, turn
     State { q: with_turns(&state.q, &SVector::zeros(), &-turns), ..*state }
 }
 
-/// The turns nearest to a reduced angle and its low part are added to the others: the result is in `[-π, π]`.
+/// Adds the turns nearest to a reduced angle and its low part to the others. The rest is in `[-π, π]`.
 pub(crate) fn normalized<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
     system: &S,
     node: &Node<N, T>,
@@ -218,7 +218,7 @@ fn number(turns: i64) -> f64 {
     turns as f64
 }
 
-/// `a b` as (rounded product, rounding error), by Dekker's algorithm: the fused operation is slow where no instruction
+/// `a b` as (rounded product, rounding error), by Dekker's algorithm: the fused operation is slow if no instruction
 /// exists.
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let split = |x: f64| {

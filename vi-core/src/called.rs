@@ -1,8 +1,8 @@
 //! Wrappers of a system: one that compiles its functions once, and one for generic code.
 //!
 //! The emitted functions are inlined at every call site, so that the hot path is one piece of code. [`Called`] compiles
-//! each function once, which makes integrators smaller. Cold paths of every integrator use it. Use it also if build
-//! time matters more than speed: it builds several times faster and steps several times slower.
+//! each function once, which makes integrators smaller. Cold paths of every integrator use it. It is also for programs
+//! whose build time matters more than speed: it builds several times faster and steps several times slower.
 
 use crate::lagrangian::Parameters;
 use crate::real::Real;

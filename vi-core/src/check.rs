@@ -1,4 +1,4 @@
-//! Tests of a system at states where it is well behaved.
+//! Tests of a system at states of moderate size.
 //!
 //! Each check takes a system and a [`Place`], and returns a [`Report`] with the worst difference, or a [`CheckFailure`]
 //! with the numbers that do not agree. A check that compared nothing, or only zeros, fails as vacuous.

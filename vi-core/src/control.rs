@@ -198,7 +198,7 @@ where
     /// the inputs changes the preserved energy as [`Run::set_state`] and [`Run::set_parameters`] do.
     ///
     /// # Errors
-    /// Those of a step and of [`Run::vary`].
+    /// The errors of a step and of [`Run::vary`].
     pub fn linearization(&self) -> Result<Linearization, StepError> {
         let mut variations = Variation::of_state();
         for input in self.system().inputs() {

@@ -134,7 +134,7 @@ fn momenta<S: Convertible<N>, const N: usize>(system: &S, node: &Node<N>, of: &V
     let along = |value: f64, slope: f64| Dual { value, slope };
     let varied = along_parameters(system, of);
     let momentum = varied.momentum(along(node.t, of.t), &node.q.zip_map(&of.q, along), &SVector::zeros());
-    // Those of coordinates at rest are free.
+    // The momenta of coordinates at rest are arbitrary.
     SVector::from_fn(|k, _| if k < system.moving() { momentum[k].slope } else { of.p[k] })
 }
 

@@ -102,8 +102,8 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn is_first_order(&self) -> bool {
         !self.without_velocity().is_empty()
     }
-    /// The number of coordinates that move: the first ones. Those after them are at rest at 0, with the mass 1 and without
-    /// forces; only systems that are known at run time have any. Steps leave them out where they take time.
+    /// The number of moving coordinates, which come first. Systems of a text may have more, at rest at 0, with the mass
+    /// 1 and without forces. Steps leave them out in expensive loops.
     #[inline(always)]
     fn moving(&self) -> usize {
         N
@@ -130,7 +130,7 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn sides(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Sides<N, T> {
         self.point(t, q, v).sides()
     }
-    /// [`Motion::sides`]; sets the entries of M⁻¹ among the coordinates that move, unspecified where M is singular.
+    /// [`Motion::sides`]; sets the entries of M⁻¹ among the moving coordinates. They are unspecified if M is singular.
     #[inline(always)]
     fn sides_and_inverse(
         &self,
@@ -146,7 +146,7 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn applied_force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
         self.sides(t, q, v).force
     }
-    /// Evaluates their derivatives at a point.
+    /// Evaluates the derivatives of both sides at a point.
     fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix>;
     /// `f·v − L_t`, the rate of change of the energy without the power `−Λ·a` of the constraints.
     fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
@@ -163,8 +163,8 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
         }
     }
 
-    // The functions below are those of the constraints. A free system has the provided ones; a bound one that leaves
-    // out one of them does not compile.
+    // Functions of the constraints. A free system has the provided ones. A bound system without its own does not
+    // compile.
 
     /// `L_q + f − L_vt − L_vq v`: M times the acceleration without the reaction. Zero at the velocity of a system of first
     /// order, which needs its own function.
@@ -206,7 +206,7 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
         Self::Kind::no_reaction()
     }
     /// Whether the constraint of this index follows from the others and has no multiplier: its gradients are then zero.
-    /// Only in [`Independent`](crate::constrained::Independent).
+    /// Only [`Independent`](crate::constrained::Independent) drops constraints.
     fn is_dropped(&self, _constraint: usize) -> bool {
         false
     }

@@ -1,7 +1,7 @@
 //! Newton iteration to the rounding floor.
 //!
-//! From equations `r(u) = 0` with their Jacobian J and a guess of u, this module computes the root. Every residual is
-//! then at its floor: at most one rounding, or within [`FLOOR`] roundings and no longer reduced by a Newton step. One
+//! This module solves `r(u) = 0` with the Jacobian J from a guess. At the root every residual is at its floor: at most
+//! one rounding, or within [`FLOOR`] roundings and no longer reduced by a Newton step. One
 //! rounding is the bound of the evaluation error of the row by running error analysis, with u the numbers nearest to
 //! the root.
 //!
@@ -133,8 +133,9 @@ fn damped<T: Real, E: Equations<T>>(
         let next = u.zip_map(&correction, |u, correction| u - correction);
         if equations.admits(&next) {
             let at = equations.at(&next);
-            // Measured in the scales at u: those far away would make any residual look small. The sum decides, so that
-            // one group at its floor does not hide progress of the other. Within the floor, either group must halve.
+            // In units of the scales at u: larger scales at a trial far away would make its residual look small. The
+            // sum decides, so that one group at its floor does not hide progress of the other. Within the floor, either
+            // group must halve.
             let [momentum, energy] = equations.roundings(&at, last);
             let is_finite = largest(equations.roundings(&at, &at)).is_finite();
             let halves_one = momentum < 0.5 * before[0] || energy < 0.5 * before[1];
@@ -165,8 +166,8 @@ fn damped<T: Real, E: Equations<T>>(
 }
 
 /// Whether the next correction, by the same matrix, is less than half as long: Newton's natural measure (Deuflhard,
-/// Newton Methods for Nonlinear Problems, section 3.3). It decides if a row has no terms at u, as at rest at the bottom
-/// of a potential, and therefore no scale for its residual.
+/// Newton Methods for Nonlinear Problems, section 3.3). It decides if a row has no terms at u, and therefore no scale:
+/// for example at rest at the bottom of a potential.
 #[cold]
 fn contracts<T: Real, E: Equations<T>>(
     equations: &E,

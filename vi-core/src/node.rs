@@ -1,7 +1,7 @@
 //! Nodes with compensated sums, and their update.
 //!
-//! From a node, the solved `(v, h)` of a step and its increments of momentum and energy follows the next node, `q1 = q0
-//! + h v`, with every other sum compensated. Each low part stays below half an ulp of its number.
+//! The next node follows from the solved `(v, h)` of a step and its increments of momentum and energy: `q1 = q0 + h v`,
+//! with compensated sums. Each low part stays below half an ulp of its number.
 
 use crate::compensated;
 use crate::error::StepError;
@@ -46,7 +46,7 @@ impl<const N: usize, T: Real> Node<N, T> {
         Self { t, t_low: zero, q, q_low: zeros, p, p_low: zeros, energy, energy_low: zero }
     }
 
-    /// Whether this is another node, but for its energy.
+    /// Whether both nodes have the same numbers, except for the energy.
     pub(crate) fn is_at(&self, other: &Self) -> bool {
         Self { energy: other.energy, energy_low: other.energy_low, ..*self } == *other
     }

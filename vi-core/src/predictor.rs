@@ -104,7 +104,7 @@ impl<const M: usize, T: Real> Predictor<M, T> {
         let [u0, u1, u2, u3, u4, u5, u6] = &self.last;
         let mut guess = *u0;
         for i in 0..M {
-            // The terms that are known earlier come first.
+            // Terms of earlier steps are summed while the last step is still computed.
             let known = (u6[i] - u5[i] * T::real(7.0))
                 + (u4[i] * T::real(21.0) - u3[i] * T::real(35.0))
                 + (u2[i] * T::real(35.0) - u1[i] * T::real(21.0));

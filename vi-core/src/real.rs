@@ -138,8 +138,8 @@ pub trait Number:
     /// Both arms are computed. Derivatives are those of the selected arm, without any trace of the other one.
     #[must_use]
     fn if_positive(self, then: Self, otherwise: Self) -> Self;
-    /// Constants that depend on where the arguments are, as the coefficients of a piece of a table: `find` at their
-    /// values, for each lane by itself. Derivatives of the constants are zero.
+    /// Constants that depend on the interval of the arguments, as the coefficients of a piece of a table: `find` at the
+    /// values of the arguments, for each lane by itself. Derivatives of the constants are zero.
     fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C];
     /// 0 if the number and all its derivatives are zero, otherwise 1; for each lane by itself.
     #[doc(hidden)]
@@ -171,8 +171,8 @@ pub trait Real: Number {
 /// A single number, with the order that the control flow of a stepper needs.
 pub trait Scalar: Real + PartialOrd {}
 
-/// Sine and cosine, in this order, with one branch for all that typical angles do not take: the compiler vectorizes the
-/// code between branches.
+/// Sines and cosines, in this order. One branch serves all angles, and typical ones do not take it: the compiler
+/// vectorizes the code between branches.
 #[inline]
 fn sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
     if angles.iter().fold(true, |all, x| all & (x.abs() <= sine::LARGEST)) {
@@ -182,8 +182,8 @@ fn sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
     }
 }
 
-/// The same in single precision throughout. Small processors compute double precision by calls: with it a period of
-/// `examples/controller` took 36 800 instructions of a Cortex-M4 instead of 5900.
+/// The same in single precision. Small processors call functions for double precision, which took 36 800 instructions
+/// of a Cortex-M4 instead of 5900 in a period of `examples/controller`.
 #[allow(clippy::cast_possible_truncation)] // rounded
 #[inline]
 fn sin_cos_single<const K: usize>(angles: [f32; K]) -> [(f32, f32); K] {

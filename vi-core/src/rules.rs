@@ -52,7 +52,7 @@ impl Quadrature for Trapezoidal {
     const POINTS: &'static [[f64; 2]] = &[[0.0, 0.5], [1.0, 0.5]];
 }
 
-/// A system whose own rule is R, one of the further rules that it is declared with. It goes wherever the system goes:
+/// A system by one of its further rules, R. It replaces the system everywhere:
 ///
 /// ```
 /// use vi_core::rules::{By, Trapezoidal};

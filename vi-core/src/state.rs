@@ -76,7 +76,7 @@ pub struct Step<const N: usize, T = f64> {
     /// Largest residual at the accepted `(v, h)`, in units of its rounding-error bound: an ulp of the sum of absolute
     /// terms of the row, or the bound of running error analysis.
     pub residual: T,
-    /// How the step was found.
+    /// The equations by which the step was found.
     pub kind: StepKind<T>,
 }
 
@@ -89,19 +89,19 @@ impl<const N: usize, T: Scalar> Step<N, T> {
     }
 }
 
-/// How a step of the energy-preserving integrator was found.
+/// The equations by which a step of the energy-preserving integrator was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum StepKind<T = f64> {
-    /// By the momentum and the energy equation.
+    /// The momentum and the energy equation.
     EnergyPreserving,
-    /// By both equations, as the first step after fixed steps, because no step had the previous energy. The preserved
-    /// energy became the discrete energy of the last fixed interval.
+    /// Both equations, for the first step after fixed steps. No step had the previous energy, so the discrete energy of
+    /// the last fixed interval is now preserved.
     Reseeded {
         /// Change of the preserved energy.
         energy_change: T,
     },
-    /// By the momentum equation alone, with given length: no energy-preserving step was found, and
+    /// The momentum equation alone, with given length: no energy-preserving step was found, and
     /// [`Fallback::FixedSteps`](crate::Fallback::FixedSteps) was chosen.
     FixedStep,
 }

@@ -343,7 +343,7 @@ impl<const N: usize, T: Real> Node<N, T> {
         increment: &Increment<N, T>,
     ) -> Self {
         self.advance(h, v, &increment.momentum);
-        // Otherwise the increment is the constant zero, which the compiler may not drop from a sum.
+        // The increment of a conservative system is the constant zero, which the compiler may not drop from a sum.
         if !system.conserves_energy() {
             self.add_energy(increment.energy);
         }

@@ -72,8 +72,8 @@ impl<const N: usize, T: Real> Vector<T> for VelocityStep<N, T> {
 /// Weights of coordinates in the length of a correction, from the diagonal of the mass matrix: its square roots, and the
 /// largest of them for coordinates without mass.
 ///
-/// Lengths of corrections show whether an iteration converges also where residuals of momenta and of constraints, in
-/// roundings of their terms, cannot be compared: a rod far from the origin has large terms in its constraint only.
+/// The length of a correction shows convergence even if residuals of momenta and of constraints, in roundings of their
+/// terms, cannot be compared: a rod far from the origin has large terms in its constraint only.
 pub(crate) fn weights<const N: usize>(mass: &SVector<f64, N>) -> SVector<f64, N> {
     let largest = mass.max();
     let largest = if largest > 0.0 { largest } else { 1.0 };

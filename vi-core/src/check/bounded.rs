@@ -19,7 +19,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use nalgebra::SVector;
 
 const EPSILON: f64 = f64::EPSILON;
-/// A constant counts as exact if it is a multiple of the inverse of this, and not larger than it.
+/// A constant counts as exact if it is at most this number, and a multiple of its inverse.
 const EXACT: f64 = 1_048_576.0;
 
 /// A value and the bound of its rounding.
@@ -266,7 +266,7 @@ impl Number for Bounded {
         let farthest = if is_known { 0.0 } else { (arm.value - other.value).abs() + other.error };
         Self { error: worse(arm.error, farthest), ..arm }
     }
-    /// The constants of the piece at the value: those of its neighbour agree with them at their common border.
+    /// The constants of the piece at the value. Neighbouring pieces agree at their common border.
     fn lookup<const A: usize, const C: usize>(arguments: [Self; A], find: impl Fn([f64; A]) -> [f64; C]) -> [Self; C] {
         find(arguments.map(|argument| argument.value)).map(Self::once)
     }

@@ -1,7 +1,7 @@
 //! The rounding error of an energy-preserving step's length.
 //!
-//! From a step that solves its equations, and its start node, follows the relative error of its length due to the
-//! rounding of its equations alone. It is the remaining Newton step,
+//! The module computes the relative error of the length of a solved step due to the rounding of its equations alone. It
+//! is the remaining Newton step,
 //!
 //! ```text
 //! δh = −(c/h − energy_dv·a)/S        a = A⁻¹ r        S = energy_dh − energy_dv·A⁻¹ ∂r/∂h = −D/4

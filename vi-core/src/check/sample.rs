@@ -1,7 +1,7 @@
 //! Samples for the comparison of formulas: states near the trajectory from a place, with parameters near the given
 //! ones.
 //!
-//! From a system and a [`Place`] follows the [`SampledMotion`], whose time scale is that of the system, not that of the
+//! [`SampledMotion`] has the trajectory from a [`Place`] of a system, on the time scale of the system, not of the
 //! place's h. No coordinate, velocity or parameter of a sample has a value that could hide a term, such as zero and
 //! one. A formula holds for every h. At a fraction of the time scale its terms are of similar size; with a small h of
 //! the place, a term of order h² would lie below the rounding error of the others.
@@ -167,8 +167,8 @@ impl<const N: usize> SampledMotion<N> {
     }
 }
 
-/// The nearest place on the constraints; without constraints the place itself. If L is linear in the velocities, the place
-/// with those of its coordinates.
+/// The nearest place on the constraints; without constraints the place itself. If L is linear in the velocities, they
+/// are replaced by the velocities of the coordinates.
 ///
 /// # Errors
 /// As [`State::projected`].

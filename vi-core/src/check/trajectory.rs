@@ -41,7 +41,7 @@ impl<const N: usize> Trajectory<N> {
     /// [`Extended`](crate::constrained::Extended).
     ///
     /// # Errors
-    /// Those of the acceleration; [`StepError::NotConverged`] if the integration fails.
+    /// The errors of the acceleration; [`StepError::NotConverged`] if the integration fails.
     pub fn at(self, system: &impl Lagrangian<N>, end: f64) -> Result<Self, StepError> {
         self.within(system, end, u32::MAX)
     }

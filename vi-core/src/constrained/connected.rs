@@ -26,7 +26,7 @@ const STALLED: f64 = 1e4;
 /// the determinant of the bordered mass matrix, `is_next` says that the step follows the last one of the workspace.
 ///
 /// # Errors
-/// Those of [`unprojected`].
+/// The errors of [`unprojected`].
 pub(crate) fn step<S, const N: usize, const STAGES: usize>(
     system: &S,
     (node, h, sign, is_next): (&Node<N>, f64, i8, bool),

@@ -115,7 +115,7 @@ where
     /// Solves the step of length h with the guess in `u`, or with that of the node alone.
     ///
     /// # Errors
-    /// Those of the first guess.
+    /// The errors of the first guess.
     fn solved<const STAGES: usize>(
         &self,
         (node, h): (&Node<N>, f64),

@@ -259,7 +259,7 @@ pub fn constrained_flow<S: Motion<N, T>, const N: usize, T: Real>(
 /// [`velocity`] from rest; from the momenta as a guess if that fails.
 ///
 /// # Errors
-/// Those of the second guess.
+/// The errors of the second guess.
 pub(crate) fn from_rest<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     (t, q, p): (T, &SVector<T, N>, &SVector<T, N>),

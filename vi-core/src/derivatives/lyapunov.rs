@@ -80,8 +80,8 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Lyapunov<M, S, 
     /// Takes this number of steps.
     ///
     /// # Errors
-    /// Those of the failed step; [`StepError::NonFinite`] if a step maps a direction to zero, so that its exponent is
-    /// unbounded. The estimates then end there.
+    /// The errors of the failed step; [`StepError::NonFinite`] if a step maps a direction to zero, so that its exponent
+    /// is unbounded. The estimates then end there.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
         for _ in 0..steps {
             let before = self.tangent.run().t();

@@ -77,7 +77,7 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Tangent<M, S, N
     /// Takes a step, and returns its end state.
     ///
     /// # Errors
-    /// Those of the step; run and tangent vectors then do not change. [`StepError::InconsistentTangent`] for given
+    /// The errors of the step; run and tangent vectors then do not change. [`StepError::InconsistentTangent`] for given
     /// vectors that are not admissible. Those of [`Run::vary`]; the tangent vectors are then invalid. Further calls
     /// return the same error.
     pub fn step(&mut self) -> Result<State<N>, StepError> {
@@ -147,7 +147,7 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Tangent<M, S, N
     /// coordinates and parameters.
     ///
     /// # Errors
-    /// Those of [`State::velocity`].
+    /// The errors of [`State::velocity`].
     pub fn set_velocities(&mut self, changes: &[SVector<f64, N>]) -> Result<(), StepError> {
         let State { t, q, .. } = self.run.node.state();
         let v = self.run.node.state().velocity(&self.run.system)?;

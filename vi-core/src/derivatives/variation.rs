@@ -149,7 +149,7 @@ impl<const N: usize> Variation<N> {
     /// The direction of a parameter of a system, by its name; see [`Variation::of_parameter`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Variation::of_parameter`].
     pub(crate) fn of_parameter_of(system: &impl Lagrangian<N>, name: &str) -> Result<Self, StepError> {
         Self::of_name(name, system.name(), system.parameters())
     }

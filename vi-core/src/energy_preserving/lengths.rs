@@ -205,7 +205,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Search<'_, S, N, T> {
     /// One fixed step of the length h, after which energy, length and fallback of the run are as before.
     ///
     /// # Errors
-    /// Those of a fixed step.
+    /// The errors of a fixed step.
     pub(crate) fn step_of(&self, h: T) -> Result<After<N, T>, StepError> {
         let (mut after, [gap, density_next]) = self.fixed(h)?;
         let control = &mut after.lengths.control;

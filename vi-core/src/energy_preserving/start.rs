@@ -19,7 +19,7 @@ use nalgebra::SVector;
 /// discrete energy `D1 L_d + g_d⁻` of that step.
 ///
 /// # Errors
-/// Those of a fixed step of that length; [`StepError::TooLong`] if it does not continue short ones.
+/// The errors of a fixed step of that length; [`StepError::TooLong`] if it does not continue short ones.
 pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &mut Node<N, T>,

@@ -130,7 +130,7 @@ pub struct Control<T = f64> {
     /// The current fixed steps.
     pub(crate) phase: Option<Phase<T>>,
     pub(crate) switches: Switches<T>,
-    /// How the last step was found.
+    /// The kind of the last step.
     pub(crate) kind: StepKind<T>,
 }
 

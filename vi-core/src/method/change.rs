@@ -1,4 +1,4 @@
-//! What changes between two steps, beside the motion.
+//! Changes of a run between two steps: length, parameters, state.
 
 use super::Method;
 use crate::error::StepError;
@@ -7,19 +7,19 @@ use crate::node::Node;
 use crate::real::Scalar;
 use crate::state::State;
 
-/// A change between two steps. The system and the length that come with it are those after the change.
+/// A change between two steps. It is passed with the system and the length after the change.
 #[derive(Debug)]
 pub enum Change<'a, S, const N: usize, T = f64> {
-    /// Of the length of the steps.
+    /// The length of the steps changes.
     NewLength,
-    /// Of parameters: the system before.
+    /// Parameters change. Contains the system before the change.
     NewSystem(&'a S),
-    /// Of the state, and perhaps of parameters: the system before, and the state after.
+    /// The state changes, and perhaps parameters. Contains the system before the change and the state after it.
     NewState(&'a S, State<N, T>),
 }
 
 impl<'a, S, const N: usize, T: Scalar> Change<'a, S, N, T> {
-    /// The same change of a system that `system` is in another wrapper.
+    /// The same change for another wrapper of the system.
     pub fn of<'b, W>(&self, system: &'b W) -> Change<'b, W, N, T> {
         match self {
             Self::NewLength => Change::NewLength,
@@ -59,10 +59,10 @@ impl<'a, S, const N: usize, T: Scalar> Change<'a, S, N, T> {
         Ok(moved)
     }
 
-    /// The memory of a new run: for a method that carries nothing over a change. Moves the node.
+    /// The memory of a new run, for a method that carries nothing over a change. Moves the node.
     ///
     /// # Errors
-    /// Those of [`Method::begin`].
+    /// The errors of [`Method::begin`].
     pub(crate) fn begun<M: Method<S, N, T>>(
         &self,
         method: &M,

@@ -80,7 +80,7 @@ pub struct FixedSolution<const N: usize, T = f64> {
     is_common: bool,
 }
 
-/// What both methods do with their memory, the velocities of the last steps.
+/// The functions of [`Method`] that only use the memory: they are the same for both methods.
 macro_rules! velocities {
     () => {
         type Memory = Velocities<N, T>;

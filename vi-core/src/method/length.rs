@@ -93,7 +93,7 @@ impl<T: Trial> Search<'_, T> {
             let next = (self.solve)(h, Some(&best)).ok()?;
             if (next.residual() - last).abs() > DISTINCT * f64::EPSILON * next.size() {
                 let measured = ((-next.residual() / self.excess).ln_1p() - y) / factor.ln();
-                // Beyond the smallest root the energies fall again.
+                // Past the smallest root the energies fall again.
                 if measured.is_nan() || measured <= 0.0 {
                     return None;
                 }

@@ -15,7 +15,7 @@
 //! | `transformed` | [`InTransformedTime`]: Gauss steps of constant length in transformed time |
 //! | `energy` | [`EnergyPreserving`]: steps of order 2 whose length preserves the discrete energy |
 //! | `energy_gauss` | [`EnergyPreservingGauss`]: the same with Gauss steps, order 2S |
-//! | `change` | what changes between two steps, beside the motion |
+//! | `change` | changes of a run between two steps: length, parameters, state |
 //! | `bounds` | bounds of a step length, and fixed steps if no energy-preserving step exists |
 //! | `preserving` | energy-preserving steps among steps of any length |
 //! | `shift` | the shift of the step density |
@@ -115,7 +115,7 @@ pub trait Memory: Clone + Debug + Send + Sync {
     }
 }
 
-/// What a method is, for every system.
+/// Facts about a method that hold for every system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Facts {
     /// The order p: the error of a step is O(h^(p+1)).
@@ -150,7 +150,7 @@ pub struct Status<T = f64> {
 }
 
 impl<T: Copy> Status<T> {
-    /// Of steps of a given length.
+    /// The status of steps of a given length, before the first one.
     pub(crate) fn of_length(h: T) -> Self {
         Self { length: h, longest: h, residual: 0.0, iterations: 0 }
     }
@@ -179,7 +179,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
     /// Dense output of a step.
     type DenseOutput: DenseOutput<N, T> + Send + Sync + 'static;
 
-    /// What the method is, for every system.
+    /// Facts about the method that hold for every system.
     fn facts(&self) -> Facts;
 
     /// Checks the given step length.
@@ -309,7 +309,8 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
         memory: &Self::Memory,
     ) -> Result<Self::DenseOutput, StepError>;
 
-    /// What the memory tells of the last step and the next, if h is the length of the steps in the unit of the method.
+    /// Length, residual and cost of the last step, and a bound of the next one. h is the length of the steps in the
+    /// unit of the method.
     fn status(&self, h: T, memory: &Self::Memory) -> Status<T>;
 
     /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step, if there is one.

@@ -29,7 +29,7 @@ pub(crate) trait StepsOfAnyLength<const N: usize, const K: usize> {
     /// otherwise from the last step.
     ///
     /// # Errors
-    /// Those of a step; [`StepError::NonFinite`] if its energy is not finite.
+    /// The errors of a step; [`StepError::NonFinite`] if its energy is not finite.
     fn tried(&self, node: &Node<N>, h: f64, shift: f64, beside: Option<&Self::Trial>)
     -> Result<Self::Trial, StepError>;
     /// Rounding-error bound of the energy of a trial by running error analysis, in units of `ε`.
@@ -64,7 +64,7 @@ pub(crate) struct Ended<T, const N: usize> {
     pub(crate) state: State<N>,
     /// `E1 − E0`.
     pub(crate) gain: f64,
-    /// `H − E'` there, and the size of the terms of H.
+    /// `H − E'` at the end, and the size of the terms of H.
     pub(crate) measured: [f64; 2],
 }
 
@@ -156,11 +156,11 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
         if excess.abs() < least_excess::<K>(f64::EPSILON * size) {
             return Err(self.degenerate());
         }
-        // A trajectory that has only gained speed so far does not show the size of its energies.
+        // A trajectory that has only become faster so far does not show the size of its energies.
         if size < largest_size {
             check_shift(t, [last, power::<K>(last)], shift, largest_size, order::<K>())?;
         }
-        // Beyond a sign change of D lies another root.
+        // The root has passed a sign change of D: it is another one.
         if history.density().is_some_and(|density| excess * density < 0.0) {
             return Err(self.no_step());
         }
@@ -198,7 +198,7 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
         Ok((step, slope, iterations.get()))
     }
 
-    /// Whether `h^(2s+1) |D|` has changed since the last step as it does not where steps resolve D.
+    /// Whether `h^(2s+1) |D|` has changed by more since the last step than steps that resolve D allow.
     fn is_irregular(&self, after: &StepHistory) -> bool {
         let (Some([density, last]), false) = (after.densities, self.history.is_first()) else { return false };
         let ratio = after.h() / self.history.h();
@@ -207,7 +207,7 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
     }
 
     /// Checks that D keeps its sign from the start of a step to its end, if it has that sign at its end: the step law does
-    /// not hold across a short time with the other sign. A step to where D has the other sign is the last one.
+    /// not hold across a short time with the other sign. A step to a place with the other sign is the last one.
     ///
     /// # Errors
     /// [`StepError::NoForwardGaussStep`].

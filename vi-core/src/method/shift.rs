@@ -14,7 +14,7 @@ const HALVINGS: u32 = 16;
 /// Largest energy error of that measurement, relative to the terms of the energy.
 const HELD: f64 = 0.01;
 
-/// A method whose step lengths follow from the step density of s stages.
+/// A method with step lengths that follow from the step density of s stages.
 pub trait StepPower {
     /// `C_s h^2s`: `H − E` over the step density, for steps of the length h.
     fn power(h: f64) -> f64;
@@ -94,7 +94,7 @@ where
     /// preserve the energy.
     ///
     /// # Errors
-    /// Those of [`Run::with_shift_from`].
+    /// The errors of [`Run::with_shift_from`].
     #[doc(hidden)]
     pub fn with_shift_from_while(
         mut self,

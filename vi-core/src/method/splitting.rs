@@ -211,13 +211,13 @@ pub struct Kicked<const N: usize, T = f64> {
     /// The last force of the last step, at the node if steps begin with a kick. Zero before the first step, if they begin
     /// with a drift.
     force: SVector<T, N>,
-    /// Of the weights: those of another splitting do not continue its runs.
+    /// Fingerprint of the weights: a splitting with other weights cannot continue the run.
     fingerprint: f64,
 }
 
 impl<const N: usize, T: Scalar> Memory for Kicked<N, T> {}
 
-/// What the steps of a run share.
+/// Data shared by all steps of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Shared<I> {
     instructions: Instructions,
@@ -298,7 +298,7 @@ impl<S: Motion<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
             let drift = velocity * (h * T::real(*weight));
             displacement += drift;
             let is_last = i + 1 == drifts.len();
-            // The last place is that of the node, where the next step has the same force.
+            // The last place is rounded as the node is, so that the next step begins with the same force.
             q = if is_last { node.q + (node.q_low + displacement) } else { q + drift };
             passed = if is_last { 1.0 } else { passed + weight };
             let Some(weight) = kicks.get(first + i) else { break };

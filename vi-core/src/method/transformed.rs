@@ -60,7 +60,7 @@ where
     type Left = Option<TransformedStages<N, STAGES>>;
     type DenseOutput = TransformedPolynomial<N, STAGES>;
 
-    // No bound of the change of g from step to step is known.
+    // The change of g from step to step has no known bound.
     fn facts(&self) -> Facts {
         Facts { finds_length: true, ..Facts::of_order(2 * STAGES) }
     }

@@ -24,7 +24,7 @@ const fn moving(coordinates: usize) -> usize {
     if coordinates < LARGEST { coordinates } else { LARGEST }
 }
 
-/// The matrix of a linear step, with the size of the largest one: a matrix of N × N would be large if it is not used.
+/// The matrix of a linear step. Its size is that of the largest closed form: N × N numbers would be large if not used.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosedForm<T> {
     velocity: Affine<T>,
@@ -74,7 +74,7 @@ impl<T: Scalar> ClosedForm<T> {
         };
         let zeros = SVector::zeros();
         let constant = answer(zeros, zeros);
-        // A power of two that is so large that the constant is below the rounding of the rest.
+        // A power of two, so large that the constant rounds away.
         let large = T::real(f64::from(1_u32 << 30)) * T::real(f64::from(1_u32 << 30));
         let mut form = [Affine::zeros(); 2];
         for j in 0..moving(N) {

@@ -1,9 +1,8 @@
-//! Continuation of the momentum equation from h = 0, where its root is the velocity of p.
+//! Continuation of the root of the momentum equation from h = 0: there it is the velocity of p.
 //!
-//! From a node, a step h and a guess of the velocity at h = 0 follows the root v(h) on the branch that is connected
-//! with h = 0. The parts of h double after a success and halve after a failure. The branch ends at a singular Jacobian:
-//! then no part is small enough and the step has no such root. The determinant keeps its sign up to the turning point
-//! and has the other sign beyond.
+//! In: a node, a step h and a guess of the velocity at h = 0. Out: the root v(h) on the branch that is connected with
+//! h = 0. The parts of h double after a success and halve after a failure. The branch ends at a singular Jacobian:
+//! then no part is small enough and the step has no such root. At the turning point the determinant changes its sign.
 //!
 //! [`is_connected`] shows with five evaluations that a root is on this branch, if the step is not long.
 
@@ -89,7 +88,7 @@ fn is_connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     v: &SVector<T, N>,
 ) -> bool {
     let MomentumEquation { residual, jacobian: mass } = system.momentum_equation(node, T::zero(), v);
-    // From v to the velocity of p, which is linear in p.
+    // The change from v to the velocity of p.
     let Some(change) = linear::solve(&mass, &residual) else { return false };
     let size = |matrix: &S::Jacobian, u: &SVector<T, N>| matrix.multiply(u).dot(u);
     let moved = size(&mass, &change);
@@ -138,7 +137,8 @@ pub(crate) fn check_linear<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     let sign = linear::determinant_sign(&mass);
     let is_regular = |part: f64| {
         let at = jacobian(part);
-        // Two signs that change at once show on the diagonal of a symmetric matrix.
+        // If two eigenvalues change their signs at once, the determinant does not, but the diagonal of a symmetric
+        // matrix does.
         let is_negative = |i: usize| at[(i, i)] * mass[(i, i)] < T::zero();
         linear::determinant_sign(&at) == sign && (at != at.transpose() || !(0..N).any(is_negative))
     };
@@ -154,7 +154,7 @@ pub(crate) fn check_linear<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     Err(StepError::TooLong { t, h, longest: (MARGIN * regular * h).abs() })
 }
 
-/// The root that is connected with h = 0, if that is another one than `v`.
+/// The root that is connected with h = 0, if it is not `v`.
 ///
 /// # Errors
 /// [`StepError::TooLong`] if there is none.
@@ -171,13 +171,13 @@ pub(crate) fn connected<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     match solve(system, node, h, *v, Pace::CLOSE) {
         Ok(found) if !are_one(&found.v, v) => Ok(Some(found)),
         Err(failure @ StepError::TooLong { .. }) => Err(failure),
-        // The same root, or none that a turn of the branch separates from it: a force jumps, or nothing leads from h = 0
-        // since the momenta have no velocity.
+        // The continuation finds the same root, or ends without a turn of the branch: a force jumps, or the momenta
+        // have no velocity.
         _ => Ok(None),
     }
 }
 
-/// Whether two roots are the same but for rounding. That of a nearly singular equation moves by half of the digits.
+/// Whether two roots agree to half of the digits: rounding moves the root of a nearly singular equation that far.
 fn are_one<const N: usize, T: Scalar>(one: &SVector<T, N>, other: &SVector<T, N>) -> bool {
     let size = length_squared(one) + length_squared(other);
     length_squared(&(one - other)) <= size * T::real(T::EPSILON)
@@ -220,7 +220,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
         let at = h * T::real(target);
         let guess = v + last.0 * T::real((target - reached) / last.1);
         let root = newton::solve(system, node, at, guess);
-        // Close to its guess, or with the root of half of the part close to the middle.
+        // The root is close to its guess, or the root of half of the part is close to the middle.
         let stays = |next: &SVector<T, N>| {
             let allowed = bend([&start, &v, next], (target - reached) / target);
             let is_far = |root: &SVector<T, N>, guess: &SVector<T, N>| length_squared(&(root - guess)) > allowed;
@@ -248,7 +248,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
                 let residual = newton::residual(system, node, h, &v);
                 let failure = match root {
                     Ok(root) => Failure::Stalled { iterations: spent, residual, residuals: root.residuals },
-                    // Toward the last root the Jacobian becomes singular, so that no root exists beyond.
+                    // The Jacobian becomes singular toward the last root: the branch ends.
                     Err(Failure::Singular) if residual.is_finite() => {
                         Failure::Stalled { iterations: spent, residual, residuals: Residuals::new() }
                     }
@@ -265,16 +265,16 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     Ok(BranchPoint { v, iterations: spent })
 }
 
-/// Whether a branch turns back: there it is vertical over h. At a jump of a force it ends without that, and its
-/// continuation beyond is a root that steps may take.
+/// Whether a branch turns back: there it is vertical over h. At a jump of a force it ends otherwise, and steps may take
+/// the root past the jump.
 fn is_vertical<const N: usize, T: Scalar>(slope: &SVector<T, N>, mean: &SVector<T, N>) -> bool {
     length_squared(slope) > length_squared(mean) * T::real(STEEP * STEEP)
 }
 
-/// The square of the distance of a root from a line that is allowed in a part of a branch: of its start, the root
-/// before and the next. A jump to another branch is as long in a short part, and has no root in its middle.
+/// The square of the allowed distance of a root from a line, in a part of a branch with this start, the root before and
+/// the next one. A jump to another branch does not get shorter with the part, and has no root in its middle.
 fn bend<const N: usize, T: Scalar>([start, before, next]: [&SVector<T, N>; 3], part: f64) -> T {
-    // The mean slope counts where v has an extremum, and roots that differ by rounding are the same.
+    // At an extremum of v only the mean slope is not zero. Roots that differ by rounding are the same.
     let mean = length_squared(&(next - start)) * T::real(part * part);
     (length_squared(&(next - before)) + mean) * T::real(BEND * BEND) + length_squared(next) * T::real(T::EPSILON)
 }

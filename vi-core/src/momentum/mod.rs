@@ -1,6 +1,6 @@
 //! Solvers of the momentum equation `−D2 L_d − f_d⁻ = p0` for a given step h.
 //!
-//! From a node, h, and the velocities of the last steps follows the velocity v that solves it to rounding.
+//! In: a node, h, and the velocities of the last steps. Out: the velocity v that solves the equation to rounding.
 //!
 //! | file | contents |
 //! |---|---|

@@ -1,7 +1,7 @@
 //! The momentum equation of a given step h, for Newton iteration.
 //!
-//! From a node, h and a guess follows the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor
-//! ([`FixedStepping::momentum_rounding`]). The matrix A at the root is regular.
+//! In: a node, h and a guess. Out: the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor
+//! ([`FixedStepping::momentum_rounding`]), at which the matrix A is regular.
 
 use crate::error::StepError;
 use crate::linear::{self, Matrix};

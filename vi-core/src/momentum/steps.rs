@@ -1,8 +1,7 @@
 //! Sequences of momentum steps of one length.
 //!
-//! From a node, the step h and the velocities of the last steps follows the velocity v that solves the momentum
-//! equation `r(v) = −D2 L_d − f_d⁻ − p0 = 0`, and the momentum increment. A step is extrapolated, corrected and
-//! checked:
+//! In: a node, the step h and the velocities of the last steps. Out: the velocity v that solves the momentum equation
+//! `r(v) = −D2 L_d − f_d⁻ − p0 = 0`, and the momentum increment. A step is extrapolated, corrected and checked:
 //!
 //! ```text
 //! guess      v0 extrapolated over the last steps (`predictor`)
@@ -34,7 +33,7 @@ use nalgebra::SVector;
 
 /// Most corrections of a guess.
 const CORRECTIONS: u32 = 3;
-/// Corrections with A at the guess; the others have A after these.
+/// Corrections with A at the guess. Later ones use A at the velocity after these.
 const WITH_FIRST: u32 = 2;
 /// Accepted residual of a row including its carried remainder, in roundings.
 const REMAINING: f64 = 2.0;
@@ -74,7 +73,7 @@ impl<J: Matrix<N, T>, const N: usize, T: Scalar> Corrector<J, N, T> {
     }
 }
 
-/// The residual of a step, and its scale.
+/// The residual of a step with its scale and its remainder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -89,7 +88,7 @@ pub(crate) struct StepResidual<const N: usize, T> {
 }
 
 impl<const N: usize, T: Scalar> StepResidual<N, T> {
-    /// Before the first step.
+    /// The residual before the first step: zero.
     fn none() -> Self {
         Self { residual: SVector::zeros(), scale: SVector::zeros() }
     }
@@ -268,9 +267,8 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         if !system.is_inlined() {
             return system.momentum_equation(node, self.h, v);
         }
-        // The equation waits for the node, whose low parts are known last. The low part of q is missing in the guess
-        // alone: the residual at the corrected v has it. -0 and 0 are what the optimizer drops from a sum and from a
-        // difference.
+        // The low parts of the node are known last, and the equation would wait for them. Only the guess lacks the low
+        // part of q: the residual at the corrected v has it. The optimizer drops -0 from a sum and 0 from a difference.
         let rounded = Node { q_low: SVector::repeat(-T::zero()), p_low: SVector::zeros(), ..*node };
         system.momentum_equation(&rounded, self.h, v)
     }
@@ -320,7 +318,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     /// The step from `node` by Newton iteration, or by continuation.
     ///
     /// # Errors
-    /// Those of Newton iteration and of the continuation.
+    /// The errors of Newton iteration and of the continuation.
     #[cold]
     pub(crate) fn searched<S: FixedStepping<N, T>>(
         &self,
@@ -341,7 +339,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         }
     }
 
-    /// The step if its root is connected with h = 0; otherwise the root that is.
+    /// The step if its root is connected with h = 0; otherwise the step of the connected root.
     ///
     /// # Errors
     /// [`StepError::TooLong`] if there is none.
@@ -352,7 +350,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         node: &Node<N, T>,
         solved: MomentumStep<N, T>,
     ) -> Result<MomentumStep<N, T>, StepError> {
-        // A root within rounding of its guess after fewer corrections is as close to it as short steps are.
+        // If few corrections lead from the guess to the root, both are on the branch of short steps.
         let is_close = solved.predicted && solved.iterations < CORRECTIONS;
         if is_close {
             return Ok(solved);

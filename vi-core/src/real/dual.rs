@@ -357,7 +357,7 @@ impl<T: Real, D: Slope<T>> Number for Dual<T, D> {
         Self { value, slope: by_base + exponent.slope.chain(by_exponent) }
     }
     fn zero_where(self, base: Self, derivatives: u8) -> Self {
-        // 0, or NaN where the base is zero.
+        // 0, or NaN if the base is zero.
         let unknown = || T::zero() / T::one().zero_where(base.value, u8::MAX);
         let slope = self.slope.each(|slope| match derivatives.checked_sub(1) {
             Some(others) => slope.zero_where(base.value, others),

@@ -5,8 +5,8 @@
 //! instructions at compile time, before the processor is known.
 //!
 //! The compiler may not fuse operations on its own. A product therefore stays a pair of factors until an addition
-//! follows, and `a b + c` is one instruction if the processor has it. Which values are products is known at compile
-//! time and costs nothing at run time.
+//! follows, and `a b + c` is one instruction if the processor has it. The compiler knows which values are products, so
+//! that the pair costs nothing at run time.
 
 use super::{Number, Real, sine};
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};

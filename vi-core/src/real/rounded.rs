@@ -8,9 +8,8 @@
 //! ```
 //!
 //! so that cancellation inside a formula stays in the bound: a residual below it is zero to rounding. Library functions
-//! are assumed accurate to an ulp. A kink or a jump (`abs`, `sign`, `if_positive`)
-//! uses the side of the value. The type is for cold
-//! paths, and each operation is a call, which keeps the formulas of a system small in the program.
+//! are assumed accurate to an ulp. A kink or a jump (`abs`, `sign`, `if_positive`) uses the side of the value. The type
+//! is for cold paths: each operation is a call, which keeps the compiled formulas of a system small.
 //!
 //! Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.3.
 
@@ -64,8 +63,7 @@ impl Rounded {
     }
 }
 
-/// `a b`, and 0 if one factor is 0: an infinite slope does not matter without an error, nor any error next to a zero
-/// factor.
+/// `a b`, and 0 if one factor is 0, even if the other one is infinite.
 fn product(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
@@ -209,7 +207,7 @@ impl Number for Rounded {
     fn pow(self, exponent: Self) -> Self {
         let value = self.value.pow(exponent.value);
         if self.value == 0.0 {
-            // There is no slope, but a largest value.
+            // The slope is infinite, but the function has a largest value within the error.
             let farthest = (UNIT * self.error).pow(exponent.value);
             return Self::rounding(value, if self.error == 0.0 { 0.0 } else { farthest / UNIT }, 2.0);
         }

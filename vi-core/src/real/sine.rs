@@ -232,7 +232,7 @@ mod tests {
     use core::f64::consts::{FRAC_PI_2, PI, TAU};
     use std::vec::Vec;
 
-    /// The numbers next to multiples of π/2, where most of an angle is subtracted, with their sine and cosine, from 60
+    /// The numbers next to multiples of π/2, whose reduction loses most digits, with their sine and cosine, from 60
     /// digits rounded once.
     const HARD: [(f64, f64, f64); 12] = [
         (FRAC_PI_2, 1.0, 6.123_233_995_736_766e-17),

@@ -50,7 +50,7 @@ pub struct Checkpoint<Y, const N: usize, T = f64> {
 )]
 pub struct Stored<Y, const N: usize, T = f64> {
     node: Node<N, T>,
-    /// Whole turns of angles; zero for other coordinates, and in files of before.
+    /// Whole turns of angles; zero for other coordinates, and in files of older versions.
     #[cfg_attr(feature = "serde", serde(default = "Turns::zeros"))]
     turns: Turns<N>,
     h: T,
@@ -89,10 +89,10 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 }
 
 impl<Y, const N: usize, T: Scalar> Checkpoint<Y, N, T> {
-    /// The same with the memory that `of` makes of this one.
+    /// The same with another memory, which `of` returns for this one.
     ///
     /// # Errors
-    /// Those of `of`.
+    /// The errors of `of`.
     #[doc(hidden)]
     pub fn try_map<Z, E>(self, of: impl FnOnce(Y) -> Result<Z, E>) -> Result<Checkpoint<Z, N, T>, E> {
         let Self { system, rule, parameters, tables, run: Stored { node, turns, h, memory } } = self;

@@ -15,31 +15,31 @@
 //! reach     = range of the force F_i / largest |∂F_i/∂q_i|, at least a quarter of the largest change of h v_i
 //! ```
 //!
-//! An error of the reach changes the force by as much as it changes along the run. Neither the origin nor the frame
-//! changes it, and a rotor has that of one turn. A step cannot resolve less than the change of h v. The relative error has
-//! no unit, so a large coordinate does not hide the error of a small one. A coordinate counts if it moves by more than
-//! [`VISIBLE`] ulps of its own value, and if its `|p_i v_i|` exceeds `(4096 ε)²` of the largest one. Smaller excursions are
-//! rounding errors that the other coordinates cause.
+//! An error as large as the reach changes the force by as much as it changes along the run. The reach does not depend
+//! on origin and frame, and that of a rotor is one turn. A step cannot resolve less than the change of h v. The
+//! relative error has no unit, so a large coordinate does not hide the error of a small one. A coordinate counts if it
+//! moves by more than [`VISIBLE`] ulps of its own value, and if its `|p_i v_i|` exceeds `(4096 ε)²` of the largest one.
+//! Smaller excursions are rounding errors that the other coordinates cause.
 //!
 //! Three further measurements only add to this. A step that changes a conserved H by more than [`GROSS`] of the energy has
 //! at least that error. A half step whose dense output does not begin with the velocity of its node misses the motion.
-//! At the end of each window a conserved H is compared with that at the start, relative to the energies on the way
-//! ([`EnergyPath`]): small parts of the large energies of a near collision or an escape, or rounding there, may be all that
-//! the orbit has.
+//! At the end of each window a conserved H is compared with H at the start, relative to the energies between
+//! ([`EnergyPath`]): in a near collision or an escape, a small part of the large energies may be all the energy of the
+//! orbit.
 //!
 //! The first stretch ends when every counted coordinate with a turning point has covered four times its excursion, or,
-//! if none turns back, its force that of its range, or after [`STRETCH`] steps. Until then the scales grow, so the largest
-//! error is relative to the scales at the time of the query. Later measurements are final.
+//! if none turns back, its force four times its range, or after [`STRETCH`] steps. Until then the scales grow, so the
+//! largest error is relative to the scales at the time of the query. Later measurements are final.
 //!
 //! A monitor measures the first step, and those after a jump. Then it divides the run into windows of an eighth of the
 //! steps so far, at most [`WINDOW`] steps. The indicator of a step is the change of the mean force of a coordinate,
 //! relative to the largest change before the window: `h² |Δ(Δp_i/h)|`. A step whose indicator exceeds [`SUSPICIOUS`] is
 //! measured at once, and of each window the step with the largest one. So no peak of a force passes unmeasured, and
-//! the number of measurements grows by the logarithm of the largest change. Measured on plunging Kepler orbits, walls and
-//! rotors: that indicator alone finds every step that loses the motion, so the stages of a method need no indicator of
-//! their own. One measurement costs about two steps (eight in transformed time). A run of 5000 steps measures 3 % of
-//! them, a long run 1.1 %. The indicator costs about 60 instructions a step for one coordinate, 90 for two. A run
-//! without a monitor has no extra cost.
+//! the number of measurements grows by the logarithm of the largest change. On plunging Kepler orbits, walls and rotors
+//! this indicator alone found every step that loses the motion, so there is none for the stages of a method. One
+//! measurement costs about two steps (eight in transformed time). A run of 5000 steps measures 3 % of them, a long run
+//! 1.1 %. The indicator costs about 60 instructions a step for one coordinate, 90 for two. A run without a monitor has
+//! no extra cost.
 
 #[cfg(feature = "alloc")]
 use super::event::{Crossing, Events};
@@ -71,15 +71,15 @@ const GROSS: f64 = 1e-3;
 /// Relative change of H since the start from which on the motion counts as lost. The energy errors of steps that resolve a
 /// motion oscillate below it.
 const DRIFTED: f64 = 0.01;
-/// The same relative to H and to the usual `Σ |p v|`: in an escape a small part of the energy there is many times H.
+/// The same in an escape, relative to H and to the geometric mean of `Σ |p v|`.
 const BROKEN: f64 = 0.03;
-/// `Σ |p v|` of a motion that only gathers speed, relative to its mean, is larger.
+/// Ratio of `Σ |p v|` to its mean above which the motion has only become faster so far.
 const RISEN: f64 = 2.0;
-/// `Σ |p v|` of an escape, relative to the largest one before its rise, is larger. Swings are as large as earlier ones.
+/// Ratio of `Σ |p v|` to its largest value before its present rise above which the motion is an escape.
 const ESCAPED: f64 = 100.0;
 /// A step is measured at once if its indicator exceeds the largest one before its window by this factor.
 const SUSPICIOUS: f64 = 1.25;
-/// Part of the largest change of `h v` that the scale of an error has at least.
+/// Lower bound of the scale of an error, in units of the largest change of `h v`.
 const DEFLECTION: f64 = 0.25;
 /// Part of the displacement of a step by which the force is probed.
 const PROBE: f64 = 1e-4;
@@ -89,7 +89,7 @@ const STRETCH: u64 = 4096;
 const JUDGED: u64 = 64;
 /// A coordinate that covers more than this part of its excursion has turned back.
 const TURNED: f64 = 1.001;
-/// Excursions per coordinate in the first stretch: two full oscillations from a turning point.
+/// Path length of a coordinate in the first stretch, in excursions: two full oscillations from a turning point.
 const COVERED: f64 = 4.0;
 
 /// The error of one step, for each coordinate. Infinite if its half steps have no solution, because the step is too
@@ -177,8 +177,8 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
 /// For each coordinate, `h |u'(t0) − v0|` of the half step with the dense output u, if that exceeds half of the
 /// displacement; zero otherwise.
 ///
-/// The stages of a step that is too stiff by orders of magnitude miss the motion, and so do those of its halves: with
-/// an even number of stages both return the state from which they started, and their difference is no error.
+/// If a step is too stiff by orders of magnitude, its stages and those of its halves miss the motion. With an even
+/// number of stages both then return the state from which they started, so that their difference hides the error.
 fn unresolved<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     run: &Run<M, S, N, T>,
     (before, v): &(State<N, T>, SVector<T, N>),
@@ -197,8 +197,8 @@ fn unresolved<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T:
 /// `|H1 − H0|` of a step, relative to the larger of |H| and `Σ |p v|`, if that exceeds [`GROSS`]. Zero if H changes along
 /// the motion.
 ///
-/// A step into a wall that its points of evaluation do not see ends at the right place of a motion without the wall, and
-/// so may its halves.
+/// A step and its halves that do not evaluate the force inside a wall end at the place of the motion without the wall:
+/// only the energy shows the error.
 fn energy_error<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     method: &M,
     system: &S,
@@ -229,10 +229,10 @@ struct EnergyPath {
     action: f64,
     /// The time integral of `Σ |p v|`, by the smaller value of each window: a near collision counts for its own time only.
     integral: f64,
-    /// The time integral of its logarithm, and the time without rest, for which it has one.
+    /// The time integral of the logarithm of `Σ |p v|`, and the time without rest, in which the logarithm exists.
     logarithms: f64,
     moving: f64,
-    /// The largest `Σ |p v|` so far, and that before its present rise.
+    /// The largest `Σ |p v|` so far, and the largest one before its present rise.
     largest: f64,
     before: f64,
     /// Whether `Σ |p v|` has a mean: it does not only rise.
@@ -260,12 +260,14 @@ impl EnergyPath {
         })
     }
 
-    /// Two parts of `|H − H(start)|` at the current node of a run. The first one is relative to the mean of `Σ |p v|` so far,
-    /// or to its value there if that is larger, and zero unless it exceeds [`DRIFTED`]. The second one is that of an escape,
-    /// where `Σ |p v|` is [`ESCAPED`] times what it was before its present rise: relative to the geometric mean of `Σ |p v|`,
-    /// or to `|H(start)|` if that is larger, and zero unless it exceeds [`BROKEN`]. It holds for the state of the run there:
-    /// if it was a near collision, the energy returns. Both are zero for rounding, and in the first rise of `Σ |p v|`, which
-    /// has no mean to compare with: a fall from rest.
+    /// `|H − H(start)|` at the current node of a run, in two units:
+    ///
+    /// * relative to `Σ |p v|`: its mean so far, or its present value if that is larger; zero up to [`DRIFTED`];
+    /// * in an escape, in which `Σ |p v|` is [`ESCAPED`] times its largest value before the present rise: relative to
+    ///   the geometric mean of `Σ |p v|`, or to `|H(start)|` if that is larger; zero up to [`BROKEN`]. It holds for the
+    ///   present state only: after a near collision the energy returns.
+    ///
+    /// Both are zero for rounding, and in the first rise of `Σ |p v|`, as in a fall from rest: it has no mean yet.
     fn drift<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
         &mut self,
         run: &Run<M, S, N, T>,
@@ -354,7 +356,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// The error of the next step, for each coordinate in its own unit. The run does not change.
     ///
     /// # Errors
-    /// That of the next step. If only its half steps fail, its error is infinite.
+    /// The error of the next step. If only its half steps fail, its error is infinite.
     pub fn local_error(&self) -> Result<LocalError<N>, StepError> {
         let mut ahead = self.clone();
         ahead.single_step()?;
@@ -389,13 +391,13 @@ pub struct ErrorEstimate {
     /// Index of the coordinate.
     pub coordinate: usize,
     /// The errors of all steps so far, added up, in the same unit: the largest entry. Each step counts with the error
-    /// of the measured one of its window, so that it is a bound rather than a mean. Where errors cancel, as those of
-    /// the energy of a symplectic method do, the run is closer; where neighbouring motions part, it is not.
+    /// of the measured one of its window, so that it is a bound rather than a mean. It is too large if errors cancel,
+    /// as those of the energy of a symplectic method, and too small if neighbouring motions diverge.
     pub sum: f64,
 }
 
 impl ErrorEstimate {
-    /// Nothing measured until t.
+    /// The estimate before the first measurement: zero, at t.
     fn none(t: f64) -> Self {
         Self { estimate: 0.0, t, coordinate: 0, sum: 0.0 }
     }
@@ -416,7 +418,7 @@ impl ErrorEstimate {
 pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
     start: State<N, T>,
     last: Node<N, T>,
-    /// The turns that the angles of `start` and `last` are without.
+    /// The turns that are subtracted from the angles of `start` and `last`.
     turns: Turns<N>,
     /// Mean force of the last step: the increment of the momenta, divided by its length.
     force: SVector<T, N>,
@@ -449,7 +451,7 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     /// H along the run, and its largest error.
     energy: Option<EnergyPath>,
     of_energy: ErrorEstimate,
-    /// The error of H that the end of the last window has, and that may pass.
+    /// The error of H at the end of the last window. It may pass.
     passing: ErrorEstimate,
     measurements: u64,
 }
@@ -457,7 +459,7 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
 /// The first stretch of a run.
 #[derive(Clone, Debug)]
 struct Stretch<const N: usize, T> {
-    /// Path length of each coordinate, and of its mean force.
+    /// Path lengths of each coordinate and of its mean force.
     way: SVector<T, N>,
     force_way: SVector<T, N>,
     /// The largest error of each coordinate, in its unit, and the time of that step.
@@ -535,7 +537,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             let peak = (change + T::real(0.25) * if size < change { size } else { change }) * unit;
             self.peak[i] = larger(self.peak[i], peak);
             indicator = larger(indicator, peak * self.weights[i]);
-            // In free flight rounding would add up to the way of a force.
+            // In free flight, sums of roundings would look like the path of a force.
             if let Some(stretch) = &mut self.stretch
                 && change > T::real(4.0 * T::EPSILON) * (node.p[i] * rate).abs()
             {
@@ -605,7 +607,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// The error of the next step of the run, relative to the scales so far.
     ///
     /// # Errors
-    /// Those of the step.
+    /// The errors of the step.
     pub fn error_estimate(&self, run: &Run<M, S, N, T>) -> Result<f64, StepError> {
         let mut ahead = run.clone();
         ahead.single_step()?;
@@ -837,7 +839,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// The error of the next step, relative to the scales so far.
     ///
     /// # Errors
-    /// Those of the step.
+    /// The errors of the step.
     pub fn error_estimate(&self) -> Result<f64, StepError> {
         self.monitor.error_estimate(&self.run)
     }
@@ -855,7 +857,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// Changes the run: `monitored.change(|run| run.set_state(state))`. A jump of its state is no excursion, and steps
     /// that it takes meanwhile are not measured.
     pub fn change<R>(&mut self, change: impl FnOnce(&mut Run<M, S, N, T>) -> R) -> R {
-        // Open measurements belong to the system before the change.
+        // Pending measurements need the system before the change.
         self.monitor.close(&self.run);
         let outcome = change(&mut self.run);
         self.monitor.resume(&self.run);
@@ -889,7 +891,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Monitored<M, S, N
             self.monitor.watch(&self.run);
             if is_there {
                 if self.limit.is_finite() {
-                    // Else a peak shortly before the end would stay in its window.
+                    // Otherwise a peak shortly before the end would stay unmeasured in its window.
                     self.monitor.close(&self.run);
                 }
                 self.check()?;

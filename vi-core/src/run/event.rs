@@ -1,4 +1,4 @@
-//! Events: the functions whose sign changes, and what is found of them.
+//! Event functions, and the crossings that a search finds.
 
 use crate::error::StepError;
 use crate::real::Dual;
@@ -43,9 +43,9 @@ type In<const N: usize, T> = Box<dyn Fn(&Moment<N, T>) -> T>;
 
 /// The function of an event.
 enum Function<const N: usize> {
-    /// In plain numbers.
+    /// A function of plain numbers.
     Plain(In<N, f64>),
-    /// In dual numbers.
+    /// A function of dual numbers.
     Dual(In<N, Dual<f64>>),
 }
 
@@ -208,9 +208,9 @@ pub struct Met {
 pub struct Crossing<const N: usize> {
     /// The events, in the order of their indices.
     pub events: Vec<Met>,
-    /// The state there.
+    /// The state at this instant.
     pub state: State<N>,
-    /// The velocity there.
+    /// The velocity at this instant.
     pub v: SVector<f64, N>,
     /// Length of the step from the previous node to this state.
     pub length: f64,

@@ -15,8 +15,8 @@
 //! old side, to a rounding of its arguments, and leaves it at the next longer step length: a ball is never below its
 //! floor, even if the run stops there. Rising and falling refer to the direction of the run.
 //!
-//! A step may pass a dead point of a mechanism, while no step ends there. A crossing at this place is that of the dense
-//! output, and a run cannot stop at it.
+//! A step may pass a dead point of a mechanism, but no step ends at it. The dense output then gives the crossing, and a
+//! run cannot stop at it.
 
 use super::Run;
 use super::event::{Crossing, Event, Events, Moment};
@@ -34,7 +34,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     /// state. The crossing contains all events of that instant; see [`Crossing`].
     ///
     /// # Errors
-    /// As [`Run::until`]; [`StepError::Singular`] for an event at a dead point of a mechanism, where no step ends;
+    /// As [`Run::until`]; [`StepError::Singular`] for an event at a dead point of a mechanism, at which no step ends;
     /// [`StepError::NonFinite`] for a function that is not finite; [`StepError::CannotLeave`] if the run begins at a
     /// zero of a one-directional event whose function passes zero again at that instant.
     pub fn next_event(&mut self, events: impl Events<N>, until: f64) -> Result<Option<Crossing<N>>, StepError> {
@@ -80,8 +80,8 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
     }
 }
 
-/// Takes no notice of a step. One function for all searches, so that they are one type.
-#[allow(clippy::unnecessary_wraps, reason = "the type of a function that takes notice")]
+/// Ignores a step. One function for all searches, so that they have one type.
+#[allow(clippy::unnecessary_wraps, reason = "the type of functions that watch steps")]
 fn unwatched<R>(_: &R) -> Result<(), StepError> {
     Ok(())
 }

@@ -108,7 +108,7 @@ impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Start<S, N, T> {
     /// The length of the steps of a method from here.
     ///
     /// # Errors
-    /// Those of [`Start::integrate`] for this length.
+    /// The errors of [`Start::integrate`] for this length.
     #[doc(hidden)]
     pub fn length<M: Method<S, N, T>>(&self, method: &M, h: impl Length<T>) -> Result<T, StepError> {
         let node = Node::new(self.state, T::zero());
@@ -122,7 +122,7 @@ pub struct Run<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> {
     pub(crate) method: M,
     pub(crate) system: S,
     pub(crate) prepared: M::Prepared,
-    /// The node; angles are less the turns.
+    /// The node, with angles reduced by their turns.
     pub(crate) node: Node<N, T>,
     /// Whole turns of angles; zero for other coordinates.
     pub(crate) turns: Turns<N>,
@@ -178,8 +178,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// succeeds, the run continues from an error too: a shorter step may pass the place where a longer one failed.
     ///
     /// # Errors
-    /// Those of a step, and the run does not change. [`StepError::InvalidInput`] for an h that is zero, subnormal or
-    /// not finite, or that is negative although the method only steps forward.
+    /// The errors of a step, and the run does not change. [`StepError::InvalidInput`] for an h that is zero, subnormal
+    /// or not finite, or that is negative although the method only steps forward.
     pub fn step_of(&mut self, h: T) -> Result<State<N, T>, StepError> {
         let (mut node, mut turns) = (self.node, self.turns);
         if angles::are_far(&self.system, &node.q) {
@@ -325,18 +325,18 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// The energy of an energy-preserving run increases by `H(state) − H(node)`.
     ///
     /// # Errors
-    /// Those of a new run from that state. The run then does not change.
+    /// The errors of a new run from that state. The run then does not change.
     pub fn set_state(&mut self, state: State<N, T>) -> Result<(), StepError> {
         self.set_parameters_and_state(|_| (), state)
     }
 
-    /// Changes parameters and the state together: the way to another length or place of a constraint, whose state is on
-    /// the constraint of the new parameters; see [`State::projected`]. The run clears an error of the last step.
+    /// Changes parameters and the state together, for example the length of a rod: the new state has to be on the new
+    /// constraint; see [`State::projected`]. The run clears an error of the last step.
     ///
     /// The energy of an energy-preserving run increases by `H_new(state) − H_old(node)`.
     ///
     /// # Errors
-    /// Those of [`Run::set_parameters`] and of a new run from that state. The run then does not change.
+    /// The errors of [`Run::set_parameters`] and of a new run from that state. The run then does not change.
     pub fn set_parameters_and_state(
         &mut self,
         change: impl FnOnce(&mut S),
@@ -361,7 +361,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     }
 }
 
-/// What a run carries from step to step beside its method and its system, for runs behind a pointer.
+/// The data that a run carries from step to step beside its method and its system, for runs behind a pointer.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct Parts<Y, const N: usize> {
@@ -388,7 +388,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
         Parts { node: *node, turns: *turns, h: *h, memory: (), failure: *failure }
     }
 
-    /// The memory of the method, of a run that ends.
+    /// Consumes the run and returns the memory of its method.
     #[doc(hidden)]
     pub fn into_memory(self) -> M::Memory {
         self.memory
@@ -411,7 +411,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
 /// Takes a step on the cold path. Returns node, memory, cache and failure.
 #[cold]
 #[inline(never)]
-#[allow(clippy::type_complexity)] // the fields of a run, each for itself
+#[allow(clippy::type_complexity)] // the fields of a run
 fn cold_step<M: Method<S, N, T>, S: Lagrangian<N, T>, const N: usize, T: Scalar>(
     (method, system, prepared, h): (M, S, M::Prepared, T),
     (mut node, mut memory, mut cache, failure): (Node<N, T>, M::Memory, M::Cache, Option<StepError>),

@@ -1,5 +1,5 @@
-//! A run at a part of its next step, type-erased: the search for events is then compiled once, and not once for each
-//! method and system.
+//! A run at a part of its next step, type-erased, so that the search for events is compiled once for all methods and
+//! systems.
 
 use super::Run;
 use super::event::Moment;

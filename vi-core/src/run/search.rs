@@ -118,7 +118,7 @@ pub(super) struct Watched {
     next: usize,
     /// Length at which it is not finite.
     lost: Option<f64>,
-    /// Length of the next step beyond its sign change, if no step ends there.
+    /// If no step ends at its sign change: length of the next step past it.
     beyond: Option<f64>,
 }
 
@@ -271,8 +271,8 @@ impl<const N: usize> Search<'_, N> {
         before.x
     }
 
-    /// The sides of all functions after a length at which no step ends: `first` changes its sign there, the others keep
-    /// theirs up to the next step that has an end.
+    /// The sides of all functions after a length at which no step ends: `first` changes its sign, the others keep
+    /// theirs until the next length at which a step ends.
     fn sides_along(
         &self,
         wanted: &[Event<N>],
@@ -355,7 +355,7 @@ impl<const N: usize> Search<'_, N> {
                 continue;
             }
             let moment = match self.moment(sample.x) {
-                // The next one is beyond the place where no step ends.
+                // No step ends at this place: continue past it.
                 Err(StepError::Singular { .. }) => continue,
                 moment => moment?,
             };
@@ -394,7 +394,7 @@ impl<const N: usize> Search<'_, N> {
         let guess = is_before(before).then(|| self.crossing_along(event, [before, after]));
         let resolution = resolution(self.step.t, self.run.node().step_length());
         let by_steps = narrowed(|x| self.point(event, x).map(|point| point.y), [from, to], guess, resolution);
-        // A step that passes a singular place, as a dead point, does not end there.
+        // A step may pass a singular place, such as a dead point, but none ends at it.
         if let Err(StepError::Singular { .. }) = by_steps
             && let Some(pair) = watched.samples[..watched.next].windows(2).rfind(|pair| is_before(pair[0]))
         {

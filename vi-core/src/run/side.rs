@@ -1,7 +1,7 @@
 //! The sign of an event function just after a node, its side.
 //!
-//! For a node and a function g, this module finds the next sign of g along the motion, and the length from which it
-//! holds. Steps from the node of the lengths δ, 2δ, 4δ, … give g after it; δ is the time resolution.
+//! This module finds the next sign of a function g after a node, and the length from which it holds. It evaluates g at
+//! the ends of steps of the lengths δ, 2δ, 4δ, … from the node; δ is the time resolution.
 //!
 //! ```text
 //! rounding    Σ |g(x (1 + ε)) − g(x)| over t, q, v

@@ -31,7 +31,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
         outcome.map(|_| self.state())
     }
 
-    /// Advances by `duration`, as [`Run::until`], forwards or backwards as the steps go.
+    /// Advances by `duration`, as [`Run::until`], in the direction of the steps.
     ///
     /// # Errors
     /// As [`Run::until`]; [`StepError::InvalidInput`] for a negative duration.

@@ -105,7 +105,7 @@ impl<T: Scalar> Length<T> for Tolerance {
                     return Err(StepError::Tolerance { t: start.state.t.to_f64(), estimate: 0.0, tolerance });
                 }
                 Err(error) => {
-                    // Of the longest steps: the lengths of the others are of the search alone.
+                    // The error of the longest steps: the user does not know the shorter lengths of the search.
                     failure.get_or_insert(error);
                     f64::INFINITY
                 }
@@ -174,7 +174,7 @@ fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
     while !monitor.is_over() {
         match run.single_step() {
             Ok(_) => monitor.watch(&run),
-            // No step leads past this place, however short: the steps up to it are judged.
+            // No step of any length leads past this place: the steps up to it count.
             Err(failure) if ends_motion(&failure) && monitor.steps > 0 => break,
             Err(failure) => return Err(failure),
         }
@@ -197,7 +197,7 @@ fn ends_motion(failure: &StepError) -> bool {
 /// A tenth of the shortest time scale of a coordinate: the longest of `|q|/|v|`, `|v|/|a|` and `√(|q|/|a|)`.
 ///
 /// # Errors
-/// Those of a velocity without a solution.
+/// The errors of a velocity without a solution.
 fn guess<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Start<S, N, T>) -> Result<f64, StepError> {
     let Start { system, state } = start;
     let v = state.velocity(system)?;
@@ -205,7 +205,7 @@ fn guess<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Start<S,
     let mut shortest = f64::INFINITY;
     for i in 0..N {
         let [q, v, a] = [state.q[i], v[i], a[i]].map(|entry| entry.to_f64().abs());
-        // The turns of an angle are no length of its motion.
+        // Whole turns of an angle do not count as its size.
         let q = if system.angles()[i] { q.min(PI) } else { q };
         let scales = [q / v, v / a, (q / a).sqrt()];
         let scale = scales.into_iter().filter(|scale| scale.is_normal()).fold(0.0, f64::max);

@@ -27,7 +27,7 @@ impl Point {
 /// neighbours if no number lies between them, or if they are at most `resolution` apart.
 ///
 /// # Errors
-/// Those of `y`.
+/// The errors of `y`.
 pub(crate) fn narrowed<E>(
     y: impl Fn(f64) -> Result<f64, E>,
     [mut from, mut to]: [Point; 2],
@@ -80,7 +80,7 @@ mod tests {
     use core::cell::Cell;
     use core::convert::Infallible;
 
-    /// The neighbours, and how many evaluations they took.
+    /// The neighbours, and the number of evaluations.
     fn ends(y: impl Fn(f64) -> f64, [a, b]: [f64; 2], guess: Option<f64>) -> ([Point; 2], u32) {
         let count = Cell::new(0);
         let counted = |x: f64| -> Result<f64, Infallible> {

@@ -10,7 +10,7 @@ use crate::real::{Number, Real};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// How the pieces of a table join.
+/// The interpolation of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// Straight lines.
@@ -29,7 +29,7 @@ pub struct AnyTable(Kind);
 
 #[derive(Clone, Debug)]
 enum Kind {
-    /// The coefficients of each piece, and how many a piece has.
+    /// The coefficients of each piece, and their number.
     Points { axis: Axis<Vec<f64>>, pieces: Vec<[f64; 6]>, count: usize },
     /// The nodes row by row.
     Grid { x: Axis<Vec<f64>>, y: Axis<Vec<f64>>, nodes: Vec<[f64; 4]>, is_linear: bool },
@@ -141,8 +141,8 @@ impl AnyTable {
         Self(Kind::Uniform { axis: axis(&knots, ends[1], outside), slopes, is_invalid })
     }
 
-    /// The derivative of these orders, up to three together, with respect to x and y, at (x, y); y and its order are of
-    /// grids alone. `values` are those of a table of parameters.
+    /// The derivative of these orders, up to three together, with respect to x and y, at (x, y). Only grids use y and
+    /// its order, only tables of parameters use `values`.
     #[inline]
     pub fn derivative<T: Number>(&self, [along_x, along_y]: [usize; 2], [x, y]: [T; 2], values: &[T]) -> T {
         match &self.0 {

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-/// What a table is outside of its range.
+/// The continuation of a table outside of its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     /// NaN: a run reports that the argument has left the range.
@@ -51,7 +51,7 @@ impl<const N: usize> Axis<[f64; N]> {
 }
 
 impl<'a> Axis<&'a [f64]> {
-    /// The same of a list.
+    /// The axis of a list of knots.
     pub(super) const fn measured(knots: &'a [f64], to: f64, outside: Outside) -> Self {
         let from = knots[0];
         let length = to - from;

@@ -58,8 +58,8 @@ impl<const M: usize, const N: usize> Grid<M, N> {
         self.outside([Outside::Extend; 2])
     }
 
-    /// What the function is beyond the edges, along x and along y. Along a periodic axis the last values must be the
-    /// first ones.
+    /// Sets the continuation of the function beyond the edges, along x and along y. Along a periodic axis the last
+    /// values must be the first ones.
     #[must_use]
     pub const fn outside(mut self, outside: [Outside; 2]) -> Self {
         let is_joined_in_x = self.x.is_periodic() == matches!(outside[0], Outside::Periodic);
@@ -144,7 +144,7 @@ pub(super) const fn joined(
         }
         j += 1;
     }
-    // Along y: of the values, then of the slopes along x.
+    // Slopes along y: of the values, then of the slopes along x.
     let mut of = 0;
     while of < 2 {
         let mut i = 0;
@@ -229,7 +229,7 @@ fn piece(knots: &[f64], index: usize) -> ([usize; 2], f64) {
 pub(super) struct Piece<T> {
     u: T,
     w: T,
-    /// Of `u^a w^b`.
+    /// The coefficient of `u^a w^b`.
     coefficients: [[T; 4]; 4],
 }
 

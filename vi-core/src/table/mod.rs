@@ -35,7 +35,7 @@ use crate::real::{Number, Real};
 use axis::{Axis, number};
 use slopes::Arrays;
 
-/// How the pieces of a table join.
+/// The interpolation of a table.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Spline,
@@ -81,7 +81,7 @@ impl<const N: usize> Table<N, 4> {
         Self::joined(knots, values, Kind::Spline, Outside::Undefined)
     }
 
-    /// Cubic pieces with continuous slopes that rise and fall only where the values do, without overshoot.
+    /// Cubic pieces with continuous slopes, monotone between monotone values: without overshoot.
     #[must_use]
     pub const fn monotone(knots: [f64; N], values: [f64; N]) -> Self {
         Self::joined(knots, values, Kind::Monotone, Outside::Undefined)
@@ -144,13 +144,13 @@ impl<const N: usize, const C: usize> Table<N, C> {
         values
     }
 
-    /// The value of each end beyond it. Of no effect on a periodic table.
+    /// Continues the function by its values at the ends. Has no effect on a periodic table.
     #[must_use]
     pub const fn hold(self) -> Self {
         Self { axis: self.axis.continued(Outside::Hold), ..self }
     }
 
-    /// The straight line with the slope of each end beyond it. Of no effect on a periodic table.
+    /// Continues the function by straight lines with the slopes at its ends. Has no effect on a periodic table.
     #[must_use]
     pub const fn extend(self) -> Self {
         Self { axis: self.axis.continued(Outside::Extend), ..self }

@@ -17,7 +17,7 @@ impl Buffers<'_> {
         spline(knots, self.values, outside, self.slopes, (self.rows, self.others));
     }
 
-    /// Computes those of the cubic pieces without overshoot.
+    /// Computes the slopes of cubic pieces without overshoot.
     pub(super) const fn monotone(&mut self, knots: &[f64], outside: Outside) {
         monotone(knots, self.values, outside, self.slopes);
     }
@@ -93,7 +93,7 @@ const fn spline(
         i += 1;
     }
     if !is_periodic && n == 3 {
-        // The two ends ask for the same: both are replaced by the parabola.
+        // With three knots both end conditions are the same: the parabola replaces them.
         let [[h0, d0], [h1, d1]] = chords(x, y, 1);
         let bend = (d1 - d0) / (h0 + h1);
         rows[0] = [0.0, 1.0, 0.0, d0 - bend * h0];

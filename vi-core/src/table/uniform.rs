@@ -69,13 +69,13 @@ impl<const N: usize> Uniform<N> {
         Self { axis: Axis::new(knots, to, Outside::Periodic), slopes, is_invalid: self.is_invalid }
     }
 
-    /// The value of each end beyond it. Of no effect on a periodic table.
+    /// Continues the function by its values at the ends. Has no effect on a periodic table.
     #[must_use]
     pub const fn hold(self) -> Self {
         Self { axis: self.axis.continued(Outside::Hold), ..self }
     }
 
-    /// The straight line with the slope of each end beyond it. Of no effect on a periodic table.
+    /// Continues the function by straight lines with the slopes at its ends. Has no effect on a periodic table.
     #[must_use]
     pub const fn extend(self) -> Self {
         Self { axis: self.axis.continued(Outside::Extend), ..self }
@@ -129,7 +129,7 @@ pub(super) const fn cardinal_slopes(knots: &[f64], slopes: &mut [f64], buffers: 
     }
 }
 
-/// The same of periodic ones, which have as many knots as there are buffers.
+/// The same for a periodic table, which has as many knots as there are buffers.
 pub(super) const fn periodic_slopes([from, to]: [f64; 2], slopes: &mut [f64], buffers: &mut Buffers) {
     let n = buffers.values.len();
     let per_distance = 3.0 * number(n) / (to - from);

@@ -1,16 +1,15 @@
-//! The law of motions that no law can reverse: with friction, inputs, or a dependence on time.
+//! The law of step lengths for irreversible motions: with friction, inputs, or a dependence on time.
 //!
-//! The velocities of a step are a polynomial. At its end the slope differs from the acceleration there:
+//! The velocities of a step are a polynomial. At the end of the step its slope differs from the acceleration:
 //!
 //! ```text
 //! δ = h |v̇(1) − a| = O(h^(S+1))        |x|² = Σ M_ij x_i x_j
 //! ```
 //!
-//! which also sees a force that no stage meets. The first steps have equal lengths until δ falls; the largest δ so far is
-//! then that of all others, whose lengths follow from δ of the last two steps (K. Gustafsson's PI controller: E. Hairer,
-//! G. Wanner, *Solving Ordinary Differential Equations II*, IV.2). A step whose δ is too large is taken again, shorter. A
-//! length stays as it is while it is nearly right: then the next step starts from the stages of the last one, and from
-//! its linearization.
+//! δ also shows a force between the stages. The first steps have equal lengths until δ falls. Later steps aim at the
+//! largest δ so far: their lengths follow from δ of the last two steps (K. Gustafsson's PI controller: E. Hairer, G.
+//! Wanner, *Solving Ordinary Differential Equations II*, IV.2). A step whose δ is too large is taken again, shorter. A
+//! nearly right length is kept, so that the next step starts from the stages and the linearization of the last one.
 //!
 //! A mode that has died out has no acceleration, and does not count. If nothing else is left, its steps are resolved.
 
@@ -28,30 +27,30 @@ use num_traits::Float as _;
 
 /// With fewer stages δ is too rough.
 pub(super) const FEWEST: usize = 3;
-/// δ of a step that feels a force, and of a resolved one, in units of its velocity.
+/// Smallest δ of a step with a force, and largest δ of a resolved step, in units of its velocity.
 const FELT: f64 = 1e-12;
 const RESOLVED: f64 = 0.1;
-/// The largest δ of a step that is taken, in units of that of the first ones.
+/// The largest δ of an accepted step, in units of the largest δ of the first steps.
 const LARGEST: f64 = 2.0;
-/// The length aimed at, in units of that with the δ of the first ones.
+/// The length of the next step, in units of the length with the δ of the first steps.
 const AIM: f64 = 0.9;
 /// Exponents of the last δ and of the one before, in units of 1/(S + 1).
 const OF_LAST: f64 = 0.7;
 const OF_BEFORE: f64 = 0.4;
-/// The range of the ratio of two lengths, and that in which the length stays.
+/// The range of the ratio of two lengths, and the range in which the length does not change.
 const RATIOS: [f64; 2] = [0.2, 2.0];
 const KEPT: [f64; 2] = [0.99, 1.2];
 
-/// What the law keeps between steps.
+/// The data of the law between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(hidden)]
 pub struct Decaying {
-    /// The largest δ of the first steps, at which all later ones aim.
+    /// The largest δ of the first steps: the target of all later steps.
     wanted: f64,
     /// Whether δ has fallen since.
     is_set: bool,
-    /// δ of the last step, in units of the one aimed at.
+    /// δ of the last step, in units of the target.
     off: f64,
     /// The next length, divided by the last one.
     ahead: f64,
@@ -112,13 +111,14 @@ impl Decaying {
     /// The law after a step with this δ and this velocity.
     ///
     /// # Errors
-    /// δ in units of the one aimed at, if it is too large.
+    /// δ in units of the target, if it is too large.
     fn after<const STAGES: usize>(self, [defect, v]: [f64; 2]) -> Result<Self, f64> {
         let least = FELT * v;
         if !self.is_set && (defect >= self.wanted || self.wanted < least) {
             return Ok(Self { wanted: self.wanted.max(defect), ..self });
         }
-        // δ of a fast motion is rounded more. A slow one, when all else has died out, still needs resolved steps.
+        // A fast motion adds rounding errors to δ. After fast modes have died out, the steps of slow ones have to be
+        // resolved.
         let most = self.wanted.max(least).min(RESOLVED * v);
         let off = if defect == 0.0 { 0.0 } else { defect / most };
         let law = Self { is_set: true, off, ahead: self.ahead::<STAGES>(off), ..self };
@@ -151,7 +151,7 @@ impl Decaying {
     /// The next step.
     ///
     /// # Errors
-    /// Those of the solver for the shortest length tried; [`StepError::LengthsLost`] if all are too long.
+    /// The errors of the solver for the shortest length tried; [`StepError::LengthsLost`] if all are too long.
     pub(super) fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
         &self,
         at: Of<'_, S, N, STAGES>,

@@ -2,12 +2,12 @@
 //!
 //! | law | motions | |
 //! |---|---|---|
-//! | `reversible` | that conserve energy, or have a `time_scale` | the length depends on the step alone, and not on its direction: no drift |
-//! | `decaying` | with friction, inputs or a dependence on time | the length keeps the error: fast modes that have died out do not count |
+//! | `reversible` | conservative motions, and systems with a `time_scale` | the length depends on the step alone, and not on its direction: no drift |
+//! | `decaying` | motions with friction, inputs or a dependence on time | the length keeps the error: fast modes that have died out do not count |
 //!
 //! `phase` measures the frequency of the forces along a step, for `reversible`.
 //!
-//! No map of them is symplectic: that needs [`InTransformedTime`](super::InTransformedTime) and a `time_scale`, which
+//! Neither map is symplectic: that needs [`InTransformedTime`](super::InTransformedTime) and a `time_scale`, which
 //! [`Adaptive`] takes too.
 
 mod decaying;
@@ -66,14 +66,14 @@ pub struct Following<Y> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(hidden)]
 pub enum Law {
-    /// That of motions that may be reversed.
+    /// The law of motions that may be reversed.
     Reversible(Reversible),
-    /// That of all others.
+    /// The law of all other motions.
     Decaying(Decaying),
 }
 
 impl Law {
-    /// After a change of the system or of the state: the next length is the last one.
+    /// The law after a change of the system or of the state: the next length is the last one.
     fn resumed(self) -> Self {
         match self {
             Self::Reversible(law) => Self::Reversible(law.resumed()),
@@ -98,7 +98,7 @@ type End<S, const N: usize, const STAGES: usize> = (Node<N>, Following<Steps<S, 
 type Of<'a, S, const N: usize, const STAGES: usize> =
     Problem<'a, S, <Solver<S, N, STAGES> as Method<S, N>>::Prepared, N>;
 
-/// Whether a step of the length h from t moves the time. Below its rounding, as in a fall into a centre, it stands still.
+/// Whether a step of the length h from t changes the time: in a fall into a centre, h may be less than a rounding of t.
 ///
 /// # Errors
 /// As [`check_step`].
@@ -110,7 +110,7 @@ fn moves_time(h: f64, t: f64) -> Result<bool, StepError> {
 /// The step of the length `at.h` from a node.
 ///
 /// # Errors
-/// Those of the solver.
+/// The errors of the solver.
 fn solved<S: Convertible<N>, const N: usize, const STAGES: usize>(
     at: Of<'_, S, N, STAGES>,
     guess: &Steps<S, N, STAGES>,

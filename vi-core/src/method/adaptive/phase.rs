@@ -8,10 +8,10 @@
 //! Ω⁶ = mean of tr((M⁻¹K)²)^(3/2) + tr(M⁻¹B M⁻¹Bᵀ)³ + tr((M⁻¹ΔK/Δt)²)        K symmetrized
 //! ```
 //!
-//! by Simpson's rule over the ends and the middle of the step, the differences over its halves. Each term is a sum of squares,
-//! and none depends on the choice of coordinates. The differences bridge the places where K passes through zero, as that of a
-//! pendulum at a right angle. The middle is that of the cubic through both ends, so that a step and its reverse have the
-//! same phase.
+//! The mean is Simpson's rule over the ends and the middle of the step; the differences are over its halves. Each term
+//! is a sum of squares, and none depends on the choice of coordinates. The differences count where K passes through
+//! zero, as in a pendulum at a right angle. The middle is taken from the cubic through both ends, so that a step and
+//! its reverse have the same phase.
 
 #[cfg(feature = "alloc")]
 use crate::constrained::{accelerations, bordered};
@@ -101,9 +101,9 @@ struct Forces<M, const N: usize> {
 
 /// M⁻¹, in the directions that the constraints allow.
 enum Compliance<M, const N: usize> {
-    /// In all directions.
+    /// M⁻¹ without constraints.
     Free(M),
-    /// Those of constraints.
+    /// M⁻¹ on the velocities that constraints allow.
     #[cfg(feature = "alloc")]
     Bound(SMatrix<f64, N, N>),
 }
@@ -149,7 +149,7 @@ fn compliance<S: Convertible<N>, const N: usize>(
     Some(Compliance::Free(system.point(t, q, v).mass))
 }
 
-/// `tr(XY)` of X = M⁻¹K and Y = M⁻¹Kᵀ: not negative but for rounding.
+/// `tr(XY)` of X = M⁻¹K and Y = M⁻¹Kᵀ. Only rounding can make it negative.
 fn trace<const N: usize>(x: &SMatrix<f64, N, N>, y: &SMatrix<f64, N, N>) -> f64 {
     x.dot(&y.transpose()).max(0.0)
 }
@@ -193,7 +193,7 @@ impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
 }
 
 impl<S: Convertible<N>, const N: usize> Place<S, N> {
-    /// That of a node.
+    /// The place of a node.
     ///
     /// # Errors
     /// As [`State::velocity`].
@@ -204,7 +204,7 @@ impl<S: Convertible<N>, const N: usize> Place<S, N> {
         Ok(Self::at(system, (t, q, v)))
     }
 
-    /// That with a velocity.
+    /// The place at (t, q, v).
     pub(super) fn at(system: &S, (t, q, v): (f64, SVector<f64, N>, SVector<f64, N>)) -> Self {
         let forces = if system.scales_time() { None } else { Forces::of(system, (t, &q, &v)) };
         Self { t, q, v, forces }
@@ -219,7 +219,7 @@ impl<S: Convertible<N>, const N: usize> Place<S, N> {
     }
 }
 
-/// The phase of the step of the length h between two places; `None` where the stiffness has no value. Ω is at least
+/// The phase of the step of the length h between two places; `None` if the stiffness has no value. Ω is at least
 /// `floor`.
 ///
 /// # Errors

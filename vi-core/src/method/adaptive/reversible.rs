@@ -1,4 +1,4 @@
-//! The law of motions that may be reversed.
+//! The law of step lengths for motions that may be reversed.
 //!
 //! The length h of a step solves
 //!
@@ -7,13 +7,13 @@
 //! ```
 //!
 //! with the frequency Ω of the forces along the step (`phase.rs`), which does not change when the step is reversed. The map
-//! is time-symmetric: a reversible motion keeps its energy without drift, which steps that follow a measured error lose.
+//! is time-symmetric, so the energy of a reversible motion does not drift. Steps that follow a measured error drift.
 //! Source: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, VIII.3.1.
 //!
-//! The equation is solved by secants: first on the polynomials of a solved step, which tell where shorter and longer ones
-//! end, then by steps of these lengths, each from the stages of the one before. The explicit law of Hairer and Söderlind
-//! (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of three.
-//! But ρ leaves ω where a step is long for the changes of ω, as with few steps in the period of an oscillator.
+//! The equation is solved by secants: first on the polynomials of a solved step, which approximate the ends of shorter
+//! and longer steps, then by steps of these lengths, each from the stages of the one before. The explicit law of Hairer
+//! and Söderlind (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of three.
+//! But if ω changes much within a step, as with few steps in the period of an oscillator, ρ departs from ω.
 //!
 //! With terms that are linear in the velocities a motion is not reversible: steps back still return, but no law bounds
 //! the energy error.
@@ -31,9 +31,8 @@ use crate::stepping::Convertible;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-/// A first step feels no force that could set the lengths of the others, if its phase to the power of its order is smaller
-/// and no time scale says otherwise. The others then have the phase [`USUAL`] for each stage, and are no longer than the
-/// first one.
+/// If the phase of the first step to the power of its order is smaller and there is no time scale, no force sets the
+/// lengths of the others. They then have the phase [`USUAL`] for each stage, and are at most as long as the first one.
 const FREE: f64 = 1e-12;
 const USUAL: f64 = 0.1;
 /// The largest deviation of ln h Ω from ln ε of an accepted step. After [`FEW`] lengths it is [`ROUGH`]: then rounding of
@@ -41,12 +40,12 @@ const USUAL: f64 = 0.1;
 const NEAR: f64 = 1e-10;
 const ROUGH: f64 = 1e-8;
 const FEW: usize = 15;
-/// The least logarithmic slope of the phase in the length. Where ω falls along a step it may be negative; lengths then
+/// The least logarithmic slope of the phase in the length. If ω falls along a step it may be negative; lengths then
 /// follow from halving.
 const LEAST_SLOPE: f64 = 0.25;
 /// The deviation up to which lengths are tried on the polynomials of a step.
 const CLOSE: f64 = 1e-4;
-/// The longest length that the polynomials of a step tell, in units of its own.
+/// The longest length that the polynomials of a step predict, in units of its length.
 const BEYOND: f64 = 1.25;
 /// Most lengths that are tried on them.
 const FORESEEN: usize = 8;
@@ -62,7 +61,7 @@ const QUICK: usize = 4;
 /// The largest factor between the lengths of two steps of which one proves the other.
 const BESIDE: f64 = 1.5;
 
-/// What the law keeps between steps.
+/// The data of the law between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(hidden)]
@@ -165,7 +164,7 @@ impl Reversible {
     /// The step whose phase is that of the first one.
     ///
     /// # Errors
-    /// Those of the solver for the shortest length tried; [`StepError::LengthsLost`] if no length has this phase.
+    /// The errors of the solver for the shortest length tried; [`StepError::LengthsLost`] if no length has this phase.
     pub(super) fn next<S: Convertible<N>, const N: usize, const STAGES: usize>(
         &self,
         at: Of<'_, S, N, STAGES>,
@@ -213,7 +212,7 @@ impl Reversible {
                     continue;
                 }
             };
-            // Where the stiffness has no value, the length is taken.
+            // Without a value of the stiffness the length is accepted.
             let found = phase(system, [&start, &there], [h.abs(), floor])?;
             let found = found.unwrap_or(Phase::constant(wanted));
             let off = found.off(wanted);
@@ -274,8 +273,8 @@ impl Reversible {
         phase(system, [start, &there], [length.abs(), self.floor]).ok()?
     }
 
-    /// The length to try after the step of the length h, by secants on the polynomials of that step: they tell the places
-    /// of shorter and somewhat longer steps, up to their error.
+    /// The length to try after the step of the length h, by secants on the polynomials of that step: they
+    /// approximate the ends of shorter and somewhat longer steps.
     fn foreseen<S: Convertible<N>, const N: usize, const STAGES: usize>(
         &self,
         system: &S,

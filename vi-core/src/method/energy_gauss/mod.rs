@@ -39,7 +39,7 @@
 //! E then changes by the work of the force, of an explicit time and of moving constraints only. The constraints hold at
 //! every node. D_s depends on L beside the constraints, and in Cartesian coordinates it changes its sign in most motions: in
 //! every oscillation of a pendulum. Therefore start with a shift, [`Run::with_shift_from`]. Nonholonomic systems do not have
-//! the law of `h D_s^(1/(2s+1))`: h returns where the motion is reversible, otherwise it may drift.
+//! the law of `h D_s^(1/(2s+1))`: h returns if the motion is reversible, otherwise it may drift.
 //!
 //! The stages and the energy of every accepted step are at the rounding floor. Theory and measurements:
 //! `docs/theory.md`.
@@ -104,7 +104,7 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     /// Checks that a run can begin at a node.
     ///
     /// # Errors
-    /// Those of a start with constraints.
+    /// The errors of a start with constraints.
     fn check_start(system: &S, node: &Node<N>) -> Result<(), StepError>;
     /// The last steps before the first one of about the length h.
     ///
@@ -115,12 +115,12 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     /// the guess of the next step.
     ///
     /// # Errors
-    /// Those of a step.
+    /// The errors of a step.
     fn first(system: &S, node: &Node<N>, h: f64, steps: &mut Self::Steps) -> Result<f64, StepError>;
     /// Solves the next energy-preserving step.
     ///
     /// # Errors
-    /// Those of a step.
+    /// The errors of a step.
     fn next(
         system: &S,
         instructions: Instructions,
@@ -130,7 +130,7 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     /// Solves the step of a given length.
     ///
     /// # Errors
-    /// Those of a step.
+    /// The errors of a step.
     fn given(
         system: &S,
         run: (&Node<N>, &Self::Steps, &StepHistory),
@@ -150,7 +150,7 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     /// [`Method::dense_output`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Method::dense_output`].
     fn dense_output(
         system: &S,
         steps: &Self::Steps,
@@ -170,10 +170,10 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     fn step_density(system: &S, state: &State<N>) -> Result<f64, StepError>;
     /// The discrete energies E0 and E1 of the last step of fixed steps, less `base`.
     fn energies(run: &Run<Gauss<STAGES>, S, N>, base: f64) -> [f64; 2];
-    /// [`Differentiable::vary`](crate::derivatives::Differentiable::vary), here and below.
+    /// [`Differentiable::vary`](crate::derivatives::Differentiable::vary).
     ///
     /// # Errors
-    /// As there.
+    /// As [`Differentiable::vary`](crate::derivatives::Differentiable::vary).
     #[cfg(feature = "alloc")]
     fn vary(
         run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
@@ -183,7 +183,7 @@ pub trait LengthSolver<S: Convertible<N>, const N: usize, const STAGES: usize> {
     /// Maps tangent vectors at the node of a run to those after a step of the length h, regardless of its energy.
     ///
     /// # Errors
-    /// As for `vary`.
+    /// As [`LengthSolver::vary`].
     #[cfg(feature = "alloc")]
     fn vary_given(
         run: &Run<EnergyPreservingGauss<STAGES>, S, N>,
@@ -208,7 +208,7 @@ pub struct GivenStep<T> {
 /// The step of a given length among steps of any length.
 ///
 /// # Errors
-/// Those of a step.
+/// The errors of a step.
 fn given<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize>(
     steps: &P,
     node: &Node<N>,
@@ -252,7 +252,7 @@ type MemoryOf<S, const N: usize, const STAGES: usize> =
 /// The memory before the first step, which preserves the energy of the node.
 ///
 /// # Errors
-/// Those of a start.
+/// The errors of a start.
 fn begun<S, const N: usize, const STAGES: usize>(
     system: &S,
     node: &Node<N>,

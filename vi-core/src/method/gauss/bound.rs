@@ -16,9 +16,9 @@
 //! Source: L. O. Jay, Symplectic partitioned Runge–Kutta methods for constrained Hamiltonian systems, 1996; Marsden and
 //! West, Discrete mechanics and variational integrators, 2001, section 3.5. `constrained::solve` solves the equations.
 //!
-//! L is evaluated off the constraint, where g = O(h²), and has to be smooth there. A step does not exist if the gradient
-//! of a constraint turns by about a radian in it: [`StepError::NotConverged`]. A step that does not continue short ones is
-//! [`StepError::TooLong`].
+//! L is evaluated at points with g = O(h²), off the constraint, and has to be smooth there. A step does not exist if
+//! the gradient of a constraint turns by about a radian in it: [`StepError::NotConverged`]. A step that does not
+//! continue short ones is [`StepError::TooLong`].
 
 use super::{Gauss, StageSolver};
 use crate::constrained::connected::{self, velocities};

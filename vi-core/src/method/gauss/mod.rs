@@ -95,7 +95,7 @@ pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memo
     /// [`Run::curvature`](crate::Run::curvature) along directions, with weights of the end.
     ///
     /// # Errors
-    /// As there.
+    /// As [`Run::curvature`](crate::Run::curvature).
     #[cfg(feature = "alloc")]
     #[doc(hidden)]
     fn curvature(
@@ -111,7 +111,7 @@ pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memo
 /// The solver of the kind of a system.
 pub(crate) type Solver<S, const N: usize, const STAGES: usize> = <<S as Motion<N>>::Kind as Kind>::Stages<S, N, STAGES>;
 
-/// That solver as a value.
+/// The solver of the kind of a system, as a value.
 #[inline(always)]
 pub(crate) fn solver<S: Convertible<N>, const N: usize, const STAGES: usize>() -> Solver<S, N, STAGES> {
     Solver::<S, N, STAGES>::default()
