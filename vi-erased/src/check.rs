@@ -10,7 +10,7 @@ use vi_core::StepError;
 use vi_core::method::check_step;
 use vi_core::run::check_tolerance;
 
-/// Where a user writes options.
+/// The interface in which a user writes options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Face {
     /// `--method gauss --stages 8`.
@@ -94,12 +94,12 @@ pub enum Refusal {
         coordinates: Vec<&'static str>,
         /// The numbers, and the option.
         of: [&'static str; 2],
-        /// How many were given.
+        /// The number of values that were given.
         given: usize,
     },
     /// A number that no run has.
     Number {
-        /// What it is.
+        /// Name of the input.
         input: &'static str,
         /// Its option.
         option: &'static str,
@@ -122,7 +122,7 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// What is wrong and what to do, as a line for a user of this face.
+    /// The mistake and its correction, as a line for a user of this interface.
     #[must_use]
     pub fn told(&self, face: Face) -> String {
         match self {

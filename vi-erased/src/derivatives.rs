@@ -14,11 +14,11 @@ use vi_core::{SVector, State, StepError};
 /// A value at the end of some steps, and the run there; `None` if it was interrupted.
 type AtEnd<S, Y, const N: usize> = Result<Option<(AnyRun<S, N>, Y)>, StepError>;
 
-/// Derivatives of the end of some steps with respect to their start, as [`Session::tangent`](crate::Session::tangent);
-/// `begins` if the run is where it began.
+/// Derivatives of the end of some steps with respect to their start, as [`Session::tangent`](crate::Session::tangent).
+/// `begins`: whether the run is at its start.
 ///
 /// # Errors
-/// As there.
+/// As [`Session::tangent`](crate::Session::tangent).
 pub(crate) fn tangent<S: Runnable<N>, const N: usize>(
     run: &AnyRun<S, N>,
     begins: bool,
@@ -42,7 +42,7 @@ pub(crate) fn tangent<S: Runnable<N>, const N: usize>(
 /// Second derivatives of the weighted end of at most one step, as [`Session::curvature`](crate::Session::curvature).
 ///
 /// # Errors
-/// As there.
+/// As [`Session::curvature`](crate::Session::curvature).
 pub(crate) fn curvature<S: Runnable<N>, const N: usize>(
     run: &AnyRun<S, N>,
     Wanted { end, parameters, has_velocities }: Wanted<'_>,
@@ -85,7 +85,7 @@ pub(crate) fn curvature<S: Runnable<N>, const N: usize>(
 /// Derivatives at times, which do not vary, as [`Session::tangents_at`](crate::Session::tangents_at).
 ///
 /// # Errors
-/// As there.
+/// As [`Session::tangents_at`](crate::Session::tangents_at).
 pub(crate) fn tangents_at<S: Runnable<N>, const N: usize>(
     run: &AnyRun<S, N>,
     begins: bool,
@@ -145,7 +145,7 @@ fn ended<S: Runnable<N>, const N: usize>(
         End::Crossing(section, t) => {
             let because = "an event of a derivative is a coordinate or a velocity that crosses a value";
             let event = section.smooth_event().ok_or(StepError::NoDerivative { t, because })?;
-            // Beyond the time of the crossing, where rounding decides on which side it is.
+            // The step ends past the crossing: at its time rounding decides the side.
             tangent.until_event(&event, t + tangent.run().h())?;
         }
     }
@@ -161,7 +161,7 @@ fn ended<S: Runnable<N>, const N: usize>(
 /// [`Session::lyapunov`](crate::Session::lyapunov).
 ///
 /// # Errors
-/// As there.
+/// As [`Session::lyapunov`](crate::Session::lyapunov).
 pub(crate) fn lyapunov<S: Runnable<N>, const N: usize>(
     run: &AnyRun<S, N>,
     steps: u64,
@@ -185,7 +185,7 @@ const STRETCH: u64 = 2048;
 /// [`Session::gradient`](crate::Session::gradient).
 ///
 /// # Errors
-/// As there.
+/// As [`Session::gradient`](crate::Session::gradient).
 pub(crate) fn gradient<S: Runnable<N>, const N: usize>(
     run: &AnyRun<S, N>,
     begins: bool,

@@ -273,7 +273,7 @@ where
 /// A run of energy-preserving steps with the shift and the fallback of a plan.
 ///
 /// # Errors
-/// Those of the shift.
+/// The errors of the shift.
 fn shifted<M, S, const N: usize>(
     run: Run<M, S, N>,
     plan: &Plan,

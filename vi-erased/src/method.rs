@@ -113,7 +113,7 @@ impl<S: Runnable<N>, const N: usize> AnyMethod<S, N> {
     /// [`Run::states_at`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Run::states_at`].
     #[cfg(feature = "sessions")]
     pub(crate) fn states_at(
         run: &mut AnyRun<S, N>,
@@ -136,7 +136,7 @@ impl<S: Runnable<N>, const N: usize> AnyMethod<S, N> {
     /// [`Run::next_event`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Run::next_event`].
     #[cfg(feature = "sessions")]
     pub(crate) fn next_event(
         run: &mut AnyRun<S, N>,

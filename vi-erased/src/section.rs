@@ -12,11 +12,11 @@ use vi_core::run::{Event, Moment};
 /// The direction in which a function crosses zero, along the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// From below.
+    /// The function rises through zero.
     Rising,
-    /// From above.
+    /// The function falls through zero.
     Falling,
-    /// Either.
+    /// Both directions.
     Both,
 }
 
@@ -58,7 +58,7 @@ impl fmt::Debug for Watch {
 pub enum Section {
     /// A coordinate crosses this value.
     Coordinate {
-        /// Which coordinate.
+        /// Index of the coordinate.
         index: usize,
         /// Its value.
         at: f64,
@@ -67,7 +67,7 @@ pub enum Section {
     },
     /// A velocity crosses this value.
     Velocity {
-        /// Of which coordinate.
+        /// Index of its coordinate.
         index: usize,
         /// Its value.
         at: f64,

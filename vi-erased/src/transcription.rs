@@ -647,7 +647,7 @@ impl Stops {
         &self.of.states[index * each..(index + 1) * each]
     }
 
-    /// Those of some of all nodes.
+    /// The ends at some of the nodes.
     fn picked(&self, nodes: &[usize]) -> Self {
         let picked = |of: &[f64]| -> Vec<f64> {
             let each = of.len() / self.legs.nodes.len();

@@ -64,7 +64,7 @@ impl Controller {
     /// A controller of a pendulum that was measured at rest, without force.
     ///
     /// # Errors
-    /// Those of [`Start::integrate`]: a measurement that is not finite.
+    /// The errors of [`Start::integrate`]: a measurement that is not finite.
     pub fn new(measured: [f32; 2]) -> Result<Self, StepError> {
         let model = CartPole::default().convert::<f32>();
         Ok(Self { run: model.at(0.0, measured, [0.0, 0.0]).integrate(FixedStep, PERIOD)? })
@@ -73,7 +73,7 @@ impl Controller {
     /// The force for the next period, in N, from the (x, θ) measured now.
     ///
     /// # Errors
-    /// Those of a step, if the measurement is not finite or far off. The controller then holds its last state.
+    /// The errors of a step, if the measurement is not finite or far off. The controller then holds its last state.
     pub fn force(&mut self, measured: [f32; 2]) -> Result<f32, StepError> {
         let mut run = self.run.clone();
         let State { q, p, .. } = run.state();

@@ -17,7 +17,7 @@ impl Pendulum {
     /// A pendulum at rest at the angle θ.
     ///
     /// # Errors
-    /// Those of [`Start::integrate`].
+    /// The errors of [`Start::integrate`].
     pub fn at_rest(θ: f64) -> Result<Self, StepError> {
         let start = CartPole::default().at(0.0, [0.0, θ], [0.0, 0.0]);
         Ok(Self { run: start.integrate(Gauss::<2>, f64::from(PERIOD))? })
@@ -34,7 +34,7 @@ impl Pendulum {
     /// Moves by one period under this force of the motor.
     ///
     /// # Errors
-    /// Those of a step.
+    /// The errors of a step.
     pub fn pushed(&mut self, force: f32) -> Result<State<2>, StepError> {
         self.run.set_parameters(|cart| cart.u = f64::from(force))?;
         self.run.step()

@@ -50,7 +50,7 @@ fn main() -> ! {
 /// The force for a pendulum that does not move, ten times, and what this took.
 ///
 /// # Errors
-/// Those of a step.
+/// The errors of a step.
 #[inline(never)]
 fn alone() -> Result<(), StepError> {
     let mut controller = Controller::new([0.0, 0.1])?;
@@ -67,7 +67,7 @@ fn alone() -> Result<(), StepError> {
 /// Keeps the pendulum upright for four seconds, and prints its angle each half.
 ///
 /// # Errors
-/// Those of a step.
+/// The errors of a step.
 #[inline(never)]
 fn controlled() -> Result<(), StepError> {
     let mut pendulum = Pendulum::at_rest(0.25)?;

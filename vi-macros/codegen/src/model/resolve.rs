@@ -31,7 +31,7 @@ impl Scope {
     /// The exact number of a written expression.
     ///
     /// # Errors
-    /// Those of [`Self::value`], and a vector.
+    /// The errors of [`Self::value`], and a vector.
     pub(super) fn expression(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Expr> {
         match self.value(pool, written)? {
             Value::Number(value) | Value::Wrong(value) => Ok(value),
