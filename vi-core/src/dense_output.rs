@@ -68,10 +68,10 @@ impl<const N: usize, T: Scalar> Hermite<N, T> {
         after: &State<N, T>,
         h: T,
     ) -> Result<Self, StepError> {
-        let told = after.t - before.t;
+        let difference = after.t - before.t;
         let [from, to] = [before.t.to_f64(), after.t.to_f64()];
         let rounding = T::EPSILON * from.abs().max(to.abs());
-        let h = if (told - h).to_f64().abs() <= rounding { h } else { told };
+        let h = if (difference - h).to_f64().abs() <= rounding { h } else { difference };
         let start = before.flow(system)?;
         let end = after.flow(system)?;
         let q = Cubic::new([before.q, after.q], [start.v, end.v], h);

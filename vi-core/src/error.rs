@@ -5,7 +5,7 @@ use core::fmt;
 /// Name of the bordered mass matrix in [`StepError::Singular`].
 pub const BORDERED_MASS: &str = "mass matrix bordered by the constraints";
 
-/// A gap that is this many times as large as its residual belongs to a gradient that almost vanishes.
+/// Ratio of a gap to its residual above which the gradient almost vanishes.
 const STEEP: f64 = 1e4;
 
 /// The reason why a step failed.
@@ -111,14 +111,14 @@ pub enum StepError {
         /// without constraints. Beyond 57 degrees a step may not exist. A short number keeps errors small.
         turn: f32,
     },
-    /// The step has no solution that continues those of short steps, or only one that is not connected with them. Its
-    /// equations may have another solution, which is no approximation of the motion.
+    /// The step has no solution that continues those of short steps. Its equations may have another solution, which
+    /// does not approximate the motion.
     TooLong {
         /// Time at which the step begins.
         t: f64,
         /// Length of the step.
         h: f64,
-        /// A length with such a solution, to try: positive, also if h is negative.
+        /// A length to try, at which such a solution exists; positive, also if h is negative.
         longest: f64,
     },
     /// The stages of a Gauss step converged neither by fixed-point iteration nor by Newton iteration.
@@ -191,14 +191,14 @@ pub enum StepError {
         /// Name of the matrix.
         matrix: &'static str,
     },
-    /// A state does not satisfy a constraint: that of a start, of a checkpoint, or one whose acceleration is asked.
+    /// A start, a checkpoint or a state whose acceleration is requested does not satisfy a constraint.
     InconsistentStart {
         /// Name of the constraint.
         constraint: &'static str,
         /// `g(t, q)`, in the unit of the constraint; zero for a nonholonomic constraint.
         residual: f64,
         /// `A v + a`, with the velocity v of the momenta, in the unit of the constraint over time for a holonomic one. If
-        /// the mass matrix is singular, the momentum along the gradient that no velocity has.
+        /// the mass matrix is singular, the part of the momentum along the gradient that no velocity produces.
         rate: f64,
     },
     /// A constraint that followed from the others at the start, and was dropped, does not hold at the end of a step.
@@ -232,7 +232,8 @@ pub enum StepError {
         constraint: &'static str,
         /// `A δq + g_t δt + g_θ δθ`, in the unit of the constraint; zero for a nonholonomic constraint.
         residual: f64,
-        /// The multiplier of the gradient of the constraint in the momenta that no admissible velocity has.
+        /// The multiplier of the gradient of the constraint in the part of the momenta that no admissible velocity
+        /// produces.
         impulse: f64,
     },
     /// The constraints depend on each other at the start.
@@ -338,7 +339,7 @@ pub enum StepError {
 }
 
 impl StepError {
-    /// The reason with its numbers, without the advice: for programs that give their own.
+    /// The reason with its numbers, without the advice, for programs with their own advice.
     #[must_use]
     pub fn reason(&self) -> impl fmt::Display + '_ {
         Reason(self)
@@ -556,7 +557,7 @@ impl fmt::Display for StepError {
                 2.0 * largest
             ),
             Self::ShiftTooLarge { shorter, .. } => write!(f, "; start with steps of {shorter:.1e} or shorter"),
-            // Rounded away from the bounds, so that the number itself is allowed.
+            // The advice is rounded outward, so that it allows the number itself.
             Self::StepBounds { found, h_max, .. } => write!(
                 f,
                 "; allow {:.3e} by `with_step_bounds`, or continue with steps of the bound by `with_fallback(Fallback::FixedSteps)`",
@@ -613,7 +614,7 @@ impl fmt::Display for StepError {
             ),
             Self::NotAssembled { constraint, passed, .. } => {
                 write!(f, "; check lengths and anchors of `{constraint}` and its neighbours, or start from another guess")?;
-                // `State::projected` does not walk.
+                // Only `State::assembled` moves in parts.
                 if *passed > 0.0 { Ok(()) } else { f.write_str(" (`State::assembled` takes far ones)") }
             }
             Self::InconsistentTangent { .. } => {

@@ -1,8 +1,8 @@
 //! Adds the reason to a failure: the function without a value, or the expression that is not finite.
 //!
 //! For the attempted step, this module asks the system for a table whose argument has left its range, for a Rust
-//! function that is not finite, and for the part of L or f without a value. Iterations that run into the end of a table
-//! fail in other ways too, so that it is asked for them as well.
+//! function that is not finite, and for the part of L or f without a value. An iteration that reaches the end of a
+//! table may fail with another error, so the module asks for some other errors too.
 
 use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Undefined};
@@ -69,7 +69,7 @@ impl StepError {
     }
 }
 
-/// The function without a value at the node, in the step of the length h or a little after it, which iterations reach.
+/// The function without a value at the node, in the step of the length h, or a little past it, as iterations overshoot.
 /// Velocities are constant, or have the acceleration of the node.
 fn undefined<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
     system: &S,

@@ -34,14 +34,14 @@ pub const STRUCTURE: &str = "matrix ∂ϑ/∂q − (∂ϑ/∂q)ᵀ of the moment
 
 /// Most iterations for the velocity. If f is linear in the velocities, the first one finds it.
 const ITERATIONS: u32 = 16;
-/// A relative correction of the velocity, after which the next one is rounding.
+/// Relative size of a correction of the velocity below which the next one is rounding.
 const SMALL: f64 = 1e-9;
 
 /// The flow at (t, q): the velocity of a system of first order, its force `L_q + f` and its power.
 ///
 /// # Errors
 /// [`StepError::Singular`] if Ω is singular, [`StepError::NonFinite`] if it or a force is not finite,
-/// [`StepError::NotConverged`] if f depends on the velocities, and they settle nowhere.
+/// [`StepError::NotConverged`] if f depends on the velocities and their iteration does not converge.
 pub fn first_order_flow<S: Motion<N, T>, const N: usize, T: Real>(
     system: &S,
     t: T,
@@ -170,7 +170,7 @@ pub(crate) fn check<S: Convertible<N>, const N: usize>(
 #[cfg(feature = "alloc")]
 const ADMISSIBLE: f64 = 1e-6;
 
-/// Tangent vectors at the end of a step whose changes of x and p are right: those of y follow.
+/// Tangent vectors at the end of a step: computes the changes of y from those of x and p.
 ///
 /// # Errors
 /// [`StepError::Singular`] if ϑ_y is singular.

@@ -140,7 +140,7 @@ mod tests {
         }
     }
 
-    /// `√x` above zero, `x²` elsewhere: each arm has no derivative, or no value, where the other one is selected.
+    /// `√x` above zero, `x²` elsewhere. The arm that is not selected may have no derivative, or no value.
     struct Selected;
     impl Function<1> for Selected {
         fn value<T: Number>(&self, [x]: [T; 1]) -> T {
@@ -236,8 +236,7 @@ mod tests {
         }
     }
 
-    /// A slope of zero takes nothing from an infinite derivative, and a base of zero nothing from a missing logarithm,
-    /// in each lane by itself.
+    /// In each lane, a slope of zero stays zero times an infinite derivative, and a base of zero without a logarithm.
     #[test]
     fn limits_hold_in_each_lane() {
         type Varied = Dual<Lanes<2, false>>;

@@ -2,7 +2,7 @@
 //!
 //! [`Motion::Kind`] is [`Free`] or [`Bound<K>`](Bound). A free system is one with zero
 //! constraints: the arrays of its multipliers and gradients are empty. So one trait describes the motion of both kinds,
-//! and a method asks the kind where its solver differs.
+//! and a method takes its solver from the kind.
 
 use crate::linear::{AtMost, Rectangular, Rows, Sparse};
 #[cfg(feature = "alloc")]

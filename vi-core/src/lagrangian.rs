@@ -24,13 +24,13 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     /// set, in ascending order.
     const INPUTS: &'static [usize] = &[];
 
-    /// The name of a `monotone` table in L, if there is one: the step density jumps at its places, and no
-    /// energy-preserving step is taken.
+    /// The name of a `monotone` table in L, if there is one. The step density jumps at its places, so that
+    /// energy-preserving methods refuse the system.
     const MONOTONE_TABLE: Option<&'static str> = None;
     /// A digest of the numbers of its tables, which a checkpoint holds; 0 without tables.
     const TABLES: u32 = 0;
-    /// Whether an interpreter evaluates the system. The functions below then say what its constants cannot, which claim
-    /// less than holds; and Gauss steps evaluate all stages by one call, since a call costs more than an operation.
+    /// Whether an interpreter evaluates the system. The functions below then return its facts, while its constants are
+    /// the weakest claims. Gauss steps evaluate all stages by one call, which costs more than an operation.
     const INTERPRETED: bool = false;
 
     /// [`Lagrangian::NAME`]. This function and those below return their constants, except those of a system that is

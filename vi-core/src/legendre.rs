@@ -45,7 +45,7 @@ impl<const N: usize, T: Scalar> State<N, T> {
         Err(failure.explained(system, &Node::new(*self, T::zero()), T::zero(), &flow.v))
     }
 
-    /// The flow, whose forces and power may be infinite or NaN where the velocity is not.
+    /// The flow without a check: forces and power may be infinite or NaN although the velocity is finite.
     ///
     /// # Errors
     /// As [`State::velocity`].
@@ -101,7 +101,7 @@ pub fn step_density<T: Real>(t: T, density: T) -> Result<T, StepError> {
     if density.is_finite() { Ok(density) } else { Err(lost) }
 }
 
-/// The v with `mass · v = momentum`; momentum excludes that at rest.
+/// The v with `mass · v = momentum`, without the momentum at rest.
 ///
 /// # Errors
 /// [`StepError::Singular`] if the mass matrix is singular at the time `t`, [`StepError::NonFinite`] if it or the
@@ -115,8 +115,8 @@ pub fn velocity_by_mass<T: Real, const N: usize>(
     solved(mass, momentum).map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))
 }
 
-/// Systems with more coordinates solve for an acceleration out of line: LLVM 22 (rustc 1.95) crashes when it optimizes
-/// that of `FpuChain` inside the start of an energy-preserving run.
+/// Systems with more coordinates solve for an acceleration out of line: LLVM 22 (rustc 1.95) crashes if it inlines the
+/// one of `FpuChain` into the start of an energy-preserving run.
 const INLINED: usize = 8;
 
 /// [`solved`], not inlined.
@@ -228,7 +228,7 @@ pub fn velocity<const N: usize, T: Real, M: Matrix<N, T>>(
     let sized = || SCALES.iter().flat_map(|scale| signed(SVector::repeat(T::real(*scale))));
     let v = from(*p).or_else(|failure| sized().find_map(|guess| from(guess).ok()).ok_or(failure));
     let v = v.map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))?;
-    // Without a value at rest L may have several branches, which the momenta do not distinguish.
+    // If L has no value at rest, it may have branches with the same momenta.
     let is_other = |guess| from(guess).is_ok_and(|other| (other - v).longest() > APART * v.longest());
     let mut guesses = PARTS.iter().flat_map(|part| signed(v * T::real(*part))).chain(sized());
     if guesses.any(is_other) { Err(StepError::Ambiguous { t: t.to_f64() }) } else { Ok(v) }

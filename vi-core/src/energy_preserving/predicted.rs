@@ -54,7 +54,7 @@ pub(crate) struct Prediction<const N: usize, T> {
 /// A solved step.
 #[derive(Clone, Copy, Debug)]
 pub struct Predicted<const N: usize, T> {
-    /// What solves the equations.
+    /// The solution of the equations.
     pub(crate) step: EnergyStep<N, T>,
     /// Increments of momentum and energy.
     pub(crate) increment: Increment<N, T>,
@@ -63,7 +63,7 @@ pub struct Predicted<const N: usize, T> {
 }
 
 impl<const N: usize, T: Scalar> Prediction<N, T> {
-    /// Before the first step, which follows the interval `(v, h)`.
+    /// The predictors before the first step, which follows the interval `(v, h)`.
     pub(crate) fn new(v: SVector<T, N>, h: T) -> Self {
         Self { v: Predictor::new(v), h: Predictor::new(SVector::repeat(h)), remainder: SVector::zeros() }
     }
@@ -140,7 +140,7 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
             let VelocityStep { v, h } = trial;
             let density = elimination.density_or_infinite();
             let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
-            // At the smallest root D has the same sign as before: another root lies beyond a sign change.
+            // At the smallest root D has the same sign as before.
             let forward = density * last.density > T::zero() && !elimination.is_degenerate();
             let step = EnergyStep { v, h, density, iterations, measured };
             return (in_range && forward).then_some(Predicted { step, increment: at.increment, remainder });

@@ -45,12 +45,13 @@ pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         return Err(explained(infinite("energy")));
     }
     node.energy = energy;
-    // The first step is this one, so that the interval before it is an equal one.
+    // There is no interval before this step: an equal one replaces it.
     Ok(Lengths::new(Last::first(v, h, density, SVector::zeros())))
 }
 
-/// Smallest `h² |D|` that determines a length, in roundings of the energy of a step. `H − E = h² D/8`, off by one of them,
-/// changes h by an eighth; off by [`FLOOR`], which is accepted, by half. The paper's double well with h0 = 1e-6 is above.
+/// Smallest `h² |D|` that determines a length, in roundings of the energy of a step. One rounding of `H − E = h² D/8`
+/// changes h by an eighth; the accepted error of [`FLOOR`] roundings changes it by half. The paper's double well with
+/// h0 = 1e-6 is above.
 const LEAST: f64 = 8.0 * FLOOR;
 
 /// Checks that the energy determines the length of the first step after `last`.

@@ -1,38 +1,38 @@
-//! The branch of steps of all lengths from a node, from h → 0.
+//! Continuation of the steps from a node in their length, from h → 0.
 //!
-//! The equations of a long step have further solutions, which satisfy them to rounding but lie on no branch from h → 0: a
-//! step through a pole, or past a fold. [`follow`] solves steps of growing lengths,
+//! A long step has further solutions, which satisfy its equations to rounding but lie on no branch from h → 0: steps
+//! through a pole, or past a fold. [`follow`] solves steps of growing lengths,
 //!
 //! ```text
 //! h θ0 … h θ … h        each guess is extrapolated from shorter steps, and close to its solution
 //! ```
 //!
-//! and returns the one at the end of the branch. If the branch ends before, the step is too long.
+//! and returns the step of the whole length. If the branch ends before, the step is too long.
 
 use super::stages::Stages;
 use super::tableau::{Tableau, real};
 
-/// The contraction of Newton iteration up to which its solution needs no proof. It finds solutions farther away than
-/// fixed-point iteration: with 0.25 another branch was taken in ten of 517 plunging orbits.
+/// Contraction of Newton iteration up to which its solution counts as connected. It finds solutions farther away than
+/// fixed-point iteration: with a bound of 0.25 ten of 517 plunging orbits took another branch.
 pub(crate) const FAST: f64 = 0.05;
-/// The last coefficients of resolved stages, relative to the largest one. Measured on Kepler's problem: up to 0.09 for
-/// e = 0.6, 1.0 in a step that loses a plunging orbit.
+/// Largest last coefficients of resolved stages, relative to the largest one. Measured on Kepler's problem: up to 0.09
+/// for e = 0.6, 1.0 in a step that loses a plunging orbit.
 const RESOLVED: f64 = 0.1;
-/// Fewer stages have too few coefficients.
+/// Smallest number of stages whose coefficients show whether they are resolved.
 const FEWEST: usize = 3;
 /// Most solved steps of a continuation.
 const SOLVES: u32 = 192;
 /// Halvings of h until a step needs no continuation.
 const HALVINGS: u32 = 12;
-/// The largest and the least relative increase of the length. A branch that does not continue so far ends there.
+/// The largest and the least relative increase of the length. A branch that does not continue by the least one ends.
 const INCREASES: [f64; 2] = [0.5, 1e-4];
 /// Margin of the length to try: close to the end of a branch a step is hardly determined.
 const MARGIN: f64 = 0.8;
 /// The largest distance from a guess to its solution, relative to the range of the stages.
 pub(crate) const NEAR: f64 = 0.25;
-/// Roundings of the largest row of stages that a row may be off.
+/// Largest error of a row, in roundings of the largest row of stages.
 const NOISE: f64 = 4096.0;
-/// The largest such distance between two numbers of one solution.
+/// The largest distance between two results for one solution, relative to the range of the stages.
 pub(crate) const EQUAL: f64 = 1e-6;
 
 /// Steps of all lengths from a node.
@@ -99,8 +99,8 @@ pub(crate) fn follow<B: StepsFromNode>(steps: &mut B) -> Result<B::Solution, f64
     Ok(last.step)
 }
 
-/// Whether the last two Legendre coefficients of each row of stages are small: their step is resolved. False if there are
-/// too few stages to know. `weights` make rows comparable: one that is rounding of the others counts as zero.
+/// Whether a step is resolved: the last two Legendre coefficients of each row of stages are small. False for few
+/// stages. `weights` make rows comparable: a row that is rounding of the others counts as zero.
 pub(crate) fn is_resolved<const N: usize, const S: usize>(stages: &Stages<N, S>, weights: &[f64; N]) -> bool {
     let Tableau { b, legendre, .. } = const { &Tableau::<S>::VALUES };
     let coefficient = |row: &[f64; S], k: usize| {

@@ -1,7 +1,7 @@
 //! Whether a Gauss step continues those of short lengths.
 //!
-//! A step whose fixed-point iteration contracts fast, or whose stages are resolved, has one solution near its start. The
-//! others are continued from short steps by [`branch::follow`].
+//! A step has one solution near its start if its fixed-point iteration contracts fast, or if its stages are resolved.
+//! Other steps are continued from short ones by [`branch::follow`].
 
 use super::branch::{self, EQUAL, FAST, NEAR, Shorter, StepsFromNode, distance, is_resolved};
 use super::fixed_point::{Convergence, Equations as _};
@@ -18,7 +18,7 @@ use crate::vector;
 use nalgebra::SMatrix;
 use vi_dispatch::Instructions;
 
-/// Relative change of the derivatives over a step whose equations count as linear, and then have one solution.
+/// Relative change of the derivatives over a step up to which its equations count as linear, with one solution.
 const LINEAR: f64 = 0.05;
 
 /// Whether the equations of a step are nearly linear: their derivatives at its stages are those at its start.
@@ -76,7 +76,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     {
         let step = match self.recovered(system, instructions, left, cache) {
             Ok(step) => step,
-            // Iterations may leave the domain of L, whose velocities are functions of the coordinates.
+            // Velocities of first order are functions of the coordinates, so that iterations may leave the domain of L.
             Err(failure) if system.is_first_order() => {
                 return self.continued(system, instructions, None, cache).map_err(|_| failure);
             }
@@ -146,8 +146,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Convertible<N>,
     {
         let from = constant(system, self.node)?;
-        let rare = ErasedSystem::of(system);
-        let weights = taken.as_ref().map_or([1.0; N], |step| weights(&rare, self.node, step));
+        let erased = ErasedSystem::of(system);
+        let weights = taken.as_ref().map_or([1.0; N], |step| weights(&erased, self.node, step));
         let steps = &mut StepsFrom { start: self, system, instructions, cache, from: &from, weights, taken };
         let too_long = |part: f64| StepError::TooLong { t: self.node.t, h: self.h, longest: (part * self.h).abs() };
         let found = branch::follow(steps).map_err(too_long)?;

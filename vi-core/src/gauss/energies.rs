@@ -1,6 +1,6 @@
 //! The discrete energies of a step.
 //!
-//! From the stages of a step of length h from a node follow its energies at both ends, relative to `base`:
+//! The stages of a step of length h from a node give its energies at both ends, relative to `base`:
 //!
 //! ```text
 //! E0 =  D1 L_d + g_d⁻ = Σ b_i En_i − h Σ b_i (1 − c_i) (f·v − L_t)_i
@@ -63,9 +63,9 @@ pub(crate) fn bounded_energies<Y, const N: usize, const S: usize>(
 where
     Y: Convertible<N>,
 {
-    let rare = ErasedSystem::of(system);
-    let interval = Interval::new(&rare, node, h, stages);
-    let velocities = rounding::velocities(&rare, node, h, &interval.positions, &interval.velocities);
+    let erased = ErasedSystem::of(system);
+    let interval = Interval::new(&erased, node, h, stages);
+    let velocities = rounding::velocities(&erased, node, h, &interval.positions, &interval.velocities);
     interval.energies(&system.convert::<Rounded>(), base, Rounded::nearest, |i| velocities[i])
 }
 

@@ -41,7 +41,7 @@ impl<const N: usize, const S: usize> Factors<N, S> {
                 }
             }
         };
-        // Four operations on half a vector for an entry of a band, two on a whole one for an entry of an inverse.
+        // An entry of a band takes four operations on half a vector, an entry of an inverse two on a whole one.
         if 4 * width + 2 <= N {
             fill(&mut self.rows);
             let eliminate = Eliminate { width, rows: &mut self.rows, reciprocals: &mut self.reciprocals };
@@ -204,7 +204,7 @@ mod tests {
     /// The factors of a matrix with these diagonals, and the largest residual of a solution.
     fn solved(width: usize, entry: impl Fn(usize, usize) -> Modal<S>) -> (Factors<N, S>, f64) {
         let mut factors = Factors::<N, S>::new();
-        // What earlier factors left must not matter.
+        // Earlier factors must not change the result.
         factors.factor(N - 1, |row, column| number(row + 5 * column));
         factors.factor(width, &entry);
         let sides: [Modal<S>; N] = core::array::from_fn(|row| number(7 * row));

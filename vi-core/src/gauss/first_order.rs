@@ -8,13 +8,12 @@
 //! x1  = x0 + h Σ_j b_j V_j         ϑ(x1, y1)   = p0 + h Σ_j b_j F_j
 //! ```
 //!
-//! so that a step is symplectic in (x, p), and y0 is nothing but a guess. The stage velocities of y are the slopes of the
-//! polynomial through y0 and the Y_i; y1 is not its end, but follows from x1 and p1.
+//! so that a step is symplectic in (x, p), and y0 is only a guess. The stage velocities of y are the slopes of the
+//! polynomial through y0 and the Y_i. y1 follows from x1 and p1, not from this polynomial.
 //!
 //! One iteration evaluates the equations at (X, Y), corrects V by `L_y + f = 0`, moves X by the new V, and corrects Y by
-//! `ϑ_y⁻¹ (P − ϑ)` with the momenta P from F. Its matrices are those in the middle
-//! of the guess, or where that contracts slowly those of each stage. If neither contracts, Newton iteration corrects all velocities, as in
-//! [`General`].
+//! `ϑ_y⁻¹ (P − ϑ)` with the momenta P from F. Its matrices are evaluated in the middle of the guess, or at each stage
+//! if that contracts slowly. If neither contracts, Newton iteration corrects all velocities, as in [`General`].
 
 use super::fixed_point::{Convergence, Equations, StageIncrement};
 use super::general::General;
@@ -30,7 +29,7 @@ use nalgebra::{SMatrix, SVector};
 /// Most iterations for y1.
 const ITERATIONS: u32 = 60;
 /// The last correction of y1, relative to the coordinates and to the terms of y: a few roundings.
-const SETTLED: f64 = 64.0 * f64::EPSILON;
+const CONVERGED: f64 = 64.0 * f64::EPSILON;
 
 /// Contraction up to which the matrices in the middle of the guess serve all stages.
 const FAST: f64 = 1.0 / 8.0;
@@ -124,7 +123,7 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
         for i in 0..S {
             let by_move = of(i).momentum_dq * self.half(|k| moved[k][i] - x[k][i], false);
             set(&mut changes, i, &(of(i).halves * self.half(|k| missing[k][i] - by_move[k], false)));
-            // The momentum that is missing is the difference of these terms.
+            // The residual of the momentum is the difference of these terms.
             terms = terms.sup(&(of(i).halves.abs() * self.half(|k| momentum[k][i].abs(), false)));
         }
         self.terms = self.half(|k| terms[k], true);
@@ -137,7 +136,7 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
         }
     }
 
-    /// `y1 − y0` by the momenta at the end of the step; NaN if the iteration does not settle.
+    /// `y1 − y0` by the momenta at the end of the step; NaN if the iteration does not converge.
     fn end(&self, end: &Node<N>, guess: SVector<f64, N>) -> SVector<f64, N> {
         let mut moved = guess;
         let mut last = f64::INFINITY;
@@ -152,7 +151,7 @@ impl<'a, const N: usize, const S: usize> FirstOrder<'a, N, S> {
             moved += change;
             last = size;
         }
-        let is_found = last <= SETTLED * (end.q + moved).amax().max(self.terms.amax());
+        let is_found = last <= CONVERGED * (end.q + moved).amax().max(self.terms.amax());
         if is_found { moved } else { SVector::repeat(f64::NAN) }
     }
 }

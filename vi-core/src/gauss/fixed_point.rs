@@ -25,16 +25,15 @@ const ITERATIONS: u32 = 60;
 const PATIENCE: u32 = 5;
 /// Contraction of slow convergence. Slower iterations of steps that are too long end at wrong solutions more often.
 const SLOW: f64 = 0.5;
-/// A larger change, in ulps of q, is far from convergence.
+/// Change, in ulps of q, above which an iteration is far from convergence.
 pub(crate) const FAR: f64 = 1e3;
 /// Smallest change, in ulps of q, that measures the contraction together with a change at the floor; one or two ulps
 /// are noise.
 pub(crate) const NOISE: f64 = 64.0;
-/// The contraction up to which a solution needs no proof that it continues those of short steps: it is the only one near
-/// the guess. Measured on 180 plunging orbits with 2, 3, 4 and 8 stages: no step was taken on another branch than that of
-/// an independent continuation.
+/// Contraction up to which a solution is the only one near the guess, and so continues those of short steps. On 180
+/// plunging orbits with 2, 3, 4 and 8 stages, an independent continuation found the same branch for all steps.
 const FAST: f64 = 0.25;
-/// Iterations in which only a guess close to its solution converges. The contraction is then not measured.
+/// Number of iterations in which only a guess close to its solution converges, so that no contraction is needed.
 const FEW: u32 = 3;
 /// Iterations without a smaller change, after which the iteration has stalled.
 const STALLS: u32 = 4;
@@ -145,7 +144,7 @@ pub(crate) struct Convergence {
 }
 
 impl Convergence {
-    /// Before the first step.
+    /// The outcome before the first step.
     pub(crate) const NONE: Self = Self { iterations: 0, change: 0.0, contraction: 1.0 };
 
     /// Whether the run has taken a step.
@@ -213,7 +212,7 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         let mut change = equations.change(x, y);
         let is_small = |change, left| change <= FLOOR && (left <= NEGLIGIBLE || change == 0.0);
         if is_small(change, left) || change >= least {
-            // Convergence is judged in ulps of the resulting stages; older ulps may belong to other numbers.
+            // Convergence is judged in ulps of the new stages.
             let growth = equations.take_roundings(x);
             change *= growth;
             left *= growth;
@@ -224,7 +223,7 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
             break false;
         }
         let stands_out = change > FLOOR || last > NOISE;
-        // The previous step does not predict the first change.
+        // The first change of a step has no predecessor.
         if stands_out && state.iterations > 1 {
             state.contraction = change / last;
         }

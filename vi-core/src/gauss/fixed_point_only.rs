@@ -1,4 +1,4 @@
-//! Replaces Newton iteration if there is no feature `alloc`: steps that are too long for fixed-point iteration fail.
+//! Stands in for Newton iteration without the feature `alloc`: steps that are too long for fixed-point iteration fail.
 
 use super::linearization::Linearization;
 use super::points::ErasedSystem;

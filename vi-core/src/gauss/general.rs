@@ -24,9 +24,9 @@ use crate::node::Node;
 use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 
-/// Contraction up to which masses are kept. Where iterations contract less, old masses would slow them down.
+/// Contraction up to which masses are kept. Slower iterations would need more of them with old masses.
 const FAST: f64 = 1.0 / 8.0;
-/// Change below which masses are kept: a part of 256 of the velocities. After a larger one they belong to other positions.
+/// Change below which masses are kept: 1/256 of the velocities.
 const NEAR: f64 = VELOCITY / (256.0 * f64::EPSILON);
 
 /// The inverse of M at each stage, of the last iteration with new masses.
@@ -39,7 +39,7 @@ pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     pub(super) h: f64,
     /// M, factored, if it is constant.
     inverse: Option<M::Inverse>,
-    /// For many coordinates. Not a value, because a move of the equations would copy it.
+    /// The kept masses of many coordinates. A reference, because moving the equations would copy them.
     kept: Option<&'a mut Masses<N, S>>,
     /// The linearized equations, if fixed-point iteration does not contract.
     pub(super) newton: Option<&'a Newton<N, S>>,

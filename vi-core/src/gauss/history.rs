@@ -20,7 +20,7 @@ pub struct StepHistory {
     pub(crate) slope: f64,
     /// `H − E'` at the node.
     pub(crate) excess: f64,
-    /// The size of the terms of H there.
+    /// The size of the terms of H at the node.
     pub(crate) size: f64,
     /// The largest size so far.
     pub(crate) largest_size: f64,
@@ -38,7 +38,7 @@ pub struct StepHistory {
 }
 
 impl StepHistory {
-    /// Before the first step, which has about the length h.
+    /// The memory before the first step, which has about the length h.
     pub(crate) fn new(h: f64, slope: f64) -> Self {
         Self {
             h,

@@ -1,4 +1,4 @@
-//! The point at which Newton iteration linearizes the equations of a step, and how stiff they are there.
+//! The point at which Newton iteration linearizes the equations of a step, and their stiffness.
 
 use super::points::{AnyDerivatives, ErasedSystem};
 use crate::linear;

@@ -55,7 +55,7 @@ impl<const S: usize> Lobatto<S> {
         while j < S {
             i = 0;
             while i + 1 < S {
-                // A multiple of 2⁻⁵²: 1 minus it is exact, also where it is negative.
+                // A multiple of 2⁻⁵²: 1 minus it is exact, even if it is negative.
                 part[j][i] = 2.0 * on_grid(exact[j][i].times(HALF));
                 i += 1;
             }
@@ -65,7 +65,7 @@ impl<const S: usize> Lobatto<S> {
     }
 }
 
-/// P_s(x) for a Lobatto node x; it is 1 at the end, where its slope by [`legendre`] is 0/0.
+/// P_s(x) for a Lobatto node x. At the end it is 1, because [`legendre`] computes 0/0 there.
 const fn at(s: usize, x: Pair) -> Pair {
     if x.high >= 1.0 { Pair::ONE } else { legendre(s, x).0 }
 }

@@ -10,10 +10,10 @@
 //! | `separable`, `general`, `first_order` | the stage equations: forces of the position alone, any system with masses, and L linear in the velocities |
 //! | `fixed_point` | fixed-point iteration to convergence |
 //! | `solve` | the solver of a step, with runtime dispatch to SIMD instructions |
-//! | `branch` | the branch of steps of all lengths, from h → 0 |
-//! | `connected` | whether a long step lies on it |
+//! | `branch` | continuation of steps in their length, from h → 0 |
+//! | `connected` | whether a long step continues short ones |
 //! | `points` | the equations of motion at a point, generic and type-erased |
-//! | `linearization` | the point of a linearization, and how stiff a step is there |
+//! | `linearization` | the point of a linearization, and the stiffness of the step |
 //! | `newton` | simplified Newton iteration, linearized at the middle of the step |
 //! | `modes`, `factors` | the eigenbasis that splits its equations into small systems; their factors |
 //! | `fixed_point_only` | in place of `newton` without the feature `alloc` |

@@ -1,6 +1,6 @@
 //! The eigenbasis of A, the matrix of Gauss collocation.
 //!
-//! S stage values have S coefficients in the basis of the eigenvectors of A, where `Σ_j a_ij x_j` becomes `λ z`. A
+//! S stage values have S coefficients z in the basis of the eigenvectors of A: `Σ_j a_ij x_j` becomes `λ z`. A
 //! integrates polynomials of degree S − 1, without their term of degree S. Therefore the coefficients u_k of an
 //! eigenvector in Legendre polynomials satisfy, by `∫ P_k = (P_{k+1} − P_{k−1}) / (2 (2k + 1))`, and with `wᵀ A = λ
 //! wᵀ`,

@@ -1,7 +1,7 @@
 //! Simplified Newton iteration of the stage equations, for steps whose fixed-point iteration does not contract.
 //!
-//! The equations are linearized at the middle of a step. From the residuals of `L_v(Q_i, V_i) = p0 + h Σ a_ij F_j`
-//! follow corrections of the velocities. With `C = ∂L_v/∂q, M = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` they solve
+//! The equations are linearized at the middle of a step. Residuals of `L_v(Q_i, V_i) = p0 + h Σ a_ij F_j` give
+//! corrections of the velocities. With `C = ∂L_v/∂q, M = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` they solve
 //!
 //! ```text
 //! δQ_i = h Σ_j a_ij δV_j        M δV_i + C δQ_i − h Σ_j a_ij (K δQ_j + B δV_j) = missing_i
@@ -14,8 +14,8 @@
 //! ```
 //!
 //! The same matrix corrects the positions of a separable system. All eigenvalues are processed side by side. The inverse
-//! exists for every oscillating or damped system, however stiff: then K and B have no positive eigenvalues, and λ has a
-//! positive real part. The first stiff step of a run allocates the buffer.
+//! exists for every oscillating or damped system of any stiffness, because K and B then have no positive eigenvalues,
+//! and λ has a positive real part. The first stiff step of a run allocates the buffer.
 
 use super::factors::{Factors, by_width};
 use super::linearization::Linearization;

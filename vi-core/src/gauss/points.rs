@@ -221,7 +221,7 @@ impl<'a, const N: usize> ErasedSystem<'a, N> {
     }
 }
 
-macro_rules! rare {
+macro_rules! erased_points {
     ($($number:ty, $point:ident, $sides:expr);*) => {$(
         impl<const N: usize> Points<N, $number> for ErasedSystem<'_, N> {
             type Mass = SMatrix<$number, N, N>;
@@ -247,7 +247,7 @@ macro_rules! rare {
     )*};
 }
 
-rare! {
+erased_points! {
     f64, plain, |of: &Self, t, q: &_, v: &_| of.0.sides(t, q, v);
     Rounded, rounded, |of: &Self, t, q: &_, v: &_| of.0.rounded(t, q, v).sides()
 }

@@ -1,7 +1,7 @@
 //! Dense output of a Gauss step: its collocation polynomials.
 //!
-//! From velocities and forces at the stages follow q and p at any time of the step, in Legendre polynomials of x = 2θ −
-//! 1, with θ the fraction of the step:
+//! Velocities and forces at the stages give q and p at any time of the step, in Legendre polynomials of x = 2θ − 1,
+//! with θ the fraction of the step:
 //!
 //! ```text
 //! v(θ) = Σ_k u_k P_k(x)        u_k = (2k + 1) Σ_i b_i P_k(x_i) V_i        exact, since the Gauss rule is
@@ -30,8 +30,8 @@ pub struct CollocationPolynomial<const N: usize, const S: usize> {
     /// Coefficients of the velocity and of the force in Legendre polynomials.
     velocity: Stages<N, S>,
     force: Stages<N, S>,
-    /// The position at the end of the step minus that of the polynomial, where they differ: in a system of first order. It
-    /// counts as `θ P_S(x)`, which is zero at the start and at the stages.
+    /// The position at the end of the step minus that of the polynomial, for systems of first order, in which they
+    /// differ. It counts as `θ P_S(x)`, which is zero at the start and at the stages.
     rest: Option<SVector<f64, N>>,
 }
 

@@ -1,6 +1,6 @@
 //! The slot derivatives of a Gauss step: its discrete Lagrangian with derivatives, and the discrete forces and powers.
 //!
-//! From the stages (T_i, Q_i, V_i) of a solved step, with `P = L_v` and `En = V·P − L` there, follow
+//! With the stages (T_i, Q_i, V_i) of a solved step, and `P = L_v` and `En = V·P − L` at each of them,
 //!
 //! ```text
 //! L_d = h Σ b L
@@ -66,8 +66,8 @@ impl<const N: usize> Slots<N> {
         stages: Stages<N, S>,
     ) -> Self {
         let Tableau { b, c, .. } = const { &Tableau::<S>::VALUES };
-        let rare = ErasedSystem::of(system);
-        let equations = equations(&rare, node, h, stages);
+        let erased = ErasedSystem::of(system);
+        let equations = equations(&erased, node, h, stages);
         let x = equations.start();
         let velocities = equations.velocity();
         let zeros = SVector::zeros();

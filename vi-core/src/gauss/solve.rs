@@ -34,7 +34,7 @@ pub(crate) struct Start<'a, const N: usize, const S: usize> {
     pub(crate) pause: Pause,
 }
 
-/// Positions beyond this have an ulp of 2e-6: as angles they are hardly known.
+/// Positions above this have an ulp of 2e-6, which is too large for an angle.
 const HUGE: f64 = 1e10;
 
 /// A solved step.
@@ -129,7 +129,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         if !iteration.convergence.is_at_floor() {
             return residual();
         }
-        // The sine of a huge angle has no digits, although the angle has all of them.
+        // The sine of a huge angle has no correct digits, although all digits of the angle are.
         let is_huge = iteration.positions.iter().flatten().any(|q| q.abs() > HUGE);
         if is_huge && residual().is_nan() { f64::NAN } else { change }
     }
@@ -237,26 +237,27 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     where
         Y: Convertible<N>,
     {
-        let rare = &ErasedSystem::of(system);
+        let erased = &ErasedSystem::of(system);
         let mut after = self.pause;
         if let Some(left) = left.filter(|left| left.has_stalled() && self.pause != Pause::USELESS)
             && let Some(newton) = cache.newton()
         {
-            // Newton iteration is faster than the analysis of rounding errors, and may reach rounding.
+            // Newton iteration is faster than running error analysis, and may converge to rounding.
             let Self { node, h, before, pause, .. } = *self;
             let near = Start { node, h, stages: &left.stages, are_last: false, before, pause };
-            let at = last.unwrap_or_else(|| near.middle(rare));
+            let at = last.unwrap_or_else(|| near.middle(erased));
             let (solved, at) = near.newton_stages(system, instructions, at, newton);
             if solved.iteration.convergence.is_at_floor()
-                && let Some(step) = near.accepted(rare, &solved, Some(newton))
+                && let Some(step) = near.accepted(erased, &solved, Some(newton))
             {
-                // These iterations began near the solution: their number does not tell when a new linearization pays off.
+                // These iterations began near the solution: their number does not show whether a new linearization pays
+                // off.
                 let linearization = Some(Linearization { iterations: None, ..at });
                 return Ok(Step { pause: self.pause.after_newton(), linearization, ..step });
             }
             after = Pause::USELESS;
         }
-        if let Some(step) = left.and_then(|left| self.accepted(rare, left, None)) {
+        if let Some(step) = left.and_then(|left| self.accepted(erased, left, None)) {
             return Ok(Step { pause: after, ..step });
         }
         // First the last linearization, then a new one, then stages equal to the node, because extrapolated polynomials
@@ -267,7 +268,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             return Ok(step);
         }
         let by_velocity = last.is_some_and(|last| last.by_velocity);
-        let at = Linearization { by_velocity, ..self.middle(rare) };
+        let at = Linearization { by_velocity, ..self.middle(erased) };
         let extrapolated = self.by_newton(system, instructions, at, cache);
         if extrapolated.is_ok() || !self.are_last {
             return extrapolated;
@@ -275,8 +276,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let Ok(constant) = constant(system, self.node) else { return extrapolated };
         let Self { node, h, pause, .. } = *self;
         let start = Start { node, h, stages: &constant, are_last: false, before: &Convergence::NONE, pause };
-        // As in the first step of a run. Fixed-point iteration may converge where a linearization in the middle of a long
-        // step misleads.
+        // Start as in the first step of a run: fixed-point iteration may converge although the linearization in the
+        // middle of a long step is poor.
         let first = start
             .by_fixed_point(system, instructions)
             .or_else(|left| start.recovered(system, instructions, (Some(&left), None), cache));
@@ -294,22 +295,22 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     where
         Y: Convertible<N>,
     {
-        let rare = &ErasedSystem::of(system);
+        let erased = &ErasedSystem::of(system);
         let mut newton = cache.newton();
         let (solved, at) = match &mut newton {
             Some(newton) => self.newton_stages(system, instructions, at, newton),
-            None => (self.in_scalars(rare, None), at),
+            None => (self.in_scalars(erased, None), at),
         };
         let StageSolution { increment, iteration, .. } = &solved;
         let not_converged =
-            || iteration.convergence.not_converged(increment, [self.node.t, self.h], at.stiffness(rare));
-        let accepted = self.accepted(rare, &solved, newton.as_deref());
+            || iteration.convergence.not_converged(increment, [self.node.t, self.h], at.stiffness(erased));
+        let accepted = self.accepted(erased, &solved, newton.as_deref());
         let step = accepted.ok_or_else(|| lost_force(system, self.node, self.h).unwrap_or_else(not_converged))?;
         let linearization = at.after(step.convergence.iterations);
         Ok(Step { pause: self.pause.after_newton(), linearization, ..step })
     }
 
-    /// The stages by Newton iteration, and the linearization that says how they were found.
+    /// The stages by Newton iteration, and the linearization of the iteration.
     fn newton_stages<Y>(
         &self,
         system: &Y,
@@ -320,8 +321,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     where
         Y: Convertible<N>,
     {
-        let rare = &ErasedSystem::of(system);
-        newton.linearize(rare, at);
+        let erased = &ErasedSystem::of(system);
+        newton.linearize(erased, at);
         let mut by_velocity = at.by_velocity;
         if !by_velocity {
             let solved = self.side_by_side(system, instructions, Some(newton));
@@ -329,11 +330,11 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             if solved.iteration.convergence.is_at_floor() || !has_positions {
                 return (solved, at);
             }
-            // A change of few ulps is that of one step; the next may reach rounding again.
+            // After a change of few ulps the next step may reach rounding again by positions.
             by_velocity = solved.iteration.convergence.change > NOISE;
         }
         // The velocities of very stiff steps are more accurate than positions by forces.
-        (self.in_scalars(rare, Some(newton)), Linearization { by_velocity, ..at })
+        (self.in_scalars(erased, Some(newton)), Linearization { by_velocity, ..at })
     }
 }
 
@@ -350,9 +351,8 @@ pub(crate) fn constant<Y: Motion<N>, const N: usize, const S: usize>(
     Ok(start.data.0[0].map(|entry| [entry; S]))
 }
 
-/// Whether every processor of this architecture has vectors that justify a copy of long equations. Those of x86-64
-/// without AVX2 hold two numbers, and date from before 2013 or from the simplest machines: they evaluate one stage
-/// after another.
+/// Whether every processor of this architecture has vectors that justify a copy of long equations. Processors of x86-64
+/// without AVX2, mostly older than 2013, have vectors of two numbers: they evaluate one stage after another.
 pub(crate) const WIDE: bool = !cfg!(target_arch = "x86_64");
 
 /// The stages, with SIMD dispatch.

@@ -1,8 +1,8 @@
 //! Tangent vectors of a solved Gauss step.
 //!
-//! From the stages of the last step and tangent vectors at its node follow those at the next node. Let `C = ∂L_v/∂q, M
-//! = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` at each stage, and m, f the derivatives of L_v and F with respect to the time and
-//! the parameters. The stage velocities vary by the solution of
+//! In: the stages of the last step, and tangent vectors at its node. Out: tangent vectors at the next node. Let `C =
+//! ∂L_v/∂q, M = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` at each stage, and m, f the derivatives of L_v and F with respect to the
+//! time and the parameters. The changes of the stage velocities solve
 //!
 //! ```text
 //! C_i δQ_i + M_i δV_i + m_i = δp0 + h Σ_j a_ij δF_j        δQ_i = δq0 + h Σ_j a_ij δV_j        δF_j = K_j δQ_j + B_j δV_j + f_j
@@ -64,7 +64,7 @@ where
         true
     }
 
-    /// As for [`EnergyPreserving`](crate::EnergyPreserving). The shift does not vary.
+    /// As [`EnergyPreserving`](crate::EnergyPreserving); the shift is constant.
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         Lengths::<S, N, STAGES>::vary(run, before, variations)
     }
@@ -78,8 +78,8 @@ where
     }
 }
 
-/// Maps tangent vectors at a node to those after an energy-preserving step of the length h, or one of a given length.
-/// `vary` does so for a step of a length that its vectors vary, and adds the derivatives of its energies.
+/// Maps tangent vectors at a node to those after an energy-preserving step of the length h, or a step of a given
+/// length. `vary` maps them for a step whose length may vary, and adds the derivatives of its energies.
 ///
 /// The energy equation and the unknown h border the equations of the step. These are solved at fixed h and for the
 /// direction of h; one scalar equation gives δh.
@@ -196,7 +196,7 @@ pub(super) struct Linearized<const N: usize, const S: usize> {
     /// Time of the start.
     t: f64,
     pub(super) h: f64,
-    /// Coordinates behind these are at rest: they have no equations.
+    /// The number of moving coordinates. Those after them are at rest and have no equations.
     pub(super) moving: usize,
     pub(super) at: Solution<N, S>,
     /// The derivatives at the stages, then a buffer for the equations. On the heap: arrays of long systems would
@@ -207,8 +207,8 @@ pub(super) struct Linearized<const N: usize, const S: usize> {
 impl<const N: usize, const STAGES: usize> Linearized<N, STAGES> {
     /// The step of length h from a node, with these stages.
     pub(super) fn of<S: Convertible<N>>(system: &S, (before, h, stages): (&Node<N>, f64, &Stages<N, STAGES>)) -> Self {
-        let rare = ErasedSystem::of(system);
-        let equations = equations(&rare, before, h, *stages);
+        let erased = ErasedSystem::of(system);
+        let equations = equations(&erased, before, h, *stages);
         let at = Solution {
             times: times::<N, STAGES, false>(before, h),
             positions: equations.start(),
@@ -219,7 +219,7 @@ impl<const N: usize, const STAGES: usize> Linearized<N, STAGES> {
         let are_found = S::SIDE_BY_SIDE && Instructions::detected().run(Differentiate { system, at: &at, derivatives });
         if !are_found || !are_finite(derivatives) {
             // Scalar numbers have sines and cosines of every angle; SIMD lanes reject large ones.
-            differentiate_in_scalars(&rare, &at, derivatives);
+            differentiate_in_scalars(&erased, &at, derivatives);
         }
         Self { t: before.t, h, moving: system.moving(), at, rows }
     }
@@ -578,7 +578,7 @@ pub(super) fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
     equations: &mut [Stages<N, S>],
     mass: &[Stages<N, S>; N],
 ) -> bool {
-    // 1 for rows without a pivot so far, else 0.
+    // 1 for rows without a pivot so far, otherwise 0.
     let mut free = [[0.0; S]; N];
     free[..n].fill([1.0; S]);
     let mut pivots = [[(0, 0); S]; N];
@@ -648,7 +648,7 @@ fn pivot<const N: usize, const S: usize>(
     if largest > 0.0 && FAVOURED * sizes[l][j] >= largest { Some(diagonal) } else { compared(&sizes, diagonal, mass) }
 }
 
-/// The pivot among scaled rows, if in their own units another one is larger.
+/// The pivot among scaled rows, if it is not the largest entry in their own units.
 #[cold]
 fn compared<const N: usize, const S: usize>(
     sizes: &Stages<N, S>,

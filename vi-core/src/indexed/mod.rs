@@ -332,7 +332,7 @@ pub fn power<const N: usize, T: Real, S: Indexed<N, T>>(system: &S, t: T, q: &SV
     system.first_derivatives(t, q, v).power::<S>(v)
 }
 
-/// A derivative times its weight; zero if that is, also if the derivative is infinite.
+/// A derivative times its weight; zero for a weight of zero, even if the derivative is infinite.
 #[doc(hidden)]
 #[inline(always)]
 pub fn weighted<T: Real>(derivative: T, weight: T) -> T {

@@ -256,7 +256,7 @@ fn by_blocks<T: Real, const N: usize, const M: usize>(
     weights: Option<&mut [f64; N]>,
 ) -> bool {
     let elimination = Elimination { n, m, a, b, weights };
-    // Other numbers do not gain from wide vectors.
+    // Wide vectors do not speed up other numbers.
     if const { size_of::<T>() <= size_of::<f64>() } {
         Instructions::detected().run(elimination)
     } else {
@@ -480,7 +480,7 @@ pub(super) fn weights<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> [f64; N]
 }
 
 /// Swaps the row with the largest scaled entry of `column` onto the diagonal; returns its index if it was another row.
-/// Not inlined into the loop of each instruction set.
+/// Not inlined, so that the loops of all instruction sets share it.
 #[inline(never)]
 pub(super) fn pivot<T: Real, const N: usize>(
     a: &mut SMatrix<T, N, N>,

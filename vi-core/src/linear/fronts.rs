@@ -126,7 +126,8 @@ impl<T: Real> Fronts<T> {
         Self::allocated(all, &[unknowns], (0..unknowns).map(|unknown| (0, unknown)).collect(), copies)
     }
 
-    /// Of the blocks, without unknowns beyond the first ones; `None` if they are not those of an elimination.
+    /// The fronts of the blocks, without unknowns beyond the first ones; `None` if the blocks are not those of an
+    /// elimination.
     fn of(blocks: &[Block], unknowns: usize, copies: usize) -> Option<Self> {
         let kept = |list: &'static [usize]| list.iter().copied().filter(move |unknown| *unknown < unknowns);
         let blocks = blocks.iter().filter(|block| kept(block.own).next().is_some());
@@ -220,7 +221,8 @@ impl<T: Real> Fronts<T> {
         Entry { place, scale: T::real(self.scales[row] * self.scales[column]) }
     }
 
-    /// An entry outside of its front has no place: the blocks are not those of this matrix.
+    /// Finds and stores the place of an entry; [`Place::NONE`] outside of all fronts, if the blocks belong to another
+    /// matrix.
     #[cold]
     fn find(&mut self, row: usize, column: usize) {
         #[cfg(debug_assertions)]

@@ -135,8 +135,8 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
     /// The error if no forward step exists.
     #[cold]
     fn no_step(&self) -> StepError {
-        let told = || self.history.initial_density::<K>() - self.history.shift;
-        self.no_step_at(self.steps.density(&self.node.state()).unwrap_or_else(|_| told()))
+        let last = || self.history.initial_density::<K>() - self.history.shift;
+        self.no_step_at(self.steps.density(&self.node.state()).unwrap_or_else(|_| last()))
     }
 
     /// The same because of this density D_s.

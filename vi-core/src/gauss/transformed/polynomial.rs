@@ -1,7 +1,7 @@
 //! Dense output of a step in transformed time: its collocation polynomials.
 //!
-//! From the rates of time, positions and momenta at the stages follow q and p at any time of the step. With θ the
-//! fraction of the step in transformed time and x = 2θ − 1, all three are polynomials of θ,
+//! The rates of time, positions and momenta at the stages give q and p at any time of the step. With θ the fraction of
+//! the step in transformed time and x = 2θ − 1, all three are polynomials of θ,
 //!
 //! ```text
 //! t(θ) = t0 + Δτ Σ_k g_k I_k(θ)        q(θ) = q0 + Δτ Σ_k (g v)_k I_k(θ)        p(θ) = p0 + Δτ Σ_k (dp/dτ)_k I_k(θ)

@@ -1,13 +1,14 @@
 //! Tangent vectors of a solved step in transformed time.
 //!
-//! In: the stages of the last step, tangent vectors at its node in extended phase space (t, q; −E, p). Out: those at the next node. Dual numbers differentiate the
-//! functions of a stage
+//! In: the stages of the last step, and tangent vectors at its node in extended phase space (t, q; −E, p). Out: tangent
+//! vectors at the next node. Dual numbers differentiate the functions of a stage
 //!
 //! ```text
 //! L_v        P' = g (L_q + f) − (H − E) ∂g/∂q        g        E' = g (f·v − L_t) + (H − E) ∂g/∂t
 //! ```
 //!
-//! with respect to (T, Q, V, E). The derivatives of V, g and E' at the stages then solve S (N + 2) linear equations, those of L_v, g and E':
+//! with respect to (T, Q, V, E). The derivatives of V, g and E' at the stages then solve S (N + 2) linear equations, of
+//! L_v, g and E':
 //!
 //! ```text
 //! (δL_v)_i = δp0 + Σ_j δ(Δτ a_ij P'_j)
@@ -154,7 +155,7 @@ impl<const N: usize, const S: usize> Linearized<N, S> {
     {
         let rates = last.rates();
         let dtau = last.taken;
-        // The energy at the start of the step, because `set_parameters` may have changed that of `before`.
+        // The energy at the start of the step: `set_parameters` may have changed the energy of `before`.
         let gain = Scaled::<f64, Y, N, S, false>::new(system, before, dtau, rates, None).quadrature(&rates.energy);
         let start = Node { energy: node.energy - gain, energy_low: node.energy_low, ..*before };
         let mut equations = Scaled::<f64, Y, N, S, false>::new(system, &start, dtau, rates, None);
@@ -164,7 +165,7 @@ impl<const N: usize, const S: usize> Linearized<N, S> {
         let position = core::array::from_fn(|i| stage(&positions, i));
         let velocity: [SVector<f64, N>; S] = core::array::from_fn(|i| stage(&rates.velocity, i));
         let weights = weights::<S>(dtau);
-        // Whether the stages lead from one number to another, by its rate with respect to time.
+        // Whether the quadrature of a rate over the stages leads from one number to the other.
         let leads = |from: f64, rate: &dyn Fn(usize) -> f64, to: f64| {
             let gains = (0..S).map(|i| weights[i] * rates.g[i] * rate(i));
             let (end, size) = gains.fold((from, to.abs()), |(end, size), gain| (end + gain, size + gain.abs()));
