@@ -1,4 +1,4 @@
-//! What a controller asks of a system: mass matrix, bias, inverse dynamics, linearizations, equilibria.
+//! The functions that a controller needs of a system: mass matrix, bias, inverse dynamics, linearizations, equilibria.
 //!
 //! Along the motion `M a + b = AᵀΛ`, with the mass matrix `M = L_vv`, the reaction AᵀΛ of constraints, and the bias
 //!
@@ -40,20 +40,21 @@ use nalgebra::{Complex, DMatrix, DVector, SMatrix, SVector};
 /// All functions use the inputs and parameters as they are set. Times, coordinates, velocities, accelerations and
 /// forces are in the units of the system.
 pub trait Dynamics<const N: usize>: Convertible<N> {
-    /// The mass matrix `M = L_vv` at (t, q, v). Its entries are not finite where L is not.
+    /// The mass matrix `M = L_vv` at (t, q, v). Its entries are not finite if L is not.
     fn mass_matrix(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> SMatrix<f64, N, N> {
         use crate::linear::Matrix;
         self.point(t, &q.vector(), &v.vector()).mass.dense()
     }
 
     /// The bias b at (t, q, v), with `M a + b = AᵀΛ` along the motion: Coriolis and centrifugal terms, gravity and other
-    /// potentials, and generalized forces, with inputs as set. Its entries are not finite where L or f is not.
+    /// potentials, and generalized forces, with inputs as set. Its entries are not finite if L or f is not.
     fn bias(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>) -> SVector<f64, N> {
         self.inverse_dynamics(t, q, v, SVector::zeros())
     }
 
     /// The generalized force `M a + b` that has to be added for the acceleration a at (t, q, v); a part `AᵀΛ` of it may
-    /// come from constraints. It is zero for the acceleration of a motion without constraints. Its entries are not finite where L or f is not.
+    /// come from constraints. It is zero for the acceleration of a motion without constraints. Its entries are not
+    /// finite if L or f is not.
     fn inverse_dynamics(&self, t: f64, q: impl Numbers<N>, v: impl Numbers<N>, a: impl Numbers<N>) -> SVector<f64, N> {
         let (q, v, a) = (q.vector(), v.vector(), a.vector());
         let along = |value: f64, slope: f64| Dual { value, slope };
@@ -65,8 +66,8 @@ pub trait Dynamics<const N: usize>: Convertible<N> {
     /// The linearization of x = (q, v) at (t, q, v): `x' = value + A δx + B δu`, exact to rounding. A has 2N rows and
     /// columns, B one column for each input.
     ///
-    /// With constraints, the point has to satisfy them. Changes δx that satisfy the derivatives of the constraints keep to
-    /// them. A has the eigenvalue zero twice for each holonomic constraint, and once for each other.
+    /// With constraints, the point has to satisfy them. Changes δx that satisfy the derivatives of the constraints
+    /// continue to do so. A has the eigenvalue zero twice for each holonomic constraint, and once for each other one.
     ///
     /// # Errors
     /// [`StepError::Singular`] if the mass matrix is singular or the constraints are redundant at q,
@@ -82,7 +83,7 @@ pub trait Dynamics<const N: usize>: Convertible<N> {
     /// Without constraints, a coordinate on which nothing depends at the guess, as the place of a cart, keeps the value of
     /// the guess. With constraints, the guess may be off them: [`State::assembled`] moves it first. With constraints on
     /// velocities the equilibria form families: the result is reached from the guess along directions that these
-    /// constraints allow. So they do with a symmetry: the result then has [`Equilibrium::free_motions`].
+    /// constraints allow. With a symmetry they form families, too: the result then has [`Equilibrium::free_motions`].
     ///
     /// # Errors
     /// [`StepError::NoEquilibrium`] if there is none near the guess; [`StepError::NonFinite`] if a derivative of L or f is
@@ -106,7 +107,7 @@ fn linearized<S: Convertible<N>, const N: usize>(
     v: SVector<f64, N>,
 ) -> Result<Linearization, StepError> {
     if system.is_first_order() {
-        // Inputs change its velocities at once.
+        // The velocities of first order depend on the inputs, so that (q, v) is no state.
         return Err(StepError::FirstOrder { system: system.name() });
     }
     let node = Node::new(State { t, q, p: SVector::zeros() }, 0.0);
@@ -140,8 +141,8 @@ fn linearized<S: Convertible<N>, const N: usize>(
     Linearization::new(t, value, &derivatives)
 }
 
-/// A linearization: `f(x + δx, u + δu) = value + A δx + B δu` to first order, where f is the rate of change of x =
-/// (q, v), or the end (q, p) of a step.
+/// A linearization: `f(x + δx, u + δu) = value + A δx + B δu` to first order. f is the rate of change of x = (q, v), or
+/// the end (q, p) of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearization {
     /// Time of the point of linearization; of a step, of its start.
@@ -188,8 +189,8 @@ where
     M: Differentiable<S, N>,
     S: Convertible<N>,
 {
-    /// The linearization of the next step: how (q, p) at its end changes with (q, p) at the node, and with the inputs
-    /// over the step. It is exact to rounding, and the run does not change.
+    /// The linearization of the next step: the derivatives of (q, p) at its end with respect to (q, p) at the node and
+    /// to the inputs over the step. It is exact to rounding, and the run does not change.
     ///
     /// With constraints, A is the derivative along the nearest admissible changes of (q, p): it has the eigenvalue zero
     /// twice for each holonomic constraint and once for each other.

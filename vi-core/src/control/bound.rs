@@ -1,8 +1,8 @@
 //! The search for an equilibrium on constraints.
 //!
-//! Along a symmetry, as the spin of a top, the forces do not change: Newton's iteration then moves across it only. At
-//! least one direction needs a stiffness, and the place of the root has to be known: the stiffness may not change over
-//! its rounding errors, as it does where forces underflow.
+//! Along a symmetry, such as the spin of a top, the forces do not change, and Newton's iteration moves across it only.
+//! At least one direction needs a stiffness. The place of the root has to be known: the stiffness may not change over
+//! its rounding errors, as it does if forces underflow.
 
 use super::Equilibrium;
 use crate::constrained::{Projection, accelerations, border, bordered, is_reduced, is_shortened, reaction_of};
@@ -47,7 +47,7 @@ pub(super) fn find<S: Convertible<N>, const N: usize>(
 struct Rest<'a, S, const N: usize> {
     system: &'a S,
     t: f64,
-    /// Of the coordinates of the guess: those of an equilibrium at the origin have no size.
+    /// Size of the coordinates of the guess, because coordinates of an equilibrium at the origin have none.
     largest: f64,
 }
 
@@ -61,7 +61,7 @@ struct Balance<S: Motion<N>, const N: usize> {
     mass: SMatrix<f64, N, N>,
     damping: SMatrix<f64, N, N>,
     stiffness: SMatrix<f64, N, N>,
-    /// Of the coordinates in lengths.
+    /// Weights of the coordinates in lengths.
     weights: SVector<f64, N>,
     /// Bound of the rounding errors of a force, over its weight.
     bound: f64,
@@ -90,7 +90,7 @@ impl<S: Convertible<N>, const N: usize> Rest<'_, S, N> {
         let fixed: Vec<_> = multipliers.as_ref().iter().map(|number| Dual::fixed(Rounded::nearest(*number))).collect();
         let reaction = reaction_of(&rounded.constraint_gradients(time, &place).0, &fixed);
         let scale = SVector::<f64, N>::from_fn(|i, _| (momentum[i].slope - force[i].value - reaction[i].value).ulps());
-        // By the largest scale, at equal kinetic energies: a force that vanishes has terms that vanish.
+        // The bound follows from the largest scale, at equal kinetic energies, because all terms of a force may vanish.
         let weights = weights(&SVector::<f64, N>::from_fn(|i, _| mass[(i, i)].value));
         let largest = scale.component_div(&weights).amax();
         let over = unbalanced.zip_map(&weights, |row, weight| roundings(row, weight * largest));
@@ -222,7 +222,7 @@ struct Along {
     free: Vec<[DVector<f64>; 2]>,
     /// The largest singular value.
     largest: f64,
-    /// The smallest one that is not free, with its direction.
+    /// The smallest singular value that is not free, with its direction.
     softest: (f64, DVector<f64>),
 }
 
@@ -285,7 +285,7 @@ fn directions<const N: usize>(gradients: impl Iterator<Item = SVector<f64, N>>) 
         vector
     };
     for gradient in gradients.filter(|gradient| gradient.amax() > 0.0) {
-        // By the largest entry first: squares of the entries may overflow or vanish.
+        // Divided by the largest entry first: squares of the entries may overflow or vanish.
         let gradient = DVector::from_column_slice((gradient / gradient.amax()).normalize().as_slice());
         known.push(across(gradient, &known).normalize());
     }

@@ -4,9 +4,9 @@
 //! is halved until K = −∂F/∂q changes by less than half along it, so that the iteration does not leap over a maximum of
 //! the potential to a distant equilibrium. Undamped iteration to the rounding floor follows ([`newton`]).
 //!
-//! A force that vanishes proves nothing where the forces underflow, as far outside of a potential well. So the place of
-//! a root has to be known: K may not change over the rounding errors of the root. The forces that do not depend on a
-//! free coordinate at the guess may not begin with an underflow elsewhere.
+//! Forces may vanish by underflow, as far outside of a potential well. So the place of a root has to be known: K may
+//! not change over the rounding errors of the root. Forces that do not depend on a free coordinate at the guess may
+//! depend on it elsewhere, but not because of an underflow at the guess.
 
 use super::{Equilibrium, spectrum};
 use crate::error::StepError;
@@ -27,7 +27,7 @@ use num_traits::Float as _;
 /// Damped steps, and halvings of each.
 const STEPS: u32 = 200;
 const HALVINGS: i32 = 40;
-/// Largest relative change of K over a correction, and the parts of a correction where it is measured.
+/// Largest relative change of K over a correction, and the parts of a correction at which it is measured.
 const CHANGE: f64 = 0.5;
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 /// Largest distance from the guess, over its own size or the first correction.
@@ -107,7 +107,7 @@ struct Balance<const N: usize> {
 /// The size of a move by the diagonal of a mass matrix. Unlike lengths of the coordinates, its kinetic energy has no units
 /// of its own.
 fn size_by<const N: usize>(mass: &SMatrix<f64, N, N>) -> impl Fn(&SVector<f64, N>) -> f64 + use<N> {
-    // Without a mass, by the length of the coordinate.
+    // A coordinate without mass counts by its length.
     let weights = mass.diagonal().map(|mass| if mass == 0.0 { 1.0 } else { mass.abs() });
     move |u| u.component_mul(u).dot(&weights).sqrt()
 }
@@ -166,7 +166,7 @@ impl<const N: usize, D: Motion<N, Dual<f64>>, R: Motion<N, Dual<Rounded>>> Rest<
                 let change = solved(&((self.held(&there.stiffness) - stiffness) * correction));
                 there.is_finite() && change.is_some_and(|change| size(&change) <= CHANGE * size(&correction))
             };
-            // On the way too: after a turn of an angle K is as before.
+            // K is compared at parts of the correction, too: a whole turn of an angle does not change it.
             let is_short = |factor: &f64| PARTS.iter().all(|part| is_similar(factor * part));
             let factors = (0..HALVINGS).map(|halvings| 0.5_f64.powi(halvings));
             match factors.into_iter().find(is_short) {
@@ -199,7 +199,7 @@ impl<const N: usize, D: Motion<N, Dual<f64>>, R: Motion<N, Dual<Rounded>>> Rest<
     /// Whether the forces begin to depend on a free coordinate, elsewhere, by an underflow.
     fn underflows(&self, q: &SVector<f64, N>, k: usize) -> bool {
         let (here, length) = (self.linearized(q).residual, if q[k] == 0.0 { 1.0 } else { q[k].abs() });
-        // The largest change of a force and the largest slope; NaN where one has no value.
+        // The largest change of a force and the largest slope; NaN if one has no value.
         let change = |by: f64| {
             let mut moved = *q;
             moved[k] += by;

@@ -7,8 +7,8 @@
 //! Φ(u, z) = w·Z(u, z) + μ·R(u, z)        R_uᵀ μ = −Z_uᵀ w
 //! ```
 //!
-//! Then the second derivative of `w·Z(u(z), z)` along δz and δz' is that of Φ along (δu, δz) and (δu', δz'), where δu
-//! belongs to the tangent vector δz. No second derivative of u is needed. Nested dual numbers differentiate Φ.
+//! Then the second derivative of `w·Z(u(z), z)` along δz and δz' is that of Φ along (δu, δz) and (δu', δz'). δu is the
+//! change of u along δz. No second derivative of u is needed. Nested dual numbers differentiate Φ.
 
 use super::variation::{
     Covector, TOGETHER, Variation, Varied, not_finite, singular_mass, slope_along, unsolved, velocity_along,

@@ -115,8 +115,8 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Lyapunov<M, S, 
     }
 }
 
-/// Turns a direction away from its coordinate or momentum axis, among the first coordinates, because it could never leave
-/// an invariant plane.
+/// Turns a direction away from its coordinate or momentum axis, among the first coordinates: in an invariant plane it
+/// would never grow in other directions.
 fn turn<const N: usize>(variation: &mut Variation<N>, coordinates: usize) {
     let mut part = 0.1;
     for entry in variation.q.iter_mut().take(coordinates).chain(variation.p.iter_mut().take(coordinates)) {
@@ -125,7 +125,7 @@ fn turn<const N: usize>(variation: &mut Variation<N>, coordinates: usize) {
     }
 }
 
-/// Moves the directions with the largest parts across those before to the front, and keeps this number of them.
+/// Keeps this number of directions: one after the other, the direction with the largest part across the kept ones.
 fn keep_independent<const N: usize>(variations: &mut Vec<Variation<N>>, count: usize) {
     let mut rest = variations.clone();
     for index in 0..count {

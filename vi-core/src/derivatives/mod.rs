@@ -20,7 +20,7 @@
 //! |---|---|
 //! | `variation` | tangent vectors, and their dual numbers |
 //! | `steps` | tangent vectors of one step, for each method |
-//! | `splitting` | those of a splitting step |
+//! | `splitting` | tangent vectors of a splitting step |
 //! | `tangent` | tangent vectors along a run, to times, events and across changes |
 //! | `curvature` | second derivatives of a step |
 //! | `adjoint` | the gradient of an objective, by one backward pass |

@@ -20,7 +20,7 @@ where
     fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Run { method, system, node, h, .. } = run;
         let end = step(method, system, (before, *h));
-        // The force of the first kick may be that of an angle before whole turns were taken off.
+        // The force of the first kick may belong to an angle with whole turns that the run has since removed.
         let off = (end.q - node.q) + (end.q_low - node.q_low);
         let is_last = (end.t - node.t).abs() <= SAME * end.t.abs()
             && off.amax() <= SAME * end.q.amax().max((end.q - before.q).amax());

@@ -1,7 +1,7 @@
 //! Tangent vectors of one step, for each method; `gauss/variation.rs` has those of Gauss steps.
 //!
-//! From the start node of the last step and tangent vectors there follow the tangent vectors at the end node. The
-//! unknowns of the step are stored. The system provides the derivatives with respect to them and to the coordinates of
+//! In: the start node of the last step, with tangent vectors. Out: the tangent vectors at the end node. The unknowns of
+//! the step are stored. The system provides the derivatives with respect to them and to the coordinates of
 //! the node; dual numbers provide those with respect to the time and the parameters, if a direction needs them.
 
 use super::curvature;
@@ -80,7 +80,7 @@ pub trait Differentiable<S: Convertible<N>, const N: usize>: Method<S, N> {
 pub enum Sought {
     /// The length, for given energy.
     Length,
-    /// None: the length is given, and the energy equation does not apply.
+    /// There is none: the length is given, and the energy equation does not apply.
     Neither,
     /// The energy, for a given length of the first step. The node stays.
     Energy,
@@ -111,8 +111,8 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Run<M, S, N> {
         M::vary(self, &angles::reduced_node(self.system(), before), variations)
     }
 
-    /// The second derivatives of `weights·z` with respect to pairs of tangent vectors at `before`, where z is the end
-    /// node of the last step, which began at `before`: a symmetric matrix, exact to rounding. [`FixedStep`],
+    /// The second derivatives of `weights·z` with respect to pairs of tangent vectors at `before`: a symmetric matrix,
+    /// exact to rounding. z is the end node of the last step, which began at `before`. [`FixedStep`],
     /// [`Composition`] and [`Gauss`](crate::Gauss) have them, for systems without constraints whose L
     /// is not linear in the velocities; otherwise `None`.
     ///
@@ -274,7 +274,7 @@ where
         if is_last(&node, &run.node) { Ok(()) } else { Err(not_last(before.t)) }
     }
 
-    /// Goes back over the substeps, with the weights at the end of each.
+    /// Goes backwards over the substeps, with the weights at the end of each.
     fn curvature(
         run: &Run<Self, S, N>,
         before: &Node<N>,

@@ -143,7 +143,7 @@ impl<M: Differentiable<S, N>, S: Convertible<N>, const N: usize> Tangent<M, S, N
         self.variations.iter().map(|variation| velocity_along(system, &state, &v, variation)).collect()
     }
 
-    /// Sets the momenta of each tangent vector to those of this change of the velocity, with its changes of time,
+    /// Sets the momenta of each tangent vector so that the velocity changes by this vector, for its changes of time,
     /// coordinates and parameters.
     ///
     /// # Errors

@@ -62,9 +62,9 @@ pub struct Variation<const N: usize> {
     /// Derivative of the energy that an energy-preserving run preserves; other runs ignore it.
     /// [`crate::Run::set_parameters`] adds the derivative of `H_new − H_old`.
     pub energy: f64,
-    /// Derivative of the step length: h, or Δτ in transformed time. Constant along a run. Of methods that find their
-    /// lengths it is that of the first step, from which [`Tangent::from_start`](super::Tangent::from_start) derives the
-    /// energy; later steps ignore it, as do adaptive ones.
+    /// Derivative of the step length: h, or Δτ in transformed time. Constant along a run. For methods that find their
+    /// lengths it is the derivative of the first length, from which [`Tangent::from_start`](super::Tangent::from_start)
+    /// derives the energy; later steps and adaptive ones ignore it.
     pub h: f64,
     /// Derivatives of the parameters, in the order of [`Lagrangian::PARAMETERS`]; missing entries are zero. Constant
     /// along a run.

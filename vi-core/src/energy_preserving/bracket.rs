@@ -1,6 +1,6 @@
 //! The smallest forward step, if Newton iteration has failed.
 //!
-//! From a node and the last interval follows the root of `φ(h) = c(v(h), h)` with the smallest h > 0, or the reason why
+//! In: a node and the last interval. Out: the root of `φ(h) = c(v(h), h)` with the smallest h > 0, or the reason why
 //! there is none. v(h) solves the momentum equation, and Newton iteration on all n + 1 equations polishes the root.
 //! Since
 //!
@@ -122,7 +122,7 @@ pub(crate) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     match search.smallest() {
         Ok(Some(point)) => polished(system, node, last, &point),
         Err(failure @ (StepError::NonFinite { .. } | StepError::StepRatio { .. })) => Err(failure),
-        // The curve and the search end if the momentum equation has no solution.
+        // The curve ends if the momentum equation has no solution.
         _ => Err(none),
     }
 }

@@ -1,8 +1,8 @@
 //! The n + 1 equations for Newton iteration.
 //!
-//! From a trial `(v, h)` and the range of h follows the root with momentum and energy equation at the rounding floor.
-//! With `a = A⁻¹ r`, `b = A⁻¹ ∂r/∂h`, elimination in the combined and scaled rows of [`ExtendedSystem`] gives one
-//! equation for δh,
+//! In: a trial `(v, h)` and the range of h. Out: the root with momentum and energy equation at the rounding floor. With
+//! `a = A⁻¹ r`, `b = A⁻¹ ∂r/∂h`, elimination in the combined and scaled rows of [`ExtendedSystem`] gives one equation
+//! for δh,
 //!
 //! ```text
 //! S δh = −((c + ½ a·r)/h − energy_dv·a)        S = energy_dh − energy_dv·b = −D/4
@@ -74,10 +74,10 @@ impl<const N: usize, T: Scalar> RowResiduals<N, T> {
 /// The reason why there is no step here.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum NoStep<T> {
-    /// The equations hold, but would also for other lengths.
+    /// The equations also hold for other lengths.
     Degenerate { h: T, density: T },
-    /// The iteration left the range, met a singular matrix or an overflow, or did not reach the floor: its last
-    /// residuals.
+    /// The iteration left the range, met a singular matrix or an overflow, or did not reach the floor. Contains its
+    /// last residuals.
     NoRoot(Residuals),
 }
 
@@ -99,7 +99,7 @@ pub(crate) struct Elimination<const N: usize, T> {
 }
 
 impl<const N: usize, T: Scalar> Elimination<N, T> {
-    /// Not finite if A is singular.
+    /// Eliminates the momentum rows. The result is not finite if A is singular.
     #[inline]
     pub(crate) fn of(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Self {
         let momentum = &equations.momentum;
@@ -107,7 +107,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
         Self::from_solved(equations, momentum.jacobian.quotient(&both))
     }
 
-    /// `None` if A is singular.
+    /// Eliminates the momentum rows with pivoting; `None` if A is singular.
     #[inline]
     pub(crate) fn finite(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Option<Self> {
         let momentum = &equations.momentum;
@@ -144,7 +144,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
             known +=
                 (equations.energy_dv[i] * trial.h - equations.momentum.residual[i] * T::real(0.5)) * self.residual[i];
         }
-        // The curved row over h, and S, both times h: one quotient instead of two in sequence.
+        // Numerator and denominator are both multiplied by h: one quotient instead of two in sequence.
         let energy = equations.energy_residual * self.determinant - known;
         let dh = -(energy / (self.schur * trial.h));
         VelocityStep { v: -(self.residual + self.residual_dh * dh) * self.reciprocal, h: dh }
@@ -212,7 +212,7 @@ impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extend
         let scale = &scales.scale;
         let combined = roundings(measured.energy_residual, scale.energy_residual);
         let energy = roundings(energy_residual(measured, &trial.v), scale.energy);
-        // It follows from the rows, so that no iteration is spent on it below the floor.
+        // The energy residual follows from the rows: below the floor it needs no further iteration.
         let energy = if energy <= FLOOR { 0.0 } else { energy };
         [worst(&measured.residual, &scale.residual), worse(combined, energy)]
     }

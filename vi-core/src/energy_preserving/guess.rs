@@ -1,6 +1,6 @@
 //! The trial of a search, if extrapolation has failed.
 //!
-//! From a node and the last interval follows a trial `(v, h)`. v is extrapolated and improved by one Newton step on the
+//! In: a node and the last interval. Out: a trial `(v, h)`. v is extrapolated and improved by one Newton step on the
 //! momentum equation at the last h. Then h follows from the step law, `h = h_last (D_last/D)^(1/3)`, within the factor
 //! allowed, and v moves along `dv/dh` of the momentum equation. There is no prediction if D has changed its sign.
 

@@ -1,6 +1,6 @@
 //! The solution of a step from the memory of the last steps.
 //!
-//! From a node and its [`Lengths`] follow the node and the memory after the next step: by extrapolation, otherwise by a
+//! In: a node and its [`Lengths`]. Out: the node and the memory after the next step: by extrapolation, otherwise by a
 //! search, otherwise at a given length if the user allows it (`Fallback`). No state changes.
 
 use super::bracket;
@@ -33,7 +33,8 @@ use nalgebra::SVector;
 pub struct Lengths<const N: usize, T = f64> {
     pub(crate) last: Last<N, T>,
     pub(crate) prediction: Prediction<N, T>,
-    /// Written on the cold path only: after a step of another kind no guess has the highest order.
+    /// Options and counters. Only the cold path writes them: after a step of another kind no guess has the highest
+    /// order.
     pub(crate) control: Control<T>,
 }
 
@@ -48,7 +49,7 @@ impl<const N: usize, T: Scalar> Controlled<T> for Lengths<N, T> {
 }
 
 impl<const N: usize, T: Scalar> Memory for Lengths<N, T> {
-    // Inlined: a call with its address would keep it in memory.
+    // Inlined: a call by reference would keep the lengths in memory.
     #[inline(always)]
     fn apart(&self) -> Self {
         *self
@@ -190,7 +191,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Alternating<T> for Sear
         }
         let step = EnergyStep { v, h, density, iterations, measured: RowResiduals::of(residual) };
         let mut after = self.after(node, &step)?;
-        // A given length predicts no other.
+        // A given length predicts no other length.
         after.lengths.prediction = Prediction::new(v, h);
         let density_next = after.lengths.last.density_next();
         Ok((after, [gap, density_next]))
@@ -228,7 +229,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Search<'_, S, N, T> {
         let Self { system, lengths: Lengths { last, control, .. }, .. } = *self;
         let ratio = T::real(RATIO);
         let range = (last.h / ratio, last.h * ratio);
-        // At the smallest root D has the same sign as before: another root lies beyond a sign change.
+        // At the smallest root D has the same sign as before.
         let forward = |step: &EnergyStep<N, T>| step.density.to_f64() * last.density.to_f64() > 0.0;
         let step = match equations::solve(system, node, guess::predict(system, node, last), range) {
             Ok(step) if forward(&step) => step,

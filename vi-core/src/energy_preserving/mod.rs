@@ -8,7 +8,7 @@
 //! | `predicted` | first: up to three Newton steps from extrapolated v and h |
 //! | `guess` | second: v by extrapolation, h by the step law `h D^(1/3) = constant` |
 //! | `equations` | the n + 1 equations for Newton iteration |
-//! | `bracket` | third: the smallest h > 0 that solves them, or the proof that there is none |
+//! | `bracket` | third: the smallest h > 0 that solves the equations, or the reason why there is none |
 //! | `interval` | the last interval |
 
 mod bracket;
