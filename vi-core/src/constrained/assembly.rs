@@ -93,8 +93,8 @@ impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
         self.nearest((t, q, v), &x, None).ok().flatten().ok_or_else(|| self.open(t, &x, passed))
     }
 
-    /// The place on the constraints that damped Gauss–Newton iteration finds from q. `None` if they come no nearer to
-    /// holding.
+    /// The place on the constraints that damped Gauss–Newton iteration finds from q. `None` if the residuals do not
+    /// decrease.
     pub(super) fn relaxed(&self, place: (f64, &SVector<f64, N>, &SVector<f64, N>)) -> Option<SVector<f64, N>> {
         self.least_squares(
             place,
@@ -104,8 +104,8 @@ impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
         )
     }
 
-    /// What `end` returns first of the places of damped Gauss–Newton iteration from q, with the norm of the residuals over
-    /// their sizes. `None` if they come no nearer to holding.
+    /// The first result of `end` for a place of damped Gauss–Newton iteration from q, with the norm of the residuals
+    /// over their sizes. `None` if the residuals do not decrease.
     pub(super) fn least_squares<R>(
         &self,
         place: (f64, &SVector<f64, N>, &SVector<f64, N>),
@@ -143,7 +143,7 @@ impl<S: Convertible<N>, const N: usize> Projection<'_, S, N> {
             return found;
         }
         for _ in 0..TRIALS {
-            // Over the largest entry: products of tiny ones underflow.
+            // Divided by the largest entry: products of tiny ones underflow.
             let largest = a.amax();
             if largest == 0.0 || !damping.is_finite() {
                 return None;

@@ -1,6 +1,6 @@
 //! The step density of order 2s with constraints.
 //!
-//! As without constraints ([`crate::gauss::density`]), `H − E0(h) = C_s h^2s D_s + O(h^(2s+1))`. With the Taylor
+//! `H − E0(h) = C_s h^2s D_s + O(h^(2s+1))`, as without constraints ([`crate::gauss::density`]). With the Taylor
 //! polynomials π of degree s of the constrained motion, and its multipliers Λ,
 //!
 //! ```text

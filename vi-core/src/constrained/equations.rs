@@ -28,7 +28,7 @@ use crate::real::{Real, Rounded};
 use crate::vector::worse;
 use nalgebra::{SMatrix, SVector};
 
-/// The cosine of the largest angle by which a gradient turns in a step that is not too long.
+/// The cosine of the largest angle by which a gradient may turn in a step.
 const STRAIGHT: f64 = 0.9;
 
 /// The number of unknowns of a step: velocities first, then impulses.

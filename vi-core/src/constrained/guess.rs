@@ -90,7 +90,7 @@ pub(crate) fn from_node<S: Motion<N>, const N: usize, const STAGES: usize>(
     bordered: &mut Bordered,
 ) -> Result<Vec<f64>, StepError> {
     let (acceleration, multipliers) = accelerations(system, (node.t, &node.q, v), bordered)?;
-    // Room for the length of the step.
+    // One more than the unknowns: callers append the length of the step.
     let mut guess = Vec::with_capacity(unknowns::<N, STAGES>(system.constraint_names().len()) + 1);
     for c in const { Tableau::<STAGES>::VALUES.c } {
         guess.extend((v + acceleration * (h * c)).iter());

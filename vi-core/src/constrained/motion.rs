@@ -23,17 +23,17 @@ use num_traits::Float as _;
 
 const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;
-/// Largest residual, in ulps of the terms that this module sees, if corrections no longer reduce it: terms that cancel
-/// inside of L_v are larger.
+/// Largest residual that corrections no longer reduce, in ulps of the terms outside of L_v: terms that cancel inside of
+/// L_v are larger.
 const STALLED: f64 = 64.0;
 /// A reduction of the residual by this factor shows that the factors of the bordered matrix are still good.
 const GOOD: f64 = 1e-3;
 
-/// Largest value of a constraint, and of its rate, over the size of its terms, at a point whose acceleration is asked:
-/// such points are computed outside, to fewer digits than nodes.
+/// Largest value of a constraint, and of its rate, over the size of its terms, at a point whose acceleration is
+/// requested: users compute such points to fewer digits than nodes have.
 const SATISFIED: f64 = 1e-9;
 
-/// The same at a state whose reaction is asked: a cubic between two nodes is off the constraints by O(h⁴).
+/// The same at a state whose reaction is requested: a cubic between two nodes is off the constraints by O(h⁴).
 const NEAR: f64 = 1e-2;
 
 /// A velocity of momenta.
@@ -224,7 +224,7 @@ fn near<S: Motion<N, T>, const N: usize, T: Real>(
         let rate = row.dot(v) + offset;
         let of_value = row.terms(&sizes) + (offset * t).abs();
         let of_rate = row.terms(v) + row.terms(&velocities) + offset.abs();
-        // At rest a velocity is the rounding of a rounding: no motion sees it, in any unit of time.
+        // At rest a velocity is the rounding of a rounding, which no motion shows, in any unit of time.
         let floor = T::real(f64::EPSILON * f64::EPSILON / part) * of_value;
         if is_off(value, of_value) || is_off(rate, of_rate + floor) {
             let (residual, rate) = (value.to_f64(), rate.to_f64());

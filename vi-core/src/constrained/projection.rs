@@ -27,10 +27,10 @@ use num_traits::Float as _;
 
 const ITERATIONS: u32 = 60;
 const HALVINGS: u32 = 12;
-/// The last correction of the coordinates, over their lengths: the floor of a nearest place that is as flat as a
-/// minimum is known to half of the digits.
-const SETTLED: f64 = 1e-8;
-/// The same of a place that satisfies the constraints to half a rounding, and stays.
+/// Largest last correction of the coordinates, relative to their lengths: the nearest place is a minimum, which
+/// rounding determines to half of the digits.
+const CONVERGED: f64 = 1e-8;
+/// The same for a place that satisfies the constraints to half a rounding.
 const LAST: f64 = 4.0 * f64::EPSILON;
 /// Moves along the constraints, and the longest one, over the coordinates, that may end them: distances of places nearer
 /// to each other are equal to rounding.
@@ -119,8 +119,8 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
         self.explained((t, &q, &v), || self.found((t, &q, &v), false))
     }
 
-    /// The nearest state, or one from a far guess. If there is none with all constraints and some follow from the others,
-    /// that without these, if they hold there.
+    /// The nearest state, or one from a far guess. If none satisfies all constraints and some follow from the others,
+    /// the state without these constraints, if they hold at it.
     pub(super) fn found(
         &self,
         place: (f64, &SVector<f64, N>, &SVector<f64, N>),
@@ -294,7 +294,7 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
             bordered.solve(&mut along, &mut none.as_mut()[..self.system.holonomic()]);
             let length = along.component_mul(&weights).norm();
             let size = (x.abs() + q.abs()).component_mul(&weights).norm();
-            if length <= SETTLED * size {
+            if length <= CONVERGED * size {
                 return Some(x);
             }
             let next = (0..=HALVINGS).find_map(|halved| {
@@ -395,8 +395,8 @@ impl<'a, S: Convertible<N>, const N: usize> Projection<'a, S, N> {
             });
             iterations += 1;
             let Some(next) = next.filter(|_| iterations < ITERATIONS) else {
-                let is_found = length <= SETTLED * size && violation(&x, &values, &positions) <= CONSISTENT;
-                // Roundings of large coordinates hide what the last correction brings to small ones.
+                let is_found = length <= CONVERGED * size && violation(&x, &values, &positions) <= CONSISTENT;
+                // Roundings of large coordinates hide the effect of the last correction on small ones.
                 let last = x - correction;
                 let zeros = SVector::zeros();
                 let is_better = violation(&last, &at(last, kappa).3, &zeros) < violation(&x, &values, &zeros);

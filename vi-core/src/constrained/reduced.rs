@@ -84,7 +84,7 @@ struct Pivot {
 }
 
 impl Schur {
-    /// Of the rows of A; `None` if elimination fills it.
+    /// The pattern of S for the rows of A; `None` if elimination fills it.
     fn new(columns: &[usize], rows: &[usize]) -> Option<Self> {
         let count = rows.len() - 1;
         let index = |index: usize| u32::try_from(index).ok();

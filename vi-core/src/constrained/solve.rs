@@ -5,8 +5,8 @@
 //! ```
 //!
 //! The Jacobian at the guess serves every iteration while the residual falls fast; otherwise it is evaluated anew. Its
-//! determinant has the sign that it has for short steps. Beyond a zero of the determinant lies a second root, in which
-//! a rod has flipped over; or the motion has met a place where the constraints depend on each other.
+//! determinant has the sign that it has for short steps. With the other sign, the root is a second one, in which a rod
+//! has flipped over, or the constraints depend on each other in the step.
 
 use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
@@ -42,7 +42,7 @@ const FEW: u32 = 8;
 pub struct Workspace {
     /// Coordinates, constraints, stages.
     sizes: [usize; 3],
-    /// Of the coefficients of a step.
+    /// Signs of the coefficients of a step.
     signs: [i8; 2],
     jacobian: Factored,
     /// The solver of midpoint steps in the impulses alone, if the system allows it.

@@ -2,7 +2,7 @@
 
 use crate::node::Node;
 
-/// Residuals up to this are noise of rounding, of linkages far from the origin too, and their guess was close.
+/// Residuals up to this are rounding, also of linkages far from the origin, or their guess was close.
 const NOISE: f64 = 1e4;
 
 /// A solved step; its unknowns are in the list of the caller.

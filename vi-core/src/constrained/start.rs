@@ -69,7 +69,7 @@ where
     let Node { t, q, p, .. } = node;
     let (gradients, mut none) = system.constraint_gradients(*t, q);
     none.as_mut().fill(0.0);
-    // Without a velocity the next step fails; the coordinates are measured all the same.
+    // Without a velocity the next step fails. The coordinates are checked nevertheless.
     let found = from_rest(system, (*t, q, p), &mut bordered(system));
     let (v, mu) = found.map_or((SVector::zeros(), none), |Velocity { v, mu, .. }| (v, mu));
     let mass = system.point(*t, q, &v).mass;
@@ -78,7 +78,7 @@ where
     consistent(system, node, (&v, &mu), (&mass, is_regular.then_some(inverse)), STORED)
 }
 
-/// Checks that a node with the velocity v satisfies the constraints to `limit` roundings, where `L_v(v) = p + Aᵀμ`. With
+/// Checks that a node with the velocity v satisfies the constraints to `limit` roundings. `L_v(v) = p + Aᵀμ`. With
 /// the factors of a regular mass matrix.
 ///
 /// # Errors
@@ -106,7 +106,7 @@ where
     let (mut excess, mut uncertainty) = (impulse, p.abs());
     if let Some(inverse) = inverse {
         inverse.solve(&mut excess, &mut []);
-        // |M⁻¹| |p|: roundings of momenta do not cancel as the momenta may.
+        // |M⁻¹| |p|: momenta may cancel, but their roundings do not.
         uncertainty = SVector::zeros();
         for (j, momentum) in p.iter().enumerate() {
             let mut column = SVector::<f64, N>::zeros();
@@ -123,7 +123,7 @@ where
         let of_momentum = row.terms(&uncertainty) + row.terms(&velocities);
         let of_value = value.ulps() + row.terms(&positions);
         let rate = -row.dot(&excess);
-        // At rest a velocity is the rounding of a rounding: no motion sees it, in any unit of time.
+        // At rest a velocity is the rounding of a rounding, which no motion shows, in any unit of time.
         let of_rate = bound + of_momentum + f64::EPSILON * of_value;
         let is_consistent = roundings(value.to_f64(), of_value) <= limit && roundings(rate, of_rate) <= limit;
         if !is_consistent {
@@ -179,7 +179,7 @@ fn independent_rows<const N: usize>(
     let (mut kept, mut rest) = (Vec::with_capacity(of), (0..of).collect::<Vec<_>>());
     while !rest.is_empty() {
         let part = |r: usize| columns.column(r).norm() / lengths[r];
-        // The largest; of equal ones the first declared.
+        // The largest row; of equal ones the first declared.
         let index =
             (1..rest.len()).fold(0, |best, index| if part(rest[index]) > part(rest[best]) { index } else { best });
         // False for a row without length.

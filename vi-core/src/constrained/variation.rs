@@ -241,7 +241,7 @@ where
     let mass = system.point(node.t, &node.q, &v).mass;
     let (gradients, _) = system.constraint_gradients(node.t, &node.q);
     let both = || admissible.iter().zip(&corrections);
-    // Over a step, changes of velocities move coordinates, and those of coordinates momenta.
+    // Over a step, changes of velocities move coordinates, and changes of coordinates move momenta.
     let sizes_q = both().map(|(of, correction)| of.q.norm() + correction.q.norm() + h.abs() * correction.v.norm());
     let size_q = sizes_q.fold(0.0, f64::max);
     let sizes_p =
