@@ -1,4 +1,4 @@
-//! How many stages: error against time of Gauss steps, Kepler's problem, e = 0.6, three periods.
+//! Number of stages: error against time of Gauss steps, Kepler's problem, e = 0.6, three periods.
 //!
 //! In: nothing. Out: for each number of stages the shortest time of a run within each error, and its steps. `cargo run --release --example gauss`
 
@@ -17,15 +17,15 @@ const STEPS: [u32; 24] =
 /// Errors that are asked for.
 const ERRORS: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 
-/// One kind of run: seconds, relative error of the position, steps.
-struct Course {
+/// One run: seconds, relative error of the position, steps.
+struct Timing {
     seconds: f64,
     error: f64,
     steps: u32,
 }
 
 /// Runs of S stages, from few steps to many.
-fn runs<const S: usize>() -> Result<Vec<Course>, StepError> {
+fn runs<const S: usize>() -> Result<Vec<Timing>, StepError> {
     let planet = Kepler::default();
     let start = State::at(&planet, 0.0, [0.4, 0.0], [0.0, 2.0]);
     let mut runs = Vec::new();
@@ -41,7 +41,7 @@ fn runs<const S: usize>() -> Result<Vec<Course>, StepError> {
         // Steps that are too long have no solution.
         let Ok(end) = end else { continue };
         // After whole periods the planet is where it began.
-        runs.push(Course { seconds, error: (end.q - start.q).norm() / start.q.norm(), steps });
+        runs.push(Timing { seconds, error: (end.q - start.q).norm() / start.q.norm(), steps });
     }
     Ok(runs)
 }
@@ -53,7 +53,7 @@ fn print_fastest<const S: usize>() -> Result<(), StepError> {
     for error in ERRORS {
         let good = runs.iter().filter(|run| run.error <= error);
         match good.min_by(|a, b| a.seconds.total_cmp(&b.seconds)) {
-            Some(Course { seconds, steps, .. }) => print!("  {error:.0e}: {:5.1} µs, {steps:3} steps", 1e6 * seconds),
+            Some(Timing { seconds, steps, .. }) => print!("  {error:.0e}: {:5.1} µs, {steps:3} steps", 1e6 * seconds),
             None => print!("  {error:.0e}: none{:15}", ""),
         }
     }

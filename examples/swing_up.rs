@@ -9,8 +9,8 @@
 //!
 //! It is discrete mechanics and optimal control (Ober-Blöbaum, Junge and Marsden, ESAIM: COCV 17, 2011): the steps are the constraints, and no error of
 //! time discretization stands between C and its gradient, which is that of the steps themselves, by one sweep backwards. The condition at the end is an augmented Lagrangian
-//! (Nocedal and Wright, *Numerical Optimization*, 17.3), whose minima L-BFGS finds. Rounding ends its line search where the gradient is still a thousandth of a
-//! thousandth or so; two of Newton's steps on the gradient do the rest.
+//! (Nocedal and Wright, *Numerical Optimization*, 17.3), minimised by L-BFGS. Rounding ends the line search of L-BFGS
+//! at a gradient of about 1e-6; two Newton steps for the gradient reduce it further.
 
 use argmin::core::{CostFunction, Error, Executor, Gradient as HasGradient, State as _};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
@@ -60,7 +60,7 @@ impl SwingUp {
         Ok(Self { start: pole.at_state(start).integrate(Gauss::<2>, H)?, multipliers: SVector::zeros(), weight: 100.0 })
     }
 
-    /// Where forces lead.
+    /// The state at the end under these forces.
     pub(crate) fn end(&self, forces: &[f64]) -> Result<SVector<f64, 4>, StepError> {
         let mut run = self.start.clone();
         for &force in forces {
@@ -70,21 +70,21 @@ impl SwingUp {
         Ok(coordinates(&run.state()))
     }
 
-    /// What is minimised.
+    /// The augmented Lagrangian, which is minimised.
     pub(crate) fn value(&self, forces: &[f64]) -> Result<f64, StepError> {
         let z = self.end(forces)?;
         Ok(price(forces) + self.multipliers.dot(&z) + 0.5 * self.weight * z.norm_squared())
     }
 
-    /// Its gradient.
+    /// The gradient of the augmented Lagrangian.
     pub(crate) fn slope(&self, forces: &[f64]) -> Result<Vec<f64>, StepError> {
         let steps = forces.len() as u64;
-        let of_the_end = gradient(&self.start, steps, forces.len(), &Course { forces, problem: self })?;
+        let of_the_end = gradient(&self.start, steps, forces.len(), &EndObjective { forces, problem: self })?;
         Ok(of_the_end.parameters.iter().zip(forces).map(|(by, force)| by[0] + H * force).collect())
     }
 }
 
-/// What forces cost.
+/// The cost of forces.
 fn price(forces: &[f64]) -> f64 {
     0.5 * H * forces.iter().map(|force| force * force).sum::<f64>()
 }
@@ -94,13 +94,13 @@ fn coordinates(state: &State<2>) -> SVector<f64, 4> {
     SVector::from([state.q[0], state.q[1], state.p[0], state.p[1]])
 }
 
-/// A run with its forces, for the sweep backwards.
-struct Course<'a> {
+/// The objective of the end of a run with these forces, for the backward pass.
+struct EndObjective<'a> {
     forces: &'a [f64],
     problem: &'a SwingUp,
 }
 
-impl Objective<Gauss<2>, CartPole, 2> for Course<'_> {
+impl Objective<Gauss<2>, CartPole, 2> for EndObjective<'_> {
     fn prepare(&self, step: u64, run: &mut Swing) -> Result<(), StepError> {
         let force = usize::try_from(step).ok().and_then(|step| self.forces.get(step)).copied().unwrap_or(0.0);
         run.set_parameters(|pole| pole.u = force)
@@ -166,7 +166,7 @@ pub(crate) fn solved() -> Result<(Vec<f64>, SwingUp), Error> {
     Ok((forces, problem))
 }
 
-/// One of Newton's steps on the gradient, whose own derivatives are differences.
+/// The forces after a Newton step for the gradient, with derivatives of the gradient by differences.
 fn corrected(problem: &SwingUp, forces: &[f64]) -> Result<Vec<f64>, Error> {
     const BY: f64 = 1e-5;
     let moved = |index: usize, by: f64| {

@@ -25,7 +25,7 @@ struct Frame {
     height: f64,
 }
 
-/// How a line of a mechanism is drawn.
+/// The style of a line of a mechanism.
 #[derive(Clone, Copy)]
 pub(crate) enum Style {
     /// A body; its opacity grows with time.
@@ -34,7 +34,7 @@ pub(crate) enum Style {
     Joint(f64),
     /// The path of a point.
     Path,
-    /// What does not move.
+    /// A part that does not move.
     Ground,
 }
 

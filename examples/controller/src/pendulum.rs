@@ -23,7 +23,7 @@ impl Pendulum {
         Ok(Self { run: start.integrate(Gauss::<2>, f64::from(PERIOD))? })
     }
 
-    /// What the encoders measure: (x, θ), rounded to counts.
+    /// The measurement of the encoders: (x, θ), rounded to counts.
     #[allow(clippy::cast_possible_truncation)] // counts, and numbers of a controller
     pub fn measured(&self) -> [f32; 2] {
         let q = self.run.state().q;

@@ -24,7 +24,7 @@ use vi_core::StepError;
 const INSTRUCTIONS: u32 = 40;
 /// The clock counts down from here.
 const LATEST: u32 = 0x00ff_ffff;
-/// What the start of the program writes to the whole stack.
+/// The word that the start of the program writes to the whole stack.
 const UNUSED: u32 = 0xcccc_cccc;
 
 unsafe extern "C" {
@@ -84,7 +84,7 @@ fn controlled() -> Result<(), StepError> {
         }
     }
     hprintln!("with the pendulum: stack {} bytes", stack());
-    // As in `tests/loop.rs`.
+    // The same number as in `tests/loop.rs`.
     hprintln!("the bits of its last angle: {:#018x}", angle.to_bits());
     Ok(())
 }
