@@ -59,8 +59,8 @@ fn hash(sum: u64, text: &str) -> u64 {
     text.bytes().chain([0]).fold(sum, |sum, byte| (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// What the compiler reads of a file: its tokens without comments, documentation and items of tests, in what the macro
-/// emits too.
+/// The part of a file that affects compilation: its tokens without comments, documentation and tests, also in quoted
+/// tokens that the macro emits.
 fn compiled(path: &str, content: &str) -> String {
     if path.ends_with(".rs") {
         let tokens = content.parse().unwrap_or_else(|error| panic!("{path}: {error}"));

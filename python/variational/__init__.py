@@ -49,7 +49,7 @@ systems: list[str] = sorted([*_bind(_core, globals(), __name__), *_texts])
 
 
 def __getattr__(name: str) -> type[System]:
-    """A ready system that is a text: its class is made when it is asked for."""
+    """A ready system that is a text: its class is made at the first access."""
     if name not in _texts:
         close = "" if name.startswith("_") else meant(name, __all__)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}{close}", name=name, obj=None)

@@ -58,7 +58,7 @@ vi-core.workspace = true
 """
 
 _CRATES = {"compiled": "vi-python", "unit": "vi-fmi"}
-"""The crates of a system, as a module of Python and as a unit of FMI, and the crate that each stands on."""
+"""The crates of a system, as a module of Python and as a unit of FMI, and the crate that each depends on."""
 
 # The linker of macOS must leave the symbols of Python to the process.
 _CARGO_CONFIG = """\

@@ -168,7 +168,7 @@ def fit(
         except StepError:
             if np.array_equal(unknowns, guess):
                 raise
-            # The method takes a shorter step where residuals are not finite.
+            # The method takes a shorter step if residuals are not finite.
             return np.full(there.sum(), np.nan)
         return ((computed - model.measured) * weights)[there]
 

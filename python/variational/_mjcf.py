@@ -398,7 +398,7 @@ class _Reader:
         ) / 2.0
 
     def _bounds(self) -> None:
-        """The changes of masses and moments that the compiler is asked for."""
+        """The changes of masses and moments that the file requests."""
         least_mass, least_moment, total = (
             single(self.compiler, name, "the compiler") for name in ("boundmass", "boundinertia", "settotalmass")
         )
@@ -548,7 +548,7 @@ class _Reader:
 
 
 def _kind(tag: str) -> str:
-    """Actuators share their defaults, whatever their kind."""
+    """Actuators of all kinds share their defaults."""
     return "general" if tag in ACTUATORS else tag
 
 

@@ -36,7 +36,7 @@ def _letter(letter: str) -> str:
     return greek[2].lower() if greek[1] == "SMALL" else greek[2].capitalize()
 
 
-def course(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, int]:
+def motion_name(name: str, coordinates: tuple[str, ...], system: str) -> tuple[bool, int]:
     """Whether "x" or "dot(x)" names a velocity, and the index of the coordinate.
 
     Raises KeyError for another name.

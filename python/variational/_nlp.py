@@ -25,7 +25,7 @@ class Program(Protocol):
         """The same of the upper half of the Hessian matrix."""
 
     def evaluate(self, x: Array) -> tuple[float, Array, Array, Array, Any]:
-        """f, its gradient, g, and the entries of the Jacobian of g; NaN where there are none."""
+        """f, its gradient, g, and the entries of the Jacobian of g; NaN if they do not exist."""
 
     def hessian(self, x: Array, weight: float, multipliers: Array) -> Array:
         """The entries of the Hessian matrix of weight f + multipliers · g."""
@@ -54,7 +54,7 @@ def solve(program: Program, bounds: tuple[Array, Array], start: Array, options: 
     last: dict[str, Any] = {"x": None, "of": None}
 
     def at(x: Any) -> tuple[float, Array, Array, Array, Any]:
-        # IPOPT asks for values and derivatives one after the other.
+        # IPOPT requests values and derivatives one after the other.
         point = np.asarray(x, dtype=float).ravel()
         if last["x"] is None or not np.array_equal(last["x"], point):
             last.update(x=point.copy(), of=program.evaluate(point))
@@ -78,7 +78,7 @@ def solve(program: Program, bounds: tuple[Array, Array], start: Array, options: 
     curvature = _callback(casadi, "hessian", [vector, none, number, row], [hessian], curved)
     x = casadi.MX.sym("x", size)
     f, g = values(x)
-    # IPOPT relaxes bounds by 1e-8 unless it is told not to.
+    # By default IPOPT relaxes bounds by 1e-8.
     usual = {"tol": 1e-10, "bound_relax_factor": 0.0, "max_iter": 1000, "print_level": 0, "sb": "yes"}
     settings: dict[str, Any] = {
         "grad_f": gradient,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ._arrays import Array
-from ._names import among, course, is_plain
+from ._names import among, motion_name, is_plain
 
 if TYPE_CHECKING:
     from ._system import System
@@ -64,7 +64,7 @@ def observed(text: str, cls: type[System]) -> Observed:
     """
     n = len(cls.coordinates)
     try:
-        is_velocity, index = course(text, cls.coordinates, cls.__name__)
+        is_velocity, index = motion_name(text, cls.coordinates, cls.__name__)
     except KeyError as unknown:
         try:
             return Observed(text, None, tuple(cls._observable(text).shape))

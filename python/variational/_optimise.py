@@ -200,9 +200,9 @@ def optimise(
     bounds : dict
         Bounds of coordinates, velocities and expressions at all nodes: `{"x": (-1.0, 1.0), "x^2 + y^2": (0.1, None)}`.
     guess : dict, Optimum or Solution
-        Where the solver starts. A dict has inputs, numbers or one for each step, and perhaps the "duration": the motion
-        is that of these inputs from the start. By default the coordinates go from start to end on a line, without
-        inputs.
+        Start of the solver. A dict has inputs, as one number or one for each step, and optionally the "duration": the
+        solver starts from the motion with these inputs. By default the coordinates go from start to end on a line,
+        without inputs.
     t : float
         The time of the start: by default the first of the times in `steps`, or zero.
     method, stages
@@ -265,7 +265,7 @@ def _optimum(problem: _Problem, found: Solved, given: dict[str, Any]) -> Optimum
 
 
 def _advice(problem: _Problem, found: Solved) -> str:
-    """What to change where the solver found no optimum."""
+    """The change that may help if the solver found no optimum."""
     kinks = sorted({of for text in problem.costs for of in _KINK.findall(text)})
     if kinks:
         return f"{', '.join(kinks)} in the cost has a kink: take a square, or sqrt(x^2 + e^2) for abs(x)"
@@ -547,7 +547,7 @@ class _Problem:
     # The guess.
 
     def guessed(self, guess: Any) -> Array:
-        """The variables where the solver starts."""
+        """The variables from which the solver starts."""
         if isinstance(guess, Optimum):
             return self._of_rows(guess.t, guess.u, guess.inputs, guess._nodes)
         if isinstance(guess, Solution):

@@ -46,8 +46,8 @@ def checked(
 ) -> Request:
     """The options of a run.
 
-    Raises TypeError for arguments of other types, and for two where one is needed. `_core` says which options go
-    together, and which methods and stages a system has.
+    Raises TypeError for arguments of other types, and for two arguments of which one is needed. `_core` checks which
+    options go together, and which methods and stages a system has.
     """
     given = [name for name, value in (("h", h), ("tolerance", tolerance), ("dtau", dtau)) if value is not None]
     if not given:

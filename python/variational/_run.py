@@ -455,7 +455,7 @@ class Run:
         respect to this parameter: (2N,), or (2N, K) for an array. The name "h" means the length of the steps, if no
         parameter has it; for method="energy" that of the first step, which determines the kept energy, and not for
         method="adaptive". With `velocities` all are in (q, v): the matrices are "q" and "v", and velocities are
-        constant where a parameter changes.
+        constant when a parameter changes.
 
         With an event, a quantity that crosses a value, the run ends at its first time before `until`. A last row then has
         the derivatives of this time. With constraints the start is the nearest state on them, as of `System.project`:
@@ -542,7 +542,7 @@ class Run:
 
         q and p are the derivatives of that function with respect to (q, p) at the end. The result has its gradients
         with respect to "q" and "p" at the start, and to each parameter in `wrt`. With `velocities` all are in (q, v):
-        v takes the place of p, the result has "q" and "v", and velocities are constant where a parameter changes. With
+        v takes the place of p, the result has "q" and "v", and velocities are constant when a parameter changes. With
         constraints the start is the nearest state on them.
 
         With an event the run ends there, as that of `tangent` does; t is the derivative of the function with respect

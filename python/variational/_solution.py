@@ -103,7 +103,7 @@ class ByName:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        # A pickle does not tell what can be written.
+        # A pickle does not keep which arrays are writable.
         self.system._fixed()
         for values in self.__dict__.values():
             if isinstance(values, np.ndarray):
@@ -260,7 +260,7 @@ class Solution(ByName):
         wrt names parameters "k", entries "m[0]" and start values "x", "dot(x)"; an array has a column for each entry.
         `of` names a coordinate "x", a velocity "dot(x)", a momentum "p_x", or an expression of the language; by default
         they are all coordinates, then all velocities. The shape is (K, U) for one of them, with the axes of a vector or
-        a matrix before the last, and (K, C, U) for several numbers. Velocities of the start are constant where a
+        a matrix before the last, and (K, C, U) for several numbers. Velocities of the start are constant when a
         parameter changes. With constraints the start is the nearest state on them.
 
         Raises ValueError if the solution has no run: those with a callback, of events, and unpickled ones.

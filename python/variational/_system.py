@@ -381,7 +381,8 @@ class System(metaclass=SystemType):
         """The names of the constraints that follow from the others at coordinates q, which satisfy all of them.
 
         A run does not start from such a place, because the reactions are not unique: `independent` returns a system
-        that does. Raises InconsistentStart for q off the constraints, where others are redundant: `project` moves it.
+        that does. Raises InconsistentStart for q off the constraints, since other constraints are redundant there:
+        `project` moves it.
         """
         q = vector(q, len(self.coordinates), "q", self.coordinates)
         return tuple(self._kind.redundant(self._values, number(t, "t"), q))
@@ -390,8 +391,8 @@ class System(metaclass=SystemType):
         """The same system without the constraints that `redundant` names at coordinates q, which satisfy all of them.
 
         Its motion is the same. Its attribute `dropped` has their names, which `constraints` lists too: they have the
-        reaction 0, and every step checks that they hold. DroppedConstraint is raised where they do not follow from the
-        others any more, and Singular where the others become dependent: there another subset may be independent.
+        reaction 0, and every step checks that they hold. DroppedConstraint is raised if they do not follow from the
+        others any more, and Singular if the others become dependent: then another subset may be independent.
         InconsistentStart is raised for q off the constraints: `project` moves it. A compiled system becomes one of its
         text.
         """
@@ -706,6 +707,6 @@ def _build(building: Future[type[System]], build: Callable[[], type[System]], na
     """Builds a class in the background. Without it, runs go on by the text."""
     try:
         building.set_result(build())
-    except BaseException as error:  # noqa: BLE001 # a thread has nobody to tell
+    except BaseException as error:  # noqa: BLE001 # the future reports it
         building.set_exception(error)
         print(f"variational: {name} was not compiled, and runs by its text: {error}", file=sys.stderr, flush=True)

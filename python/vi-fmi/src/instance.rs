@@ -41,7 +41,7 @@ enum Variable {
     Output(usize),
 }
 
-/// What went wrong, in words for the log.
+/// A result whose error is a text for the log.
 type Outcome<T = ()> = Result<T, String>;
 
 fn words(error: StepError) -> String {

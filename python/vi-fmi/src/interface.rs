@@ -4,9 +4,10 @@
 //! function. Everything belongs to an instance, so that several of them step on several threads at once.
 //!
 //! # Safety
-//! What FMI asks of a caller, and the compiler cannot check, holds for every function: an instance comes from
-//! [`fmi3InstantiateCoSimulation`] and is not freed, a state from [`fmi3GetFMUState`] or [`fmi3DeserializeFMUState`];
-//! no two functions of one instance run at once; arrays have the given lengths, and texts end with a zero.
+//! Every function relies on the requirements of FMI on a caller, which the compiler cannot check: an instance comes
+//! from [`fmi3InstantiateCoSimulation`] and is not freed, a state from [`fmi3GetFMUState`] or
+//! [`fmi3DeserializeFMUState`]; no two functions of one instance run at once; arrays have the given lengths, and texts
+//! end with a zero.
 
 #![allow(unsafe_code, reason = "names and pointers of C")]
 #![allow(non_snake_case, reason = "names of FMI")]

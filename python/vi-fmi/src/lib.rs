@@ -15,7 +15,7 @@ pub use vi_erased;
 
 use vi_erased::{Plan, System};
 
-/// What a library exports.
+/// The content of an exported library.
 pub struct Unit {
     /// The system.
     pub system: Box<dyn System>,

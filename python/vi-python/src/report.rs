@@ -62,7 +62,7 @@ impl Watch {
         self.raised.map_or(Ok(()), Err)
     }
 
-    /// What was found, or the exception.
+    /// The value found, or the exception.
     pub(crate) fn unless_raised<T>(self, found: Option<T>) -> PyResult<T> {
         self.check()?;
         found.ok_or_else(|| crate::failure::wrong("the derivative was stopped"))
