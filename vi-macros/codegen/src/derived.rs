@@ -1,7 +1,7 @@
 //! A system with everything derived from it under each of its rules: the input of the emitter.
 //!
-//! Each rule has its own pool. The order in which a pool meets expressions decides the order of operands. So a rule
-//! gives the same operations, bit for bit, whatever other rules the system declares.
+//! Each rule has its own pool, because the order in which a pool receives expressions decides the order of operands. So
+//! a rule has the same operations, bit for bit, with and without other rules in the system.
 
 use crate::discrete::DiscreteSystem;
 use crate::findings::Findings;
@@ -12,9 +12,10 @@ use vi_expr::Pool;
 
 /// The derivation of a system under each declared rule.
 pub struct Derivations {
-    /// With the default rule: the first of the list, or the written-out one.
+    /// The derivation with the default rule: the first of the list, or the written-out one.
     pub own: Derived,
-    /// With the further rules of the list, in order. Model and continuous functions equal those of `own`.
+    /// The derivations with the further rules of the list, in order. Model and continuous functions equal those of
+    /// `own`.
     pub further: Vec<Derived>,
 }
 

@@ -5,7 +5,7 @@
 //! row:
 //!
 //! ```text
-//! linear           A takes no velocity: one solve, exact but for rounding, gives the step
+//! linear           A takes no velocity: one solve gives the step, exact up to rounding
 //! constant for h   A takes parameters and h only
 //! explicit         A takes parameters only: v is given by one product with the inverse of a constant matrix
 //! separable        p = L_v takes velocities and parameters only: L = T(v) + U(t, q)
@@ -79,9 +79,9 @@ pub struct Findings {
 pub struct Elimination {
     /// The columns of the entries of each row of A.
     pub gradients: Vec<Vec<usize>>,
-    /// The same of ∂(A v + a)/∂q.
+    /// The columns of the entries of each row of ∂(A v + a)/∂q.
     pub rates_dq: Vec<Vec<usize>>,
-    /// The same of ∂(Aᵀλ)/∂q.
+    /// The columns of the entries of each row of ∂(Aᵀλ)/∂q.
     pub reaction_dq: Vec<Vec<usize>>,
     /// The blocks in the order of their elimination; multiplier r is the unknown N + r.
     pub blocks: Vec<Block>,
@@ -95,7 +95,7 @@ pub struct StepFindings {
     /// The momentum row contains no `abs`, `sign` or `atan2`: it has no kink or jump, and Newton iteration converges
     /// quadratically.
     pub smooth: bool,
-    /// What the Jacobian A depends on.
+    /// Quantities that the Jacobian A depends on.
     pub jacobian: Dependence,
     /// Zero pattern of A.
     pub pattern: Pattern,
@@ -109,19 +109,19 @@ pub struct StepFindings {
     pub affine: bool,
 }
 
-/// Of a step's equation whose Jacobian depends on parameters only.
+/// Description of a step whose Jacobian depends on parameters only.
 pub(crate) const EXPLICIT: &str = "explicit: its Jacobian `A` depends on parameters only and is inverted once per run";
 
-/// What the Jacobian A depends on, in ascending order.
+/// Quantities that the Jacobian A depends on, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
-    /// On parameters only: the step is explicit.
+    /// Parameters only: the step is explicit.
     Parameters,
-    /// On parameters and the step h.
+    /// Parameters and the step h.
     Step,
-    /// On the node and h too, but not on the unknown v: the momentum row is linear.
+    /// Also the node, but not the unknown v: the momentum row is linear.
     Node,
-    /// On the unknown v: the momentum row is nonlinear.
+    /// Also the unknown v: the momentum row is nonlinear.
     Unknown,
 }
 
@@ -255,8 +255,8 @@ fn together(function: &Function, outputs: &[Output]) -> Vec<Vec<bool>> {
     all
 }
 
-/// The zero patterns of constraints and the order of elimination, with the form of M and the entries of the derivatives
-/// of the equations of motion.
+/// The zero patterns of constraints and the order of elimination, given the zero pattern of M and the nonzero entries
+/// of the derivatives of the equations of motion.
 fn elimination(model: &Model, program: &Program, mass: &Pattern, derivatives: Option<&[Vec<bool>]>) -> Elimination {
     let columns = |id: FunctionId, output: Output| {
         let found = program.function(id).map(|of| pattern::columns(&entries(of, of.results.matrix(output))));
@@ -369,7 +369,7 @@ fn smoothness_in_words(smoothness: &Smoothness) -> String {
     format!("{}: {left}", derivatives_in_words(smoothness))
 }
 
-/// How often L is differentiable, and why.
+/// The number of continuous derivatives of L in words, with the cause.
 pub(crate) fn derivatives_in_words(Smoothness { derivatives, cause }: &Smoothness) -> String {
     let noun = if *derivatives == 1 { "derivative" } else { "derivatives" };
     format!("`L` has {derivatives} continuous {noun} because of {cause}")
@@ -385,7 +385,7 @@ pub(crate) fn energy_in_words(autonomous: bool, forced: bool) -> &'static str {
     }
 }
 
-/// The same with constraints; `driven` if one on velocities does work.
+/// Whether a system with constraints conserves energy; `driven` if a constraint on velocities does work.
 pub(crate) fn constrained_energy_in_words(autonomous: bool, forced: bool, driven: bool) -> &'static str {
     match (autonomous, forced) {
         (true, false) if driven => "Autonomous; no force acts, but a constraint does work",
@@ -403,18 +403,18 @@ pub(crate) fn constraint_names(model: &Model) -> [Vec<(String, usize)>; 2] {
     })
 }
 
-/// The constraints of each kind, arrays once.
+/// The constraints of each kind in words; each array is named once.
 pub(crate) fn constraints_in_words(names: &[Vec<(String, usize)>; 2]) -> Vec<String> {
     let kinds = names.iter().zip(["positions", "velocities"]).filter(|(names, _)| !names.is_empty());
     kinds.map(|(names, kind)| format!("Constraints on {kind}: {}", in_arrays(names))).collect()
 }
 
-/// What angles are, with their names.
+/// The finding about angles, given their names.
 pub(crate) fn angles_in_words(names: &str) -> String {
     format!("Angles modulo 2π: {names}; a run keeps their sines exact")
 }
 
-/// The cyclic coordinates, so many with these names.
+/// The finding about cyclic coordinates, given their names and number.
 pub(crate) fn cyclic_in_words(names: &str, count: usize) -> String {
     let momenta = if count == 1 { "its momentum is" } else { "their momenta are" };
     format!("Cyclic: {names}; {momenta} conserved")
@@ -443,7 +443,7 @@ fn list(name: &dyn Fn(usize) -> String, indices: &[usize]) -> String {
 }
 
 impl Elimination {
-    /// How a step solves its linear systems.
+    /// The method by which a step solves its linear systems, in words.
     fn in_words(&self, point_masses: bool) -> String {
         let matrix = match (point_masses, self.is_constant) {
             (true, _) => "Velocities are affine in the impulses: a midpoint step solves for the impulses alone; ",
@@ -467,7 +467,7 @@ impl StepFindings {
         self.smooth && self.jacobian <= Dependence::Step
     }
 
-    /// How a system with `size` coordinates solves for A.
+    /// The method by which a system with `size` coordinates solves for A, in words.
     fn solved(&self, size: usize) -> &'static str {
         match &self.pattern {
             Pattern::Scalar | Pattern::Diagonal => "by division",

@@ -31,7 +31,7 @@ const OF_MOTION: [(&str, &[FunctionId]); 3] = [
 /// The method of systems whose motion splits into kicks and drifts, and the function that it calls.
 const OF_SPLITTING: (&str, &[FunctionId]) = ("Splitting, for each force", &[FunctionId::Point]);
 
-/// The methods of systems with constraints, and the functions that it calls.
+/// The method of systems with constraints, and the functions that it calls.
 const OF_CONSTRAINTS: (&str, &[FunctionId]) = (
     "Gauss, EnergyPreservingGauss",
     &[

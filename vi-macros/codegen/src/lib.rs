@@ -65,11 +65,11 @@ impl Compiled {
     /// # Errors
     /// All errors of the first stage that fails.
     pub fn of(system: &System) -> syn::Result<Self> {
-        // `#[vi_limit(0)]`, for tests: the size at which loops begin.
-        let is_asked = system.attributes.iter().find_map(emit::limit) == Some(0);
+        // `#[vi_limit(0)]` on the struct, for tests: loops at any size.
+        let is_forced = system.attributes.iter().find_map(emit::limit) == Some(0);
         let (loops, mistake) = match large_model(system) {
             Some(Ok(found)) => {
-                (Loops::of(found, system.named_rules(), if is_asked { 1 } else { limits::LARGE_COORDINATES })?, None)
+                (Loops::of(found, system.named_rules(), if is_forced { 1 } else { limits::LARGE_COORDINATES })?, None)
             }
             Some(Err(mistake)) => (None, Some(mistake)),
             None => (None, None),
@@ -78,7 +78,7 @@ impl Compiled {
         // step, not 125.
         let has_rotations = system.coordinates.iter().any(|coordinate| coordinate.is_rotation);
         let is_large = |loops: &Loops| {
-            is_asked || !has_rotations && loops.indexed.operations() > limits::LARGE && loops.indexed.is_dense()
+            is_forced || !has_rotations && loops.indexed.operations() > limits::LARGE && loops.indexed.is_dense()
         };
         match loops {
             Some(loops) if is_large(&loops) => Ok(Self::Loops(Box::new(loops))),
@@ -86,7 +86,8 @@ impl Compiled {
                 (Ok(derivations), _) => Ok(Self::Lines(Box::new(derivations))),
                 (Err(error), Some(loops)) if messages::is_too_large(&error) => Ok(Self::Loops(Box::new(loops))),
                 (Err(error), _) => {
-                    // Straight lines report mistakes, but may end before those of constraints.
+                    // Straight lines report mistakes, but may exceed the limit before they reach the mistakes of
+                    // constraints.
                     let has_ended = system.is_constrained && messages::is_too_large(&error);
                     let mistake = mistake.filter(|mistake| has_ended && !messages::is_too_large(mistake));
                     Err(mistake.unwrap_or(error))

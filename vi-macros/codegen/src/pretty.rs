@@ -38,7 +38,7 @@ fn spaced(text: &str) -> String {
 /// Returns the path of the file.
 ///
 /// # Errors
-/// What the file system reports.
+/// The errors of the file system.
 pub fn write(folder: &Path, system: &str, text: &str) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     let path = folder.join(snake_case(system)).with_extension("rs");

@@ -1,8 +1,8 @@
 //! The built-in rules: named maps from L to L_d.
 //!
 //! A rule is one line in the language itself with its known properties. Its slot derivatives, discrete forces and
-//! equations are derived as for a user's rule. Messages, generated checks and emitted implementations read this table:
-//! a new rule is a new entry.
+//! equations are derived like those of a user's rule. Messages, generated checks and emitted implementations read this
+//! table: a new rule is a new entry.
 
 /// A built-in rule.
 #[derive(Debug, PartialEq, Eq)]

@@ -49,9 +49,9 @@ pub struct LetEntry {
 pub enum Symbol {
     /// Runtime parameter: its index, and the index of the first entry of its array, if any.
     Parameter {
-        /// Among all parameters.
+        /// Index among all parameters.
         index: usize,
-        /// That of the first entry of the array.
+        /// Index of the first entry of the array.
         array: Option<usize>,
     },
     /// Variable of the continuous system.
@@ -60,7 +60,7 @@ pub enum Symbol {
     Let(LetEntry),
     /// The rate of such an entry.
     LetRate(LetEntry),
-    /// A number that the body of a loop reads, by its place in the list of these.
+    /// A number that the body of a loop reads; the index is its place in the list of these numbers.
     Access(usize),
     /// Momentum p_i; appears in a Hamiltonian only.
     Momentum(usize),

@@ -15,7 +15,7 @@ use crate::model::slope;
 use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Pool, TooLarge};
 
-/// Functions of the constraints, one entry or row for each.
+/// Functions of the constraints; one entry or row for each constraint.
 pub struct Constraints {
     /// g; zero for a nonholonomic constraint.
     pub values: Vec<Expr>,
@@ -27,7 +27,7 @@ pub struct Constraints {
     pub rates_dq: Vec<Vec<Expr>>,
     /// ∂(A v + a)/∂t.
     pub rates_dt: Vec<Expr>,
-    /// Σ_r λ_r ∂A_r/∂q: one row for each coordinate, that of A.
+    /// Σ_r λ_r ∂A_r/∂q: one row for each column of A.
     pub reaction_dq: Vec<Vec<Expr>>,
 }
 
@@ -56,7 +56,7 @@ pub(super) fn constraints(pool: &mut Pool<Symbol>, model: &Model) -> Result<Opti
         for place in &nonzero {
             let velocity = pool.symbol(Symbol::Continuous(Variable::Velocity(*place)));
             terms.push(pool.mul(row[*place], velocity));
-            // Skips the derivatives that are known to be zero: most of them in a long chain.
+            // Skips derivatives that are known to be zero. In a long chain, most are.
             for symbol in pool.symbols(row[*place]) {
                 let Symbol::Continuous(by @ Variable::Coordinate(column)) = symbol else { continue };
                 let derivative = slope(pool, row[*place], by);

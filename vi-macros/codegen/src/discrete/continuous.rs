@@ -88,7 +88,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     let mut power = vec![pool.neg(lt)];
     for i in 0..dimension {
         bounded(pool)?;
-        // Skips the second derivatives that are known to be zero: most of them in a long chain.
+        // Skips second derivatives that are known to be zero. In a long chain, most are.
         let by_velocity = fields.variables(pool, velocity(i));
         let mut row = vec![zero; dimension];
         for j in (0..dimension).filter(|j| by_velocity.contains(&velocity(*j))) {
@@ -277,16 +277,16 @@ pub(crate) fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize
     let (moving_terms, still): (Vec<Expr>, Vec<Expr>) =
         terms.into_iter().partition(|term| pool.depends_on(*term, &is_velocity));
     let (kinetic, still) = (pool.sum(&moving_terms), pool.sum(&still));
-    let mut gains = vec![pool.neg(kinetic)];
+    let mut parts = vec![pool.neg(kinetic)];
     for index in 0..dimension {
         let v = moving(pool, index);
         let momentum = slope(pool, kinetic, Variable::Velocity(index));
-        gains.push(pool.mul(v, momentum));
+        parts.push(pool.mul(v, momentum));
     }
-    let closed = pool.sum(&gains);
+    let closed = pool.sum(&parts);
     // Expansion turns `m v² − m v²/2` into `m v²/2`. If it grows too long, the closed form is equally correct.
-    let gains = pool.expand(closed).unwrap_or(closed);
-    pool.sub(gains, still)
+    let moving = pool.expand(closed).unwrap_or(closed);
+    pool.sub(moving, still)
 }
 
 /// Whether f depends on time, and whether neither L nor a constraint does.

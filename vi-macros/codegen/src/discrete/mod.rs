@@ -3,7 +3,7 @@
 //! In: a [`Model`] with its rule. Out: a [`DiscreteSystem`]. Differentiating the rule treats L and f as opaque: their
 //! partial derivatives at the points of the rule are symbols, [`Field`]s. So the leading terms of the equations cancel
 //! exactly for every L, and L is differentiated once, in `(t, q, v)`.
-//! AFTER THIS every expression contains only fields, slots, the unknowns `(v, h)` and parameters.
+//! The expressions of the result contain only fields, slots, the unknowns `(v, h)` and parameters.
 
 mod constraints;
 mod continuous;

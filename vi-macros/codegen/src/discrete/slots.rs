@@ -18,7 +18,7 @@ use vi_expr::{Expr, Pool, TooLarge};
 
 /// The discrete system in its slots.
 pub struct SlotDerivatives {
-    /// Where L and f are evaluated, in the slots t0, q0, t1, q1 and h.
+    /// The points at which L and f are evaluated, as expressions in t0, q0, t1, q1 and h.
     pub points: Vec<Point>,
     /// L_d.
     pub ld: Expr,

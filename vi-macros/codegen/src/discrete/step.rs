@@ -23,7 +23,7 @@ use vi_expr::{Expr, Pool, Rational, TooLarge};
 
 /// The equations of one step.
 pub struct Equations {
-    /// Where L and f are evaluated, in the node and the unknowns.
+    /// The points at which L and f are evaluated, as expressions in the node and the unknowns.
     pub points: Vec<Point>,
     /// r.
     pub residual: Vec<Expr>,

@@ -22,8 +22,8 @@ const CHARACTERS: usize = 100;
 /// Derives the motion of a model and, if it has a rule, its steps.
 ///
 /// # Errors
-/// A rule whose L_d does not depend on one end of the interval: at that line. A system that grows too large: at its
-/// name.
+/// A rule whose L_d does not depend on one end of the interval (reported at its line), and a system that grows too
+/// large (reported at its name).
 pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> {
     let mut fields = Fields::new(pool, model);
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { size: found });
@@ -52,8 +52,8 @@ fn by_rule(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model, rule: &R
     Ok(ByRule { rule: known, slots, equations })
 }
 
-/// Reports a derivative without a value in any state, such as that of `0^x`, with the smallest expression that has
-/// none.
+/// Reports a derivative without a value in any state, such as the derivative of `0^x`, with the smallest expression
+/// that has none.
 fn check_derivatives(pool: &mut Pool<Symbol>, fields: &Fields, continuous: &Continuous, model: &Model) -> Result<()> {
     let (span, whole, by) = match (fields.undefined(pool), undefined_time_scale(pool, continuous)) {
         (Some((Quantity::Lagrangian, whole, by)), _) => (model.lagrangian_span, whole, by),

@@ -32,12 +32,12 @@ pub(super) struct Body {
     pub(super) vectors: BTreeMap<Symbol, Ident>,
 }
 
-/// How a function obtains the velocity of the step.
+/// Source of the velocity of the step in a function.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum VelocityFrom {
-    /// As an argument.
+    /// An argument of the function.
     Argument,
-    /// From the ends and the length of an interval, which are then inputs.
+    /// The ends and the length of an interval, which are then inputs of the function.
     Interval,
 }
 

@@ -70,7 +70,7 @@ pub(super) fn monotone_table_of(of: &Indexed) -> Option<String> {
     tables.map(|function| function.name.to_string()).find(|name| is_called(name))
 }
 
-/// The tests by a further rule.
+/// The tests of the steps by a further rule.
 struct Further<'a> {
     rule: Ident,
     checks: Vec<Check>,
@@ -176,7 +176,7 @@ struct Properties {
 }
 
 impl Properties {
-    /// Those of steps in straight lines.
+    /// The properties of a system in straight lines.
     fn of(steps: &Steps) -> Self {
         let is_monotone = steps.model.monotone_table(steps.pool).is_some();
         Self {

@@ -1,4 +1,4 @@
-//! What constraints add to `impl Motion`: their values, gradients, rate derivatives and reaction derivatives.
+//! Members of `impl Motion` for constraints: values, gradients, rate derivatives and reaction derivatives.
 
 use super::Source;
 use super::body::{Body, VelocityFrom, state_parts};
@@ -15,7 +15,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use vi_expr::Expr;
 
-/// The kind of a system, and what its constraints add to `Motion`.
+/// The kind of a system, and the members of `Motion` for its constraints.
 pub(super) struct Members {
     pub(super) kind: TokenStream,
     /// Items beside the implementation.
@@ -25,7 +25,7 @@ pub(super) struct Members {
 }
 
 impl Members {
-    /// Those of a system without constraints.
+    /// The members of a system without constraints.
     pub(super) fn free() -> Self {
         let kind = quote!(::vi_core::kind::Free);
         Self { kind, items: TokenStream::new(), functions: TokenStream::new() }

@@ -42,7 +42,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     implementation(source.model, properties, &functions)
 }
 
-/// What the constants of `Lagrangian` say beside the model.
+/// Values of the constants of `Lagrangian` that the model does not contain.
 pub(super) struct Properties<'a> {
     pub(super) autonomous: bool,
     pub(super) cyclic: &'a [bool],
@@ -146,7 +146,8 @@ impl Source<'_> {
     }
 }
 
-/// The acceleration; if L is linear in the velocities, that of the velocity which the equations have at the coordinates.
+/// The acceleration. If L is linear in the velocities, the equations determine the velocity at given coordinates, and
+/// this is the acceleration for that velocity.
 fn acceleration(source: &Source) -> TokenStream {
     let dimension = source.dimension();
     let is_first_order = !source.model.without_velocity.is_empty();

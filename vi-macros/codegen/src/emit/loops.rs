@@ -23,7 +23,7 @@ use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::{Function as Elementary, Table};
 
-/// Operations that are recomputed instead of stored.
+/// Maximum number of operations that are recomputed instead of stored.
 const AGAIN: usize = 1;
 
 /// The families of a function that become arrays.
@@ -91,7 +91,8 @@ impl<'a> Loops<'a> {
         self.singles.iter().copied().partition(|id| !late.contains(id))
     }
 
-    /// How many lines read each operation outside families. A loop counts twice, so that its operands get names.
+    /// The number of lines that read each operation outside families. A loop counts twice, so that its operands get
+    /// names.
     pub(super) fn uses(&self) -> Table<OperationId, usize> {
         let mut uses = Table::default();
         let operands = |id: &OperationId| self.function.operations.get(*id).operands();
@@ -233,7 +234,7 @@ impl Lines<'_, '_> {
             let inside = || self.formula(family, place + on);
             return self.arrays.get(&family).map_or_else(inside, |array| array.entry(counter, place + on));
         }
-        // Printed before if it is outside families; the fallback prints the same formula.
+        // An operation outside families has been printed already; the fallback prints the same formula.
         let operation = self.loops.function.operations.get(id);
         let again = || Formula::of(operation, &mut |operand| self.operand(operand, on));
         self.writing.singles.get(id).cloned().unwrap_or_else(again)

@@ -64,7 +64,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     }
 }
 
-/// What a system whose L is linear in the velocities adds; nothing for others.
+/// Additional members for a system whose L is linear in the velocities; nothing for others.
 fn of_first_order(source: &Source) -> TokenStream {
     let without = &source.model.without_velocity;
     if without.is_empty() {

@@ -127,7 +127,7 @@ impl<'a> Names<'a> {
             }
             Symbol::Field(_) => "field".to_owned(),
             Symbol::Access(place) => format!("a{place}"),
-            // Loops replace them by what they access.
+            // Loops replace these symbols by array accesses.
             Symbol::Let(_) | Symbol::LetRate(_) => "entry".to_owned(),
         }
     }

@@ -290,7 +290,7 @@ impl Broken {
 
 fn stub(system: &System) -> TokenStream {
     let (name, visibility) = (&system.name, &system.visibility);
-    // A parameter that is declared twice is an error, but one field.
+    // A parameter that is declared twice is an error, but the stub has one field for it.
     let parameters: BTreeMap<String, &syntax::Parameter> =
         system.parameters.iter().map(|parameter| (parameter.name.to_string(), parameter)).collect();
     let names: Vec<&Ident> = parameters.values().map(|parameter| &parameter.name).collect();
@@ -340,7 +340,7 @@ fn dimension(system: &System) -> Option<Literal> {
     lengths.sum::<Option<usize>>().filter(|dimension| *dimension > 0).map(Literal::usize_unsuffixed)
 }
 
-/// The lengths of the field of an array of parameters; those of its default, or 1, where they are unknown.
+/// The lengths of the field of an array of parameters. Unknown lengths are those of its default, or 1.
 fn field_lengths(system: &System, parameter: &syntax::Parameter) -> Vec<usize> {
     let mut default = Some(&parameter.default);
     let length = |written: &Expression| {
@@ -519,7 +519,7 @@ fn stub_steps(name: &Ident, Size { generic, n }: &Size, rule: Option<&TokenStrea
     }
 }
 
-/// The field that carries the numeric type of a system without parameters, and its value.
+/// The field for the numeric type of a system without parameters, and its value.
 fn marker(needed: bool) -> (TokenStream, TokenStream) {
     if needed {
         (

@@ -13,9 +13,9 @@
 
 use std::collections::BTreeSet;
 
-/// Largest number of zeros in each row of a node that it may gain by a merger.
+/// Maximum number of zeros that a merger may add to each row of a node.
 const ZEROS: usize = 2;
-/// Largest number of unknowns of a node that gains zeros.
+/// Maximum number of unknowns of a node to which a merger adds zeros.
 const SMALL: usize = 4;
 
 /// Unknowns that are eliminated together.
@@ -27,7 +27,7 @@ pub struct Block {
     pub border: Vec<usize>,
 }
 
-/// Nodes of a graph, and what is eliminated.
+/// Nodes of unknowns, and the couplings between them.
 struct Graph {
     dimension: usize,
     /// The unknowns of each node, ascending.
@@ -101,7 +101,7 @@ impl Graph {
                     && self.is_joint(node) == self.is_joint(*other)
                     && without(node, *other).eq(without(*other, node))
             };
-            // Nodes that share all their neighbours share the first one.
+            // Only a neighbour, or a neighbour of a neighbour, can have the same neighbours.
             let near = self.coupled[node].iter().flat_map(|at| &self.coupled[*at]).chain(&self.coupled[node]);
             if let Some(other) = near.copied().filter(|other| *other < node).find(|other| alike(other)) {
                 groups[node] = other;
@@ -121,7 +121,7 @@ impl Graph {
         self.members[node].iter().all(|unknown| *unknown >= self.dimension)
     }
 
-    /// Coordinates less constraints of a node.
+    /// The number of coordinates minus the number of constraints of a node.
     fn freedom(&self, node: usize) -> isize {
         let constraints = self.members[node].iter().filter(|unknown| **unknown >= self.dimension).count();
         (self.members[node].len() - constraints).cast_signed() - constraints.cast_signed()
@@ -190,7 +190,7 @@ impl Graph {
         }
         let unknowns =
             |places: &[usize]| places.iter().flat_map(|place| &self.members[order[*place].0]).copied().collect();
-        // In the order in which they are eliminated, which merged nodes changed.
+        // Mergers changed the order of elimination; each border follows the new order.
         let mut blocks: Vec<(Vec<usize>, Vec<usize>)> = nodes.into_iter().filter(|(own, _)| !own.is_empty()).collect();
         let mut ranks = vec![0; order.len()];
         for (index, place) in blocks.iter().flat_map(|(own, _)| own).enumerate() {
@@ -251,7 +251,7 @@ mod tests {
             check(&found, 3 * points);
             assert!(found.iter().all(|block| block.border.len() <= 3), "{found:?}");
         }
-        // A hub comes last, whatever it carries.
+        // A hub is eliminated last.
         let rods: Vec<Vec<usize>> = (1..20).map(|i| vec![0, i]).collect();
         let found = linkage(20, &rods);
         check(&found, 59);

@@ -1,7 +1,7 @@
 //! The zero pattern of a matrix.
 //!
-//! In: which entries are nonzero. Out: the narrowest [`Pattern`] that contains them. An entry (i, j) implies (j, i), as
-//! elimination needs both.
+//! In: the positions of nonzero entries. Out: the narrowest [`Pattern`] that contains them. A pattern with entry (i, j)
+//! also contains (j, i), because elimination needs both.
 
 use super::CLOSED;
 use std::collections::BTreeSet;
@@ -17,7 +17,7 @@ pub enum Pattern {
     Blocks(Vec<Vec<usize>>),
     /// Tridiagonal, with three rows or more.
     Tridiagonal,
-    /// Half-bandwidth. At least half of each row is outside the band.
+    /// A band with this half-bandwidth. At least half of each row is outside the band.
     Banded(usize),
     /// Other zeros: the columns of the entries of each row.
     Sparse(Vec<Vec<usize>>),
@@ -61,7 +61,8 @@ pub(super) fn pattern(rows: &[Vec<bool>]) -> Pattern {
     }
 }
 
-/// The pattern of a square matrix that is not inverted: that of its rows, if at most half of it is filled.
+/// The pattern of a square matrix that is not inverted: the columns of each row, if at most half of the entries are
+/// nonzero.
 pub(super) fn by_rows(rows: &[Vec<bool>]) -> Pattern {
     let columns = columns(rows);
     let filled: usize = columns.iter().map(Vec::len).sum();

@@ -1,7 +1,7 @@
-//! What a large system depends on.
+//! Dependence of a large system on time, coordinates and velocities.
 //!
 //! In: its recursions and sums. Out: the recursions on which sums depend, and the properties of L and f that follow from
-//! what these read.
+//! the numbers that these read.
 
 use super::{Body, Nest, Part, Read, Recursion, Sum, Value};
 use crate::symbol::{Symbol, Variable};
@@ -63,7 +63,7 @@ pub(super) fn is_autonomous(
     values.all(|value| !pool.depends_on(value.expr, &time))
 }
 
-/// Whether L is quadratic in the velocities: each term is, and rates are linear in them.
+/// Whether L is quadratic in the velocities: each term is quadratic, and rates are linear in the velocities.
 pub(super) fn has_mass_of_position(pool: &mut Pool<Symbol>, recursions: &[Recursion], lagrangian: &[Sum]) -> bool {
     let of_lagrangian = needed(recursions, &[lagrangian]);
     let mut parts = recursions.iter().flat_map(|recursion| &recursion.parts);
@@ -90,8 +90,8 @@ pub(super) fn is_separable(
     })
 }
 
-/// Whether the velocity of each coordinate has a second derivative of L, itself or through a rate, or is in `known`:
-/// straight lines report others.
+/// Whether the velocity of each coordinate is in `known` or has a second derivative of L, itself or through a rate.
+/// Straight lines report coordinates without one.
 pub(super) fn has_masses(known: Vec<bool>, recursions: &[Recursion], lagrangian: &[Sum]) -> bool {
     let mut has_mass = known;
     let mut see = |body: &Body, place: usize, columns: &[usize]| {

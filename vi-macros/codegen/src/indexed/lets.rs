@@ -1,8 +1,8 @@
 //! Arrays of `let`s of a large system.
 //!
 //! In: their definitions, in which entries of arrays are symbols. Out: the arrays that stay, each entry by earlier ones,
-//! and expressions without the others. An array stays if its entries use each other, or if they differ from the entries
-//! before by less than they are: `sum(j in 0..i + 1, …)` becomes a recursion.
+//! and expressions without the others. An array stays if its entries use each other, or if an entry minus the previous
+//! one is shorter than the entry itself: `sum(j in 0..i + 1, …)` becomes a recursion.
 
 use super::body::Read;
 use crate::model::{LetArray, Model, rate};
@@ -21,14 +21,14 @@ pub(super) struct Lets {
 
 struct Array {
     width: usize,
-    /// Whether it stays.
+    /// Whether the array becomes a recursion.
     stays: bool,
     definitions: Vec<Expr>,
 }
 
 impl Lets {
     /// Decides which arrays stay. `None` if an array reads one that is declared later, if a rate would be an acceleration,
-    /// or if the limits of a root depend on what an entry is: straight lines compute or report these.
+    /// or if the limits of a root depend on the definition of an entry: straight lines compute or report these.
     pub(super) fn of(pool: &mut Pool<Symbol>, model: &Model) -> Option<Self> {
         let mut lets = Self { arrays: Vec::new() };
         let constraints = model.constraints.iter().map(|constraint| constraint.written);
@@ -79,8 +79,8 @@ impl Lets {
         })
     }
 
-    /// What these expressions read, directly or not, of the arrays that stay: the width and the definitions, in the
-    /// order of evaluation.
+    /// The arrays that stay and that these expressions read, directly or not: width and definitions, in the order of
+    /// evaluation.
     pub(super) fn used(&self, pool: &mut Pool<Symbol>, exprs: &[Expr]) -> Vec<(Read, usize, Vec<Expr>)> {
         let mut wanted: BTreeSet<Read> = reads(pool, exprs);
         let mut found = Vec::new();
@@ -111,8 +111,8 @@ fn reads(pool: &Pool<Symbol>, exprs: &[Expr]) -> BTreeSet<Read> {
     symbols.into_iter().filter_map(read).collect()
 }
 
-/// The definitions as the entries of the row before and further terms; `None` if they are no sums that grow, or no shorter
-/// that way. A sum that loses terms would be a difference of large numbers.
+/// The definitions as entries of the previous row plus further terms. `None` if they are not sums that grow, or are not
+/// shorter that way. A sum that loses terms would be a difference of large numbers.
 fn differences(pool: &mut Pool<Symbol>, array: usize, width: usize, definitions: &[Expr]) -> Option<Vec<Expr>> {
     if definitions.len() < LEAST * width {
         return None;

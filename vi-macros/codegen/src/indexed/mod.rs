@@ -2,18 +2,18 @@
 //!
 //! In: a [`Model`] whose arrays of `let`s are symbols. Out: an [`Indexed`] system: recursions of `let`s and sums of L and
 //! f, each with one body and the numbers that its instances read. Their count and the text that they become do not
-//! depend on the lengths of the arrays. AFTER THIS no expression contains a coordinate or an entry of an array, but
-//! [`Symbol::Access`](crate::symbol::Symbol): the number that an instance reads at this place.
+//! depend on the lengths of the arrays. No expression of the result contains a coordinate or an entry of an array. It
+//! contains [`Symbol::Access`](crate::symbol::Symbol) instead: the number that an instance reads at this place.
 //!
 //! | file | content |
 //! |---|---|
 //! | `lets` | which `let`s are recursions, and their rates |
 //! | `body` | one expression for all instances, with its derivatives as operations |
-//! | `dependence` | what L and f depend on: the recursions, the time, each coordinate and velocity |
+//! | `dependence` | dependence of L and f on recursions, time, coordinates and velocities |
 //! | `nest` | the loops over instances |
 //! | `named` | the bodies with the names of their functions |
 //! | `scale` | the time scale as a function of sums |
-//! | `properties` | what the generator found, in words |
+//! | `properties` | the properties found by the generator, in words |
 
 mod body;
 mod dependence;
@@ -54,11 +54,11 @@ use vi_expr::{Expr, Node, Pool, Rational};
 const BODIES: usize = 64;
 /// Maximum number of derivatives of entries of recursions: half a megabyte of the stack.
 const TANGENTS: usize = 65_536;
-/// Maximum numbers of the state that one term reads: its second derivatives are written out.
+/// Maximum number of coordinates and velocities in one term, whose second derivatives are all written out.
 const STATES: usize = 32;
 /// Maximum number of loops for one array of `let`s.
 const SEQUENCES: usize = 4;
-/// A product distributes over a sum of more numbers of the state than this.
+/// Number of coordinates and velocities in a sum above which a product distributes over it.
 const NUMBERS: usize = 6;
 
 /// A large system.
@@ -70,7 +70,7 @@ pub struct Indexed {
     pub rules: Vec<&'static NamedRule>,
     /// Whether L and f are independent of time.
     pub autonomous: bool,
-    /// For each coordinate, whether it appears neither in L nor has a force.
+    /// For each coordinate, whether it is absent from L and has no force.
     pub cyclic: Vec<bool>,
     /// Whether no velocity appears in second derivatives with respect to velocities.
     pub has_mass_of_position: bool,
@@ -106,7 +106,8 @@ pub struct Part {
     pub body: Body,
     /// The array of each value.
     pub of: Vec<Read>,
-    /// The first of the columns of the nest that belong to it: the entries of the values, then what the body reads.
+    /// The first of the columns of the nest that belong to this body: the entries of the values, then the numbers that
+    /// the body reads.
     pub first: usize,
 }
 
@@ -242,7 +243,7 @@ impl Indexed {
         4 * coupled.iter().filter(|is_coupled| **is_coupled).count() >= dimension * dimension
     }
 
-    /// Operations of second derivatives, if they were written out: what makes a system large.
+    /// Operations of second derivatives, if they were written out. A system with many of them is large.
     #[must_use]
     pub fn operations(&self) -> usize {
         let dimension = self.model.dimension();
@@ -330,7 +331,7 @@ type Member = (usize, usize);
 /// One run of several arrays as one loop.
 fn joined(pool: &mut Pool<Symbol>, group: &[Defined], run: usize) -> Option<Recursion> {
     let (first, rows) = &group[0].runs[run];
-    // What the values of a row read, in parts that read no value of their own.
+    // Parts of a row, with the arrays that their values read; no part reads a value of its own.
     let mut parts: Vec<(Vec<Read>, Vec<Member>)> = Vec::new();
     for (place, Defined { of, width, runs }) in group.iter().enumerate() {
         for (index, Instance { shape, columns }) in runs[run].1[0].iter().enumerate() {
@@ -439,7 +440,7 @@ fn sums(pool: &mut Pool<Symbol>, terms: Vec<(Vec<usize>, Expr)>, twice: bool) ->
 
 impl Group {
     /// The shape with the coefficient of all terms. If they differ, it is one more number that a term reads: its numerator
-    /// over their common denominator. `None` for a numerator that is no index.
+    /// over their common denominator. `None` if a numerator is no index.
     fn with_coefficients(self, pool: &mut Pool<Symbol>) -> Option<(Shape, Vec<Vec<usize>>)> {
         let Self { mut shape, rows } = self;
         let (_, first) = rows.first()?;

@@ -1,4 +1,4 @@
-//! The bodies of a large system with the names of their functions, and what a row computes in the user's names.
+//! The bodies of a large system with the names of their functions, and their rows in the user's names.
 
 use super::{Body, Indexed, Nest, Part, Read, Recursion, Scale, Sum, Value};
 use crate::model::Model;
@@ -13,7 +13,7 @@ const CHARACTERS: usize = 160;
 pub(crate) const PART: &str = "time_scale_part";
 pub(crate) const SCALE: &str = "time_scale";
 
-/// What a body computes.
+/// The quantity that a body computes.
 #[derive(Clone, Copy)]
 pub(crate) enum Quantity<'a> {
     /// Entries of these arrays of `let`s, or their rates.
@@ -39,7 +39,8 @@ pub(crate) struct NamedBody<'a> {
     pub(crate) quantity: Quantity<'a>,
     pub(crate) body: &'a Body,
     pub(crate) nests: &'a [Nest],
-    /// The first of its columns: the entries, the component or the constraint that a row computes, then what it reads.
+    /// The first of its columns: the entries, the component or the constraint that a row computes, then the numbers
+    /// that it reads.
     pub(crate) first: usize,
 }
 

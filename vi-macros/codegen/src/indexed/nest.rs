@@ -1,8 +1,8 @@
 //! Loops over instances.
 //!
-//! In: the numbers that the instances read, one row each. Out: [`Nest`]s that run over the same rows: one loop if every
-//! column advances evenly, two if an inner loop does whose start and length advance evenly with the outer one, otherwise
-//! a table of the rows.
+//! In: the numbers that the instances read, one row per instance. Out: [`Nest`]s that run over the same rows. A nest is
+//! one loop if every column advances evenly. It is two loops if columns advance evenly in an inner loop whose start and
+//! length advance evenly with the outer loop. Otherwise it is a table of the rows.
 
 /// `constant + Σ by·counter`, of an outer and an inner counter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ pub enum Nest {
     Table(Vec<Vec<usize>>),
 }
 
-/// Loops of several even sequences are written one after the other up to this number of them.
+/// Maximum number of even sequences that are written as loops one after the other.
 const SEQUENCES: usize = 4;
 
 impl Nest {

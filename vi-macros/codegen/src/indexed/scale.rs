@@ -1,6 +1,7 @@
 //! The time scale of a large system: a function of a few sums.
 //!
-//! In: g. Out: a [`Scale`], of which `V^(-3/2)` with a sum V over all pairs has one part, and the whole `g_1^(-3/2)`.
+//! In: g. Out: a [`Scale`]. For `g = V^(-3/2)` with a sum V over all pairs it has one part, the sum `g_1 = V`, and the
+//! whole `g_1^(-3/2)`.
 
 use super::body::{Body, Read};
 use super::{NUMBERS, Nest, STATES, Sum, summands, sums_of_each};
@@ -19,7 +20,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// `None` if terms do not repeat, or g is no function of a few sums.
+    /// The time scale g as parts and a whole; `None` if terms do not repeat, or g is no function of a few sums.
     pub(super) fn of(pool: &mut Pool<Symbol>, g: Expr) -> Option<Self> {
         let mut found = Vec::new();
         let whole = folded(pool, g, &mut found);
@@ -45,7 +46,7 @@ impl Scale {
     }
 }
 
-/// The expression with each long sum of short terms as the number of its place among those found.
+/// The expression in which each long sum of short terms is replaced by its place among the sums found.
 fn folded(pool: &mut Pool<Symbol>, expr: Expr, found: &mut Vec<Expr>) -> Expr {
     if states(pool, expr) <= NUMBERS {
         return expr;
@@ -88,7 +89,7 @@ fn is_short(pool: &Pool<Symbol>, term: Expr) -> bool {
     states(pool, term) <= STATES && !pool.reachable(&[term]).into_iter().any(is_long)
 }
 
-/// How many numbers of the state an expression reads.
+/// The number of coordinates and velocities that an expression contains.
 fn states(pool: &Pool<Symbol>, expr: Expr) -> usize {
     let of_state = |symbol: &Symbol| Read::of(symbol).is_some_and(|(read, _)| read.is_of_state());
     pool.symbols(expr).iter().filter(|symbol| of_state(symbol)).count()

@@ -152,9 +152,9 @@ fn equation(left: Both, right: Both) -> Line {
 
 /// The numbers of a row by the counters of its loop.
 struct Row {
-    /// What it computes.
+    /// The numbers that it computes.
     computed: Vec<Both>,
-    /// What it reads.
+    /// The numbers that it reads.
     reads: Vec<Both>,
 }
 
@@ -209,7 +209,7 @@ fn last(end: Affine) -> String {
     affine(Affine { constant: end.constant - 1, ..end }, " ")
 }
 
-/// What follows an expression that holds in each row: `for i in 0..39`.
+/// The range of rows in which an expression holds, written after it: `for i in 0..39`.
 fn in_each_row(nest: &Nest) -> Both {
     if let Nest::Table(rows) = nest {
         let (text, count) = ("and more rows of a table, in total", rows.len());

@@ -1,10 +1,10 @@
-//! Every stage of the compiler as text, for users who inspect what becomes of a system.
+//! Every stage of the compiler as text, for users who inspect the compilation of a system.
 //!
 //! In: the tokens of a `lagrangian!`. Out: the product of one [`Stage`] as text, or the mathematics of the system as an
 //! [`Explanation`], in plain text or LaTeX. [`source`] finds the declarations in a file; [`report`] prints a mistake
 //! with its line. The macro uses nothing of this.
 //!
-//! | file | what it shows |
+//! | file | content |
 //! |---|---|
 //! | `syntax` | the clauses as they were parsed |
 //! | `model`, `discrete`, `findings`, `functions` | chapters of the explanation |
@@ -76,7 +76,7 @@ pub fn stage(tokens: TokenStream, stage: Stage) -> Result<String> {
     })
 }
 
-/// What integrators ask of a system.
+/// Properties of a system that integrators require.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Properties {
     /// Whether its motion splits into kicks and drifts: `L = v·M v/2 − V(t, q)` with a constant M, or `H = T(p) + V(t, q)`, and
@@ -86,7 +86,7 @@ pub struct Properties {
     pub has_step_density: bool,
 }
 
-/// What integrators ask of a system.
+/// The properties of a system that integrators require.
 ///
 /// # Errors
 /// The mistakes of the system.
@@ -96,7 +96,7 @@ pub fn properties(tokens: TokenStream) -> Result<Properties> {
         Compiled::Lines(of) => of.own.findings.force_of_position || of.own.findings.canonical_split,
         Compiled::Loops(of) => of.indexed.separable,
     };
-    // A written-out rule has one.
+    // A written-out rule has a step density.
     let has_step_density = system.rules() > 0 && system.named_rules().first().is_none_or(|rule| rule.step_density);
     Ok(Properties { is_separable, has_step_density })
 }

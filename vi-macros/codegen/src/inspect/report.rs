@@ -16,7 +16,7 @@ const CUT: &str = "…";
 /// A mistake at its token.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistake {
-    /// What is wrong.
+    /// The mistake in words.
     pub wrong: String,
     /// The lines of help, each with the kind of help at its begin.
     pub helps: String,

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! with the same operation and the same i, j for all k. a and b are components of input vectors or families; c depends
-//! on neither. A loop computes a family. AFTER THIS the operands of members are members of families, inputs, or the
-//! same for all.
+//! on neither. A loop computes a family. The operands of members are members of families, inputs, or the same for all
+//! members.
 
 use super::{Function, Operation, OperationId};
 use crate::symbol::Symbol;

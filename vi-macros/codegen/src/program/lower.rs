@@ -79,7 +79,7 @@ impl Lowering<'_> {
             Node::Symbol(Symbol::Parameter { .. }) => Dependence::Parameters,
             Node::Symbol(Symbol::Step) => Dependence::Run,
             Node::Symbol(_) => Dependence::Step,
-            // Evaluated at run time, even at a constant.
+            // A function is called at run time, even if its argument is constant.
             Node::Opaque(..) => {
                 children.into_iter().map(|child| self.dependence(child)).fold(Dependence::Parameters, Ord::max)
             }
@@ -115,7 +115,7 @@ impl Lowering<'_> {
         match values[..] {
             [only] => self.operations.add(Operation::Call(function, only)),
             [first, second] => self.operations.add(Operation::Call2(function, first, second)),
-            // No other number of arguments exists.
+            // Elementary functions have one or two arguments.
             _ => self.operations.constant(f64::NAN),
         }
     }
@@ -211,7 +211,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// coefficient·Π base^exponent, zero where that is its limit.
+    /// coefficient·Π base^exponent; zero at states at which the limit of the product is zero.
     fn product(&mut self, factors: &[(Expr, Rational)], coefficient: &Rational) -> OperationId {
         let Some(Limits { vanishing, others, steps }) = self.known.products.limits(self.pool, factors) else {
             return self.product_with(factors, coefficient, Vec::new());

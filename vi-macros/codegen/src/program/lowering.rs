@@ -11,7 +11,7 @@ use num_traits::{Signed, ToPrimitive};
 use std::collections::BTreeMap;
 use vi_expr::{Expr, Pool, Rational, Table};
 
-/// What an expression depends on, in ascending order.
+/// Quantities that an expression depends on, in ascending order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Dependence {
     /// Nothing: a number.

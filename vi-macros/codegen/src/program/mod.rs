@@ -1,8 +1,8 @@
 //! The functions of a system as straight-line code.
 //!
 //! In: a [`Model`](crate::model::Model) and its [`DiscreteSystem`](crate::discrete::DiscreteSystem). Out: a
-//! [`Program`]: per emitted function its inputs, its operations, each shared term once, and its results.
-//! AFTER THIS only binary operations, calls, inputs and constants remain: no field, no power, no sum.
+//! [`Program`]: per emitted function its inputs, its operations, each shared term once, and its results. It contains
+//! binary operations, calls, inputs and constants, and no field, power or sum.
 
 mod angles;
 mod assemble;
@@ -31,7 +31,7 @@ const SHORT: usize = 250;
 
 /// A function of the emitted code.
 pub struct Function {
-    /// Which function it is.
+    /// The identity of the function.
     pub id: FunctionId,
     /// The operations, operands before results.
     pub operations: Operations,
@@ -46,7 +46,7 @@ impl Function {
         self.operations.needed(self.results.entries())
     }
 
-    /// How many operations and results read each needed operation.
+    /// The number of operations and results that read each needed operation.
     pub(crate) fn uses(&self) -> Table<OperationId, usize> {
         let mut uses = Table::default();
         let operands = self.needed().into_iter().flat_map(|id| self.operations.get(id).operands());

@@ -243,7 +243,7 @@ impl Operation {
         }
     }
 
-    /// Whether it costs time.
+    /// Whether the operation takes time: it is no constant and no input.
     #[must_use]
     pub fn is_work(&self) -> bool {
         !matches!(self, Self::Constant(_) | Self::Input(_))

@@ -207,7 +207,7 @@ pub struct Results<E> {
 }
 
 impl<E> Results<E> {
-    /// From these quantities, in this order.
+    /// Creates results from these quantities, in this order.
     pub(super) fn new(quantities: Vec<(Output, Vec<Vec<E>>)>) -> Self {
         Self { quantities }
     }

@@ -1,8 +1,8 @@
 //! The rounding scale of a residual: the sum of its absolute terms.
 //!
 //! In: a residual r. Out: Σ |coefficient|·|term|. A sum inside a term counts term by term too, down to [`DEPTH`]
-//! levels. A residual below `eps` times this scale is zero to rounding. Low parts are smaller still and omitted. A
-//! product that has a limit although a factor is infinite counts as a whole.
+//! levels. A residual below `eps` times this scale is zero to rounding. Low parts are even smaller and are omitted. A
+//! product that has a limit although a factor is infinite counts as one term.
 
 use super::vanishing::Known;
 use crate::symbol::Symbol;

@@ -17,7 +17,7 @@ impl Lowering<'_> {
             return *known;
         }
         let form = self.known.sum_forms.get(expr).copied().unwrap_or_else(|| self.find_sum_form(expr));
-        // Its parts are new in each function.
+        // The parts of the form are new expressions in each function.
         if let SumForm::Factor { inside, rest, .. } = form {
             self.record_powers(&[inside, rest.unwrap_or(inside)]);
         }
@@ -66,7 +66,7 @@ impl Lowering<'_> {
     fn common_factor(&mut self, sum: &Sum) -> Option<SumForm> {
         let mut counts: BTreeMap<Expr, usize> = BTreeMap::new();
         let varies = sum.terms.iter().any(|(term, _)| self.dependence(*term) > Dependence::Parameters);
-        // A product with a limit needs all its factors in one place.
+        // A product with a limit needs all its factors, so no factor of it is extracted.
         let Self { pool, known, .. } = self;
         let (whole, terms): (Vec<_>, Vec<_>) =
             sum.terms.iter().cloned().partition(|(term, _)| known.products.has_limit(pool, *term));
@@ -77,7 +77,7 @@ impl Lowering<'_> {
                 }
             }
         }
-        // Ties go to the step, then to the oldest.
+        // Among equally frequent factors, the step has priority, then the oldest expression.
         let step = self.pool.symbol(Symbol::Step);
         let (base, count) =
             counts.into_iter().max_by_key(|(base, count)| (*count, *base == step, core::cmp::Reverse(*base)))?;

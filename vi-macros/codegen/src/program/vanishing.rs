@@ -3,13 +3,13 @@
 //! In: the factors of a product. Out: [`Limits`], if the product tends to zero although floating point gives `0·∞`:
 //!
 //! - A stepwise constant factor, made of `sign(…)`, numbers and parameters, is zero and does not jump at the state. So
-//!   the product is zero around the state for any other factors, also for those without a value, as a root of a negative
-//!   number.
+//!   the product is zero around the state for any other factors, also for factors without a value such as a root of a
+//!   negative number.
 //! - A negative power `B^(-e)` multiplies factors that vanish with B. B is a sum of terms `c |u|^a`, so `|u| ≤ C
 //!   B^(1/a)`. Factors of total order m in B have the limit 0 if `m > e`. The numbers c are positive. Parameters among
 //!   them are tested at run time, and so is an exponent that depends on parameters.
 //!
-//! AFTER THIS the other factors are outside the part set to zero. If they are infinite too, the product stays `0·∞`.
+//! The other factors stay outside the part that is set to zero. If they are infinite too, the product stays `0·∞`.
 
 use crate::symbol::{Symbol, Variable};
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -184,7 +184,7 @@ struct Zeros {
     vanishing: Factors,
     /// Terms made of parameters.
     fixed: Vec<Expr>,
-    /// Those c that have parameters.
+    /// The coefficients c that contain parameters.
     coefficients: Vec<Expr>,
 }
 
@@ -211,7 +211,7 @@ impl Analysis<'_> {
         let mut others = factors.to_vec();
         let mut poles = Vec::new();
         for (power, exponent) in factors {
-            // With a term or an exponent made of parameters it may be finite.
+            // A pole with a term or an exponent made of parameters may be finite.
             if let Some(pole) = self.pole(*power, exponent).filter(|_| exponent.is_negative())
                 && pole.zeros.fixed.is_empty()
                 && self.limit(*power, &pole, &mut others).is_none()
@@ -424,7 +424,7 @@ impl Analysis<'_> {
             && sum.terms.iter().zip(&other.terms).all(alike)
     }
 
-    /// Expressions that are zero where a product vanishes around the state although a factor is infinite.
+    /// Expressions that are zero at states around which a product vanishes although a factor is infinite.
     fn steps(&mut self, factors: &[(Expr, Rational)]) -> Vec<Expr> {
         if !self.known.may_be_infinite(self.pool, factors) {
             return Vec::new();
@@ -436,8 +436,8 @@ impl Analysis<'_> {
         steps.into_iter().filter_map(|step| self.zero_between_jumps(step)).collect()
     }
 
-    /// An expression that is zero where a stepwise constant expression is zero and does not jump, if this is possible:
-    /// `|expr| + Σ (1 − sign²)`, or the expression itself if it is never zero at a jump.
+    /// An expression whose zeros are the states at which a stepwise constant expression is zero and does not jump, if
+    /// there is one: `|expr| + Σ (1 − sign²)`, or the expression itself if it is never zero at a jump.
     fn zero_between_jumps(&mut self, expr: Expr) -> Option<Expr> {
         let nodes = self.pool.reachable(&[expr]);
         let is_sign = |node: &Expr| matches!(self.pool.node(*node), Node::Call(Function::Sign, _));
