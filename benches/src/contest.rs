@@ -5,32 +5,32 @@ use crate::run::Run;
 /// Steps after which all must be at the same place.
 pub const COMPARED: usize = 1000;
 
-/// What the ratio of the generated stepper's time to a rival's shall be.
+/// Target for the ratio of the generated stepper's time to a rival's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// As fast as the rival, but for this factor.
+    /// The generated stepper takes at most this many times as long as the rival.
     AtMost(f64),
-    /// Faster than the rival by this factor.
+    /// The generated stepper is at least this many times as fast as the rival.
     Faster(f64),
-    /// Slower than the rival by this factor: one trajectory against many.
+    /// The rival, a stepper of many trajectories, is at least this many times as fast.
     Slower(f64),
-    /// The rival computes more: at most this many times as long.
+    /// The rival computes more, and takes at most this many times as long.
     Costs(f64),
-    /// Shown, not judged.
+    /// No target; the time is only shown.
     None,
 }
 
 /// One stepper of a contest.
 pub struct Entry {
-    /// Its name in the table.
+    /// Name in the table.
     pub name: &'static str,
     /// The stepper at its start.
     pub run: Box<dyn Run>,
-    /// Trajectories that one step moves on.
+    /// Number of trajectories that one step advances.
     pub trajectories: usize,
-    /// How far from the generated trajectory it may be after [`COMPARED`] steps, in any quantity.
+    /// Maximum deviation of any quantity from the generated trajectory after [`COMPARED`] steps.
     pub bound: f64,
-    /// The target against it.
+    /// The target for the generated stepper.
     pub target: Target,
 }
 
@@ -50,13 +50,14 @@ impl Contest {
         Self { name, entries: vec![generated] }
     }
 
-    /// With one more rival.
+    /// Adds a rival.
     #[must_use]
     pub fn rival(self, name: &'static str, bound: f64, target: Target, run: impl Run + 'static) -> Self {
         self.ensemble(name, 1, bound, target, run)
     }
 
-    /// With a stepper that moves `trajectories` at a time; times are per trajectory, and its state is that of the first one.
+    /// Adds a stepper that advances several trajectories at a time. Times are per trajectory, and the compared state is
+    /// the state of the first trajectory.
     #[must_use]
     pub fn ensemble(
         mut self,
@@ -70,10 +71,10 @@ impl Contest {
         self
     }
 
-    /// How far each entry is from the generated trajectory after [`COMPARED`] steps.
+    /// The deviation of each entry from the generated trajectory after [`COMPARED`] steps.
     ///
     /// # Panics
-    /// Where an entry has another number of coordinates.
+    /// If an entry has another number of coordinates.
     #[must_use]
     pub fn deviations(&self) -> Vec<f64> {
         let states: Vec<Vec<f64>> = self.entries.iter().map(|entry| entry.run.run(COMPARED)).collect();

@@ -34,7 +34,7 @@ const TOGETHER_KEPT: f64 = 7e-16;
 /// Plain sums. Measured: 1.4e-12, the time of the chains.
 const LOST: f64 = 3e-12;
 /// Energy-preserving steps have h from `H = E0`, and a rounding of H is one of `1/(h² D)` times as much in h. Measured: double
-/// well 3.2e-9, Kepler 2.1e-10, double pendulum 9.4e-11; where the rows are not combined 2.8e-7, 2.8e-9
+/// well 3.2e-9, Kepler 2.1e-10, double pendulum 9.4e-11; if the rows are not combined, 2.8e-7, 2.8e-9
 /// and 2.9e-9.
 const ROUGH: [[f64; 2]; 3] = [[7e-9, 6e-7], [5e-10, 6e-9], [5e-10, 6e-9]];
 
@@ -47,7 +47,7 @@ const SWUNG_PLAIN: f64 = 4e-13;
 const TURNED: f64 = if cfg!(target_feature = "fma") { 2e-10 } else { 3e-12 };
 const TURNED_PLAIN: f64 = if cfg!(target_feature = "fma") { 2e-10 } else { 3e-11 };
 
-/// What a generated step may take beside the one by hand, whose only error ends the program.
+/// Maximum time of a generated step relative to a step by hand, which ends the program at any error.
 const ABREAST: f64 = 1.12;
 
 /// All contests.
@@ -148,7 +148,7 @@ fn double_pendulum() -> Contest {
         .ensemble(TOGETHER, 64, TOGETHER_KEPT, Target::Slower(8.0), together(&system, start, h))
 }
 
-/// A run and its variations in 1, 2 and 4 directions, and its gradient by one sweep backwards, run included.
+/// A run, the run with tangent vectors in 1, 2 and 4 directions, and the run with its gradient by one backward pass.
 fn derivatives<M, S, const N: usize>(name: &'static str, run: &Run<M, S, N>) -> Contest
 where
     M: Differentiable<S, N> + 'static,
@@ -199,8 +199,8 @@ fn double_pendulum_energy() -> Contest {
         .rival(DIFFERENCE, ROUGH[2][1], Target::None, newton_energy::<_, Difference, 2, 3>(&system, start, h, 1e-14))
 }
 
-/// Whether an ensemble is never slower than its trajectories one by one: long steps, at which lanes gain least, and steps that an
-/// ensemble takes one after the other.
+/// Whether an ensemble is never slower than its trajectories one by one: long steps, for which lanes save the least
+/// time, and steps that an ensemble takes one after the other.
 fn pendula<S: Batch<N> + Clone + 'static, const N: usize>(name: &'static str, system: &S) -> Contest {
     let (start, h) = ((from_fn(|i| [0.3, 0.2, 0.1, 0.05][i]), [0.0; N]), black_box(0.01));
     let ensemble = together(system, start, h);
@@ -294,7 +294,8 @@ where
     Newton::new(*system, (t, q, p), [v; 2], h, tolerance)
 }
 
-/// The same from the start of [`energy_preserving`].
+/// Newton's method for energy-preserving steps, with derivatives found at run time, from the start of
+/// [`energy_preserving`].
 fn newton_energy<S: EnergyStepping<N> + Problem<N>, D, const N: usize, const M: usize>(
     system: &S,
     (q, v): ([f64; N], [f64; N]),

@@ -1,4 +1,4 @@
-//! Instructions of a step, counted by callgrind: they repeat where times do not.
+//! Instructions of a step, counted by callgrind: unlike times, they repeat exactly.
 //!
 //! In: this program with the sub-command `run`, in valgrind. Out: the difference between two lengths of a run, so that its
 //! start cancels. Valgrind has no AVX-512: a program built for such a machine cannot be counted.
@@ -8,7 +8,7 @@ use std::process::Command;
 /// Lengths of the two runs, in steps.
 const LENGTHS: [u32; 2] = [200, 1200];
 
-/// Instructions per step of an entry, both by their numbers; `None` where valgrind is missing or cannot run this program.
+/// Instructions per step of an entry, both by their numbers; `None` if valgrind is missing or cannot run this program.
 #[must_use]
 pub fn instructions(contest: usize, entry: usize) -> Option<f64> {
     let [short, long] = LENGTHS.map(|steps| total(contest, entry, steps));

@@ -7,13 +7,13 @@ use crate::contest::{Contest, Target};
 use crate::time::Timing;
 use std::fmt::Write;
 
-/// What was measured of a contest: entry by entry.
+/// The measurements of a contest, entry by entry.
 pub struct Measured<'a> {
     /// The contest.
     pub contest: &'a Contest,
-    /// Its timings.
+    /// The timings of its entries.
     pub timings: Vec<Timing>,
-    /// Instructions per step and trajectory, where they could be counted.
+    /// Instructions per step and trajectory, if they could be counted.
     pub instructions: Vec<Option<f64>>,
 }
 
@@ -48,7 +48,7 @@ pub fn growth(measured: &[Measured<'_>], [short, long]: [(&str, f64); 2]) -> Opt
     Some(per_mass(long)? / per_mass(short)?)
 }
 
-/// `text` with `section` between the markers of this name; `None` where it has no such markers.
+/// `text` with `section` between the markers of this name; `None` if it has no such markers.
 #[must_use]
 pub fn replaced(text: &str, name: &str, section: &str) -> Option<String> {
     let (begin, end) = (format!("<!-- {name}: begin -->\n"), format!("<!-- {name}: end -->"));

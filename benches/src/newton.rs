@@ -1,15 +1,15 @@
 //! Both steppers for any Lagrangian, without a generator: derivatives are found at run time, by dual numbers or by
 //! differences.
 //!
-//! Of `L_d = h L(q0 + d/2, d/h)` at the interval from q0 by d in time h: with M = N unknowns d the step h is given, with
-//! M = N + 1 the last unknown is h and the last momentum is −E:
+//! The discrete Lagrangian of an interval from q0 to q0 + d of length h is `L_d = h L(q0 + d/2, d/h)`. With M = N
+//! unknowns d the step h is given. With M = N + 1 the last unknown is h and the last momentum is −E:
 //!
 //! ```text
 //! −D2 L_d = p0     −D1 L_d = −E0        p1 = D4 L_d     −E1 = D3 L_d
 //! ```
 //!
-//! Sane and plain: d and h are the unknowns, for q1 would cancel; the guess repeats the last increment of them; the iteration
-//! stops by the residual; the matrix is inverted by nalgebra, up to 4 × 4 in closed form.
+//! The unknowns are d and h, because q1 would cause cancellation. The guess repeats the last increment of the unknowns.
+//! The residual ends the iteration. The matrix is inverted by nalgebra, up to 4 × 4 in closed form.
 
 use crate::problem::Problem;
 use crate::run::Stepper;
@@ -23,11 +23,11 @@ const ITERATIONS: usize = 20;
 /// The slot derivatives of L_d, time last.
 #[derive(Clone, Copy, Debug)]
 pub struct Slots<const M: usize> {
-    /// By the slots of the start.
+    /// Derivatives with respect to the slots of the start.
     left: SVector<f64, M>,
-    /// By the slots of the end.
+    /// Derivatives with respect to the slots of the end.
     right: SVector<f64, M>,
-    /// By both: row the start, column the end.
+    /// Second derivatives: rows for the slots of the start, columns for those of the end.
     mixed: SMatrix<f64, M, M>,
 }
 
@@ -113,14 +113,14 @@ pub struct Newton<P, D, const N: usize, const M: usize> {
     q: [f64; N],
     /// Momenta, and −E.
     p: SVector<f64, M>,
-    /// Of all M unknowns and, last, h: over the last two steps.
+    /// The unknowns and h of the last two steps.
     last: [([f64; N], f64); 2],
     derivatives: PhantomData<D>,
 }
 
 impl<P: Problem<N>, D: Derivatives, const N: usize, const M: usize> Newton<P, D, N, M> {
-    /// From the state `(t, q, p)`, after two intervals of length `h` with the velocities `v`, the last one first. Residuals
-    /// of `tolerance` are none.
+    /// The stepper at the state `(t, q, p)`, after two intervals of length `h` with the velocities `v`, the last one
+    /// first. Residuals of `tolerance` are none.
     pub fn new(
         problem: P,
         (t, q, p): (f64, [f64; N], SVector<f64, M>),

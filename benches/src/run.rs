@@ -1,7 +1,7 @@
-//! What is timed: a stepper at some point of its run.
+//! Steppers that are timed.
 //!
-//! In: anything that takes steps. Out: [`Run`], behind which a table of unlike steppers is one list. The loop over the steps is
-//! inside, so that a step is inlined into it as in a user's program.
+//! In: a stepper of any type. Out: a [`Run`], so that steppers of different types are in one list. It contains the loop
+//! over the steps, so that a step is inlined into the loop as in a user's program.
 
 use std::cell::Cell;
 use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, gradient};
@@ -14,7 +14,7 @@ pub trait Stepper: Clone {
     /// Takes one step.
     ///
     /// # Panics
-    /// Where there is none: every run here has all its steps.
+    /// If the step does not exist; every run here has all its steps.
     fn step(&mut self);
     /// Time, coordinates and momenta, in this order.
     fn state(&self) -> Vec<f64>;
@@ -38,7 +38,7 @@ impl<S: Stepper> Run for S {
     }
 }
 
-/// What a step gives that has to be there.
+/// The result of a step, which must exist.
 #[inline]
 fn taken<T>(outcome: Result<T, StepError>) -> T {
     outcome.unwrap_or_else(|failure| panic!("{failure}"))

@@ -12,10 +12,10 @@ use std::time::Duration;
 pub const ROUNDS: usize = 31;
 /// Least time of one entry in one round.
 const ROUND: Duration = Duration::from_millis(1);
-/// Least steps in one round, so that the first, with their poor guesses, do not count.
+/// Minimum number of steps in one round. The first steps have poor guesses and then have little weight.
 const STEPS: usize = 1000;
 
-/// What was measured of one entry.
+/// The measured times of one entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
     /// Nanoseconds per step and trajectory.

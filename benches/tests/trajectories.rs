@@ -1,4 +1,4 @@
-//! Who is timed has to go the same way: every rival is where the generated stepper is after 1000 steps.
+//! All timed steppers follow the same trajectory: every rival agrees with the generated stepper after 1000 steps.
 
 use vi_benches::contests;
 

@@ -17,9 +17,9 @@ use core::marker::PhantomData;
 /// Terms of the series after the first.
 const TERMS: usize = 3;
 
-/// What solves `A x = b` for N masses; arrays are M = N + 1 long.
+/// Solver of `A x = b` for N masses; arrays have the length M = N + 1.
 pub trait Solver<const N: usize, const M: usize>: Clone {
-    /// x, where the springs have these stiffnesses; `s` is half of h.
+    /// The solution x for these stiffnesses of the springs; `s` is half of h.
     fn solve(springs: &Springs, s: f64, stiffness: &[f64; M], b: &[f64; M]) -> [f64; M];
 }
 
@@ -62,7 +62,7 @@ pub struct Fixed<S, L, const N: usize, const M: usize> {
 }
 
 impl<S: Sum, L: Solver<N, M>, const N: usize, const M: usize> Fixed<S, L, N, M> {
-    /// From `q` at rest at t = 0.
+    /// The stepper at `q` at rest at t = 0.
     pub fn new(springs: Springs, q: [f64; N], h: f64) -> Self {
         const { assert!(M == N + 1) };
         let (q, p) = (q.map(S::new), [S::new(0.0); N]);
@@ -79,7 +79,7 @@ impl<S: Sum, L: Solver<N, M>, const N: usize, const M: usize> Fixed<S, L, N, M> 
         v
     }
 
-    /// Where the masses are in the middle of the step, tensions and stiffnesses there, and −r.
+    /// Positions of the masses at the middle of the step, tensions and stiffnesses there, and −r.
     #[inline]
     fn at(&self, v: &[f64; M]) -> Middle<M> {
         let (m, s) = (self.springs.m, self.h / 2.0);

@@ -33,7 +33,7 @@ impl Constants {
     }
 }
 
-/// What L says at the middle of a step.
+/// Derivatives of L at the middle of a step.
 struct Middle {
     angles: [Angle; 2],
     momentum: [f64; 2],
@@ -89,19 +89,19 @@ impl Middle {
         (diagonal, [even + odd, even - odd])
     }
 
-    /// What L_v gains as the angles move on with the velocities, less L_q.
+    /// The rate of change of L_v with the angles at these velocities, minus L_q.
     #[inline]
     fn steady(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let turn = self.sine * (v - u);
         [mul_add(turn, v, -self.force[0]), mul_add(turn, u, -self.force[1])]
     }
 
-    /// The sums of the absolute values of p0, of the terms of L_v and of what the momenta gain.
+    /// The sums of the absolute values of p0, of the terms of L_v and of the increments of the momenta.
     #[inline]
-    fn terms<S: Sum>(&self, constants: &Constants, p: &[S; 2], [u, v]: [f64; 2], gain: [f64; 2]) -> [f64; 2] {
+    fn terms<S: Sum>(&self, constants: &Constants, p: &[S; 2], [u, v]: [f64; 2], increment: [f64; 2]) -> [f64; 2] {
         let momentum =
             [(constants.a * u).abs() + (v * self.cosine).abs(), (constants.b * v).abs() + (u * self.cosine).abs()];
-        from_fn(|i| p[i].value().abs() + momentum[i] + gain[i].abs())
+        from_fn(|i| p[i].value().abs() + momentum[i] + increment[i].abs())
     }
 
     /// The sum of the absolute values of the terms of the energy.
@@ -111,17 +111,17 @@ impl Middle {
         mul_add(0.5, kinetic, self.upright[0].abs() + self.upright[1].abs())
     }
 
-    /// The change of L_q where the velocities change by `dv` and the angles by `dq`.
+    /// The change of L_q if the velocities change by `dv` and the angles by `dq`.
     #[inline]
     fn carried(&self, [u, v]: [f64; 2], dv: [f64; 2], dq: [f64; 2]) -> [f64; 2] {
         let pull = mul_add(self.sine, mul_add(v, dv[0], u * dv[1]), self.w * (dq[0] - dq[1]));
         [-mul_add(self.upright[0], dq[0], pull), mul_add(-self.upright[1], dq[1], pull)]
     }
 
-    /// The Newton step in v and s that the residuals r and c ask for.
+    /// The Newton step in v and s for the residuals r and c.
     #[inline]
     fn newton(&self, constants: &Constants, v: [f64; 2], s: f64, r: [f64; 2], c: f64) -> ([f64; 2], f64) {
-        // L_qq v, and what L_v and L_q gain while the angles move on.
+        // L_qq v, and the rate of change of L_v with the angles, minus L_q.
         let (bent, steady) = (self.carried(v, [0.0; 2], v), self.steady(v));
         let k = mul_add(v[0], bent[0], v[1] * bent[1]);
         let (diagonal, off) = self.derivative(constants, s, v);
@@ -144,7 +144,7 @@ pub struct Fixed<S> {
 }
 
 impl<S: Sum> Fixed<S> {
-    /// From angles `q` and velocities `v` at t = 0.
+    /// The stepper at angles `q` and velocities `v` at t = 0.
     pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64) -> Self {
         let constants = Constants::of(system);
         let p = Middle::at(&constants, q, v).momentum;
@@ -176,8 +176,8 @@ impl<S: Sum> Stepper for Fixed<S> {
             let v: [f64; 2] = from_fn(|i| guess.v[i] + newton[i]);
             let measured = middle.near(&constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
             let missing: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, measured.force[i], -measured.momentum[i])));
-            let gain = measured.force.map(|force| h * force);
-            if is_solved(missing, &self.p, gain, || measured.terms(&constants, &self.p, v, gain)) {
+            let increment = measured.force.map(|force| h * force);
+            if is_solved(missing, &self.p, increment, || measured.terms(&constants, &self.p, v, increment)) {
                 let carried = middle.carried(guess.v, newton, newton.map(|d| s * d));
                 for i in 0..2 {
                     self.guess.v[i] = mul_add(7.0, newton[i], next[i]);
@@ -216,7 +216,7 @@ pub struct EnergyPreserving<S> {
 }
 
 impl<S: Sum> EnergyPreserving<S> {
-    /// From the middle `(q, v)` of the first interval, of length h, at t = 0.
+    /// The stepper after the first interval, with the middle `(q, v)`, of length h, at t = 0.
     #[must_use]
     pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64) -> Self {
         let (constants, half) = (Constants::of(system), h / 2.0);
@@ -274,8 +274,8 @@ impl<S: Sum> Stepper for EnergyPreserving<S> {
             (r, c) = self.residuals(&middle, v, s);
             let h = 2.0 * s;
             let force = middle.force;
-            let gain = force.map(|force| h * force);
-            if is_solved(r, &self.p, gain, || middle.terms(&self.constants, &self.p, v, gain))
+            let increment = force.map(|force| h * force);
+            if is_solved(r, &self.p, increment, || middle.terms(&self.constants, &self.p, v, increment))
                 & is_energy_kept(c, self.energy.abs() + middle.energies(v), &self.p, v, corrections)
             {
                 for i in 0..2 {

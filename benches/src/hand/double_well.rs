@@ -48,7 +48,7 @@ struct Guess {
 }
 
 impl<S: Sum> Fixed<S> {
-    /// From `(q, p)` at t = 0.
+    /// The stepper at `(q, p)` at t = 0.
     #[must_use]
     pub fn new(system: &DoubleWell, (q, p): (f64, f64), h: f64) -> Self {
         let (m, v) = (system.m, p / system.m);
@@ -103,7 +103,7 @@ pub struct EnergyPreserving<S> {
     t: S,
     q: S,
     p: S,
-    /// Of v and of h/2.
+    /// The histories of v and of h/2.
     history: [History<7>; 2],
 }
 
@@ -145,7 +145,7 @@ impl<S: Sum> EnergyPreserving<S> {
 }
 
 impl Rows {
-    /// What v and s lack.
+    /// The Newton corrections of v and s.
     #[inline]
     fn newton(&self, m: f64, v: f64, s: f64) -> (f64, f64) {
         let Self { missing: r, energy, force, slope, .. } = *self;

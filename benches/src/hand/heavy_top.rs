@@ -68,7 +68,7 @@ pub struct Fixed<S> {
 }
 
 impl<S: Sum> Fixed<S> {
-    /// From a unit quaternion and its velocity.
+    /// The stepper at a unit quaternion with its velocity.
     #[must_use]
     pub fn new(inertia: Vector, weight: f64, [q, v]: [Quaternion; 2], h: f64) -> Self {
         let [_, x, y, z] = product(inverse(q), v).map(|entry| 2.0 * entry);

@@ -48,8 +48,8 @@ fn times([xx, xy, yy]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
 
 /// The sums of the absolute values of the terms of r.
 #[inline]
-fn terms<S: Sum>(p: &[S; 2], v: [f64; 2], gain: [f64; 2]) -> [f64; 2] {
-    from_fn(|i| p[i].value().abs() + v[i].abs() + 0.5 * gain[i].abs())
+fn terms<S: Sum>(p: &[S; 2], v: [f64; 2], increment: [f64; 2]) -> [f64; 2] {
+    from_fn(|i| p[i].value().abs() + v[i].abs() + 0.5 * increment[i].abs())
 }
 
 /// Fixed steps.
@@ -65,7 +65,7 @@ pub struct Fixed<S> {
 }
 
 impl<S: Sum> Fixed<S> {
-    /// From `(q, p)` at t = 0.
+    /// The stepper at `(q, p)` at t = 0.
     pub fn new(system: &Kepler, (q, p): ([f64; 2], [f64; 2]), h: f64) -> Self {
         let guess = Guess { v: p, x: from_fn(|i| q[i] + h / 2.0 * p[i]), p };
         let (mu, history) = (system.mu, p.map(History::constant));
@@ -92,8 +92,8 @@ impl<S: Sum> Stepper for Fixed<S> {
             let v: [f64; 2] = from_fn(|i| guess.v[i] + newton[i]);
             let measured = Field::at(mu, from_fn(|i| self.q[i].plus(s * v[i]))).force;
             let missing: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, measured[i], -v[i])));
-            let gain = measured.map(|force| h * force);
-            if is_solved(missing, &self.p, gain, || terms(&self.p, v, gain)) {
+            let increment = measured.map(|force| h * force);
+            if is_solved(missing, &self.p, increment, || terms(&self.p, v, increment)) {
                 let bent = times(slope, newton);
                 for i in 0..2 {
                     self.guess.v[i] = mul_add(5.0, newton[i], next[i]);
@@ -180,8 +180,8 @@ impl<S: Sum> Stepper for EnergyPreserving<S> {
             (r, c, field) = self.at(v, s);
             let h = 2.0 * s;
             let force = field.force;
-            let gain = force.map(|force| h * force);
-            if is_solved(r, &self.p, gain, || terms(&self.p, v, gain))
+            let increment = force.map(|force| h * force);
+            if is_solved(r, &self.p, increment, || terms(&self.p, v, increment))
                 & is_energy_kept(c, self.energy.abs() - field.potential + kinetic(v), &self.p, v, corrections)
             {
                 for i in 0..2 {

@@ -5,7 +5,8 @@
 //! ```text
 //! correct    v ← v − A⁻¹ r(v)
 //! measure    r(v) and p1 − p0, by one evaluation at the new v
-//! accept     where each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its terms,
+//! accept     if each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its
+//! terms,
 //!            and the energy row |c| ≤ (ε/2) (|E0| + Σ |terms of E| + Σ_i |v_i p0_i|)
 //! else       correct again
 //! ```
@@ -27,7 +28,7 @@ use core::fmt::Debug;
 const CORRECTIONS: usize = 20;
 /// Part of its scale that an accepted step may leave of a momentum row: four roundings.
 const FLOOR: f64 = 4.0 * f64::EPSILON;
-/// The same of the energy row: half a rounding.
+/// Part of its scale that an accepted step may leave of the energy row: half a rounding.
 const ENERGY_FLOOR: f64 = 0.5 * f64::EPSILON;
 /// Corrections after which the energy row may have four as well.
 const PATIENCE: usize = 3;
@@ -103,7 +104,7 @@ impl Sum for Compensated {
     }
 }
 
-/// `a b + c`, fused where the target has the instruction: elsewhere `f64::mul_add` calls a function.
+/// `a b + c`, fused if the target has the instruction: otherwise `f64::mul_add` calls a function.
 #[inline]
 pub(crate) fn mul_add(a: f64, b: f64, c: f64) -> f64 {
     if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
@@ -175,13 +176,13 @@ struct Guess<const N: usize = 2> {
     p: [f64; N],
 }
 
-/// Whether a step from momenta `p` that gain `gain` leaves no more than rounding of its momentum rows, whose terms have the
-/// sums `terms` of absolute values: where the momenta vanish, what they are sums of need not.
+/// Whether a step from momenta `p` with increments `increment` leaves no more than rounding of its momentum rows, whose
+/// terms have the sums `terms` of absolute values. These need not be small if the momenta vanish.
 #[inline]
 fn is_solved<S: Sum, const N: usize>(
     residual: [f64; N],
     p: &[S; N],
-    gain: [f64; N],
+    increment: [f64; N],
     terms: impl FnOnce() -> [f64; N],
 ) -> bool {
     let is_below = |scale: [f64; N]| {
@@ -189,11 +190,12 @@ fn is_solved<S: Sum, const N: usize>(
         let below = |i: usize| residual[i].abs() <= FLOOR * scale[i];
         (0..N).fold(0, |above, i| above | if below(i) { 0 } else { u64::MAX }) == 0
     };
-    is_below(from_fn(|i| p[i].value().abs() + gain[i].abs())) || is_below(terms())
+    is_below(from_fn(|i| p[i].value().abs() + increment[i].abs())) || is_below(terms())
 }
 
-/// The same of the energy row, at velocities `v`, whose other terms have the sum `terms`: the energy is a difference. Now and then
-/// rounding lets no v and h near the root leave so little; after [`PATIENCE`] corrections as much may be left as of a momentum row.
+/// Whether a step leaves no more than rounding of its energy row, at velocities `v`. The other terms of this row have
+/// the sum `terms`, because the energy is a difference. Now and then rounding lets no v and h near the root leave so
+/// little; after [`PATIENCE`] corrections as much may be left as of a momentum row.
 #[inline]
 fn is_energy_kept<S: Sum, const N: usize>(
     residual: f64,
@@ -242,12 +244,12 @@ mod tests {
 
     #[test]
     fn a_step_is_solved_at_four_roundings_of_every_row() {
-        let (p, gain, rounding) = ([1.0, 1e-3].map(Plain::new), [1.0, -1e-3], f64::EPSILON * 2.0);
+        let (p, increment, rounding) = ([1.0, 1e-3].map(Plain::new), [1.0, -1e-3], f64::EPSILON * 2.0);
         let solved = |roundings: [f64; 2], terms: [f64; 2]| {
-            is_solved([roundings[0] * rounding, roundings[1] * 1e-3 * rounding], &p, gain, || terms)
+            is_solved([roundings[0] * rounding, roundings[1] * 1e-3 * rounding], &p, increment, || terms)
         };
         assert!(solved([3.9, -3.9], [0.0; 2]) && !solved([4.1, 0.0], [0.0; 2]) && !solved([0.0, -4.1], [0.0; 2]));
-        // Where the terms of the second row are larger than the momentum that they make.
+        // The terms of the second row are larger than the momentum that they add up to.
         assert!(solved([0.0, 40.0], [2.0, 2e-2]) && !solved([0.0, 41.0], [2.0, 2e-2]));
         assert!(!solved([f64::NAN, 0.0], [2.0; 2]));
         let kept =

@@ -1,4 +1,5 @@
-//! Sine and cosine of one angle without a branch or a call, so that they are inlined and overlap with what stands around.
+//! Sine and cosine of one angle without a branch or a call, so that they are inlined and overlap with the surrounding
+//! code.
 //!
 //! In: an angle of at most 10⁵ rad. Out: both to one and a half ulp of 1. The angle is reduced to [−π/4, π/4] by π/2 in three parts
 //! (Cody and Waite), and the polynomials are those of FreeBSD's `k_sin.c` and `k_cos.c`.
@@ -7,7 +8,7 @@ use super::mul_add;
 
 /// π/2 as a sum; the first two parts have zeros at the end, and their multiples by 17-bit integers are exact.
 const PIO2: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
-/// 1.5 · 2⁵²: a number plus this is rounded to an integer, which stands in the last bits.
+/// 1.5 · 2⁵²: a number plus this is rounded to an integer, which is then in the last bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// (sin x, cos x).
@@ -19,7 +20,7 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
     let x = mul_add(-n, PIO2[2], mul_add(-n, PIO2[1], mul_add(-n, PIO2[0], x)));
     let xx = x * x;
     let x4 = xx * xx;
-    // In pairs: a shorter chain than Horner's.
+    // Evaluation in pairs has a shorter dependency chain than Horner's scheme.
     let high = mul_add(xx, 1.589_690_995_211_55e-10, -2.505_076_025_340_686_4e-8);
     let low = mul_add(xx, 2.755_731_370_707_006_8e-6, -1.984_126_982_985_795e-4);
     let lowest = mul_add(xx, 8.333_333_333_322_49e-3, -1.666_666_666_666_663_2e-1);

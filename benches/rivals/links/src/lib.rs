@@ -1,4 +1,4 @@
-//! What the binaries share: rods by their angles, and runs by the clock.
+//! Shared code of the binaries: rods described by their angles, and timed runs.
 
 use std::time::Instant;
 use vi_core::motion::Motion;
