@@ -1,8 +1,8 @@
 //! Adds the reason to a failure: the function without a value, or the expression that is not finite.
 //!
-//! For the attempted step, this module asks the system for a table whose argument has left its range, for a Rust
+//! For the attempted step, this module searches the system for a table whose argument has left its range, for a Rust
 //! function that is not finite, and for the part of L or f without a value. An iteration that reaches the end of a
-//! table may fail with another error, so the module asks for some other errors too.
+//! table may fail with another error, so the module also searches after some other errors.
 
 use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Undefined};
@@ -35,7 +35,8 @@ impl StepError {
         Self::NonFinite { t, quantity, expression }
     }
 
-    /// The same for a step of the length h with the velocity of the node, if it has one.
+    /// Adds the function or the expression that is not finite at a step of the length h with the velocity of `node`, if
+    /// it has one.
     #[cold]
     pub(crate) fn explained_at<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
         self,

@@ -182,8 +182,8 @@ fn sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
     }
 }
 
-/// The same in single precision. Small processors call functions for double precision, which took 36 800 instructions
-/// of a Cortex-M4 instead of 5900 in a period of `examples/controller`.
+/// Sines and cosines in single precision, in this order. Small processors call functions for double precision, which
+/// took 36 800 instructions of a Cortex-M4 instead of 5900 in a period of `examples/controller`.
 #[allow(clippy::cast_possible_truncation)] // rounded
 #[inline]
 fn sin_cos_single<const K: usize>(angles: [f32; K]) -> [(f32, f32); K] {

@@ -350,8 +350,8 @@ impl<const N: usize, T: Real> Node<N, T> {
         self
     }
 
-    /// The same (t, q) with the momenta and the energy from which `(v, h)` is the step: `p0 = −D2 L_d − f_d⁻`, `E0 = D1
-    /// L_d + g_d⁻`.
+    /// The node at this (t, q) from which `(v, h)` is the step. It has the momenta `p0 = −D2 L_d − f_d⁻` and the energy
+    /// `E0 = D1 L_d + g_d⁻`.
     pub(crate) fn leaving<S: EnergyStepping<N, T>>(self, system: &S, h: T, v: &SVector<T, N>) -> Self {
         let zeros = SVector::zeros();
         let bare = Self { p: zeros, p_low: zeros, energy: T::zero(), energy_low: T::zero(), ..self };

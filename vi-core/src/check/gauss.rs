@@ -36,7 +36,7 @@ use nalgebra::SVector;
 
 /// Stages of the tested steps.
 const STAGES: usize = 2;
-/// Their order.
+/// Order of the tested steps.
 const ORDER: u32 = 4;
 
 /// Tests that the error of Gauss steps with two stages decreases with h⁴ or a higher power.

@@ -44,7 +44,7 @@ pub fn order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, order:
     judged(&check, system, place, order, |start, h| system.at_state(start).integrate(FixedStep, h))
 }
 
-/// The same for the runs that `begin` starts from a state with a step.
+/// Tests the order of the runs that `begin` starts from a state with a step, as [`order`].
 pub(super) fn judged<const N: usize, S: Lagrangian<N>, M: Method<Y, N>, Y: Lagrangian<N> + Copy>(
     check: &Comparison,
     system: &S,

@@ -37,7 +37,7 @@ pub enum CheckFailure {
         found: f64,
         /// Value of the check.
         wanted: f64,
-        /// Their difference; for a slope, its shortfall.
+        /// The difference of both values; for a slope, its shortfall.
         difference: f64,
         /// The tolerance: the sum of both rounding-error bounds.
         tolerance: f64,

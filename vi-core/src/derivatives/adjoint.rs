@@ -48,7 +48,7 @@ pub trait Objective<M: Method<S, N>, S, const N: usize> {
 /// The gradient of an objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient<const N: usize> {
-    /// With respect to the start node.
+    /// Derivatives with respect to the start node.
     pub start: Covector<N>,
     /// With respect to the parameters of each step, one row per step, in the order of [`Objective::parameters`]. Their
     /// sum is the gradient with respect to constant parameters, if the preserved energy includes the derivative of H

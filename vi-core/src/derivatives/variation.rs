@@ -334,13 +334,13 @@ where
 /// Derivatives of a number with respect to a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Covector<const N: usize> {
-    /// With respect to the time.
+    /// Derivatives with respect to the time.
     pub t: f64,
-    /// With respect to the coordinates.
+    /// Derivatives with respect to the coordinates.
     pub q: SVector<f64, N>,
-    /// With respect to the momenta.
+    /// Derivatives with respect to the momenta.
     pub p: SVector<f64, N>,
-    /// With respect to the energy that an energy-preserving run preserves.
+    /// Derivatives with respect to the energy that an energy-preserving run preserves.
     pub energy: f64,
 }
 

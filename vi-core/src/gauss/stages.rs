@@ -269,7 +269,7 @@ pub(crate) fn change<const N: usize, const S: usize>(
     maximum(&changes) / f64::EPSILON
 }
 
-/// The same for many rows: the largest change of each stage, then of all.
+/// The largest change as [`change`], computed for many rows: first of each stage, then of all.
 #[inline(always)]
 fn change_of_many<const N: usize, const S: usize>(
     n: usize,

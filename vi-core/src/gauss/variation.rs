@@ -373,7 +373,7 @@ struct Explicit<const N: usize, const S: usize> {
     slopes: [[Stages<N, S>; 2]; TOGETHER],
     /// Derivatives of positions and momenta at the stages with respect to the length, at fixed velocities and forces.
     moved: [Stages<N, S>; 2],
-    /// The same at the end.
+    /// Derivatives of positions and momenta at the end with respect to the length, at fixed velocities and forces.
     moved_end: [SVector<f64, N>; 2],
 }
 

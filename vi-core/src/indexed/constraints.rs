@@ -28,7 +28,8 @@ pub trait IndexedConstraints<const N: usize, const K: usize, T: Real = f64>: Lag
     fn dual(&self) -> Self::Dual;
     /// The constraints: g, or `A v + a`.
     fn constraint_values(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> [T; K];
-    /// Their derivatives. For `columns = [c_q, c_v]`, row r, column j is `(c_v ∂/∂v_j + c_q ∂/∂q_j)` of constraint r.
+    /// Derivatives of the constraints. For `columns = [c_q, c_v]`, row r, column j is `(c_v ∂/∂v_j + c_q ∂/∂q_j)` of
+    /// constraint r.
     fn constraint_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>, columns: [T; 2])
     -> [SVector<T, N>; K];
     /// Second derivatives of the sum of all constraints, each times its weight, as those of L in

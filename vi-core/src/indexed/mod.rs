@@ -56,10 +56,10 @@ pub trait Indexed<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
 
     /// Converts the system to dual numbers; the parameters are constants.
     fn dual(&self) -> Self::Dual;
-    /// L, its first derivatives and f at a point, by one reverse sweep.
+    /// L, its first derivatives and f at a point, by one backward pass.
     fn first_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> FirstDerivatives<N, T>;
-    /// The same, and the same sums with the absolute value of each term. The rounding error of a first derivative is of
-    /// the order of an ulp of the latter.
+    /// L, its first derivatives and f, and the same sums with the absolute value of each term. The rounding error of a
+    /// first derivative is of the order of an ulp of the latter.
     fn measured_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> [FirstDerivatives<N, T>; 2];
     /// Second derivatives of L. For `rows = [r_q, r_v]` and `columns = [c_q, c_v]`, row i, column j is
     /// `(r_v ∂/∂v_i + r_q ∂/∂q_i) (c_v ∂/∂v_j + c_q ∂/∂q_j) L`.
@@ -270,7 +270,7 @@ pub fn point<const N: usize, T: Real, S: Indexed<N, T>, M>(
     Point { momentum, force, mass }
 }
 
-/// The same with the energy, its rate of change and a time scale, for
+/// The equations of motion at a point with the energy, its rate of change and a time scale, for
 /// [`Motion::scaled_point`](crate::motion::Motion::scaled_point). `scale` is g, ∂g/∂q and ∂g/∂t.
 #[inline]
 pub fn scaled_point<const N: usize, T: Real, S: Indexed<N, T>, M>(

@@ -325,7 +325,7 @@ where
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Phase<T> {
-    /// Their length.
+    /// Length of these steps.
     pub(crate) h: T,
     /// Whether the energy-preserving step would be shorter than these, rather than longer or absent.
     pub(crate) shorter: bool,

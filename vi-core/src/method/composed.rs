@@ -1,7 +1,7 @@
 //! Composition of steps with constraints: fixed steps of order 4, 6 and 8 from the midpoint rule [`Gauss<1>`].
 //!
-//! As [`Composition`], of which it takes the weights: one step consists of the steps `γ_1 h, γ_2 h, …`, each of which
-//! satisfies the constraints at its end. It is symmetric, and for holonomic constraints without force symplectic.
+//! One step consists of the steps `γ_1 h, γ_2 h, …` with the weights of [`Composition`]. Each of them satisfies the
+//! constraints at its end. The step is symmetric, and for holonomic constraints without force symplectic.
 //! [`Gauss`] with more stages has the same orders with positive substeps, and tolerates damping.
 //!
 //! Each substep is extrapolated from the same substep of earlier steps.

@@ -139,7 +139,7 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
         self.no_step_at(self.steps.density(&self.node.state()).unwrap_or_else(|_| last()))
     }
 
-    /// The same because of this density D_s.
+    /// The error if no forward step exists because of this density D_s.
     fn no_step_at(&self, density: f64) -> StepError {
         let Self { node, history, .. } = *self;
         let StepHistory { excess, shift, largest, .. } = *history;

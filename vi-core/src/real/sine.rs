@@ -17,12 +17,12 @@ use wide::{f64x2, f64x4, u64x2, u64x4};
 
 /// Largest reducible angle, in radians: up to it n has 16 bits. Beyond, and for NaN, use the library.
 pub const LARGEST: f64 = 1.0e5;
-/// The same in single precision: n has 10 bits.
+/// Largest reducible angle in single precision, in radians: n has 10 bits.
 pub const LARGEST_SINGLE: f32 = 1.0e3;
 
 /// π/2 as the sum of three numbers, the first two with 33 bits.
 const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
-/// The same as the sum of four numbers of single precision, the first three with 14 bits.
+/// π/2 as the sum of four numbers of single precision, the first three with 14 bits.
 const HALF_PI_SINGLE: [f32; 4] = [1.570_678_7, 1.176_148_65e-4, 9.920_313e-10, 6.223_372e-14];
 
 const S: [f64; 6] = [
@@ -44,7 +44,7 @@ const C: [f64; 6] = [
 
 /// A number, or a vector of numbers.
 pub trait Vector: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
-    /// Their bits.
+    /// The bits of the numbers.
     type Bits: Copy + Shl<u32, Output = Self::Bits> + BitXor<Output = Self::Bits>;
     /// Adding this number rounds to an integer, stored in the lowest bits: 1.5 · 2⁵² in double precision.
     const ROUNDING: f64 = 6_755_399_441_055_744.0;
@@ -171,7 +171,7 @@ pub fn sin_cos<V: Vector, const FUSED: bool>(x: V) -> (V, V) {
     )
 }
 
-/// The same for several angles, up to four at a time.
+/// Sines and cosines of several angles as [`sin_cos`], up to four at a time.
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_each<const K: usize, const FUSED: bool>(angles: [f64; K]) -> [(f64, f64); K] {

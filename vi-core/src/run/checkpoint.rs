@@ -89,7 +89,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 }
 
 impl<Y, const N: usize, T: Scalar> Checkpoint<Y, N, T> {
-    /// The same with another memory, which `of` returns for this one.
+    /// This checkpoint with the memory that `of` returns for its memory.
     ///
     /// # Errors
     /// The errors of `of`.

@@ -71,7 +71,8 @@ const GROSS: f64 = 1e-3;
 /// Relative change of H since the start from which on the motion counts as lost. The energy errors of steps that resolve a
 /// motion oscillate below it.
 const DRIFTED: f64 = 0.01;
-/// The same in an escape, relative to H and to the geometric mean of `Σ |p v|`.
+/// Change of H in an escape from which on the motion counts as lost, relative to H and to the geometric mean of `Σ |p
+/// v|`.
 const BROKEN: f64 = 0.03;
 /// Ratio of `Σ |p v|` to its mean above which the motion has only become faster so far.
 const RISEN: f64 = 2.0;
@@ -473,7 +474,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         Self { energy: EnergyPath::from(run), ..Self::of_steps(run) }
     }
 
-    /// The same for errors of single steps alone.
+    /// A monitor of the errors of single steps only, which starts at the current node of a run.
     pub(super) fn of_steps(run: &Run<M, S, N, T>) -> Self {
         let nothing = ErrorEstimate::none(run.node.t.to_f64());
         let (node, zeros, none) = (run.node, SVector::zeros(), SVector::zeros());
@@ -758,7 +759,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.lasting().or_larger(self.passing)
     }
 
-    /// The same without an error of H that may pass.
+    /// The largest relative error so far, without an error of H that may pass.
     fn lasting(&self) -> ErrorEstimate {
         let found = match &self.stretch {
             Some(stretch) => self.relative(&stretch.errors, &stretch.times),

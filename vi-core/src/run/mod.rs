@@ -373,7 +373,7 @@ pub struct Parts<Y, const N: usize> {
 }
 
 impl<Y, const N: usize> Parts<Y, N> {
-    /// The same with another memory.
+    /// These data with another memory.
     pub fn with<Z>(self, memory: Z) -> Parts<Z, N> {
         let Self { node, turns, h, failure, .. } = self;
         Parts { node, turns, h, memory, failure }

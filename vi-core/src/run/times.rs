@@ -75,7 +75,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
         self.approach_by(t, Self::step)
     }
 
-    /// The same outside of loops.
+    /// Takes one step toward the time `t` as `approach`, for calls outside of loops.
     ///
     /// # Errors
     /// As [`Run::until`].

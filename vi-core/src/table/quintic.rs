@@ -213,7 +213,7 @@ pub(super) const fn pieces<const N: usize>(x: &[f64; N], y: &[f64; N], is_period
     pieces
 }
 
-/// The same for lists of one length; the coefficients begin as zeros.
+/// Computes the coefficients as [`pieces`], for lists of one length, in an array of zeros.
 pub(super) const fn pieces_of(x: &[f64], y: &[f64], is_periodic: bool, pieces: &mut [[f64; 6]], buffers: &mut Buffers) {
     let n = x.len();
     if !is_periodic && n <= 6 {

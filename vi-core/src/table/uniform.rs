@@ -129,7 +129,8 @@ pub(super) const fn cardinal_slopes(knots: &[f64], slopes: &mut [f64], buffers: 
     }
 }
 
-/// The same for a periodic table, which has as many knots as there are buffers.
+/// The slopes of all cardinal functions of a periodic table at each knot, row by row. The number of knots is that of
+/// the buffers.
 pub(super) const fn periodic_slopes([from, to]: [f64; 2], slopes: &mut [f64], buffers: &mut Buffers) {
     let n = buffers.values.len();
     let per_distance = 3.0 * number(n) / (to - from);

@@ -223,7 +223,8 @@ where
         correction
     }
 
-    /// The same by the mass matrix of each stage, whose inverse waits for the momenta of all stages.
+    /// The corrections of the velocities by the mass matrix of each stage, whose inverse needs the momenta of all
+    /// stages.
     #[inline(always)]
     fn by_varying_mass(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
         let mut inverse = [[[0.0; S]; N]; N];

@@ -85,8 +85,8 @@ impl<const N: usize, const S: usize> LastRates<N, S> {
         Rates { velocity: extrapolated::<N, S, FUSED>(N, &velocity), g, energy }
     }
 
-    /// The same for a next step of another length: extrapolated up to a limited distance; beyond, the rates of the last
-    /// stage.
+    /// Rates at the stages of the next step if it has another length: extrapolated up to a limited distance; beyond it,
+    /// the rates of the last stage.
     #[cold]
     fn guess_of_another_length(&self, dtau: f64) -> Rates<N, S> {
         let c = const { &Tableau::<S>::VALUES.c };

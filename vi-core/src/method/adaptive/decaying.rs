@@ -61,7 +61,7 @@ pub struct Decaying {
 /// δ of the step of the length h that led to a node, and its velocity.
 ///
 /// # Errors
-/// As [`State::velocity`](crate::State::velocity), and that of the acceleration.
+/// The errors of [`State::velocity`](crate::State::velocity) and of the acceleration.
 fn defect<S: Convertible<N>, const N: usize, const STAGES: usize>(
     system: &S,
     (end, steps): (&Node<N>, &Steps<S, N, STAGES>),

@@ -78,7 +78,8 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
         Ok(Self { stages, before: *node, h, convergence, pause, linearization: None })
     }
 
-    /// The same for a step of the length h: stages of a step of that length before the node, of the same polynomials.
+    /// Stages for a change of the step to the length h: those of a step of that length before the node, with the same
+    /// polynomials.
     fn resized<Y: Motion<N>>(&self, system: &Y, node: &Node<N>, h: f64) -> Result<Self, StepError> {
         let ratio = h / self.h;
         if !(self.has_step(node) && ratio > 0.0) {
