@@ -232,7 +232,7 @@ fn filled(function: &Function, rows: &[Vec<OperationId>]) -> Pattern {
     pattern::pattern(&entries(function, rows))
 }
 
-/// Which entries of a matrix are nonzero.
+/// For each entry of a matrix, whether it is nonzero.
 fn entries(function: &Function, rows: &[Vec<OperationId>]) -> Vec<Vec<bool>> {
     let zero = |id: &OperationId| function.operations.as_constant(*id) == Some(0.0);
     rows.iter().map(|row| row.iter().map(|id| !zero(id)).collect()).collect()
@@ -243,7 +243,7 @@ fn filled_together(function: Option<&Function>, outputs: &[Output]) -> Pattern {
     function.map_or(Pattern::Dense, |function| pattern::pattern(&together(function, outputs)))
 }
 
-/// Which entries are nonzero in any of these matrices among the results of a function.
+/// For each entry, whether it is nonzero in any of these matrices among the results of a function.
 fn together(function: &Function, outputs: &[Output]) -> Vec<Vec<bool>> {
     let mut matrices = outputs.iter().map(|output| entries(function, function.results.matrix(*output)));
     let mut all = matrices.next().unwrap_or_default();

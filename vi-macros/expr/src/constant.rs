@@ -44,7 +44,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         })
     }
 
-    /// How a constant expression compares with 0.
+    /// The comparison of a constant expression with 0.
     ///
     /// # Errors
     /// The constant has no value, or its sign would take more than 4096 bits.

@@ -25,7 +25,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.evaluate_with(exprs, values, &Opaque::value)
     }
 
-    /// The same with values of opaque functions in place of their stand-ins.
+    /// Values of several expressions in order, with values of opaque functions in place of their stand-ins.
     #[must_use]
     pub fn evaluate_with(
         &self,

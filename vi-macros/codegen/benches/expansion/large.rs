@@ -10,7 +10,7 @@ use vi_codegen::Compiled;
 use vi_codegen::syntax::parse;
 use vi_report::chart::{Axis, Chart, Look, Panel, Series, Sheet};
 
-/// What is measured of one system.
+/// The measurements of one system.
 struct Row {
     n: f64,
     lines: f64,

@@ -41,7 +41,7 @@ impl Project {
         start.elapsed().as_secs_f64()
     }
 
-    /// What the release build prints.
+    /// The output of the release build.
     pub(crate) fn output(&self) -> String {
         let program = self.folder.join("target/release/expansion");
         let output = Command::new(program).output().expect("the program runs");

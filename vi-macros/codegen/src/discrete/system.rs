@@ -1,4 +1,4 @@
-//! From a model to its discrete system.
+//! Derivation of the discrete system of a model.
 //!
 //! In: a [`Model`]. Out: a [`DiscreteSystem`], or a message that the rule is invalid or the system too large.
 

@@ -34,7 +34,7 @@ pub(super) struct Loops<'a> {
     singles: Vec<OperationId>,
     /// Families read by an operation outside families.
     outside: BTreeSet<usize>,
-    /// How many families read each family.
+    /// The number of families that read each family.
     uses: Vec<usize>,
     /// Folds over members of families, keyed by their last operation.
     folds: BTreeMap<OperationId, Fold>,

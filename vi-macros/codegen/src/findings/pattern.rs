@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 pub enum Pattern {
     /// One row.
     Scalar,
-    /// On the diagonal only.
+    /// Nonzero entries on the diagonal only.
     Diagonal,
     /// Decoupled blocks: the indices of each.
     Blocks(Vec<Vec<usize>>),

@@ -52,7 +52,7 @@ impl Line {
         Self::equation_in(derived, &derived.pool, left, right)
     }
 
-    /// The same for an expression in another pool.
+    /// The equation that gives an expression in another pool a name.
     pub(super) fn equation_in(derived: &Derived, pool: &Pool<Symbol>, left: (&str, &str), right: Expr) -> Self {
         let Derived { model, system, .. } = derived;
         Self::Equation {

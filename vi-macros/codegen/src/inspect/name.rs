@@ -16,7 +16,7 @@ pub(super) struct Name {
 }
 
 impl Name {
-    /// From a user's name.
+    /// The name of a user in LaTeX.
     pub(super) fn of(written: &str) -> Self {
         let written = written.trim_start_matches("r#");
         let (stem, rest) = written.split_once('_').map_or((written, None), |(stem, rest)| (stem, Some(rest)));

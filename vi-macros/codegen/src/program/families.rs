@@ -30,7 +30,7 @@ enum Shape {
 /// An operand relative to the position of its operation.
 #[derive(PartialEq, Eq, Hash)]
 enum Relative {
-    /// The same for all members.
+    /// The same operation for all members.
     Fixed(OperationId),
     /// The operation of this shape that is `on` places later, or `back` places earlier.
     Shifted { shape: usize, on: usize, back: usize },
@@ -41,13 +41,13 @@ enum Relative {
 pub struct Membership {
     /// Index into the families.
     pub family: usize,
-    /// From 0 to the length.
+    /// Position in the family, from 0.
     pub place: usize,
 }
 
 /// The families of a function.
 pub struct Families {
-    /// Their members in order; a family comes after the families of its operands.
+    /// The members of each family in order; a family comes after the families of its operands.
     pub members: Vec<Vec<OperationId>>,
     of: Table<OperationId, Membership>,
 }
@@ -61,7 +61,7 @@ impl Families {
 }
 
 impl Function {
-    /// Its families.
+    /// The families among its operations.
     #[must_use]
     pub fn families(&self) -> Families {
         let (mut shapes, mut placed) = (Distinct::<Shape>::default(), Table::default());

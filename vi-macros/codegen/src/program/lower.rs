@@ -1,4 +1,4 @@
-//! From expressions to operations.
+//! Translation of expressions to operations.
 //!
 //! In: expressions without fields. Out: operations, shared over everything that one function evaluates. Sums are
 //! factored by common factors. Products start with their constant part: numbers, parameters and the step. In sums with

@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-9;
 /// Number of vanishing derivatives of a function that is zero around a state; larger than any count.
 pub(super) const ALL: u8 = u8::MAX;
 
-/// How an expression depends on the state.
+/// Dependence of an expression on the state.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum StateDependence {
     /// Made of numbers and parameters.
@@ -53,7 +53,7 @@ const LEAST_KNOWN: Nature = Nature { change: StateDependence::Varying, singular:
 /// A product of powers.
 type Factors = Vec<(Expr, Rational)>;
 
-/// Factors whose product tends to 0 where `base` is zero.
+/// Factors whose product tends to 0 at zeros of `base`.
 pub(super) struct Limit {
     pub(super) factors: Factors,
     pub(super) base: Expr,
@@ -109,7 +109,7 @@ impl Known {
         Analysis { pool, known: self }.limits(&factors).is_some()
     }
 
-    /// Whether a factor of a product may be infinite, or without a value, at a state where a limit is sought.
+    /// Whether a factor of a product may be infinite, or without a value, at a state at which a limit is sought.
     fn may_be_infinite(&mut self, pool: &Pool<Symbol>, factors: &[(Expr, Rational)]) -> bool {
         factors.len() > 1
             && factors.iter().any(|(base, exponent)| {
@@ -119,7 +119,7 @@ impl Known {
             })
     }
 
-    /// How an expression depends on the state. Caches the result for all its parts.
+    /// The dependence of an expression on the state. Caches the result for all its parts.
     fn nature(&mut self, pool: &Pool<Symbol>, expr: Expr) -> Nature {
         if let Some(known) = self.natures.get(expr) {
             return *known;
