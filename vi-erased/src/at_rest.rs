@@ -2,8 +2,8 @@
 //!
 //! In: a type-erased system of more coordinates than were declared; the others have the mass 1, no force and no
 //! constraint.
-//! Out: a [`System`] of the declared ones. Given vectors get zeros at their end, and found ones lose them. So few numbers
-//! of coordinates have to be compiled.
+//! Out: a [`System`] of the declared coordinates. Vectors passed to the inner system are extended by zeros, and vectors
+//! that it returns are shortened. So only few numbers of coordinates have to be compiled.
 
 #[cfg(feature = "derivatives")]
 use crate::control::{Control, Linear, Rest, pairs};

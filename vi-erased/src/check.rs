@@ -101,7 +101,7 @@ pub enum Refusal {
     Number {
         /// Name of the input.
         input: &'static str,
-        /// Its option.
+        /// Name of its option.
         option: &'static str,
         /// The allowed values.
         allowed: &'static str,

@@ -1,4 +1,4 @@
-//! What a controller asks of a system and of a run, type-erased. Matrices are flat, row by row.
+//! Quantities of a system and of a run that a controller needs, type-erased. Matrices are flat, row by row.
 
 use vi_core::StepError;
 use vi_core::control::{Equilibrium, Linearization};
@@ -72,7 +72,7 @@ pub(crate) fn pairs(of: Vec<Complex<f64>>) -> Vec<[f64; 2]> {
     of.into_iter().map(|number| [number.re, number.im]).collect()
 }
 
-/// What a controller asks of a system.
+/// Quantities of a system that a controller needs.
 pub trait Control {
     /// Indices of the inputs among the parameters.
     fn inputs(&self) -> &'static [usize];

@@ -178,7 +178,7 @@ pub(crate) fn lyapunov<S: Runnable<N>, const N: usize>(
     Ok(Some((of.run().clone(), of.exponents())))
 }
 
-/// Steps of a stretch of a gradient, whose states are all kept.
+/// Number of steps between two checkpoints of a gradient; the states of these steps are all stored.
 const STRETCH: u64 = 2048;
 
 /// The gradient of a linear function of the end of some steps, by one backward pass, as
@@ -277,8 +277,8 @@ fn directions<S: Runnable<N>, const N: usize>(run: &AnyRun<S, N>, parameters: &[
 }
 
 /// The run with its directions, which are moved to the nearest admissible ones. With `has_velocities` the second half of
-/// those of the state is of velocities, and parameters vary with constant velocities. Where the run began, the energy
-/// that it keeps follows from its start; later it changes as H does.
+/// those of the state is of velocities, and parameters vary with constant velocities. At the start of the run the
+/// energy that it keeps follows from the start; later it changes as H does.
 ///
 /// # Errors
 /// As [`Tangent::project`], [`Tangent::from_start`] and [`Tangent::from_change`].

@@ -1,4 +1,4 @@
-//! What a system and a method must have for a run behind a pointer.
+//! Requirements on systems and methods for type-erased runs.
 
 use crate::simulation::ShiftedEnergy;
 #[cfg(not(feature = "derivatives"))]

@@ -15,12 +15,12 @@ pub struct Points<'a> {
 
 /// A function of the time, the coordinates, the velocities and M inputs.
 pub trait Function: Send {
-    /// Its values at K points (order 0), its derivatives with respect to t, q, v and the inputs (order 1, K times
-    /// D = 1 + 2N + M numbers), or its second derivatives (order 2, K symmetric matrices of D² numbers). NaN where there
-    /// is none.
+    /// The values at K points (order 0), the derivatives with respect to t, q, v and the inputs (order 1, K times
+    /// D = 1 + 2N + M numbers), or the second derivatives (order 2, K symmetric matrices of D² numbers). NaN if a value
+    /// does not exist.
     fn at(&self, points: &Points<'_>, order: u8) -> Vec<f64>;
 
-    /// Whether it depends on inputs alone.
+    /// Whether the function depends on inputs only.
     fn is_of_inputs(&self) -> bool {
         false
     }

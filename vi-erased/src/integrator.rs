@@ -36,7 +36,7 @@ type Restart<S> = fn(S, &str) -> Result<Box<dyn Simulation>, String>;
 /// An integrator that is built for a system.
 #[derive(Clone, Copy)]
 pub struct Integrator<S, const N: usize> {
-    /// Which one it is.
+    /// Its method, number of stages and time.
     pub built: Built,
     pub(crate) begin: Begin<S, N>,
     #[cfg(feature = "checkpoints")]

@@ -1,6 +1,6 @@
 //! Mechanical systems and their runs, type-erased.
 //!
-//! In: a system that `lagrangian!` declares, and the integrators that are wanted of it ([`kind!`]). Out: a
+//! In: a system that `lagrangian!` declares, and a list of integrators for it ([`kind!`]). Out: a
 //! [`System`], and for a [`Plan`] a [`Simulation`]. Both are `Send`, and know neither the type of the system nor its
 //! number of coordinates. The compiler instantiates everything generic once per system and integrator, where a program
 //! calls [`kind!`]; loops over steps are inside, without virtual calls.
@@ -10,9 +10,9 @@
 //! | [`plan`] | the description of a run |
 //! | [`start`] | an accurate second node |
 //! | [`section`] | events of a run, type-erased |
-//! | `control` | what a controller asks: mass matrix, linearizations, equilibria; feature `derivatives` |
-//! | [`simulation`] | a started run: its rows, and what it is asked |
-//! | [`erasable`] | what a system and a method must have |
+//! | `control` | mass matrix, linearizations and equilibria, for controllers; feature `derivatives` |
+//! | [`simulation`] | a started run: its rows and its queries |
+//! | [`erasable`] | requirements on systems and methods |
 //! | [`method`] | a method behind a pointer: runs are compiled once for each system |
 //! | `run` | a run of such a method |
 //! | `derivatives` | tangent vectors, gradients and Lyapunov exponents of runs; feature `derivatives` |

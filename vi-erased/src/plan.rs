@@ -181,13 +181,13 @@ impl Named for Start {
 /// The shift D_* of the step density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shift {
-    /// This value.
+    /// A given value.
     Of(f64),
     /// Twice the largest step density over this time from the start.
     Over(f64),
 }
 
-/// What distinguishes the integrators of a system: method, stages, and whether in transformed time.
+/// An integrator of a system: method, stages, and whether it uses transformed time.
 pub type Built = (Method, Option<usize>, bool);
 
 /// The description of a run.
@@ -234,7 +234,7 @@ impl Plan {
         Self { stages, ..Self::new(method, f64::NAN, nowhere) }
     }
 
-    /// What determines the length of a step.
+    /// The rule for the length of a step.
     #[must_use]
     pub fn length(&self) -> StepLength {
         self.tolerance.map_or(StepLength::Given(self.h), StepLength::Found)
@@ -246,7 +246,7 @@ impl Plan {
         self.method.finds_length() || self.dtau.is_some()
     }
 
-    /// The integrator that it asks for, of a system with or without constraints.
+    /// The integrator of this plan for a system with or without constraints.
     #[must_use]
     pub fn wanted(&self, has_constraints: bool) -> Built {
         (self.method, self.energy_stages().or(self.gauss_stages(has_constraints)), self.dtau.is_some())
@@ -281,7 +281,7 @@ impl Plan {
 /// The length of a step, or what it follows from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepLength {
-    /// This length.
+    /// A given length.
     Given(f64),
     /// The tolerance of the error of a step.
     Found(f64),

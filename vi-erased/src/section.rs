@@ -33,7 +33,7 @@ impl Watch {
         Self(Arc::new(g))
     }
 
-    /// Its value.
+    /// The value of the function.
     #[must_use]
     pub fn value(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         (self.0)(t, q, v)
@@ -78,7 +78,7 @@ pub enum Section {
     Period {
         /// Time of the first one.
         start: f64,
-        /// From one to the next.
+        /// The time between two crossings.
         period: f64,
     },
     /// A function crosses zero.

@@ -195,7 +195,7 @@ impl<S: Runnable<N>, const N: usize> Session for Simulated<S, N> {
         if !weights.len().is_multiple_of(2) || weights.len() > 2 * N {
             return Err(wrong_size(weights, "number of coordinates and momenta"));
         }
-        // Of a symmetric matrix the columns are the rows.
+        // The matrix is symmetric, so its columns are its rows.
         Ok(derivatives::curvature(&self.run, wanted, weights)?.map(|matrix| matrix.as_slice().to_vec()))
     }
 

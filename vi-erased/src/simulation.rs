@@ -1,8 +1,8 @@
 //! A started run, type-erased.
 //!
-//! Its rows are the nodes of the integrator, starting with its first node: [`Steps`]. With the feature `sessions` its
-//! parameters and its state change, its nodes are recorded, its derivatives are asked for: [`Session`], which the
-//! command does not need, and which is a fifth of the machine code of a run.
+//! Its rows are the nodes of the integrator, starting with its first node: [`Steps`]. With the feature `sessions` a
+//! program changes its parameters and its state, records its nodes and computes its derivatives: [`Session`]. The
+//! command does not need this trait, which is a fifth of the machine code of a run.
 
 #[cfg(feature = "derivatives")]
 use crate::control::Linear;
@@ -187,7 +187,7 @@ impl Wanted<'_> {
     }
 }
 
-/// What a program asks of a run.
+/// A run that a program controls.
 #[cfg(feature = "sessions")]
 pub trait Session {
     /// Velocities of the last node.
@@ -246,10 +246,10 @@ pub trait Session {
     /// # Errors
     /// As [`Run::local_error`](vi_core::Run::local_error).
     fn local_error(&self) -> Result<[Vec<f64>; 2], StepError>;
-    /// Everything that the run carries, as text for [`System::restart`](crate::System::restart).
+    /// The complete state of the run as text for [`System::restart`](crate::System::restart).
     ///
     /// # Errors
-    /// What cannot be written.
+    /// A part of the state that cannot be written.
     #[cfg(feature = "checkpoints")]
     fn checkpoint(&self) -> Result<String, String>;
     /// The linearization of the next step. The run does not change.
@@ -338,7 +338,7 @@ pub trait Simulation: Steps + Session + Send + Sync {
     /// The error of the failed step.
     fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError>;
     /// Advances to the time `end`, and passes each crossing of a section to `take`, in order. A crossing is located by
-    /// a step of the exact length h, and has no discrete energy. It ends early where `take` returns false.
+    /// a step of the exact length h, and has no discrete energy. It ends early if `take` returns false.
     ///
     /// # Errors
     /// The error of the failed step.

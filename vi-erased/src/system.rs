@@ -43,7 +43,7 @@ pub enum Quantity {
     Lagrangian,
     /// `v·∂L/∂v − L` at (t, q, v).
     Energy,
-    /// The same at (t, q, p).
+    /// `v·∂L/∂v − L` at (t, q, p).
     Hamiltonian,
     /// g of the time scale at (t, q, v); no number without the clause `time_scale`.
     TimeScale,
@@ -53,7 +53,7 @@ pub enum Quantity {
     Force,
     /// The acceleration at (t, q, v), which has to satisfy the constraints.
     Acceleration,
-    /// The same at any (t, q, v), for solvers whose stages leave the constraints.
+    /// The acceleration at any (t, q, v), for solvers whose stages leave the constraints.
     ExtendedAcceleration,
     /// The velocity at (t, q, p).
     Velocity,
@@ -90,7 +90,7 @@ pub trait System: Send + Sync {
     fn name(&self) -> &'static str;
     /// Documentation of the declaration.
     fn about(&self) -> &'static str;
-    /// Its declaration, as tokens.
+    /// The text of the declaration, as tokens.
     fn definition(&self) -> &'static str;
     /// Names of the coordinates.
     fn coordinates(&self) -> Vec<&'static str>;
@@ -120,7 +120,7 @@ pub trait System: Send + Sync {
     /// Whether the energy of a motion is constant: L and f are autonomous, and there is no force.
     fn conserves_energy(&self) -> bool;
     /// A function at as many points as there are times; `q` and `v`, or momenta, have N numbers for each. Appends to
-    /// `out`, N numbers for each point if the function is a vector; of the constraints as [`Quantity`] says.
+    /// `out`, N numbers for each point if the function is a vector; for constraints see [`Quantity`].
     ///
     /// # Errors
     /// [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] of the first point without a
@@ -149,10 +149,10 @@ pub trait System: Send + Sync {
     /// The same system without constraints of these names, which follow from the others: they have no reaction, and every
     /// step checks them. `None` for a name of no constraint, and for a compiled system, whose type keeps all.
     fn without(&self, constraints: &[&str]) -> Option<Box<dyn System>>;
-    /// What a controller asks of it.
+    /// The quantities that a controller needs.
     #[cfg(feature = "derivatives")]
     fn control(&self) -> &dyn Control;
-    /// What studies compare its runs with.
+    /// The quantities with which studies compare runs.
     #[cfg(feature = "studies")]
     fn studies(&self) -> &dyn Studies;
     /// Starts a run.
@@ -453,7 +453,7 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
         };
         let wanted = plan.wanted(!self.system.constraint_names().is_empty());
         let integrator = self.integrator(wanted)?;
-        // A text derives its rule when a run asks for it.
+        // A text derives its rule when a run needs it.
         let is_by_rule = wanted.1.is_none() && wanted.0.splitting().is_none();
         if is_by_rule && self.system.has_too_large_rule() {
             return Err(StepError::RuleTooLarge { system: self.system.name() });

@@ -1,7 +1,7 @@
 //! Optimal control as a nonlinear program, by direct multiple shooting.
 //!
 //! In: a system, a method whose steps have a given length, inputs that are constant over each of K steps, a cost and
-//! conditions. Out: a [`Transcription`], the callbacks that a solver of nonlinear programs asks for:
+//! conditions. Out: a [`Transcription`], the callbacks that a solver of nonlinear programs needs:
 //!
 //! ```text
 //! minimise f(x)    with    lower ≤ x ≤ upper    and    row_lower ≤ g(x) ≤ row_upper
@@ -49,7 +49,7 @@ impl Mesh {
 /// The places of the entries of a sparse matrix, in compressed columns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pattern {
-    /// Where each column starts among the entries, and behind the last one their number.
+    /// The index of the first entry of each column, then the number of entries.
     pub starts: Vec<usize>,
     /// The row of each entry, ascending in each column.
     pub rows: Vec<usize>,
@@ -123,7 +123,7 @@ struct Row {
 struct Local {
     value: f64,
     slope: Vec<f64>,
-    /// Row by row; empty unless it was asked for.
+    /// Second derivatives, row by row; empty unless they were requested.
     curvature: Vec<f64>,
 }
 
@@ -149,7 +149,7 @@ pub struct Transcription {
     cost: Option<Box<dyn Function>>,
     final_cost: Option<Box<dyn Function>>,
     rows: Vec<Row>,
-    /// Found when it is asked for, since each condition changes it.
+    /// Found at the first request, since each condition changes it.
     jacobian: OnceCell<Pattern>,
     hessian: Pattern,
 }
@@ -226,7 +226,7 @@ impl Transcription {
         self.jacobian = OnceCell::new();
     }
 
-    /// The same of a velocity, by the index of its coordinate.
+    /// Adds bounds of a velocity, given by the index of its coordinate, as [`Self::bound`].
     pub fn bound_velocity(&mut self, index: usize, nodes: &[usize], bounds: [f64; 2]) {
         self.bound(Box::new(Velocity { index, n: self.n, inputs: self.inputs.len() }), nodes, bounds);
     }
@@ -237,7 +237,8 @@ impl Transcription {
         &self.bounds
     }
 
-    /// The same, to be set: [`Self::place`] says where. Those of the duration stay as the mesh has them.
+    /// The bounds of the variables, to be set at the index [`Self::place`]. The bounds of the duration stay as the mesh
+    /// has them.
     pub fn bounds_mut(&mut self) -> &mut [[f64; 2]] {
         &mut self.bounds
     }
@@ -463,7 +464,7 @@ impl Transcription {
         let [mut t, mut h, mut q, mut p, mut parameters] = [const { Vec::new() }; 5];
         for &k in nodes {
             t.push(self.time(k, 0.0, duration));
-            // No part of a step converts the state, whatever its length.
+            // A part of length zero only converts the state; the length of its step has no effect.
             h.push(if part == 0.0 { 1.0 } else { part } * self.widths[k] * duration);
             q.extend((0..n).map(|local| x[self.place(k, local)]));
             p.extend((n..2 * n).map(|local| x[self.place(k, local)]));
@@ -626,7 +627,7 @@ impl Legs {
     const CONVERSION: Self = Self { nodes: Vec::new(), part: 0.0, steps: 0, has_velocities: true };
 }
 
-/// Their ends.
+/// The states at the ends of legs.
 struct Stops {
     legs: Legs,
     of: Ends,

@@ -1,4 +1,4 @@
-//! What studies compare the runs of a system with.
+//! Reference quantities with which studies compare the runs of a system.
 //!
 //! | module | product |
 //! |---|---|
@@ -14,7 +14,7 @@ use exponents::Exponents;
 use rival::Ended;
 use vi_core::StepError;
 
-/// What studies compare runs with.
+/// Reference quantities with which studies compare runs.
 pub trait Studies {
     /// Step density D of a rule at a point; `None` without a value, without a rule, or for another number of coordinates.
     fn step_density(&self, at: &PhasePoint) -> Option<f64>;
