@@ -1,4 +1,4 @@
-//! What the traits of a system ask for: facts and functions.
+//! The facts and functions of a system that its traits provide.
 
 use crate::lines::Lines;
 use crate::tables::Tables;

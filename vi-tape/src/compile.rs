@@ -1,8 +1,8 @@
-//! From the text of a system to its code.
+//! Compilation of the text of a system to its code.
 //!
-//! In: the text of a `lagrangian!`. Out: a [`Code`]. The stages up to the program are those of the macro; where the
-//! macro prints operations, [`instructions`] selects instructions, [`order`] puts equal ones together, and
-//! [`registers`] places their results.
+//! In: the text of a `lagrangian!`. Out: a [`Code`]. The stages up to the program are those of the macro. Instead of
+//! printing operations, [`instructions`] selects instructions, [`order`] puts equal ones together, and [`registers`]
+//! places their results.
 
 mod instructions;
 mod order;
@@ -93,7 +93,7 @@ fn by_rule(code: &Code) -> ByRule {
     found.unwrap_or_else(|| ByRule { is_too_large: true, ..ByRule::default() })
 }
 
-/// The same of a derived system; empty without a rule.
+/// The equations of a step of a derived system; empty without a rule.
 fn steps(of: &Derived, tables: &Tables) -> Result<ByRule, TooMany> {
     let Derived { model, program, findings, .. } = of;
     let Some(steps) = &findings.steps else { return Ok(ByRule::default()) };
@@ -107,7 +107,7 @@ fn steps(of: &Derived, tables: &Tables) -> Result<ByRule, TooMany> {
     })
 }
 
-/// What to do about several declarations.
+/// The message about several declarations.
 const ONE: &str =
     "error: the text declares several systems\n = help: write one `struct … { … }`, or one `lagrangian! { … }`";
 
@@ -269,7 +269,7 @@ fn form(pattern: &Pattern, is_symmetric: bool, size: usize) -> AnyForm {
     }
 }
 
-/// What a text has too many of.
+/// The noun for the items of which a text has too many.
 type TooMany = &'static str;
 
 fn functions(of: &Derived, constraints: Option<Constraints>, tables: &Tables) -> Result<Functions, TooMany> {
@@ -365,7 +365,7 @@ fn step_functions(of: &Derived, tables: &Tables) -> Result<StepFunctions, TooMan
     })
 }
 
-/// Where an input is: the argument and the entry, as the functions of `tape` pass them.
+/// The place of an input: the argument and the entry, as the functions of `tape` pass them.
 fn place(symbol: &Symbol, of: FunctionId) -> Option<(u8, usize)> {
     let is_of_interval = (FunctionId::Ld..=FunctionId::GdPlus).contains(&of);
     Some(match symbol {

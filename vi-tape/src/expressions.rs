@@ -180,7 +180,7 @@ impl Observable {
         self.entries.iter().map(|entry| *entry == zero).collect()
     }
 
-    /// The entries at a point, row by row; NaN where they have no value.
+    /// The entries at a point, row by row; NaN if they have no value.
     #[must_use]
     pub fn values(&self, at: &Moment<'_>) -> Vec<f64> {
         self.of.values(&self.entries, at)

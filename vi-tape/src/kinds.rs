@@ -1,4 +1,4 @@
-//! What differs between systems without and with constraints: the forms of matrices, and the functions of constraints.
+//! Differences between systems without and with constraints: the forms of matrices, and the functions of constraints.
 
 use crate::code::{Code, Columns};
 use crate::lines::Results;

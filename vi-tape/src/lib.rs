@@ -2,11 +2,11 @@
 //!
 //! In: the text of a system, as `lagrangian!` takes it. Out: a [`System`], which runs by every method in milliseconds:
 //! no compiler of Rust is needed. The compiler of the macro runs up to its program, a list of operations of two
-//! operands; an interpreter executes them over any type of numbers, where the macro would print them.
+//! operands; an interpreter executes them over any type of numbers.
 //!
 //! | module | product |
 //! |---|---|
-//! | `mistakes` | why a text is no system |
+//! | `mistakes` | the mistakes in the text of a system |
 //! | `lines` | a function as instructions over registers, and the interpreter |
 //! | `tables` | the tables of a system |
 //! | `code` | the facts and functions of a system |
@@ -55,8 +55,8 @@ impl System {
         Self::of_file("definition", text, &[])
     }
 
-    /// The same of the text of a file, whose name is in the mistakes. `files` are paths and texts of files of tables, as the
-    /// system names them; others are read.
+    /// Compiles the text of a file, as [`System::parse`]. The name of the file is in the mistakes. `files` are paths
+    /// and texts of files of tables, as the system names them; others are read.
     ///
     /// # Errors
     /// As [`System::parse`].

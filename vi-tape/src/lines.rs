@@ -11,7 +11,7 @@ use vi_core::table::AnyTable;
 use vi_dispatch::{Instructions, Loop};
 use vi_expr::Function as Elementary;
 
-/// What an instruction computes from the registers a, b and c, or from the constant k.
+/// The operation of an instruction on the registers a, b and c, or on the constant k.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Kind {
     /// a + b
@@ -60,7 +60,7 @@ pub(crate) enum Kind {
     MultiplyTwice,
 }
 
-/// Where a result is.
+/// The location of a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Source {
     Register(u16),

@@ -25,8 +25,8 @@ pub(crate) struct Tape<const N: usize, K: Interpreted = Free, T: Real = f64> {
 }
 
 impl<const N: usize, K: Interpreted> Tape<N, K> {
-    /// The system with its default parameters. Its code has the size N, and at most as many parameters as a tape has
-    /// room for.
+    /// The system with its default parameters. Its code has the size N, and no more parameters than the capacity of a
+    /// tape.
     pub(crate) fn new(code: &'static Code) -> Self {
         let mut parameters = K::parameters();
         parameters.as_mut().iter_mut().zip(&code.defaults).for_each(|(to, value)| *to = *value);
