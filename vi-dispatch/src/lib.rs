@@ -12,7 +12,7 @@ extern crate std;
 
 /// A numeric loop, inlined with everything that it calls.
 pub trait Loop {
-    /// Its result.
+    /// The result of the loop.
     type Output;
 
     /// Runs the loop. `FUSED` is true if the processor has fused multiply-add.

@@ -27,7 +27,7 @@ use vi_dispatch::Instructions;
 /// in 22 of 100 steps, degree 8 in 4 and degree 10 in 0.1. One rejection costs a second pass for the whole block.
 const DEPTH: usize = 11;
 
-/// The same for one degree of freedom, for which degree 6 is never rejected.
+/// Maximum number of velocities in the extrapolation for one degree of freedom, for which degree 6 is never rejected.
 const DEPTH_OF_ONE: usize = 7;
 
 /// Trajectories in vector lanes; see the [module](self).

@@ -1,9 +1,9 @@
-//! How a trajectory ended.
+//! The end of a trajectory.
 
 use core::fmt;
 use vi_core::{State, StepError};
 
-/// How a trajectory ended.
+/// The end of a trajectory: its last state, and the error if it failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ended<const N: usize> {
     /// The last good state.

@@ -30,7 +30,7 @@ const FLOOR: f64 = 4.0;
 pub(crate) struct Fixed<B> {
     /// The parameters of each trajectory.
     pub(crate) systems: B,
-    /// Its time at the start.
+    /// The times of the trajectories at the start.
     pub(crate) t: Row,
     pub(crate) h: f64,
 }
