@@ -22,9 +22,9 @@ pub struct State {
     start: f64,
     /// Whether the initialization has ended.
     is_initialized: bool,
-    /// The run, once an output or a step was asked for. Its parameters are those of the last step.
+    /// The run, after the first request for an output or a step. Its parameters are those of the last step.
     run: Option<Box<dyn Simulation>>,
-    /// The outputs at the last node, once one was asked for; empty before.
+    /// The outputs at the last node; empty before the first request.
     outputs: Vec<f64>,
 }
 

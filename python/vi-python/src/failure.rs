@@ -13,7 +13,7 @@ pub(crate) fn exception(py: Python<'_>, error: &StepError) -> PyErr {
     instance(py, error).map_or_else(|raised| raised, PyErr::from_value)
 }
 
-/// The same as an object, to be raised later.
+/// The exception of a failed step as an object, to be raised later.
 pub(crate) fn instance<'py>(py: Python<'py>, error: &StepError) -> PyResult<Bound<'py, PyAny>> {
     let (variant, found) = fields(error);
     let fields = PyDict::new(py);

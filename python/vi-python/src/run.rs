@@ -170,7 +170,7 @@ impl Run {
     }
 
     /// Takes steps to a time, or a number of steps. Returns the start, every `every`th node and the end, the exception that
-    /// ended the run if any, and dense output if asked for.
+    /// ended the run if any, and dense output if requested.
     /// `report` is called with the part that is done.
     #[pyo3(signature = (until=None, steps=None, every=1, dense=false, report=None))]
     #[allow(clippy::too_many_arguments)] // Python's keywords

@@ -88,7 +88,7 @@ impl Transcription {
         self.detached(py, |program| program.bound(Box::new(of), &nodes, bounds));
     }
 
-    /// The same of a velocity, by the index of its coordinate.
+    /// Adds bounds of a velocity, given by the index of its coordinate.
     fn bound_velocity(&self, py: Python<'_>, index: usize, nodes: Vec<usize>, bounds: [f64; 2]) {
         self.detached(py, |program| program.bound_velocity(index, &nodes, bounds));
     }
@@ -103,7 +103,7 @@ impl Transcription {
         self.detached(py, |program| places(program.jacobian_pattern()))
     }
 
-    /// The same of the upper half of the Hessian matrix.
+    /// The places of the upper half of the Hessian matrix in compressed columns.
     fn hessian_pattern(&self, py: Python<'_>) -> Places {
         self.detached(py, |program| places(program.hessian_pattern()))
     }
