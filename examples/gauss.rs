@@ -14,7 +14,7 @@ const RUNS: u32 = 9;
 const STEPS: [u32; 24] =
     [24, 28, 32, 36, 42, 48, 56, 64, 72, 84, 96, 110, 128, 148, 170, 196, 226, 260, 300, 340, 450, 600, 800, 1060];
 
-/// Errors that are asked for.
+/// Errors for which times are shown.
 const ERRORS: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 
 /// One run: seconds, relative error of the position, steps.

@@ -1,16 +1,17 @@
 //! Optimal control: a cart swings its pole up with the least force.
 //!
-//! In: nothing. Out: the force of each step, and where it brings the pole; `cargo run --release --example swing_up`. With forces `u_k`, constant over
-//! a step each,
+//! In: nothing. Out: the force of each step, and the state of the pole after it; `cargo run --release --example
+//! swing_up`. With forces `u_k`, constant over a step each,
 //!
 //! ```text
-//! minimise  C(u) = h/2 Σ u_k²        where the run of Gauss steps ends in  z_K = (x, a, p_x, p_a) = 0
+//! minimise  C(u) = h/2 Σ u_k²        such that the run of Gauss steps ends in  z_K = (x, a, p_x, p_a) = 0
 //! ```
 //!
-//! It is discrete mechanics and optimal control (Ober-Blöbaum, Junge and Marsden, ESAIM: COCV 17, 2011): the steps are the constraints, and no error of
-//! time discretization stands between C and its gradient, which is that of the steps themselves, by one sweep backwards. The condition at the end is an augmented Lagrangian
-//! (Nocedal and Wright, *Numerical Optimization*, 17.3), minimised by L-BFGS. Rounding ends the line search of L-BFGS
-//! at a gradient of about 1e-6; two Newton steps for the gradient reduce it further.
+//! It is discrete mechanics and optimal control (Ober-Blöbaum, Junge and Marsden, ESAIM: COCV 17, 2011): the steps are
+//! the constraints. The gradient of C is the exact gradient for these steps, without an error of time discretization,
+//! and takes one backward pass. The condition at the end is an augmented Lagrangian (Nocedal and Wright, *Numerical
+//! Optimization*, 17.3), minimised by L-BFGS. Rounding ends the line search of L-BFGS at a gradient of about 1e-6; two
+//! Newton steps for the gradient reduce it further.
 
 use argmin::core::{CostFunction, Error, Executor, Gradient as HasGradient, State as _};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
@@ -39,7 +40,7 @@ type Swing = Run<Gauss<2>, CartPole, 2>;
 const H: f64 = 0.1;
 /// Steps: two and a half seconds.
 pub(crate) const STEPS: u32 = 25;
-/// Distance of the end from where it has to be.
+/// Maximum distance of the end from the goal.
 pub(crate) const TOLERANCE: f64 = 1e-8;
 
 /// The augmented Lagrangian `C + λ·z_K + (w/2) |z_K|²`.
@@ -141,7 +142,7 @@ impl HasGradient for SwingUp {
 /// The forces, and the problem with the multipliers at which they are its minimum.
 pub(crate) fn solved() -> Result<(Vec<f64>, SwingUp), Error> {
     let mut problem = SwingUp::new()?;
-    // At rest below nothing says to which side to swing: a push does.
+    // At rest below both directions are equivalent: a push selects one.
     let mut forces: Vec<f64> = (0..STEPS).map(|step| 2.0 * (f64::from(step) * H * 5.0).sin()).collect();
     for _ in 0..20 {
         let solver =
