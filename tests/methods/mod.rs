@@ -1,8 +1,8 @@
-//! The conformance suite: what every method promises of every system that it takes.
+//! The conformance suite: properties of every method for every system that it takes.
 //!
 //! A [`Claim`] is a function of a [`Case`]: a system of [`systems`] with a method of [`METHODS`], behind the traits of
-//! `vi-erased`. So a claim is written and compiled once. Where a method does not have a property, its entry says so, and
-//! the claim asserts that. Every claim also has a test that it fails for runs with a fault (`spoiled`).
+//! `vi-erased`. So a claim is written and compiled once. If a method does not have a property, its entry states this,
+//! and the claim asserts it. Every claim also has a test that it fails for runs with a fault (`spoiled`).
 //!
 //! | module | claims |
 //! |---|---|
