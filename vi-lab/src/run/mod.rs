@@ -3,7 +3,7 @@
 //! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`. H is
 //! the energy at the node, E the discrete energy of the interval that ends there; steps with a shift add E' before h,
 //! constraints add their multipliers and the largest residual before H.
-//! AFTER A RUN THAT ENDS EARLY, by a failed step or a signal, output and plot contain every row so far and the last
+//! After a run that ends early, by a failed step or a signal, output and plot contain every row so far and the last
 //! node, for any `--every`.
 //!
 //! | module | part of a run |
@@ -59,7 +59,7 @@ const CONSTANTS: [&str; ENERGY_STAGES.len()] = ["1/8", "1/864", "1/288000"];
 const CONSTRAINTS: &str =
     "Λ: multiplier of each constraint at the node; residual: the largest |g| and |A v + a| there; ";
 
-/// Description of the columns of constraints and energies for a plan, and how the energy changes that its steps keep.
+/// Description of the columns of constraints and energies for a plan, and of the changes of the preserved energy.
 fn energies(system: &dyn System, plan: &Plan) -> String {
     let constraints = if system.has_constraints() { CONSTRAINTS } else { "" };
     let changes = match (system.conserves_energy(), system.has_constraints()) {
@@ -220,7 +220,7 @@ pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let begun = request.system.begin(&request.plan);
     let mut simulation = begun.map_err(|error| Failure::start(error, &request.plan))?;
     if let Some(of) = simulation.shifted_energy() {
-        // From here on a measured shift is a given one.
+        // The measured shift replaces `auto`.
         request.plan.shift = Some(Shift::Of(of.shift));
     }
     resolution::check_state(&request)?;
@@ -233,13 +233,14 @@ pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     }
     simulation.monitor();
     let interrupt = Interrupt::install().map_err(|error| Failure::file("signals", error))?;
-    let mut course = RunLoop::new(&request, extent, &mut sinks);
-    let outcome = course.follow(simulation.as_mut(), &|| interrupt.signal());
-    if let Some(note) = course.note() {
+    let mut run_loop = RunLoop::new(&request, extent, &mut sinks);
+    let outcome = run_loop.follow(simulation.as_mut(), &|| interrupt.signal());
+    if let Some(note) = run_loop.note() {
         // Standard error may be closed; the rows are complete.
         let _ = writeln!(io::stderr(), "{note}");
     }
-    // Also of a motion that ends by an error: the step before may be the cause. Files and signals say nothing about it.
+    // A motion that ends by an error is judged, too, since inaccurate steps may be the cause. Files and signals are
+    // not.
     let is_of_motion = |failure: &Failure| matches!(failure, Failure::Step { .. } | Failure::Ended { .. });
     if let Some(found) = simulation.largest_error().filter(|_| outcome.as_ref().err().is_none_or(is_of_motion)) {
         let _ = writeln!(io::stderr(), "{}", accuracy(&found, &request.system.coordinates()));
@@ -254,7 +255,7 @@ pub(crate) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 /// Above this error of a step, a run is a poor approximation.
 pub(crate) const POOR: f64 = 1e-3;
 
-/// Above this sum of the errors of all steps, relative to the motion, a run may be lost although no step is.
+/// Sum of the errors of all steps, relative to the motion, above which a run may be wrong although no step is.
 const LOST: f64 = 0.1;
 
 /// A line about the largest error of a step, and their sum if it is large.
@@ -473,9 +474,10 @@ mod tests {
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
         let kept = StoredRows::default();
         let mut sinks: [Box<dyn Sink>; 1] = [Box::new(kept.clone())];
-        let mut course = RunLoop::new(&request, extent, &mut sinks);
-        let failure =
-            course.follow(&mut Ending { t: 0.0, fourth, lost: f64::INFINITY }, signal).expect_err("the run ends early");
+        let mut run_loop = RunLoop::new(&request, extent, &mut sinks);
+        let failure = run_loop
+            .follow(&mut Ending { t: 0.0, fourth, lost: f64::INFINITY }, signal)
+            .expect_err("the run ends early");
         (failure, kept.0.borrow().iter().map(|row| row.t).collect())
     }
 
@@ -499,9 +501,9 @@ mod tests {
         let request = Request::of(&arguments, &crate::ready()).unwrap_or_else(|failure| panic!("{failure}"));
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
         let note = |lost| {
-            let mut course = RunLoop::new(&request, extent, &mut []);
-            course.follow(&mut Ending { t: 0.0, fourth: Ok(()), lost }, &|| None).expect("three steps");
-            course.note()
+            let mut run_loop = RunLoop::new(&request, extent, &mut []);
+            run_loop.follow(&mut Ending { t: 0.0, fourth: Ok(()), lost }, &|| None).expect("three steps");
+            run_loop.note()
         };
         assert_eq!(note(2.0), None);
         let expected = "note: 2 of 4 rows have no H; first reason: the mass matrix is singular at t = 1.000000000";

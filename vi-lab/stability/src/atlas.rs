@@ -1,7 +1,8 @@
 //! The sections and the maps of the page, as data; their cells are made in parallel.
 //!
-//! In: words, axes with ranges, what a cell shows, and theory, a quantity that vanishes on the boundary. Out: figures in
-//! a report. A cell depends on its place alone, so the same columns give the same map on any number of threads.
+//! In: texts, axes with ranges, the class of each cell, and a quantity of theory that vanishes on the boundary. Out:
+//! figures in a report. A cell depends on its place alone, so the same columns give the same map on any number of
+//! threads.
 
 use super::contour;
 use rayon::prelude::*;
@@ -21,7 +22,7 @@ pub(super) struct Section<'a> {
     /// HTML; may be empty.
     pub(super) prose: String,
     pub(super) parts: Vec<Part<'a>>,
-    /// What to do, as HTML; may be empty.
+    /// Advice, as HTML; may be empty.
     pub(super) advice: &'static str,
 }
 
@@ -32,7 +33,7 @@ pub(super) enum Part<'a> {
     Table(Table, &'static str),
 }
 
-/// What a cell shows.
+/// The class of a cell.
 type Cell<'a> = dyn Fn(f64, f64) -> Class + Sync + 'a;
 /// A quantity at a place.
 type Quantity<'a> = dyn Fn(f64, f64) -> f64 + Sync + 'a;
@@ -44,12 +45,13 @@ pub(super) struct Map<'a> {
     title: String,
     caption: &'static str,
     axes: [Axis; 2],
-    /// The page has this many times the columns of the map: more than one for long runs.
+    /// Ratio of the columns of the page to those of this map: above 1 for long runs.
     times: usize,
-    /// As many rows as columns; a unit has the same length on both axes.
+    /// Whether it has as many rows as columns, and a unit has the same length on both axes.
     is_square: bool,
     class: Box<Cell<'a>>,
-    /// Vanishes on the boundary that theory gives, with its entry in the legend. Where it is not finite there is none.
+    /// A quantity that vanishes on the boundary of theory, with its entry in the legend. If it is not finite, no
+    /// boundary is drawn.
     theory: Option<(&'static str, Box<Quantity<'a>>)>,
     marks: Vec<Series>,
 }
@@ -80,22 +82,22 @@ impl<'a> Map<'a> {
         }
     }
 
-    /// The same with the boundary on which a quantity vanishes.
+    /// This map with the boundary on which a quantity vanishes.
     pub(super) fn with_theory(self, label: &'static str, quantity: impl Fn(f64, f64) -> f64 + Sync + 'a) -> Self {
         Self { theory: Some((label, Box::new(quantity))), ..self }
     }
 
-    /// The same with points over the cells.
+    /// This map with points over the cells.
     pub(super) fn with_marks(self, marks: Vec<Series>) -> Self {
         Self { marks, ..self }
     }
 
-    /// The same with fewer columns, by this factor.
+    /// This map with fewer columns, by this factor.
     pub(super) fn coarser(self, times: usize) -> Self {
         Self { times: times.max(1), ..self }
     }
 
-    /// The same with as many rows as columns, a unit having the same length on both axes.
+    /// This map with as many rows as columns, so that units have the same length on both axes.
     pub(super) fn square(self) -> Self {
         Self { is_square: true, ..self }
     }
@@ -194,9 +196,8 @@ mod tests {
             }
         }
 
-        /// Cells that contradict theory by more than a pixel: those whose being `marked` is neither what the sign of
-        /// theory says there nor what it says of one of the eight cells around. A map that is all alike proves nothing,
-        /// and is refused.
+        /// The number of cells that contradict theory by more than a pixel: `marked` or not, they differ from the sign
+        /// of theory in the cell itself and in the eight cells around. Refuses a uniform map, which proves nothing.
         fn strays(&self, columns: usize, marked: Class, is_below: bool) -> usize {
             let size @ [columns, rows] = self.size(columns);
             let cells = self.cells(size, |_| ());
@@ -219,8 +220,8 @@ mod tests {
         }
     }
 
-    /// A map of the page, the class of the cells where its theory is negative or, if not `is_below`, positive; with this
-    /// many columns, and with ordinates in this range.
+    /// A map of the page; the class of the cells at which its theory is negative or, if not `is_below`, positive; the
+    /// number of columns, and the range of the ordinates.
     type Claim = (&'static str, Class, bool, usize, Option<(f64, f64)>);
 
     fn assert_theory(claims: &[Claim]) {

@@ -1,10 +1,10 @@
-//! Compositions and damping: where substeps that go backwards in time feed on it.
+//! Compositions and damping: negative substeps amplify damped modes.
 //!
 //! With the midpoint rule a substep multiplies the mode `e^{λt}` of a linear system by `(1 + γhλ/2)/(1 − γhλ/2)`, so a
 //! whole step of a composition multiplies it by
 //!
 //! ```text
-//! R(z) = Π_i (1 + γ_i z/2)/(1 − γ_i z/2)        z = hλ;   for a = −c v: z = −c h;   stable where |R| ≤ 1
+//! R(z) = Π_i (1 + γ_i z/2)/(1 − γ_i z/2)        z = hλ;   for a = −c v: z = −c h;   stable if |R| ≤ 1
 //! ```
 //!
 //! A damped mode has `Re z < 0`; a negative weight then has its pole at `z = 2/γ`, on the side of damping.
@@ -15,7 +15,7 @@ use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::table::Table;
 use vi_systems::DampedOscillator;
 
-/// What the chart shows of `c h`.
+/// Largest `c h` of the chart.
 const WIDEST: f64 = 6.0;
 
 /// The section: the factor of a whole step, and the largest stable steps.
@@ -32,20 +32,19 @@ pub(super) fn section() -> Section<'static> {
     );
     Section {
         heading: "Compositions and damping",
-        prose: "Steps of order 4 and more are composed of fixed steps, some of which go backwards in time. There damping feeds: \
-                for the force −<i>cv</i> a substep <i>γh</i> multiplies the speed by (1 − <i>z</i>/2)/(1 + <i>z</i>/2), \
-                <i>z</i> = <i>cγh</i>, which has a pole where <i>γ</i> is negative."
+        prose: "Steps of order 4 and more are composed of fixed steps, some of which go backwards in time and amplify \
+                damped modes: for the force −<i>cv</i> a substep <i>γh</i> multiplies the speed by \
+                (1 − <i>z</i>/2)/(1 + <i>z</i>/2), <i>z</i> = <i>cγh</i>, which has a pole if <i>γ</i> is negative."
             .to_owned(),
         parts: vec![factors(), table],
         advice: "Keep <i>ch</i>, the damping rate of the fastest decay times the whole step, below the limit of the scheme, and \
-                 for accuracy far below. Where damping is stronger than that, take fixed steps of order 2: they damp whatever \
-                 is damped.",
+                 for accuracy far below. If damping is stronger, take fixed steps of order 2, which damp every damped mode.",
     }
 }
 
 /// The factor of a whole step for `a = −c v`, by the product, and by one step of each composition as dots.
 fn factors() -> Part<'static> {
-    // Each scheme has the look that it has in work-precision charts, where there is no triple jump.
+    // Each scheme looks as in work-precision charts, which have no triple jump.
     let [suzuki, six, eight, jump] = Look::OTHERS;
     let looks = Composition::ALL.into_iter().zip([jump, suzuki, six, eight]);
     let places = |count: u32| (1..=count).map(move |i| WIDEST * f64::from(i) / f64::from(count));
@@ -64,9 +63,9 @@ fn factors() -> Part<'static> {
     );
     Part::Chart(
         chart,
-        "Lines: the product of the substeps’ factors. Dots: one step of each composition as it runs. Above the dashed line \
-         the speed grows although the force only brakes: in a band beside each pole. Beyond it the step is stable again, but \
-         no approximation of e<sup>−<i>ch</i></sup>.",
+        "Lines: the product of the substeps’ factors. Dots: one step of each composition. Above the dashed line the speed \
+         grows although the force only brakes: in a band beside each pole. Past this band the step is stable again, but does \
+         not approximate e<sup>−<i>ch</i></sup>.",
     )
 }
 
@@ -76,7 +75,7 @@ fn factor(scheme: Composition, z: f64) -> f64 {
     scheme.weights.iter().map(of).product()
 }
 
-/// The first `c h` at which `stable` fails, to 1e-6; zero where it holds up to 10.
+/// The first `c h` at which `stable` is false, to 1e-6; zero if it is true up to 10.
 fn limit(stable: impl Fn(f64) -> bool) -> f64 {
     let part = 1e-3;
     let first = (1..10_000).map(|index| part * f64::from(index)).find(|ch| !stable(*ch));
@@ -88,7 +87,7 @@ fn limit(stable: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// The factor of the speed over one step of `a = −c v`; none where the step fails.
+/// The factor of the speed over one step of `a = −c v`; `None` if the step fails.
 fn after_one_step(scheme: Composition, ch: f64) -> Option<f64> {
     let system = DampedOscillator { m: 1.0, k: 0.0, c: ch };
     let start = State::at(&system, 0.0, [0.0], [1.0]);

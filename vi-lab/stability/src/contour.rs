@@ -16,7 +16,7 @@ pub(super) fn zeros(values: &[f64], columns: usize) -> Vec<Vec<(f64, f64)>> {
         neighbours.entry(b).or_default().push(a);
     }
     let mut curves = Vec::new();
-    // Open curves first, from their ends; what is left is closed.
+    // Open curves first, from their ends; the others are closed.
     let ends: Vec<Edge> = neighbours.iter().filter(|(_, others)| others.len() == 1).map(|(edge, _)| *edge).collect();
     let all: Vec<Edge> = neighbours.keys().copied().collect();
     for start in ends.into_iter().chain(all) {
@@ -60,7 +60,7 @@ fn segments(values: &[f64], columns: usize) -> Vec<(Edge, Edge)> {
     segments
 }
 
-/// Where the quantity vanishes on an edge.
+/// The point of an edge at which the quantity vanishes.
 fn crossing(values: &[f64], columns: usize, (index, upright): Edge) -> Option<(f64, f64)> {
     let a = *values.get(index)?;
     let b = *values.get(index + if upright { columns } else { 1 })?;

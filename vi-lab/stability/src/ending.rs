@@ -1,7 +1,7 @@
-//! How runs end, and the colour of each end: the same in every map.
+//! The endings of runs, with the same colours in every map.
 //!
-//! In: an integrator and a [`Limit`]. Out: a [`Course`]: the [`Ending`], the number of steps taken, the largest coordinate. A map
-//! distinguishes a solver that fails from a motion that grows without bound: each typed error has a colour of its own.
+//! In: an integrator and a [`Limit`]. Out: a [`RunSummary`]. A map distinguishes a solver that fails from a motion that
+//! grows without bound: each typed error has its own colour.
 
 use vi_core::stepping::{EnergyStepping, FixedStepping};
 use vi_core::{EnergyPreserving, FixedStep, SVector, Starts, State, StepError};
@@ -9,32 +9,32 @@ use vi_erased::System;
 use vi_erased::plan::Plan;
 use vi_report::chart::Class;
 
-/// When a run is over.
+/// The limits of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limit {
-    /// Steps to be taken at most.
+    /// Largest number of steps.
     pub(super) steps: u32,
-    /// Time to be reached at most.
+    /// End time.
     pub(super) until: f64,
-    /// A coordinate larger than this is instability.
+    /// Coordinate above which a run counts as unstable.
     pub(super) bound: f64,
 }
 
-/// How a run ended.
+/// The ending of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ending {
-    /// At its limit.
+    /// The run reached its limit.
     Lasting,
-    /// A coordinate outgrew the bound.
+    /// A coordinate exceeded the bound.
     Unbounded,
     /// A step failed.
     Failing(StepError),
 }
 
-/// What a run did.
+/// The ending of a run, with the number of its steps and its largest coordinate.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Course {
-    /// How it ended.
+pub(super) struct RunSummary {
+    /// The ending.
     pub(super) ending: Ending,
     /// Steps taken.
     pub(super) steps: u32,
@@ -44,7 +44,7 @@ pub(super) struct Course {
 
 /// A run to its limit.
 pub(super) const LASTING: Class = Class { number: 0, label: "runs to the end", colour: "#E3ECF4" };
-/// A coordinate that outgrows its bound.
+/// A run with a coordinate that exceeds the bound.
 pub(super) const UNBOUNDED: Class = Class { number: 1, label: "unstable: grows on", colour: "#E69F00" };
 const NO_FORWARD_STEP: Class = Class { number: 2, label: "no forward step", colour: "#CC79A7" };
 const DEGENERATE_STEP: Class = Class { number: 3, label: "degenerate step", colour: "#56B4E9" };
@@ -78,8 +78,8 @@ impl Ending {
     }
 }
 
-impl Course {
-    /// Follows a run, where it could start, by steps as of [`Course::of`].
+impl RunSummary {
+    /// Takes the steps of a run, if it could start, as [`RunSummary::of`].
     fn begun<R>(
         run: Result<R, StepError>,
         limit: Limit,
@@ -91,16 +91,16 @@ impl Course {
         }
     }
 
-    /// Follows a run, whose every step gives the time and the largest coordinate.
+    /// Takes steps, each of which returns the time and the largest coordinate, to the limit.
     fn of(limit: Limit, mut step: impl FnMut() -> Result<(f64, f64), StepError>) -> Self {
-        let mut course = Self { ending: Ending::Lasting, steps: 0, largest: 0.0 };
-        while course.steps < limit.steps {
+        let mut summary = Self { ending: Ending::Lasting, steps: 0, largest: 0.0 };
+        while summary.steps < limit.steps {
             match step() {
                 Ok((t, size)) => {
-                    course.steps += 1;
-                    course.largest = course.largest.max(size);
+                    summary.steps += 1;
+                    summary.largest = summary.largest.max(size);
                     if size > limit.bound {
-                        course.ending = Ending::Unbounded;
+                        summary.ending = Ending::Unbounded;
                         break;
                     }
                     if t >= limit.until {
@@ -108,12 +108,12 @@ impl Course {
                     }
                 }
                 Err(error) => {
-                    course.ending = Ending::Failing(error);
+                    summary.ending = Ending::Failing(error);
                     break;
                 }
             }
         }
-        course
+        summary
     }
 
     /// Runs the integrator with fixed step from the node `(q, p)`, p belonging to `v`.
@@ -142,7 +142,7 @@ impl Course {
         Self::begun(run, limit, |run| run.step().map(|step| (step.t, step.q.amax())))
     }
 
-    /// Runs what is planned of a system whose type is erased.
+    /// Runs a plan of a type-erased system.
     pub(super) fn planned(system: &dyn System, plan: &Plan, limit: Limit) -> Self {
         Self::begun(system.begin(plan), limit, |run| {
             run.advance()?;
@@ -151,17 +151,17 @@ impl Course {
     }
 }
 
-/// How fixed steps of an oscillator from (1, 0) end, whose motion itself may grow at this rate. Displacement and momentum
-/// are both looked at: at an extreme one of them vanishes.
+/// The ending of fixed steps of an oscillator from (1, 0), whose exact motion grows at this rate. Counts displacement
+/// and momentum: at an extreme one of them vanishes.
 pub(super) fn oscillation<S: FixedStepping<1>>(system: S, h: f64, limit: Limit, rate: f64) -> Ending {
-    /// Amplitude of a motion that has come to rest: far above the smallest numbers, where rounding is no longer relative.
+    /// Amplitude of a motion that has come to rest: far above the subnormal numbers, whose rounding is not relative.
     const REST: f64 = 1e-200;
-    let course = Course::begun(system.at(0.0, [1.0], [0.0]).integrate(FixedStep, h), limit, |run| {
+    let summary = RunSummary::begun(system.at(0.0, [1.0], [0.0]).integrate(FixedStep, h), limit, |run| {
         let state = run.step()?;
         let size = state.q.x.hypot(state.p.x);
         Ok((if size < REST { f64::INFINITY } else { state.t }, size * (-rate * state.t).exp()))
     });
-    course.ending
+    summary.ending
 }
 
 /// The largest of some numbers, by absolute value.

@@ -1,7 +1,7 @@
-//! Where fixed steps fail: the linear limit, resonances, the number of solutions, stiff springs.
+//! Limits of fixed steps: the linear limit, resonances, the number of solutions, stiff springs.
 
 use super::atlas::{Map, Part, Section};
-use super::ending::{Course, Ending, LASTING, Limit, OWN, oscillation};
+use super::ending::{Ending, LASTING, Limit, OWN, RunSummary, oscillation};
 use super::trial::{Bent, Oscillator, SpringPendulum, trapezoidal};
 use core::f64::consts::SQRT_2;
 use vi_core::node::Node;
@@ -22,7 +22,7 @@ const SURVIVES: Class = Class { label: "more than 1000 steps", ..LASTING };
 
 /// The damped oscillator over (h ω, ζ), by three methods.
 ///
-/// With ω = 1 the trapezoidal rule is `(1 + ζh) x₊ − (2 − h²) x + (1 − ζh) x₋ = 0`: stable up to h ω = 2, whatever the
+/// With ω = 1 the trapezoidal rule is `(1 + ζh) x₊ − (2 − h²) x + (1 − ζh) x₋ = 0`: stable up to h ω = 2, for any
 /// damping. The midpoint rule has no such limit. The energy-preserving step grows as the motion decays, and ends after
 /// about 1/(ζ ω h0) steps.
 pub(super) fn linear() -> Section<'static> {
@@ -31,14 +31,14 @@ pub(super) fn linear() -> Section<'static> {
     let midpoint = Map::new(
         "linear-midpoint",
         "Oscillator: fixed step, midpoint rule",
-        "Fixed steps of the midpoint rule: no limit. What decays decays, what grows grows, at any step length.",
+        "Fixed steps of the midpoint rule: no limit. Steps of any length decay and grow as the motion does.",
         axes(),
         |h, zeta| damped(Oscillator { c: 2.0 * zeta }, h, zeta),
     );
     let verlet = Map::new(
         "linear-trapezoidal",
         "Oscillator: fixed step, trapezoidal rule",
-        "Fixed steps of the trapezoidal rule (Verlet’s method where there is no damping): unstable beyond \
+        "Fixed steps of the trapezoidal rule (Verlet’s method if there is no damping): unstable above \
          <i>hω</i> = 2. The dashed line is the boundary from the characteristic polynomial.",
         axes(),
         |h, zeta| damped(trapezoidal(Oscillator { c: 2.0 * zeta }), h, zeta),
@@ -46,18 +46,17 @@ pub(super) fn linear() -> Section<'static> {
     let energy = Map::new(
         "linear-energy",
         "Oscillator: energy-preserving, steps until it ends",
-        "The energy-preserving integrator: how many steps it takes before none exists. Damping takes energy out \
-         of the motion, the steps grow as e<sup><i>ζωt</i></sup> to take it out faster, and the end comes \
-         after about 1/(<i>ζωh</i><sub>0</sub>) of them. Without damping, and with negative damping, it goes on.",
+        "The energy-preserving integrator: the number of its steps before none exists. With damping the steps grow \
+         as e<sup><i>ζωt</i></sup>, and end after about 1/(<i>ζωh</i><sub>0</sub>) of them. Without damping, \
+         and with negative damping, they do not end.",
         [Axis::log10("h₀ ω").over(1e-3, 3.0), damping()],
         survival,
     );
     Section {
         heading: "The linear limit",
         prose: "Close to equilibrium every system is a sum of oscillators, and the fastest of them limits the step. The charts \
-                show one oscillator of frequency <i>ω</i> and damping ratio <i>ζ</i>; below <i>ζ</i> = 0 the force drives the \
-                motion, whose growth is then no fault of the method. A run is called unstable where it outgrows the square of \
-                the true growth."
+                show one oscillator of frequency <i>ω</i> and damping ratio <i>ζ</i>; for <i>ζ</i> &lt; 0 the motion itself \
+                grows. A run counts as unstable if it grows by more than the square of the true growth."
             .to_owned(),
         parts: vec![
             Part::Map(midpoint),
@@ -69,14 +68,14 @@ pub(super) fn linear() -> Section<'static> {
         ],
         advice: "With the trapezoidal rule keep <i>h</i> below 2/<i>ω</i><sub>max</sub>, and for accuracy far below. With the \
                  midpoint rule stability sets no limit; <i>hω</i> around 0.1 is a good start. Use the energy-preserving \
-                 integrator where damping is weak, and expect about 1/(<i>ζωh</i><sub>0</sub>) steps of it: take it over times \
-                 well below ln(1/<i>ζωh</i><sub>0</sub>)/(<i>ζω</i>), where the step has grown to 1/(<i>ζω</i>), and the fixed \
-                 step beyond.",
+                 integrator if damping is weak. It takes about 1/(<i>ζωh</i><sub>0</sub>) steps: use it for times well below \
+                 ln(1/<i>ζωh</i><sub>0</sub>)/(<i>ζω</i>), at which the step has grown to 1/(<i>ζω</i>), and the fixed step \
+                 for longer times.",
     }
 }
 
-/// How fixed steps of an oscillator end. Instability is a growth by 1e4 beside that of the motion, or its square; a run
-/// has seen enough when the motion itself has grown by e^100.
+/// The class of fixed steps of an oscillator. They are unstable if they grow 1e4 times more than the motion, or by more
+/// than its square. A run ends when the exact motion has grown by e^100.
 fn damped<S: FixedStepping<1>>(system: S, h: f64, zeta: f64) -> Class {
     let rate = (-zeta).max(0.0);
     let limit = Limit { steps: 2000, until: 100.0 / rate, bound: 1e4 };
@@ -87,24 +86,24 @@ fn damped<S: FixedStepping<1>>(system: S, h: f64, zeta: f64) -> Class {
     }
 }
 
-/// Logarithm of the spectral radius of the trapezoidal rule, less the growth that is allowed to it in one step.
+/// Logarithm of the spectral radius of the trapezoidal rule, less the growth allowed in one step.
 fn excess(h: f64, zeta: f64) -> f64 {
     let a = 1.0 + zeta * h;
     let b = h * h - 2.0;
     let c = 1.0 - zeta * h;
     let discriminant = b * b - 4.0 * a * c;
     let radius = if discriminant < 0.0 { (c / a).sqrt() } else { (b.abs() + discriminant.sqrt()) / (2.0 * a) };
-    // Without damping the radius is 1 but for rounding.
+    // Without damping the radius is 1 to rounding.
     radius.ln() - 2.0 * (-zeta).max(0.0) * h - 1e-9
 }
 
 /// Steps of the energy-preserving integrator.
 fn survival(h: f64, zeta: f64) -> Class {
     let limit = Limit { steps: 1000, until: f64::INFINITY, bound: f64::INFINITY };
-    let course = Course::energy(Oscillator { c: 2.0 * zeta }, [1.0], [0.0], h, limit);
-    match course.ending {
+    let summary = RunSummary::energy(Oscillator { c: 2.0 * zeta }, [1.0], [0.0], h, limit);
+    match summary.ending {
         Ending::Failing(StepError::NoForwardStep { .. } | StepError::StepRatio { .. }) => {
-            SURVIVAL.into_iter().find(|(steps, _)| course.steps < *steps).map_or(SURVIVES, |(_, class)| class)
+            SURVIVAL.into_iter().find(|(steps, _)| summary.steps < *steps).map_or(SURVIVES, |(_, class)| class)
         }
         Ending::Lasting => SURVIVES,
         ending => ending.class(),
@@ -138,19 +137,19 @@ pub(super) fn resonance() -> Section<'static> {
     let midpoint = Map::new(
         "resonance-midpoint",
         "Resonances of the midpoint rule",
-        "The midpoint rule has its resonances at <i>hω</i> = 2 (1:4) and 2√3 (1:3), though its linear limit is none.",
+        "The midpoint rule has resonances at <i>hω</i> = 2 (1:4) and 2√3 (1:3), although it has no linear limit.",
         axes(4.4),
         |h, a| growth(Bent::default(), h, a),
     );
     let third = 3_f64.sqrt();
     Section {
         heading: "Nonlinear resonances",
-        prose: "Below the linear limit a method may still fail where the step resonates with the motion: where three or four \
-                steps make one oscillation, small nonlinear terms push at the same phase every time. The oscillator of these \
-                charts, <i>V</i> = <i>x</i>²/2 + <i>x</i>³/3 + <i>x</i>⁴/4, has a single well, so that the true motion keeps \
-                its amplitude for ever. At 1:3 any quadratic force drives it away; at 1:4, with <i>a x</i>³/3 and \
-                <i>b x</i>⁴/4, it is driven away for 0 &lt; <i>b</i> &lt; 2<i>a</i>² (Verlet) and <i>a</i>² &lt; <i>b</i> &lt; \
-                2<i>a</i>² (midpoint rule), and bounded beyond."
+        prose: "Below the linear limit a method may still fail if the step resonates with the motion: if three or four steps \
+                make one oscillation, small nonlinear terms act at the same phase every time. The oscillator of these charts, \
+                <i>V</i> = <i>x</i>²/2 + <i>x</i>³/3 + <i>x</i>⁴/4, has a single well, so that the amplitude of the true \
+                motion is constant. At 1:3 any quadratic force makes the steps grow. At 1:4, with <i>a x</i>³/3 and \
+                <i>b x</i>⁴/4, they grow for 0 &lt; <i>b</i> &lt; 2<i>a</i>² (Verlet) and <i>a</i>² &lt; <i>b</i> &lt; \
+                2<i>a</i>² (midpoint rule), and are bounded for larger <i>b</i>."
             .to_owned(),
         parts: vec![
             Part::Map(verlet.with_theory("hω = √2, √3, 2", move |h, _| (h - SQRT_2) * (h - third) * (h - 2.0))),
@@ -162,12 +161,12 @@ pub(super) fn resonance() -> Section<'static> {
     }
 }
 
-/// How much the amplitude grows.
+/// The growth of the amplitude.
 fn growth<S: FixedStepping<1>>(system: S, h: f64, amplitude: f64) -> Class {
     let limit = Limit { steps: 2000, until: f64::INFINITY, bound: 100.0 };
-    let course = Course::fixed(system, [amplitude], [0.0], h, limit);
-    let growth = course.largest / amplitude;
-    match course.ending {
+    let summary = RunSummary::fixed(system, [amplitude], [0.0], h, limit);
+    let growth = summary.largest / amplitude;
+    match summary.ending {
         Ending::Lasting => GROWTH.into_iter().find(|(most, _)| growth <= *most).map_or(LASTING, |(_, class)| class),
         ending => ending.class(),
     }
@@ -180,16 +179,16 @@ const EXISTS: Class = Class { label: "the step exists", ..LASTING };
 /// Length of Kepler's step, and the momentum along y from which it starts.
 const KEPLER: (f64, f64) = (0.5, 1.0);
 
-/// How many solutions a fixed step of the midpoint rule has.
+/// The number of solutions of a fixed step of the midpoint rule.
 ///
 /// In one degree of freedom with m = 1 the middle x of a step solves `x + (h²/4) V'(x) = w`, w = q0 + (h/2) p0. Two
-/// solutions meet where `1 + (h²/4) V''(x) = 0`: from `h = 2/√(−V''_min)` on. For Kepler's problem a step exists iff
+/// solutions meet if `1 + (h²/4) V''(x) = 0`: from `h = 2/√(−V''_min)` on. For Kepler's problem a step exists iff
 /// `|q + h p/2|³ ≥ (27/16) μ h²`.
 pub(super) fn roots() -> Section<'static> {
     let well = Map::new(
         "roots-well",
         "Solutions of one fixed step: double well",
-        "Double well: solutions of the momentum equation, counted. The dashed curve is theory’s: beyond \
+        "Double well: the number of solutions of the momentum equation. Dashed: theory. Above \
          <i>h</i> = 2/√(−<i>V</i>″<sub>min</sub>/<i>m</i>) = 2 a step from near the barrier has three.",
         [Axis::linear("w = q + h p/2").over(-1.0, 1.0), Axis::linear("h").over(1.0, 4.0)],
         count,
@@ -198,7 +197,7 @@ pub(super) fn roots() -> Section<'static> {
         "roots-kepler",
         "One fixed step of Kepler’s problem",
         "Kepler’s problem, <i>μ</i> = 1, one step of <i>h</i> = 0.5 with <i>p</i> = (0, 1) from every place: inside \
-         the circle |<i>q</i> + <i>hp</i>/2|³ = (27/16) <i>μh</i>² no step exists, and the solver says so.",
+         the circle |<i>q</i> + <i>hp</i>/2|³ = (27/16) <i>μh</i>² no step exists, and the solver reports it.",
         [Axis::linear("x").over(-1.5, 1.5), Axis::linear("y").over(-1.5, 1.5)],
         one_step_of_kepler,
     );
@@ -206,8 +205,8 @@ pub(super) fn roots() -> Section<'static> {
     Section {
         heading: "No solution, one, or several",
         prose: "A fixed step of the midpoint rule solves an equation, which may have several solutions, or none. With <i>w</i> = \
-                <i>q</i> + <i>hp</i>/2, where free flight would have its middle, the number of solutions depends on <i>w</i> \
-                and <i>h</i> alone."
+                <i>q</i> + <i>hp</i>/2, the middle of a step without force, the number of solutions depends on <i>w</i> and \
+                <i>h</i> alone."
             .to_owned(),
         parts: vec![
             Part::Map(well.with_theory("two solutions meet", |w, h| {
@@ -221,11 +220,12 @@ pub(super) fn roots() -> Section<'static> {
         ],
         advice: "Keep <i>h</i> below 2/√(−<i>V</i>″<sub>min</sub>/<i>m</i>), and near an attracting centre below \
                  (16 <i>r</i>³/27<i>μ</i>)<sup>1/2</sup>. The solver follows the solution that is connected with <i>h</i> → 0; \
-                 where it reports that there is none, halve the step.",
+                 if it reports that there is none, halve the step.",
     }
 }
 
-/// Solutions of a fixed step of the double well from `w` at rest, within 4 of it on either side, counted by changes of sign.
+/// The number of solutions of a fixed step of the double well from `w` at rest, by changes of sign between w − 4 and w
+/// + 4.
 fn count(w: f64, h: f64) -> Class {
     const SAMPLES: u32 = 1200;
     let node = Node::new(State { t: 0.0, q: [w].into(), p: SVector::zeros() }, 0.0);
@@ -237,18 +237,18 @@ fn count(w: f64, h: f64) -> Class {
     if changes > 1 { SEVERAL } else { ONE }
 }
 
-/// Whether a step leads away from (x, y).
+/// The class of one step from (x, y).
 fn one_step_of_kepler(x: f64, y: f64) -> Class {
     let (h, p) = KEPLER;
     let limit = Limit { steps: 1, until: f64::INFINITY, bound: f64::INFINITY };
-    let class = Course::fixed(Kepler::default(), [x, y], [0.0, p], h, limit).ending.class();
+    let class = RunSummary::fixed(Kepler::default(), [x, y], [0.0, p], h, limit).ending.class();
     if class == LASTING { EXISTS } else { class }
 }
 
 /// Stiff springs: a mass on a spring under gravity, over the frequency of the spring and the step.
 ///
 /// The slow motion is a pendulum of frequency 1, the fast one the spring with ω = √k. The trapezoidal rule must resolve
-/// the fast one, `h ω < 2`, although it is too small to be seen.
+/// the fast one, `h ω < 2`, although its amplitude is tiny.
 pub(super) fn stiff() -> Section<'static> {
     // Three oscillations of the pendulum, or this many steps.
     const LIMIT: Limit = Limit { steps: 2000, until: 20.0, bound: 10.0 };
@@ -262,29 +262,29 @@ pub(super) fn stiff() -> Section<'static> {
         "Spring pendulum: trapezoidal rule",
         "Trapezoidal rule: the spring must be resolved. Dashed: <i>hω</i> = 2.",
         axes(),
-        move |omega, h| Course::fixed(trapezoidal(spring(omega)), q, v, h, LIMIT).ending.class(),
+        move |omega, h| RunSummary::fixed(trapezoidal(spring(omega)), q, v, h, LIMIT).ending.class(),
     );
     let midpoint = Map::new(
         "stiff-midpoint",
         "Spring pendulum: midpoint rule",
-        "Midpoint rule: stable far beyond the spring’s period, as long as the slow motion is resolved. What is no \
-         longer resolved is the vibration itself.",
+        "Midpoint rule: stable for steps far longer than the spring’s period, as long as the slow motion is resolved. \
+         The vibration itself is not resolved.",
         axes(),
-        move |omega, h| Course::fixed(spring(omega), q, v, h, LIMIT).ending.class(),
+        move |omega, h| RunSummary::fixed(spring(omega), q, v, h, LIMIT).ending.class(),
     );
     let energy = Map::new(
         "stiff-energy",
         "Spring pendulum: energy-preserving",
-        "Energy-preserving: the vertical axis is the first step. The step density stays positive, and the run goes \
-         on; but the energy, kept to rounding, says nothing of how well the vibration is resolved.",
+        "Energy-preserving: the vertical axis is the first step. The step density stays positive, and the run \
+         continues. The energy is exact to rounding even if the vibration is not resolved.",
         axes(),
-        move |omega, h| Course::energy(spring(omega), q, v, h, LIMIT).ending.class(),
+        move |omega, h| RunSummary::energy(spring(omega), q, v, h, LIMIT).ending.class(),
     );
     Section {
         heading: "Stiff springs",
-        prose: "A pendulum whose rod is a spring: a slow swing of frequency 1, and a fast vibration of frequency \
-                <i>ω</i> = √(<i>k</i>/<i>m</i>), excited only slightly. Each run starts one radian aside with the spring at \
-                its length, and covers three swings or 2000 steps."
+        prose: "A pendulum whose rod is a spring has a slow oscillation of frequency 1, and a fast vibration of frequency \
+                <i>ω</i> = √(<i>k</i>/<i>m</i>) and small amplitude. Each run starts one radian from the lowest point with \
+                the spring at its length, and covers three slow oscillations or 2000 steps."
             .to_owned(),
         parts: vec![
             Part::Map(verlet.with_theory("hω = 2", |omega, h| (omega * h / 2.0).ln())),
@@ -292,9 +292,8 @@ pub(super) fn stiff() -> Section<'static> {
             Part::Map(energy),
         ],
         advice: "If a stiff spring models a rod, take the midpoint rule, with fixed or energy-preserving steps that resolve the \
-                 slow motion; the trapezoidal rule has to resolve the fast one. Choose coordinates in which the spring \
-                 force is small where the stretch is small: rounding takes digits from the difference of two lengths, and \
-                 the solver then cannot tell how near its solution is.",
+                 slow motion; the trapezoidal rule has to resolve the fast one. Choose the stretch as a coordinate: the \
+                 difference of two lengths loses digits, and the residual of the solver is then rounding.",
     }
 }
 

@@ -1,15 +1,15 @@
-//! `vi-lab stability`: where methods fail, and what a user should do about it.
+//! `vi-lab stability`: limits of the methods as maps, with advice.
 //!
 //! In: a folder, and perhaps a system. Out: in the folder a page `index.html`, and for every map and chart an SVG and a CSV
-//! file. Without a system, and in a program that has none of its own, the page goes through the ways of failing one by one, the boundary that theory gives drawn over
-//! what the runs did; with one it maps how the runs of that system end. Colours and names distinguish
-//! a solver that finds no step from a motion that grows without bound.
+//! file. With a system, the page maps the endings of its runs. Without one, and in a program that has none of its own,
+//! it has a section for each kind of failure, with the boundary of theory over the endings of runs. Colours and names
+//! distinguish a solver that finds no step from a motion that grows without bound.
 //!
-//! | module | what it makes |
+//! | module | contents |
 //! |---|---|
 //! | `fixed`, `composed`, `energy` | the sections of the page, as data |
 //! | `system`, `span` | the maps of one system, and their axes |
-//! | `atlas`, `contour`, `ending` | sections and maps, curves D = 0, ends of runs and their colours |
+//! | `atlas`, `contour`, `ending` | sections and maps; curves D = 0; endings of runs and their colours |
 //! | `trial` | systems that only the charts need |
 
 mod atlas;
@@ -50,10 +50,10 @@ pub struct Arguments {
     y: Option<String>,
 }
 
-/// Makes the page and its files, and returns where the page is.
+/// Writes the page and its files, and returns the path of the page.
 ///
 /// # Errors
-/// [`Failure::Input`] for a system or an axis that does not exist, [`Failure::File`] where a file cannot be written.
+/// [`Failure::Input`] for a system or an axis that does not exist, [`Failure::File`] if a file cannot be written.
 pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Failure> {
     let entry = match &arguments.system {
         Some(name) => Some(catalogue.find(name)?),
@@ -66,11 +66,11 @@ pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Fai
     if let Some(entry) = entry {
         let entry = with_rule(entry, "stability")?;
         let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
-        let title = format!("Where runs of the system {} end", kebab(entry.name));
+        let title = format!("Endings of runs of the system {}", kebab(entry.name));
         report = Report::new(&arguments.out, &title, entry.about)?;
         atlas::write(&mut report, arguments.columns, system::sections(&entry, &axes));
     } else {
-        report = Report::new(&arguments.out, "Where methods fail", SUBTITLE)?;
+        report = Report::new(&arguments.out, "Limits of the methods", SUBTITLE)?;
         report.prose(INTRODUCTION);
         let [well, pendulum] = ["double-well", "pendulum"].map(|name| catalogue.find(name));
         let (well, pendulum) = (well?, pendulum?);
@@ -79,17 +79,16 @@ pub fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<String, Fai
     Ok(report.finish()?.display().to_string())
 }
 
-const SUBTITLE: &str = "Variational integrators with fixed and with energy-preserving steps: before, at, and after the step that \
-                        does not exist";
-const INTRODUCTION: &str = "Every method fails somewhere. Each chart shows how runs end over two quantities, and the dashed line where theory \
-     says that they should. Colours mean the same in all maps: <b style=\"background:#E3ECF4\">pale</b> runs to the \
-     end; <b style=\"background:#E69F00\">orange</b> grows without bound, the method being unstable; the others are \
-     steps that the solver reports as not existing, each typed error in a colour of its own, first of all <b \
+const SUBTITLE: &str =
+    "Variational integrators with fixed and with energy-preserving steps: which steps exist, and which are stable";
+const INTRODUCTION: &str = "Each chart shows the endings of runs over two quantities. The dashed line is the boundary of theory. Colours \
+     mean the same in all maps: <b style=\"background:#E3ECF4\">pale</b> runs to the end; <b \
+     style=\"background:#E69F00\">orange</b> grows without bound: the method is unstable. The other colours are typed \
+     errors of the solver for steps that do not exist, first of all <b \
      style=\"background:#CC79A7\">no forward step</b> of the energy-preserving integrator and <b \
-     style=\"background:#3A3A3A;color:#FFFFFF\">no solution</b> of the momentum equation. None of them is ever a NaN \
-     or a silent wrong answer.";
+     style=\"background:#3A3A3A;color:#FFFFFF\">no solution</b> of the momentum equation. No run returns NaN.";
 
-/// All ways of failing.
+/// The sections of all kinds of failure.
 fn sections<'a>(well: &'a Entry, pendulum: &'a Entry) -> Result<Vec<Section<'a>>, Failure> {
     Ok(vec![
         fixed::linear(),

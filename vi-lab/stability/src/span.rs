@@ -1,4 +1,4 @@
-//! A quantity that an axis of a system's map varies, and its range.
+//! The quantity on an axis of a system's map, and its range.
 //!
 //! In: `NAME=LOW:HIGH`. Out: a [`Span`].
 
@@ -10,11 +10,11 @@ use vi_report::quantity::Quantity;
 /// A quantity with its range.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Span {
-    /// What is varied.
+    /// The quantity.
     pub(super) quantity: Quantity,
     /// Its name, as on the command line.
     pub(super) name: String,
-    /// From and to.
+    /// The limits of the range.
     pub(super) range: (f64, f64),
 }
 
@@ -22,7 +22,7 @@ impl Span {
     /// The span that `text` names.
     ///
     /// # Errors
-    /// [`Failure::Input`] where there is no such quantity, or no such range.
+    /// [`Failure::Input`] if there is no such quantity, or no such range.
     pub(super) fn parse(entry: &Entry, text: &str) -> Result<Self, Failure> {
         let wrong = || Failure::Input(format!("an axis is given as NAME=LOW:HIGH, with LOW below HIGH, not `{text}`"));
         let (name, range) = text.split_once('=').ok_or_else(wrong)?;

@@ -1,10 +1,10 @@
-//! The maps of one system: how its runs end, over the phase plane or any two quantities.
+//! The maps of one system: the endings of its runs over the phase plane or any two quantities.
 //!
 //! In: an entry of the catalogue and two axes. Out: a map for the energy-preserving integrator, with the curve D = 0 of
-//! the initial states over it, and one for the fixed step. What an axis does not vary is as the catalogue has it.
+//! the initial states over it, and one for the fixed step. Other quantities have the values of the catalogue.
 
 use super::atlas::{Map, Part, Section};
-use super::ending::{Course, Limit, size};
+use super::ending::{Limit, RunSummary, size};
 use super::span::Span;
 use vi_erased::System;
 use vi_erased::plan::{Method, PhasePoint, Plan, Start};
@@ -19,11 +19,11 @@ use vi_report::quantity::Quantity;
 const STEPS: u32 = 2500;
 /// Runs across and upwards whose ends are marked.
 const ENDS: (usize, usize) = (15, 11);
-/// A coordinate that grows beyond this many times its scale is instability.
+/// Ratio of a coordinate to its scale above which a run counts as unstable.
 const BOUND: f64 = 1e3;
 
-/// The two axes that are asked for, or those that show most: the phase plane in one degree of freedom; otherwise the
-/// largest initial value, and the step.
+/// The two requested axes. The default is the phase plane in one degree of freedom; otherwise the largest initial
+/// value, and the step.
 pub(super) fn axes(entry: &Entry, x: Option<&str>, y: Option<&str>) -> Result<[Span; 2], Failure> {
     let [first, second] = usual(entry);
     let axis = |text: Option<&str>, usual: Span| text.map_or(Ok(usual), |text| Span::parse(entry, text));
@@ -62,7 +62,7 @@ pub(super) fn sections<'a>(entry: &'a Entry, axes: &[Span; 2]) -> Vec<Section<'a
     let energy = energy(
         "energy",
         format!("{name}: energy-preserving"),
-        "How runs end. Dashed, where it lies in the picture: the initial states with <i>D</i> = 0. Steps exist while \
+        "Endings of runs. Dashed, if it is in the picture: the initial states with <i>D</i> = 0. Steps exist while \
          <i>D</i> keeps its sign; a run ends where its orbit meets <i>D</i> = 0.",
         entry,
         axes.clone(),
@@ -73,8 +73,8 @@ pub(super) fn sections<'a>(entry: &'a Entry, axes: &[Span; 2]) -> Vec<Section<'a
         Section {
             heading: "The energy-preserving integrator",
             prose: format!(
-                "Each cell is a run of {STEPS} steps at most, from the midpoint start. What the axes do not vary: {}, q = {:?}, \
-                 v = {:?}, h = {}.",
+                "Each cell is a run of {STEPS} steps at most, from the midpoint start. Other quantities have these values: {}, \
+                 q = {:?}, v = {:?}, h = {}.",
                 if fixed.is_empty() { "no parameters".to_owned() } else { fixed.join(", ") },
                 entry.q,
                 entry.v,
@@ -94,8 +94,8 @@ pub(super) fn sections<'a>(entry: &'a Entry, axes: &[Span; 2]) -> Vec<Section<'a
                 axes.clone(),
                 Method::Fixed,
             ))],
-            advice: "Start where both maps are pale, and away from the dashed curve. Where only the second is, take fixed \
-                     steps. Where neither is, shorten the step: <code>--y h=LOW:HIGH</code> shows how far.",
+            advice: "Start where both maps are pale, and away from the dashed curve. Where only the second is pale, take \
+                     fixed steps. Where neither is, shorten the step: <code>--y h=LOW:HIGH</code> shows by how much.",
         },
     ]
 }
@@ -114,8 +114,8 @@ fn map<'a>(
     Map::new(name, title, caption, shown, class).coarser(entry.q.len() / 2)
 }
 
-/// The map of the energy-preserving integrator: how runs end, the curve D = 0, and in the phase plane of one degree of
-/// freedom the middles of the last steps of some runs.
+/// The map of the energy-preserving integrator: endings of runs, the curve D = 0, and in the phase plane of one degree
+/// of freedom the middles of the last steps of some runs.
 pub(super) fn energy<'a>(
     name: &'static str,
     title: impl Into<String>,
@@ -144,7 +144,7 @@ pub(super) fn energy<'a>(
     })
 }
 
-/// Coordinate and velocity in the middle of the last step of a run that failed; none where it did not.
+/// Coordinate and velocity in the middle of the last step of a run that failed; `None` if it did not.
 fn last_middle(entry: &Entry, axes: &[Span; 2], place: (f64, f64)) -> Option<(f64, f64)> {
     let (system, plan) = varied(entry, axes, place, Method::Energy);
     let mut run = system.begin(&plan).ok()?;
@@ -176,10 +176,10 @@ fn varied(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) ->
     (system, plan)
 }
 
-/// How the run of a cell ends.
+/// The class of the run of a cell.
 fn class(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> Class {
     let (system, plan) = varied(entry, axes, place, method);
     let scale = size(&plan.q).max(size(&plan.v)).max(1.0);
     let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND * scale };
-    Course::planned(system.as_ref(), &plan, limit).ending.class()
+    RunSummary::planned(system.as_ref(), &plan, limit).ending.class()
 }

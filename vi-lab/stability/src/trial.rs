@@ -1,4 +1,4 @@
-//! Systems that only the charts need: each at its plainest, by the midpoint and by the trapezoidal rule.
+//! Systems that only the charts need, in their simplest form, by the midpoint and by the trapezoidal rule.
 
 use vi_core::lagrangian;
 use vi_core::rules::{By, Trapezoidal};
