@@ -1,7 +1,7 @@
-//! `vi-lab explain --along SCENE`: which summands of L matter along a run.
+//! `vi-lab explain --along SCENE`: the shares of the summands of L along a run.
 //!
 //! In: a run. Out: a table of the summands T of L with the largest share of force, of `T_q − d/dt T_v`, and of energy, of the
-//! change of `v·T_v − T`, and the operations that each costs; and the summands whose shares are both below a given one.
+//! change of `v·T_v − T`, and the operations of each; and the summands whose shares are both below a limit.
 
 use crate::run::{self, Request};
 use vi_erased::System;
@@ -51,7 +51,7 @@ pub(crate) fn terms(system: Option<&str>, scene: &str, below: f64, catalogue: &C
 
 /// The largest sizes of each summand along a run.
 struct Shares {
-    /// Of the components of the force, summand by summand.
+    /// The components of the force, summand by summand.
     forces: Vec<Vec<f64>>,
     /// The energy at the start.
     first: Vec<f64>,

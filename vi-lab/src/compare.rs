@@ -1,8 +1,8 @@
 //! `vi-lab compare FULL REDUCED`: two models of one motion.
 //!
 //! In: two systems, and the coordinates of the full model from those of the reduced one. Out: a page with the difference
-//! against time, and the cost of both models. The scene is that of the reduced model: the full one has its start, its step,
-//! and its parameters of the same names. Python has the same as `vi.compare`.
+//! against time, and the cost of both models. The full model takes the start, the step, and the parameters of the same
+//! names from the scene of the reduced one. Python has the same as `vi.compare`.
 
 use crate::entries::named;
 use crate::run::{self, Length, Request, is_scene};
@@ -170,13 +170,13 @@ fn values(system: &dyn System) -> Vec<f64> {
 
 /// Coordinates of the full model from those of the reduced one.
 struct Map {
-    /// The place of each compared coordinate in the full model, and where it comes from.
+    /// The place of each compared coordinate in the full model, and its origin.
     columns: Vec<(usize, Origin)>,
     expressions: Expressions,
     parameters: Vec<f64>,
 }
 
-/// Where a coordinate comes from.
+/// The origin of a coordinate.
 #[derive(Clone, Copy)]
 enum Origin {
     /// The coordinate of the reduced model at this place.

@@ -1,6 +1,6 @@
 //! Entries of a scene as a user writes them.
 //!
-//! In: a value of TOML or of the command line. Out: a count or a choice, or one line that says what is allowed.
+//! In: a value of TOML or of the command line. Out: a count or a choice, or one line with the allowed values.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use core::fmt;
@@ -12,7 +12,7 @@ use vi_report::input::{COUNT, whole};
 /// The count of an entry of a scene, `1000` or `1e6`.
 ///
 /// # Errors
-/// What is allowed, at the place of the entry.
+/// The allowed values, at the place of the entry.
 pub(crate) fn count<'de, D: Deserializer<'de>>(entry: D) -> Result<Option<u64>, D::Error> {
     entry.deserialize_any(Count).map(Some)
 }
@@ -39,7 +39,7 @@ impl Visitor<'_> for Count {
 /// A choice by its name on the command line.
 ///
 /// # Errors
-/// The names that there are, at the place of the entry.
+/// The existing names, at the place of the entry.
 pub(crate) fn choice<'de, D: Deserializer<'de>, T: Named>(entry: D) -> Result<Option<T>, D::Error> {
     entry.deserialize_enum("", &[], Choice(PhantomData)).map(Some)
 }

@@ -9,7 +9,7 @@
 //! | `new` | `vi-lab new`: a project with this command for your own systems |
 //! | `run` | `vi-lab run`: rows as CSV |
 //! | `vi_paper` | `vi-lab paper`: figures, tables and the page |
-//! | `vi_stability` | `vi-lab stability`: where methods fail, as maps |
+//! | `vi_stability` | `vi-lab stability`: limits of the methods, as maps |
 //! | `work_precision` | `vi-lab work-precision`: error against time, for every method |
 //! | `sweep` | `vi-lab sweep`, `vi-lab merge`: many runs of one scene, on all cores and many machines |
 //! | `lyapunov` | `vi-lab lyapunov`: Lyapunov exponents |

@@ -25,7 +25,7 @@ const PROGRAM: &str = include_str!("new/main.rs");
 const README: &str = include_str!("new/README.md");
 const IGNORED: &str = "target\n";
 
-/// What a Python module adds.
+/// The additional files of a Python module.
 mod python {
     pub(super) const FEATURES: &str = include_str!("new/python/features.toml");
     pub(super) const SYSTEMS: &str = include_str!("new/python/systems.rs");
@@ -111,7 +111,7 @@ fn checkout() -> Option<&'static Path> {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().filter(|root| root.join("vi-core/Cargo.toml").is_file())
 }
 
-/// What pip installs as the package `variational`.
+/// The source of the package `variational` for pip.
 fn package() -> String {
     checkout().map_or_else(|| "variational".to_owned(), |root| root.join("python").display().to_string())
 }

@@ -5,7 +5,7 @@ use vi_report::failure::Failure;
 use vi_report::page::Report;
 use vi_report::table::Table;
 
-/// How a figure, an equation, a number or a sentence of the paper compares with this run.
+/// The result of comparing a figure, an equation, a number or a sentence of the paper with this run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// The same result.
@@ -66,12 +66,13 @@ impl Book {
         Ok(Self { page, items: Vec::new() })
     }
 
-    /// The place of the list of items, which is known at the end.
+    /// Reserves the place of the list of items, which is known at the end.
     pub(super) fn items(&mut self) {
         self.page.reserve(LIST);
     }
 
-    /// Adds an item of the paper: what it is, what the paper prints, what this run found, and the figure or table with it.
+    /// Adds an item of the paper: its name, the printed result, the result of this run, and the figure or table with
+    /// it.
     pub(super) fn item(&mut self, paper: &str, printed: &str, ours: String, verdict: Verdict, place: &'static str) {
         self.items.push(([paper.to_owned(), printed.to_owned(), ours, verdict.text().to_owned()], place));
     }

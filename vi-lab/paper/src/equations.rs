@@ -75,7 +75,7 @@ fn well(sample: &Sample) -> [f64; 4] {
     slots(&DoubleWell::default(), &sample.interval)
 }
 
-/// The oscillator with a damping that a slip in it cannot hide behind.
+/// The oscillator with a damping so strong that a mistake in it shows.
 const OSCILLATOR: DampedOscillator = DampedOscillator { m: 1.0, k: 4.0, c: 0.8 };
 
 /// p_k, E_k, p_{k+1}, E_{k+1} of the oscillator.
@@ -177,7 +177,7 @@ fn total(sample: &Sample) -> f64 {
     sample.v * sample.v / 2.0 + OSCILLATOR.k * sample.middle * sample.middle / 2.0
 }
 
-/// Formulas that no number of the two examples distinguishes: where, as printed, as derived.
+/// Formulas that no number of the two examples distinguishes: place, printed form, derived form.
 const IN_SYMBOLS: [[&str; 3]; 3] = [
     ["section 3, integrated variation", "f_L and f_L·q̇", "f_L c_t′ and f_L·q̇ c_t′"],
     ["forced time-marching form, Eₖ₊₁", "−D₃ L_d − g_d⁻", "−D₃ L_d − g_d⁺; equal for the midpoint rule"],

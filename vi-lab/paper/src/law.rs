@@ -1,4 +1,4 @@
-//! The step law: how constant `h D^{1/3}` and `h √D` are.
+//! The step law: the spread of `h D^{1/3}` and of `h √D`.
 
 use super::book::{Book, Verdict};
 use super::unexpected;

@@ -1,8 +1,8 @@
 //! The commands `paper` and `vi-lab paper`: the numerical study of the paper (section 5), run again.
 //!
-//! In: how long the long runs are, and a folder. Out: in the folder a page `index.html`, and for every figure and table
-//! an SVG and a CSV file; as text, how each figure, equation and number of the paper compares. The run computes every
-//! number of the page, except those that the paper prints or the theory states.
+//! In: the length of the long runs, and a folder. Out: in the folder a page `index.html`, and for every figure and
+//! table an SVG and a CSV file; as text, a comparison of each figure, equation and number of the paper. The run
+//! computes every number of the page, except those that the paper prints or the theory states.
 //!
 //! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
 
@@ -23,7 +23,7 @@ use vi_report::progress::Progress;
 
 /// Steps of the long runs.
 const STEPS: u32 = 1_000_000;
-/// Fewer show nothing.
+/// Smallest number of steps of the long runs.
 const SHORTEST: u32 = 1000;
 
 /// Makes every figure and table of the paper's numerical study, with this project's numbers beside the paper's
@@ -41,7 +41,7 @@ pub struct Study {
 /// The number of steps that a user writes.
 ///
 /// # Errors
-/// What is allowed, where the text is no such number.
+/// The allowed values, if the text is not such a number.
 fn steps(text: &str) -> Result<u32, String> {
     let steps = u32::try_from(count(text)?).ok().filter(|steps| *steps >= SHORTEST);
     steps.ok_or_else(|| format!("the study needs {SHORTEST} to {} steps", u32::MAX))
@@ -50,11 +50,11 @@ fn steps(text: &str) -> Result<u32, String> {
 /// Makes the page and its files, and returns the summary.
 ///
 /// # Errors
-/// [`Failure::File`] where a file cannot be written, [`Failure::Step`] where a step fails that must not.
+/// [`Failure::File`] if a file cannot be written, [`Failure::Step`] if a step fails that the study needs.
 pub fn write(study: &Study) -> Result<String, Failure> {
     let mut book = Book::new(&study.out)?;
     {
-        // Two long runs of each of the four cases make almost all of the work.
+        // The two long runs of each of the four cases take most of the time.
         let mut progress = Progress::new(8 * u64::from(study.steps));
         introduction(&mut book, study);
         equations::section(&mut book);
@@ -66,7 +66,7 @@ pub fn write(study: &Study) -> Result<String, Failure> {
     book.finish()
 }
 
-/// A step that failed where the study needs one.
+/// The failure of a step that the study needs.
 fn unexpected(what: &str) -> impl Fn(StepError) -> Failure {
     let before = what.to_owned();
     move |error| Failure::Step { error: Box::new(error), before: before.clone(), advice: None }

@@ -1,8 +1,9 @@
 //! The paper's equations solved as they are written, for comparison.
 //!
 //! In: a node. Out: the next node. Newton's method on the momentum and the energy equation in the unknowns `(q1, t1)`,
-//! neither row combined nor scaled, until the residual no longer decreases; then `p1 = D4 L_d + f_d⁺` and `E1 = −D3 L_d − g_d⁺` of that interval. The guess is the best there is, the solution in `(v, h)` from the same node, and
-//! the Jacobian is exact: what is left is the cancellation in `(q1 − q0)/(t1 − t0)`, which `(v, h)` do not have.
+//! neither row combined nor scaled, until the residual no longer decreases; then `p1 = D4 L_d + f_d⁺` and `E1 = −D3 L_d
+//! − g_d⁺` of that interval. The guess is the solution in `(v, h)` from the same node, and the Jacobian is exact. So
+//! the remaining error is the cancellation in `(q1 − q0)/(t1 − t0)`, which `(v, h)` do not have.
 
 use vi_core::linear::Matrix;
 use vi_core::node::Node;
@@ -28,7 +29,7 @@ impl RawNode {
         Self { state: integrator.state(), energy: integrator.node().energy, h: integrator.h(), v: integrator.v().x }
     }
 
-    /// The next node; none where there is no step, or the iteration leaves the numbers.
+    /// The next node; `None` if there is no step, or the iteration is not finite.
     pub(crate) fn next<S: EnergyStepping<1> + DiscreteLagrangian<1>>(&self, system: &S) -> Option<Self> {
         let guess = EnergyPreserving::from_state(system, self.state, self.energy, self.h, [self.v])
             .ok()?
@@ -126,8 +127,8 @@ mod tests {
             // A guess that is wrong by a part in ten thousand.
             let guess = (before.state.t + step.h * 1.0001, before.state.q.x + step.h * step.midpoint.2.x);
             let found = before.polished(&system, guess).expect("a solution");
-            // Measured 5.8e-15 and 5.6e-15: the floor of the raw equations at this step, where h is known no better and the
-            // force is 1.
+            // Measured 5.8e-15 and 5.6e-15: the floor of the raw equations at this step, with a force of
+            // 1.
             assert!((found.state.t - step.t).abs() < 7e-15, "{}", found.state.t - step.t);
             assert!((found.energy - step.energy).abs() < 7e-15, "{}", found.energy - step.energy);
         }

@@ -1,8 +1,8 @@
 //! The predefined systems, each with an initial state, and those of a text ([`text`]).
 //!
 //! In: the systems of `vi_systems`. Out: a list of [`Entry`] values, which build nothing until a system is used. Most are
-//! texts for `vi_tape`. Compiled with every integrator are those whose speed is shown, and those with more coordinates
-//! than a text may have.
+//! texts for `vi_tape`. Systems of speed measurements, and those with more coordinates than a text may have, are
+//! compiled with every integrator.
 
 pub mod text;
 

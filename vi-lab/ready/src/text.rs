@@ -1,13 +1,13 @@
 //! Systems of a text, which are not compiled.
 //!
-//! In: the text of a file, or the declaration of a predefined system. Out: an [`Entry`], whose system has everything that
-//! compiled ones have.
+//! In: the text of a file, or the declaration of a predefined system. Out: an [`Entry`], whose system has the functions
+//! of a compiled one.
 
 use vi_core::Lagrangian;
 use vi_core::lagrangian::Described;
 use vi_report::entry::Entry;
 
-/// A predefined system by the text of its declaration: what it is, its initial coordinates and velocities, a step.
+/// A predefined system from the text of its declaration, a description, initial coordinates and velocities, and a step.
 pub(crate) fn ready<S, const N: usize>(about: &'static str, start: ([f64; N], [f64; N]), h: f64) -> Entry
 where
     S: Lagrangian<N> + Described + Default,

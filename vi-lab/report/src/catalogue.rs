@@ -19,14 +19,14 @@ pub struct Systems {
     pub entries: fn() -> Vec<Entry>,
 }
 
-/// The systems of a program of one's own, if it has some, and the ready ones.
+/// The systems of a program, and the ready ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Catalogue {
-    /// Those of the program; they hide ready ones of the same names.
+    /// The systems of the program; they hide ready ones of the same names.
     pub own: Option<Systems>,
-    /// The ready ones.
+    /// The ready systems.
     pub ready: Systems,
-    /// Those of files.
+    /// The constructor of systems of files.
     pub of_text: Option<OfText>,
 }
 

@@ -1,7 +1,7 @@
-//! A system with a place to start from: what a list of systems is made of.
+//! A system with a place to start from: an entry of a list of systems.
 //!
-//! In: the type of a system, and its start. Out: an [`Entry`]. A list shows its data; the system itself, type-erased, is built
-//! when it is first used. The compiler meets all that is generic over systems here.
+//! In: the type of a system, and its start. Out: an [`Entry`]. A list shows its data; the type-erased system is built
+//! when it is first used. All code that is generic over systems is instantiated here.
 
 use std::sync::LazyLock;
 use vi_core::kind::Free;
@@ -45,7 +45,7 @@ pub type OnDemand = LazyLock<Box<dyn System>, Box<dyn FnOnce() -> Box<dyn System
 pub type Start = fn(&[(&'static str, f64)]) -> [Vec<f64>; 2];
 
 impl Entry {
-    /// A system with a place to start from: what it is, its initial coordinates and velocities, a step.
+    /// A system with a description, initial coordinates and velocities, and a step.
     #[must_use]
     pub fn new<S: Ruled<N>, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self {
         Self::listed::<S, N>(about, (q, v), h, || {
@@ -53,7 +53,7 @@ impl Entry {
         })
     }
 
-    /// The same of a system without a rule, which has Gauss steps alone.
+    /// The entry of a system without a rule, which has Gauss steps only.
     #[must_use]
     pub fn with_gauss_only<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
@@ -62,7 +62,7 @@ impl Entry {
         Self::listed::<S, N>(about, (q, v), h, || Box::new(Typed::<S, N>::new(without_rule())))
     }
 
-    /// The same of a system with constraints.
+    /// The entry of a system with constraints.
     #[must_use]
     pub fn with_constraints<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
@@ -71,7 +71,7 @@ impl Entry {
         Self::listed::<S, N>(about, (q, v), h, || Box::new(Typed::<S, N>::new(with_constraints())))
     }
 
-    /// The same of a system that `build` makes: with the name, the coordinates and the parameters of this type.
+    /// The entry of a system that `build` returns, with the name, the coordinates and the parameters of this type.
     #[must_use]
     pub fn listed<S, const N: usize>(
         about: &'static str,
@@ -116,7 +116,7 @@ impl Entry {
         }
     }
 
-    /// The same with an initial state that follows from the parameters.
+    /// This entry with an initial state that follows from the parameters.
     #[must_use]
     pub fn placed(self, start: Start) -> Self {
         Self { start: Some(start), ..self }
@@ -165,7 +165,7 @@ fn without_rule<S: Runnable<N, Kind = Free>, const N: usize>() -> Vec<Integrator
         integrator::energy_gauss::<S, N, { ENERGY_STAGES[1] }>(),
         integrator::energy_gauss::<S, N, { ENERGY_STAGES[2] }>(),
     ];
-    // Compiled for a system with a time scale alone.
+    // Compiled for systems with a time scale only.
     let transformed = if const { S::SCALES_TIME } {
         vec![integrator::transformed::<S, N, { STAGES[0] }>(), integrator::transformed::<S, N, { STAGES[1] }>()]
     } else {

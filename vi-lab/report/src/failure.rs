@@ -38,7 +38,7 @@ pub enum Failure {
     },
     /// A signal ended a run: exit status 130 or 143.
     Interrupted {
-        /// Which signal.
+        /// The signal.
         signal: Signal,
         /// The progress of the run.
         reached: String,
@@ -52,7 +52,7 @@ pub enum Failure {
     },
     /// A file cannot be written or read: exit status 1.
     File {
-        /// Which file.
+        /// The name of the file.
         name: String,
         /// The error of the operating system.
         error: io::Error,

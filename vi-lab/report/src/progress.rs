@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 /// Steps between two readings of the clock.
 const PATIENCE: u64 = 4096;
-/// The same for runs of any system, whose steps may be slow.
+/// Steps between two readings of the clock in runs of any system, whose steps may be slow.
 const SHORT_PATIENCE: u64 = 256;
 
 /// A bar that appears after the first second.

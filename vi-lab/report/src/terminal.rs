@@ -1,4 +1,4 @@
-//! What a program leaves on a terminal: its text, or why it failed.
+//! The output of a program on a terminal: its text, or its failure.
 //!
 //! In: an outcome. Out: standard output, standard error, and the exit status of the process.
 
@@ -22,13 +22,13 @@ pub fn end(outcome: Result<(), Failure>) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure @ Failure::Unread) => ExitCode::from(failure.exit_status()),
         Err(Failure::System { shown, wrong }) => {
-            // The command shows what is right first. It reports the mistakes also where nobody reads standard output.
+            // Correct systems come first. The mistakes are reported even if standard output is closed.
             let _ = if shown.is_empty() { Ok(()) } else { print(&shown) };
             let _ = write!(io::stderr(), "{}", visible(&wrong));
             ExitCode::FAILURE
         }
         Err(failure) => {
-            // Standard error may be closed; the exit status says the same.
+            // Standard error may be closed; the exit status reports the failure, too.
             let _ = writeln!(io::stderr(), "error: {}", visible(&failure.to_string()));
             ExitCode::from(failure.exit_status())
         }

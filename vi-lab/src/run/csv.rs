@@ -1,7 +1,7 @@
 //! Rows as CSV: comment lines with the origin of the file, the names of the columns, one line per node.
 //!
-//! Numbers have the fewest digits that read back to the same bits; a missing value is an empty entry. AFTER A BLOCK IS
-//! WRITTEN the file consists of complete lines, even if the run ends.
+//! Numbers have the fewest digits that read back to the same bits; a missing value is an empty entry. After each block
+//! the file consists of complete lines, even if the run ends.
 
 use super::{BLOCK, Request, Sink, energies, method};
 use core::fmt::Write as _;
@@ -47,7 +47,7 @@ impl Csv {
     /// Writes the block.
     fn flush(&mut self) -> Result<(), Failure> {
         if self.block.is_empty() {
-            // After a failure too: its content is lost, and the failure is reported.
+            // After a failure the block is lost, and the failure is reported.
             return Ok(());
         }
         let block = core::mem::take(&mut self.block);
@@ -67,7 +67,7 @@ impl Target {
             }
             Self::File { path, file, length } => {
                 if let Err(error) = file.write_all(lines) {
-                    // A truncated number reads as another number. A pipe cannot be truncated; its reader sees the end.
+                    // A part of a number would read as another number. A pipe cannot be truncated.
                     let _ = file.set_len(*length);
                     return Err(Failure::file(path, error));
                 }
@@ -118,7 +118,7 @@ fn line(block: &mut String, row: &Row) {
     block.push('\n');
 }
 
-/// The numbers of a row; NaN where it has none.
+/// The numbers of a row; NaN for missing ones.
 pub(crate) fn numbers(row: &Row) -> impl Iterator<Item = f64> + '_ {
     row.entries().map(|entry| entry.unwrap_or(f64::NAN))
 }

@@ -1,8 +1,8 @@
 //! Limits the size of the output of a run.
 //!
-//! In: a [`Request`]. Out: an [`Extent`], or [`Failure::Input`] where the run would write more than a gigabyte and
-//! permission. AFTER THIS the output of fixed steps has the predicted size. Steps that solve for their own length may
-//! become many more: [`Extent::check`] ends such a run.
+//! In: a [`Request`]. Out: an [`Extent`], or [`Failure::Input`] if the run would write more than a gigabyte without
+//! permission. The output of fixed steps has the predicted size. Steps that solve for their own length may become many
+//! more: [`Extent::check`] ends such a run.
 
 use super::request::Request;
 use vi_report::failure::Failure;

@@ -1,7 +1,7 @@
 //! Initial states on the constraints of a system.
 //!
-//! In: how the default initial state follows from the parameters, and whether it moves onto the constraints. Out: the coordinates and
-//! velocities of a plan, for the parameters that a system has.
+//! In: the default initial state as a function of the parameters, and whether it moves onto the constraints. Out: the
+//! coordinates and velocities of a plan, for the parameters of a system.
 
 use vi_core::StepError;
 use vi_erased::System;
@@ -10,7 +10,7 @@ use vi_report::catalogue::kebab;
 use vi_report::entry::Start;
 use vi_report::failure::Failure;
 
-/// What determines an initial state on the constraints.
+/// The rule for an initial state on the constraints.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Placement {
     /// The default of the system, if it follows from the parameters and no other is given.

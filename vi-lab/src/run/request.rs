@@ -33,7 +33,7 @@ pub(crate) struct Request {
     pub(crate) text: Option<String>,
     /// Integrator, step and initial state.
     pub(crate) plan: Plan,
-    /// How long.
+    /// The end of the run.
     pub(crate) length: Length,
     /// Interval between written nodes.
     pub(crate) every: u64,
@@ -43,9 +43,9 @@ pub(crate) struct Request {
     pub(super) plot: Option<PathBuf>,
     /// Whether the output may exceed a gigabyte.
     pub(super) large_output: bool,
-    /// What determines the initial state beside the numbers of the plan.
+    /// The rule for the initial state beside the numbers of the plan.
     pub(crate) placement: Placement,
-    /// How far the initial state moved onto the constraints, in words.
+    /// The distance that the initial state moved onto the constraints, in words.
     pub(super) moved: Option<String>,
 }
 
@@ -118,11 +118,11 @@ impl Length {
 /// The destination of rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Output {
-    /// As CSV to standard output.
+    /// CSV on standard output.
     Standard,
-    /// To a CSV file.
+    /// A CSV file.
     Csv(PathBuf),
-    /// Only to a plot.
+    /// Only a plot.
     None,
 }
 
@@ -297,7 +297,7 @@ impl Options {
         let dtau = scene.dtau.filter(|_| arguments.h.is_none());
         Self {
             start: arguments.start.or(scene.start),
-            // No system has as many as do not fit.
+            // A number that does not fit is larger than any number of stages.
             stages: arguments.stages.or(scene.stages).map(|stages| usize::try_from(stages).unwrap_or(usize::MAX)),
             shift: arguments.shift.or(scene.shift),
             fallback: arguments.fallback || scene.fallback.unwrap_or(false),

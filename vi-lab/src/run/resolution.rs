@@ -1,8 +1,8 @@
 //! Checks that a step is neither too small nor too large for double precision.
 //!
-//! In: a [`Request`]. Out: nothing, or [`Failure::Input`] with the numbers. AFTER BOTH CHECKS h² is a normal number. A
-//! step changes t at the start, and for fixed steps at the end too. The first step changes the state, or the system is
-//! at rest.
+//! In: a [`Request`]. Out: nothing, or [`Failure::Input`] with the numbers. If both checks pass, h² is a normal number.
+//! A step changes t at the start, and for fixed steps at the end too. The first step changes the state, or the system
+//! is at rest.
 
 use super::request::{Length, Request};
 use vi_erased::plan::Plan;

@@ -6,7 +6,7 @@
 //! start = "state"                   # of energy-preserving steps without stages and shift
 //! stages = 2                        # of Gauss steps, and of energy-preserving ones
 //! shift = "auto"                    # of energy-preserving steps, or a number
-//! fallback = true                   # of energy-preserving steps: fixed ones where there is none
+//! fallback = true                   # of energy-preserving steps: fixed ones if there is none
 //! h = 0.01                          # or dtau = 0.5, of Gauss steps in transformed time
 //! steps = 1000                      # or until = 10.0
 //! every = 10

@@ -1,8 +1,8 @@
 //! Alternatives if an energy-preserving step does not exist.
 //!
 //! In: the run that ended, and its error. Out: one line with a shift for which steps exist along this motion, the step
-//! densities of other numbers of stages, and fixed steps. If rounding hides the length of short steps, a longer step.
-//! Nothing for other errors.
+//! densities of other numbers of stages, and fixed steps; if rounding hides the length of short steps, a longer step;
+//! for other errors nothing.
 
 use super::request::Request;
 use vi_core::StepError;

@@ -1,7 +1,7 @@
 //! The folder `FILE.part`, which contains the chunks of a sweep until they are merged.
 //!
 //! `sweep.json` is the [`Description`] of the sweep. `K.csv` is chunk K: a first line with the fingerprint of the
-//! description and K; the rows of its runs as they will stand in the tables, each after the name of its table; a last line
+//! description and K; the rows of its runs as in the tables, each after the name of its table; a last line
 //! with a [`Tally`] and a checksum of all text before. A process writes a chunk under a temporary name, syncs it and
 //! renames it. So an existing chunk is complete, for any number of processes.
 
@@ -36,9 +36,9 @@ pub(super) struct Description {
 /// Counts of runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
-    /// Those that did not reach their end.
+    /// Runs that did not reach their end.
     pub(super) failed: u64,
-    /// Those with a large error of a step.
+    /// Runs with a large error of a step.
     pub(super) inaccurate: u64,
 }
 

@@ -22,7 +22,7 @@ pub(super) const STEP_ERROR: &str = "step_error";
 pub(super) struct Kept {
     kinds: Vec<Keep>,
     pub(super) section: Option<Section>,
-    /// The same in words.
+    /// The results kept, in words.
     pub(super) words: String,
     /// The constraints of the system, which add columns to rows.
     constraints: &'static [&'static str],

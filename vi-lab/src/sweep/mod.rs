@@ -5,7 +5,7 @@
 //! command resumes after any interruption. The number k determines run k, so the tables have the same bytes for any
 //! division of the work.
 //!
-//! | module | what it does |
+//! | module | contents |
 //! |---|---|
 //! | [`scene`] | the table in the scene file |
 //! | [`axis`], [`random`], [`items`] | the runs |

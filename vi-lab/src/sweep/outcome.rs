@@ -15,11 +15,11 @@ const PATIENCE: f64 = 1000.0;
 
 /// The ending of a complete run.
 pub(super) const REACHED: &str = "reached its end";
-/// That of a run that reached its end, but some of whose crossings could not be located.
+/// The ending of a run that reached its end, but some of whose crossings could not be located.
 pub(super) const NO_SECTION: &str = "section not found";
-/// That of a run that no input of this kind can have.
+/// The ending of a run with an input that no run accepts.
 const WRONG_INPUT: &str = "wrong input";
-/// That of a run whose steps became too short to reach its end.
+/// The ending of a run whose steps became too short to reach its end.
 const TOO_SHORT: &str = "steps became too short";
 
 /// The ending of a run whose step failed.
@@ -57,7 +57,7 @@ pub(super) struct Member {
 
 /// The result of a run.
 pub(super) struct Outcome {
-    /// How it ended, in words.
+    /// The ending, in words.
     pub(super) ending: &'static str,
     pub(super) steps: u64,
     /// The last node; `None` if the run did not start.
@@ -89,7 +89,7 @@ fn extreme(of: f64, value: f64, choose: impl Fn(f64, f64) -> f64) -> f64 {
 }
 
 impl Outcome {
-    /// Of a run that did not start.
+    /// The outcome of a run that did not start.
     const NONE: Self = Self { ending: WRONG_INPUT, steps: 0, last: None, ranges: Vec::new(), step_error: f64::NAN };
 
     /// Computes a run. Shows its first node, every `every`-th, and the last.

@@ -1,7 +1,7 @@
 //! Random numbers determined by a seed and a place.
 //!
 //! In: a seed and a place. Out: the number at this place of the SplitMix64 sequence of the seed: a mixing of `seed +
-//! (place + 1) γ`, where γ is the odd number next to 2^64 over the golden ratio. Source: G. L. Steele, D. Lea, C. H.
+//! (place + 1) γ`. γ is the odd number next to 2^64 over the golden ratio. Source: G. L. Steele, D. Lea, C. H.
 //! Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
 
 const GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;

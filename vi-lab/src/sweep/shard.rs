@@ -8,7 +8,7 @@ use vi_report::failure::Failure;
 /// One of `count` parts of equal size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
-    /// From 0.
+    /// Index of the shard, from 0.
     pub(super) index: u64,
     pub(super) count: u64,
 }

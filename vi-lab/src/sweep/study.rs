@@ -118,7 +118,7 @@ impl Study {
         });
         if let Some(section) = &self.kept.section {
             let crossed = outcome.cross(&member, section, &mut |row| {
-                // As a node, but for E, E' and h.
+                // A crossing has the columns of a node without E, E' and h.
                 let columns = row.entries().count() - 2;
                 let _ = write!(text, "section,{item}");
                 entries(text, numbers(&row).take(columns));

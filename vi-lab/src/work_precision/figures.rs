@@ -8,7 +8,7 @@ use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::numbers::{extremes, scientific};
 use vi_report::table::Table;
 
-/// An error above this is no approximation of the motion.
+/// Error above which a run does not approximate the motion.
 pub(super) const LOST: f64 = 2.0;
 /// Errors for which the table lists times.
 const PRICED: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
@@ -101,7 +101,7 @@ impl Findings {
         seconds.min_by(f64::total_cmp)
     }
 
-    /// Why no method has a time, if none has.
+    /// The reason why no method has a time; `None` if one has.
     pub(super) fn uncompared(&self) -> Option<String> {
         let has_price = |method| PRICED.into_iter().any(|error| self.price(method, error).is_some());
         if self.methods().any(has_price) {

@@ -1,8 +1,9 @@
 //! `vi-lab work-precision SYSTEM`: error against work, for every method.
 //!
 //! In: a predefined system and a folder. Out: in the folder a page `index.html` with three figures (error against time,
-//! against evaluations, against the step), each as SVG and CSV, and tables of all runs. The methods are the fixed step, its compositions of order 4, 6 and 8, Gauss methods, the energy-preserving integrator, and
-//! DOP853 of another library.
+//! against evaluations, against the step), each as SVG and CSV, and tables of all runs. The methods are the fixed step,
+//! its compositions of order 4, 6 and 8, splittings, Gauss methods, the energy-preserving integrator, and DOP853 of
+//! another library.
 //!
 //! | module | product |
 //! |---|---|

@@ -39,7 +39,7 @@ pub(super) struct TimedRun {
     pub(super) method: Method,
     /// Length of its step, or its tolerance.
     pub(super) setting: f64,
-    /// Its cost and error, or why it ended.
+    /// Its cost and error, or the reason why it ended.
     pub(super) outcome: Result<Point, Ended>,
 }
 

@@ -102,7 +102,7 @@ fn items(book: &mut Book, runs: &[Pair]) {
         })
         .collect();
     let is_bounded = runs.iter().all(|run| {
-        // The first oscillations already contain the largest error of the run but for a per cent.
+        // The largest error of the first oscillations is within a per cent of that of the run.
         let early = run.fixed.samples.iter().map(|sample| sample.error.abs()).fold(0.0, f64::max);
         run.fixed.error < 1.01 * early
     });

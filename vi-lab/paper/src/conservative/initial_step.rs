@@ -26,12 +26,12 @@ const COMPARED: f64 = 10.0;
 const SUBSTEPS: u32 = 20_000;
 /// The paper's unknowns: plain double precision, E recomputed, iterated until the residual no longer decreases.
 const PLAIN: Solver = Solver { tolerance: None, is_carried: false };
-/// The same with a carried E.
+/// The paper's unknowns with a carried E.
 const CARRIED: Solver = Solver { tolerance: None, is_carried: true };
 /// The smaller initial step of the paper.
 const PAPER: f64 = 0.01;
 
-/// What a solver makes of one initial step.
+/// The run of a solver from one initial step.
 #[derive(Clone, Copy, Debug)]
 struct Outcome {
     /// Steps until the end of the run.
@@ -55,7 +55,7 @@ struct Rung {
     points: Outcome,
     /// Unknowns (v, h), plain.
     plain: Outcome,
-    /// The same with a carried E.
+    /// Unknowns (v, h), plain, with a carried E.
     carried: Outcome,
     ours: Outcome,
     /// Error of the trajectory, energy-preserving and fixed; `None` if the run does not reach the time.
@@ -118,8 +118,8 @@ impl Outcome {
         outcome
     }
 
-    /// The largest deviation from the step law, if the energy determined the steps. If all have the same length to ten
-    /// digits, the run took its predictions.
+    /// The largest deviation from the step law; `None` if all lengths agree to ten digits, which shows that the energy
+    /// did not determine them.
     fn determined(&self) -> Option<f64> {
         (self.lengths.1 / self.lengths.0 > 1.0 + 1e-10).then_some(self.deviation)
     }
@@ -291,7 +291,7 @@ fn growth_from(ladder: &Ladder) -> Option<f64> {
     level.last().map(|rung| rung.h0).filter(|h0| *h0 > LADDER[0])
 }
 
-/// What tolerance, unknowns and a carried energy change, at the paper's initial steps.
+/// Compares solvers at the paper's initial steps: tolerance, unknowns, carried energy.
 ///
 /// Returns the smallest and the largest error of the solvers in (v, h) that recompute E.
 fn solvers(book: &mut Book, most: u32) -> Result<(f64, f64), Failure> {
@@ -329,7 +329,7 @@ fn solvers(book: &mut Book, most: u32) -> Result<(f64, f64), Failure> {
     Ok(extremes(recomputed))
 }
 
-/// How well h is determined: the law, and the measurement.
+/// The accuracy of h: the law, and the measurement.
 fn length(book: &mut Book, ladders: &[Ladder]) {
     book.page.prose(
         "<b>What is in the equations.</b> The condition of the equations does become worse as <i>h</i><sub>0</sub> shrinks. It \
@@ -399,7 +399,7 @@ fn trajectory(book: &mut Book, ladders: &[Ladder]) {
     let adaptive: Pick = |rung| Some(rung.trajectory?.0);
     let series =
         lines(ladders, &[("energy", Look::ENERGY, adaptive), ("fixed", Look::FIXED, |rung| Some(rung.trajectory?.1))]);
-    // Above 0.01 the leading term is not yet alone.
+    // Above 0.01 higher terms contribute.
     let fine = ladders.iter().map(|ladder| ladder.curve(adaptive).into_iter().filter(|(h0, _)| *h0 < 0.02));
     let fine = fine.map(Iterator::collect::<Vec<_>>).filter(|points| points.len() > 2);
     let orders: Vec<f64> = fine.map(|points| order(&points)).collect();
@@ -430,7 +430,7 @@ fn trajectory(book: &mut Book, ladders: &[Ladder]) {
     );
 }
 
-/// What follows from the figures.
+/// The conclusions of the figures.
 fn verdict(book: &mut Book, ladders: &[Ladder], (least, largest): (f64, f64)) {
     book.page.prose(&format!(
         "<b>What is in the solver.</b> The energy error. In (<i>v</i>, <i>h</i>) with a recomputed energy it is {} to {}, depending on \

@@ -3,7 +3,7 @@
 //! In: a first interval and a [`Solver`]. Out: the steps. Newton's iteration has the exact Jacobian. Nothing is scaled or
 //! compensated. The formulas are the printed ones, with m = 1.
 
-/// When the iteration stops, and which energy the next step receives.
+/// The stopping rule of the iteration, and the energy of the next step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Solver {
     /// The largest accepted norm of (F, G). Without one the iteration stops when the norm no longer decreases.
@@ -42,7 +42,7 @@ fn half_force(q: f64) -> f64 {
     q / 2.0 - q.powi(3)
 }
 
-/// Its derivative.
+/// The derivative of [`half_force`].
 fn half_slope(q: f64) -> f64 {
     0.5 - 3.0 * q * q
 }

@@ -122,7 +122,7 @@ fn level_set(level: f64) -> Vec<Vec<(f64, f64)>> {
     let branch = |sign: f64| {
         (0..=FINENESS)
             .map(|index| {
-                // Points crowd at the turning points, where the curve is steep.
+                // Points are dense at the turning points, because the curve is steep there.
                 let angle = core::f64::consts::PI * f64::from(index) / f64::from(FINENESS);
                 let q = start + (outer - start) * (1.0 - angle.cos()) / 2.0;
                 (q, sign * (2.0 * level + q * q * (1.0 - q * q)).max(0.0).sqrt())
@@ -146,7 +146,7 @@ mod tests {
                 worst = worst.max((energy - level).abs());
             }
         }
-        // Measured 1.7e-16, at a turning point, where v is set to 0.
+        // Measured 1.7e-16, at a turning point, at which v is set to 0.
         assert!(worst > 0.0 && worst < 2e-16, "{worst}");
     }
 }

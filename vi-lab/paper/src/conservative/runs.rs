@@ -19,7 +19,7 @@ pub(super) struct Case {
     pub(super) h0: f64,
 }
 
-/// What is seen of a step: its middle, where the energy equation holds.
+/// The middle of a step, at which the energy equation holds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     /// Time.
@@ -58,7 +58,7 @@ pub(super) struct Pair {
     pub(super) start: f64,
     /// Largest abs(E_k − E_1) if the velocity of a step is recomputed from its stored nodes.
     pub(super) stored: f64,
-    /// Largest abs(E_k − E_1) of fixed steps that are as many as the energy-preserving ones, and their length.
+    /// Largest abs(E_k − E_1) of the same number of fixed steps in the same time, and their length.
     pub(super) as_many: (f64, f64),
     /// The energy-preserving integrator.
     pub(super) energy: Track,

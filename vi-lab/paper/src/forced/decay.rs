@@ -179,7 +179,7 @@ fn ends(envelope: &[(f64, f64)]) -> [f64; 2] {
     [envelope.first(), envelope.last()].map(|point| point.map_or(f64::NAN, |point| point.1))
 }
 
-/// How fast both amplitudes decay, beside the law.
+/// The decay of both amplitudes, with the law.
 fn amplitudes(book: &mut Book, runs: &[Damped]) {
     book.page.section("The amplitude of the damped energy error");
     book.page.prose(
@@ -215,7 +215,7 @@ fn amplitudes(book: &mut Book, runs: &[Damped]) {
     );
 }
 
-/// What the paper states of one damping ratio.
+/// The statements of the paper about one damping ratio.
 fn items(book: &mut Book, run: &Damped, amplitudes: &Amplitudes) {
     let zeta = run.zeta;
     let [early, late] = ends(&amplitudes.adaptive);

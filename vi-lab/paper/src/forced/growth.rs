@@ -1,4 +1,4 @@
-//! Growth of the step with damping, where it ends, and its shrinking with negative damping.
+//! Growth of the step with damping up to its end, and its decrease with negative damping.
 
 use super::super::book::{Book, Verdict};
 use super::super::unexpected;
@@ -14,7 +14,7 @@ use vi_report::table::Table;
 const SHOWN: f64 = 100.0;
 /// Time up to which negative damping is run.
 const NEGATIVE: f64 = 50.0;
-/// More steps than any run survives.
+/// More steps than any run has.
 const MOST: u32 = 200_000;
 
 /// Orders 4 and 6: stages, and the first step, long enough that the energy determines it.
@@ -44,7 +44,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     orders(book)
 }
 
-/// Why the step grows monotonically.
+/// The proof that the step grows monotonically.
 fn proof(book: &mut Book) -> Result<(), Failure> {
     book.page.prose(
         "<b>Why the growth is monotonic.</b> The step density of the oscillator is <i>D</i> = <i>ma</i>² + <i>kv</i>². The \
@@ -109,7 +109,7 @@ fn proof(book: &mut Book) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What the increments of h of a run show.
+/// Statistics of the increments of h of a run.
 struct Increments {
     /// Largest deviation of the increment from its formula, relative to h.
     identity: f64,

@@ -20,12 +20,12 @@ pub(super) struct Sample {
     pub(super) h: f64,
 }
 
-/// A run, and how it ended.
+/// A run and its ending.
 #[derive(Clone, Debug)]
 pub(super) struct Sampled {
     /// The nodes.
     pub(super) samples: Vec<Sample>,
-    /// The error that ended it; none where it was long enough.
+    /// The error that ended it; `None` if it reached its end.
     pub(super) end: Option<StepError>,
 }
 

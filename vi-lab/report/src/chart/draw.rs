@@ -56,7 +56,8 @@ impl Chart {
         self.figure_over(None)
     }
 
-    /// The same over a map, whose entries come first in the legend and whose cells hide the grid.
+    /// The chart as an SVG figure, drawn over a map. The entries of the map come first in the legend, and its cells
+    /// hide the grid.
     pub(super) fn figure_over(&self, map: Option<Vec<LegendEntry>>) -> Figure {
         let (placed, [x, y]) = self.placed();
         let frame = Frame { area: self.area(&x, &y), x, y, margins: MARGINS };

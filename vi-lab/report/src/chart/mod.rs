@@ -44,7 +44,7 @@ pub struct Series {
     pub label: Option<String>,
     /// Colour, stroke and marker.
     pub look: Look,
-    /// How a long series is thinned.
+    /// The thinning of a long series.
     thinning: Thinning,
     /// The points in the units of the axes, before any logarithm.
     pub points: Vec<(f64, f64)>,

@@ -4,7 +4,7 @@
 
 use kuva::prelude::MarkerShape;
 
-/// How a series is drawn.
+/// The style of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// Colour as hexadecimal RGB.

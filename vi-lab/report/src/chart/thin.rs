@@ -1,7 +1,7 @@
 //! Thinning: reduces a million points to the resolution of a figure.
 //!
-//! The result is a subset of the points in their order, and deterministic. AFTER THIS a line has at most four points
-//! per pixel column, a scatter plot at most one per cell.
+//! The result is a subset of the points in their order, and deterministic. A line has at most four points per pixel
+//! column, a scatter plot at most one per cell.
 
 use std::collections::BTreeSet;
 

@@ -109,7 +109,7 @@ impl Report {
         self.files.push((format!("{name}.csv"), table.csv()));
     }
 
-    /// What the page calls a figure or a table: `Figure 3`.
+    /// The name of a figure or a table on the page: `Figure 3`.
     #[must_use]
     pub fn label(&self, name: &str) -> Option<String> {
         let kinds = [("Figure", &self.figures), ("Table", &self.tables)];
