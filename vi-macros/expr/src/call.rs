@@ -2,7 +2,7 @@
 //!
 //! In: a function and its arguments. Out: the exact value if there is one (`sin(0) = 0`, `abs(-2) = 2`), otherwise the
 //! call with an argument of canonical sign, so that `sin(a - b)` and `sin(b - a)` share a node.
-//! AFTER THIS an even or odd function never has an argument whose first coefficient is negative.
+//! An even or odd function of the result never has an argument whose first coefficient is negative.
 
 use core::cmp::Ordering;
 use std::hash::Hash;
@@ -38,7 +38,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.intern(Node::Call(Function::Pow, vec![base, exponent]))
     }
 
-    /// Even in both arguments, and symmetric.
+    /// `hypot(x, y)`, which is symmetric and even in both arguments.
     fn call_hypot(&mut self, x: Expr, y: Expr) -> Expr {
         let (_, x) = self.canonical_sign(x);
         let (_, y) = self.canonical_sign(y);

@@ -1,8 +1,8 @@
 //! Values of constant expressions, rounded once.
 //!
-//! In: an expression without symbols. Out: the nearest `f64`, its sign, or why it has none ([`NoConstant`]). Ziv's
-//! strategy: ball arithmetic doubles its bits until the ball determines the sign or the rounding. A value below 2^-2000
-//! of its cancelling terms is zero, as for `sqrt(2)*sqrt(3) - sqrt(6)`.
+//! In: an expression without symbols. Out: the nearest `f64`, its sign, or the reason for which it has none
+//! ([`NoConstant`]). Ziv's strategy: ball arithmetic doubles its bits until the ball determines the sign or the
+//! rounding. A value below 2^-2000 of its cancelling terms is zero, as for `sqrt(2)*sqrt(3) - sqrt(6)`.
 
 use core::cmp::Ordering;
 use std::hash::Hash;

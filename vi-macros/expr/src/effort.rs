@@ -4,7 +4,7 @@
 //! more work is allowed. No clock is involved, so that equal input gives equal results. One unit takes about 20 ns, or
 //! 140 ns in an unoptimized build. A stored operand takes about 100 bytes.
 //!
-//! AFTER the limit a pool creates only the undefined expression, and its passes see nothing. Its results are
+//! Beyond the limit a pool creates only the undefined expression, and its passes visit no expression. Its results are
 //! meaningless; callers check [`Pool::is_exhausted`] first.
 
 use std::fmt;

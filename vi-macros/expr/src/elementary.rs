@@ -28,7 +28,7 @@ const LARGEST_POWER: u32 = 1 << 16;
 /// Extra bits for the roundings of a series.
 const GUARD: u64 = 16;
 
-/// Why a constant expression has no `f64`.
+/// The reason for which a constant expression has no `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoConstant {
     /// It has no real value, as `ln(-1)`.

@@ -2,7 +2,7 @@
 //!
 //! In: canonical nodes from the constructors of this crate. Out: handles; equal nodes have equal handles.
 //!
-//! AFTER THIS a node never changes, and its children have smaller handles. So every pass is a loop over
+//! A node in the pool never changes, and its children have smaller handles. So every pass is a loop over
 //! [`Pool::reachable`] in ascending order, and deep nesting does not exhaust the stack.
 
 use std::cell::{Cell, RefCell};
@@ -143,7 +143,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.visited(exprs, 1)
     }
 
-    /// The same, for a pass that spends `work` on each operand.
+    /// All nodes of the given expressions as [`Pool::reachable`], for a pass that spends `work` on each operand.
     pub(crate) fn visited(&self, exprs: &[Expr], work: usize) -> Vec<Expr> {
         if self.is_exhausted() {
             return Vec::new();

@@ -9,7 +9,7 @@
 //!
 //! Exponents add regardless of the domain: `x·x^-1 = 1`.
 //!
-//! AFTER THIS the coefficient is outside (see [`crate::Sum`]) and the factors satisfy [`Product`].
+//! The coefficient of the result is outside (see [`crate::Sum`]), and its factors satisfy [`Product`].
 
 use std::hash::Hash;
 

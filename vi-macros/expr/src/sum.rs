@@ -3,7 +3,7 @@
 //! In: a linear combination of expressions. Out: `constant + Σ coefficient·term`, with nested sums flattened, equal
 //! terms collected, numbers folded, and squares of sines and cosines merged (see `squares`).
 //!
-//! AFTER THIS no term is a number or a sum, and numeric coefficients exist only in a [`Sum`].
+//! No term of the result is a number or a sum, and numeric coefficients exist only in a [`Sum`].
 
 use std::hash::Hash;
 
