@@ -2,7 +2,7 @@
 //! ([`Ensemble`]), or with any integrator ([`Runs`]).
 //!
 //! In: systems of one type, a state for each, a step h. Out: for each trajectory its state, or the typed error that
-//! ended it and the number of its steps. A step solves the equations of [`vi_core::FixedStep`]. AFTER A STEP the
+//! ended it and the number of its steps. A step solves the equations of [`vi_core::FixedStep`]. After each step the
 //! residual of each trajectory, evaluated at its velocity, is at the rounding floor.
 //!
 //! Systems of up to three degrees of freedom with short functions
@@ -19,7 +19,7 @@
 //! | `block` | 64 trajectories in vector lanes, and the retry of rejected steps |
 //! | `pass` | one step of a block: a branch-free loop, which LLVM vectorizes |
 //! | `layout` | nodes and velocities of a block, one row per coordinate |
-//! | `ended` | how a trajectory ended |
+//! | `ended` | the end of a trajectory |
 //!
 //! A trajectory does not depend on its neighbours or on the number of threads, bit for bit. Processors with and without
 //! fused multiply-add give results that differ by rounding.

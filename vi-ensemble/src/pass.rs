@@ -43,7 +43,7 @@ pub(crate) struct Elapsed {
 }
 
 impl Elapsed {
-    /// After `steps` steps of length h.
+    /// The time elapsed after `steps` steps of length h.
     #[allow(clippy::cast_precision_loss)]
     pub(crate) fn after(steps: u64, h: f64) -> Self {
         let t = steps as f64 * h;

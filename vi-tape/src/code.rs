@@ -78,11 +78,11 @@ pub(crate) struct ByRule {
 /// The columns of the nonzeros of each row, ascending.
 pub(crate) type Columns = &'static [&'static [usize]];
 
-/// The constraints of a system. The matrices of such a system are rows by their nonzeros: an entry of a result has the
-/// place among the columns of its row, not the column.
+/// The constraints of a system. The matrices of such a system store the nonzeros of each row: the index of an entry is
+/// its place among these, not its column.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Constraints {
-    /// Holonomic ones come first.
+    /// The names of the constraints, the holonomic ones first.
     pub(crate) names: &'static [&'static str],
     pub(crate) holonomic: usize,
     pub(crate) has_point_masses: bool,
@@ -101,11 +101,11 @@ pub(crate) struct Call {
     /// The call as it is written.
     pub(crate) text: &'static str,
     pub(crate) table: &'static AnyTable,
-    /// One, or two of a grid.
+    /// Number of arguments: two for a grid, otherwise one.
     pub(crate) arguments: usize,
 }
 
-/// A place to start from.
+/// An initial state with its step and its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// Time.
@@ -163,15 +163,15 @@ pub(crate) struct Code {
     pub(crate) has_rule: bool,
     /// Whether there are energy-preserving steps of order 2.
     pub(crate) has_step_density: bool,
-    /// None of a free system.
+    /// The constraints; `None` for a free system.
     pub(crate) constraints: Option<Constraints>,
     pub(crate) mass: AnyForm,
     pub(crate) point_matrix: AnyForm,
     pub(crate) functions: Functions,
     pub(crate) instructions: Instructions,
-    /// The equations of a step by the rule: most of a code, and needed by few methods.
+    /// The equations of a step by the rule: the largest part of a code, needed by few methods.
     pub(crate) by_rule: OnceLock<ByRule>,
-    /// Derives them.
+    /// Derives the equations of a step by the rule.
     pub(crate) derive: fn(&Self) -> ByRule,
 }
 

@@ -63,11 +63,11 @@ pub(crate) struct Parsed {
 /// Compiles the system of the text of a file.
 ///
 /// # Errors
-/// The mistakes of the text, or what only the macro compiles.
+/// The mistakes of the text, or an item that only the macro compiles.
 pub(crate) fn code(file: &str, text: &str, Parsed { mut system, definition }: Parsed) -> Result<Code, Mistakes> {
     let wrong = |error: syn::Error| Mistakes::wrong(file, text, &error);
     let [declared, constraints] = sizes(&system).map_err(wrong)?;
-    // Without coordinates the check says so.
+    // The check reports a system without coordinates.
     let name = system.name.to_string();
     let size_of = |count| if count == 0 { Ok(0) } else { size(&name, [count, constraints]) };
     let least = size_of(declared)?;
@@ -198,7 +198,7 @@ fn start(state: &CheckState, parameters: &[&'static str]) -> Start {
     Start { t: state.t, q: state.q.clone(), v: state.v.clone(), h: state.h, parameters: set.collect() }
 }
 
-/// A text of each parameter.
+/// The text that `of` returns for each parameter.
 fn names(model: &Model, of: impl Fn(&Parameter) -> String) -> &'static [&'static str] {
     model.parameters.iter().map(|parameter| &*of(parameter).leak()).collect::<Vec<_>>().leak()
 }
