@@ -99,6 +99,61 @@ mod constants_of_arrays {
     }
 }
 
+/// Names in the macro that implements the traits of a system in loops.
+mod constants_of_loops {
+    alone_and_among! {
+        [
+            constants! {
+                t q v p h node interval multipliers i j real row rows value values slopes curvatures force matrix whole weight weights
+                columns dt dq dv first c_q c_v r_q r_v c_qq rounded jacobian identity W N K
+            }
+            type bool = i8;
+            type usize = i8;
+            struct str;
+        ]
+        #[vi_limit(0)]
+        pub(crate) struct System {
+            const N = 4;
+            param m[N] = [1, 2, 3, 4];
+            coord q[N];
+            L = sum(i in 0..N, m[i] * dot(q[i])^2) / 2 - sum(i in 0..N, sum(j in 0..i, m[i] * (q[i] - q[j])^4));
+            time_scale = 1 / sqrt(1 + sum(i in 0..N, q[i]^2));
+            force q[i in 0..N] = -dot(q[i]) / 9;
+            discretize midpoint, trapezoidal;
+        }
+    }
+    #[test]
+    fn are_no_patterns() {
+        assert_eq!(super::run(alone::System::default()), super::run(among::System::default()));
+    }
+}
+
+mod constants_of_constraints {
+    use super::{Lagrangian, SVector, StepError};
+
+    alone_and_among! {
+        [constants! { t q v multipliers real row rows value values weights columns c_q c_v r_q r_v identity }]
+        #[vi_limit(0)]
+        pub(crate) struct System {
+            const N = 4;
+            coord q[N];
+            L = sum(i in 0..N, dot(q[i])^2 - q[i]^2) / 2;
+            constraint held[i in 1..N] = q[i] - q[i - 1] - i;
+        }
+    }
+    #[test]
+    fn are_no_patterns() {
+        let acceleration =
+            |of: &dyn Fn(f64, &SVector<f64, 4>, &SVector<f64, 4>) -> Result<SVector<f64, 4>, StepError>| {
+                of(0.0, &SVector::from([0.0, 1.0, 3.0, 6.0]), &SVector::from([1.0; 4])).expect("on the constraints")
+            };
+        let alone = acceleration(&|t, q, v| alone::System::default().acceleration(t, q, v));
+        let among = acceleration(&|t, q, v| among::System::default().acceleration(t, q, v));
+        assert_eq!(alone, among);
+        assert!((alone[0] + 2.5).abs() < 1e-14, "{alone}");
+    }
+}
+
 mod types {
     alone_and_among! {
         [

@@ -14,7 +14,6 @@
 //! with `d/dt` along `(1, v, 0)`.
 
 use crate::lagrangian::Lagrangian;
-use crate::motion::Motion;
 use crate::real::dual::{along, slopes};
 use crate::real::{Dual, Real};
 use nalgebra::{SMatrix, SVector};
@@ -23,6 +22,11 @@ use nalgebra::{SMatrix, SVector};
 pub trait IndexedConstraints<const N: usize, const K: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// The same system over dual numbers.
     type Dual: IndexedConstraints<N, K, Dual<T>>;
+
+    /// The names of the constraints, for [`Motion::CONSTRAINTS`](crate::motion::Motion::CONSTRAINTS).
+    const CONSTRAINTS: &'static [&'static str];
+    /// The number of constraints on positions, for [`Motion::HOLONOMIC`](crate::motion::Motion::HOLONOMIC).
+    const HOLONOMIC: usize;
 
     /// Converts the system to dual numbers; the parameters are constants.
     fn dual(&self) -> Self::Dual;
@@ -61,18 +65,18 @@ fn passing<T: Real>(t: T) -> Dual<T> {
     Dual { value: t, slope: T::one() }
 }
 
-/// g of the constraints on positions, zero for the others, for [`Motion::constraints`].
+/// g of the constraints on positions, zero for the others, for [`Motion::constraints`](crate::motion::Motion::constraints).
 #[inline]
 pub fn constraints<const N: usize, const K: usize, T: Real, S>(system: &S, t: T, q: &SVector<T, N>) -> [T; K]
 where
-    S: IndexedConstraints<N, K, T> + Motion<N, T>,
+    S: IndexedConstraints<N, K, T>,
 {
     let mut values = system.constraint_values(t, q, &SVector::zeros());
     values[S::HOLONOMIC..].fill(T::zero());
     values
 }
 
-/// A and a, for [`Motion::constraint_gradients`].
+/// A and a, for [`Motion::constraint_gradients`](crate::motion::Motion::constraint_gradients).
 #[inline]
 pub fn constraint_gradients<const N: usize, const K: usize, T: Real, S>(
     system: &S,
@@ -80,7 +84,7 @@ pub fn constraint_gradients<const N: usize, const K: usize, T: Real, S>(
     q: &SVector<T, N>,
 ) -> ([SVector<T, N>; K], [T; K])
 where
-    S: IndexedConstraints<N, K, T> + Motion<N, T>,
+    S: IndexedConstraints<N, K, T>,
 {
     let (rest, [by_q, by_v]) = (SVector::zeros(), weights());
     let gradients = of_kinds::<K, S, N, T, _>(
@@ -101,7 +105,7 @@ where
     (gradients, rates)
 }
 
-/// `∂(A v + a)/∂q` and `∂(A v + a)/∂t`, for [`Motion::constraint_rate_derivatives`].
+/// `∂(A v + a)/∂q` and `∂(A v + a)/∂t`, for [`Motion::constraint_rate_derivatives`](crate::motion::Motion::constraint_rate_derivatives).
 #[inline]
 pub fn constraint_rate_derivatives<const N: usize, const K: usize, T: Real, S>(
     system: &S,
@@ -110,7 +114,7 @@ pub fn constraint_rate_derivatives<const N: usize, const K: usize, T: Real, S>(
     v: &SVector<T, N>,
 ) -> ([SVector<T, N>; K], [T; K])
 where
-    S: IndexedConstraints<N, K, T> + Motion<N, T>,
+    S: IndexedConstraints<N, K, T>,
 {
     let ([by_q, _], dual) = (weights(), system.dual());
     let rates_dq = of_kinds::<K, S, N, T, _>(
@@ -135,7 +139,7 @@ where
     (rates_dq, rates_dt)
 }
 
-/// `∂(Aᵀλ)/∂q` by rows, for [`Motion::reaction_derivatives`].
+/// `∂(Aᵀλ)/∂q` by rows, for [`Motion::reaction_derivatives`](crate::motion::Motion::reaction_derivatives).
 #[inline]
 pub fn reaction_derivatives<const N: usize, const K: usize, T: Real, S>(
     system: &S,
@@ -144,7 +148,7 @@ pub fn reaction_derivatives<const N: usize, const K: usize, T: Real, S>(
     multipliers: &[T; K],
 ) -> [SVector<T, N>; N]
 where
-    S: IndexedConstraints<N, K, T> + Motion<N, T>,
+    S: IndexedConstraints<N, K, T>,
 {
     let (rest, [by_q, by_v]) = (SVector::zeros(), weights());
     let second = |is_of_kind: &dyn Fn(usize) -> bool, rows| {
@@ -164,7 +168,7 @@ where
 /// A quantity of each constraint, in their order: of constraints on positions by the first function, of those on
 /// velocities by the second. A function without constraints is not called.
 #[inline]
-fn of_kinds<const K: usize, S: Motion<N, T>, const N: usize, T: Real, R: Copy>(
+fn of_kinds<const K: usize, S: IndexedConstraints<N, K, T>, const N: usize, T: Real, R: Copy>(
     on_positions: impl FnOnce() -> [R; K],
     on_velocities: impl FnOnce() -> [R; K],
 ) -> [R; K] {

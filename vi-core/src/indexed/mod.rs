@@ -2,7 +2,7 @@
 //!
 //! The code of a system with many coordinates is emitted as loops, and only for the primitives of [`Indexed`]: L, its
 //! first derivatives, and weighted sums of its second derivatives. The functions of this module derive everything else
-//! from them. Each returns what the trait method of the same name returns, so that the generated method is one call.
+//! from them. Each returns what the trait method of the same name returns; the macro `system!` implements these traits.
 //!
 //! A derivative along a direction, as `d/dt(L_q)`, is one evaluation of the first derivatives over dual numbers. Fixed
 //! steps are those of a [`Quadrature`], energy-preserving ones those of the midpoint rule.
@@ -11,6 +11,7 @@
 mod constraints;
 mod slots;
 mod step;
+mod system;
 
 #[cfg(feature = "alloc")]
 pub use constraints::{
@@ -21,6 +22,9 @@ pub use step::{
     discrete_energy, extended_derivatives, extended_residual, extended_system, jacobian, momentum_derivatives,
     momentum_equation, momentum_residual, step_density,
 };
+
+#[doc(hidden)]
+pub use crate::indexed_system as system;
 
 use crate::error::StepError;
 use crate::lagrangian::{Flow, Lagrangian};
@@ -83,6 +87,10 @@ pub trait Indexed<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
         columns: [T; 2],
         matrix: &mut SMatrix<T, N, N>,
     );
+    /// The time scale g at a point, ∂g/∂q and ∂g/∂t; 1 without a time scale.
+    fn time_scale(&self, _t: T, _q: &SVector<T, N>, _v: &SVector<T, N>) -> (T, SVector<T, N>, T) {
+        (T::one(), SVector::zeros(), T::zero())
+    }
 }
 
 impl<const N: usize, T: Real> FirstDerivatives<N, T> {
@@ -271,15 +279,17 @@ pub fn point<const N: usize, T: Real, S: Indexed<N, T>, M>(
 }
 
 /// The equations of motion at a point with the energy, its rate of change and a time scale, for
-/// [`Motion::scaled_point`](crate::motion::Motion::scaled_point). `scale` is g, ∂g/∂q and ∂g/∂t.
+/// [`Motion::scaled_point`](crate::motion::Motion::scaled_point).
 #[inline]
 pub fn scaled_point<const N: usize, T: Real, S: Indexed<N, T>, M>(
     system: &S,
-    (t, q, v): (T, &SVector<T, N>, &SVector<T, N>),
+    t: T,
+    q: &SVector<T, N>,
+    v: &SVector<T, N>,
     mass: M,
-    (g, g_dq, g_dt): (T, SVector<T, N>, T),
 ) -> ScaledPoint<N, T, M> {
     let first = system.first_derivatives(t, q, v);
+    let (g, g_dq, g_dt) = system.time_scale(t, q, v);
     ScaledPoint {
         point: Point { momentum: first.dv, force: first.total_force::<S>(), mass },
         energy: first.energy(v),

@@ -1,19 +1,12 @@
-//! A system that implements [`Indexed`], and every other trait by one call of [`vi_core::indexed`] each.
+//! A system that implements [`Indexed`], and the other traits by [`vi_core::indexed`].
 
 use core::ops::Add;
+use vi_core::SVector;
 use vi_core::error::StepError;
 use vi_core::indexed::{self, FirstDerivatives, Indexed};
 use vi_core::lagrangian::{Flow, Lagrangian, Parameters};
-use vi_core::motion::{Motion, Point, PointDerivatives};
 use vi_core::nalgebra::SMatrix;
-use vi_core::node::Node;
-use vi_core::real::{Dual, Real, Rounded};
-use vi_core::rules::Midpoint;
-use vi_core::stepping::{
-    Convertible, Discretized, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping,
-    MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
-};
-use vi_core::{DiscreteLagrangian, Interval, SVector, support};
+use vi_core::real::{Dual, Real};
 
 /// The system `Generated` by hand; the parameters in the order of [`Lagrangian::PARAMETERS`]. With `OPEN = false` it is declared
 /// autonomous and without a force, as it is for w = c = 0.
@@ -179,123 +172,22 @@ impl<T: Real, const OPEN: bool> Lagrangian<6, T> for Handwritten<T, OPEN> {
     }
 }
 
-impl<T: Real, const OPEN: bool> Motion<6, T> for Handwritten<T, OPEN> {
-    type Kind = vi_core::kind::Free;
-    type Mass = Square<T>;
-    type PointMatrix = Square<T>;
-    const CONSTANT_MASS: bool = false;
-    const SEPARABLE: bool = false;
+type Open<T> = Handwritten<T, true>;
+type Closed<T> = Handwritten<T, false>;
 
-    fn point(&self, t: T, q: &Vector<T>, v: &Vector<T>) -> Point<6, T, Self::Mass> {
-        indexed::point(self, t, q, v, indexed::mass(self, t, q, v))
-    }
-    fn point_derivatives(&self, t: T, q: &Vector<T>, v: &Vector<T>) -> PointDerivatives<Self::PointMatrix> {
-        indexed::point_derivatives(self, t, q, v)
-    }
-    fn power(&self, t: T, q: &Vector<T>, v: &Vector<T>) -> T {
-        indexed::power(self, t, q, v)
-    }
+indexed::system! {
+    Open, coordinates(6), constraints(none), mass(dense), time_scale(none);
+    rule(Own), points(Midpoint), jacobian(dense), energy_steps(true)
 }
 
-impl<T: Real, const OPEN: bool> FixedStepping<6, T> for Handwritten<T, OPEN> {
-    type Jacobian = Square<T>;
-    type StepMatrix = Square<T>;
-    const CONSTANT_JACOBIAN: bool = false;
-
-    fn momentum_equation(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> MomentumEquation<6, T, Self::Jacobian> {
-        indexed::momentum_equation(self, Midpoint, node, h, v, indexed::jacobian(self, Midpoint, node, h, v))
-    }
-    fn momentum_residual(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> MomentumResidual<6, T> {
-        indexed::momentum_residual(self, Midpoint, node, h, v)
-    }
-    fn momentum_derivatives(
-        &self,
-        node: &Node<6, T>,
-        h: T,
-        v: &Vector<T>,
-    ) -> MomentumDerivatives<Self::Jacobian, Self::StepMatrix> {
-        indexed::momentum_derivatives(self, Midpoint, node, h, v, indexed::jacobian(self, Midpoint, node, h, v))
-    }
-    fn momentum_rounding(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> Vector<T> {
-        support::momentum_rounding(&self.steps::<Rounded>(), node, h, v)
-    }
-    fn discrete_energy(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> T {
-        indexed::discrete_energy(self, Midpoint, node, h, v)
-    }
-}
-
-impl<T: Real, const OPEN: bool> EnergyStepping<6, T> for Handwritten<T, OPEN> {
-    fn step_density(&self, t: T, q: &Vector<T>, v: &Vector<T>) -> Result<T, StepError> {
-        indexed::step_density(self, t, q, v)
-    }
-    fn extended_system(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> ExtendedSystem<6, T, Self::Jacobian> {
-        indexed::extended_system(self, node, h, v)
-    }
-    fn extended_residual(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> ExtendedResidual<6, T> {
-        indexed::extended_residual(self, node, h, v)
-    }
-    fn extended_derivatives(
-        &self,
-        node: &Node<6, T>,
-        h: T,
-        v: &Vector<T>,
-    ) -> ExtendedDerivatives<6, T, Self::Jacobian, Self::StepMatrix> {
-        indexed::extended_derivatives(self, node, h, v)
-    }
-    fn extended_rounding(&self, node: &Node<6, T>, h: T, v: &Vector<T>) -> Rounding<6, T> {
-        support::extended_rounding(&self.steps::<Rounded>(), node, h, v)
-    }
-}
-
-impl<T: Real, const OPEN: bool> DiscreteLagrangian<6, T> for Handwritten<T, OPEN> {
-    fn ld(&self, interval: &Interval<6, T>) -> T {
-        indexed::ld(self, Midpoint, interval)
-    }
-    fn d1_ld(&self, interval: &Interval<6, T>) -> T {
-        indexed::d1_ld(self, Midpoint, interval)
-    }
-    fn d2_ld(&self, interval: &Interval<6, T>) -> Vector<T> {
-        indexed::d2_ld(self, Midpoint, interval)
-    }
-    fn d3_ld(&self, interval: &Interval<6, T>) -> T {
-        indexed::d3_ld(self, Midpoint, interval)
-    }
-    fn d4_ld(&self, interval: &Interval<6, T>) -> Vector<T> {
-        indexed::d4_ld(self, Midpoint, interval)
-    }
-    fn fd_minus(&self, interval: &Interval<6, T>) -> Vector<T> {
-        indexed::fd_minus(self, Midpoint, interval)
-    }
-    fn fd_plus(&self, interval: &Interval<6, T>) -> Vector<T> {
-        indexed::fd_plus(self, Midpoint, interval)
-    }
-    fn gd_minus(&self, interval: &Interval<6, T>) -> T {
-        indexed::gd_minus(self, Midpoint, interval)
-    }
-    fn gd_plus(&self, interval: &Interval<6, T>) -> T {
-        indexed::gd_plus(self, Midpoint, interval)
-    }
+indexed::system! {
+    Closed, coordinates(6), constraints(none), mass(dense), time_scale(none);
+    rule(Own), points(Midpoint), jacobian(dense), energy_steps(true)
 }
 
 impl<T: Real, const OPEN: bool> Handwritten<T, OPEN> {
-    pub(super) fn steps<U: Real>(&self) -> Handwritten<U, OPEN> {
+    pub(super) fn convert<U: Real>(&self) -> Handwritten<U, OPEN> {
         self.map(|number| U::real(number.to_f64()))
-    }
-}
-
-impl<const OPEN: bool> Convertible<6> for Handwritten<f64, OPEN> {
-    type In<T: Real> = Handwritten<T, OPEN>;
-
-    fn convert<T: Real>(&self) -> Handwritten<T, OPEN> {
-        self.steps()
-    }
-}
-
-impl<const OPEN: bool> Discretized<6> for Handwritten<f64, OPEN> {
-    type Steps<T: Real> = Handwritten<T, OPEN>;
-
-    fn steps<T: Real>(&self) -> Handwritten<T, OPEN> {
-        self.steps()
     }
 }
 

@@ -223,7 +223,7 @@ fn compare_steps(worst: &mut Deviation, ours: &impl Complete, theirs: &impl Comp
 fn the_continuous_functions_are_those_of_generated_code() {
     let ((ours, theirs), mut worst) = (systems(), Deviation::default());
     compare_continuous(&mut worst, &ours, &theirs);
-    let rounded = ours.steps::<Rounded>();
+    let rounded = ours.convert::<Rounded>();
     for (t, q, v) in POINTS {
         let q = q.into();
         let p = theirs.momentum(t, &q, &v.into());

@@ -1,48 +1,20 @@
-//! The constraints of a large system: their primitives in loops, and the traits of a system with constraints.
+//! The constraints of a large system: their primitives in loops.
 
 use super::super::constraints;
-use super::super::constraints::Members;
 use super::second::Column;
 use super::{Printer, WEIGHTS, name, reads_entries};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 impl Printer<'_> {
-    /// What the constraints add to `Motion`.
-    pub(super) fn constraints(&self) -> Members {
-        let dimension = self.dimension();
+    /// The implementation of `IndexedConstraints`; nothing without constraints.
+    pub(super) fn constraints(&self) -> TokenStream {
+        if self.model.constraints.is_empty() {
+            return TokenStream::new();
+        }
+        let (system, dimension, sums) = (&self.model.name, self.dimension(), &self.of.constraints);
         let count = Literal::usize_unsuffixed(self.model.constraints.len());
         let names = constraints::names(self.model);
-        let vector = quote!(::vi_core::SVector<T, #dimension>);
-        let [multipliers, gradients, reaction] = constraints::types(&dimension);
-        let rows = quote!((#gradients, #multipliers));
-        let applied = self.of_state("applied", &vector, &quote!(::vi_core::indexed::applied(self, t, q, v)));
-        let rates = quote!(::vi_core::indexed::constraint_rate_derivatives(self, t, q, v));
-        let rates = self.of_state("constraint_rate_derivatives", &rows, &rates);
-        let functions = quote! {
-            #names
-            #applied
-
-            fn constraints(&self, t: T, q: &#vector) -> #multipliers {
-                ::vi_core::indexed::constraints(self, t, q)
-            }
-
-            fn constraint_gradients(&self, t: T, q: &#vector) -> #rows {
-                ::vi_core::indexed::constraint_gradients(self, t, q)
-            }
-
-            #rates
-
-            fn reaction_derivatives(&self, t: T, q: &#vector, multipliers: &#multipliers) -> #reaction {
-                ::vi_core::indexed::reaction_derivatives(self, t, q, multipliers)
-            }
-        };
-        Members { kind: quote!(::vi_core::kind::Bound<#count>), items: self.constraint_primitives(&count), functions }
-    }
-
-    /// The implementation of `IndexedConstraints`.
-    fn constraint_primitives(&self, count: &Literal) -> TokenStream {
-        let (system, dimension, sums) = (&self.model.name, self.dimension(), &self.of.constraints);
         let [c_q, c_v] = &WEIGHTS.map(name);
         let entries = reads_entries(sums).then(|| self.entries());
         let values = self.summed("constraint", sums, &format_ident!("values"));
@@ -74,6 +46,7 @@ impl Printer<'_> {
         quote! {
             impl<T: ::vi_core::real::Real> ::vi_core::indexed::IndexedConstraints<#dimension, #count, T> for #system<T> {
                 type Dual = #system<::vi_core::real::Dual<T>>;
+                #names
 
                 fn dual(&self) -> Self::Dual {
                     ::vi_core::indexed::Indexed::dual(self)

@@ -42,11 +42,11 @@ pub fn items(loops: &Loops) -> TokenStream {
     let printer = Printer { of, model };
     let (functions, parameters) = (functions::items(model), structure::parameters(model));
     let (bodies, lagrangian, primitives) = (printer.bodies(pool), printer.lagrangian(), printer.primitives());
-    let (motion, convertible) = (printer.motion(), structure::convertible(model, of.separable));
-    let steps = of.rules.iter().enumerate().map(|(place, rule)| printer.steps(rule, place == 0));
+    let (constraints, diagonal, system) = (printer.constraints(), printer.diagonal(), printer.system());
     let batch = (!of.rules.is_empty()).then(|| structure::batch(model));
-    let implementations =
-        quote!(#functions #parameters #bodies #lagrangian #primitives #motion #convertible #(#steps)* #batch);
+    let implementations = quote! {
+        #functions #parameters #bodies #lagrangian #primitives #constraints #diagonal #system #batch
+    };
     let conditions: Vec<_> = conditions(&model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests_of_loops(of, &conditions);
@@ -331,7 +331,7 @@ impl Printer<'_> {
         let (name, dimension, dual) = (&self.model.name, self.dimension(), structure::dual(self.model));
         let first = self.first_derivatives();
         let (second, force) = (self.second_derivatives(), self.add_force_derivatives());
-        let lost = self.dissipation_curvatures();
+        let (lost, scale) = (self.dissipation_curvatures(), self.time_scale());
         quote! {
             #lost
 
@@ -345,6 +345,7 @@ impl Printer<'_> {
                 #first
                 #second
                 #force
+                #scale
             }
         }
     }

@@ -7,22 +7,9 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 impl Printer<'_> {
-    /// What `Motion` has in a system with a time scale, and the trait that says so.
-    pub(super) fn time_scale(&self) -> [TokenStream; 2] {
-        let Some(scale) = &self.of.scale else { return [TokenStream::new(), TokenStream::new()] };
-        let (name, dimension) = (&self.model.name, self.dimension());
-        let result = quote!(::vi_core::motion::ScaledPoint<#dimension, T, Self::Mass>);
-        let point = self.of_state("scaled_point", &result, &self.scaled_point(scale));
-        [
-            quote! {
-                const SCALES_TIME: bool = true;
-                #point
-            },
-            quote!(impl<T: ::vi_core::real::Real> ::vi_core::motion::TimeScale<#dimension, T> for #name<T> {}),
-        ]
-    }
-
-    fn scaled_point(&self, scale: &Scale) -> TokenStream {
+    /// The function `time_scale`; nothing without one.
+    pub(super) fn time_scale(&self) -> TokenStream {
+        let Some(scale) = &self.of.scale else { return TokenStream::new() };
         let Scale { parts, count, whole } = scale;
         let (dimension, count) = (self.dimension(), Literal::usize_unsuffixed(*count));
         let whole = core::slice::from_ref(whole);
@@ -30,7 +17,6 @@ impl Printer<'_> {
         let has_entries = reads_entries(parts) || reads_entries(whole);
         let entries = has_entries.then(|| self.entries());
         let values = self.summed(PART, parts, &format_ident!("parts"));
-        let [_, _, mass] = self.mass();
         let arrays = Sweep::SCALE.of_arrays(self.arrays(&[parts, whole]));
         let bars = has_entries.then(|| self.bars(Sweep::SCALE, &arrays));
         let whole = Self::over_sums(SCALE, whole, 0, &|of| {
@@ -50,7 +36,7 @@ impl Printer<'_> {
             }
         });
         let backward = has_entries.then(|| self.backward(Sweep::SCALE, &arrays));
-        quote! {
+        let value = quote! {
             let real = T::real;
             #entries
             let mut parts = [real(0.0); #count];
@@ -63,8 +49,9 @@ impl Printer<'_> {
             #whole
             #terms
             #backward
-            ::vi_core::indexed::scaled_point(self, (t, q, v), #mass, (g, g_dq, g_dt))
-        }
+            (g, g_dq, g_dt)
+        };
+        self.of_state("time_scale", &quote!((T, ::vi_core::SVector<T, #dimension>, T)), &value)
     }
 
     /// Adds the slopes of a term, times a weight.
