@@ -129,6 +129,18 @@ fn an_explanation_shows_loops_and_what_follows_from_them() {
 }
 
 #[test]
+fn loops_and_lines_show_the_same_declarations() {
+    let declarations = |system: &str| {
+        let mut explained = explain(tokens(system)).expect("right");
+        explained.sections.truncate(1);
+        [explained.text(), explained.latex()]
+    };
+    for system in [BODIES, WELLS, CLOSED] {
+        assert_eq!(declarations(system), declarations(&system.replace("#[vi_limit(0)] ", "")));
+    }
+}
+
+#[test]
 fn two_loops_are_shown_as_a_double_sum() {
     let system = BODIES.replace("N = 5", "N = 8").replace("m[N] = [1, 2, 3, 4, 5]", "m[N] = 2");
     let explained = explain(tokens(&system)).expect("right");

@@ -15,8 +15,7 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
         return Vec::new();
     }
     let Some(of) = &derived.system.by_rule else {
-        let lines = vec![Line::words("None: the system is declared without a rule and takes Gauss steps")];
-        return vec![Section { title: "Discrete Lagrangian", lines }];
+        return vec![without_rule()];
     };
     let points = of.slots.points.iter().enumerate().flat_map(|(index, point)| at(derived, index, point)).collect();
     vec![
@@ -33,6 +32,12 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
         },
         Section { title: "Increments of momentum and energy", lines: increments(derived, &of.equations) },
     ]
+}
+
+/// The section of a system without a rule.
+pub(super) fn without_rule() -> Section {
+    let none = Line::words("None: the system is declared without a rule and takes Gauss steps");
+    Section { title: "Discrete Lagrangian", lines: vec![none] }
 }
 
 /// The arguments of L and f at a point of the rule.

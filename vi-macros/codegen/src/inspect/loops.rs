@@ -4,11 +4,11 @@
 
 use super::explanation::{Line, Section};
 use super::index::{self, Both, COUNTERS, affine};
-use super::{functions, gauss, latex, model, name, program, syntax};
+use super::{discrete, functions, gauss, latex, model, name, program, syntax};
 use crate::Loops;
 use crate::indexed::{self, NamedBody, Quantity};
 use crate::indexed::{Affine, Nest, Value};
-use crate::model::{Coordinate, Model, Parameter};
+use crate::model::Model;
 use crate::program::Function;
 use crate::rules::NamedRule;
 use crate::symbol::Symbol;
@@ -19,58 +19,15 @@ use vi_expr::Node;
 /// Declarations, and L and f as written.
 pub(super) fn model(system: &System, of: &Loops) -> Vec<Section> {
     let model = &of.indexed.model;
-    let (mut text, mut in_latex) = (Vec::new(), Vec::new());
-    for array in model.coordinates.chunk_by(|left, right| left.name == right.name) {
-        text.push(ends(array.iter().map(Coordinate::text)));
-        in_latex.push(ends(array.iter().map(|of| format!("`{}`", name::coordinate(of).text()))));
-    }
-    let mut lines = vec![Line::Words {
-        text: format!("coordinates {}", text.join(", ")),
-        latex: format!("Coordinates {}", in_latex.join(", ")),
-    }];
-    lines.extend(model.fields().map(|field| parameter(model, field)));
-    if model.constraints.is_empty() {
-        lines.push(Line::words(format!("rule {}", model::title(model))));
-    }
     let written = syntax::equations(system).into_iter().map(Line::words).collect();
     let title = if model.constraints.is_empty() {
         "Named parts, Lagrangian L and force f, as written"
     } else {
         "Named parts, Lagrangian L, force f and constraints, as written"
     };
-    let mut sections = vec![Section { title: "System", lines }, Section { title, lines: written }];
+    let mut sections = vec![model::declarations(model), Section { title, lines: written }];
     sections.extend(functions::sections(model));
     sections
-}
-
-/// The first and the last of several names, or all of at most two.
-fn ends(names: impl Iterator<Item = String>) -> String {
-    let names: Vec<String> = names.collect();
-    match &names[..] {
-        [first, _, .., last] => format!("{first} to {last}"),
-        _ => names.join(", "),
-    }
-}
-
-/// A parameter, or the entries of an array.
-fn parameter(model: &Model, field: &[Parameter]) -> Line {
-    let is_input = field.first().is_some_and(|of| of.is_input);
-    let [word, title] = if is_input { ["input", "Input"] } else { ["parameter", "Parameter"] };
-    let symbol = |of: &Parameter| {
-        let index = model.parameters.iter().position(|known| core::ptr::eq(known, of)).unwrap_or(0);
-        name::of_model(model, &of.symbol(index)).map_or_else(String::new, |name| format!("`{}`", name.text()))
-    };
-    let defaults: Vec<String> = field.iter().map(Parameter::default_text).collect();
-    let is_same = defaults.windows(2).all(|pair| pair[0] == pair[1]);
-    let values = match &defaults[..] {
-        [first, _, ..] if is_same => format!("each {first}"),
-        _ => defaults.join(", "),
-    };
-    let (names, in_latex) = (ends(field.iter().map(Parameter::text)), ends(field.iter().map(symbol)));
-    Line::Words {
-        text: format!("{word} {names} = {values}"),
-        latex: format!("{title} {in_latex}, by default {values}"),
-    }
 }
 
 /// Recursions, then L and f as sums.
@@ -315,8 +272,7 @@ pub(super) fn discrete(of: &Loops) -> Vec<Section> {
         return vec![motion, gauss::constrained()];
     }
     let Some((own, further)) = of.indexed.rules.split_first() else {
-        let lines = vec![Line::words("None: the system is declared without a rule and takes Gauss steps")];
-        return vec![motion, Section { title: "Discrete Lagrangian", lines }];
+        return vec![motion, discrete::without_rule()];
     };
     let mut sections = vec![motion, step(of, own)];
     for rule in further {

@@ -9,7 +9,7 @@ use crate::discrete::TimeScale;
 use crate::findings::{Block, Elimination};
 use crate::limits::bounded;
 use crate::model::legendre::transform;
-use crate::model::{Coordinate, Model, Rule};
+use crate::model::{Coordinate, Model, Parameter, Rule};
 use crate::symbol::{Symbol, Variable};
 
 /// Characters of a Hamiltonian that is not shown.
@@ -26,26 +26,62 @@ pub(super) fn title(model: &Model) -> &'static str {
     model.rule.as_ref().map_or("none", Rule::title)
 }
 
-/// Names, L and f.
-pub(super) fn sections(derived: &Derived) -> Vec<Section> {
-    let model = &derived.model;
-    let coordinates: Vec<String> = model.coordinates.iter().map(Coordinate::text).collect();
-    let in_latex: Vec<String> = model.coordinates.iter().map(|of| name::coordinate(of).text()).collect();
+/// The names that a system declares, the first and the last entry of each array, and its rule.
+pub(super) fn declarations(model: &Model) -> Section {
+    let arrays = model.coordinates.chunk_by(|left, right| left.name == right.name);
+    let coordinates: Vec<String> = arrays.clone().map(|array| ends(array.iter().map(Coordinate::text))).collect();
+    let symbol = |of: &Coordinate| format!("`{}`", name::coordinate(of).text());
+    let in_latex: Vec<String> = arrays.map(|array| ends(array.iter().map(symbol))).collect();
     let mut lines = vec![Line::Words {
         text: format!("coordinates {}", coordinates.join(", ")),
-        latex: format!("Coordinates `{}`", in_latex.join(", ")),
+        latex: format!("Coordinates {}", in_latex.join(", ")),
     }];
-    for (index, parameter) in model.parameters.iter().enumerate() {
-        let symbol = name::latex(derived, &parameter.symbol(index));
-        let [word, title] = if parameter.is_input { ["input", "Input"] } else { ["parameter", "Parameter"] };
-        lines.push(Line::Words {
-            text: format!("{word} {} = {}", parameter.text(), parameter.default_text()),
-            latex: format!("{title} `{symbol}`, by default `{}`", parameter.default_text()),
-        });
-    }
+    lines.extend(model.fields().map(|field| parameter(model, field)));
     if model.constraints.is_empty() {
         lines.push(Line::words(format!("rule {}", title(model))));
     }
+    Section { title: "System", lines }
+}
+
+/// The first and the last of several names, or all of at most two.
+fn ends(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<String> = names.collect();
+    match &names[..] {
+        [first, _, .., last] => format!("{first} to {last}"),
+        _ => names.join(", "),
+    }
+}
+
+/// A parameter, or the entries of an array.
+fn parameter(model: &Model, field: &[Parameter]) -> Line {
+    let is_input = field.first().is_some_and(|of| of.is_input);
+    let [word, title] = if is_input { ["input", "Input"] } else { ["parameter", "Parameter"] };
+    let symbol = |of: &Parameter| {
+        let index = model.parameters.iter().position(|known| core::ptr::eq(known, of)).unwrap_or(0);
+        name::of_model(model, &of.symbol(index)).map_or_else(String::new, |name| format!("`{}`", name.text()))
+    };
+    let defaults: Vec<String> = field.iter().map(Parameter::default_text).collect();
+    let in_latex: Vec<String> = defaults.iter().map(|default| format!("`{default}`")).collect();
+    let (names, symbols) = (ends(field.iter().map(Parameter::text)), ends(field.iter().map(symbol)));
+    Line::Words {
+        text: format!("{word} {names} = {}", each(&defaults)),
+        latex: format!("{title} {symbols}, by default {}", each(&in_latex)),
+    }
+}
+
+/// The values of an array, or the one that all entries have.
+fn each(values: &[String]) -> String {
+    match values {
+        [first, others @ ..] if !others.is_empty() && others.iter().all(|other| other == first) => {
+            format!("each {first}")
+        }
+        _ => values.join(", "),
+    }
+}
+
+/// Names, L and f.
+pub(super) fn sections(derived: &Derived) -> Vec<Section> {
+    let model = &derived.model;
     let of = &derived.system.continuous;
     let mut functions = vec![Line::equation(derived, ("L", "L"), of.lagrangian)];
     if model.forced {
@@ -66,7 +102,7 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
         (false, true) => "Lagrangian L, force f, momentum p, energy E, step density D",
         (true, true) => "Lagrangian L, force f, momentum p, energy E, Hamiltonian H, step density D",
     };
-    let mut sections = vec![Section { title: "System", lines }, Section { title, lines: functions }];
+    let mut sections = vec![declarations(model), Section { title, lines: functions }];
     sections.extend(constraints(derived));
     if let Some(TimeScale { g, g_dq, g_dt }) = &of.time_scale {
         let mut lines = vec![Line::equation(derived, ("g", "g"), *g)];
