@@ -242,8 +242,8 @@ fn alone(text: &str) -> syn::Result<syntax::Expression> {
     clause.extend(text.parse::<TokenStream>()?);
     clause.extend(";".parse::<TokenStream>()?);
     let body = TokenTree::Group(Group::new(Delimiter::Brace, clause));
-    let system = parse::system(head.into_iter().chain([body]).collect())?;
-    let mut lets = system.lets.into_iter();
+    let mut system = parse::system(head.into_iter().chain([body]).collect())?;
+    let mut lets = system.definitions.remove(&syntax::Defining::Let).unwrap_or_default().into_iter();
     match (lets.next(), lets.next()) {
         (Some(only), None) => Ok(only.value),
         _ => Err(syn::Error::new(proc_macro2::Span::call_site(), "expected one expression")),

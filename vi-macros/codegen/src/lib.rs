@@ -200,7 +200,7 @@ pub fn derive(system: &System) -> syn::Result<Derivations> {
 /// All errors of the check, if the numbers depend on it.
 pub fn sizes(system: &System) -> syn::Result<[usize; 2]> {
     let is_one = |of: &syntax::Coordinate| of.lengths.is_empty() && !of.is_rotation;
-    if system.coordinates.iter().all(is_one) && system.constraints.is_empty() {
+    if system.coordinates.iter().all(is_one) && system.all(syntax::Defining::Constraint).is_empty() {
         return Ok([system.coordinates.len(), 0]);
     }
     let (_, model) = checked(system, 0)?;

@@ -132,6 +132,7 @@ fn the_syntax_equals_the_source() {
         "const N = 3; coord q[N]; let e[i in 0..N] = q[i]^-(1/2)^2; L = -(-dot(q[0]))^2 - 2*(-3)*sum(i in 0..N, (dot(q[i]) - (1 - 2))^2/(2*3)/4);
          dissipation = hypot(dot(q[0]), dot(q[1])); force q[1] = e[0] - (e[1] - e[2]);
          discretize { Ld = h*L(t0, q0, (q1 - q0)/h); }",
+        "coord x; L = dot(x)^2/2; time_scale = 1 + x^2;",
     ] {
         let text = stage(tokens(body), Stage::Syntax).expect("right");
         let again: TokenStream = text.parse().expect("tokens");

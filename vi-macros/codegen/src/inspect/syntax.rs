@@ -29,7 +29,6 @@ pub(super) fn text(system: &System) -> String {
     }));
     lines.extend(system.tables.iter().map(table));
     lines.extend(equations(system));
-    lines.extend(system.time_scales.iter().map(definition));
     for discretization in &system.discretizations {
         match discretization {
             Discretization::Named(names) => {
@@ -48,14 +47,12 @@ pub(super) fn text(system: &System) -> String {
 
 /// The definitions of the named parts, of L, of the forces and of the constraints.
 pub(super) fn equations(system: &System) -> Vec<String> {
-    let mut lines: Vec<String> = system.lets.iter().map(|of| format!("let {}", definition(of))).collect();
-    lines.extend(system.lagrangians.iter().chain(&system.hamiltonians).map(definition));
-    lines.extend(system.forces.iter().map(|of| format!("force {}", definition(of))));
-    lines.extend(system.torques.iter().map(|of| format!("torque {}", definition(of))));
-    lines.extend(system.space_torques.iter().map(|of| format!("space_torque {}", definition(of))));
-    lines.extend(system.dissipations.iter().chain(&system.time_scales).map(definition));
-    lines.extend(system.constraints.iter().map(|of| format!("constraint {}", definition(of))));
-    lines
+    let each = system.definitions.iter().flat_map(|(clause, all)| all.iter().map(move |of| (clause, of)));
+    each.map(|(clause, of)| {
+        let text = definition(of);
+        if clause.has_names() { format!("{} {text}", clause.word()) } else { text }
+    })
+    .collect()
 }
 
 fn table(of: &Table) -> String {

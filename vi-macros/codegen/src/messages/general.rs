@@ -4,7 +4,7 @@ use super::words::{self, did_you_mean};
 use super::{
     ArrayMistake, Character, ConstraintMistake, FunctionMistake, Habit, HamiltonianMistake, constraints, functions,
 };
-use crate::rules;
+use crate::{rules, syntax};
 use vi_expr::TooLarge;
 
 /// The size at which systems end.
@@ -19,7 +19,9 @@ const FUNCTIONS: &str = "the functions are sqrt exp ln sin cos tan asin acos ata
 const RANGE: &str = "`sum(i in 0..3, q[i])` for the indices 0 to 2";
 
 /// The clauses.
-const CLAUSES: &str = "the clauses are const, param, input, coord, angle, rotation, momentum, fn, table, let, L, H, force, torque, space_torque, dissipation, constraint, time_scale, discretize, check";
+fn clauses() -> String {
+    format!("the clauses are {}", syntax::clauses().collect::<Vec<_>>().join(", "))
+}
 
 /// Why an expression cannot use a declared name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -537,7 +539,7 @@ catalogue! {
                     let part = format!("write `param {found} = …;` for a parameter, `let {found} = …;` to name a part");
                     did_you_mean(near.as_ref(), &part)
                 }
-                None => did_you_mean(near.as_ref(), CLAUSES),
+                None => did_you_mean(near.as_ref(), &clauses()),
             }
         },
         ["«constrant» rod = x - y;"]

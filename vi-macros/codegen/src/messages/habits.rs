@@ -2,6 +2,7 @@
 
 use super::words::{self, CONDITION, GAUSS};
 use crate::rules;
+use crate::syntax::Defining;
 
 catalogue! {
     /// Notation that this language writes differently.
@@ -191,7 +192,7 @@ catalogue! {
         "`{name}` has no value",
         {
             match clause {
-                _ if matches!(name.as_str(), "dissipation" | "time_scale") => {
+                _ if Defining::of(name).is_some_and(|clause| !clause.has_names()) => {
                     format!("write `{name} = …;`, one function for all coordinates")
                 }
                 None => format!("write `{name} = …`"),
@@ -205,6 +206,7 @@ catalogue! {
         ["const N = 2; param «m»[2]; coord x; L = m[0] * dot(x)^2 / 2 - m[1] * x^2;", "param «m»;",
          "param a = 1, «m»;", "param «m» coord x; L = dot(x)^2 / 2;"] { name: "m", clause: "param" },
         ["«dissipation» x = dot(x)^2;"] { name: "dissipation", clause: "" },
+        ["coord x; «L»;"] { name: "L", clause: "" },
         ["input «u»;", "input w = 1.0, «u»,  coord x; L = dot(x)^2 / 2;", "input «u»[3];"]
             { name: "u", clause: "input" },
         ["let «y»;"] { name: "y", clause: "" };

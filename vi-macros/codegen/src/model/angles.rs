@@ -15,7 +15,7 @@ use super::rule::Rule;
 use super::{Constraint, Coordinate, Parameter, probe, slope};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{Definition, System};
+use crate::syntax::{Defining, Definition, System};
 use num_traits::{One, Zero};
 use proc_macro2::Span;
 use std::collections::BTreeMap;
@@ -229,17 +229,17 @@ fn clauses(context: &mut Context, system: &System, lagrangian: Option<Expr>, tim
     let mut all = Vec::new();
     let first = system.function().zip(lagrangian);
     all.extend(first.map(|(written, expr)| clause(vec![expr], written, &format!("`{}`", written.name))));
-    for line in &system.forces {
+    for line in system.all(Defining::Force) {
         let entries = Entries::of_coordinate(context, &line.name.to_string());
         let unknown = |_: &Context, name: String| Message::ForceOnOther { name, near: None };
         let values = force::values(context, line, entries, &unknown).unwrap_or_default();
         let exprs = values.into_iter().map(|(_, expr)| expr).collect();
         all.push(clause(exprs, line, &format!("the force on `{}`", line.name)));
     }
-    if let Some(written) = system.dissipations.first() {
+    if let Some(written) = system.all(Defining::Dissipation).first() {
         all.push(clause(vec![context.value(&written.value)], written, "the dissipation"));
     }
-    let first = system.time_scales.first().zip(time_scale);
+    let first = system.all(Defining::TimeScale).first().zip(time_scale);
     all.extend(first.map(|(written, expr)| clause(vec![expr], written, "the time scale")));
     all
 }

@@ -14,7 +14,7 @@ use super::{
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
 use crate::messages::{Absence, ArrayMistake, FunctionMistake, Message, error};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{self, Constant, Definition, Expression, System};
+use crate::syntax::{self, Constant, Defining, Definition, Expression, System};
 use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, Pool};
@@ -83,18 +83,19 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     let mut context = Context::new(pool);
     context.scope.kept = is_large.then(Vec::new);
     let Named { parameters, coordinates, functions, lagrangian: of_hamiltonian } = context.names(system);
-    let constraints = constraint::constraints(&mut context, &system.constraints, &coordinates);
+    let constraints = constraint::constraints(&mut context, system.all(Defining::Constraint), &coordinates);
     if system.is_constrained {
         constraint::check_clauses(&mut context, system);
     }
-    let is_written = system.hamiltonians.is_empty() && system.momenta.is_empty();
-    let lagrangian = if is_written { context.lagrangian(&system.lagrangians, &system.name) } else { of_hamiltonian };
-    let mut forces = force::forces(&mut context, &system.forces, &coordinates);
-    let dissipation = force::dissipate(&mut context, &system.dissipations, &mut forces, &parameters);
-    rotation::torques(&mut context, &system.torques, false, &coordinates, &mut forces);
-    rotation::torques(&mut context, &system.space_torques, true, &coordinates, &mut forces);
+    let is_written = system.all(Defining::Hamiltonian).is_empty() && system.momenta.is_empty();
+    let lagrangian =
+        if is_written { context.lagrangian(system.all(Defining::Lagrangian), &system.name) } else { of_hamiltonian };
+    let mut forces = force::forces(&mut context, system.all(Defining::Force), &coordinates);
+    let dissipation = force::dissipate(&mut context, system.all(Defining::Dissipation), &mut forces, &parameters);
+    rotation::torques(&mut context, system.all(Defining::Torque), false, &coordinates, &mut forces);
+    rotation::torques(&mut context, system.all(Defining::SpaceTorque), true, &coordinates, &mut forces);
     let forced = forces.iter().chain(&dissipation).any(|force| !context.pool.is_zero(*force));
-    let time_scale = time_scale::time_scale(&mut context, &system.time_scales);
+    let time_scale = time_scale::time_scale(&mut context, system.all(Defining::TimeScale));
     let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
     let check_state = check_state::check_state(&mut context, &system.checks, &parameters, &coordinates);
     let clauses = (lagrangian, time_scale, rule.as_ref());
@@ -176,12 +177,14 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
 impl Context<'_> {
     /// Declares the names of a system, in order.
     fn names(&mut self, system: &System) -> Named {
-        let System { constants, parameters, coordinates, lets, .. } = system;
+        let System { constants, parameters, coordinates, .. } = system;
+        let lets = system.all(Defining::Let);
         self.scope.expect(lets.iter().map(|named| &named.name), Absence::Let);
         self.scope.expect(coordinates.iter().map(|coordinate| &coordinate.name), Absence::Coordinate);
         self.scope.expect(system.momenta.iter().map(|momentum| &momentum.name), Absence::Momentum);
         self.scope.expect(parameters.iter().map(|parameter| &parameter.name), Absence::Parameter);
-        self.scope.expect(system.constraints.iter().map(|constraint| &constraint.name), Absence::Constraint);
+        self.scope
+            .expect(system.all(Defining::Constraint).iter().map(|constraint| &constraint.name), Absence::Constraint);
         self.scope.expect(constants.iter().map(|constant| &constant.name), Absence::Below);
         self.constants(constants);
         let parameters = self.parameters(parameters);

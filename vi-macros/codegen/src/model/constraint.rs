@@ -157,14 +157,8 @@ pub(super) fn constraints(context: &mut Context, lines: &[Definition], coordinat
 
 /// Reports the clauses that a system with constraints cannot have.
 pub(super) fn check_clauses(context: &mut Context, system: &System) {
-    let mut report = |span, clause| {
+    for (clause, span) in system.of_free_systems() {
         context.errors.at(span, &Message::Constraint(ConstraintMistake::Clause { clause }));
-    };
-    for rule in &system.discretizations {
-        report(rule.span(), "discretize");
-    }
-    for scale in &system.time_scales {
-        report(scale.name.span(), "time_scale");
     }
 }
 

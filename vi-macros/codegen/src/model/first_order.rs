@@ -8,7 +8,8 @@ use super::singular::is_singular;
 use super::{Coordinate, Parameter, slope};
 use crate::messages::{FirstOrder, Message, error};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::System;
+use crate::syntax::{Defining, System};
+use proc_macro2::Span;
 use syn::Result;
 use vi_expr::{Expr, Pool};
 
@@ -52,19 +53,15 @@ pub(super) fn check(
     coordinates: &[Coordinate],
     (without_velocity, forces): (&[bool], &[Expr]),
 ) -> Result<()> {
-    let refused =
-        |span, clause: &'static str| Err(error(span, &Message::FirstOrder { why: FirstOrder::Clause(clause) }));
-    if let Some(scale) = system.time_scales.first() {
-        return refused(scale.name.span(), "time_scale");
-    }
-    if let Some(rule) = system.discretizations.first().filter(|_| system.rules() != 0) {
-        return refused(rule.span(), "discretize");
+    let is_refused = |(clause, _): &(&str, Span)| *clause != "discretize" || system.rules() != 0;
+    if let Some((clause, span)) = system.of_free_systems().find(is_refused) {
+        return Err(error(span, &Message::FirstOrder { why: FirstOrder::Clause(clause) }));
     }
     let moves =
         |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(index)) if without_velocity[*index]);
     match forces.iter().position(|force| pool.depends_on(*force, &moves)) {
         Some(of) => {
-            let line = system.forces.iter().find(|line| line.name == coordinates[of].name);
+            let line = system.all(Defining::Force).iter().find(|line| line.name == coordinates[of].name);
             let span = line.map_or_else(|| coordinates[of].name.span(), |line| line.name.span());
             Err(error(span, &Message::FirstOrder { why: FirstOrder::Force(coordinates[of].text()) }))
         }

@@ -14,7 +14,7 @@ use super::{Coordinate, Parameter, slope};
 use crate::limits::bounded;
 use crate::messages::{HamiltonianMistake, Message};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{Momentum, System};
+use crate::syntax::{Defining, Momentum, System};
 use proc_macro2::Span;
 use vi_expr::Expr;
 
@@ -54,7 +54,7 @@ pub(super) fn momenta(context: &mut Context, system: &System, coordinates: &[Coo
 
 /// Reports momenta without H, H with L, and H without a momentum of each coordinate.
 fn check_clauses(context: &mut Context, system: &System, coordinates: &[Coordinate], given: &[Option<&Momentum>]) {
-    let [first, others @ ..] = &system.hamiltonians[..] else {
+    let [first, others @ ..] = system.all(Defining::Hamiltonian) else {
         if let Some(momentum) = system.momenta.first() {
             let (name, of) = (momentum.name.to_string(), momentum.of.to_string());
             report(context, momentum.name.span(), HamiltonianMistake::Missing { name, of });
@@ -64,7 +64,7 @@ fn check_clauses(context: &mut Context, system: &System, coordinates: &[Coordina
     for other in others {
         report(context, other.name.span(), HamiltonianMistake::SecondHamiltonian);
     }
-    if !system.lagrangians.is_empty() {
+    if !system.all(Defining::Lagrangian).is_empty() {
         report(context, first.name.span(), HamiltonianMistake::Both);
     }
     let is_known = system.momenta.iter().all(|momentum| context.scope.is_coordinate(&momentum.of.to_string()));
@@ -96,7 +96,7 @@ pub(super) fn lagrangian(
     system: &System,
     (coordinates, parameters): (&[Coordinate], &[Parameter]),
 ) -> Option<Transformed> {
-    let written = system.hamiltonians.first()?;
+    let written = system.all(Defining::Hamiltonian).first()?;
     let mut scope = context.scope.without_velocities(context.pool, "H");
     let value = scope.expression(context.pool, &written.value);
     let value = context.report(value)?;

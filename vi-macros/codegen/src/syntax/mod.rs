@@ -4,6 +4,7 @@
 //! AFTER THIS only spans are left of the tokens.
 
 pub mod alone;
+mod clause;
 mod expression;
 mod function;
 pub mod parse;
@@ -11,36 +12,13 @@ mod tokens;
 mod unexpected;
 
 use crate::rules::{self, GAUSS, NamedRule};
+pub use clause::{Defining, clauses};
 pub use expression::{Comparison, Expression, Kind, Operator, Range};
 pub use function::{Body, Function, Table, TableArgument, TableData};
 use proc_macro2::{Ident, Span};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::rc::Rc;
-
-/// The words that start a clause.
-const CLAUSES: [&str; 20] = [
-    "const",
-    "param",
-    "input",
-    "coord",
-    "angle",
-    "rotation",
-    "fn",
-    "table",
-    "momentum",
-    "let",
-    "L",
-    "H",
-    "force",
-    "torque",
-    "space_torque",
-    "dissipation",
-    "constraint",
-    "time_scale",
-    "discretize",
-    "check",
-];
 
 /// Maximum number of indices of an array.
 const BRACKETS: usize = 100;
@@ -73,26 +51,10 @@ pub struct System {
     pub folder: PathBuf,
     /// The texts of files that are known, by their paths from the folder; others are read.
     pub files: BTreeMap<PathBuf, String>,
-    /// `let a = …;` in order.
-    pub lets: Vec<Definition>,
-    /// `L = …;`, each occurrence.
-    pub lagrangians: Vec<Definition>,
-    /// `H = …;`, each occurrence.
-    pub hamiltonians: Vec<Definition>,
-    /// `force x = …;` in order; the name is the coordinate's.
-    pub forces: Vec<Definition>,
-    /// `torque R = …;` in order; the name is the rotation's.
-    pub torques: Vec<Definition>,
-    /// `space_torque R = …;` in order.
-    pub space_torques: Vec<Definition>,
-    /// `dissipation = …;`, each occurrence.
-    pub dissipations: Vec<Definition>,
-    /// `constraint rod = …;` in order.
-    pub constraints: Vec<Definition>,
+    /// `let a = …;`, `L = …;`, `force x = …;` and alike, each occurrence in order.
+    pub definitions: BTreeMap<Defining, Vec<Definition>>,
     /// Whether a `constraint` or a `rotation` is declared, readable or not.
     pub is_constrained: bool,
-    /// `time_scale = …;`, each occurrence.
-    pub time_scales: Vec<Definition>,
     /// `discretize …;`, each occurrence.
     pub discretizations: Vec<Discretization>,
     /// `check { … }`, each occurrence.
@@ -112,7 +74,7 @@ impl System {
 
     /// The clause of the function that defines the motion: `L`, or `H`.
     pub(crate) fn function(&self) -> Option<&Definition> {
-        self.lagrangians.first().or(self.hamiltonians.first())
+        self.all(Defining::Lagrangian).first().or(self.all(Defining::Hamiltonian).first())
     }
 
     /// Removes the rules of a system without constraints, if they are built-in ones, and returns the first. Others stay,
@@ -121,7 +83,7 @@ impl System {
         let [Discretization::Named(names)] = self.discretizations.as_slice() else { return None };
         let are_known = names.iter().all(|name| *name == GAUSS || rules::named(&name.to_string()).is_some());
         let are_different = (1..names.len()).all(|index| !names[..index].contains(&names[index]));
-        if !(are_known && are_different && self.constraints.is_empty()) {
+        if !(are_known && are_different && self.all(Defining::Constraint).is_empty()) {
             return None;
         }
         let first = *self.named_rules().first()?;

@@ -7,8 +7,8 @@ use super::function;
 use super::tokens::{DEPTH, check_rust, has_bracket, name};
 use super::unexpected;
 use super::{
-    CLAUSES, Check, CheckEntry, Constant, Coordinate, Definition, Discretization, Expression, INSIDE_BRACKETS, Indices,
-    Kind, Momentum, Parameter, Rule, System, clause_of,
+    Check, CheckEntry, Constant, Coordinate, Defining, Definition, Discretization, Expression, INSIDE_BRACKETS,
+    Indices, Kind, Momentum, Parameter, Rule, System, clause_of,
 };
 use crate::messages::{ConstraintMistake, Errors, Habit, Message, bounded, error, nearest, words};
 use num_traits::Zero;
@@ -166,16 +166,8 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         tables: Vec::new(),
         folder: std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default().into(),
         files: BTreeMap::new(),
-        lets: Vec::new(),
-        lagrangians: Vec::new(),
-        hamiltonians: Vec::new(),
-        forces: Vec::new(),
-        torques: Vec::new(),
-        space_torques: Vec::new(),
-        dissipations: Vec::new(),
-        constraints: Vec::new(),
+        definitions: BTreeMap::new(),
         is_constrained: false,
-        time_scales: Vec::new(),
         discretizations: Vec::new(),
         checks: Vec::new(),
     };
@@ -242,7 +234,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     let Ok(word) = input.call(Ident::parse_any) else {
         return Err(error(input.span(), &Message::Expected { what: "a clause" }));
     };
-    if CLAUSES.contains(&word.to_string().as_str()) {
+    if super::clauses().any(|clause| word == clause) {
         check_attributes(&attributes, &word)?;
     }
     match word.to_string().as_str() {
@@ -262,23 +254,19 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         }
         "fn" => system.functions.push(Rc::new(function::function(input)?)),
         "table" => system.tables.push(function::table(input)?),
-        "let" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.lets.push(one)))?,
         "force" if input.peek(Token![=]) || input.peek(syn::token::Paren) => {
             return Err(error(input.span(), &Message::Habit(Habit::ForceWithoutCoordinate)));
         }
-        "force" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.forces.push(one)))?,
-        "torque" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.torques.push(one)))?,
-        "space_torque" => {
-            list(input, &mut |input| indexed(input, &attributes).map(|one| system.space_torques.push(one)))?;
+        found if let Some(clause) = Defining::of(found) => {
+            system.is_constrained |= clause == Defining::Constraint;
+            let made = system.definitions.entry(clause).or_default();
+            let named = if clause == Defining::Constraint { constraint } else { indexed };
+            if clause.has_names() {
+                list(input, &mut |input| named(input, &attributes).map(|one| made.push(one)))?;
+            } else {
+                made.push(value_of(word, input, attributes)?);
+            }
         }
-        "L" => system.lagrangians.push(value_of(word, input, attributes)?),
-        "H" => system.hamiltonians.push(value_of(word, input, attributes)?),
-        "dissipation" => system.dissipations.push(value_of(word, input, attributes)?),
-        "constraint" => {
-            system.is_constrained = true;
-            list(input, &mut |input| constraint(input, &attributes).map(|one| system.constraints.push(one)))?;
-        }
-        "time_scale" => system.time_scales.push(value_of(word, input, attributes)?),
         "discretize" if input.peek(syn::token::Brace) => {
             let lines;
             syn::braced!(lines in input);
@@ -312,7 +300,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             if let (true, Some(sign)) = (words::is_constraint(found), inequality(input)) {
                 return Err(error(sign, &Message::Constraint(ConstraintMistake::Inequality)));
             }
-            let near = nearest(found, CLAUSES);
+            let near = nearest(found, super::clauses());
             let is_coordinate = system.coordinates.iter().any(|coordinate| coordinate.name == word);
             let is_defined = input.peek(Token![=]) || input.peek(syn::token::Bracket);
             let found = found.to_owned();

@@ -3,7 +3,8 @@
 //! In: the input at the token, and the start of the clause. Out: the error at the wrong token: the correction for a
 //! known habit of notation, otherwise what the grammar expects.
 
-use super::{CLAUSES, INSIDE_BRACKETS, INSIDE_LIST};
+use super::clause::{CLAUSES, Next};
+use super::{INSIDE_BRACKETS, INSIDE_LIST};
 use crate::messages::{ArrayMistake, FunctionMistake, Habit, Message, error, words};
 use proc_macro2::{Delimiter, Span, TokenTree};
 use syn::buffer::Cursor;
@@ -162,11 +163,11 @@ pub(super) fn equals(input: ParseStream, name: &Ident, clause: Option<&'static s
 /// Whether a word starts a clause here.
 pub(super) fn begins_clause(input: ParseStream) -> bool {
     let Some((word, _)) = input.cursor().ident() else { return false };
-    match word.to_string().as_str() {
-        "L" => input.peek2(Token![=]),
-        // May also be the name of a parameter.
-        "input" | "constraint" | "rotation" | "torque" | "space_torque" => input.peek2(syn::Ident),
-        other => CLAUSES.contains(&other),
+    match CLAUSES.into_iter().find(|(clause, ..)| word == clause) {
+        Some((_, Next::Any, _)) => true,
+        Some((_, Next::Name, _)) => input.peek2(syn::Ident),
+        Some((_, Next::Equals, _)) => input.peek2(Token![=]),
+        None => false,
     }
 }
 
