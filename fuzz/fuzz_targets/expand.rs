@@ -12,17 +12,8 @@
 use libfuzzer_sys::fuzz_target;
 use proc_macro2::TokenStream;
 
-/// One token for each byte; the last ones open and close.
-const TOKENS: [&str; 113] = [
-    "const",
-    "param",
-    "input",
-    "coord",
-    "let",
-    "L",
-    "force",
-    "dissipation",
-    "discretize",
+/// One token for each byte, after the words that start a clause; the last ones open and close.
+const TOKENS: [&str; 104] = [
     "midpoint",
     "trapezoidal",
     "Ld",
@@ -131,9 +122,10 @@ const TOKENS: [&str; 113] = [
 
 /// The text of a system whose body is what the bytes say.
 fn text(bytes: &[u8]) -> String {
+    let tokens: Vec<&str> = vi_codegen::syntax::clauses().chain(TOKENS).collect();
     let (mut text, mut open) = (String::from("struct S {"), Vec::new());
     for byte in bytes {
-        let token = TOKENS[usize::from(*byte) % TOKENS.len()];
+        let token = tokens[usize::from(*byte) % tokens.len()];
         text.push(' ');
         match token {
             "(" => open.push(")"),

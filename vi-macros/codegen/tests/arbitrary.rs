@@ -14,7 +14,7 @@ const INPUTS: u64 = 250;
 const LONGEST: usize = 32_000_000;
 
 /// Correct systems, which together use every clause and every form of expression.
-const SYSTEMS: [&str; 16] = [
+const SYSTEMS: [&str; 18] = [
     "struct A { param m = 1, k = 2.5e-1; coord x; let v = dot(x); L = m * v^2 / 2 - k * x^2; force x = -0.1 * v; discretize midpoint; }",
     "pub struct B { const N = 3; param a = N / 2; coord q[N], y; let e[i in 1..N] = q[i] - q[i - 1]; L = sum(i in 0..N, dot(q[i])^2) + dot(y)^2 - a * sum(i in 1..N, e[i]^2 * cos(y)); force q[i in 0..2] = sin(t * i); discretize trapezoidal; }",
     "/// Doc.\n struct C { coord θ, φ; L = (dot(θ)^2 + sin(θ)^2 * dot(φ)^2) / 2 + cos(θ); dissipation = dot(θ)^2 + dot(θ)^4; discretize midpoint; }",
@@ -31,14 +31,16 @@ const SYSTEMS: [&str; 16] = [
     "struct P { const N = 2; param m[N] = 1, B = 3; coord r[N][2], s; momentum p of r, q of s; let A[i in 0..N] = [-B * r[i][1], B * r[i][0]]; H = sum(i in 0..N, (p[i] - A[i]) * (p[i] - A[i]) / (2 * m[i])) + sqrt(4 + q^2) - cos(s * t); constraint c = s - r[0][0]; }",
     "struct Q { param a = 2; coord x, y, z; momentum p of x, q of y, s of z; H = (p^2 * (1 + x^2)^3 + a * q^2 * cos(y)^2 + s^2 / (2 + x)) / (3 + sin(y)^2) + p * q * x + q * s / a + x * s; discretize trapezoidal; }",
     "struct H { const M = 4; coord u[M]; let a[i in 0..M] = sum(j in 0..i + 1, dot(u[j]) * cos(u[j])); L = sum(i in 0..M, a[i]^2 + dot(u[i])^2); discretize midpoint; }",
+    "struct R { param J = 2; input u = 0; rotation R; let w = rate(R); L = J * (w * w) / 2; torque R = [u, 0, 0]; space_torque R = -spin(R); }",
+    "struct S { input u = 0.5; angle a; coord x; fn f(s) = s^2; table g(s) = [(0, 1), (1, 2)]; time_scale = 1 + x^2; L = (f(dot(x)) + dot(a)^2) / 2 - cos(a); force x = u - g(x); discretize midpoint; }",
 ];
 
-/// Inserted tokens: all words of the language, and some others.
-const WORDS: &str = "struct const param coord let momentum of L H force dissipation discretize midpoint trapezoidal Ld fd_minus fd_plus gd_minus \
+/// Inserted tokens besides the words that start a clause: the other words of the language, and some others.
+const WORDS: &str = "struct of midpoint trapezoidal Ld fd_minus fd_plus gd_minus \
     gd_plus f h t t0 t1 q0 q1 q x y θ i in dot sum pi sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign \
-    hypot pow cross norm transpose self Self r#type fn _ + - * / ^ = ; , : . .. # ! & 0 1 2 3 7 0.5 1e3 1e-3 1e308 1e400 1e-400 0x10 1f64 2x 100 256 257 \
+    hypot pow cross norm transpose self Self r#type _ + - * / ^ = ; , : . .. # ! & 0 1 2 3 7 0.5 1e3 1e-3 1e308 1e400 1e-400 0x10 1f64 2x 100 256 257 \
     1000 20000 65536 4294967296 18446744073709551616 99999999999999999999999999999999999999999999999999 1_0 1e-30 2.5e-200 0.1234567890123456789012345678901234567890 \
-    if as for max log xdot e λ time constraint input angle rotation table torque space_torque time_scale check min clamp else 1.5f64 | .. [1,2] [3] m l k \"text\" 'c' b\"b\" true";
+    if as for max log xdot e λ time min clamp else 1.5f64 | .. [1,2] [3] m l k \"text\" 'c' b\"b\" true";
 
 /// The next number of a fixed pseudo-random sequence: a linear congruence (Knuth, MMIX).
 struct Sequence(u64);
@@ -146,7 +148,10 @@ fn unrelated(words: &[TokenTree], draw: &mut Sequence) -> Vec<TokenTree> {
 fn no_input_makes_the_compiler_panic() {
     let inputs = std::env::var("VI_INPUTS").map_or(INPUTS, |count| count.parse().expect("VI_INPUTS is a count"));
     let systems: Vec<Vec<TokenTree>> = SYSTEMS.iter().map(|text| tokens(text)).collect();
-    let words = tokens(WORDS);
+    let clauses: Vec<&str> = vi_codegen::syntax::clauses().collect();
+    let is_used = |clause: &&str| SYSTEMS.iter().any(|system| system.split(' ').any(|word| word == *clause));
+    assert_eq!(clauses.iter().find(|clause| !is_used(clause)), None, "no system has it");
+    let words = tokens(&format!("{} {WORDS}", clauses.join(" ")));
     let mut draw = Sequence(1);
     let (mut accepted, mut over_a_second, mut slowest) = (0, 0, (Duration::ZERO, String::new()));
     for input in 0..inputs {

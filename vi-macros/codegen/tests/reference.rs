@@ -1,5 +1,5 @@
-//! The mistakes in `docs/dsl.md` and `docs/reference.md`: each block that must not compile fails with the error and on
-//! the line of its comment. (Doctests check that the other blocks run, and that these fail.)
+//! The lists of clauses, and the mistakes in `docs/dsl.md` and `docs/reference.md`: each block that must not compile
+//! fails with the error and on the line of its comment. (Doctests check that the other blocks run, and that these fail.)
 
 use proc_macro2::TokenStream;
 use vi_codegen::syntax;
@@ -36,5 +36,15 @@ fn every_shown_mistake_is_reported_at_its_comment() {
         let (found_line, found, found_help) = errors(body).into_iter().next().expect("an error");
         assert_eq!((found_line, found.as_str()), (line, what), "{block}");
         assert!(found_help.starts_with(help.trim_end_matches(" …")), "{found_help}\nnot {help}");
+    }
+}
+
+#[test]
+fn each_clause_is_in_each_list() {
+    let reference = |clause: &str| PAGES[1].contains(&format!("`{clause} "));
+    let editor = |clause: &str| include_str!("../../../page/web/editor.js").contains(&format!(" {clause} "));
+    for clause in syntax::clauses() {
+        assert!(reference(clause), "`docs/reference.md` has no row for `{clause}`");
+        assert!(editor(clause), "the editor of the page does not know `{clause}`");
     }
 }
