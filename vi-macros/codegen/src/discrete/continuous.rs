@@ -12,7 +12,7 @@
 
 use super::fields::Fields;
 use crate::limits::bounded;
-use crate::model::{Model, slope};
+use crate::model::{Model, Role, slope};
 use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Node, Pool, Rational, TooLarge};
 
@@ -135,7 +135,6 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     density.push(pool.neg(ltt));
     let quadratic = !mass.iter().flatten().any(|entry| pool.depends_on(*entry, &is_velocity));
     let momentum_is_mass_times_velocity = is_product(pool, &momentum, &mass, quadratic)?;
-    let (forced_time, autonomous) = dependence(pool, model);
     Ok(Continuous {
         lagrangian: model.lagrangian,
         energy: energy(pool, model.lagrangian, dimension),
@@ -152,7 +151,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         mass_times_acceleration,
         step_density: pool.sum(&density),
         time_scale: model.time_scale.map(|g| time_scale(pool, g, dimension)),
-        autonomous: autonomous && !forced_time,
+        autonomous: is_autonomous(pool, model),
     })
 }
 
@@ -192,8 +191,8 @@ fn time_scale(pool: &mut Pool<Symbol>, g: Expr, dimension: usize) -> TimeScale {
 }
 
 fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
-    let constraints = model.constraints.iter().map(|constraint| constraint.value);
-    let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).copied().chain(constraints).collect();
+    let of_motion = model.expressions().filter(|(role, _)| *role != Role::TimeScale);
+    let wholes: Vec<Expr> = of_motion.map(|(_, expr)| expr).collect();
     let one = Rational::from_integer(1.into());
     // Constant subexpressions may exceed the range of numbers.
     let is_part = |expr: &Expr| !pool.is_constant(*expr) || pool.as_number(*expr).is_some();
@@ -211,13 +210,7 @@ fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
 }
 
 fn calls(pool: &Pool<Symbol>, model: &Model) -> Vec<(Expr, Vec<Expr>)> {
-    let constraints = model.constraints.iter().map(|constraint| constraint.value);
-    let wholes: Vec<Expr> = [model.lagrangian]
-        .into_iter()
-        .chain(model.forces.iter().copied())
-        .chain(model.time_scale)
-        .chain(constraints)
-        .collect();
+    let wholes: Vec<Expr> = model.expressions().map(|(_, expr)| expr).collect();
     let nodes = pool.reachable(&wholes).into_iter();
     let call = |node| match pool.node(node) {
         Node::Opaque(function, arguments) => Some((node, arguments[..function.arity].to_vec())),
@@ -289,12 +282,11 @@ pub(crate) fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize
     pool.sub(moving, still)
 }
 
-/// Whether f depends on time, and whether neither L nor a constraint does.
-fn dependence(pool: &Pool<Symbol>, model: &Model) -> (bool, bool) {
+/// Whether neither L, f nor a constraint depends on time.
+fn is_autonomous(pool: &Pool<Symbol>, model: &Model) -> bool {
     let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
-    let forced = model.forces.iter().any(|force| pool.depends_on(*force, &time));
-    let mut wholes = model.constraints.iter().map(|constraint| constraint.value).chain([model.lagrangian]);
-    (forced, !wholes.any(|whole| pool.depends_on(whole, &time)))
+    let mut of_motion = model.expressions().filter(|(role, _)| *role != Role::TimeScale);
+    !of_motion.any(|(_, expr)| pool.depends_on(expr, &time))
 }
 
 fn cyclic(pool: &Pool<Symbol>, model: &Model) -> Vec<bool> {

@@ -31,9 +31,7 @@ impl Lets {
     /// or if the limits of a root depend on the definition of an entry: straight lines compute or report these.
     pub(super) fn of(pool: &mut Pool<Symbol>, model: &Model) -> Option<Self> {
         let mut lets = Self { arrays: Vec::new() };
-        let constraints = model.constraints.iter().map(|constraint| constraint.written);
-        let forces = model.forces.iter().copied().chain(model.dissipation).chain(model.time_scale);
-        let used = [model.lagrangian].into_iter().chain(forces).chain(constraints);
+        let used = model.expressions().map(|(_, expr)| expr);
         let defined = model.lets.iter().flat_map(|array| array.definitions.iter().copied());
         let all: Vec<Expr> = used.chain(defined).collect();
         let with_rates = reads(pool, &all);

@@ -37,7 +37,7 @@ pub use scale::Scale;
 
 use crate::limits::bounded;
 use crate::messages::{Message, error};
-use crate::model::{LetArray, Model};
+use crate::model::{LetArray, Model, Role};
 use crate::program::Function;
 use crate::rules::NamedRule;
 use crate::symbol::Symbol;
@@ -137,26 +137,19 @@ fn statements(pool: &mut Pool<Symbol>, model: Model, rules: Vec<&'static NamedRu
         return None;
     }
     let lets = Lets::of(pool, &model)?;
-    let lagrangian = lets.opened(pool, model.lagrangian);
-    let forces: Vec<Expr> = model.forces.iter().map(|force| lets.opened(pool, *force)).collect();
-    let dissipation = model.dissipation.map(|rayleigh| lets.opened(pool, rayleigh));
-    let scale = model.time_scale.map(|g| lets.opened(pool, g));
-    let constraints: Vec<Expr> =
-        model.constraints.iter().map(|constraint| lets.opened(pool, constraint.written)).collect();
-    let all = [lagrangian].into_iter().chain(forces.iter().copied()).chain(dissipation).chain(scale);
-    let all: Vec<Expr> = all.chain(constraints.iter().copied()).collect();
+    let opened: Vec<(Role, Expr)> = model.expressions().map(|(role, expr)| (role, lets.opened(pool, expr))).collect();
+    let all: Vec<Expr> = opened.iter().map(|(_, expr)| *expr).collect();
     let recursions = recursions(pool, &lets, &all)?;
-    let lagrangian = sums_of(pool, lagrangian)?;
-    let dissipation = match dissipation {
-        Some(rayleigh) => sums_of(pool, rayleigh)?,
-        None => Vec::new(),
-    };
-    let scale = match scale {
-        Some(g) => Some(Scale::of(pool, g)?),
+    let of =
+        |wanted: Role| opened.iter().filter(|(role, _)| *role == wanted).map(|(_, expr)| *expr).collect::<Vec<_>>();
+    let lagrangian = sums_of(pool, &of(Role::Lagrangian))?;
+    let dissipation = sums_of(pool, &of(Role::Dissipation))?;
+    let scale = match of(Role::TimeScale).first() {
+        Some(g) => Some(Scale::of(pool, *g)?),
         None => None,
     };
-    let force = sums_of_each(pool, &forces, false)?;
-    let constraints = sums_of_each(pool, &constraints, true)?;
+    let force = sums_of_each(pool, &of(Role::Force), false)?;
+    let constraints = sums_of_each(pool, &of(Role::Constraint), true)?;
     let autonomous = is_autonomous(pool, &recursions, [&lagrangian, &force, &dissipation, &constraints]);
     let has_mass_of_position = has_mass_of_position(pool, &recursions, &lagrangian);
     let reacts = |index: usize| model.constraints.iter().any(|constraint| constraint.acts_on(pool, index));
@@ -390,9 +383,9 @@ struct Group {
     rows: Vec<(Vec<usize>, Rational)>,
 }
 
-/// The terms of a sum.
-fn sums_of(pool: &mut Pool<Symbol>, expr: Expr) -> Option<Vec<Sum>> {
-    let terms = summands(pool, expr).into_iter().map(|term| (Vec::new(), term)).collect();
+/// The terms of these expressions together.
+fn sums_of(pool: &mut Pool<Symbol>, exprs: &[Expr]) -> Option<Vec<Sum>> {
+    let terms = exprs.iter().flat_map(|expr| summands(pool, *expr)).map(|term| (Vec::new(), term)).collect();
     sums(pool, terms, true)
 }
 

@@ -1,4 +1,4 @@
-//! Checks that L, the forces, the dissipation, the constraints and the time scale are 2π-periodic in each angle.
+//! Checks that every clause is 2π-periodic in each angle.
 //!
 //! In: the clauses of a system with angles. Out: nothing, or a message at the first clause that is not periodic, with
 //! the angle. Each expression is evaluated at points of a fixed sequence, and at the same points with each angle moved
@@ -7,17 +7,15 @@
 //! There angles appear in functions with a period only, with factors of which a turn makes whole periods, or half ones
 //! that leave the expression as it is.
 
+use super::clause::{Clause, Role};
 use super::closed::Closed;
 use super::context::Context;
-use super::force::{self, Entries};
 use super::point::Point;
 use super::rule::Rule;
-use super::{Constraint, Coordinate, Parameter, probe, slope};
+use super::{Coordinate, Parameter, probe, slope};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{Defining, Definition, System};
 use num_traits::{One, Zero};
-use proc_macro2::Span;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use vi_expr::{Expr, Function, Node, Pool, Rational, Rounded, Table};
@@ -34,10 +32,9 @@ const TURNS: u32 = 7;
 /// Reports clauses that are not periodic in an angle.
 pub(super) fn check(
     context: &mut Context,
-    system: &System,
     (coordinates, parameters): (&[Coordinate], &[Parameter]),
-    (lagrangian, time_scale, rule): (Option<Expr>, Option<Expr>, Option<&Rule>),
-    constraints: &[Constraint],
+    rule: Option<&Rule>,
+    clauses: &[Clause],
 ) {
     let are_angles: Vec<bool> = coordinates.iter().map(|coordinate| coordinate.is_angle).collect();
     if !are_angles.contains(&true) || !context.errors.is_empty() {
@@ -56,19 +53,9 @@ pub(super) fn check(
         };
         context.errors.at(rule.span, &message);
     }
-    let mut clauses = clauses(context, system, lagrangian, time_scale);
-    let others = clauses.len();
-    clauses.extend(constraints.chunk_by(|left, right| left.name == right.name).filter_map(|array| {
-        let name = &array.first()?.name;
-        let exprs = array.iter().map(|constraint| constraint.value).collect();
-        Some(Clause { exprs, span: name.span(), what: format!("the constraint `{name}`") })
-    }));
     let closed = Closed::of(context.pool, context.scope.kept.as_deref().unwrap_or_default());
-    for (index, Clause { mut exprs, span, what }) in clauses.into_iter().enumerate() {
-        let is_constraint = index >= others;
-        for expr in &mut exprs {
-            *expr = closed.expression(context.pool, *expr);
-        }
+    for Clause { role, what, span, exprs } in clauses {
+        let exprs: Vec<Expr> = exprs.iter().map(|expr| closed.expression(context.pool, *expr)).collect();
         let probe = |expr: &Expr| Probe { pool: context.pool, expr: *expr, are_angles: &are_angles, parameters };
         let failing = exprs.iter().find_map(|expr| probe(expr).failing_angle());
         let failing =
@@ -76,10 +63,9 @@ pub(super) fn check(
         if let Some(angle) = failing {
             let Coordinate { name, .. } = &coordinates[angle];
             let ratio = exprs.iter().find_map(|expr| ratio(context.pool, *expr, &are_angles));
-            let ratio = ratio.filter(|_| is_constraint).map(|index| parameters[index].text());
-            let message =
-                Message::NotPeriodic { what, angle: coordinates[angle].text(), name: name.to_string(), ratio };
-            context.errors.at(span, &message);
+            let ratio = ratio.filter(|_| *role == Role::Constraint).map(|index| parameters[index].text());
+            let (what, angle, name) = (what.clone(), coordinates[angle].text(), name.to_string());
+            context.errors.at(*span, &Message::NotPeriodic { what, angle, name, ratio });
         }
     }
 }
@@ -210,38 +196,6 @@ impl Outside {
         let factors: Option<Vec<_>> = terms.iter().map(of_term).collect();
         factors.map(|factors| factors.concat())
     }
-}
-
-/// A clause that has to be periodic.
-struct Clause {
-    exprs: Vec<Expr>,
-    span: Span,
-    what: String,
-}
-
-/// The clauses that have to be periodic.
-fn clauses(context: &mut Context, system: &System, lagrangian: Option<Expr>, time_scale: Option<Expr>) -> Vec<Clause> {
-    let clause = |exprs: Vec<Expr>, written: &Definition, what: &str| Clause {
-        exprs,
-        span: written.name.span(),
-        what: what.to_owned(),
-    };
-    let mut all = Vec::new();
-    let first = system.function().zip(lagrangian);
-    all.extend(first.map(|(written, expr)| clause(vec![expr], written, &format!("`{}`", written.name))));
-    for line in system.all(Defining::Force) {
-        let entries = Entries::of_coordinate(context, &line.name.to_string());
-        let unknown = |_: &Context, name: String| Message::ForceOnOther { name, near: None };
-        let values = force::values(context, line, entries, &unknown).unwrap_or_default();
-        let exprs = values.into_iter().map(|(_, expr)| expr).collect();
-        all.push(clause(exprs, line, &format!("the force on `{}`", line.name)));
-    }
-    if let Some(written) = system.all(Defining::Dissipation).first() {
-        all.push(clause(vec![context.value(&written.value)], written, "the dissipation"));
-    }
-    let first = system.all(Defining::TimeScale).first().zip(time_scale);
-    all.extend(first.map(|(written, expr)| clause(vec![expr], written, "the time scale")));
-    all
 }
 
 /// An expression whose period is tested.

@@ -8,7 +8,7 @@ use super::rotation::{self, COMPONENTS};
 use super::scope::Meaning;
 use super::value::Value;
 use super::{
-    Coordinate, Function, Model, Parameter, Rule, angles, check_state, constraint, first_order, force, function,
+    Coordinate, Function, Model, Parameter, Role, Rule, angles, check_state, constraint, first_order, force, function,
     hamiltonian, indices, lets, mass, rule, smoothness, time_scale, timeless,
 };
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
@@ -90,6 +90,10 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     let is_written = system.all(Defining::Hamiltonian).is_empty() && system.momenta.is_empty();
     let lagrangian =
         if is_written { context.lagrangian(system.all(Defining::Lagrangian), &system.name) } else { of_hamiltonian };
+    if let Some((written, lagrangian)) = system.function().zip(lagrangian) {
+        let name = &written.name;
+        context.defines(Role::Lagrangian, format!("`{name}`"), name.span(), vec![lagrangian]);
+    }
     let mut forces = force::forces(&mut context, system.all(Defining::Force), &coordinates);
     let dissipation = force::dissipate(&mut context, system.all(Defining::Dissipation), &mut forces, &parameters);
     rotation::torques(&mut context, system.all(Defining::Torque), false, &coordinates, &mut forces);
@@ -98,12 +102,13 @@ fn checked(pool: &mut Pool<Symbol>, system: &System, place: usize, is_large: boo
     let time_scale = time_scale::time_scale(&mut context, system.all(Defining::TimeScale));
     let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
     let check_state = check_state::check_state(&mut context, &system.checks, &parameters, &coordinates);
-    let clauses = (lagrangian, time_scale, rule.as_ref());
-    angles::check(&mut context, system, (&coordinates, &parameters), clauses, &constraints);
+    let clauses = core::mem::take(&mut context.clauses);
+    angles::check(&mut context, (&coordinates, &parameters), rule.as_ref(), &clauses);
     if context.errors.is_empty() {
         let of_rule = rule.iter().flat_map(Rule::expressions);
-        let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(dissipation).chain(time_scale);
-        let acting = acting.chain(constraints.iter().map(|constraint| constraint.value));
+        // Terms of R without velocities exert no force.
+        let clauses = clauses.iter().filter(|clause| clause.role != Role::Dissipation);
+        let acting = clauses.flat_map(|clause| &clause.exprs).chain(&forces).chain(&dissipation).copied();
         let kept = context.scope.kept.iter().flatten().flat_map(|array| &array.definitions).copied();
         let acting: Vec<Expr> = acting.chain(of_rule).chain(kept).collect();
         context.check_parameters_used(&parameters, &acting);

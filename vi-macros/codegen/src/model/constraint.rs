@@ -22,7 +22,7 @@ use super::scope::{Meaning, Scope};
 use super::singular::is_singular;
 use super::smoothness::{jump, with_conditions};
 use super::value::Value;
-use super::{Constraint, Coordinate, FunctionKind, Model, Parameter, TableKind, indices, mass, mobility, slope};
+use super::{Constraint, Coordinate, FunctionKind, Model, Parameter, Role, TableKind, indices, mass, mobility, slope};
 use crate::limits::bounded;
 use crate::messages::{ConstraintMistake, Errors, Message, bracketed, error};
 use crate::symbol::{Symbol, Variable};
@@ -152,6 +152,10 @@ pub(super) fn constraints(context: &mut Context, lines: &[Definition], coordinat
         }
     }
     found.sort_by_key(|constraint| !constraint.is_holonomic);
+    for array in found.chunk_by(|left, right| left.name == right.name) {
+        let (name, exprs) = (&array[0].name, array.iter().map(|constraint| constraint.value).collect());
+        context.defines(Role::Constraint, format!("the constraint `{name}`"), name.span(), exprs);
+    }
     found
 }
 

@@ -3,6 +3,7 @@
 //! In: one definition after the other. Out: their expressions and numbers. A wrong expression is reported and evaluates
 //! to 1, so that later lines are checked too.
 
+use super::clause::Clause;
 use super::closed::Closed;
 use super::scope::{Meaning, Scope};
 use super::value::Value;
@@ -19,6 +20,8 @@ pub(super) struct Context<'a> {
     pub(super) pool: &'a mut Pool<Symbol>,
     pub(super) scope: Scope,
     pub(super) errors: Errors,
+    /// The clauses with functions of the motion, as they were checked.
+    pub(super) clauses: Vec<Clause>,
     /// The system is too large, and this is or will be reported.
     too_large: bool,
 }
@@ -26,7 +29,7 @@ pub(super) struct Context<'a> {
 impl<'a> Context<'a> {
     /// A context without declarations.
     pub(super) fn new(pool: &'a mut Pool<Symbol>) -> Self {
-        Self { pool, scope: Scope::of_system(), errors: Errors::default(), too_large: false }
+        Self { pool, scope: Scope::of_system(), errors: Errors::default(), clauses: Vec::new(), too_large: false }
     }
 
     /// An expression by coordinates: the entries of arrays of `let`s that stay symbols are replaced.

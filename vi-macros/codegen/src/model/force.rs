@@ -11,7 +11,7 @@ use super::context::Context;
 use super::dissipation;
 use super::scope::{Meaning, Scope};
 use super::value::not_a_number;
-use super::{Coordinate, Parameter, slope};
+use super::{Coordinate, Parameter, Role, slope};
 use crate::messages::{ArrayMistake, ConstraintMistake, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Indices};
@@ -38,6 +38,8 @@ pub(super) fn forces(context: &mut Context, lines: &[Definition], coordinates: &
             Message::ForceOnOther { name, near }
         };
         let Some(values) = values(context, line, coordinates, &on_other) else { continue };
+        let exprs = values.iter().map(|(_, value)| *value).collect();
+        context.defines(Role::Force, format!("the force on `{}`", line.name), line.name.span(), exprs);
         for (coordinate, value) in values {
             if forces[coordinate].replace(value).is_some() {
                 context.errors.at(line.name.span(), &Message::SecondForce { name: line.name.to_string() });
@@ -182,6 +184,7 @@ pub(super) fn dissipate(
         context.errors.at(other.name.span(), &Message::SecondDissipation);
     }
     let as_written = context.value(&first.value);
+    context.defines(Role::Dissipation, "the dissipation".to_owned(), first.name.span(), vec![as_written]);
     let rayleigh = context.closed(as_written);
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     if context.errors.is_empty() && !context.pool.depends_on(rayleigh, &moves) {

@@ -9,6 +9,7 @@ mod array;
 mod called;
 pub mod check;
 mod check_state;
+mod clause;
 mod closed;
 mod condition;
 pub(crate) mod constraint;
@@ -39,6 +40,7 @@ mod value;
 mod vector;
 
 pub use check_state::CheckState;
+pub(crate) use clause::Role;
 pub use closed::{LetArray, rate};
 pub use function::{Function, FunctionKind};
 pub use point::Point;

@@ -5,7 +5,7 @@
 //! sequence. There the expression, and its derivatives along a fixed direction, are evaluated with either arm of the
 //! condition. Parameters have their defaults.
 
-use super::{FunctionKind, Model, Outside, Parameter, TableKind, probe};
+use super::{FunctionKind, Model, Outside, Parameter, Role, TableKind, probe};
 use crate::symbol::Symbol;
 use num_traits::Signed;
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ const NARROW: u32 = 8;
 /// Iterations for a zero, and the step of their difference quotients.
 const ITERATIONS: u32 = 60;
 const QUOTIENT: f64 = 1e-6;
-/// Part of the way between two points beside a border.
+/// Role of the way between two points beside a border.
 const BESIDE: f64 = 1e-9;
 /// Growth of a difference from there to the border that shows a pole.
 const POLE: f64 = 1e3;
@@ -46,11 +46,13 @@ pub struct Smoothness {
 /// The smoothness of a system with tables or conditions; `None` if all derivatives that matter are continuous.
 pub(super) fn smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Option<Smoothness> {
     let mut found: Vec<Smoothness> = Vec::new();
-    let of_lagrangian = [(model.lagrangian, 0)];
-    let of_forces = model.forces.iter().map(|force| (*force, 1));
-    // Its derivatives are forces.
-    let of_dissipation = model.dissipation.map(|rayleigh| (rayleigh, 0));
-    for (expr, more) in of_lagrangian.into_iter().chain(of_forces).chain(of_dissipation) {
+    for (role, expr) in model.expressions() {
+        let more = match role {
+            // Derivatives of R are forces.
+            Role::Lagrangian | Role::Dissipation => 0,
+            Role::Force => 1,
+            Role::TimeScale | Role::Constraint => continue,
+        };
         let reachable = pool.reachable(&[expr]);
         for node in &reachable {
             let Node::Opaque(function, _) = pool.node(*node) else { continue };

@@ -2,6 +2,7 @@
 //!
 //! In: the lines `time_scale = g;`. Out: g, an expression in time, coordinates and parameters, if declared.
 
+use super::Role;
 use super::context::Context;
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
@@ -28,5 +29,6 @@ pub(super) fn time_scale(context: &mut Context, written: &[Definition]) -> Optio
     if is_number && matches!(context.pool.constant_sign(closed), Ok(Ordering::Less | Ordering::Equal)) {
         context.errors.at(first.value.span, &Message::TimeScaleNotPositive);
     }
+    context.defines(Role::TimeScale, "the time scale".to_owned(), first.name.span(), vec![value]);
     Some(value)
 }
