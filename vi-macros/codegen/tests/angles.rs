@@ -126,6 +126,11 @@ fn forces_dissipation_and_time_scale_are_periodic_too() {
         "the dissipation is not periodic in the angle `θ`",
     );
     case("angle θ; L = dot(θ)^2 / 2; «time_scale» = 1 + θ^2;", "the time scale is not periodic in the angle `θ`");
+    let turning = "angle θ; rotation R; L = (rate(R) * rate(R) + dot(θ)^2) / 2;";
+    let torque = "the torque on `R` is not periodic in the angle `θ`";
+    case(&format!("{turning} torque «R» = [θ, 0, 0];"), torque);
+    case(&format!("{turning} space_torque «R» = [0, 1, sin(θ / 2)];"), torque);
+    assert!(emitted(&format!("{turning} torque R = [sin(θ), 0, 0];")).is_ok());
     let right = "param T = 1; angle q[3]; L = sum(i in 0..3, dot(q[i])^2) + cos(q[0] - q[1]); force q[i in 0..3] = T - sin(q[i]); \
                  dissipation = (2 + cos(q[0])) * dot(q[0])^2; time_scale = 2 + cos(q[1]);";
     assert!(emitted(right).is_ok_and(|code| code.contains("[true , true , true]")));

@@ -21,7 +21,7 @@ use super::force::{over, path};
 use super::probe::vanish;
 use super::scope::{Meaning, Scope};
 use super::value::Value;
-use super::{Constraint, Coordinate, Parameter, slope};
+use super::{Constraint, Coordinate, Parameter, Role, slope};
 use crate::messages::{ArrayMistake, ConstraintMistake, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Expression};
@@ -170,7 +170,10 @@ pub(super) fn torques(
             continue;
         };
         let made = of_line(context, line, first, &lengths, in_space);
-        for (place, force) in context.report(made).unwrap_or_default() {
+        let made = context.report(made).unwrap_or_default();
+        let exprs = made.iter().map(|(_, force)| *force).collect();
+        context.defines(Role::Force, format!("the torque on `{name}`"), line.name.span(), exprs);
+        for (place, force) in made {
             if !given.insert(place) {
                 context.errors.at(line.name.span(), &Message::Constraint(ConstraintMistake::SecondTorque { name }));
                 break;
