@@ -92,6 +92,18 @@ pub(crate) fn sum_name(of: &str, sum: usize) -> String {
 }
 
 impl NamedBody<'_> {
+    /// What its loops run over; `None` for entries, whose bodies may share a loop, and for a single row.
+    pub(super) fn terms(&self) -> Option<&'static str> {
+        match self.quantity {
+            Quantity::Lagrangian => Some("terms of `L`"),
+            Quantity::Force => Some("terms of `f`"),
+            Quantity::Dissipation => Some("terms of the dissipation"),
+            Quantity::Constraint => Some("terms of constraints"),
+            Quantity::Part => Some("terms of the time scale"),
+            Quantity::Entries(_) | Quantity::Scale => None,
+        }
+    }
+
     /// Number of rows in all loops.
     pub(crate) fn rows(&self) -> usize {
         self.nests.iter().map(Nest::rows).sum()

@@ -1,6 +1,6 @@
 //! The properties of a large system that the generator found, in words.
 
-use super::{Indexed, Sum, named};
+use super::{Indexed, named};
 use crate::findings::{
     EXPLICIT, angles_in_words, constrained_energy_in_words, constrained_smoothness_in_words, constraint_names,
     constraints_in_words, cyclic_in_words, derivatives_in_words, energy_in_words,
@@ -39,17 +39,12 @@ pub(crate) fn properties(of: &Indexed, name: &dyn Fn(&Coordinate) -> String) -> 
     let smoothness = if is_constrained { constrained_smoothness_in_words } else { derivatives_in_words };
     lines.extend(model.smoothness.as_ref().map(smoothness));
     lines.extend(constraints_in_words(&constraint_names(model)));
-    let loops = |sums: &[Sum]| sums.iter().map(|sum| sum.nests.len()).sum::<usize>();
-    let loops = [
-        (of.recursions.len(), "over recursions"),
-        (loops(&of.lagrangian), "over terms of `L`"),
-        (loops(&of.force), "over terms of `f`"),
-        (loops(&of.dissipation), "over terms of the dissipation"),
-        (loops(&of.constraints), "over terms of constraints"),
-        (of.scale.as_ref().map_or(0, |scale| loops(&scale.parts)), "over terms of the time scale"),
-    ];
-    let loops = loops.iter().filter(|(count, _)| *count > 0).map(|(count, over)| format!("{count} {over}"));
-    let (loops, functions) = (loops.collect::<Vec<_>>().join(", "), named(of).len());
+    let named = named(of);
+    let sums = named.chunk_by(|left, right| left.terms() == right.terms());
+    let sums = sums.filter_map(|all| Some((all.iter().map(|body| body.nests.len()).sum(), all[0].terms()?)));
+    let loops = [(of.recursions.len(), "recursions")].into_iter().chain(sums);
+    let loops = loops.filter(|(count, _)| *count > 0).map(|(count, over)| format!("{count} over {over}"));
+    let (loops, functions) = (loops.collect::<Vec<_>>().join(", "), named.len());
     let noun = if functions == 1 { "function" } else { "functions" };
     lines.push(format!("Loops: {loops}; {functions} {noun} of one row"));
     if is_constrained {
