@@ -3,7 +3,7 @@
 //! In: a checked system. Out: for each summand T of L the force `T_q − d/dt T_v` and the energy `v·T_v − T`, and how many
 //! operations the equations of motion have without it. So a program can measure along a motion which terms matter.
 
-use crate::discrete;
+use crate::discrete::{continuous, system};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, slope};
@@ -31,11 +31,11 @@ pub struct Term {
 /// A system that is too large.
 pub fn terms(pool: &mut Pool<Symbol>, model: &mut Model) -> Result<Vec<Term>> {
     let whole = model.lagrangian;
-    let summands = discrete::summands(pool, whole);
+    let summands = continuous::summands(pool, whole);
     let mut terms = Vec::with_capacity(summands.len());
     for value in summands {
         let force = (0..model.dimension()).map(|index| force(pool, value, index)).collect();
-        let energy = discrete::energy(pool, value, model.dimension());
+        let energy = continuous::energy(pool, value, model.dimension());
         model.lagrangian = pool.sub(whole, value);
         let operations_without = operations(pool, model).ok();
         terms.push(Term { value, force, energy, operations_without });
@@ -52,7 +52,7 @@ pub fn terms(pool: &mut Pool<Symbol>, model: &mut Model) -> Result<Vec<Term>> {
 pub fn operations(pool: &mut Pool<Symbol>, model: &mut Model) -> Result<usize> {
     // The functions of a step are not needed.
     model.rule = None;
-    let system = discrete::system::system(pool, model)?;
+    let system = system::system(pool, model)?;
     let program = program::program(pool, model, &system)?;
     Ok(program.function(FunctionId::Point).map_or(0, Function::operation_count))
 }

@@ -73,6 +73,16 @@ pub struct TimeScale {
     pub g_dt: Expr,
 }
 
+impl Continuous {
+    /// A function other than L and f, and the variable for which its derivative has no value in any state.
+    pub(super) fn undefined(&self, pool: &Pool<Symbol>) -> Option<(Expr, Variable)> {
+        let TimeScale { g, g_dq, g_dt } = self.time_scale.as_ref()?;
+        let by_coordinate = g_dq.iter().enumerate().map(|(index, slope)| (Variable::Coordinate(index), *slope));
+        let mut slopes = by_coordinate.chain([(Variable::Time, *g_dt)]);
+        slopes.find(|(_, slope)| pool.is_undefined(*slope)).map(|(by, _)| (*g, by))
+    }
+}
+
 /// Derives the continuous functions.
 pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model) -> Result<Continuous, TooLarge> {
     let dimension = model.dimension();

@@ -6,7 +6,7 @@
 //! The expressions of the result contain only fields, slots, the unknowns `(v, h)` and parameters.
 
 mod constraints;
-mod continuous;
+pub mod continuous;
 mod fields;
 mod forces;
 mod interval;
@@ -15,10 +15,7 @@ mod step;
 pub mod system;
 
 pub use constraints::Constraints;
-#[cfg(feature = "inspect")]
-pub(crate) use continuous::energy;
-pub(crate) use continuous::summands;
-pub use continuous::{Continuous, PointDerivatives, TimeScale};
+use continuous::{Continuous, PointDerivatives};
 pub use fields::Fields;
 pub use slots::SlotDerivatives;
 pub use step::Equations;

@@ -2,7 +2,7 @@
 //!
 //! In: a [`Model`]. Out: a [`DiscreteSystem`], or a message that the rule is invalid or the system too large.
 
-use super::continuous::{Continuous, TimeScale};
+use super::continuous::Continuous;
 use super::fields::Fields;
 use super::forces::discrete_forces;
 use super::interval::in_step;
@@ -12,7 +12,7 @@ use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Rule, rule};
 use crate::rules::{NamedRule, RULES};
-use crate::symbol::{Quantity, Symbol, Variable};
+use crate::symbol::{Quantity, Symbol};
 use syn::Result;
 use vi_expr::{Expr, Pool, TooLarge};
 
@@ -55,7 +55,7 @@ fn by_rule(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model, rule: &R
 /// Reports a derivative without a value in any state, such as the derivative of `0^x`, with the smallest expression
 /// that has none.
 fn check_derivatives(pool: &mut Pool<Symbol>, fields: &Fields, continuous: &Continuous, model: &Model) -> Result<()> {
-    let (span, whole, by) = match (fields.undefined(pool), undefined_time_scale(pool, continuous)) {
+    let (span, whole, by) = match (fields.undefined(pool), continuous.undefined(pool)) {
         (Some((Quantity::Lagrangian, whole, by)), _) => (model.lagrangian_span, whole, by),
         (Some((Quantity::Force(coordinate), whole, by)), _) => (model.coordinates[coordinate].name.span(), whole, by),
         (None, Some((whole, by))) => (model.name.span(), whole, by),
@@ -80,14 +80,6 @@ fn check_constraints(pool: &mut Pool<Symbol>, found: Option<&Constraints>, model
     let expression = pool.render_within(CHARACTERS, constraint.value, &|symbol| model.spell(symbol));
     let by = "a coordinate or the time".to_owned();
     Err(error(constraint.name.span(), &Message::NoDerivative { expression, by }))
-}
-
-/// The time scale, and the variable for which its derivative has no value in any state.
-fn undefined_time_scale(pool: &Pool<Symbol>, continuous: &Continuous) -> Option<(Expr, Variable)> {
-    let TimeScale { g, g_dq, g_dt } = continuous.time_scale.as_ref()?;
-    let by_coordinate = g_dq.iter().enumerate().map(|(index, slope)| (Variable::Coordinate(index), *slope));
-    let mut slopes = by_coordinate.chain([(Variable::Time, *g_dt)]);
-    slopes.find(|(_, slope)| pool.is_undefined(*slope)).map(|(by, _)| (*g, by))
 }
 
 /// The built-in rule that equals a rule of the system.

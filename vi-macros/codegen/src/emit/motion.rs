@@ -5,7 +5,7 @@ use super::body::{Body, VelocityFrom, state_parts};
 use super::constraints::{self, Members};
 use super::matrix::matrix;
 use super::state_function::{number, vector, vector_of};
-use crate::discrete::TimeScale;
+use crate::discrete::continuous::TimeScale;
 use crate::program::{FunctionId, Output};
 use proc_macro2::TokenStream;
 use quote::quote;

@@ -5,7 +5,7 @@
 use super::explanation::{Line, Section};
 use super::name;
 use crate::Derived;
-use crate::discrete::TimeScale;
+use crate::discrete::continuous::TimeScale;
 use crate::findings::{Block, Elimination};
 use crate::limits::bounded;
 use crate::model::legendre::transform;

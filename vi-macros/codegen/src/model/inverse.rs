@@ -6,7 +6,7 @@
 //! the inverse of an inverse that is written out is the matrix itself. Sums that remain keep the form in which they were
 //! written: multiplied out, they might lose digits.
 
-use crate::discrete::summands;
+use crate::discrete::continuous::summands;
 use crate::symbol::Symbol;
 use num_bigint::BigInt;
 use num_integer::Integer;

@@ -14,7 +14,7 @@
 use super::inverse::inverse;
 use super::singular::is_singular;
 use super::{Parameter, probe};
-use crate::discrete::summands;
+use crate::discrete::continuous::summands;
 use crate::symbol::Symbol;
 use num_traits::One;
 use std::collections::BTreeMap;
