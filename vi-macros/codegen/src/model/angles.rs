@@ -7,12 +7,11 @@
 //! There angles appear in functions with a period only, with factors of which a turn makes whole periods, or half ones
 //! that leave the expression as it is.
 
-use super::clause::{Clause, Role};
 use super::closed::Closed;
-use super::context::Context;
+use super::context::{Clause, Context};
 use super::point::Point;
 use super::rule::Rule;
-use super::{Coordinate, Parameter, probe, slope};
+use super::{Coordinate, Parameter, Role, probe, slope};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
 use num_traits::{One, Zero};

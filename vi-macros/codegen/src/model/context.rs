@@ -3,7 +3,7 @@
 //! In: one definition after the other. Out: their expressions and numbers. A wrong expression is reported and evaluates
 //! to 1, so that later lines are checked too.
 
-use super::clause::Clause;
+use super::Role;
 use super::closed::Closed;
 use super::scope::{Meaning, Scope};
 use super::value::Value;
@@ -26,6 +26,15 @@ pub(super) struct Context<'a> {
     too_large: bool,
 }
 
+/// A clause with the functions that it defines.
+pub(super) struct Clause {
+    pub(super) role: Role,
+    /// Its name in messages.
+    pub(super) what: String,
+    pub(super) span: Span,
+    pub(super) exprs: Vec<Expr>,
+}
+
 impl<'a> Context<'a> {
     /// A context without declarations.
     pub(super) fn new(pool: &'a mut Pool<Symbol>) -> Self {
@@ -36,6 +45,11 @@ impl<'a> Context<'a> {
     pub(super) fn closed(&mut self, expr: Expr) -> Expr {
         let lets = self.scope.kept.as_deref().unwrap_or_default();
         Closed::of(self.pool, lets).expression(self.pool, expr)
+    }
+
+    /// Notes the functions of a clause, for the checks that go over all clauses.
+    pub(super) fn defines(&mut self, role: Role, what: String, span: Span, exprs: Vec<Expr>) {
+        self.clauses.push(Clause { role, what, span, exprs });
     }
 
     /// Declares a name; reports a name that cannot be declared.

@@ -9,7 +9,6 @@ mod array;
 mod called;
 pub mod check;
 mod check_state;
-mod clause;
 mod closed;
 mod condition;
 pub(crate) mod constraint;
@@ -40,7 +39,6 @@ mod value;
 mod vector;
 
 pub use check_state::CheckState;
-pub(crate) use clause::Role;
 pub use closed::{LetArray, rate};
 pub use function::{Function, FunctionKind};
 pub use point::Point;
@@ -111,6 +109,33 @@ pub struct Model {
     pub rule: Option<Rule>,
     /// The state of the checks, if there is a `check` clause.
     pub check_state: Option<CheckState>,
+}
+
+/// The place of a function in the equations of motion.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// L.
+    Lagrangian,
+    /// A component of f.
+    Force,
+    /// Rayleigh's function R.
+    Dissipation,
+    /// g of the time transformation dt = g dτ.
+    TimeScale,
+    /// An expression that is 0.
+    Constraint,
+}
+
+impl Role {
+    /// The order of derivatives of L to which it is added; `None` if its smoothness does not limit that of the motion.
+    const fn order(self) -> Option<usize> {
+        match self {
+            // The derivatives of R are forces.
+            Self::Lagrangian | Self::Dissipation => Some(0),
+            Self::Force => Some(1),
+            Self::TimeScale | Self::Constraint => None,
+        }
+    }
 }
 
 /// A coordinate.
@@ -225,6 +250,18 @@ impl Model {
     #[must_use]
     pub fn about(&self) -> String {
         words(&self.attributes)
+    }
+
+    /// The functions that the clauses define, with entries of arrays of `let`s as symbols if these stay.
+    pub(crate) fn expressions(&self) -> impl Iterator<Item = (Role, Expr)> {
+        let forces = self.forces.iter().map(|force| (Role::Force, *force));
+        let constraints = self.constraints.iter().map(|constraint| (Role::Constraint, constraint.written));
+        [(Role::Lagrangian, self.lagrangian)]
+            .into_iter()
+            .chain(forces)
+            .chain(self.dissipation.map(|rayleigh| (Role::Dissipation, rayleigh)))
+            .chain(self.time_scale.map(|g| (Role::TimeScale, g)))
+            .chain(constraints)
     }
 
     /// A digest of the numbers of all tables, by the hash FNV-1a; 0 without tables.

@@ -5,7 +5,7 @@
 //! sequence. There the expression, and its derivatives along a fixed direction, are evaluated with either arm of the
 //! condition. Parameters have their defaults.
 
-use super::{FunctionKind, Model, Outside, Parameter, Role, TableKind, probe};
+use super::{FunctionKind, Model, Outside, Parameter, TableKind, probe};
 use crate::symbol::Symbol;
 use num_traits::Signed;
 use std::collections::BTreeMap;
@@ -47,12 +47,7 @@ pub struct Smoothness {
 pub(super) fn smoothness(pool: &mut Pool<Symbol>, model: &Model) -> Option<Smoothness> {
     let mut found: Vec<Smoothness> = Vec::new();
     for (role, expr) in model.expressions() {
-        let more = match role {
-            // Derivatives of R are forces.
-            Role::Lagrangian | Role::Dissipation => 0,
-            Role::Force => 1,
-            Role::TimeScale | Role::Constraint => continue,
-        };
+        let Some(more) = role.order() else { continue };
         let reachable = pool.reachable(&[expr]);
         for node in &reachable {
             let Node::Opaque(function, _) = pool.node(*node) else { continue };

@@ -3,7 +3,7 @@
 use super::{Definition, System};
 use proc_macro2::Span;
 
-/// What follows the word of a clause. A word that something else may follow is also a name.
+/// The token that has to follow a word for it to start a clause: elsewhere the word may be a name.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Next {
     /// Any token: the word always starts its clause.
