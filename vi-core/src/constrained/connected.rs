@@ -4,7 +4,7 @@
 //! resolved. The others are continued from short steps by [`branch::follow`].
 
 use super::equations::{Rows, stage_velocity};
-use super::guess::from_node;
+use super::guess::{Extrapolation, from_node};
 use super::reduced;
 use super::solve::{self, Solution, Workspace};
 use super::solved::Solved;
@@ -22,14 +22,15 @@ use nalgebra::SVector;
 /// Residual of an iteration that has stalled near its solution.
 const STALLED: f64 = 1e4;
 
-/// Solves the step of length h from `node`, with the guess in `u`; replaces it by the unknowns. `sign` is the sign of
-/// the determinant of the bordered mass matrix, `is_next` says that the step follows the last one of the workspace.
+/// Solves the step of length h from `node`, and writes its unknowns to `u`. `sign` is the sign of the determinant of the
+/// bordered mass matrix, `is_next` says that the step follows the last one of the workspace.
 ///
 /// # Errors
 /// The errors of [`unprojected`].
 pub(crate) fn step<S, const N: usize, const STAGES: usize>(
     system: &S,
     (node, h, sign, is_next): (&Node<N>, f64, i8, bool),
+    last: &Extrapolation,
     u: &mut Vec<f64>,
     workspace: &mut Workspace,
 ) -> Result<Solved<N, Multipliers<S, N>>, StepError>
@@ -38,7 +39,10 @@ where
 {
     let of = (node, h, sign);
     let reduced = workspace.reduced.as_mut().filter(|_| system.has_point_masses() && sign > 0);
-    let solved = reduced.and_then(|reduced| reduced::step(system, (node, h, is_next), u, reduced));
+    let solved = reduced.and_then(|reduced| {
+        last.guess(N, u);
+        reduced::step(system, (node, h, is_next), u, reduced)
+    });
     if let Some((solved, contraction)) = solved {
         if contraction <= FAST {
             return Ok(solved);
@@ -47,6 +51,8 @@ where
             None => return Ok(solved),
             Some(found) => *u = found,
         }
+    } else {
+        last.guess(0, u);
     }
     let solution = unprojected::<S, N, STAGES>(system, of, u, workspace, false)?;
     solve::projected(system, of, (&solution, u), workspace).map(|(solved, _)| solved)

@@ -42,12 +42,13 @@ impl Extrapolation {
         self.last.first().map_or(0, Vec::len)
     }
 
-    /// Writes the guess of the next step.
-    pub(crate) fn guess(&self, guess: &mut [f64]) {
+    /// Writes the guess of the next step, from the unknown `first` on.
+    pub(crate) fn guess(&self, first: usize, guess: &mut [f64]) {
         let weights: [f64; HIGHEST + 1] = weights(self.degree);
+        let guess = &mut guess[first..];
         guess.fill(0.0);
         for (u, weight) in self.last.iter().zip(weights).rev() {
-            for (entry, u) in guess.iter_mut().zip(u) {
+            for (entry, u) in guess.iter_mut().zip(&u[first..]) {
                 *entry += u * weight;
             }
         }
@@ -112,9 +113,12 @@ mod tests {
         (1..=20).for_each(|step| extrapolation.push(&[sequence(step), 1.0]));
         assert_eq!(extrapolation.degree, HIGHEST);
         let mut guess = [0.0; 2];
-        extrapolation.guess(&mut guess);
+        extrapolation.guess(0, &mut guess);
         // Integers below 2⁵³: no rounding.
         assert_eq!(guess.map(f64::to_bits), [sequence(21), 1.0].map(f64::to_bits));
+        guess.fill(0.0);
+        extrapolation.guess(1, &mut guess);
+        assert_eq!(guess.map(f64::to_bits), [0.0_f64, 1.0].map(f64::to_bits));
         assert_eq!(extrapolation.newest(), [sequence(20), 1.0]);
         assert!(extrapolation.is_valid(2) && !extrapolation.is_valid(3));
     }

@@ -102,7 +102,7 @@ where
             other.h
         } else {
             u.resize(count + 1, 0.0);
-            self.last.guess(u);
+            self.last.guess(0, u);
             let of = u[count];
             u.truncate(count);
             // Lengths that change fast do not extrapolate.

@@ -17,7 +17,7 @@ use super::solved::{Solved, contracted};
 use crate::kind::Multipliers;
 use crate::linear::{Rectangular, Row};
 use crate::motion::Motion;
-use crate::newton::{FLOOR, roundings};
+use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::vector::worse;
 use alloc::collections::{BTreeMap, BTreeSet};
@@ -35,10 +35,10 @@ const ITERATIONS: u32 = 12;
 /// Buffers and patterns of the solver. No result depends on them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reduced {
-    /// Columns of the entries of A, row by row.
-    columns: Vec<usize>,
-    /// Start of each row.
-    rows: Vec<usize>,
+    /// Coordinates of a point: a row of A has entries at all of them, or at none.
+    dimension: usize,
+    /// The entries of A at a point, row by row.
+    parts: Vec<Part>,
     schur: Schur,
     /// The diagonal of M⁻¹.
     inverse: Vec<f64>,
@@ -51,6 +51,15 @@ pub(crate) struct Reduced {
     /// Coordinates of `last`.
     end: Vec<f64>,
     known: Vec<f64>,
+    /// The terms of each row.
+    scales: Vec<f64>,
+}
+
+/// The entries of a row of A at a point.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    row: usize,
+    point: usize,
 }
 
 /// S and its factors.
@@ -58,10 +67,8 @@ pub(crate) struct Reduced {
 struct Schur {
     values: Vec<f64>,
     reciprocals: Vec<f64>,
-    /// The pairs of entries of A whose products add to each original entry of S.
-    products: Vec<[u32; 2]>,
-    /// The entry of S, and the end of its pairs.
-    sums: Vec<[u32; 2]>,
+    /// Entries of S, with two parts of A whose product adds to them.
+    products: Vec<[u32; 3]>,
     /// The pivots in order.
     pivots: Vec<Pivot>,
     /// For each pivot its later rows, and the entries of S in its column and in its row.
@@ -84,21 +91,17 @@ struct Pivot {
 }
 
 impl Schur {
-    /// The pattern of S for the rows of A; `None` if elimination fills it.
-    fn new(columns: &[usize], rows: &[usize]) -> Option<Self> {
-        let count = rows.len() - 1;
+    /// The pattern of S for the parts of A; `None` if elimination fills it.
+    fn new(parts: &[Part], count: usize) -> Option<Self> {
         let index = |index: usize| u32::try_from(index).ok();
-        let mut at_column: BTreeMap<usize, Vec<[usize; 2]>> = BTreeMap::new();
-        for row in 0..count {
-            let entries = rows[row]..rows[row + 1];
-            for (column, entry) in columns[entries.clone()].iter().zip(entries) {
-                at_column.entry(*column).or_default().push([row, entry]);
-            }
+        let mut at_point: BTreeMap<usize, Vec<[usize; 2]>> = BTreeMap::new();
+        for (part, Part { row, point }) in parts.iter().enumerate() {
+            at_point.entry(*point).or_default().push([*row, part]);
         }
         let mut pairs: BTreeMap<[usize; 2], Vec<[u32; 2]>> = BTreeMap::new();
-        for entries in at_column.values() {
-            for [row, left] in entries {
-                for [column, right] in entries {
+        for parts in at_point.values() {
+            for [row, left] in parts {
+                for [column, right] in parts {
                     pairs.entry([*row, *column]).or_default().push([index(*left)?, index(*right)?]);
                 }
             }
@@ -117,8 +120,8 @@ impl Schur {
         };
         let mut schur = Self::default();
         for (at, products) in &pairs {
-            schur.products.extend(products);
-            schur.sums.push([place(*at, &mut places)?, index(schur.products.len())?]);
+            let entry = place(*at, &mut places)?;
+            schur.products.extend(products.iter().map(|[left, right]| [entry, *left, *right]));
         }
         let mut left: BTreeSet<usize> = (0..count).collect();
         while let Some(pivot) = left.iter().copied().min_by_key(|row| coupled[*row].len()) {
@@ -147,17 +150,15 @@ impl Schur {
         Some(schur)
     }
 
-    /// Forms S from rows of A and columns of M⁻¹Aᵀ, and factors it. False if a pivot is not positive.
-    fn factor(&mut self, left: &[f64], right: &[f64]) -> bool {
-        let Self { values, products, sums, .. } = self;
-        // Entries of the elimination follow those of S.
-        values[sums.len()..].fill(0.0);
-        let mut start = 0;
-        for [entry, end] in sums.iter() {
-            let pairs = &products[start..*end as usize];
-            values[*entry as usize] =
-                pairs.iter().fold(0.0, |sum, [a, b]| sum + left[*a as usize] * right[*b as usize]);
-            start = *end as usize;
+    /// Forms S from A and M⁻¹Aᵀ with D coordinates of a point, and factors it. False if a pivot is not positive.
+    fn factor<const D: usize>(&mut self, left: &[f64], right: &[f64]) -> bool {
+        let Self { values, products, .. } = self;
+        let ((left, _), (right, _)) = (left.as_chunks::<D>(), right.as_chunks::<D>());
+        values.fill(0.0);
+        for [entry, a, b] in products.iter() {
+            let terms = left[*a as usize].iter().zip(&right[*b as usize]);
+            let value = &mut values[*entry as usize];
+            *value = terms.fold(*value, |sum, (a, b)| sum + a * b);
         }
         if self.is_tridiagonal {
             return tridiagonal::factor(&mut self.values, &mut self.reciprocals);
@@ -266,114 +267,197 @@ impl Reduced {
             return None;
         }
         let (gradients, _) = system.constraint_gradients(node.t, &node.q);
-        let (mut columns, mut rows) = (Vec::new(), vec![0]);
-        for row in gradients.rows() {
-            columns.extend(row.columns);
-            rows.push(columns.len());
-        }
-        let schur = Schur::new(&columns, &rows)?;
-        let zeros = vec![0.0; columns.len()];
+        let (dimension, parts) = [3, 2, 1].into_iter().find_map(|d| Some((d, parts(&gradients, d)?)))?;
+        let schur = Schur::new(&parts, count)?;
+        let zeros = vec![0.0; parts.len() * dimension];
         let [first, weighted, last] = [zeros.clone(), zeros.clone(), zeros];
-        let (inverse, end, rates, known) = (vec![0.0; N], vec![f64::NAN; N], vec![0.0; count], vec![0.0; count]);
-        Some(Self { columns, rows, schur, inverse, first, weighted, last, rates, end, known })
+        let (inverse, end) = (vec![0.0; N], vec![f64::NAN; N]);
+        let [rates, known, scales] = core::array::from_fn(|_| vec![0.0; count]);
+        Some(Self { dimension, parts, schur, inverse, first, weighted, last, rates, end, known, scales })
     }
 
-    /// A and M⁻¹ at the start of a step. `is_next` if the step follows the last one of the same system.
-    fn begin<S: Motion<N>, const N: usize>(&mut self, system: &S, node: &Node<N>, is_next: bool) -> bool {
-        if is_next && node.q.as_slice() == self.end {
+    /// A and M⁻¹ at the start of a step. `is_next` if the step follows the last one of the same system. False if a mass
+    /// is not positive.
+    fn begin<S: Motion<N>, const N: usize, const D: usize>(
+        &mut self,
+        system: &S,
+        node: &Node<N>,
+        is_next: bool,
+    ) -> bool {
+        let is_known = is_next && node.q.as_slice() == self.end;
+        self.end.fill(f64::NAN);
+        if is_known {
+            // Its end has divided A by the masses.
             core::mem::swap(&mut self.first, &mut self.last);
-        } else {
-            let masses = diagonal(&system.point(node.t, &node.q, &SVector::zeros()).mass);
-            for (inverse, mass) in self.inverse.iter_mut().zip(&masses) {
-                *inverse = mass.recip();
-            }
-            let (gradients, _) = system.constraint_gradients(node.t, &node.q);
-            write(&gradients, &mut self.first);
+            return true;
         }
-        for ((weighted, entry), column) in self.weighted.iter_mut().zip(&self.first).zip(&self.columns) {
-            *weighted = entry * self.inverse[*column];
+        let masses = diagonal(&system.point(node.t, &node.q, &SVector::zeros()).mass);
+        for (inverse, mass) in self.inverse.iter_mut().zip(&masses) {
+            *inverse = mass.recip();
         }
+        let (gradients, _) = system.constraint_gradients(node.t, &node.q);
+        write(&gradients, &mut self.first);
+        weigh::<D>(&self.parts, &self.inverse, &self.first, &mut self.weighted);
         self.inverse.iter().all(|inverse| *inverse > 0.0)
     }
 
-    /// Adds `AᵀΛ` of these entries.
+    /// The velocity M⁻¹ p.
     #[inline(always)]
-    fn add<const N: usize>(&self, entries: &[f64], multipliers: &[f64], sum: &mut SVector<f64, N>) {
-        for (row, multiplier) in self.rows.windows(2).zip(multipliers) {
-            let range = row[0]..row[1];
-            for (column, entry) in self.columns[range.clone()].iter().zip(&entries[range]) {
-                sum[*column] += entry * multiplier;
-            }
+    fn velocity<const N: usize>(&self, p: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut v = *p;
+        v.iter_mut().zip(&self.inverse).for_each(|(v, inverse)| *v *= inverse);
+        v
+    }
+
+    /// Writes `A1 v + a1` to `known`.
+    #[inline(always)]
+    fn rate<const N: usize, const D: usize>(&mut self, v: &SVector<f64, N>) {
+        self.known.copy_from_slice(&self.rates);
+        let ((a, _), (v, _)) = (self.last.as_chunks::<D>(), v.as_slice().as_chunks::<D>());
+        for (Part { row, point }, a) in self.parts.iter().zip(a) {
+            let known = &mut self.known[*row];
+            *known = a.iter().zip(&v[*point]).fold(*known, |sum, (a, v)| sum + a * v);
         }
     }
 
-    /// Adds the absolute values of the terms of `A0ᵀλ`.
+    /// Writes the sizes of the terms of `A1 x` to `scales`.
     #[inline(always)]
-    fn add_sizes<const N: usize>(&self, lambda: &[f64], sum: &mut SVector<f64, N>) {
-        for (row, multiplier) in self.rows.windows(2).zip(lambda) {
-            let range = row[0]..row[1];
-            for (column, entry) in self.columns[range.clone()].iter().zip(&self.first[range]) {
-                sum[*column] += (entry * multiplier).abs();
-            }
+    fn scale<const N: usize, const D: usize>(&mut self, x: &SVector<f64, N>) {
+        self.scales.fill(0.0);
+        let ((a, _), (x, _)) = (self.last.as_chunks::<D>(), x.as_slice().as_chunks::<D>());
+        for (Part { row, point }, a) in self.parts.iter().zip(a) {
+            let scale = &mut self.scales[*row];
+            *scale = a.iter().zip(&x[*point]).fold(*scale, |sum, (a, x)| sum + (a * x).abs());
         }
     }
 
-    /// Writes `A1 v + a1` to `known`. Returns the largest one over its rounding, with v = M⁻¹ p.
+    /// The largest of the known rows over its rounding. Its scale is that of the terms of `A1 x` and of a1.
     #[inline(always)]
-    fn rate<const N: usize>(&mut self, p: &SVector<f64, N>) -> f64 {
-        let v = SVector::<f64, N>::from_fn(|i, _| p[i] * self.inverse[i]);
-        let mut worst = 0.0;
-        for (row, (known, rate)) in self.rows.windows(2).zip(self.known.iter_mut().zip(&self.rates)) {
-            let (mut sum, mut scale) = (*rate, rate.abs());
-            let range = row[0]..row[1];
-            for (column, entry) in self.columns[range.clone()].iter().zip(&self.last[range]) {
-                let term = entry * v[*column];
-                sum += term;
-                scale += term.abs();
-            }
-            *known = sum;
-            // p and v are rounded too.
-            worst = worse(roundings(sum, 3.0 * scale), worst);
-        }
-        worst
+    fn largest(&self, scale: impl Fn(f64, f64) -> f64) -> f64 {
+        let scales = self.scales.iter().zip(&self.rates).map(|(terms, rate)| scale(*terms, rate.abs()));
+        largest(self.known.iter().copied().zip(scales))
     }
+}
+
+/// The largest row over a rounding of its scale. NaN if a row is NaN or a scale is not finite.
+#[inline(always)]
+fn largest(rows: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let worst = rows.fold(0.0, |worst, (row, scale)| {
+        // No branch: a row without terms is zero, and 0 ∞ is NaN.
+        worse(row.abs() / scale.max(f64::MIN_POSITIVE) + 0.0 * scale, worst)
+    });
+    worst / f64::EPSILON
+}
+
+/// The parts of A with points of this number of coordinates; `None` if one of these alone is in a row.
+fn parts<const N: usize>(gradients: &impl Rectangular<N, f64>, dimension: usize) -> Option<Vec<Part>> {
+    let mut parts = Vec::new();
+    for (row, Row { columns, .. }) in gradients.rows().enumerate() {
+        for columns in columns.chunks(dimension) {
+            let point = columns[0] / dimension;
+            if !columns.iter().copied().eq(point * dimension..(point + 1) * dimension) {
+                return None;
+            }
+            parts.push(Part { row, point });
+        }
+    }
+    N.is_multiple_of(dimension).then_some(parts)
 }
 
 /// Writes the entries of A.
 #[inline(always)]
 fn write<const N: usize>(gradients: &impl Rectangular<N, f64>, entries: &mut [f64]) {
-    let values = gradients.rows().flat_map(|Row { values, .. }| values);
-    for (entry, value) in entries.iter_mut().zip(values) {
-        *entry = *value;
+    let mut start = 0;
+    for Row { values, .. } in gradients.rows() {
+        for (entry, value) in entries[start..].iter_mut().zip(values) {
+            *entry = *value;
+        }
+        start += values.len();
     }
 }
 
-/// Solves the step of length h from `node`, with the guess of the impulses in `u`; replaces it by velocities and
+/// Writes M⁻¹Aᵀ.
+#[inline(always)]
+fn weigh<const D: usize>(parts: &[Part], inverse: &[f64], a: &[f64], weighted: &mut [f64]) {
+    let ((a, _), (inverse, _), (weighted, _)) =
+        (a.as_chunks::<D>(), inverse.as_chunks::<D>(), weighted.as_chunks_mut::<D>());
+    for ((Part { point, .. }, a), weighted) in parts.iter().zip(a).zip(weighted) {
+        let inverse = &inverse[*point];
+        *weighted = core::array::from_fn(|k| a[k] * inverse[k]);
+    }
+}
+
+/// Calls a function with the terms of `AᵀΛ` and the entries that they add to.
+#[inline(always)]
+fn each_term<const D: usize>(parts: &[Part], a: &[f64], multipliers: &[f64], mut f: impl FnMut(usize, [f64; D])) {
+    let (a, _) = a.as_chunks::<D>();
+    for (Part { row, point }, a) in parts.iter().zip(a) {
+        let multiplier = multipliers[*row];
+        f(*point, a.map(|a| a * multiplier));
+    }
+}
+
+/// Adds `AᵀΛ`.
+#[inline(always)]
+fn add<const N: usize, const D: usize>(parts: &[Part], a: &[f64], multipliers: &[f64], sum: &mut SVector<f64, N>) {
+    let (sum, _) = sum.as_mut_slice().as_chunks_mut::<D>();
+    each_term::<D>(parts, a, multipliers, |point, terms| {
+        sum[point].iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+    });
+}
+
+/// `A0ᵀλ`, and the sizes of its terms.
+#[inline(always)]
+fn reaction<const N: usize, const D: usize>(parts: &[Part], a: &[f64], lambda: &[f64]) -> [SVector<f64, N>; 2] {
+    let (mut reaction, mut sizes) = (SVector::<f64, N>::zeros(), SVector::<f64, N>::zeros());
+    let ((sums, _), (scales, _)) =
+        (reaction.as_mut_slice().as_chunks_mut::<D>(), sizes.as_mut_slice().as_chunks_mut::<D>());
+    each_term::<D>(parts, a, lambda, |point, terms| {
+        sums[point].iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        scales[point].iter_mut().zip(terms).for_each(|(scale, term)| *scale += term.abs());
+    });
+    [reaction, sizes]
+}
+
+/// Solves the step of length h from `node`, with the guess of the impulses in `u`; writes there velocities and
 /// impulses, and returns the contraction as [`solve::unprojected`](super::solve::unprojected). `None` if the general
 /// solver has to.
 pub(crate) fn step<S: Motion<N>, const N: usize>(
+    system: &S,
+    of: (&Node<N>, f64, bool),
+    u: &mut [f64],
+    reduced: &mut Reduced,
+) -> Option<(Solved<N, Multipliers<S, N>>, f64)> {
+    match reduced.dimension {
+        3 => step_of_points::<S, N, 3>(system, of, u, reduced),
+        2 => step_of_points::<S, N, 2>(system, of, u, reduced),
+        _ => step_of_points::<S, N, 1>(system, of, u, reduced),
+    }
+}
+
+/// The same for points of D coordinates.
+fn step_of_points<S: Motion<N>, const N: usize, const D: usize>(
     system: &S,
     (node, h, is_next): (&Node<N>, f64, bool),
     u: &mut [f64],
     reduced: &mut Reduced,
 ) -> Option<(Solved<N, Multipliers<S, N>>, f64)> {
-    if !reduced.begin(system, node, is_next) {
+    if !reduced.begin::<S, N, D>(system, node, is_next) {
         return None;
     }
     let (velocity, lambda) = u.split_at_mut(N);
     let (middle, t1) = (node.t + (node.t_low + h * 0.5), node.t + (node.t_low + h));
     let force = system.point(middle, &node.q, &SVector::zeros()).force;
-    let mut v =
-        SVector::<f64, N>::from_fn(|i, _| (node.p[i] + (node.p_low[i] + force[i] * (h * 0.5))) * reduced.inverse[i]);
-    reduced.add(&reduced.weighted, lambda, &mut v);
+    let mut v = reduced.velocity(&(node.p + (node.p_low + force * (h * 0.5))));
+    add::<N, D>(&reduced.parts, &reduced.weighted, lambda, &mut v);
 
     let (mut iterations, mut before, mut is_factored, mut contraction) = (0, f64::INFINITY, false, 0.0);
     let residual = loop {
         let end: Place<N, f64> = (t1, node.q + (node.q_low + v * h));
-        let residual = constraints(system, &end, h, reduced);
+        let residual = constraints::<S, N, D>(system, &end, h, reduced);
         contraction = contracted(contraction, [before, residual]);
         if !is_factored || residual > FLOOR && residual > FALLEN * before {
-            is_factored = reduced.schur.factor(&reduced.last, &reduced.weighted);
+            is_factored = reduced.schur.factor::<D>(&reduced.last, &reduced.weighted);
         }
         if !is_factored || residual.is_nan() || iterations == ITERATIONS {
             return None;
@@ -387,16 +471,13 @@ pub(crate) fn step<S: Motion<N>, const N: usize>(
             *correction = -*correction;
             *lambda += *correction;
         }
-        reduced.add(&reduced.weighted, &reduced.known, &mut v);
+        add::<N, D>(&reduced.parts, &reduced.weighted, &reduced.known, &mut v);
         (before, iterations) = (residual, iterations + 1);
     };
     velocity.copy_from_slice(v.as_slice());
-    let mut reaction = SVector::zeros();
-    reduced.add(&reduced.first, lambda, &mut reaction);
-    let mut terms = SVector::zeros();
-    reduced.add_sizes(lambda, &mut terms);
-    let residual = worse(momenta(system, (node, h, &v), &reaction, &terms), residual);
-    let (end, mu, of_velocity) = projected(system, (node, h, &v), force * h + reaction, reduced)?;
+    let [reaction, sizes] = reaction::<N, D>(&reduced.parts, &reduced.first, lambda);
+    let residual = worse(momenta(system, (node, h, &v), &reaction, &sizes), residual);
+    let (end, mu, of_velocity) = projected::<S, N, D>(system, (node, h, &v), force * h + reaction, reduced)?;
     let residual = worse(of_velocity, residual);
     // False for NaN.
     (residual <= FLOOR).then_some((Solved { end, mu, residual, iterations }, contraction))
@@ -404,18 +485,20 @@ pub(crate) fn step<S: Motion<N>, const N: usize>(
 
 /// g/h at the end of a step, in `known`, and A and a there. Returns the largest row over its rounding.
 #[inline(always)]
-fn constraints<S: Motion<N>, const N: usize>(system: &S, (t, q): &Place<N, f64>, h: f64, reduced: &mut Reduced) -> f64 {
-    let values = system.constraints(*t, q);
+fn constraints<S: Motion<N>, const N: usize, const D: usize>(
+    system: &S,
+    (t, q): &Place<N, f64>,
+    h: f64,
+    reduced: &mut Reduced,
+) -> f64 {
     let (gradients, rates) = system.constraint_gradients(*t, q);
     write(&gradients, &mut reduced.last);
     reduced.rates.copy_from_slice(rates.as_ref());
-    let mut worst = 0.0;
-    for (r, (value, rate)) in values.as_ref().iter().zip(rates.as_ref()).enumerate() {
-        reduced.known[r] = value / h;
-        let scale = gradients.row(r).terms(q) / h.abs() + rate.abs();
-        worst = worse(roundings(reduced.known[r], scale), worst);
+    for (known, value) in reduced.known.iter_mut().zip(system.constraints(*t, q).as_ref()) {
+        *known = value / h;
     }
-    worst
+    reduced.scale::<N, D>(q);
+    reduced.largest(|terms, rate| terms / h.abs() + rate)
 }
 
 /// The largest momentum row over its rounding.
@@ -424,77 +507,80 @@ fn momenta<S: Motion<N>, const N: usize>(
     system: &S,
     (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
     reaction: &SVector<f64, N>,
-    terms: &SVector<f64, N>,
+    sizes: &SVector<f64, N>,
 ) -> f64 {
     let (t, q) = node.midpoint(h, v);
     let point = system.point(t, &q, v);
-    (0..N).fold(0.0, |worst, i| {
+    largest((0..N).map(|i| {
         let of_force = point.force[i] * (h * 0.5);
         let row = ((point.momentum[i] - node.p[i]) - node.p_low[i]) - (of_force + reaction[i]);
         // M v is the only term of its row.
-        let scale = node.p[i].abs() + 2.0 * point.momentum[i].abs() + of_force.abs() + terms[i];
-        worse(roundings(row, scale), worst)
-    })
+        let scale = node.p[i].abs() + 2.0 * point.momentum[i].abs() + of_force.abs() + sizes[i];
+        (row, scale)
+    }))
 }
 
 /// The end of a step with consistent momenta, the impulse for that, and the residual of `A v + a`.
 #[inline(always)]
-fn projected<S: Motion<N>, const N: usize>(
+fn projected<S: Motion<N>, const N: usize, const D: usize>(
     system: &S,
     (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
     mut increment: SVector<f64, N>,
     reduced: &mut Reduced,
 ) -> Option<(Node<N>, Multipliers<S, N>, f64)> {
-    for ((weighted, entry), column) in reduced.weighted.iter_mut().zip(&reduced.last).zip(&reduced.columns) {
-        *weighted = entry * reduced.inverse[*column];
-    }
-    if !reduced.schur.factor(&reduced.last, &reduced.weighted) {
+    weigh::<D>(&reduced.parts, &reduced.inverse, &reduced.last, &mut reduced.weighted);
+    if !reduced.schur.factor::<D>(&reduced.last, &reduced.weighted) {
         return None;
     }
     let mut mu = system.constraints(node.t, &node.q);
-    reduced.rate(&(node.p + (node.p_low + increment)));
+    reduced.rate::<N, D>(&reduced.velocity(&(node.p + (node.p_low + increment))));
     reduced.schur.solve(&mut reduced.known);
     for (mu, rate) in mu.as_mut().iter_mut().zip(&reduced.known) {
         *mu = -rate;
     }
-    reduced.add(&reduced.last, mu.as_ref(), &mut increment);
+    add::<N, D>(&reduced.parts, &reduced.last, mu.as_ref(), &mut increment);
     let mut end = *node;
     end.advance(h, v, &increment);
     // The increment of the momenta was rounded. Its part across the constraints goes into a second, tiny impulse.
-    reduced.rate(&(end.p + end.p_low));
+    reduced.rate::<N, D>(&reduced.velocity(&(end.p + end.p_low)));
     reduced.schur.solve(&mut reduced.known);
     let mut rest = SVector::zeros();
     for (mu, rate) in mu.as_mut().iter_mut().zip(&mut reduced.known) {
         *rate = -*rate;
         *mu += *rate;
     }
-    reduced.add(&reduced.last, &reduced.known, &mut rest);
+    add::<N, D>(&reduced.parts, &reduced.last, &reduced.known, &mut rest);
     end.add_momentum(&rest);
-    let residual = reduced.rate(&(end.p + end.p_low));
+    let v = reduced.velocity(&(end.p + end.p_low));
+    reduced.rate::<N, D>(&v);
+    reduced.scale::<N, D>(&v);
+    // p and v are rounded too.
+    let residual = reduced.largest(|terms, rate| 3.0 * (terms + rate));
     end.is_finite().then_some((end, mu, residual))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Schur;
+    use super::{Part, Schur};
 
     #[test]
     fn three_diagonals_have_the_bits_of_any_order() {
         // Rows of a chain of four points on a line, the first one at a fixed end.
-        let (columns, rows) = ([0, 0, 1, 1, 2, 2, 3], [0, 1, 3, 5, 7]);
+        let of = |row: usize, point: usize| Part { row, point };
+        let parts = [of(0, 0), of(1, 0), of(1, 1), of(2, 1), of(2, 2), of(3, 2), of(3, 3)];
         let left = [1.1, -0.9, 1.2, -0.8, 1.3, -0.7, 1.4];
         let right = [0.9, -1.1, 1.0, -1.2, 0.8, -0.6, 1.5];
         let solved = |is_tridiagonal: bool| {
-            let mut schur = Schur::new(&columns, &rows).expect("no fill");
+            let mut schur = Schur::new(&parts, 4).expect("no fill");
             assert!(schur.is_tridiagonal);
             schur.is_tridiagonal = is_tridiagonal;
-            assert!(schur.factor(&left, &right));
+            assert!(schur.factor::<1>(&left, &right));
             let mut b = [1.0, -2.0, 3.0, 0.5];
             schur.solve(&mut b);
             b.map(f64::to_bits)
         };
         assert_eq!(solved(true), solved(false));
         // A star has no three diagonals.
-        assert!(!Schur::new(&[0, 0, 1, 0, 2], &[0, 1, 3, 5]).expect("no fill").is_tridiagonal);
+        assert!(!Schur::new(&[of(0, 0), of(1, 0), of(1, 1), of(2, 0), of(2, 2)], 3).expect("no fill").is_tridiagonal);
     }
 }

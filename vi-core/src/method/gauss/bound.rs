@@ -201,10 +201,9 @@ where
         let workspace = cache.get_or_insert_with(|| Box::new(Workspace::of_steps::<S, N, STAGES>(system, node)));
         let mut unknowns = core::mem::take(&mut workspace.unknowns);
         unknowns.resize(count, 0.0);
-        memory.unknowns.guess(&mut unknowns);
         let is_next = memory.has_step(node);
-        let solved =
-            connected::step::<S, N, STAGES>(system, (node, h, memory.sign, is_next), &mut unknowns, workspace)?;
+        let of = (node, h, memory.sign, is_next);
+        let solved = connected::step::<S, N, STAGES>(system, of, &memory.unknowns, &mut unknowns, workspace)?;
         let Solved { end, mu, residual, iterations, .. } = solved;
         Ok(ConstrainedStep { end, unknowns, mu, residual, iterations })
     }
