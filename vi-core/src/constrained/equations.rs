@@ -20,7 +20,7 @@ use super::{diagonal, inertia, reaction_of, reaction_terms, spread};
 use crate::gauss::lobatto::Lobatto;
 use crate::gauss::tableau::Tableau;
 use crate::kind::{Gradients, Multipliers};
-use crate::linear::{Fronts, Matrix, Rectangular, Row, determinant_sign, scale};
+use crate::linear::{Assemble, Entries, Matrix, Rectangular, Row, determinant_sign, scale};
 use crate::motion::Motion;
 use crate::newton::roundings;
 use crate::node::Node;
@@ -262,7 +262,8 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
 
     /// Writes the Jacobian of the rows with respect to the unknowns: copy i of the row of a coordinate is the momentum
     /// row of stage i, copy k of its column the velocity of stage k; those of a constraint are row and impulse k.
-    pub(crate) fn jacobian(&self, system: &S, h: f64, u: &[f64], jacobian: &mut Fronts) {
+    #[inline(always)]
+    fn jacobian(&self, system: &S, h: f64, u: &[f64], jacobian: &mut impl Entries<f64>) {
         let Tableau { b, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
         let lobatto = const { &Lobatto::<STAGES>::VALUES };
         let constraints = system.constraint_names().len();
@@ -332,7 +333,8 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
     }
 
     /// Adds the derivatives of the reaction at Lobatto node j.
-    fn reactions(&self, system: &S, j: usize, u: &[f64], weights: &[f64; STAGES], jacobian: &mut Fronts) {
+    #[inline(always)]
+    fn reactions(&self, system: &S, j: usize, u: &[f64], weights: &[f64; STAGES], jacobian: &mut impl Entries<f64>) {
         let lobatto = const { &Lobatto::<STAGES>::VALUES };
         let gradients = if j == 0 { &self.first } else { &self.gradients[j - 1] };
         for (r, row) in gradients.rows().enumerate() {
@@ -363,6 +365,21 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
                 }
             }
         }
+    }
+}
+
+/// The Jacobian of the rows.
+pub(super) struct Jacobian<'a, S: Motion<N>, const N: usize, const STAGES: usize> {
+    pub(super) rows: &'a Rows<S, N, STAGES>,
+    pub(super) system: &'a S,
+    pub(super) h: f64,
+    pub(super) u: &'a [f64],
+}
+
+impl<S: Motion<N>, const N: usize, const STAGES: usize> Assemble<f64> for Jacobian<'_, S, N, STAGES> {
+    #[inline(always)]
+    fn assemble(&self, entries: &mut impl Entries<f64>) {
+        self.rows.jacobian(self.system, self.h, self.u, entries);
     }
 }
 

@@ -85,6 +85,7 @@ pub(crate) fn border<S: Motion<N, T>, const N: usize, T: Real>(
 }
 
 /// `Aᵀλ`.
+#[inline(always)]
 pub(crate) fn reaction_of<const N: usize, T: Real>(
     gradients: &(impl Rectangular<N, T> + ?Sized),
     multipliers: &[T],
@@ -99,6 +100,7 @@ pub(crate) fn reaction_of<const N: usize, T: Real>(
 }
 
 /// `Σ_r |A_ri λ_r|`: the terms of `Aᵀλ`, also where they cancel.
+#[inline(always)]
 pub(crate) fn reaction_terms<const N: usize, T: Real>(
     gradients: &impl Rectangular<N, T>,
     multipliers: &[T],
@@ -113,6 +115,7 @@ pub(crate) fn reaction_terms<const N: usize, T: Real>(
 }
 
 /// `Σ_j |M_ij v_j|`: the terms of the momenta that add to L_v, also where they cancel.
+#[inline(always)]
 pub(crate) fn inertia<const N: usize, T: Real>(mass: &impl Matrix<N, T>, v: &SVector<T, N>) -> SVector<T, N> {
     let mut inertia = SVector::zeros();
     mass.each_entry(|row, column, value| inertia[row] += (value * v[column]).abs());
@@ -120,6 +123,7 @@ pub(crate) fn inertia<const N: usize, T: Real>(mass: &impl Matrix<N, T>, v: &SVe
 }
 
 /// The diagonal of a matrix.
+#[inline(always)]
 pub(crate) fn diagonal<const N: usize, T: Real>(matrix: &impl Matrix<N, T>) -> SVector<T, N> {
     let mut diagonal = SVector::zeros();
     matrix.each_entry(|row, column, value| {
@@ -164,6 +168,7 @@ pub(crate) fn is_shortened(behind: f64, length: f64, part: f64) -> bool {
 ///
 /// They bound the terms of a row from below. A solution of linear equations is accurate relative to the whole vector, not
 /// to each entry, so a row with tiny terms, such as that of z in a motion in the plane z = 0, is as accurate as the others.
+#[inline(always)]
 pub(crate) fn spread<const N: usize, T: Real>(
     mass: &impl Matrix<N, T>,
     v: &SVector<T, N>,

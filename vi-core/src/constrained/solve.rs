@@ -8,7 +8,7 @@
 //! determinant has the sign that it has for short steps. With the other sign, the root is a second one, in which a rod
 //! has flipped over, or the constraints depend on each other in the step.
 
-use super::equations::{Rows, expected_sign, signs, stage_velocity, unknowns};
+use super::equations::{Jacobian, Rows, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
 use super::reduced::Reduced;
 use super::solved::{Solved, contracted};
@@ -40,15 +40,13 @@ const FEW: u32 = 8;
 /// Buffers of the solver. No result depends on them.
 #[derive(Clone, Debug)]
 pub struct Workspace {
-    /// Coordinates, constraints, stages.
-    sizes: [usize; 3],
+    /// The number of unknown velocities.
+    velocities: usize,
     /// Signs of the coefficients of a step.
     signs: [i8; 2],
     jacobian: Factored,
     /// The solver of midpoint steps in the impulses alone, if the system allows it.
     pub(super) reduced: Option<Box<Reduced>>,
-    /// Right-hand side and solution in the order of elimination.
-    eliminated: Vec<f64>,
     correction: Vec<f64>,
     /// The correction behind a trial.
     behind: Vec<f64>,
@@ -219,11 +217,10 @@ impl Workspace {
         let constraints = system.constraint_names().len();
         let unknowns = unknowns::<N, STAGES>(constraints);
         Self {
-            sizes: [N, constraints, STAGES],
+            velocities: N * STAGES,
             signs: signs::<STAGES>(),
             jacobian: Factored::new(system.blocks(), N + constraints, STAGES),
             reduced: None,
-            eliminated: vec![0.0; unknowns],
             correction: vec![0.0; unknowns],
             behind: vec![0.0; unknowns],
             trial: vec![0.0; unknowns],
@@ -246,32 +243,16 @@ impl Workspace {
         h: f64,
         u: &[f64],
     ) -> i8 {
-        self.jacobian.factor(|fronts| at.jacobian(system, h, u, fronts));
+        let sizes = [N + system.constraint_names().len(), STAGES];
+        self.jacobian.factor(sizes, &Jacobian { rows: at, system, h, u });
         self.jacobian.determinant_sign()
     }
 
     /// Replaces rows of the equations, in their order, by the solution of the linear system of the factored Jacobian, in
-    /// the order of the unknowns. NaN if the Jacobian is singular.
+    /// the order of the unknowns. NaN if it has no factors.
     pub(crate) fn solve(&mut self, rows: &mut [f64]) {
-        let Self { sizes, jacobian, eliminated, .. } = self;
-        let places = || {
-            let [n, constraints, stages] = *sizes;
-            let of = move |unknown: usize, copy: usize| match unknown.checked_sub(n) {
-                None => copy * n + unknown,
-                Some(constraint) => stages * n + copy * constraints + constraint,
-            };
-            (0..n + constraints)
-                .flat_map(move |unknown| (0..stages).map(move |copy| (unknown, copy, of(unknown, copy))))
-        };
-        for (unknown, copy, place) in places() {
-            let (position, scale) = jacobian.position(unknown);
-            eliminated[position + copy] = rows[place] * scale;
-        }
-        jacobian.solve(eliminated);
-        for (unknown, copy, place) in places() {
-            let (position, scale) = jacobian.position(unknown);
-            rows[place] = eliminated[position + copy] * scale;
-        }
+        let (b, c) = rows.split_at_mut(self.velocities);
+        self.jacobian.solve(b, c);
     }
 
     /// Writes u less a correction to `trial`: the longest of its halves that reduces the residual, or has a shorter

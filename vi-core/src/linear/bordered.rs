@@ -8,9 +8,8 @@
 //! M needs to be regular only for vectors x with `A x = 0`. Powers of two scale the diagonal of M and the rows of A to
 //! about 1, so that pivots have no unit and no digit is lost. Only the constructor and the first factors allocate.
 
-use super::{Block, Factored, Matrix, Rectangular, Row, reciprocal_power, reciprocal_root};
+use super::{Assemble, Block, Entries, Factored, Matrix, Rectangular, Row, reciprocal_power, reciprocal_root};
 use crate::real::Real;
-use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Pivots of the scaled matrix below this leave fewer than three digits of the solution.
@@ -21,8 +20,6 @@ const SMALLEST: f64 = 1e-13;
 pub(crate) struct Bordered<T: Real = f64> {
     k: usize,
     factors: Factored<T>,
-    diagonal: Vec<f64>,
-    solution: Vec<T>,
 }
 
 /// The reason why a bordered matrix has no factors.
@@ -35,8 +32,7 @@ pub(crate) enum Unsolvable {
 impl<T: Real> Bordered<T> {
     /// Allocates for `n` coordinates and the first `k` constraints, which are eliminated in these blocks.
     pub(crate) fn new(n: usize, k: usize, blocks: &[Block]) -> Self {
-        let factors = Factored::new(blocks, n + k, 1);
-        Self { k, factors, diagonal: vec![0.0; n], solution: vec![T::zero(); n + k] }
+        Self { k, factors: Factored::new(blocks, n + k, 1) }
     }
 
     /// Factors the matrix of M and the rows of A.
@@ -61,56 +57,20 @@ impl<T: Real> Bordered<T> {
         gradients: &(impl Rectangular<N, T> + ?Sized),
         is_dropped: impl Fn(usize) -> bool,
     ) -> Result<(), Unsolvable> {
-        let Self { k, factors, diagonal, .. } = self;
-        mass.each_entry(|row, column, value| {
-            if row == column {
-                diagonal[row] = value.to_f64();
-            }
-        });
-        let rows = || gradients.rows().take(*k).enumerate();
-        let mut is_finite = true;
-        let is_regular = factors.factor(|fronts| {
-            scale(fronts.scales(), diagonal.iter().copied(), rows().map(|(_, row)| row));
-            mass.each_entry(|row, column, value| {
-                let entry = fronts.entry(row, column);
-                fronts.add(entry, [0, 0], value);
-            });
-            for (r, row) in rows() {
-                for (column, value) in row.iter() {
-                    let [lower, upper] = [fronts.entry(N + r, column), fronts.entry(column, N + r)];
-                    fronts.add(lower, [0, 0], value);
-                    fronts.add(upper, [0, 0], -value);
-                }
-            }
-            for r in (0..*k).filter(|r| is_dropped(*r)) {
-                let entry = fronts.entry(N + r, N + r);
-                fronts.add(entry, [0, 0], T::one());
-            }
-            is_finite = fronts.is_finite();
-        });
-        match (is_finite, is_regular && factors.smallest_pivot() > SMALLEST) {
-            (false, _) => Err(Unsolvable::NonFinite),
-            (true, true) => Ok(()),
-            (true, false) => Err(Unsolvable::Singular),
+        let matrix = Unfactored { k: self.k, mass, gradients, is_dropped };
+        let is_regular = self.factors.factor([N + self.k, 1], &matrix) && self.factors.smallest_pivot() > SMALLEST;
+        if is_regular {
+            Ok(())
+        } else if matrix.is_finite() {
+            Err(Unsolvable::Singular)
+        } else {
+            Err(Unsolvable::NonFinite)
         }
     }
 
     /// Replaces b and c by x and y.
     pub(crate) fn solve<const N: usize>(&mut self, b: &mut SVector<T, N>, c: &mut [T]) {
-        let Self { factors, solution, .. } = self;
-        for (first, known) in [(0, b.as_slice()), (N, c)] {
-            for (unknown, known) in known.iter().enumerate() {
-                let (position, scale) = factors.position(first + unknown);
-                solution[position] = *known * T::real(scale);
-            }
-        }
-        factors.solve(solution);
-        for (first, entries) in [(0, b.as_mut_slice()), (N, c)] {
-            for (unknown, entry) in entries.iter_mut().enumerate() {
-                let (position, scale) = factors.position(first + unknown);
-                *entry = solution[position] * T::real(scale);
-            }
-        }
+        self.factors.solve(b.as_mut_slice(), c);
     }
 
     /// Sign of the determinant: positive if M is positive definite for `A x = 0`.
@@ -119,7 +79,69 @@ impl<T: Real> Bordered<T> {
     }
 }
 
+/// The entries of a bordered matrix.
+struct Unfactored<'a, M, A: ?Sized, D, const N: usize> {
+    k: usize,
+    mass: &'a M,
+    gradients: &'a A,
+    is_dropped: D,
+}
+
+impl<M, A: ?Sized, D, const N: usize> Unfactored<'_, M, A, D, N> {
+    fn rows<'a, T: Real + 'a>(&'a self) -> impl Iterator<Item = (usize, Row<'a, T>)>
+    where
+        A: Rectangular<N, T>,
+    {
+        self.gradients.rows().take(self.k).enumerate()
+    }
+
+    #[cold]
+    fn is_finite<T: Real>(&self) -> bool
+    where
+        M: Matrix<N, T>,
+        A: Rectangular<N, T>,
+    {
+        let mut is_finite = true;
+        self.mass.each_entry(|_, _, value| is_finite &= value.is_finite());
+        is_finite && self.rows().flat_map(|(_, row)| row.iter()).all(|(_, value)| value.is_finite())
+    }
+}
+
+impl<T: Real, M, A, D, const N: usize> Assemble<T> for Unfactored<'_, M, A, D, N>
+where
+    M: Matrix<N, T>,
+    A: Rectangular<N, T> + ?Sized,
+    D: Fn(usize) -> bool,
+{
+    #[inline(always)]
+    fn assemble(&self, entries: &mut impl Entries<T>) {
+        let mut diagonal = [0.0; N];
+        self.mass.each_entry(|row, column, value| {
+            if row == column {
+                diagonal[row] = value.to_f64();
+            }
+        });
+        scale(entries.scales(), diagonal.into_iter(), self.rows().map(|(_, row)| row));
+        self.mass.each_entry(|row, column, value| {
+            let entry = entries.entry(row, column);
+            entries.add(entry, [0, 0], value);
+        });
+        for (r, row) in self.rows() {
+            for (column, value) in row.iter() {
+                let [lower, upper] = [entries.entry(N + r, column), entries.entry(column, N + r)];
+                entries.add(lower, [0, 0], value);
+                entries.add(upper, [0, 0], -value);
+            }
+        }
+        for r in (0..self.k).filter(|r| (self.is_dropped)(*r)) {
+            let entry = entries.entry(N + r, N + r);
+            entries.add(entry, [0, 0], T::one());
+        }
+    }
+}
+
 /// Scale factors, powers of two, that make the diagonal of M and the rows of A about 1.
+#[inline(always)]
 pub(crate) fn scale<'a, T: Real>(
     scales: &mut [f64],
     diagonal: impl ExactSizeIterator<Item = f64>,

@@ -39,7 +39,7 @@ pub use blocks::Blocks;
 #[cfg(feature = "alloc")]
 pub(crate) use bordered::{Bordered, Unsolvable, scale};
 #[cfg(feature = "alloc")]
-pub(crate) use fronts::{Factored, Fronts, reciprocal_power, reciprocal_root};
+pub(crate) use fronts::{Assemble, Entries, Factored, reciprocal_power, reciprocal_root};
 #[cfg(feature = "alloc")]
 pub(crate) use pivoted::Pivoted;
 pub use rectangular::{AtMost, Rectangular, Row, Rows, Sparse};
