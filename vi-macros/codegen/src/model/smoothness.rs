@@ -18,7 +18,7 @@ const NARROW: u32 = 8;
 /// Iterations for a zero, and the step of their difference quotients.
 const ITERATIONS: u32 = 60;
 const QUOTIENT: f64 = 1e-6;
-/// Role of the way between two points beside a border.
+/// Part of the way between two points beside a border.
 const BESIDE: f64 = 1e-9;
 /// Growth of a difference from there to the border that shows a pole.
 const POLE: f64 = 1e3;
