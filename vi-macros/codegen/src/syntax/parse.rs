@@ -19,7 +19,7 @@ use syn::buffer::Cursor;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::punctuated::Punctuated;
-use syn::{Attribute, Path, Result, Token, Visibility};
+use syn::{Attribute, Error, Path, Result, Token, Visibility};
 use vi_expr::Rational;
 
 /// Types that the emitted code uses without a path.
@@ -257,16 +257,6 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         "force" if input.peek(Token![=]) || input.peek(syn::token::Paren) => {
             return Err(error(input.span(), &Message::Habit(Habit::ForceWithoutCoordinate)));
         }
-        found if let Some(clause) = Defining::of(found) => {
-            system.is_constrained |= clause == Defining::Constraint;
-            let made = system.definitions.entry(clause).or_default();
-            let named = if clause == Defining::Constraint { constraint } else { indexed };
-            if clause.has_names() {
-                list(input, &mut |input| named(input, &attributes).map(|one| made.push(one)))?;
-            } else {
-                made.push(value_of(word, input, attributes)?);
-            }
-        }
         "discretize" if input.peek(syn::token::Brace) => {
             let lines;
             syn::braced!(lines in input);
@@ -293,21 +283,34 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             return Ok(());
         }
         found => {
-            if found == "extern" {
-                // Or its `fn` would start another clause.
-                input.parse::<Option<Token![fn]>>()?;
+            let Some(clause) = Defining::of(found) else { return Err(unknown(input, &word, system)) };
+            system.is_constrained |= clause == Defining::Constraint;
+            let made = system.definitions.entry(clause).or_default();
+            let named = if clause == Defining::Constraint { constraint } else { indexed };
+            if clause.has_names() {
+                list(input, &mut |input| named(input, &attributes).map(|one| made.push(one)))?;
+            } else {
+                made.push(value_of(word, input, attributes)?);
             }
-            if let (true, Some(sign)) = (words::is_constraint(found), inequality(input)) {
-                return Err(error(sign, &Message::Constraint(ConstraintMistake::Inequality)));
-            }
-            let near = nearest(found, super::clauses());
-            let is_coordinate = system.coordinates.iter().any(|coordinate| coordinate.name == word);
-            let is_defined = input.peek(Token![=]) || input.peek(syn::token::Bracket);
-            let found = found.to_owned();
-            return Err(error(word.span(), &Message::UnknownClause { found, near, is_defined, is_coordinate }));
         }
     }
     semicolon(input, start)
+}
+
+/// The error for a word that starts no clause.
+fn unknown(input: ParseStream, word: &Ident, system: &System) -> Error {
+    let found = word.to_string();
+    if found == "extern" {
+        // Or its `fn` would start another clause.
+        let _: Result<Option<Token![fn]>> = input.parse();
+    }
+    if let (true, Some(sign)) = (words::is_constraint(&found), inequality(input)) {
+        return error(sign, &Message::Constraint(ConstraintMistake::Inequality));
+    }
+    let near = nearest(&found, super::clauses());
+    let is_coordinate = system.coordinates.iter().any(|coordinate| coordinate.name == *word);
+    let is_defined = input.peek(Token![=]) || input.peek(syn::token::Bracket);
+    error(word.span(), &Message::UnknownClause { found, near, is_defined, is_coordinate })
 }
 
 /// `midpoint`, in a list of rules
