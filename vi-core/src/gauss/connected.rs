@@ -103,10 +103,10 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Convertible<N>,
     {
         let step = self.recovered(system, instructions, left, cache)?;
-        let rare = &ErasedSystem::of(system);
-        let weights = &weights(rare, self.node, &step);
+        let erased = &ErasedSystem::of(system);
+        let weights = &weights(erased, self.node, &step);
         let is_near = distance([self.stages, &step.stages], self.stages, weights) <= NEAR;
-        let is_proven = is_near || is_proven(rare, self.node, &step);
+        let is_proven = is_near || is_proven(erased, self.node, &step);
         if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
     }
 
