@@ -185,4 +185,13 @@ mod tests {
         let lost = bordered.factor(&SMatrix::<f64, 2, 2>::identity(), &[row, row * f64::NAN]);
         assert_eq!(lost, Err(Unsolvable::NonFinite));
     }
+
+    #[test]
+    fn an_infinite_entry_is_no_pivot() {
+        let mut bordered = Bordered::new(1, 1, &[]);
+        for [mass, gradient] in [[1.0, f64::INFINITY], [f64::INFINITY, 1.0]] {
+            let factored = bordered.factor(&SMatrix::<f64, 1, 1>::new(mass), &[SVector::from([gradient])]);
+            assert_eq!(factored, Err(Unsolvable::NonFinite), "{mass} {gradient}");
+        }
+    }
 }

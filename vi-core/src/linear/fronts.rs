@@ -483,8 +483,8 @@ fn pivot<T: Real>(entries: &[T], column: usize, own: usize) -> Option<(usize, T)
     }
     let border = border.iter().fold(0.0, |largest: f64, entry| largest.max(entry.to_f64().abs()));
     let reciprocal = entries[pivot].recip();
-    // False for NaN.
-    let is_kept = border <= GROWTH * longest && reciprocal.is_finite() && longest > 0.0;
+    // False for NaN. The reciprocal of zero is infinite, that of an infinite pivot is zero.
+    let is_kept = border <= GROWTH * longest && reciprocal.is_finite() && longest < f64::INFINITY;
     is_kept.then_some((pivot, reciprocal))
 }
 
