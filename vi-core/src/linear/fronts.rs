@@ -313,7 +313,7 @@ impl<T: Real> Entries<T> for Fronts<T> {
     }
 }
 
-/// A matrix of few unknowns, and its factors. Nothing is allocated before the first matrix.
+/// A dense matrix, and its factors. Nothing is allocated before the first matrix.
 #[derive(Clone, Debug)]
 struct Dense<T: Real> {
     /// By columns.
