@@ -5,8 +5,7 @@
 //! ```text
 //! correct    v ← v − A⁻¹ r(v)
 //! measure    r(v) and p1 − p0, by one evaluation at the new v
-//! accept     if each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its
-//! terms,
+//! accept     if each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its terms,
 //!            and the energy row |c| ≤ (ε/2) (|E0| + Σ |terms of E| + Σ_i |v_i p0_i|)
 //! else       correct again
 //! ```

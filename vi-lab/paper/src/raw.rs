@@ -127,8 +127,7 @@ mod tests {
             // A guess that is wrong by a part in ten thousand.
             let guess = (before.state.t + step.h * 1.0001, before.state.q.x + step.h * step.midpoint.2.x);
             let found = before.polished(&system, guess).expect("a solution");
-            // Measured 5.8e-15 and 5.6e-15: the floor of the raw equations at this step, with a force of
-            // 1.
+            // Measured 5.8e-15 and 5.6e-15: the floor of the raw equations at this step, with a force of 1.
             assert!((found.state.t - step.t).abs() < 7e-15, "{}", found.state.t - step.t);
             assert!((found.energy - step.energy).abs() < 7e-15, "{}", found.energy - step.energy);
         }

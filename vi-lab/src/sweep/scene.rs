@@ -7,9 +7,10 @@
 //!     { name = "x", from = 0.1, to = 1.0, count = 10 },        # spacing = "log" for equal ratios
 //!     { name = "v_y", uniform = [0.9, 1.1] },                  # log_uniform = [low, high], normal = [mean, deviation]
 //! ]
-//! samples = 100                                                # runs for each point of the grid, if something is
-//! random seed = 1 keep = ["ending", "accuracy", "end", "extremes", "energy", "series"]     # without it, the first
-//! three section = { coordinate = "y", at = 0.0, direction = "rising" }   # or { period = 6.28 }
+//! samples = 100                                                # runs for each point of the grid, if something is random
+//! seed = 1
+//! keep = ["ending", "accuracy", "end", "extremes", "energy", "series"]     # without it, the first three
+//! section = { coordinate = "y", at = 0.0, direction = "rising" }   # or { period = 6.28 }
 //! ```
 
 use crate::entries::count;
