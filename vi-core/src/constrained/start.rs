@@ -78,8 +78,8 @@ where
     consistent(system, node, (&v, &mu), (&mass, is_regular.then_some(inverse)), STORED)
 }
 
-/// Checks that a node with the velocity v satisfies the constraints to `limit` roundings. `L_v(v) = p + Aᵀμ`. With
-/// the factors of a regular mass matrix.
+/// Checks that a node satisfies the constraints to `limit` roundings, with v and μ of `L_v(v) = p + Aᵀμ`. `inverse`
+/// has the factors of a regular mass matrix.
 ///
 /// # Errors
 /// [`StepError::InconsistentStart`], [`StepError::DroppedConstraint`].
