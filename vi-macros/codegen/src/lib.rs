@@ -66,11 +66,12 @@ impl Compiled {
     /// All errors of the first stage that fails.
     pub fn of(system: &System) -> syn::Result<Self> {
         // `#[vi_limit(0)]` on the struct, for tests: loops at any size.
-        let is_forced = system.attributes.iter().find_map(emit::limit) == Some(0);
+        let is_requested = system.attributes.iter().find_map(emit::limit) == Some(0);
         let (loops, mistake) = match large_model(system) {
-            Some(Ok(found)) => {
-                (Loops::of(found, system.named_rules(), if is_forced { 1 } else { limits::LARGE_COORDINATES })?, None)
-            }
+            Some(Ok(found)) => (
+                Loops::of(found, system.named_rules(), if is_requested { 1 } else { limits::LARGE_COORDINATES })?,
+                None,
+            ),
             Some(Err(mistake)) => (None, Some(mistake)),
             None => (None, None),
         };
@@ -78,7 +79,7 @@ impl Compiled {
         // step, not 125.
         let has_rotations = system.coordinates.iter().any(|coordinate| coordinate.is_rotation);
         let is_large = |loops: &Loops| {
-            is_forced || !has_rotations && loops.indexed.operations() > limits::LARGE && loops.indexed.is_dense()
+            is_requested || !has_rotations && loops.indexed.operations() > limits::LARGE && loops.indexed.is_dense()
         };
         match loops {
             Some(loops) if is_large(&loops) => Ok(Self::Loops(Box::new(loops))),
