@@ -109,7 +109,11 @@ impl Search {
         if let Some([last, off_last]) = self.last.replace([length, off]) {
             let chord = (off - off_last) / (length - last);
             let bend = self.chord.map_or(0.0, |[first, before]| (chord - before) / (length - first));
-            self.slope = (chord + bend * (length - last)).max(LEAST_SLOPE);
+            let slope = chord + bend * (length - last);
+            // Lengths that are equal but for rounding have none.
+            if slope.is_finite() {
+                self.slope = slope.max(LEAST_SLOPE);
+            }
             self.chord = Some([last, chord]);
         }
     }
@@ -190,7 +194,7 @@ impl Reversible {
             let step = match (is_beside, quick) {
                 (true, _) => solver.beside(at, &guess, cache).map(Some),
                 (false, 0) => solver.solve(at, &guess, cache).map(Some),
-                (false, _) => Ok(solver.quickly(at, &guess, cache)),
+                (false, _) => solver.quickly(at, &guess, cache),
             };
             let tried = step.and_then(|step| {
                 let Some(step) = step else { return Ok(None) };

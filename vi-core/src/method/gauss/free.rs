@@ -384,14 +384,14 @@ where
         at: Problem<'_, S, Instructions, N>,
         memory: &LastStages<N, STAGES>,
         cache: &mut Buffer<N, STAGES>,
-    ) -> Option<Step<N, STAGES>> {
+    ) -> Result<Option<Step<N, STAGES>>, StepError> {
         match self.attempt(at, memory, cache) {
-            Ok(step) => Some(step),
+            Ok(step) => Ok(Some(step)),
             Err(Some(left)) if !memory.pause.has_been() => {
-                memory.start(at.node).quickly(at.system, *at.prepared, &left, cache)
+                Ok(memory.start(at.node).quickly(at.system, *at.prepared, &left, cache))
             }
             // The steps of a stiff system are Newton's.
-            Err(left) => self.recover(at, memory, cache, left).ok(),
+            Err(left) => self.recover(at, memory, cache, left).map(Some),
         }
     }
 

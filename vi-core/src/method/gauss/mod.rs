@@ -50,15 +50,18 @@ pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memo
     #[doc(hidden)]
     fn again(system: &S, memory: &Self::Memory, node: &Node<N>, h: f64) -> Result<Self::Memory, StepError>;
 
-    /// The next step, if neither Newton's iteration nor a proof that it continues short steps takes long.
+    /// The next step; `None` if Newton's iteration or a proof that it continues short steps would take long.
+    ///
+    /// # Errors
+    /// As [`Method::solve`].
     #[doc(hidden)]
     fn quickly(
         &self,
         at: Problem<'_, S, Self::Prepared, N>,
         memory: &Self::Memory,
         cache: &mut Self::Cache,
-    ) -> Option<Self::Step> {
-        self.solve(at, memory, cache).ok()
+    ) -> Result<Option<Self::Step>, StepError> {
+        self.solve(at, memory, cache).map(Some)
     }
 
     /// The next step, from the stages of one of nearly its length, which continues short ones.
