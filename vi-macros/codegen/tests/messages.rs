@@ -502,3 +502,12 @@ fn sizes_are_bounded() {
         assert!(work.iter().any(|start| found[0].1.starts_with(start)), "{found:?}");
     }
 }
+
+#[test]
+fn a_clause_and_a_parameter_without_a_value_have_their_own_help() {
+    case("coord x; «L»; discretize midpoint;", "`L` has no value\nhelp: write `L = …;`, one function");
+    case(
+        "param «H»; coord x; L = dot(x)^2; discretize midpoint;",
+        "`H` has no value\nhelp: write `H = 1.0`: a `param`",
+    );
+}

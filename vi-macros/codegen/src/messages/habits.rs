@@ -192,7 +192,7 @@ catalogue! {
         "`{name}` has no value",
         {
             match clause {
-                _ if Defining::of(name).is_some_and(|clause| !clause.has_names()) => {
+                None if Defining::of(name).is_some_and(|clause| !clause.has_names()) => {
                     format!("write `{name} = …;`, one function for all coordinates")
                 }
                 None => format!("write `{name} = …`"),
