@@ -476,7 +476,7 @@ fn a_first_step_that_is_too_long_has_shorter_followers() {
 }
 
 #[test]
-fn a_loose_tolerance_leads_on() {
+fn a_loose_tolerance_has_followers() {
     // The longest lengths of this tolerance would have no followers.
     let start = HenonHeiles::default().at(0.0, [0.1, 0.3], [0.3, 0.1]);
     let mut run = start.integrate(Gauss::<12>.adaptive(), Tolerance(1e-6)).expect("a start");

@@ -1,6 +1,6 @@
 //! The checked system: its names, its parts, and L and f as expressions.
 //!
-//! In: a [`System`](crate::syntax::System). Out: a [`Model`], whose expressions are in the pool. AFTER THIS every name,
+//! In: a [`System`](crate::syntax::System). Out: a [`Model`], whose expressions are in the pool. From here on every name,
 //! including those of the rule, is resolved and every number is exact. L and f are expressions in
 //! [`Symbol::Continuous`](crate::symbol::Symbol) and parameters only. The remaining spans are those of declared names.
 

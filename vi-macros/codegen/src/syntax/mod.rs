@@ -1,7 +1,7 @@
 //! The language as written: one type per clause, with spans, unresolved.
 //!
 //! In: tokens. Out: a [`System`]. Every clause reports its grammar mistakes.
-//! AFTER THIS only spans are left of the tokens.
+//! The system keeps the spans of the tokens and nothing else of them.
 
 pub mod alone;
 mod clause;
