@@ -122,7 +122,7 @@ const TOKENS: [&str; 104] = [
 
 /// The text of a system whose body is what the bytes say.
 fn text(bytes: &[u8]) -> String {
-    let tokens: Vec<&str> = vi_codegen::syntax::clauses().chain(TOKENS).collect();
+    let tokens: Vec<&str> = vi_codegen::clause::words().chain(TOKENS).collect();
     let (mut text, mut open) = (String::from("struct S {"), Vec::new());
     for byte in bytes {
         let token = tokens[usize::from(*byte) % tokens.len()];

@@ -11,6 +11,7 @@
 //! parsing run once for each declared rule. A large system takes another path: [`indexed`] replaces the stages from
 //! `discrete` to `program`.
 
+pub mod clause;
 mod derived;
 pub mod discrete;
 pub mod emit;

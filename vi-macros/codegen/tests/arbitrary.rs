@@ -148,7 +148,7 @@ fn unrelated(words: &[TokenTree], draw: &mut Sequence) -> Vec<TokenTree> {
 fn no_input_makes_the_compiler_panic() {
     let inputs = std::env::var("VI_INPUTS").map_or(INPUTS, |count| count.parse().expect("VI_INPUTS is a count"));
     let systems: Vec<Vec<TokenTree>> = SYSTEMS.iter().map(|text| tokens(text)).collect();
-    let clauses: Vec<&str> = vi_codegen::syntax::clauses().collect();
+    let clauses: Vec<&str> = vi_codegen::clause::words().collect();
     let is_used = |clause: &&str| SYSTEMS.iter().any(|system| system.split(' ').any(|word| word == *clause));
     assert_eq!(clauses.iter().find(|clause| !is_used(clause)), None, "no system has it");
     let words = tokens(&format!("{} {WORDS}", clauses.join(" ")));

@@ -4,7 +4,7 @@ use super::words::{self, did_you_mean};
 use super::{
     ArrayMistake, Character, ConstraintMistake, FunctionMistake, Habit, HamiltonianMistake, constraints, functions,
 };
-use crate::{rules, syntax};
+use crate::{clause, rules};
 use vi_expr::TooLarge;
 
 /// The size at which systems end.
@@ -20,7 +20,7 @@ const RANGE: &str = "`sum(i in 0..3, q[i])` for the indices 0 to 2";
 
 /// The clauses.
 fn clauses() -> String {
-    format!("the clauses are {}", syntax::clauses().collect::<Vec<_>>().join(", "))
+    format!("the clauses are {}", clause::words().collect::<Vec<_>>().join(", "))
 }
 
 /// Why an expression cannot use a declared name.

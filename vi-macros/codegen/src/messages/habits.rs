@@ -1,8 +1,8 @@
 //! Notation of Rust, of other languages and of mathematics that this language writes differently.
 
 use super::words::{self, CONDITION, GAUSS};
+use crate::clause::Defining;
 use crate::rules;
-use crate::syntax::Defining;
 
 catalogue! {
     /// Notation that this language writes differently.

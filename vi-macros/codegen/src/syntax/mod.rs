@@ -4,15 +4,14 @@
 //! The system keeps the spans of the tokens and nothing else of them.
 
 pub mod alone;
-mod clause;
 mod expression;
 mod function;
 pub mod parse;
 mod tokens;
 mod unexpected;
 
+pub use crate::clause::Defining;
 use crate::rules::{self, GAUSS, NamedRule};
-pub use clause::{Defining, clauses};
 pub use expression::{Comparison, Expression, Kind, Operator, Range};
 pub use function::{Body, Function, Table, TableArgument, TableData};
 use proc_macro2::{Ident, Span};
@@ -70,6 +69,18 @@ impl System {
             Some(Discretization::Written(_)) => 1,
             None => 0,
         }
+    }
+
+    /// The definitions of a clause, in order.
+    #[must_use]
+    pub fn all(&self, of: Defining) -> &[Definition] {
+        self.definitions.get(&of).map_or(&[], Vec::as_slice)
+    }
+
+    /// The clauses that neither systems with constraints nor those of first order take, with their places.
+    pub(crate) fn of_free_systems(&self) -> impl Iterator<Item = (&'static str, Span)> {
+        let scales = self.all(Defining::TimeScale).iter().map(|of| (Defining::TimeScale.word(), of.name.span()));
+        scales.chain(self.discretizations.iter().map(|of| ("discretize", of.span())))
     }
 
     /// The clause of the function that defines the motion: `L`, or `H`.

@@ -10,6 +10,7 @@ use super::{
     Check, CheckEntry, Constant, Coordinate, Defining, Definition, Discretization, Expression, INSIDE_BRACKETS,
     Indices, Kind, Momentum, Parameter, Rule, System, clause_of,
 };
+use crate::clause;
 use crate::messages::{ConstraintMistake, Errors, Habit, Message, bounded, error, nearest, words};
 use num_traits::Zero;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
@@ -234,7 +235,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     let Ok(word) = input.call(Ident::parse_any) else {
         return Err(error(input.span(), &Message::Expected { what: "a clause" }));
     };
-    if super::clauses().any(|clause| word == clause) {
+    if clause::words().any(|first| word == first) {
         check_attributes(&attributes, &word)?;
     }
     match word.to_string().as_str() {
@@ -307,7 +308,7 @@ fn unknown(input: ParseStream, word: &Ident, system: &System) -> Error {
     if let (true, Some(sign)) = (words::is_constraint(&found), inequality(input)) {
         return error(sign, &Message::Constraint(ConstraintMistake::Inequality));
     }
-    let near = nearest(&found, super::clauses());
+    let near = nearest(&found, clause::words());
     let is_coordinate = system.coordinates.iter().any(|coordinate| coordinate.name == *word);
     let is_defined = input.peek(Token![=]) || input.peek(syn::token::Bracket);
     error(word.span(), &Message::UnknownClause { found, near, is_defined, is_coordinate })

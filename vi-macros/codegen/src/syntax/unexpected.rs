@@ -3,8 +3,8 @@
 //! In: the input at the token, and the start of the clause. Out: the error at the wrong token: the correction for a
 //! known habit of notation, otherwise what the grammar expects.
 
-use super::clause::{CLAUSES, Next};
 use super::{INSIDE_BRACKETS, INSIDE_LIST};
+use crate::clause::{CLAUSES, Next};
 use crate::messages::{ArrayMistake, FunctionMistake, Habit, Message, error, words};
 use proc_macro2::{Delimiter, Span, TokenTree};
 use syn::buffer::Cursor;

@@ -1,11 +1,8 @@
-//! The clauses of the language: one table of their words.
-
-use super::{Definition, System};
-use proc_macro2::Span;
+//! The clauses of the language: one table of their words, which the parser and the messages read.
 
 /// The token that has to follow a word for it to start a clause: elsewhere the word may be a name.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Next {
+pub(crate) enum Next {
     /// Any token: the word always starts its clause.
     Any,
     /// A name.
@@ -38,7 +35,7 @@ pub enum Defining {
 }
 
 /// The words of all clauses, in the order of messages.
-pub(super) const CLAUSES: [(&str, Next, Option<Defining>); 20] = [
+pub(crate) const CLAUSES: [(&str, Next, Option<Defining>); 20] = [
     ("const", Next::Any, None),
     ("param", Next::Any, None),
     ("input", Next::Name, None),
@@ -62,7 +59,7 @@ pub(super) const CLAUSES: [(&str, Next, Option<Defining>); 20] = [
 ];
 
 /// The words that start a clause.
-pub fn clauses() -> impl Iterator<Item = &'static str> {
+pub fn words() -> impl Iterator<Item = &'static str> {
     CLAUSES.into_iter().map(|(word, ..)| word)
 }
 
@@ -80,19 +77,5 @@ impl Defining {
     /// Whether its definitions have names.
     pub(crate) fn has_names(self) -> bool {
         !matches!(self, Self::Lagrangian | Self::Hamiltonian | Self::Dissipation | Self::TimeScale)
-    }
-}
-
-impl System {
-    /// The definitions of a clause, in order.
-    #[must_use]
-    pub fn all(&self, of: Defining) -> &[Definition] {
-        self.definitions.get(&of).map_or(&[], Vec::as_slice)
-    }
-
-    /// The clauses that neither systems with constraints nor those of first order take, with their places.
-    pub(crate) fn of_free_systems(&self) -> impl Iterator<Item = (&'static str, Span)> {
-        let scales = self.all(Defining::TimeScale).iter().map(|of| (Defining::TimeScale.word(), of.name.span()));
-        scales.chain(self.discretizations.iter().map(|of| ("discretize", of.span())))
     }
 }
