@@ -59,7 +59,8 @@ fn is_proven<const N: usize, const S: usize>(system: &ErasedSystem<'_, N>, node:
 
 impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// The step, if fixed-point iteration failed, contracted slowly or was skipped. `last` is the linearization of the
-    /// previous step, if that had the same length.
+    /// previous step, if that had the same length. If it starts `beside` a step, from the stages of one of nearly its
+    /// length that continues short ones, a solution close to them continues short ones, too.
     ///
     /// # Errors
     /// [`StepError::StagesUnsettled`], [`StepError::TooLong`], or the reason why the stages have no value.
@@ -69,6 +70,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         system: &Y,
         instructions: Instructions,
         left: (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
+        beside: bool,
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
@@ -82,31 +84,9 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             }
             Err(failure) => return Err(failure),
         };
-        let is_proven = is_proven(&ErasedSystem::of(system), self.node, &step);
-        if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
-    }
-
-    /// The same from the stages of a step of nearly this length that continues short ones: then a solution close to them
-    /// does, too.
-    ///
-    /// # Errors
-    /// As [`Start::recover`].
-    #[cold]
-    pub(crate) fn beside<Y>(
-        &self,
-        system: &Y,
-        instructions: Instructions,
-        left: (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
-        cache: &mut Buffer<N, S>,
-    ) -> Result<Step<N, S>, StepError>
-    where
-        Y: Convertible<N>,
-    {
-        let step = self.recovered(system, instructions, left, cache)?;
         let erased = &ErasedSystem::of(system);
-        let weights = &weights(erased, self.node, &step);
-        let is_near = distance([self.stages, &step.stages], self.stages, weights) <= NEAR;
-        let is_proven = is_near || is_proven(erased, self.node, &step);
+        let is_near = || distance([self.stages, &step.stages], self.stages, &weights(erased, self.node, &step)) <= NEAR;
+        let is_proven = beside && is_near() || is_proven(erased, self.node, &step);
         if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
     }
 

@@ -110,7 +110,8 @@ where
         let by_fixed_point =
             if last.pause.is_over() { start.by_fixed_point(system, instructions).map_err(Some) } else { Err(None) };
         // Lengths differ from step to step, so each has its own linearization.
-        let step = by_fixed_point.or_else(|left| start.recover(system, instructions, (left.as_ref(), None), cache))?;
+        let step =
+            by_fixed_point.or_else(|left| start.recover(system, instructions, (left.as_ref(), None), false, cache))?;
         let energies = energies(system, node, h, step.stages, node.energy);
         let residual = energies.start - node.energy_low - power::<K>(h) * shift;
         if !residual.is_finite() {

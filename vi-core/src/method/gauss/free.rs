@@ -288,7 +288,7 @@ where
         left: Self::Left,
     ) -> Result<Step<N, STAGES>, StepError> {
         let last = memory.linearization;
-        memory.start(at.node).recover(at.system, *at.prepared, (left.as_ref(), last), cache)
+        memory.start(at.node).recover(at.system, *at.prepared, (left.as_ref(), last), false, cache)
     }
 
     fn take(
@@ -403,7 +403,7 @@ where
     ) -> Result<Step<N, STAGES>, StepError> {
         self.attempt(at, memory, cache).or_else(|left| {
             let last = memory.linearization;
-            memory.start(at.node).beside(at.system, *at.prepared, (left.as_ref(), last), cache)
+            memory.start(at.node).recover(at.system, *at.prepared, (left.as_ref(), last), true, cache)
         })
     }
 
