@@ -44,15 +44,7 @@ macro_rules! indexed_system {
                 $crate::indexed_system! { @constraints $count $n }
                 $crate::indexed_system! { @scaled_point $scale $mass $n }
 
-                fn point(
-                    &self,
-                    t: T,
-                    q: &$crate::SVector<T, $n>,
-                    v: &$crate::SVector<T, $n>,
-                ) -> $crate::motion::Point<$n, T, Self::Mass> {
-                    $crate::indexed::point(self, t, q, v, $crate::indexed_system!(@mass_at $mass self t q v))
-                }
-
+                $crate::indexed_system! { @with_mass $n $mass point -> $crate::motion::Point<$n, T, Self::Mass> }
                 $crate::indexed_system! { @state $n
                     sides -> $crate::motion::Sides<$n, T>,
                     point_derivatives -> $crate::motion::PointDerivatives<Self::PointMatrix>,
@@ -76,11 +68,17 @@ macro_rules! indexed_system {
         };
     };
 
-    // Functions of (t, q, v).
+    // Functions of (t, q, v), and of the mass matrix there.
     (@state $n:literal $($name:ident -> $out:ty),*) => {
         $(fn $name(&self, t: T, q: &$crate::SVector<T, $n>, v: &$crate::SVector<T, $n>) -> $out {
             $crate::indexed::$name(self, t, q, v)
         })*
+    };
+
+    (@with_mass $n:literal $mass:ident $name:ident -> $out:ty) => {
+        fn $name(&self, t: T, q: &$crate::SVector<T, $n>, v: &$crate::SVector<T, $n>) -> $out {
+            $crate::indexed::$name(self, t, q, v, $crate::indexed_system!(@mass_at $mass self t q v))
+        }
     };
 
     // Functions of a step: of an interval by the points of a rule, of a node with (h, v) by them, and of such a node.
@@ -174,14 +172,7 @@ macro_rules! indexed_system {
     (@scaled_point own $mass:ident $n:literal) => {
         const SCALES_TIME: bool = true;
 
-        fn scaled_point(
-            &self,
-            t: T,
-            q: &$crate::SVector<T, $n>,
-            v: &$crate::SVector<T, $n>,
-        ) -> $crate::motion::ScaledPoint<$n, T, Self::Mass> {
-            $crate::indexed::scaled_point(self, t, q, v, $crate::indexed_system!(@mass_at $mass self t q v))
-        }
+        $crate::indexed_system! { @with_mass $n $mass scaled_point -> $crate::motion::ScaledPoint<$n, T, Self::Mass> }
     };
     (@time_scale none $system:ident $n:literal) => {};
     (@time_scale own $system:ident $n:literal) => {
