@@ -92,6 +92,11 @@ struct Search {
 }
 
 impl Search {
+    /// Between two lengths, before one is tried.
+    fn new(between: [f64; 2], slope: f64) -> Self {
+        Self { between, last: None, chord: None, slope }
+    }
+
     /// The length to try after one without a step.
     fn shorter(&mut self, h: f64) -> f64 {
         self.between[1] = h;
@@ -179,7 +184,7 @@ impl Reversible {
         let Self { phase: wanted, floor, ahead, ratio: before, slope } = *self;
         let Following { steps, h: last, .. } = memory;
         let start = Place::of(system, node)?;
-        let mut search = Search { between: [0.0, wanted / floor], last: None, chord: None, slope };
+        let mut search = Search::new([0.0, wanted / floor], slope);
         let mut h = last * ahead;
         let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
         let mut failure = StepError::LengthsLost { t: node.t, h: *last };
@@ -221,14 +226,13 @@ impl Reversible {
             let found = found.unwrap_or(Phase::constant(wanted));
             let off = found.off(wanted);
             search.learn(h, off);
-            let is_found = off.abs() < if trial < FEW { NEAR } else { ROUGH };
-            if is_found && self.is_too_long::<S, N, STAGES>(system, (&start, node), (&steps, h)) {
-                search = Search { between: [0.0, h], last: None, chord: None, slope };
-                (h, is_beside) = (0.5 * h, false);
-                guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
-                continue;
-            }
-            if is_found {
+            if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
+                if self.is_too_long::<S, N, STAGES>(system, (&start, node), (&steps, h)) {
+                    search = Search::new([0.0, h], slope);
+                    (h, is_beside) = (search.halved(h), false);
+                    guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
+                    continue;
+                }
                 let ratio = h / last;
                 // Ratios change by nearly equal factors, until the forces turn.
                 let ahead = found.ratio().min(ratio * (ratio / before).clamp(0.7, 1.4));
@@ -298,7 +302,7 @@ impl Reversible {
             on.learn(tried, off);
             tried = on.beside(tried, off);
             // The slope here is that of the steps, up to the error of the polynomials.
-            (search.slope, search.last, search.chord) = (on.slope, None, None);
+            *search = Search::new(search.between, on.slope);
             if off.abs() < CLOSE {
                 break;
             }
