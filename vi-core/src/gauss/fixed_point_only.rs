@@ -1,4 +1,4 @@
-//! Stands in for Newton iteration without the feature `alloc`: steps that are too long for fixed-point iteration fail.
+//! Without the feature `alloc` there is no Newton iteration: steps that are too long for fixed-point iteration fail.
 
 use super::linearization::Linearization;
 use super::points::ErasedSystem;

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! So cost and memory follow the graph of the unknowns: both are linear for chains and trees, if leaves are eliminated
-//! first. All unknowns in one block are a [`Dense`] matrix: its elimination is that of a front without border. Every
-//! unknown stands for `copies` unknowns in a row: the stages of a step have one graph.
+//! first. All unknowns in one block are a [`Dense`] matrix: its elimination is that of a front without border. The stages
+//! of a step have one graph, so that each unknown of the graph is `copies` adjacent unknowns of the matrix.
 //!
 //! Source: J. W. H. Liu, The multifrontal method for sparse matrix solution, 1992.
 
