@@ -12,7 +12,7 @@
 //! | [`Blocks`] | disjoint blocks | each block separately |
 //! | [`Sparse`], [`Rows`] | any nonzeros, in columns that are known while compiling, or at run time | dense elimination |
 //!
-//! Gradients of constraints have N columns and the form [`Sparse`], [`Rows`] or that of dense rows ([`Rectangular`]). `fronts` solves
+//! Gradients of constraints have N columns and the form [`Sparse`], [`Rows`] or that of dense rows ([`Rectangular`]). `factored` solves
 //! for coordinates and multipliers together, by the [`Block`]s of their graph.
 //!
 //! The matrices are mass matrices plus terms of order h. Elimination in the order of the rows is stable for almost all
@@ -26,10 +26,12 @@ mod blocks;
 mod bordered;
 mod dense;
 #[cfg(feature = "alloc")]
-mod fronts;
+mod factored;
 #[cfg(feature = "alloc")]
 mod pivoted;
 mod rectangular;
+#[cfg(feature = "alloc")]
+mod scales;
 mod symmetric;
 mod tridiagonal;
 
@@ -39,10 +41,12 @@ pub use blocks::Blocks;
 #[cfg(feature = "alloc")]
 pub(crate) use bordered::{Bordered, Unsolvable, scale};
 #[cfg(feature = "alloc")]
-pub(crate) use fronts::{Assemble, Entries, Factored, reciprocal_power, reciprocal_root};
+pub(crate) use factored::{Assemble, Entries, Factored};
 #[cfg(feature = "alloc")]
 pub(crate) use pivoted::Pivoted;
 pub use rectangular::{AtMost, Rectangular, Row, Rows, Sparse};
+#[cfg(feature = "alloc")]
+pub(crate) use scales::{reciprocal_power, reciprocal_root};
 pub use symmetric::Symmetric;
 pub use tridiagonal::Tridiagonal;
 
