@@ -9,6 +9,7 @@ mod bodies;
 mod checks;
 mod composition;
 mod control;
+mod curvilinear;
 mod declarations;
 mod derivatives;
 mod derivatives_at_the_edge;

@@ -100,6 +100,7 @@ macro_rules! forward {
         type Mass = <$s as $crate::motion::Motion<$n, $t>>::Mass;
         type PointMatrix = <$s as $crate::motion::Motion<$n, $t>>::PointMatrix;
         const CONSTANT_MASS: bool = <$s as $crate::motion::Motion<$n, $t>>::CONSTANT_MASS;
+        const CURVILINEAR: bool = <$s as $crate::motion::Motion<$n, $t>>::CURVILINEAR;
         const SEPARABLE: bool = <$s as $crate::motion::Motion<$n, $t>>::SEPARABLE;
         const SPLITS: bool = <$s as $crate::motion::Motion<$n, $t>>::SPLITS;
         const SCALES_TIME: bool = <$s as $crate::motion::Motion<$n, $t>>::SCALES_TIME;
@@ -113,7 +114,7 @@ macro_rules! forward {
     };
     (@motion_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
         $crate::forward! { @facts ($this) ($to) $crate::motion::Motion<$n, $t>, $s,
-            has_constant_mass -> bool, is_separable -> bool, splits -> bool, scales_time -> bool, has_point_masses -> bool,
+            has_constant_mass -> bool, is_curvilinear -> bool, is_separable -> bool, splits -> bool, scales_time -> bool, has_point_masses -> bool,
             without_velocity -> &'static [bool], moving -> usize, constraint_names -> &'static [&'static str], holonomic -> usize,
             blocks -> &'static [$crate::linear::Block] }
     };

@@ -45,6 +45,10 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     type PointMatrix: Matrix<N, T>;
     /// Whether M depends on the parameters only.
     const CONSTANT_MASS: bool;
+    /// Whether a coordinate scales the momentum of another one, as r that of φ in polar coordinates: `∂p_φ/∂r` is not
+    /// zero, but `∂p_r/∂φ` and `∂p_φ/∂v_r` are. Then stage velocities have to follow from momenta before forces follow
+    /// from them.
+    const CURVILINEAR: bool = false;
     /// Whether `L_v = M v` with constant M, and neither L_q nor f depends on v. The system is then `q'' = M⁻¹ (L_q +
     /// f)`.
     const SEPARABLE: bool = false;
@@ -71,6 +75,11 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     #[inline(always)]
     fn has_constant_mass(&self) -> bool {
         Self::CONSTANT_MASS
+    }
+    /// [`Motion::CURVILINEAR`].
+    #[inline(always)]
+    fn is_curvilinear(&self) -> bool {
+        Self::CURVILINEAR
     }
     /// [`Motion::SEPARABLE`].
     #[inline(always)]

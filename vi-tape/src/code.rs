@@ -158,6 +158,7 @@ pub(crate) struct Code {
     /// For each coordinate, whether L does not contain its velocity; empty unless L is linear in the velocities.
     pub(crate) without_velocity: &'static [bool],
     pub(crate) has_constant_mass: bool,
+    pub(crate) is_curvilinear: bool,
     pub(crate) scales_time: bool,
     /// Whether there are fixed steps.
     pub(crate) has_rule: bool,

@@ -171,6 +171,7 @@ fn of_derived(
         is_quadratic: continuous.quadratic,
         without_velocity: model.without_velocity.clone().leak(),
         has_constant_mass: findings.constant_mass,
+        is_curvilinear: findings.curvilinear,
         scales_time: continuous.time_scale.is_some(),
         has_rule: rule.is_some() || system.by_rule.is_some(),
         has_step_density: rule.map_or(system.has_energy_steps(), |rule| rule.step_density),

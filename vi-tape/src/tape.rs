@@ -269,6 +269,10 @@ impl<const N: usize, K: Interpreted, T: Real> Motion<N, T> for Tape<N, K, T> {
         self.code.has_constant_mass
     }
 
+    fn is_curvilinear(&self) -> bool {
+        self.code.is_curvilinear
+    }
+
     fn is_separable(&self) -> bool {
         self.code.is_separable
     }

@@ -9,7 +9,7 @@
 //!
 //! and returns the step of the whole length. If the branch ends before, the step is too long.
 
-use super::stages::Stages;
+use super::stages::{Stages, maximum, scaled, sum};
 use super::tableau::{Tableau, real};
 
 /// Contraction of Newton iteration up to which its solution counts as connected. It finds solutions farther away than
@@ -19,7 +19,7 @@ pub(crate) const FAST: f64 = 0.05;
 /// for e = 0.6, 1.0 in a step that loses a plunging orbit.
 const RESOLVED: f64 = 0.1;
 /// Smallest number of stages whose coefficients show whether they are resolved.
-const FEWEST: usize = 3;
+pub(crate) const FEWEST: usize = 3;
 /// Most solved steps of a continuation.
 const SOLVES: u32 = 192;
 /// Halvings of h until a step needs no continuation.
@@ -114,6 +114,41 @@ pub(crate) fn is_resolved<const N: usize, const S: usize>(stages: &Stages<N, S>,
         last <= largest * RESOLVED || last * weight <= noise
     };
     S >= FEWEST && stages.iter().zip(weights).all(is_smooth)
+}
+
+/// A test in the loop of the stages that only resolved ones pass: their last two coefficients are small even against the
+/// largest entry of their row over S, which no largest coefficient is below.
+#[inline(always)]
+pub(crate) fn are_smooth<const N: usize, const S: usize>(stages: &Stages<N, S>) -> bool {
+    let tails = const { &tails::<S>() };
+    let mut are_smooth = S >= FEWEST;
+    for row in stages {
+        let mut sizes = [0.0; S];
+        for i in 0..S {
+            sizes[i] = row[i].abs();
+        }
+        let most = const { RESOLVED / real(S) } * maximum(&sizes);
+        // False for NaN.
+        are_smooth &= sum(&scaled(&tails[0], row)).abs() <= most && sum(&scaled(&tails[1], row)).abs() <= most;
+    }
+    are_smooth
+}
+
+/// The weights `(2k + 1) b_i P_k(x_i)` of the last two coefficients.
+const fn tails<const S: usize>() -> [[f64; S]; 2] {
+    let Tableau { b, legendre, .. } = &Tableau::<S>::VALUES;
+    let mut tails = [[0.0; S]; 2];
+    let mut last = 0;
+    while last < 2 && last < S {
+        let k = S - 1 - last;
+        let mut i = 0;
+        while i < S {
+            tails[last][i] = real(2 * k + 1) * b[i] * legendre[k][i];
+            i += 1;
+        }
+        last += 1;
+    }
+    tails
 }
 
 /// The largest distance of stages, relative to the range of their row and of its value at the node, `from`. `weights`

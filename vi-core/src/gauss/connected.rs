@@ -53,7 +53,9 @@ fn weights<const N: usize, const S: usize>(
 /// Whether the contraction of its iteration, its stages, or its equations prove that a step continues short ones.
 fn is_proven<const N: usize, const S: usize>(system: &ErasedSystem<'_, N>, node: &Node<N>, step: &Step<N, S>) -> bool {
     let convergence = &step.convergence;
-    let is_fast = if step.by_newton { convergence.contraction <= FAST } else { convergence.is_fast() };
+    let follows_momenta = Points::<N, f64>::form(system).follows_momenta::<S>();
+    let is_fast =
+        if step.by_newton { convergence.contraction <= FAST } else { convergence.is_fast() && !follows_momenta };
     is_fast || is_resolved(&step.stages, &weights(system, node, step)) || is_linear(system, node, step)
 }
 

@@ -10,6 +10,10 @@
 //! One iteration evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)` with the momenta P from F, and moves Q
 //! by the new V. If L is quadratic in v, it solves for V exactly. The change of V is the residual, because Q follows
 //! from V. Many coordinates keep the masses of an earlier iteration ([`MANY`]): a fixed point is the same.
+//!
+//! In curvilinear coordinates ([`Form::Curvilinear`]) F is evaluated at the velocities of the momenta of the last
+//! iteration, which at Q are not quite V. If r scales the momentum of φ, V lags behind Q by an iteration, and the
+//! centrifugal force with it. Steps of a quarter of an orbit then take nine iterations instead of eighteen.
 
 use super::fixed_point::{Convergence, Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
@@ -190,9 +194,14 @@ where
         self.missing(&momentum)
     }
 
-    /// The same, and the inverse of the mass matrix of each stage.
+    /// The same, and the inverse of the mass matrix of each stage. With momenta, the forces are those at their velocities.
     #[inline(always)]
-    fn evaluate_with_masses(&mut self, x: &Stages<N, S>, inverse: &mut [Stages<N, S>; N]) -> Stages<N, S> {
+    fn evaluate_with_masses(
+        &mut self,
+        x: &Stages<N, S>,
+        inverse: &mut [Stages<N, S>; N],
+        momenta: Option<&Stages<N, S>>,
+    ) -> Stages<N, S> {
         let n = self.system.moving();
         let velocity = self.velocity;
         let x = *x;
@@ -203,7 +212,18 @@ where
         for i in 0..T::EVALUATIONS {
             let (t, q, v) = self.place(i, &x, &velocity);
             let sides = self.system.sides_and_inverse_at(t, &q, &v, &mut columns);
-            scatter(n, &mut force, i, &sides.force);
+            let mut at = sides.force;
+            if let Some(momenta) = momenta {
+                let mut v = v;
+                for l in 0..n {
+                    let missing = T::of(&momenta[l], i) - sides.momentum[l];
+                    for k in 0..n {
+                        v[k] += columns[(k, l)] * missing;
+                    }
+                }
+                at = self.system.force_at(t, &q, &v);
+            }
+            scatter(n, &mut force, i, &at);
             scatter(n, &mut momentum, i, &sides.momentum);
             for k in 0..n {
                 let mut sum = T::zero();
@@ -250,13 +270,20 @@ where
         let kept = if const { N < MANY } { None } else { self.kept.take() };
         let Some(kept) = kept else {
             let mut inverse = zeros;
-            let missing = self.evaluate_with_masses(x, &mut inverse);
+            let follows_momenta = match const { Y::FORM } {
+                Some(form) => form.follows_momenta::<S>(),
+                None => self.system.form().follows_momenta::<S>(),
+            };
+            // Before the first evaluation there are no forces.
+            let has_forces = before.change.is_finite();
+            let momenta = if follows_momenta && has_forces { Some(self.missing(&[[0.0; S]; N])) } else { None };
+            let missing = self.evaluate_with_masses(x, &mut inverse, momenta.as_ref());
             return add_products::<N, S, FUSED>(n, &mut self.velocity, &inverse, &missing);
         };
         let are_near = before.change < NEAR && before.contraction <= FAST;
         let missing = match kept {
             Some(_) if are_near => self.evaluate(x),
-            _ => self.evaluate_with_masses(x, kept.insert(zeros)),
+            _ => self.evaluate_with_masses(x, kept.insert(zeros), None),
         };
         if let Some(inverse) = kept {
             add_products::<N, S, FUSED>(n, &mut self.velocity, inverse, &missing);
@@ -284,11 +311,12 @@ where
     #[inline(always)]
     fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, before: &Convergence) {
         // For a known form the compiler sees one branch.
-        let varies = || self.system.form() == Form::VaryingMass;
+        let varies = || matches!(self.system.form(), Form::VaryingMass | Form::Curvilinear);
+        let is_known = const { Form::VaryingMass.is_known(Y::FORM) || Form::Curvilinear.is_known(Y::FORM) };
         if let Some(newton) = self.newton {
             let missing = self.evaluate(x);
             self.correct(&newton.correction(&missing));
-        } else if const { Form::VaryingMass.is_known(Y::FORM) } || const { Y::FORM.is_none() } && varies() {
+        } else if is_known || const { Y::FORM.is_none() } && varies() {
             self.iterate_varying(x, before);
         } else {
             self.iterate_constant(x);

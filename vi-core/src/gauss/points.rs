@@ -4,6 +4,7 @@
 //! use it: slow convergence and once-per-step measurements. They are compiled once per number of coordinates and
 //! stages, for all systems of a program. They make up three fifths of the code of a step.
 
+use super::branch::FEWEST;
 use crate::linear::Matrix;
 use crate::motion::{Motion, Point, PointDerivatives, Sides};
 use crate::real::{Real, Rounded};
@@ -23,6 +24,8 @@ pub(crate) enum Form {
     ConstantMass,
     /// Variable mass matrix.
     VaryingMass,
+    /// Variable mass matrix, and momenta that other coordinates scale: [`Motion::CURVILINEAR`].
+    Curvilinear,
     /// No mass matrix: [`Motion::is_first_order`].
     FirstOrder,
 }
@@ -33,23 +36,37 @@ impl Form {
         if Y::INTERPRETED {
             None
         } else {
-            Some(Self::from(!Y::WITHOUT_VELOCITY.is_empty(), Y::SEPARABLE, Y::CONSTANT_MASS))
+            Some(Self::from([!Y::WITHOUT_VELOCITY.is_empty(), Y::SEPARABLE, Y::CONSTANT_MASS, Y::CURVILINEAR]))
         }
     }
 
     /// The form of the equations of a system.
     #[inline(always)]
     fn of<const N: usize, T: Real>(system: &impl Motion<N, T>) -> Self {
-        Self::from(system.is_first_order(), system.is_separable(), system.has_constant_mass())
+        Self::from([
+            system.is_first_order(),
+            system.is_separable(),
+            system.has_constant_mass(),
+            system.is_curvilinear(),
+        ])
     }
 
-    const fn from(is_first_order: bool, is_separable: bool, has_constant_mass: bool) -> Self {
-        match (is_first_order, is_separable, has_constant_mass) {
-            (true, ..) => Self::FirstOrder,
-            (_, true, _) => Self::Separable,
-            (_, _, true) => Self::ConstantMass,
+    /// The form of equations that are of first order, separable, with a constant mass matrix, curvilinear.
+    const fn from(are: [bool; 4]) -> Self {
+        match are {
+            [true, ..] => Self::FirstOrder,
+            [_, true, ..] => Self::Separable,
+            [_, _, true, _] => Self::ConstantMass,
+            [.., true] => Self::Curvilinear,
             _ => Self::VaryingMass,
         }
+    }
+
+    /// Whether an iteration of S stages evaluates forces at the velocities of the momenta. Its contraction proves no step:
+    /// near solutions beyond a pole it is small. Resolved stages do, but few stages do not show whether they are
+    /// resolved.
+    pub(crate) const fn follows_momenta<const S: usize>(self) -> bool {
+        matches!(self, Self::Curvilinear) && S >= FEWEST
     }
 
     /// Whether the type of a system guarantees this form. `if const { … }` then does not compile the other branch.

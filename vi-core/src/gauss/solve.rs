@@ -4,6 +4,7 @@
 //! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
 //! no state. The stages of every [`Step`] satisfy their equations to rounding.
 
+use super::branch::are_smooth;
 use super::first_order::FirstOrder;
 use super::fixed_point::{self, Convergence, Equations, FixedPointResult, NOISE, Pause, StageIncrement};
 use super::general::{General, equations};
@@ -60,12 +61,14 @@ pub struct StageSolution<const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> StageSolution<N, S> {
-    /// Whether fixed-point iteration solved the step of length h from a node to the rounding of its positions.
+    /// Whether fixed-point iteration solved the step of length h from a node to the rounding of its positions, and its
+    /// contraction or its stages prove the step.
     #[inline(always)]
-    pub(crate) fn is_step(&self, node: &Node<N>, h: f64) -> bool {
+    pub(crate) fn is_step(&self, form: Form, node: &Node<N>, h: f64) -> bool {
         let StageIncrement { velocity, momentum } = &self.increment;
         let convergence = &self.iteration.convergence;
-        convergence.is_at_floor() && convergence.is_fast() && node.stays_finite(h, velocity, momentum)
+        let is_proven = if form.follows_momenta::<S>() { are_smooth(&self.stages) } else { convergence.is_fast() };
+        convergence.is_at_floor() && is_proven && node.stays_finite(h, velocity, momentum)
     }
 
     /// Whether the stages are finite and near a solution.
@@ -195,7 +198,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Convertible<N>,
     {
         let solved = self.side_by_side(system, instructions, None);
-        if solved.is_step(self.node, self.h) {
+        if solved.is_step(Points::<N, f64>::form(system), self.node, self.h) {
             Ok(solved.step(self.h, self.pause.after_fixed_point()))
         } else {
             Err(solved)

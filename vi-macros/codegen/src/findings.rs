@@ -54,6 +54,8 @@ pub struct Findings {
     pub canonical_split: bool,
     /// The mass matrix L_vv depends on parameters only.
     pub constant_mass: bool,
+    /// A coordinate scales the momentum of another one: `∂p_φ/∂r` is not zero, but `∂p_r/∂φ` and `∂p_φ/∂v_r` are.
+    pub curvilinear: bool,
     /// L_v is M v with a constant mass matrix M, and neither L_q nor f depends on v: the acceleration is a function of t and q.
     pub force_of_position: bool,
     /// L_v is M v with a constant diagonal M, and L_q + f depends on the time alone.
@@ -125,6 +127,16 @@ pub enum Dependence {
     Unknown,
 }
 
+/// Whether a coordinate scales the momentum of another one; see [`Findings::curvilinear`].
+fn is_curvilinear(derivatives: &Function) -> bool {
+    let [momentum_dq, mass] = [Output::MomentumDq, Output::Mass].map(|of| derivatives.results.matrix(of));
+    let is_zero = |id: &OperationId| derivatives.operations.as_constant(*id) == Some(0.0);
+    let places = (0..mass.len()).flat_map(|i| (0..mass.len()).map(move |j| (i, j)));
+    let scales =
+        |(i, j): (usize, usize)| !is_zero(&momentum_dq[i][j]) && is_zero(&momentum_dq[j][i]) && is_zero(&mass[i][j]);
+    places.into_iter().any(scales)
+}
+
 /// Finds the properties of a system.
 #[must_use]
 pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Findings {
@@ -157,6 +169,9 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         linear: (0..model.without_velocity.len()).filter(|index| !model.without_velocity[*index]).collect(),
         canonical_split: splits_canonically(&model.without_velocity, program),
         constant_mass,
+        curvilinear: !constant_mass
+            && !is_constrained
+            && program.function(FunctionId::PointDerivatives).is_some_and(is_curvilinear),
         force_of_position: constant_mass && system.continuous.momentum_is_mass_times_velocity && !rate_moves,
         point_masses: constant_mass
             && rate_is_uniform

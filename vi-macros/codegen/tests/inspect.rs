@@ -29,6 +29,25 @@ fn an_oscillator_is_linear() {
 }
 
 #[test]
+fn a_coordinate_may_scale_the_momentum_of_another() {
+    let scales = |kinetic: &str| {
+        findings(&format!("coord x, y, z; L = ({kinetic} + dot(z)^2) / 2; discretize midpoint;")).curvilinear
+    };
+    // p_y = x² y'.
+    assert!(scales("dot(x)^2 + x^2*dot(y)^2"));
+    assert!(scales("dot(x)^2/x + x^2*dot(y)^2"));
+    // Momenta of both coordinates depend on the other one.
+    assert!(!scales("dot(x)^2 + dot(x)*dot(y)*cos(x - y) + dot(y)^2"));
+    // The momentum of y has the velocity of x.
+    assert!(!scales("dot(x)^2 + dot(x)*dot(y)*cos(x) + dot(y)^2"));
+    // A momentum depends on its own coordinate only, or on the time.
+    assert!(!scales("(1 + x^2)*dot(x)^2 + dot(y)^2"));
+    assert!(!scales("dot(x)^2 + (2 + sin(t))*dot(y)^2"));
+    // A constant mass matrix, with a force of the velocities: p_y = y' + x.
+    assert!(!scales("dot(x)^2 + dot(y)^2 + 2*x*dot(y)"));
+}
+
+#[test]
 fn what_the_jacobian_depends_on() {
     let of = |body: &str| findings(body).steps.expect("a rule").jacobian;
     // A = L_vv + …: by hand, 1; 1 + h²/4; 1 + (h²/4) cos of the time; of x_mid, which depends on v.

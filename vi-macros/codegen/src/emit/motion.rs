@@ -32,6 +32,11 @@ pub(super) fn item(source: &Source) -> TokenStream {
             impl<T: ::vi_core::real::Real> ::vi_core::motion::TimeScale<#dimension, T> for #name<T> {}
         }
     });
+    let curvilinear = source.findings.curvilinear.then(|| {
+        quote!(
+            const CURVILINEAR: bool = true;
+        )
+    });
     let splits = source.findings.canonical_split.then(|| {
         quote!(
             const SPLITS: bool = true;
@@ -50,6 +55,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
             type Mass = #form;
             type PointMatrix = #derivatives_form;
             const CONSTANT_MASS: bool = #constant_mass;
+            #curvilinear
             const SEPARABLE: bool = #separable;
             #splits
             #scales_time
