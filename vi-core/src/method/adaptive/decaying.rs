@@ -30,6 +30,10 @@ pub(super) const FEWEST: usize = 3;
 /// Smallest δ of a step with a force, and largest δ of a resolved step, in units of its velocity.
 const FELT: f64 = 1e-12;
 const RESOLVED: f64 = 0.1;
+/// The least target, in units of the terms of the velocity, whose roundings δ contains: up to 64 ulps of the stage
+/// velocities, of which slopes are a hundred times as large. The controller keeps δ at 4 % of its target. The error at
+/// the end of such a step is a rounding.
+const ROUNDED: f64 = 1e-10;
 /// The largest δ of an accepted step, in units of the largest δ of the first steps.
 const LARGEST: f64 = 2.0;
 /// The length of the next step, in units of the length with the δ of the first steps.
@@ -58,7 +62,15 @@ pub struct Decaying {
     longest: f64,
 }
 
-/// δ of the step of the length h that led to a node, and its velocity.
+/// A measured step: δ, its velocity, and the size of the terms of which its velocity is the sum.
+#[derive(Clone, Copy)]
+struct Defect {
+    size: f64,
+    velocity: f64,
+    terms: f64,
+}
+
+/// δ of the step of the length h that led to a node.
 ///
 /// # Errors
 /// The errors of [`State::velocity`](crate::State::velocity) and of the acceleration.
@@ -66,7 +78,7 @@ fn defect<S: Convertible<N>, const N: usize, const STAGES: usize>(
     system: &S,
     (end, steps): (&Node<N>, &Steps<S, N, STAGES>),
     h: f64,
-) -> Result<[f64; 2], StepError> {
+) -> Result<Defect, StepError> {
     let state = end.state();
     let v = state.velocity(system)?;
     let acceleration = system.acceleration(state.t, &state.q, &v)?;
@@ -76,6 +88,10 @@ fn defect<S: Convertible<N>, const N: usize, const STAGES: usize>(
         mass.each_entry(|i, j, value| sum += x[i] * value * x[j]);
         sum.abs().sqrt()
     };
+    let velocity = size(&v).max(size(&(acceleration * h)));
+    // A singular mass matrix, which constraints make up for, has no inverse.
+    let terms = size(&(mass.inverse_unchecked().abs() * state.p.abs()));
+    let terms = if terms.is_finite() { velocity.max(terms) } else { velocity };
     // P_k' at the end is k (k + 1)/2 for x, twice that for θ.
     let mut slope = SVector::<f64, N>::zeros();
     for (entry, row) in slope.iter_mut().zip(coefficients(&Solver::<S, N, STAGES>::velocities(system, steps))) {
@@ -85,7 +101,7 @@ fn defect<S: Convertible<N>, const N: usize, const STAGES: usize>(
             *entry += factor * coefficient;
         }
     }
-    Ok([size(&(slope - acceleration * h)), size(&v).max(size(&(acceleration * h)))])
+    Ok(Defect { size: size(&(slope - acceleration * h)), velocity, terms })
 }
 
 /// The exponent 1/(S + 1): lengths grow by this power of δ.
@@ -104,23 +120,21 @@ impl Decaying {
         step: (&Node<N>, &Steps<S, N, STAGES>),
         h: f64,
     ) -> Result<Self, StepError> {
-        let [wanted, _] = defect::<S, N, STAGES>(system, step, h)?;
+        let Defect { size: wanted, .. } = defect::<S, N, STAGES>(system, step, h)?;
         Ok(Self { wanted, is_set: false, off: 1.0, ahead: 1.0, longest: LONGEST * h.abs() })
     }
 
-    /// The law after a step with this δ and this velocity.
+    /// The law after a measured step.
     ///
     /// # Errors
     /// δ in units of the target, if it is too large.
-    fn after<const STAGES: usize>(self, [defect, v]: [f64; 2]) -> Result<Self, f64> {
-        let least = FELT * v;
-        if !self.is_set && (defect >= self.wanted || self.wanted < least) {
-            return Ok(Self { wanted: self.wanted.max(defect), ..self });
+    fn after<const STAGES: usize>(self, Defect { size, velocity, terms }: Defect) -> Result<Self, f64> {
+        if !self.is_set && (size >= self.wanted || self.wanted < FELT * velocity) {
+            return Ok(Self { wanted: self.wanted.max(size), ..self });
         }
-        // A fast motion adds rounding errors to δ. After fast modes have died out, the steps of slow ones have to be
-        // resolved.
-        let most = self.wanted.max(least).min(RESOLVED * v);
-        let off = if defect == 0.0 { 0.0 } else { defect / most };
+        // After fast modes have died out, the steps of slow ones have to be resolved.
+        let most = self.wanted.min(RESOLVED * velocity).max(ROUNDED * terms);
+        let off = if size == 0.0 { 0.0 } else { size / most };
         let law = Self { is_set: true, off, ahead: self.ahead::<STAGES>(off), ..self };
         // False for NaN.
         if off <= LARGEST { Ok(law) } else { Err(off) }
