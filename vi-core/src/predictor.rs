@@ -19,15 +19,7 @@ use nalgebra::SVector;
 /// Highest degree of the polynomial.
 const HIGHEST: usize = 6;
 /// The weights of each degree, the newest first.
-const WEIGHTS: [[f64; HIGHEST + 1]; HIGHEST + 1] = {
-    let mut all = [[0.0; HIGHEST + 1]; HIGHEST + 1];
-    let mut degree = 0;
-    while degree <= HIGHEST {
-        all[degree] = weights(degree);
-        degree += 1;
-    }
-    all
-};
+const WEIGHTS: [[f64; HIGHEST + 1]; HIGHEST + 1] = weights_of_degrees();
 /// Error of a guess, in ulps of u, below which it may be amplified rounding.
 const NOISE: f64 = 128.0;
 
@@ -46,6 +38,17 @@ pub const fn weights<const K: usize>(degree: usize) -> [f64; K] {
         i += 1;
     }
     weights
+}
+
+/// The weights of the degrees below K.
+pub(crate) const fn weights_of_degrees<const K: usize>() -> [[f64; K]; K] {
+    let mut all = [[0.0; K]; K];
+    let mut degree = 0;
+    while degree < K {
+        all[degree] = weights(degree);
+        degree += 1;
+    }
+    all
 }
 
 /// Guesses of the next M unknowns.

@@ -9,13 +9,15 @@ use crate::gauss::tableau::Tableau;
 use crate::linear::Bordered;
 use crate::motion::Motion;
 use crate::node::Node;
-use crate::predictor::weights;
+use crate::predictor::weights_of_degrees;
 use crate::vector::worse;
 use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Highest degree of the extrapolation.
 const HIGHEST: usize = 5;
+/// The weights of each degree, the newest first.
+const WEIGHTS: [[f64; HIGHEST + 1]; HIGHEST + 1] = weights_of_degrees();
 
 /// The unknowns of the last steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +46,7 @@ impl Extrapolation {
 
     /// Writes the guess of the next step, from the unknown `first` on.
     pub(crate) fn guess(&self, first: usize, guess: &mut [f64]) {
-        let weights: [f64; HIGHEST + 1] = weights(self.degree);
+        let weights = WEIGHTS[self.degree];
         let guess = &mut guess[first..];
         guess.fill(0.0);
         for (u, weight) in self.last.iter().zip(weights).rev() {
@@ -61,8 +63,7 @@ impl Extrapolation {
     /// Adds the unknowns of a step. The degree grows by one if its guess would not have been worse.
     pub(crate) fn push(&mut self, unknowns: &[f64]) {
         let error = |degree: usize| {
-            let weights: [f64; HIGHEST + 1] = weights(degree);
-            let errors = unknowns.iter().enumerate().map(|(index, u)| u - self.extrapolated(&weights, index));
+            let errors = unknowns.iter().enumerate().map(|(index, u)| u - self.extrapolated(&WEIGHTS[degree], index));
             errors.fold(0.0, |sum, error| sum + error * error)
         };
         if self.degree < HIGHEST {
