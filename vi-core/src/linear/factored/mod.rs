@@ -89,36 +89,21 @@ impl<T: Real> Factored<T> {
     /// without factors. One copy of the unknowns after the other.
     pub(crate) fn solve(&mut self, b: &mut [T], c: &mut [T]) {
         let Self { copies, fronts, dense, state, ordered } = self;
-        if *state == Factors::None {
-            b.iter_mut().chain(c).for_each(|entry| *entry = T::real(f64::NAN));
-            return;
-        }
-        let fronts = fronts.as_ref().filter(|_| *state == Factors::Fronts);
-        let scales = fronts.map_or(&dense.scales, |fronts| &fronts.scales);
-        let first = b.len() / *copies;
-        // The number among the ordered ones, and the scale, of each entry of b or c.
-        let place = |unknown: usize, copy: usize| {
-            let position = fronts.map_or(unknown, |fronts| fronts.homes[unknown].1);
-            (position * *copies + copy, T::real(scales[unknown]))
-        };
-        for (first, entries) in [(0, &*b), (first, &*c)] {
-            for (copy, entries) in entries.chunks((entries.len() / *copies).max(1)).enumerate() {
-                for (index, entry) in entries.iter().enumerate() {
-                    let (position, scale) = place(first + index, copy);
-                    ordered[position] = *entry * scale;
-                }
+        let lists = [b, c];
+        match (*state, fronts) {
+            (Factors::None, _) => lists.into_iter().flatten().for_each(|entry| *entry = T::real(f64::NAN)),
+            (Factors::Fronts, Some(fronts)) => {
+                let place = |unknown: usize| (fronts.homes[unknown].1, fronts.scales[unknown]);
+                solve_in_order(*copies, place, lists, ordered, |ordered| fronts.solve(ordered));
             }
-        }
-        match fronts {
-            Some(fronts) => fronts.solve(ordered),
-            None => dense.solve(ordered),
-        }
-        for (first, entries) in [(0, b), (first, c)] {
-            let count = (entries.len() / *copies).max(1);
-            for (copy, entries) in entries.chunks_mut(count).enumerate() {
-                for (index, entry) in entries.iter_mut().enumerate() {
-                    let (position, scale) = place(first + index, copy);
-                    *entry = ordered[position] * scale;
+            _ => {
+                let place = |unknown: usize| (unknown, dense.scales[unknown]);
+                let solve = |ordered: &mut [T]| dense.solve(ordered);
+                // Without copies, a constant shortens the loops.
+                if *copies == 1 {
+                    solve_in_order(1, place, lists, ordered, solve);
+                } else {
+                    solve_in_order(*copies, place, lists, ordered, solve);
                 }
             }
         }
@@ -141,6 +126,41 @@ impl<T: Real> Factored<T> {
             _ => &self.dense.reciprocals,
         };
         reciprocals.iter().fold(0.0, |largest: f64, entry| largest.max(entry.to_f64().abs())).recip()
+    }
+}
+
+/// Solves a system whose unknowns have these places in the order of elimination, and these scales.
+#[inline(always)]
+fn solve_in_order<T: Real>(
+    copies: usize,
+    place: impl Fn(usize) -> (usize, f64),
+    mut lists: [&mut [T]; 2],
+    ordered: &mut [T],
+    solve: impl FnOnce(&mut [T]),
+) {
+    each_entry(copies, &place, &mut lists, ordered, |entry, ordered, scale| *ordered = *entry * scale);
+    solve(ordered);
+    each_entry(copies, &place, &mut lists, ordered, |entry, ordered, scale| *entry = *ordered * scale);
+}
+
+/// Calls a function with each entry of the lists, its place among the ordered ones and its scale.
+#[inline(always)]
+fn each_entry<T: Real>(
+    copies: usize,
+    place: &impl Fn(usize) -> (usize, f64),
+    lists: &mut [&mut [T]; 2],
+    ordered: &mut [T],
+    f: impl Fn(&mut T, &mut T, T),
+) {
+    let firsts = [0, lists[0].len() / copies];
+    for (list, first) in lists.iter_mut().zip(firsts) {
+        let count = list.len() / copies;
+        for index in 0..count {
+            let (position, scale) = place(first + index);
+            for copy in 0..copies {
+                f(&mut list[copy * count + index], &mut ordered[position * copies + copy], T::real(scale));
+            }
+        }
     }
 }
 
