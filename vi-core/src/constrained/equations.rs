@@ -21,8 +21,8 @@ use crate::gauss::lobatto::Lobatto;
 use crate::gauss::tableau::Tableau;
 use crate::kind::{Gradients, Multipliers};
 use crate::linear::{Assemble, Entries, Matrix, Rectangular, Row, determinant_sign, scale};
-use crate::motion::Motion;
-use crate::newton::roundings;
+use crate::motion::{Motion, Point};
+use crate::newton::{roundings, worst};
 use crate::node::Node;
 use crate::real::{Real, Rounded};
 use crate::vector::worse;
@@ -58,11 +58,8 @@ pub(crate) type Place<const N: usize, T> = (T, SVector<T, N>);
 pub(crate) struct Rows<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real = f64> {
     momentum: [SVector<T, N>; STAGES],
     constraint: [Multipliers<S, N, T>; STAGES],
-    /// The diagonal of M at the first stage.
-    mass: SVector<T, N>,
-    /// The terms of each row.
-    momentum_scale: [SVector<T, N>; STAGES],
-    constraint_scale: [Multipliers<S, N, T>; STAGES],
+    /// The equations of motion at the stages.
+    points: [Point<N, T, S::Mass>; STAGES],
     /// `Σ b_i V_i`.
     pub(crate) velocity: SVector<T, N>,
     /// `h Σ b_i F_i + Σ A_jᵀ λ_j`.
@@ -70,9 +67,17 @@ pub(crate) struct Rows<S: Motion<N, T>, const N: usize, const STAGES: usize, T: 
     stages: [Place<N, T>; STAGES],
     /// The Lobatto nodes 1 … s.
     nodes: [Place<N, T>; STAGES],
-    /// A at the Lobatto nodes 0 … s.
+    /// A at the node.
     first: Gradients<S, N, T>,
-    gradients: [Gradients<S, N, T>; STAGES],
+    /// A and a at the Lobatto nodes 1 … s.
+    at_nodes: [(Gradients<S, N, T>, Multipliers<S, N, T>); STAGES],
+}
+
+/// The terms of each row of the equations, also where they cancel: the row is known to a rounding of them.
+#[derive(Clone, Copy)]
+pub(crate) struct Scales<S: Motion<N>, const N: usize, const STAGES: usize> {
+    momentum: [SVector<f64, N>; STAGES],
+    constraint: [Multipliers<S, N>; STAGES],
 }
 
 /// Times and coordinates of the stages, and of the Lobatto nodes 1 … s; the mean velocity.
@@ -118,117 +123,61 @@ impl<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, S
         let Tableau { b, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
         let constraints = system.constraint_names().len();
         let zeros = SVector::<T, N>::zeros();
-        let abs = |vector: SVector<T, N>| vector.map(T::abs);
         let v: [SVector<T, N>; STAGES] = core::array::from_fn(|i| stage_velocity(u, i));
         let (stages, nodes, velocity) = places::<N, STAGES, T>(node, h, u);
 
         let at_nodes = nodes.map(|(t, q)| system.constraint_gradients(t, &q));
         let gradients_at = |j: usize| if j == 0 { first } else { &at_nodes[j - 1].0 };
-        let impulses_at = |j: usize| impulses::<N, STAGES, T>(u, constraints, j);
-        let reactions: [SVector<T, N>; STAGES] = core::array::from_fn(|j| reaction_of(gradients_at(j), impulses_at(j)));
-        let reaction_scales: [SVector<T, N>; STAGES] =
-            core::array::from_fn(|j| reaction_terms(gradients_at(j), impulses_at(j)));
-        let points: [_; STAGES] = core::array::from_fn(|i| system.point(stages[i].0, &stages[i].1, &v[i]));
-        let increments: [SVector<T, N>; STAGES] = core::array::from_fn(|i| points[i].force * (h * T::real(b[i])));
-
-        let (mut momentum, mut momentum_scale) = ([zeros; STAGES], [zeros; STAGES]);
-        for i in 0..STAGES {
-            let inertia = inertia(&points[i].mass, &v[i]);
-            let [least, _] = spread(&points[i].mass, &v[i], &node.p);
-            let (mut sum, mut scale) = (zeros, abs(node.p) + abs(points[i].momentum) + inertia + least);
-            for j in 0..STAGES {
-                let of_force = increments[j] * T::real(part[j][i]);
-                let part = part_of_node::<STAGES>(j, i);
-                sum += of_force + reactions[j] * T::real(part);
-                scale += abs(of_force) + reaction_scales[j] * T::real(part.abs());
-            }
-            momentum[i] = ((points[i].momentum - node.p) - node.p_low) - sum;
-            momentum_scale[i] = scale;
+        // Loops, because `from_fn` calls its function.
+        let (mut reactions, mut increments, mut momentum) = ([zeros; STAGES], [zeros; STAGES], [zeros; STAGES]);
+        for (j, reaction) in reactions.iter_mut().enumerate() {
+            *reaction = reaction_of(gradients_at(j), impulses::<N, STAGES, T>(u, constraints, j));
         }
-        let (mut constraint, mut constraint_scale) = ([*rest; STAGES], [*rest; STAGES]);
-        for i in 0..STAGES {
-            let (residual, scale) = (constraint[i].as_mut(), constraint_scale[i].as_mut());
+        let points: [_; STAGES] = core::array::from_fn(|i| system.point(stages[i].0, &stages[i].1, &v[i]));
+        for (i, increment) in increments.iter_mut().enumerate() {
+            *increment = points[i].force * (h * T::real(b[i]));
+        }
+        for (i, row) in momentum.iter_mut().enumerate() {
+            let mut sum = zeros;
+            for j in 0..STAGES {
+                sum += increments[j] * T::real(part[j][i]) + reactions[j] * T::real(part_of_node::<STAGES>(j, i));
+            }
+            *row = ((points[i].momentum - node.p) - node.p_low) - sum;
+        }
+        let mut constraint = [*rest; STAGES];
+        for (i, residual) in constraint.iter_mut().map(AsMut::as_mut).enumerate() {
             let (t, q) = &nodes[i];
-            let (gradients, rates) = &at_nodes[i];
-            let values = system.constraints(*t, q);
+            for (row, value) in residual.iter_mut().zip(system.constraints(*t, q).as_ref()).take(system.holonomic()) {
+                *row = *value / h;
+            }
+            if system.holonomic() < constraints {
+                let (gradients, rates) = system.constraint_gradients(stages[i].0, &stages[i].1);
+                for r in system.holonomic()..constraints {
+                    residual[r] = gradients.row(r).dot(&v[i]) + rates.as_ref()[r];
+                }
+            }
             let own = impulses::<N, STAGES, T>(u, constraints, i);
-            let masses = diagonal(&points[i].mass);
-            // A velocity is known to the terms of its momentum.
-            let of_momentum = |row: Row<'_, T>| {
-                row.iter().fold(T::zero(), |sum, (k, entry)| match masses[k] {
-                    mass if mass.is_positive() => sum + (entry * momentum_scale[i][k]).abs() / mass,
-                    _ => sum,
-                })
-            };
-            for r in 0..system.holonomic() {
-                if system.is_dropped(r) {
-                    (residual[r], scale[r]) = (own[r], own[r].abs());
-                    continue;
-                }
-                let row = gradients.row(r);
-                residual[r] = values.as_ref()[r] / h;
-                scale[r] = row.terms(q) / h.abs() + rates.as_ref()[r].abs() + of_momentum(row);
-            }
-            if system.holonomic() == constraints {
-                continue;
-            }
-            let (gradients, rates) = system.constraint_gradients(stages[i].0, &stages[i].1);
-            for r in system.holonomic()..constraints {
-                if system.is_dropped(r) {
-                    (residual[r], scale[r]) = (own[r], own[r].abs());
-                    continue;
-                }
-                let row = gradients.row(r);
-                residual[r] = row.dot(&v[i]) + rates.as_ref()[r];
-                scale[r] = row.terms(&v[i]) + rates.as_ref()[r].abs() + of_momentum(row);
+            for r in (0..constraints).filter(|r| system.is_dropped(*r)) {
+                residual[r] = own[r];
             }
         }
         let sum = |vectors: &[SVector<T, N>; STAGES]| vectors.iter().fold(zeros, |sum, entry| sum + entry);
         let increment = sum(&increments) + sum(&reactions);
-        let gradients = at_nodes.map(|(gradients, _)| gradients);
-        Self {
-            momentum,
-            constraint,
-            mass: diagonal(&points[0].mass),
-            momentum_scale,
-            constraint_scale,
-            velocity,
-            increment,
-            stages,
-            nodes,
-            first: *first,
-            gradients,
-        }
-    }
-
-    /// The largest row over a rounding of its terms. NaN if a row is not finite.
-    pub(crate) fn residual(&self) -> f64 {
-        self.largest(roundings)
-    }
-
-    fn largest(&self, over: impl Fn(T, T) -> f64) -> f64 {
-        let mut worst = 0.0;
-        for i in 0..STAGES {
-            for (row, scale) in self.momentum[i].iter().zip(self.momentum_scale[i].iter()) {
-                worst = worse(over(*row, *scale), worst);
-            }
-            for (row, scale) in self.constraint[i].as_ref().iter().zip(self.constraint_scale[i].as_ref()) {
-                worst = worse(over(*row, *scale), worst);
-            }
-        }
-        worst
+        Self { momentum, constraint, points, velocity, increment, stages, nodes, first: *first, at_nodes }
     }
 
     /// The diagonal of the mass matrix at the first stage.
-    pub(crate) fn mass(&self) -> &SVector<T, N> {
-        &self.mass
+    pub(crate) fn mass(&self) -> SVector<T, N> {
+        diagonal(&self.points[0].mass)
     }
 
     /// Writes the rows, in the order of the unknowns.
     pub(crate) fn write(&self, rows: &mut [T]) {
-        let entries = self.momentum.iter().flat_map(|row| row.iter());
-        let entries = entries.chain(self.constraint.iter().flat_map(AsRef::as_ref));
-        for (row, entry) in rows.iter_mut().zip(entries) {
+        let (momenta, constraints) = rows.split_at_mut(STAGES * N);
+        for (rows, momentum) in momenta.chunks_exact_mut(N).zip(&self.momentum) {
+            rows.copy_from_slice(momentum.as_slice());
+        }
+        for (row, entry) in constraints.iter_mut().zip(self.constraint.iter().flat_map(AsRef::as_ref)) {
             *row = *entry;
         }
     }
@@ -240,18 +189,94 @@ impl<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, S
 
     /// A at the end of the step.
     pub(crate) fn end_gradients(&self) -> &Gradients<S, N, T> {
-        &self.gradients[STAGES - 1]
+        &self.at_nodes[STAGES - 1].0
     }
 }
 
 impl<S: Motion<N, Rounded>, const N: usize, const STAGES: usize> Rows<S, N, STAGES, Rounded> {
     /// The largest row over its rounding-error bound, by running error analysis.
     pub(crate) fn bounded_residual(&self) -> f64 {
-        self.largest(|row, _| roundings(row.to_f64(), row.ulps()))
+        let momenta = self.momentum.iter().flat_map(|row| row.iter());
+        let rows = momenta.chain(self.constraint.iter().flat_map(AsRef::as_ref));
+        rows.fold(0.0, |largest, row| worse(roundings(row.to_f64(), row.ulps()), largest))
     }
 }
 
 impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
+    /// The terms of the rows.
+    pub(crate) fn scales(&self, system: &S, (node, h): (&Node<N>, f64), u: &[f64]) -> Scales<S, N, STAGES> {
+        let momentum = self.momentum_scales((node, h), u, system.constraint_names().len());
+        Scales { momentum, constraint: self.constraint_scales(system, h, u, &momentum) }
+    }
+
+    #[inline(always)]
+    fn momentum_scales(&self, (node, h): (&Node<N>, f64), u: &[f64], constraints: usize) -> [SVector<f64, N>; STAGES] {
+        let Tableau { b, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
+        let gradients_at = |j: usize| if j == 0 { &self.first } else { &self.at_nodes[j - 1].0 };
+        let (mut reactions, mut scales) = ([SVector::<f64, N>::zeros(); STAGES], [SVector::zeros(); STAGES]);
+        for (j, reaction) in reactions.iter_mut().enumerate() {
+            *reaction = reaction_terms(gradients_at(j), impulses::<N, STAGES, f64>(u, constraints, j));
+        }
+        for (i, scale) in scales.iter_mut().enumerate() {
+            let (Point { mass, momentum, .. }, v) = (&self.points[i], stage_velocity(u, i));
+            let [least, _] = spread(mass, &v, &node.p);
+            *scale = node.p.abs() + momentum.abs() + inertia(mass, &v) + least;
+            for j in 0..STAGES {
+                let part_of_force = h * b[j] * part[j][i];
+                *scale += self.points[j].force.abs() * part_of_force.abs();
+                *scale += reactions[j] * part_of_node::<STAGES>(j, i).abs();
+            }
+        }
+        scales
+    }
+
+    #[inline(always)]
+    fn constraint_scales(
+        &self,
+        system: &S,
+        h: f64,
+        u: &[f64],
+        momentum: &[SVector<f64, N>; STAGES],
+    ) -> [Multipliers<S, N>; STAGES] {
+        let constraints = system.constraint_names().len();
+        let mut scales = self.constraint;
+        for (i, scale) in scales.iter_mut().map(AsMut::as_mut).enumerate() {
+            // A velocity is known to the terms of its momentum.
+            let mass = diagonal(&self.points[i].mass);
+            let known = momentum[i].zip_map(&mass, |terms, mass| if mass > 0.0 { terms / mass } else { 0.0 });
+            let (_, q) = &self.nodes[i];
+            let (gradients, rates) = &self.at_nodes[i];
+            for r in 0..system.holonomic() {
+                let row = gradients.row(r);
+                scale[r] = row.terms(q) / h.abs() + rates.as_ref()[r].abs() + row.terms(&known);
+            }
+            if system.holonomic() < constraints {
+                let v: SVector<f64, N> = stage_velocity(u, i);
+                let (gradients, rates) = system.constraint_gradients(self.stages[i].0, &self.stages[i].1);
+                for r in system.holonomic()..constraints {
+                    let row = gradients.row(r);
+                    scale[r] = row.terms(&v) + rates.as_ref()[r].abs() + row.terms(&known);
+                }
+            }
+            for r in (0..constraints).filter(|r| system.is_dropped(*r)) {
+                scale[r] = self.constraint[i].as_ref()[r].abs();
+            }
+        }
+        scales
+    }
+
+    /// The largest row over a rounding of its terms. NaN if a row is not finite.
+    pub(crate) fn residual(&self, scales: &Scales<S, N, STAGES>) -> f64 {
+        let mut largest = 0.0;
+        for i in 0..STAGES {
+            largest = worse(worst(&self.momentum[i], &scales.momentum[i]), largest);
+            for (row, scale) in self.constraint[i].as_ref().iter().zip(scales.constraint[i].as_ref()) {
+                largest = worse(roundings(*row, *scale), largest);
+            }
+        }
+        largest
+    }
+
     /// Whether no gradient turns far: a shorter step would have a determinant of the same sign.
     pub(crate) fn is_straight(&self) -> bool {
         self.first.rows().zip(self.end_gradients().rows()).all(|(before, after)| {
@@ -268,7 +293,7 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
         let lobatto = const { &Lobatto::<STAGES>::VALUES };
         let constraints = system.constraint_names().len();
         let weights = b.map(|b| h * b);
-        scale(jacobian.scales(), self.mass.iter().copied(), self.first.rows());
+        scale(jacobian.scales(), self.mass().iter().copied(), self.first.rows());
         for i in 0..STAGES {
             let (t, q) = &self.stages[i];
             let v = stage_velocity(u, i);
@@ -300,7 +325,7 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
                 }
             });
             for r in 0..system.holonomic() {
-                for (column, slope) in self.gradients[i].row(r).iter() {
+                for (column, slope) in self.at_nodes[i].0.row(r).iter() {
                     let entry = jacobian.entry(N + r, column);
                     for k in 0..STAGES {
                         jacobian.add(entry, [i, k], slope * lobatto.part[k][i] * b[k]);
@@ -336,7 +361,7 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
     #[inline(always)]
     fn reactions(&self, system: &S, j: usize, u: &[f64], weights: &[f64; STAGES], jacobian: &mut impl Entries<f64>) {
         let lobatto = const { &Lobatto::<STAGES>::VALUES };
-        let gradients = if j == 0 { &self.first } else { &self.gradients[j - 1] };
+        let gradients = if j == 0 { &self.first } else { &self.at_nodes[j - 1].0 };
         for (r, row) in gradients.rows().enumerate() {
             for (column, slope) in row.iter() {
                 let entry = jacobian.entry(column, N + r);

@@ -8,10 +8,10 @@
 //! determinant has the sign that it has for short steps. With the other sign, the root is a second one, in which a rod
 //! has flipped over, or the constraints depend on each other in the step.
 
-use super::equations::{Jacobian, Rows, expected_sign, signs, stage_velocity, unknowns};
+use super::equations::{Jacobian, Rows, Scales, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
 use super::reduced::Reduced;
-use super::solved::{Solved, contracted};
+use super::solved::{SETTLED, Solved, contracted};
 use super::{bordered, diagonal, is_reduced, is_shortened, reaction_of};
 use crate::error::{Residuals, StepError};
 use crate::kind::Multipliers;
@@ -56,6 +56,13 @@ pub struct Workspace {
     pub(crate) unknowns: Vec<f64>,
 }
 
+/// The equations of a step at some unknowns. Their scales may be those of unknowns nearby.
+struct Evaluated<S: Motion<N>, const N: usize, const STAGES: usize> {
+    rows: Rows<S, N, STAGES>,
+    scales: Scales<S, N, STAGES>,
+    residual: f64,
+}
+
 /// The equations of a step at its solution.
 pub(crate) struct Solution<R> {
     pub(crate) rows: R,
@@ -83,8 +90,12 @@ where
     let of_short_steps = sign_of_short_steps::<S, N, STAGES>(system, sign, workspace);
     let start = system.constraint_gradients(node.t, &node.q);
     let rows = |u: &[f64]| Rows::<S, N, STAGES>::from_start(system, (node, h), &start, u);
-    let mut at = rows(u);
-    let mut residual = at.residual();
+    let evaluated = |u: &[f64], near: Option<&Scales<S, N, STAGES>>| {
+        let rows = rows(u);
+        let scales = near.copied().unwrap_or_else(|| rows.scales(system, (node, h), u));
+        Evaluated { residual: rows.residual(&scales), rows, scales }
+    };
+    let mut at = evaluated(u, None);
     let (mut iterations, mut residuals, mut contraction) = (0, Residuals::new(), 0.0);
     let mut has_right_sign = is_factored && workspace.jacobian.determinant_sign() == of_short_steps;
     let failed = |iterations, residual, residuals: &Residuals| {
@@ -92,44 +103,44 @@ where
         StepError::NotConverged { t: node.t, h, iterations, residual, residuals: *residuals, turn }
     };
     loop {
-        residuals.push(residual);
-        if residual.is_nan() {
+        residuals.push(at.residual);
+        if at.residual.is_nan() {
             return Err(StepError::NonFinite { t: node.t, quantity: "step equation", expression: None });
         }
         if !is_factored {
-            has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
+            has_right_sign = workspace.factor(&at.rows, system, h, u) == of_short_steps;
         }
-        let is_last = residual <= 1.0 || iterations == ITERATIONS;
-        let next = if is_last { None } else { workspace.corrected(&at, u, residual, rows) };
-        let Some((next, next_residual)) = next else {
-            if residual > FLOOR {
-                residual = bounded::<S, N, STAGES>(system, node, h, u);
+        let is_last = at.residual <= 1.0 || iterations == ITERATIONS;
+        let before = at.residual;
+        if is_last || !workspace.corrected(&mut at, u, evaluated) {
+            if at.residual > FLOOR {
+                at.residual = bounded::<S, N, STAGES>(system, node, h, u);
             }
             // A row at its rounding level hides that corrections reduce the residual of another.
             for _ in 0..WHOLE {
-                if residual <= FLOOR || is_last {
+                if at.residual <= FLOOR || is_last {
                     break;
                 }
-                workspace.correct(&at);
+                workspace.correct(&at.rows);
                 workspace.move_to_trial(u, 1.0);
                 core::mem::swap(u, &mut workspace.trial);
-                at = rows(u);
+                at.rows = rows(u);
                 // An error names the smallest one, never NaN.
-                residual = residual.min(bounded::<S, N, STAGES>(system, node, h, u));
-                has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
+                at.residual = at.residual.min(bounded::<S, N, STAGES>(system, node, h, u));
+                has_right_sign = workspace.factor(&at.rows, system, h, u) == of_short_steps;
             }
             // False for NaN.
-            if residual <= FLOOR {
+            if at.residual <= FLOOR {
                 break;
             }
-            return Err(failed(iterations, residual, &residuals));
-        };
+            return Err(failed(iterations, at.residual, &residuals));
+        }
         iterations += 1;
         core::mem::swap(u, &mut workspace.trial);
-        is_factored = next_residual <= FLOOR || next_residual < FALLEN * residual;
-        contraction = contracted(contraction, [residual, next_residual]);
-        (at, residual) = (next, next_residual);
+        is_factored = at.residual <= FLOOR || at.residual < FALLEN * before;
+        contraction = contracted(contraction, [before, at.residual]);
     }
+    let Evaluated { rows: at, residual, .. } = at;
     if iterations > FEW || !has_right_sign {
         has_right_sign = workspace.factor(&at, system, h, u) == of_short_steps;
     }
@@ -256,27 +267,29 @@ impl Workspace {
     }
 
     /// Writes u less a correction to `trial`: the longest of its halves that reduces the residual, or has a shorter
-    /// correction behind it. Returns the rows there and their residual; `None` if there is none.
+    /// correction behind it. Replaces the equations by those there; false if there is none.
+    #[inline(always)]
     fn corrected<S: Motion<N>, const N: usize, const STAGES: usize>(
         &mut self,
-        at: &Rows<S, N, STAGES>,
+        at: &mut Evaluated<S, N, STAGES>,
         u: &[f64],
-        residual: f64,
-        rows: impl Fn(&[f64]) -> Rows<S, N, STAGES>,
-    ) -> Option<(Rows<S, N, STAGES>, f64)> {
-        self.correct(at);
+        evaluated: impl Fn(&[f64], Option<&Scales<S, N, STAGES>>) -> Evaluated<S, N, STAGES>,
+    ) -> bool {
+        let Evaluated { rows, scales, residual } = &*at;
+        let (residual, near) = (*residual, Some(scales).filter(|_| *residual <= SETTLED));
+        self.correct(rows);
         // Near the floor a shorter correction changes nothing.
         let halvings = if residual <= FLOOR { 0 } else { HALVINGS };
         for halved in 0..=halvings {
             let part = 0.5_f64.powi(i32::try_from(halved).unwrap_or(0));
             self.move_to_trial(u, part);
-            let next = rows(&self.trial);
-            let next_residual = next.residual();
-            if is_reduced(next_residual, residual) || residual > FLOOR && self.brings_nearer(at, &next, part) {
-                return Some((next, next_residual));
+            let next = evaluated(&self.trial, near);
+            if is_reduced(next.residual, residual) || residual > FLOOR && self.brings_nearer(rows, &next.rows, part) {
+                *at = next;
+                return true;
             }
         }
-        None
+        false
     }
 
     /// Computes the correction of these rows.
@@ -302,7 +315,7 @@ impl Workspace {
         next: &Rows<S, N, STAGES>,
         part: f64,
     ) -> bool {
-        let weights = weights(at.mass());
+        let weights = weights(&at.mass());
         let length = |correction: &[f64]| {
             let stages = (0..STAGES).map(|i| stage_velocity::<N, _>(correction, i).component_mul(&weights));
             stages.map(|part| part.norm_squared()).sum::<f64>().sqrt()

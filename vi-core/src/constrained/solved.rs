@@ -5,6 +5,10 @@ use crate::node::Node;
 /// Residuals up to this are rounding, also of linkages far from the origin, or their guess was close.
 const NOISE: f64 = 1e4;
 
+/// From unknowns with a residual up to this to the solution, the terms of the rows hardly change: their scales serve
+/// until then.
+pub(super) const SETTLED: f64 = 1e8;
+
 /// A solved step; its unknowns are in the list of the caller.
 pub(crate) struct Solved<const N: usize, M> {
     pub(crate) end: Node<N>,
