@@ -13,7 +13,7 @@
 
 use super::diagonal;
 use super::equations::Place;
-use super::solved::{Solved, contracted};
+use super::solved::{SETTLED, Solved, contracted};
 use crate::kind::Multipliers;
 use crate::linear::{Rectangular, Row};
 use crate::motion::Motion;
@@ -37,8 +37,7 @@ const ITERATIONS: u32 = 12;
 pub(crate) struct Reduced {
     /// Coordinates of a point: a row of A has entries at all of them, or at none.
     dimension: usize,
-    /// The entries of A at a point, row by row.
-    parts: Vec<Part>,
+    pattern: Pattern,
     schur: Schur,
     /// The diagonal of M⁻¹.
     inverse: Vec<f64>,
@@ -55,11 +54,72 @@ pub(crate) struct Reduced {
     scales: Vec<f64>,
 }
 
+/// The nonzeros of A.
+#[derive(Clone, Debug, Default)]
+struct Pattern {
+    /// Row by row.
+    parts: Vec<Part>,
+    /// Whether the first row has point 0 alone, and row r the points r − 1 and r: loops then need no list.
+    is_chain: bool,
+}
+
 /// The entries of a row of A at a point.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     row: usize,
     point: usize,
+}
+
+impl Pattern {
+    fn new(parts: Vec<Part>) -> Self {
+        let is_next = |(index, part): (usize, &Part)| part.row == index.div_ceil(2) && part.point == index / 2;
+        let is_chain = parts.len() % 2 == 1 && parts.iter().enumerate().all(is_next);
+        Self { parts, is_chain }
+    }
+
+    /// Adds the products of the rows of A and x, as `f` adds a product of two entries.
+    #[inline(always)]
+    fn add_products<const D: usize>(&self, a: &[f64], x: &[f64], rows: &mut [f64], f: impl Fn(f64, f64) -> f64) {
+        let ((a, _), (x, _)) = (a.as_chunks::<D>(), x.as_chunks::<D>());
+        let add =
+            |row: &mut f64, a: &[f64; D], x: &[f64; D]| *row = a.iter().zip(x).fold(*row, |sum, (a, x)| f(sum, a * x));
+        match (a, &mut *rows) {
+            ([first, pairs @ ..], [row, rows @ ..]) if self.is_chain => {
+                add(row, first, &x[0]);
+                let (pairs, _) = pairs.as_chunks::<2>();
+                for ((row, [before, own]), points) in rows.iter_mut().zip(pairs).zip(x.windows(2)) {
+                    add(row, before, &points[0]);
+                    add(row, own, &points[1]);
+                }
+            }
+            _ => {
+                for (Part { row, point }, a) in self.parts.iter().zip(a) {
+                    add(&mut rows[*row], a, &x[*point]);
+                }
+            }
+        }
+    }
+
+    /// Adds the terms of `AᵀΛ`, as `f` adds a term.
+    #[inline(always)]
+    fn add_terms<const D: usize>(&self, a: &[f64], multipliers: &[f64], sums: &mut [f64], f: impl Fn(f64, f64) -> f64) {
+        let ((a, _), (sums, _)) = (a.as_chunks::<D>(), sums.as_chunks_mut::<D>());
+        let add = |sums: &mut [f64; D], a: &[f64; D], multiplier: f64| {
+            sums.iter_mut().zip(a).for_each(|(sum, a)| *sum = f(*sum, a * multiplier));
+        };
+        if self.is_chain {
+            let (pairs, last) = a.as_chunks::<2>();
+            for ((sums, [own, next]), multipliers) in sums.iter_mut().zip(pairs).zip(multipliers.windows(2)) {
+                add(sums, own, multipliers[0]);
+                add(sums, next, multipliers[1]);
+            }
+            add(&mut sums[pairs.len()], &last[0], multipliers[pairs.len()]);
+        } else {
+            for (Part { row, point }, a) in self.parts.iter().zip(a) {
+                add(&mut sums[*point], a, multipliers[*row]);
+            }
+        }
+    }
 }
 
 /// S and its factors.
@@ -78,6 +138,8 @@ struct Schur {
     /// Whether S has three diagonals: the values are those of one row after the other, with the entry below the diagonal
     /// after the one above it.
     is_tridiagonal: bool,
+    /// [`Pattern::is_chain`].
+    is_chain: bool,
 }
 
 /// A step of the elimination.
@@ -92,7 +154,7 @@ struct Pivot {
 
 impl Schur {
     /// The pattern of S for the parts of A; `None` if elimination fills it.
-    fn new(parts: &[Part], count: usize) -> Option<Self> {
+    fn new(Pattern { parts, is_chain }: &Pattern, count: usize) -> Option<Self> {
         let index = |index: usize| u32::try_from(index).ok();
         let mut at_point: BTreeMap<usize, Vec<[usize; 2]>> = BTreeMap::new();
         for (part, Part { row, point }) in parts.iter().enumerate() {
@@ -145,6 +207,7 @@ impl Schur {
         }
         schur.is_tridiagonal =
             pairs.len() + 2 == 3 * count && pairs.keys().all(|[row, column]| row.abs_diff(*column) < 2);
+        schur.is_chain = *is_chain;
         schur.values = vec![0.0; places.len()];
         schur.reciprocals = vec![0.0; count];
         Some(schur)
@@ -154,11 +217,15 @@ impl Schur {
     fn factor<const D: usize>(&mut self, left: &[f64], right: &[f64]) -> bool {
         let Self { values, products, .. } = self;
         let ((left, _), (right, _)) = (left.as_chunks::<D>(), right.as_chunks::<D>());
-        values.fill(0.0);
-        for [entry, a, b] in products.iter() {
-            let terms = left[*a as usize].iter().zip(&right[*b as usize]);
-            let value = &mut values[*entry as usize];
-            *value = terms.fold(*value, |sum, (a, b)| sum + a * b);
+        let product = |sum: f64, a: &[f64; D], b: &[f64; D]| a.iter().zip(b).fold(sum, |sum, (a, b)| sum + a * b);
+        if self.is_chain {
+            tridiagonal::write(values, left, right, product);
+        } else {
+            values.fill(0.0);
+            for [entry, a, b] in products.iter() {
+                let value = &mut values[*entry as usize];
+                *value = product(*value, &left[*a as usize], &right[*b as usize]);
+            }
         }
         if self.is_tridiagonal {
             return tridiagonal::factor(&mut self.values, &mut self.reciprocals);
@@ -221,6 +288,25 @@ mod tridiagonal {
     /// Diagonal, above it and below it, in a row and below the diagonal of this row.
     const WIDTH: usize = 3;
 
+    /// S of a chain: row r has the parts 2r − 1 and 2r.
+    #[inline(always)]
+    pub(super) fn write<const D: usize>(
+        values: &mut [f64],
+        left: &[[f64; D]],
+        right: &[[f64; D]],
+        product: impl Fn(f64, &[f64; D], &[f64; D]) -> f64,
+    ) {
+        values[0] = product(0.0, &left[0], &right[0]);
+        let rows = values[1..].as_chunks_mut::<WIDTH>().0.iter_mut();
+        for (([upper, lower, diagonal], left), right) in
+            rows.zip(left.windows(3).step_by(2)).zip(right.windows(3).step_by(2))
+        {
+            *upper = product(0.0, &left[0], &right[1]);
+            *lower = product(0.0, &left[1], &right[0]);
+            *diagonal = product(product(0.0, &left[1], &right[1]), &left[2], &right[2]);
+        }
+    }
+
     /// As [`Schur::factor`](super::Schur::factor).
     pub(super) fn factor(values: &mut [f64], reciprocals: &mut [f64]) -> bool {
         let (mut diagonal, mut is_positive) = (values[0], true);
@@ -268,12 +354,13 @@ impl Reduced {
         }
         let (gradients, _) = system.constraint_gradients(node.t, &node.q);
         let (dimension, parts) = [3, 2, 1].into_iter().find_map(|d| Some((d, parts(&gradients, d)?)))?;
-        let schur = Schur::new(&parts, count)?;
-        let zeros = vec![0.0; parts.len() * dimension];
+        let pattern = Pattern::new(parts);
+        let schur = Schur::new(&pattern, count)?;
+        let zeros = vec![0.0; pattern.parts.len() * dimension];
         let [first, weighted, last] = [zeros.clone(), zeros.clone(), zeros];
         let (inverse, end) = (vec![0.0; N], vec![f64::NAN; N]);
         let [rates, known, scales] = core::array::from_fn(|_| vec![0.0; count]);
-        Some(Self { dimension, parts, schur, inverse, first, weighted, last, rates, end, known, scales })
+        Some(Self { dimension, pattern, schur, inverse, first, weighted, last, rates, end, known, scales })
     }
 
     /// A and M⁻¹ at the start of a step. `is_next` if the step follows the last one of the same system. False if a mass
@@ -297,7 +384,7 @@ impl Reduced {
         }
         let (gradients, _) = system.constraint_gradients(node.t, &node.q);
         write(&gradients, &mut self.first);
-        weigh::<D>(&self.parts, &self.inverse, &self.first, &mut self.weighted);
+        weigh::<D>(&self.pattern, &self.inverse, &self.first, &mut self.weighted);
         self.inverse.iter().all(|inverse| *inverse > 0.0)
     }
 
@@ -313,22 +400,14 @@ impl Reduced {
     #[inline(always)]
     fn rate<const N: usize, const D: usize>(&mut self, v: &SVector<f64, N>) {
         self.known.copy_from_slice(&self.rates);
-        let ((a, _), (v, _)) = (self.last.as_chunks::<D>(), v.as_slice().as_chunks::<D>());
-        for (Part { row, point }, a) in self.parts.iter().zip(a) {
-            let known = &mut self.known[*row];
-            *known = a.iter().zip(&v[*point]).fold(*known, |sum, (a, v)| sum + a * v);
-        }
+        self.pattern.add_products::<D>(&self.last, v.as_slice(), &mut self.known, |sum, term| sum + term);
     }
 
     /// Writes the sizes of the terms of `A1 x` to `scales`.
     #[inline(always)]
     fn scale<const N: usize, const D: usize>(&mut self, x: &SVector<f64, N>) {
         self.scales.fill(0.0);
-        let ((a, _), (x, _)) = (self.last.as_chunks::<D>(), x.as_slice().as_chunks::<D>());
-        for (Part { row, point }, a) in self.parts.iter().zip(a) {
-            let scale = &mut self.scales[*row];
-            *scale = a.iter().zip(&x[*point]).fold(*scale, |sum, (a, x)| sum + (a * x).abs());
-        }
+        self.pattern.add_products::<D>(&self.last, x.as_slice(), &mut self.scales, |sum, term| sum + term.abs());
     }
 
     /// The largest of the known rows over its rounding. Its scale is that of the terms of `A1 x` and of a1.
@@ -378,7 +457,7 @@ fn write<const N: usize>(gradients: &impl Rectangular<N, f64>, entries: &mut [f6
 
 /// Writes M⁻¹Aᵀ.
 #[inline(always)]
-fn weigh<const D: usize>(parts: &[Part], inverse: &[f64], a: &[f64], weighted: &mut [f64]) {
+fn weigh<const D: usize>(Pattern { parts, .. }: &Pattern, inverse: &[f64], a: &[f64], weighted: &mut [f64]) {
     let ((a, _), (inverse, _), (weighted, _)) =
         (a.as_chunks::<D>(), inverse.as_chunks::<D>(), weighted.as_chunks_mut::<D>());
     for ((Part { point, .. }, a), weighted) in parts.iter().zip(a).zip(weighted) {
@@ -387,35 +466,18 @@ fn weigh<const D: usize>(parts: &[Part], inverse: &[f64], a: &[f64], weighted: &
     }
 }
 
-/// Calls a function with the terms of `AᵀΛ` and the entries that they add to.
-#[inline(always)]
-fn each_term<const D: usize>(parts: &[Part], a: &[f64], multipliers: &[f64], mut f: impl FnMut(usize, [f64; D])) {
-    let (a, _) = a.as_chunks::<D>();
-    for (Part { row, point }, a) in parts.iter().zip(a) {
-        let multiplier = multipliers[*row];
-        f(*point, a.map(|a| a * multiplier));
-    }
-}
-
 /// Adds `AᵀΛ`.
 #[inline(always)]
-fn add<const N: usize, const D: usize>(parts: &[Part], a: &[f64], multipliers: &[f64], sum: &mut SVector<f64, N>) {
-    let (sum, _) = sum.as_mut_slice().as_chunks_mut::<D>();
-    each_term::<D>(parts, a, multipliers, |point, terms| {
-        sum[point].iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
-    });
+fn add<const N: usize, const D: usize>(pattern: &Pattern, a: &[f64], multipliers: &[f64], sum: &mut SVector<f64, N>) {
+    pattern.add_terms::<D>(a, multipliers, sum.as_mut_slice(), |sum, term| sum + term);
 }
 
 /// `A0ᵀλ`, and the sizes of its terms.
 #[inline(always)]
-fn reaction<const N: usize, const D: usize>(parts: &[Part], a: &[f64], lambda: &[f64]) -> [SVector<f64, N>; 2] {
+fn reaction<const N: usize, const D: usize>(pattern: &Pattern, a: &[f64], lambda: &[f64]) -> [SVector<f64, N>; 2] {
     let (mut reaction, mut sizes) = (SVector::<f64, N>::zeros(), SVector::<f64, N>::zeros());
-    let ((sums, _), (scales, _)) =
-        (reaction.as_mut_slice().as_chunks_mut::<D>(), sizes.as_mut_slice().as_chunks_mut::<D>());
-    each_term::<D>(parts, a, lambda, |point, terms| {
-        sums[point].iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
-        scales[point].iter_mut().zip(terms).for_each(|(scale, term)| *scale += term.abs());
-    });
+    add::<N, D>(pattern, a, lambda, &mut reaction);
+    pattern.add_terms::<D>(a, lambda, sizes.as_mut_slice(), |sum, term| sum + term.abs());
     [reaction, sizes]
 }
 
@@ -449,12 +511,12 @@ fn step_of_points<S: Motion<N>, const N: usize, const D: usize>(
     let (middle, t1) = (node.t + (node.t_low + h * 0.5), node.t + (node.t_low + h));
     let force = system.point(middle, &node.q, &SVector::zeros()).force;
     let mut v = reduced.velocity(&(node.p + (node.p_low + force * (h * 0.5))));
-    add::<N, D>(&reduced.parts, &reduced.weighted, lambda, &mut v);
+    add::<N, D>(&reduced.pattern, &reduced.weighted, lambda, &mut v);
 
     let (mut iterations, mut before, mut is_factored, mut contraction) = (0, f64::INFINITY, false, 0.0);
     let residual = loop {
         let end: Place<N, f64> = (t1, node.q + (node.q_low + v * h));
-        let residual = constraints::<S, N, D>(system, &end, h, reduced);
+        let residual = constraints::<S, N, D>(system, &end, (h, before), reduced);
         contraction = contracted(contraction, [before, residual]);
         if !is_factored || residual > FLOOR && residual > FALLEN * before {
             is_factored = reduced.schur.factor::<D>(&reduced.last, &reduced.weighted);
@@ -471,11 +533,11 @@ fn step_of_points<S: Motion<N>, const N: usize, const D: usize>(
             *correction = -*correction;
             *lambda += *correction;
         }
-        add::<N, D>(&reduced.parts, &reduced.weighted, &reduced.known, &mut v);
+        add::<N, D>(&reduced.pattern, &reduced.weighted, &reduced.known, &mut v);
         (before, iterations) = (residual, iterations + 1);
     };
     velocity.copy_from_slice(v.as_slice());
-    let [reaction, sizes] = reaction::<N, D>(&reduced.parts, &reduced.first, lambda);
+    let [reaction, sizes] = reaction::<N, D>(&reduced.pattern, &reduced.first, lambda);
     let residual = worse(momenta(system, (node, h, &v), &reaction, &sizes), residual);
     let (end, mu, of_velocity) = projected::<S, N, D>(system, (node, h, &v), force * h + reaction, reduced)?;
     let residual = worse(of_velocity, residual);
@@ -483,12 +545,13 @@ fn step_of_points<S: Motion<N>, const N: usize, const D: usize>(
     (residual <= FLOOR).then_some((Solved { end, mu, residual, iterations }, contraction))
 }
 
-/// g/h at the end of a step, in `known`, and A and a there. Returns the largest row over its rounding.
+/// g/h at the end of a step, in `known`, and A and a there. Returns the largest row over its rounding. The scales are
+/// those of the residual `before` if it is settled.
 #[inline(always)]
 fn constraints<S: Motion<N>, const N: usize, const D: usize>(
     system: &S,
     (t, q): &Place<N, f64>,
-    h: f64,
+    (h, before): (f64, f64),
     reduced: &mut Reduced,
 ) -> f64 {
     let (gradients, rates) = system.constraint_gradients(*t, q);
@@ -497,7 +560,10 @@ fn constraints<S: Motion<N>, const N: usize, const D: usize>(
     for (known, value) in reduced.known.iter_mut().zip(system.constraints(*t, q).as_ref()) {
         *known = value / h;
     }
-    reduced.scale::<N, D>(q);
+    // True at the first residual.
+    if before > SETTLED {
+        reduced.scale::<N, D>(q);
+    }
     reduced.largest(|terms, rate| terms / h.abs() + rate)
 }
 
@@ -528,7 +594,7 @@ fn projected<S: Motion<N>, const N: usize, const D: usize>(
     mut increment: SVector<f64, N>,
     reduced: &mut Reduced,
 ) -> Option<(Node<N>, Multipliers<S, N>, f64)> {
-    weigh::<D>(&reduced.parts, &reduced.inverse, &reduced.last, &mut reduced.weighted);
+    weigh::<D>(&reduced.pattern, &reduced.inverse, &reduced.last, &mut reduced.weighted);
     if !reduced.schur.factor::<D>(&reduced.last, &reduced.weighted) {
         return None;
     }
@@ -538,7 +604,7 @@ fn projected<S: Motion<N>, const N: usize, const D: usize>(
     for (mu, rate) in mu.as_mut().iter_mut().zip(&reduced.known) {
         *mu = -rate;
     }
-    add::<N, D>(&reduced.parts, &reduced.last, mu.as_ref(), &mut increment);
+    add::<N, D>(&reduced.pattern, &reduced.last, mu.as_ref(), &mut increment);
     let mut end = *node;
     end.advance(h, v, &increment);
     // The increment of the momenta was rounded. Its part across the constraints goes into a second, tiny impulse.
@@ -549,7 +615,7 @@ fn projected<S: Motion<N>, const N: usize, const D: usize>(
         *rate = -*rate;
         *mu += *rate;
     }
-    add::<N, D>(&reduced.parts, &reduced.last, &reduced.known, &mut rest);
+    add::<N, D>(&reduced.pattern, &reduced.last, &reduced.known, &mut rest);
     end.add_momentum(&rest);
     let v = reduced.velocity(&(end.p + end.p_low));
     reduced.rate::<N, D>(&v);
@@ -561,26 +627,49 @@ fn projected<S: Motion<N>, const N: usize, const D: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::{Part, Schur};
+    use super::{Part, Pattern, Schur};
+
+    /// A chain of four points on a line, the first one at a fixed end.
+    fn chain() -> Pattern {
+        let of = |row: usize, point: usize| Part { row, point };
+        Pattern::new(vec![of(0, 0), of(1, 0), of(1, 1), of(2, 1), of(2, 2), of(3, 2), of(3, 3)])
+    }
+
+    const LEFT: [f64; 7] = [1.1, -0.9, 1.2, -0.8, 1.3, -0.7, 1.4];
+
+    #[test]
+    fn a_chain_has_the_bits_of_its_list() {
+        let chain = chain();
+        assert!(chain.is_chain);
+        let list = Pattern { is_chain: false, ..chain.clone() };
+        let of = |pattern: &Pattern| {
+            // The last point is in no row.
+            let (mut rows, mut sums) = ([0.1, 0.2, 0.3, 0.4], [0.5, 0.6, 0.7, 0.8, 0.9]);
+            pattern.add_products::<1>(&LEFT, &[1.7, -0.3, 0.9, 2.1, 4.0], &mut rows, |sum, term| sum + term);
+            pattern.add_terms::<1>(&LEFT, &[0.7, -1.3, 0.6, 1.9], &mut sums, |sum, term| sum + term.abs());
+            (rows.map(f64::to_bits), sums.map(f64::to_bits))
+        };
+        assert_eq!(of(&chain), of(&list));
+        assert_eq!(of(&chain).1[4], 0.9_f64.to_bits());
+    }
 
     #[test]
     fn three_diagonals_have_the_bits_of_any_order() {
-        // Rows of a chain of four points on a line, the first one at a fixed end.
-        let of = |row: usize, point: usize| Part { row, point };
-        let parts = [of(0, 0), of(1, 0), of(1, 1), of(2, 1), of(2, 2), of(3, 2), of(3, 3)];
-        let left = [1.1, -0.9, 1.2, -0.8, 1.3, -0.7, 1.4];
         let right = [0.9, -1.1, 1.0, -1.2, 0.8, -0.6, 1.5];
-        let solved = |is_tridiagonal: bool| {
-            let mut schur = Schur::new(&parts, 4).expect("no fill");
-            assert!(schur.is_tridiagonal);
-            schur.is_tridiagonal = is_tridiagonal;
-            assert!(schur.factor::<1>(&left, &right));
+        let solved = |is_tridiagonal: bool, is_chain: bool| {
+            let mut schur = Schur::new(&chain(), 4).expect("no fill");
+            assert!(schur.is_tridiagonal && schur.is_chain);
+            (schur.is_tridiagonal, schur.is_chain) = (is_tridiagonal, is_chain);
+            assert!(schur.factor::<1>(&LEFT, &right));
             let mut b = [1.0, -2.0, 3.0, 0.5];
             schur.solve(&mut b);
             b.map(f64::to_bits)
         };
-        assert_eq!(solved(true), solved(false));
+        assert_eq!(solved(true, true), solved(false, false));
+        assert_eq!(solved(true, false), solved(false, false));
         // A star has no three diagonals.
-        assert!(!Schur::new(&[of(0, 0), of(1, 0), of(1, 1), of(2, 0), of(2, 2)], 3).expect("no fill").is_tridiagonal);
+        let of = |row: usize, point: usize| Part { row, point };
+        let star = Pattern::new(vec![of(0, 0), of(1, 0), of(1, 1), of(2, 0), of(2, 2)]);
+        assert!(!Schur::new(&star, 3).expect("no fill").is_tridiagonal && !star.is_chain);
     }
 }
