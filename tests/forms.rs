@@ -103,7 +103,7 @@ lagrangian! {
 struct Dense<S>(S);
 
 impl<const N: usize, S: Lagrangian<N>> Lagrangian<N> for Dense<S> {
-    forward! { [N f64 S] self => &self.0; [] lagrangian_constants lagrangian energy momentum force acceleration flow }
+    forward! { [N f64 S] self => &self.0; [] lagrangian_facts lagrangian rates }
 }
 
 impl<const N: usize, S: DiscreteLagrangian<N>> DiscreteLagrangian<N> for Dense<S> {
@@ -134,7 +134,7 @@ impl<const N: usize, S: FixedStepping<N>> FixedStepping<N> for Dense<S> {
     type Jacobian = SMatrix<f64, N, N>;
     type StepMatrix = SMatrix<f64, N, N>;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
-    forward! { [N f64 S] self => &self.0; [] momentum_residual momentum_rounding discrete_energy }
+    forward! { [N f64 S] self => &self.0; [] fixed_residuals }
 
     fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N> {
         dense(self.0.momentum_equation(node, h, v))
@@ -146,7 +146,7 @@ impl<const N: usize, S: FixedStepping<N>> FixedStepping<N> for Dense<S> {
 }
 
 impl<const N: usize, S: EnergyStepping<N>> EnergyStepping<N> for Dense<S> {
-    forward! { [N f64 S] self => &self.0; [] step_density extended_residual extended_rounding }
+    forward! { [N f64 S] self => &self.0; [] energy_residuals }
 
     fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N> {
         dense_in_both(self.0.extended_system(node, h, v))

@@ -11,47 +11,40 @@ use crate::real::Real;
 use crate::rules::{By, Own, Rule};
 use crate::stepping::{Batch, Convertible, Discretized, EnergyStepping, FixedStepping};
 
-/// Implements the motion traits by the dereferenced system, with this attribute on the functions of a point. A function
-/// that has a default and is in no list compiles, and returns the default: add each new one, as in `independent.rs`.
+/// Implements the motion traits by the dereferenced system, with this attribute on their functions.
 macro_rules! motion {
     ($wrapper:ty, $attribute:tt $(, $rule:ident)?) => {
         impl<const N: usize, T: Real, S: Lagrangian<N, T>$(, $rule: Rule)?> Lagrangian<N, T> for $wrapper {
-            forward! { [N T S] self => self; [] lagrangian_constants non_finite undefined }
-            forward! { [N T S] self => self; [#[inline]] lagrangian energy momentum force acceleration flow }
+            forward! { [N T S] self => self; $attribute lagrangian_facts lagrangian rates }
         }
 
         impl<const N: usize, T: Real, S: Motion<N, T>$(, $rule: Rule)?> Motion<N, T> for $wrapper {
-            forward! { [N T S] self => self; $attribute motion_types point sides applied_force point_derivatives scaled_point }
-            forward! { [N T S] self => self; [#[inline]] power applied constraints constraint_gradients }
-            forward! { [N T S] self => self; [#[inline]] constraint_rate_derivatives reaction_derivatives dropped_constraints }
+            forward! { [N T S] self => self; $attribute motion_facts motion reactions }
         }
     };
 }
 
-/// Implements the step traits by the dereferenced system, with this attribute on the equations: its rule `$of_rule` is
+/// Implements the step traits by the dereferenced system, with this attribute on their functions: its rule `$of_rule` is
 /// the rule `$rule` of the wrapper and has this name.
 macro_rules! steps {
     ($wrapper:ty, $of_rule:ident as $rule:ident, $name:expr, $attribute:tt $(, $generic:ident)?) => {
         impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T, $of_rule>$(, $generic: Rule)?>
             DiscreteLagrangian<N, T, $rule> for $wrapper
         {
-            forward! { [N T S $of_rule] self => self; [#[inline]] slots }
+            forward! { [N T S $of_rule] self => self; $attribute slots }
         }
 
         impl<const N: usize, T: Real, S: FixedStepping<N, T, $of_rule>$(, $generic: Rule)?> FixedStepping<N, T, $rule>
             for $wrapper
         {
             const RULE: Option<&'static str> = $name;
-            forward! { [N T S $of_rule] self => self; $attribute stepping_types momentum_equation momentum_residual momentum_derivatives }
-            forward! { [N T S $of_rule] self => self; [] momentum_rounding discrete_energy }
+            forward! { [N T S $of_rule] self => self; $attribute fixed_facts fixed_residuals fixed_matrices }
         }
 
         impl<const N: usize, T: Real, S: EnergyStepping<N, T, $of_rule>$(, $generic: Rule)?> EnergyStepping<N, T, $rule>
             for $wrapper
         {
-            forward! { [N T S $of_rule] self => self; $attribute extended_system extended_residual extended_derivatives }
-            forward! { [N T S $of_rule] self => self; [#[inline]] step_density }
-            forward! { [N T S $of_rule] self => self; [] extended_rounding }
+            forward! { [N T S $of_rule] self => self; $attribute energy_residuals energy_matrices }
         }
     };
 }

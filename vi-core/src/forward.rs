@@ -1,244 +1,206 @@
-//! Forwarding of trait functions: one table of their signatures beside the traits.
+//! Forwarding of the functions of the system traits: one table of their signatures, from which every wrapper is made.
 //!
 //! In an implementation for a wrapper of a system `S`, with `N` coordinates, over the numbers `T`, by the rule `R` of S
 //! (its own rule by default),
 //!
 //! ```text
-//! forward! { [N T S R] self => &self.system; [#[inline]] lagrangian energy momentum }
+//! forward! { [N T S R] self => &self.system; [#[inline]] motion_facts motion }
 //! ```
 //!
-//! writes these functions with these attributes. `lagrangian_constants`, `motion_types` and `stepping_types` write
-//! the types and constants of a trait.
+//! writes all functions of these groups with these attributes. Groups divide a trait where wrappers replace a part of
+//! it. Facts are types, constants and the functions that return the constants, which are always inlined.
 
 /// Writes functions that call those of another system; see the source of this module.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! forward {
     ([$n:tt $t:tt $s:tt] $($rest:tt)*) => { $crate::forward! { [$n $t $s $crate::rules::Own] $($rest)* } };
-    ($of:tt $this:ident => $to:expr; $at:tt $($name:ident)+) => { $($crate::forward! { @$name $of ($this) ($to) $at })+ };
-
-    // The shapes: a function of (t, q, v), of an interval, of a node with a step and a velocity.
-    (@state [$n:tt $t:tt $s:tt $r:ty] $trait:path, $name:ident -> $out:ty, ($this:ident) ($to:expr) [$($at:tt)*]) => {
-        $($at)*
-        fn $name(&$this, t: $t, q: &$crate::SVector<$t, $n>, v: &$crate::SVector<$t, $n>) -> $out {
-            <$s as $trait>::$name($to, t, q, v)
-        }
-    };
-    (@interval [$n:tt $t:tt $s:tt $r:ty] $name:ident -> $out:ty, ($this:ident) ($to:expr) [$($at:tt)*]) => {
-        $($at)*
-        fn $name(&$this, interval: &$crate::Interval<$n, $t>) -> $out {
-            <$s as $crate::DiscreteLagrangian<$n, $t, $r>>::$name($to, interval)
-        }
-    };
-    (@node [$n:tt $t:tt $s:tt $r:ty] $trait:path, $name:ident -> $out:ty, ($this:ident) ($to:expr) [$($at:tt)*]) => {
-        $($at)*
-        fn $name(&$this, node: &$crate::node::Node<$n, $t>, h: $t, v: &$crate::SVector<$t, $n>) -> $out {
-            <$s as $trait>::$name($to, node, h, v)
-        }
-    };
-
-    // Facts about the system.
-    (@facts ($this:ident) ($to:expr) $trait:path, $s:tt, $($name:ident -> $out:ty),*) => {
-        $(#[inline(always)]
-        fn $name(&$this) -> $out {
-            <$s as $trait>::$name($to)
-        })*
-    };
+    ($of:tt $this:ident => $to:expr; $at:tt $($group:ident)+) => { $($crate::forward! { @$group $of ($this $to, $at) })+ };
 
     // The continuous system.
-    (@lagrangian_constants [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
-        const NAME: &'static str = <$s as $crate::Lagrangian<$n, $t>>::NAME;
-        const COORDINATES: [&'static str; $n] = <$s as $crate::Lagrangian<$n, $t>>::COORDINATES;
-        const AUTONOMOUS: bool = <$s as $crate::Lagrangian<$n, $t>>::AUTONOMOUS;
-        const FORCED: bool = <$s as $crate::Lagrangian<$n, $t>>::FORCED;
-        const CYCLIC: [bool; $n] = <$s as $crate::Lagrangian<$n, $t>>::CYCLIC;
-        const ANGLES: [bool; $n] = <$s as $crate::Lagrangian<$n, $t>>::ANGLES;
-        const PARAMETERS: &'static [&'static str] = <$s as $crate::Lagrangian<$n, $t>>::PARAMETERS;
-        const INPUTS: &'static [usize] = <$s as $crate::Lagrangian<$n, $t>>::INPUTS;
-        const MONOTONE_TABLE: Option<&'static str> = <$s as $crate::Lagrangian<$n, $t>>::MONOTONE_TABLE;
-        const TABLES: u32 = <$s as $crate::Lagrangian<$n, $t>>::TABLES;
+    (@lagrangian_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident $to:expr, $at:tt)) => {
         const INTERPRETED: bool = <$s as $crate::Lagrangian<$n, $t>>::INTERPRETED;
 
-        $crate::forward! { @facts ($this) ($to) $crate::Lagrangian<$n, $t>, $s,
-            name -> &'static str, coordinates -> [&'static str; $n], is_autonomous -> bool, is_forced -> bool,
-            cyclic -> [bool; $n], angles -> [bool; $n], parameters -> &'static [&'static str],
-            inputs -> &'static [usize], tables -> u32, monotone_table -> Option<&'static str> }
-
-        fn parameter(&$this, index: usize) -> $t {
-            <$s as $crate::Lagrangian<$n, $t>>::parameter($to, index)
+        $crate::forward! { @facts [$s as $crate::Lagrangian<$n, $t>] ($this $to)
+            NAME name: &'static str,
+            COORDINATES coordinates: [&'static str; $n],
+            AUTONOMOUS is_autonomous: bool,
+            FORCED is_forced: bool,
+            CYCLIC cyclic: [bool; $n],
+            ANGLES angles: [bool; $n],
+            PARAMETERS parameters: &'static [&'static str],
+            INPUTS inputs: &'static [usize],
+            MONOTONE_TABLE monotone_table: Option<&'static str>,
+            TABLES tables: u32,
+        }
+        $crate::forward! { @functions [$s as $crate::Lagrangian<$n, $t>] ($this $to, []) parameter(index: usize) -> $t }
+    };
+    (@lagrangian [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
+        $crate::forward! { @at_state [$n $t] [$s as $crate::Lagrangian<$n, $t>] $by
+            lagrangian -> $t,
+            energy -> $t,
+            momentum -> $crate::SVector<$t, $n>,
+            force -> $crate::SVector<$t, $n>,
+            non_finite -> Option<&'static str>,
+            undefined -> Option<$crate::lagrangian::Undefined>,
         }
     };
-    (@lagrangian [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, lagrangian -> $t, $($rest)* }
-    };
-    (@energy [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, energy -> $t, $($rest)* }
-    };
-    (@momentum [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, momentum -> $crate::SVector<$t, $n>, $($rest)* }
-    };
-    (@force [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, force -> $crate::SVector<$t, $n>, $($rest)* }
-    };
-    (@acceleration [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, acceleration -> Result<$crate::SVector<$t, $n>, $crate::StepError>, $($rest)* }
-    };
-    (@flow [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, flow -> Result<$crate::lagrangian::Flow<$n, $t>, $crate::StepError>, $($rest)* }
-    };
-    (@non_finite [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, non_finite -> Option<&'static str>, $($rest)* }
-    };
-
-    (@undefined [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::Lagrangian<$n, $t>, undefined -> Option<$crate::lagrangian::Undefined>, $($rest)* }
+    (@rates [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
+        $crate::forward! { @at_state [$n $t] [$s as $crate::Lagrangian<$n, $t>] $by
+            acceleration -> Result<$crate::SVector<$t, $n>, $crate::StepError>,
+            flow -> Result<$crate::lagrangian::Flow<$n, $t>, $crate::StepError>,
+        }
     };
 
     // The equations of motion at a point.
-    (@motion_types [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+    (@motion_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident $to:expr, $at:tt)) => {
         type Kind = <$s as $crate::motion::Motion<$n, $t>>::Kind;
         type Mass = <$s as $crate::motion::Motion<$n, $t>>::Mass;
         type PointMatrix = <$s as $crate::motion::Motion<$n, $t>>::PointMatrix;
-        const CONSTANT_MASS: bool = <$s as $crate::motion::Motion<$n, $t>>::CONSTANT_MASS;
-        const CURVILINEAR: bool = <$s as $crate::motion::Motion<$n, $t>>::CURVILINEAR;
-        const SEPARABLE: bool = <$s as $crate::motion::Motion<$n, $t>>::SEPARABLE;
-        const SPLITS: bool = <$s as $crate::motion::Motion<$n, $t>>::SPLITS;
-        const SCALES_TIME: bool = <$s as $crate::motion::Motion<$n, $t>>::SCALES_TIME;
-        const POINT_MASSES: bool = <$s as $crate::motion::Motion<$n, $t>>::POINT_MASSES;
-        const WITHOUT_VELOCITY: &'static [bool] = <$s as $crate::motion::Motion<$n, $t>>::WITHOUT_VELOCITY;
-        const CONSTRAINTS: &'static [&'static str] = <$s as $crate::motion::Motion<$n, $t>>::CONSTRAINTS;
-        const HOLONOMIC: usize = <$s as $crate::motion::Motion<$n, $t>>::HOLONOMIC;
-        const BLOCKS: &'static [$crate::linear::Block] = <$s as $crate::motion::Motion<$n, $t>>::BLOCKS;
 
-        $crate::forward! { @motion_facts [$n $t $s $r] $($rest)* }
-    };
-    (@motion_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
-        $crate::forward! { @facts ($this) ($to) $crate::motion::Motion<$n, $t>, $s,
-            has_constant_mass -> bool, is_curvilinear -> bool, is_separable -> bool, splits -> bool, scales_time -> bool, has_point_masses -> bool,
-            without_velocity -> &'static [bool], moving -> usize, constraint_names -> &'static [&'static str], holonomic -> usize,
-            blocks -> &'static [$crate::linear::Block] }
-    };
-    (@point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, point -> $crate::motion::Point<$n, $t, Self::Mass>, $($rest)* }
-    };
-    (@sides [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, sides -> $crate::motion::Sides<$n, $t>, $($rest)* }
-    };
-    (@applied_force [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, applied_force -> $crate::SVector<$t, $n>, $($rest)* }
-    };
-    (@point_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, point_derivatives -> $crate::motion::PointDerivatives<Self::PointMatrix>, $($rest)* }
-    };
-    (@power [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, power -> $t, $($rest)* }
-    };
-    (@scaled_point [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, scaled_point -> $crate::motion::ScaledPoint<$n, $t, Self::Mass>, $($rest)* }
-    };
-
-    // The constraints.
-    (@applied [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, applied -> $crate::SVector<$t, $n>, $($rest)* }
-    };
-    (@constraints [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) [$($at:tt)*]) => {
-        $($at)*
-        fn constraints(&$this, t: $t, q: &$crate::SVector<$t, $n>) -> $crate::kind::Multipliers<Self, $n, $t> {
-            <$s as $crate::motion::Motion<$n, $t>>::constraints($to, t, q)
+        $crate::forward! { @facts [$s as $crate::motion::Motion<$n, $t>] ($this $to)
+            CONSTANT_MASS has_constant_mass: bool,
+            CURVILINEAR is_curvilinear: bool,
+            SEPARABLE is_separable: bool,
+            SPLITS splits: bool,
+            SCALES_TIME scales_time: bool,
+            POINT_MASSES has_point_masses: bool,
+            WITHOUT_VELOCITY without_velocity: &'static [bool],
+            CONSTRAINTS constraint_names: &'static [&'static str],
+            HOLONOMIC holonomic: usize,
+            BLOCKS blocks: &'static [$crate::linear::Block],
+        }
+        $crate::forward! { @functions [$s as $crate::motion::Motion<$n, $t>] ($this $to, [#[inline(always)]])
+            moving() -> usize
         }
     };
-    (@constraint_gradients [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) [$($at:tt)*]) => {
-        $($at)*
-        fn constraint_gradients(
-            &$this,
-            t: $t,
-            q: &$crate::SVector<$t, $n>,
-        ) -> ($crate::kind::Gradients<Self, $n, $t>, $crate::kind::Multipliers<Self, $n, $t>) {
-            <$s as $crate::motion::Motion<$n, $t>>::constraint_gradients($to, t, q)
+    (@motion [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
+        $crate::forward! { @at_state [$n $t] [$s as $crate::motion::Motion<$n, $t>] $by
+            point -> $crate::motion::Point<$n, $t, Self::Mass>,
+            sides -> $crate::motion::Sides<$n, $t>,
+            applied_force -> $crate::SVector<$t, $n>,
+            point_derivatives -> $crate::motion::PointDerivatives<Self::PointMatrix>,
+            power -> $t,
+            scaled_point -> $crate::motion::ScaledPoint<$n, $t, Self::Mass>,
+            applied -> $crate::SVector<$t, $n>,
+        }
+        $crate::forward! { @functions [$s as $crate::motion::Motion<$n, $t>] $by
+            sides_and_inverse(
+                t: $t,
+                q: &$crate::SVector<$t, $n>,
+                v: &$crate::SVector<$t, $n>,
+                inverse: &mut $crate::nalgebra::SMatrix<$t, $n, $n>
+            ) -> $crate::motion::Sides<$n, $t>,
+            constraints(t: $t, q: &$crate::SVector<$t, $n>) -> $crate::kind::Multipliers<Self, $n, $t>,
         }
     };
-    (@constraint_rate_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::motion::Motion<$n, $t>, constraint_rate_derivatives -> ($crate::kind::Gradients<Self, $n, $t>, $crate::kind::Multipliers<Self, $n, $t>), $($rest)* }
-    };
-    (@reaction_derivatives [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) [$($at:tt)*]) => {
-        $($at)*
-        fn reaction_derivatives(
-            &$this,
-            t: $t,
-            q: &$crate::SVector<$t, $n>,
-            multipliers: &$crate::kind::Multipliers<Self, $n, $t>,
-        ) -> $crate::kind::ReactionMatrix<Self, $n, $t> {
-            <$s as $crate::motion::Motion<$n, $t>>::reaction_derivatives($to, t, q, multipliers)
+    (@reactions [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
+        $crate::forward! { @functions [$s as $crate::motion::Motion<$n, $t>] $by
+            constraint_gradients(t: $t, q: &$crate::SVector<$t, $n>)
+                -> ($crate::kind::Gradients<Self, $n, $t>, $crate::kind::Multipliers<Self, $n, $t>),
+            reaction_derivatives(
+                t: $t,
+                q: &$crate::SVector<$t, $n>,
+                multipliers: &$crate::kind::Multipliers<Self, $n, $t>
+            ) -> $crate::kind::ReactionMatrix<Self, $n, $t>,
+            is_dropped(constraint: usize) -> bool,
         }
-    };
-    (@dropped_constraints [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) [$($at:tt)*]) => {
-        $($at)*
-        fn is_dropped(&$this, constraint: usize) -> bool {
-            <$s as $crate::motion::Motion<$n, $t>>::is_dropped($to, constraint)
-        }
-        $($at)*
-        fn broken(&$this, t: $t, q: &$crate::SVector<$t, $n>, v: &$crate::SVector<$t, $n>) -> Option<(usize, $t)> {
-            <$s as $crate::motion::Motion<$n, $t>>::broken($to, t, q, v)
+        $crate::forward! { @at_state [$n $t] [$s as $crate::motion::Motion<$n, $t>] $by
+            constraint_rate_derivatives
+                -> ($crate::kind::Gradients<Self, $n, $t>, $crate::kind::Multipliers<Self, $n, $t>),
+            broken -> Option<(usize, $t)>,
         }
     };
 
-    // The slots of the discrete system, all nine.
-    (@slots [$n:tt $t:tt $s:tt $r:ty] $this:tt $to:tt $at:tt) => {
-        $crate::forward! { @interval [$n $t $s $r] ld -> $t, $this $to $at }
-        $crate::forward! { @interval [$n $t $s $r] d1_ld -> $t, $this $to $at }
-        $crate::forward! { @interval [$n $t $s $r] d2_ld -> $crate::SVector<$t, $n>, $this $to $at }
-        $crate::forward! { @interval [$n $t $s $r] d3_ld -> $t, $this $to $at }
-        $crate::forward! { @interval [$n $t $s $r] d4_ld -> $crate::SVector<$t, $n>, $this $to $at }
-        $crate::forward! { @interval [$n $t $s $r] fd_minus -> $crate::SVector<$t, $n>, $this $to $at }
-        $crate::forward! { @interval [$n $t $s $r] fd_plus -> $crate::SVector<$t, $n>, $this $to $at }
-        $crate::forward! { @interval [$n $t $s $r] gd_minus -> $t, $this $to $at }
-        $crate::forward! { @interval [$n $t $s $r] gd_plus -> $t, $this $to $at }
+    // The slots of the discrete system.
+    (@slots [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
+        $crate::forward! { @over_interval [$n $t] [$s as $crate::DiscreteLagrangian<$n, $t, $r>] $by
+            ld -> $t,
+            d1_ld -> $t,
+            d2_ld -> $crate::SVector<$t, $n>,
+            d3_ld -> $t,
+            d4_ld -> $crate::SVector<$t, $n>,
+            fd_minus -> $crate::SVector<$t, $n>,
+            fd_plus -> $crate::SVector<$t, $n>,
+            gd_minus -> $t,
+            gd_plus -> $t,
+        }
     };
 
-    // The equations of a step, its length given.
-    (@stepping_types [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
+    // The equations of a step of given length.
+    (@fixed_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident $to:expr, $at:tt)) => {
         type Jacobian = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::Jacobian;
         type StepMatrix = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::StepMatrix;
-        const CONSTANT_JACOBIAN: bool = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::CONSTANT_JACOBIAN;
-        const CLOSED_FORM: bool = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::CLOSED_FORM;
-        const INLINED: bool = <$s as $crate::stepping::FixedStepping<$n, $t, $r>>::INLINED;
 
-        $crate::forward! { @stepping_facts [$n $t $s $r] $($rest)* }
+        $crate::forward! { @facts [$s as $crate::stepping::FixedStepping<$n, $t, $r>] ($this $to)
+            CONSTANT_JACOBIAN has_constant_jacobian: bool,
+            CLOSED_FORM has_closed_form: bool,
+            INLINED is_inlined: bool,
+        }
     };
-    (@stepping_facts [$n:tt $t:tt $s:tt $r:ty] ($this:ident) ($to:expr) $at:tt) => {
-        $crate::forward! { @facts ($this) ($to) $crate::stepping::FixedStepping<$n, $t, $r>, $s,
-            has_constant_jacobian -> bool, has_closed_form -> bool, is_inlined -> bool }
+    (@fixed_residuals [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
+        $crate::forward! { @at_node [$n $t] [$s as $crate::stepping::FixedStepping<$n, $t, $r>] $by
+            momentum_residual -> $crate::stepping::MomentumResidual<$n, $t>,
+            momentum_rounding -> $crate::SVector<$t, $n>,
+            discrete_energy -> $t,
+        }
     };
-    (@momentum_equation [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, momentum_equation -> $crate::stepping::MomentumEquation<$n, $t, Self::Jacobian>, $($rest)* }
-    };
-    (@momentum_residual [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, momentum_residual -> $crate::stepping::MomentumResidual<$n, $t>, $($rest)* }
-    };
-    (@momentum_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, momentum_derivatives -> $crate::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix>, $($rest)* }
-    };
-    (@momentum_rounding [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, momentum_rounding -> $crate::SVector<$t, $n>, $($rest)* }
-    };
-    (@discrete_energy [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @node [$n $t $s $r] $crate::stepping::FixedStepping<$n, $t, $r>, discrete_energy -> $t, $($rest)* }
+    (@fixed_matrices [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
+        $crate::forward! { @at_node [$n $t] [$s as $crate::stepping::FixedStepping<$n, $t, $r>] $by
+            momentum_equation -> $crate::stepping::MomentumEquation<$n, $t, Self::Jacobian>,
+            momentum_derivatives -> $crate::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix>,
+        }
     };
 
     // The equations of a step whose length is an unknown.
-    (@step_density [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @state [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, step_density -> Result<$t, $crate::StepError>, $($rest)* }
+    (@energy_residuals [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
+        $crate::forward! { @at_node [$n $t] [$s as $crate::stepping::EnergyStepping<$n, $t, $r>] $by
+            extended_residual -> $crate::stepping::ExtendedResidual<$n, $t>,
+            extended_rounding -> $crate::stepping::Rounding<$n, $t>,
+        }
+        $crate::forward! { @at_state [$n $t] [$s as $crate::stepping::EnergyStepping<$n, $t, $r>] $by
+            step_density -> Result<$t, $crate::StepError>,
+        }
     };
-    (@extended_system [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @node [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, extended_system -> $crate::stepping::ExtendedSystem<$n, $t, Self::Jacobian>, $($rest)* }
+    (@energy_matrices [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
+        $crate::forward! { @at_node [$n $t] [$s as $crate::stepping::EnergyStepping<$n, $t, $r>] $by
+            extended_system -> $crate::stepping::ExtendedSystem<$n, $t, Self::Jacobian>,
+            extended_derivatives -> $crate::stepping::ExtendedDerivatives<$n, $t, Self::Jacobian, Self::StepMatrix>,
+        }
     };
-    (@extended_residual [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @node [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, extended_residual -> $crate::stepping::ExtendedResidual<$n, $t>, $($rest)* }
+
+    // Functions of (t, q, v), of an interval, and of a node with a step and a velocity.
+    (@at_state [$n:tt $t:tt] $of:tt $by:tt $($name:ident -> $out:ty),+ $(,)?) => {
+        $crate::forward! { @functions $of $by
+            $($name(t: $t, q: &$crate::SVector<$t, $n>, v: &$crate::SVector<$t, $n>) -> $out),+
+        }
     };
-    (@extended_derivatives [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @node [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, extended_derivatives -> $crate::stepping::ExtendedDerivatives<$n, $t, Self::Jacobian, Self::StepMatrix>, $($rest)* }
+    (@over_interval [$n:tt $t:tt] $of:tt $by:tt $($name:ident -> $out:ty),+ $(,)?) => {
+        $crate::forward! { @functions $of $by $($name(interval: &$crate::Interval<$n, $t>) -> $out),+ }
     };
-    (@extended_rounding [$n:tt $t:tt $s:tt $r:ty] $($rest:tt)*) => {
-        $crate::forward! { @node [$n $t $s $r] $crate::stepping::EnergyStepping<$n, $t, $r>, extended_rounding -> $crate::stepping::Rounding<$n, $t>, $($rest)* }
+    (@at_node [$n:tt $t:tt] $of:tt $by:tt $($name:ident -> $out:ty),+ $(,)?) => {
+        $crate::forward! { @functions $of $by
+            $($name(node: &$crate::node::Node<$n, $t>, h: $t, v: &$crate::SVector<$t, $n>) -> $out),+
+        }
+    };
+    (
+        @functions [$s:tt as $trait:path] ($this:ident $to:expr, $at:tt)
+        $($name:ident($($argument:ident: $type:ty),*) -> $out:ty),+ $(,)?
+    ) => {
+        $($crate::forward! { @attributed $at
+            fn $name(&$this, $($argument: $type),*) -> $out {
+                <$s as $trait>::$name($to, $($argument),*)
+            }
+        })+
+    };
+    (@attributed [$($at:tt)*] $($function:tt)+) => { $($at)* $($function)+ };
+
+    // Constants, each with the function that returns it.
+    (@facts [$s:tt as $trait:path] ($this:ident $to:expr) $($constant:ident $name:ident: $type:ty),+ $(,)?) => {
+        $(const $constant: $type = <$s as $trait>::$constant;
+        #[inline(always)]
+        fn $name(&$this) -> $type {
+            <$s as $trait>::$name($to)
+        })+
     };
 }

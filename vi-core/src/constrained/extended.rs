@@ -18,8 +18,7 @@ use nalgebra::SVector;
 pub struct Extended<S>(pub S);
 
 impl<const N: usize, T: Real, S: Motion<N, T>> Lagrangian<N, T> for Extended<S> {
-    forward! { [N T S] self => &self.0; [] lagrangian_constants non_finite undefined }
-    forward! { [N T S] self => &self.0; [#[inline]] lagrangian energy momentum force }
+    forward! { [N T S] self => &self.0; [#[inline]] lagrangian_facts lagrangian }
 
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
         if const { S::Kind::COUNT == 0 } {

@@ -162,8 +162,7 @@ impl<S> Independent<S> {
 }
 
 impl<const N: usize, T: Real, S: Motion<N, T>> Lagrangian<N, T> for Independent<S> {
-    forward! { [N T S] self => &self.system; [] lagrangian_constants non_finite undefined }
-    forward! { [N T S] self => &self.system; [#[inline]] lagrangian energy momentum force }
+    forward! { [N T S] self => &self.system; [#[inline]] lagrangian_facts lagrangian }
 
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
         constrained_acceleration(self, t, q, v)
@@ -175,7 +174,7 @@ impl<const N: usize, T: Real, S: Motion<N, T>> Lagrangian<N, T> for Independent<
 }
 
 impl<const N: usize, T: Real, S: Motion<N, T>> Motion<N, T> for Independent<S> {
-    forward! { [N T S] self => &self.system; [] motion_types point sides applied_force point_derivatives power applied constraints }
+    forward! { [N T S] self => &self.system; [] motion_facts motion }
 
     fn constraint_gradients(&self, t: T, q: &SVector<T, N>) -> (Gradients<Self, N, T>, Multipliers<Self, N, T>) {
         self.without_dropped(self.system.constraint_gradients(t, q))

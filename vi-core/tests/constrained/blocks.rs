@@ -66,7 +66,7 @@ mod long {
 struct Plain<S, const DENSE: bool>(S);
 
 impl<const N: usize, T: Real, S: Lagrangian<N, T>, const DENSE: bool> Lagrangian<N, T> for Plain<S, DENSE> {
-    vi_core::forward! { [N T S] self => &self.0; [] lagrangian_constants lagrangian energy momentum force acceleration flow }
+    vi_core::forward! { [N T S] self => &self.0; [] lagrangian_facts lagrangian rates }
 }
 
 impl<const N: usize, T: Real, S: Motion<N, T>, const DENSE: bool> Motion<N, T> for Plain<S, DENSE> {
@@ -78,8 +78,7 @@ impl<const N: usize, T: Real, S: Motion<N, T>, const DENSE: bool> Motion<N, T> f
     const HOLONOMIC: usize = S::HOLONOMIC;
     const BLOCKS: &'static [Block] = if DENSE { &[] } else { S::BLOCKS };
 
-    vi_core::forward! { [N T S] self => &self.0; [] point point_derivatives power applied constraints }
-    vi_core::forward! { [N T S] self => &self.0; [] constraint_gradients constraint_rate_derivatives reaction_derivatives }
+    vi_core::forward! { [N T S] self => &self.0; [] motion reactions }
 }
 
 impl<T: Real, S: Parameters<T>, const DENSE: bool> Parameters<T> for Plain<S, DENSE> {
