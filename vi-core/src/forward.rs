@@ -8,13 +8,15 @@
 //! ```
 //!
 //! writes all functions of these groups with these attributes. Groups divide a trait where wrappers replace a part of
-//! it. Facts are types, constants and the functions that return the constants, which are always inlined.
+//! it. Facts are types, constants and the functions that return the constants, which are always inlined. In place of
+//! `self => &self.system; [#[inline]]`, the word `stub;` writes functions without a body, for a system with errors.
 
 /// Writes functions that call those of another system; see the source of this module.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! forward {
     ([$n:tt $t:tt $s:tt] $($rest:tt)*) => { $crate::forward! { [$n $t $s $crate::rules::Own] $($rest)* } };
+    ($of:tt stub; $($group:ident)+) => { $($crate::forward! { @$group $of (stub) })+ };
     ($of:tt $this:ident => $to:expr; $at:tt $($group:ident)+) => { $($crate::forward! { @$group $of ($this $to, $at) })+ };
 
     // The continuous system.
@@ -41,14 +43,14 @@ macro_rules! forward {
             energy -> $t,
             momentum -> $crate::SVector<$t, $n>,
             force -> $crate::SVector<$t, $n>,
-            non_finite -> Option<&'static str>,
-            undefined -> Option<$crate::lagrangian::Undefined>,
+            non_finite -> ::core::option::Option<&'static str>,
+            undefined -> ::core::option::Option<$crate::lagrangian::Undefined>,
         }
     };
     (@rates [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
         $crate::forward! { @at_state [$n $t] [$s as $crate::Lagrangian<$n, $t>] $by
-            acceleration -> Result<$crate::SVector<$t, $n>, $crate::StepError>,
-            flow -> Result<$crate::lagrangian::Flow<$n, $t>, $crate::StepError>,
+            acceleration -> ::core::result::Result<$crate::SVector<$t, $n>, $crate::StepError>,
+            flow -> ::core::result::Result<$crate::lagrangian::Flow<$n, $t>, $crate::StepError>,
         }
     };
 
@@ -108,7 +110,7 @@ macro_rules! forward {
         $crate::forward! { @at_state [$n $t] [$s as $crate::motion::Motion<$n, $t>] $by
             constraint_rate_derivatives
                 -> ($crate::kind::Gradients<Self, $n, $t>, $crate::kind::Multipliers<Self, $n, $t>),
-            broken -> Option<(usize, $t)>,
+            broken -> ::core::option::Option<(usize, $t)>,
         }
     };
 
@@ -159,7 +161,7 @@ macro_rules! forward {
             extended_rounding -> $crate::stepping::Rounding<$n, $t>,
         }
         $crate::forward! { @at_state [$n $t] [$s as $crate::stepping::EnergyStepping<$n, $t, $r>] $by
-            step_density -> Result<$t, $crate::StepError>,
+            step_density -> ::core::result::Result<$t, $crate::StepError>,
         }
     };
     (@energy_matrices [$n:tt $t:tt $s:tt $r:ty] $by:tt) => {
@@ -182,6 +184,11 @@ macro_rules! forward {
         $crate::forward! { @functions $of $by
             $($name(node: &$crate::node::Node<$n, $t>, h: $t, v: &$crate::SVector<$t, $n>) -> $out),+
         }
+    };
+    (@functions $of:tt (stub) $($name:ident($($argument:ident: $type:ty),*) -> $out:ty),+ $(,)?) => {
+        $(fn $name(&self, $(_: $type),*) -> $out {
+            loop {}
+        })+
     };
     (
         @functions [$s:tt as $trait:path] ($this:ident $to:expr, $at:tt)

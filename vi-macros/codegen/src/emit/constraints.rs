@@ -271,21 +271,3 @@ fn numbers(results: &[ResultEntry]) -> TokenStream {
     }
     entries::of(results.iter().map(|entry| Some(entry).into()))
 }
-
-/// The members of a system with errors and a constraint.
-pub(super) fn stub(n: &TokenStream) -> Members {
-    let none = quote!({ loop {} });
-    let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
-    let here = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>);
-    let [multipliers, gradients, reaction] = types(n);
-    let functions = quote! {
-        const CONSTRAINTS: &'static [&'static str] = &[""];
-        const HOLONOMIC: ::core::primitive::usize = 1;
-        fn applied(#at) -> ::vi_core::SVector<T, #n> #none
-        fn constraints(#here) -> #multipliers #none
-        fn constraint_gradients(#here) -> (#gradients, #multipliers) #none
-        fn constraint_rate_derivatives(#at) -> (#gradients, #multipliers) #none
-        fn reaction_derivatives(#here, _: &#multipliers) -> #reaction #none
-    };
-    Members { kind: quote!(::vi_core::kind::Bound<1>), items: TokenStream::new(), functions }
-}

@@ -1,9 +1,8 @@
 //! The struct of a system: its parameters as public fields, their defaults, their names. A system with mistakes gets a
 //! stub: the struct with every trait that its clauses may give it, so that the surrounding code has no further errors.
 
-use super::constraints::Members;
 use super::formula::number;
-use super::{Source, Steps, conditions, constraints, limit};
+use super::{Source, Steps, conditions, limit};
 use crate::limits::{COORDINATES, PARAMETERS};
 use crate::model::{COMPONENTS, Model, Parameter};
 use crate::rules::{GAUSS, NamedRule, RULES};
@@ -301,10 +300,10 @@ fn stub(system: &System) -> TokenStream {
     let size = Size::of(system);
     let (parameters, lagrangian) = (stub_parameters(name), stub_lagrangian(name, &size));
     let motion = if system.is_constrained {
-        stub_motion(name, &size, &constraints::stub(&size.n))
+        stub_motion(name, &size, &quote!(Bound<1>))
     } else {
         let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &size, rule.as_ref()));
-        let (motion, batch) = (stub_motion(name, &size, &Members::free()), stub_batch(name, &size));
+        let (motion, batch) = (stub_motion(name, &size, &quote!(Free)), stub_batch(name, &size));
         quote!(#motion #batch #(#by_rules)*)
     };
     let traits = quote!(#parameters #lagrangian #motion);
@@ -317,7 +316,7 @@ fn stub(system: &System) -> TokenStream {
         #(#conditions)*
         #[allow(unused_imports)]
         const _: () = {
-            use ::core::primitive::{bool, f64, str};
+            use ::core::primitive::{bool, f64, str, usize};
 
             impl ::core::default::Default for #name<f64> {
                 fn default() -> Self {
@@ -432,12 +431,6 @@ fn stub_batch(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
 }
 
 fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
-    let none = quote!({ loop {} });
-    let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
-    let vector = quote!(::vi_core::SVector<T, #n>);
-    let or_error = |what: TokenStream| quote!(::core::result::Result<#what, ::vi_core::StepError>);
-    let or_vector = or_error(vector.clone());
-    let or_flow = or_error(quote!(::vi_core::lagrangian::Flow<#n, T>));
     quote! {
         impl<#generic T: ::vi_core::real::Real> ::vi_core::Lagrangian<#n, T> for #name<T> {
             const NAME: &'static str = "";
@@ -445,76 +438,45 @@ fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
             const AUTONOMOUS: bool = false;
             const FORCED: bool = false;
             const CYCLIC: [bool; #n] = [false; #n];
-            fn lagrangian(#at) -> T #none
-            fn energy(#at) -> T #none
-            fn momentum(#at) -> #vector #none
-            fn force(#at) -> #vector #none
-            fn acceleration(#at) -> #or_vector #none
-            fn flow(#at) -> #or_flow #none
+            ::vi_core::forward! { [#n T Self] stub; lagrangian rates }
         }
     }
 }
 
 /// The stub of the equations of motion.
-fn stub_motion(name: &Ident, Size { generic, n }: &Size, Members { kind, functions, .. }: &Members) -> TokenStream {
-    let none = quote!({ loop {} });
-    let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
+fn stub_motion(name: &Ident, Size { generic, n }: &Size, kind: &TokenStream) -> TokenStream {
     quote! {
         impl<#generic T: ::vi_core::real::Real> ::vi_core::motion::Motion<#n, T> for #name<T> {
-            type Kind = #kind;
+            type Kind = ::vi_core::kind::#kind;
             type Mass = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_MASS: bool = false;
-            fn point(#at) -> ::vi_core::motion::Point<#n, T, Self::Mass> #none
-            fn point_derivatives(#at) -> ::vi_core::motion::PointDerivatives<Self::PointMatrix> #none
-            fn power(#at) -> T #none
-            #functions
+            ::vi_core::forward! { [#n T Self] stub; motion reactions }
         }
         impl<#generic> ::vi_core::stepping::Convertible<#n> for #name<f64> {
             type In<T: ::vi_core::real::Real> = #name<T>;
-            fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> #none
+            fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> { loop {} }
         }
     }
 }
 
 fn stub_steps(name: &Ident, Size { generic, n }: &Size, rule: Option<&TokenStream>) -> TokenStream {
-    let none = quote!({ loop {} });
-    let over = quote!(&self, _: &::vi_core::Interval<#n, T>);
-    let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
-    let from = quote!(&self, _: &::vi_core::node::Node<#n, T>, _: T, _: &::vi_core::SVector<T, #n>);
-    let vector = quote!(::vi_core::SVector<T, #n>);
     quote! {
         impl<#generic T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#n, T #rule> for #name<T> {
-            fn ld(#over) -> T #none
-            fn d1_ld(#over) -> T #none
-            fn d2_ld(#over) -> #vector #none
-            fn d3_ld(#over) -> T #none
-            fn d4_ld(#over) -> #vector #none
-            fn fd_minus(#over) -> #vector #none
-            fn fd_plus(#over) -> #vector #none
-            fn gd_minus(#over) -> T #none
-            fn gd_plus(#over) -> T #none
+            ::vi_core::forward! { [#n T Self] stub; slots }
         }
         impl<#generic T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#n, T #rule> for #name<T> {
             type Jacobian = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             type StepMatrix = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_JACOBIAN: bool = false;
-            fn momentum_equation(#from) -> ::vi_core::stepping::MomentumEquation<#n, T> #none
-            fn momentum_residual(#from) -> ::vi_core::stepping::MomentumResidual<#n, T> #none
-            fn momentum_derivatives(#from) -> ::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix> #none
-            fn momentum_rounding(#from) -> #vector #none
-            fn discrete_energy(#from) -> T #none
+            ::vi_core::forward! { [#n T Self] stub; fixed_residuals fixed_matrices }
         }
         impl<#generic T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#n, T #rule> for #name<T> {
-            fn step_density(#at) -> ::core::result::Result<T, ::vi_core::StepError> #none
-            fn extended_system(#from) -> ::vi_core::stepping::ExtendedSystem<#n, T> #none
-            fn extended_residual(#from) -> ::vi_core::stepping::ExtendedResidual<#n, T> #none
-            fn extended_derivatives(#from) -> ::vi_core::stepping::ExtendedDerivatives<#n, T, Self::Jacobian, Self::StepMatrix> #none
-            fn extended_rounding(#from) -> ::vi_core::stepping::Rounding<#n, T> #none
+            ::vi_core::forward! { [#n T Self] stub; energy_residuals energy_matrices }
         }
         impl<#generic> ::vi_core::stepping::Discretized<#n #rule> for #name<f64> {
             type Steps<T: ::vi_core::real::Real> = #name<T>;
-            fn steps<T: ::vi_core::real::Real>(&self) -> #name<T> #none
+            fn steps<T: ::vi_core::real::Real>(&self) -> #name<T> { loop {} }
         }
     }
 }
