@@ -6,7 +6,7 @@
 //! because t is rounded too.
 //!
 //! Tolerance: the rounding errors of all steps, amplified by the motion, and those of the reference. The error is
-//! measured twice, from the place and from a place [`BESIDE`] ulps away, with references in different parts. The error
+//! measured twice, from the place and from a place [`DISTANCE`] ulps away, with references in different parts. The error
 //! of the rule is the same in both up to its last digits, so that their difference is rounding error. The reference
 //! adds 32 changes and times, which may round equally in both:
 //!
@@ -29,7 +29,7 @@ use alloc::vec::Vec;
 use nalgebra::SVector;
 
 /// Distance of the two places, in ulps of each coordinate and velocity.
-const BESIDE: f64 = 64.0;
+const DISTANCE: f64 = 64.0;
 /// Rounding-error bound of one run, in units of the difference of two.
 const BOUND: f64 = 4.0;
 
@@ -57,8 +57,8 @@ pub(super) fn judged<const N: usize, S: Lagrangian<N>, M: Method<Y, N>, Y: Lagra
         return Err(check.vacuous("nothing accelerates, so that steps of any rule are exact; choose another place"));
     }
     let start = Trajectory { t: place.t, q: place.q, v: place.v };
-    let beside = |vector: &SVector<f64, N>| vector * (1.0 + BESIDE * f64::EPSILON);
-    let other = Trajectory { q: beside(&start.q), v: beside(&start.v), ..start };
+    let moved = |vector: &SVector<f64, N>| vector * (1.0 + DISTANCE * f64::EPSILON);
+    let other = Trajectory { q: moved(&start.q), v: moved(&start.v), ..start };
     let paths = |h: f64| -> Result<_, CheckFailure> {
         let paths = [Path::from(system, start, h, 1), Path::from(system, other, h, 2)];
         let [path, other] = paths.map(|path| path.map_err(|error| check.step(error)));

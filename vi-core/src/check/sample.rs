@@ -25,7 +25,7 @@ use num_traits::Float as _;
 /// Samples per place.
 const SAMPLES: u32 = 8;
 /// Distance of the samples from the trajectory, relative to its extent.
-const BESIDE: f64 = 0.5;
+const DISTANCE: f64 = 0.5;
 /// Relative variation of a parameter.
 const VARIATION: f64 = 0.1;
 /// Smallest extent of a coordinate, relative to the largest one in the measure of kinetic energy.
@@ -155,13 +155,13 @@ impl<const N: usize> SampledMotion<N> {
             let mut part = 1.0;
             for _ in 0..RETREATS {
                 draw = drawn;
-                let sample = beside(system, state, self.h, &extent, part, &mut draw);
+                let sample = near(system, state, self.h, &extent, part, &mut draw);
                 if is_defined(&sample) {
                     return sample;
                 }
                 part /= 2.0;
             }
-            beside(system, state, self.h, &extent, 0.0, &mut draw)
+            near(system, state, self.h, &extent, 0.0, &mut draw)
         };
         self.states.iter().map(sample).collect()
     }
@@ -224,7 +224,7 @@ fn range<const N: usize>(mut vectors: impl Iterator<Item = SVector<f64, N>>) -> 
 }
 
 /// The sample near a state: part 1 is the largest distance, part 0 the state itself.
-fn beside<const N: usize, S: Lagrangian<N> + Parameters + Copy>(
+fn near<const N: usize, S: Lagrangian<N> + Parameters + Copy>(
     system: &S,
     state: &Trajectory<N>,
     h: f64,
@@ -232,8 +232,8 @@ fn beside<const N: usize, S: Lagrangian<N> + Parameters + Copy>(
     part: f64,
     draw: &mut Sequence,
 ) -> Sample<S, N> {
-    let mut beside = |entry: f64, extent: f64| entry + BESIDE * part * extent * draw.next();
-    let (q, v) = (state.q.zip_map(extent_q, &mut beside), state.v.zip_map(extent_v, &mut beside));
+    let mut moved = |entry: f64, extent: f64| entry + DISTANCE * part * extent * draw.next();
+    let (q, v) = (state.q.zip_map(extent_q, &mut moved), state.v.zip_map(extent_v, &mut moved));
     let mut varied = *system;
     for name in system.parameters() {
         if let Some(parameter) = varied.parameter_mut(name) {

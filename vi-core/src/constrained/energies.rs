@@ -9,7 +9,7 @@
 //!
 //! Constraints do work if they move: `a = g_t`, or the part of a nonholonomic constraint without velocities.
 
-use super::equations::{impulses, places, stage_velocity};
+use super::equations::{configurations, impulses, stage_velocity};
 use crate::gauss::energies::Energies;
 use crate::gauss::lobatto::Lobatto;
 use crate::gauss::tableau::Tableau;
@@ -28,7 +28,7 @@ pub(crate) fn energies<S: Motion<N, T>, const N: usize, const STAGES: usize, T: 
 ) -> Energies<T> {
     let Tableau { b, c, .. } = const { &Tableau::<STAGES>::VALUES };
     let lobatto = const { &Lobatto::<STAGES>::VALUES };
-    let (stages, nodes, _) = places::<N, STAGES, T>(node, h, u);
+    let (stages, nodes, _) = configurations::<N, STAGES, T>(node, h, u);
     let [mut mean, mut size, mut done, mut left] = [T::zero(); 4];
     for i in 0..STAGES {
         let (t, q) = &stages[i];

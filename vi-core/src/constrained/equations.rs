@@ -52,7 +52,7 @@ fn part_of_node<const S: usize>(j: usize, i: usize) -> f64 {
 }
 
 /// Time and coordinates of a point in a step.
-pub(crate) type Place<const N: usize, T> = (T, SVector<T, N>);
+pub(crate) type Configuration<const N: usize, T> = (T, SVector<T, N>);
 
 /// The equations at some unknowns.
 pub(crate) struct Rows<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real = f64> {
@@ -64,9 +64,9 @@ pub(crate) struct Rows<S: Motion<N, T>, const N: usize, const STAGES: usize, T: 
     pub(crate) velocity: SVector<T, N>,
     /// `h Σ b_i F_i + Σ A_jᵀ λ_j`.
     pub(crate) increment: SVector<T, N>,
-    stages: [Place<N, T>; STAGES],
+    stages: [Configuration<N, T>; STAGES],
     /// The Lobatto nodes 1 … s.
-    nodes: [Place<N, T>; STAGES],
+    nodes: [Configuration<N, T>; STAGES],
     /// A at the node.
     first: Gradients<S, N, T>,
     /// A and a at the Lobatto nodes 1 … s.
@@ -81,11 +81,11 @@ pub(crate) struct Scales<S: Motion<N>, const N: usize, const STAGES: usize> {
 }
 
 /// Times and coordinates of the stages, and of the Lobatto nodes 1 … s; the mean velocity.
-pub(crate) fn places<const N: usize, const STAGES: usize, T: Real>(
+pub(crate) fn configurations<const N: usize, const STAGES: usize, T: Real>(
     node: &Node<N, T>,
     h: T,
     u: &[T],
-) -> ([Place<N, T>; STAGES], [Place<N, T>; STAGES], SVector<T, N>) {
+) -> ([Configuration<N, T>; STAGES], [Configuration<N, T>; STAGES], SVector<T, N>) {
     let Tableau { b, c, first: part, .. } = const { &Tableau::<STAGES>::VALUES };
     let lobatto = const { &Lobatto::<STAGES>::VALUES };
     let v: [SVector<T, N>; STAGES] = core::array::from_fn(|i| stage_velocity(u, i));
@@ -124,7 +124,7 @@ impl<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, S
         let constraints = system.constraint_names().len();
         let zeros = SVector::<T, N>::zeros();
         let v: [SVector<T, N>; STAGES] = core::array::from_fn(|i| stage_velocity(u, i));
-        let (stages, nodes, velocity) = places::<N, STAGES, T>(node, h, u);
+        let (stages, nodes, velocity) = configurations::<N, STAGES, T>(node, h, u);
 
         let at_nodes = nodes.map(|(t, q)| system.constraint_gradients(t, &q));
         let gradients_at = |j: usize| if j == 0 { first } else { &at_nodes[j - 1].0 };
@@ -183,7 +183,7 @@ impl<S: Motion<N, T>, const N: usize, const STAGES: usize, T: Real> Rows<S, N, S
     }
 
     /// Time and coordinates at the end of the step.
-    pub(crate) fn end(&self) -> Place<N, T> {
+    pub(crate) fn end(&self) -> Configuration<N, T> {
         self.nodes[STAGES - 1]
     }
 
@@ -444,7 +444,7 @@ pub(crate) fn discrete_energy<S: Motion<N>, const N: usize, const STAGES: usize>
 ) -> f64 {
     let Tableau { b, c, .. } = const { &Tableau::<STAGES>::VALUES };
     let lobatto = const { &Lobatto::<STAGES>::VALUES };
-    let (stages, nodes, _) = places::<N, STAGES, f64>(node, h, u);
+    let (stages, nodes, _) = configurations::<N, STAGES, f64>(node, h, u);
     let of_stages = (0..STAGES).fold(0.0, |sum, i| {
         let ((t, q), v) = (&stages[i], stage_velocity(u, i));
         sum + b[i] * (system.energy(*t, q, &v) + h * c[i] * system.power(*t, q, &v))

@@ -93,11 +93,11 @@ where
     fn guess<const STAGES: usize>(
         &self,
         h: f64,
-        beside: Option<&TriedLength<N, STAGES, Multipliers<S, N>>>,
+        near: Option<&TriedLength<N, STAGES, Multipliers<S, N>>>,
         u: &mut Vec<f64>,
     ) {
         let count = unknowns::<N, STAGES>(self.system.constraint_names().len());
-        let of = if let Some(other) = beside {
+        let of = if let Some(other) = near {
             other.write(u);
             other.h
         } else {
@@ -169,16 +169,10 @@ where
     type Trial = TriedLength<N, STAGES, Multipliers<S, N>>;
     type Taken = TakenLength<N, STAGES, Multipliers<S, N>>;
 
-    fn tried(
-        &self,
-        node: &Node<N>,
-        h: f64,
-        shift: f64,
-        beside: Option<&Self::Trial>,
-    ) -> Result<Self::Trial, StepError> {
+    fn tried(&self, node: &Node<N>, h: f64, shift: f64, near: Option<&Self::Trial>) -> Result<Self::Trial, StepError> {
         let mut u = core::mem::take(&mut self.workspace.borrow_mut().unknowns);
-        self.guess(h, beside, &mut u);
-        let is_near = beside.is_some_and(|other| (h / other.h - 1.0).abs() < NEAR);
+        self.guess(h, near, &mut u);
+        let is_near = near.is_some_and(|other| (h / other.h - 1.0).abs() < NEAR);
         let solution = self.solved::<STAGES>((node, h), &mut u, is_near);
         let tried = solution.and_then(|solution| self.measure((node, h, shift), &u, &solution));
         self.workspace.borrow_mut().unknowns = u;

@@ -12,7 +12,7 @@
 //! a pivot that is not positive, a residual above the floor, or rows that fill S.
 
 use super::diagonal;
-use super::equations::Place;
+use super::equations::Configuration;
 use super::solved::{SETTLED, Solved, contracted};
 use crate::kind::Multipliers;
 use crate::linear::{Rectangular, Row};
@@ -515,7 +515,7 @@ fn step_of_points<S: Motion<N>, const N: usize, const D: usize>(
 
     let (mut iterations, mut before, mut is_factored, mut contraction) = (0, f64::INFINITY, false, 0.0);
     let residual = loop {
-        let end: Place<N, f64> = (t1, node.q + (node.q_low + v * h));
+        let end: Configuration<N, f64> = (t1, node.q + (node.q_low + v * h));
         let residual = constraints::<S, N, D>(system, &end, (h, before), reduced);
         contraction = contracted(contraction, [before, residual]);
         if !is_factored || residual > FLOOR && residual > FALLEN * before {
@@ -550,7 +550,7 @@ fn step_of_points<S: Motion<N>, const N: usize, const D: usize>(
 #[inline(always)]
 fn constraints<S: Motion<N>, const N: usize, const D: usize>(
     system: &S,
-    (t, q): &Place<N, f64>,
+    (t, q): &Configuration<N, f64>,
     (h, before): (f64, f64),
     reduced: &mut Reduced,
 ) -> f64 {

@@ -107,7 +107,7 @@ pub(crate) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         return Err(none);
     }
     let search = Search {
-        solve: &|h, beside| Point::at(system, node, T::real(h), beside.map_or(v, |point: &Point<N, T>| point.v)),
+        solve: &|h, near| Point::at(system, node, T::real(h), near.map_or(v, |point: &Point<N, T>| point.v)),
         // The polished root is checked on all equations.
         is_rounding: &|_| Ok(true),
         t,

@@ -61,8 +61,8 @@ fn is_proven<const N: usize, const S: usize>(system: &ErasedSystem<'_, N>, node:
 
 impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// The step, if fixed-point iteration failed, contracted slowly or was skipped. `last` is the linearization of the
-    /// previous step, if that had the same length. If it starts `beside` a step, from the stages of one of nearly its
-    /// length that continues short ones, a solution close to them continues short ones, too.
+    /// previous step, if that had the same length. If the guess `continues` short steps, since it is the stages of a step
+    /// of nearly this length that does, a solution close to it continues them, too.
     ///
     /// # Errors
     /// [`StepError::StagesUnsettled`], [`StepError::TooLong`], or the reason why the stages have no value.
@@ -72,7 +72,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         system: &Y,
         instructions: Instructions,
         left: (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
-        beside: bool,
+        continues: bool,
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
@@ -88,7 +88,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         };
         let erased = &ErasedSystem::of(system);
         let is_near = || distance([self.stages, &step.stages], self.stages, &weights(erased, self.node, &step)) <= NEAR;
-        let is_proven = beside && is_near() || is_proven(erased, self.node, &step);
+        let is_proven = continues && is_near() || is_proven(erased, self.node, &step);
         if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
     }
 

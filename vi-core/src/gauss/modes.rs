@@ -292,12 +292,12 @@ fn sign(k: usize) -> f64 {
 /// Estimates of the eigenvalues on and above the real axis, the real one last.
 fn estimates<const S: usize>() -> Vec<Complex<f64>> {
     // In the normalized polynomials A is antisymmetric except for its corner.
-    let beside = |k: usize| 0.5 / (real(4 * k * k) - 1.0).sqrt();
+    let off_diagonal = |k: usize| 0.5 / (real(4 * k * k) - 1.0).sqrt();
     let mut matrix = DMatrix::zeros(S, S);
     matrix[(0, 0)] = 0.5;
     for k in 1..S {
-        matrix[(k - 1, k)] = -beside(k);
-        matrix[(k, k - 1)] = beside(k);
+        matrix[(k - 1, k)] = -off_diagonal(k);
+        matrix[(k, k - 1)] = off_diagonal(k);
     }
     let mut above: Vec<Complex<f64>> = matrix.complex_eigenvalues().iter().copied().collect();
     above.sort_by(|one, other| other.im.total_cmp(&one.im));

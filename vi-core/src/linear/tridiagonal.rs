@@ -84,7 +84,7 @@ impl Order {
 impl<const N: usize, T: Real> Tridiagonal<N, T> {
     /// The coefficients of the previous and of the next row, in the order of elimination.
     #[inline(always)]
-    fn beside<const FROM_ABOVE: bool>(&self, row: usize) -> [T; 2] {
+    fn neighbours<const FROM_ABOVE: bool>(&self, row: usize) -> [T; 2] {
         if FROM_ABOVE { [self.lower[row], self.upper[row]] } else { [self.upper[row], self.lower[row]] }
     }
 
@@ -95,7 +95,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
         [i, j]: [usize; 2],
         front: &mut Front<M, T>,
     ) -> ([T; 2], [T; 2], bool) {
-        let ([before, after], [back, beyond]) = (self.beside::<FROM_ABOVE>(i), self.beside::<FROM_ABOVE>(j));
+        let ([before, after], [back, beyond]) = (self.neighbours::<FROM_ABOVE>(i), self.neighbours::<FROM_ABOVE>(j));
         let ([near, far], product) = ([self.diagonal[i], self.diagonal[j]], before * front.beyond);
         let (straight, across, eliminated) = (near * far, after * back, product * front.corner);
         let first = near - eliminated;
@@ -118,7 +118,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
         front: &mut Front<M, T>,
         x: &mut SMatrix<T, N, M>,
     ) {
-        let ([before, after], [back, _]) = (self.beside::<FROM_ABOVE>(i), self.beside::<FROM_ABOVE>(j));
+        let ([before, after], [back, _]) = (self.neighbours::<FROM_ABOVE>(i), self.neighbours::<FROM_ABOVE>(j));
         for (mut x, known) in x.column_iter_mut().zip(&mut front.known) {
             let (near, far) = (x[i] - before * *known, x[j]);
             x[i] = (self.diagonal[j] * near - after * far) * reciprocal;

@@ -157,9 +157,9 @@ impl<T: Trial> Search<'_, T> {
     fn top(&self, earlier: &T, later: &T) -> Option<T> {
         let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
         let (mut low, mut high) = (earlier.h(), later.h());
-        let beside = |other: &T, h: f64| (self.solve)(h, Some(other)).ok();
-        let mut left = beside(earlier, high - golden * (high - low))?;
-        let mut right = beside(earlier, low + golden * (high - low))?;
+        let solve_near = |other: &T, h: f64| (self.solve)(h, Some(other)).ok();
+        let mut left = solve_near(earlier, high - golden * (high - low))?;
+        let mut right = solve_near(earlier, low + golden * (high - low))?;
         for _ in 0..SECTIONS {
             if let Some(found) = [&left, &right].into_iter().find(|trial| self.height(trial) >= 0.0) {
                 return Some(found.clone());
@@ -167,11 +167,11 @@ impl<T: Trial> Search<'_, T> {
             if self.height(&left) > self.height(&right) {
                 high = right.h();
                 right = left;
-                left = beside(&right, high - golden * (high - low))?;
+                left = solve_near(&right, high - golden * (high - low))?;
             } else {
                 low = left.h();
                 left = right;
-                right = beside(&left, low + golden * (high - low))?;
+                right = solve_near(&left, low + golden * (high - low))?;
             }
         }
         None

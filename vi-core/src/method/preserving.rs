@@ -30,8 +30,7 @@ pub(crate) trait StepsOfAnyLength<const N: usize, const K: usize> {
     ///
     /// # Errors
     /// The errors of a step; [`StepError::NonFinite`] if its energy is not finite.
-    fn tried(&self, node: &Node<N>, h: f64, shift: f64, beside: Option<&Self::Trial>)
-    -> Result<Self::Trial, StepError>;
+    fn tried(&self, node: &Node<N>, h: f64, shift: f64, near: Option<&Self::Trial>) -> Result<Self::Trial, StepError>;
     /// Rounding-error bound of the energy of a trial by running error analysis, in units of `ε`.
     fn rounding_of(&self, node: &Node<N>, trial: &Self::Trial) -> f64;
     /// Iterations of a trial.
@@ -107,8 +106,8 @@ pub(crate) struct Preserving<'a, P, const N: usize, const K: usize> {
 }
 
 impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P, N, K> {
-    fn tried(&self, h: f64, beside: Option<&P::Trial>) -> Result<P::Trial, StepError> {
-        self.steps.tried(self.node, h, self.history.shift, beside)
+    fn tried(&self, h: f64, near: Option<&P::Trial>) -> Result<P::Trial, StepError> {
+        self.steps.tried(self.node, h, self.history.shift, near)
     }
 
     /// Whether the energy of a trial equals the preserved one within its rounding error.
@@ -166,8 +165,8 @@ impl<P: StepsOfAnyLength<N, K>, const N: usize, const K: usize> Preserving<'_, P
         }
         let iterations = Cell::new(0);
         let search = Search {
-            solve: &|h, beside| {
-                let tried = self.tried(h, beside)?;
+            solve: &|h, near| {
+                let tried = self.tried(h, near)?;
                 iterations.set(iterations.get() + P::iterations(&tried));
                 Ok(tried)
             },

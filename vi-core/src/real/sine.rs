@@ -48,7 +48,7 @@ pub trait Vector: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     type Bits: Copy + Shl<u32, Output = Self::Bits> + BitXor<Output = Self::Bits>;
     /// Adding this number rounds to an integer, stored in the lowest bits: 1.5 · 2⁵² in double precision.
     const ROUNDING: f64 = 6_755_399_441_055_744.0;
-    /// Place of the sign bit.
+    /// Position of the sign bit.
     const SIGN: u32 = 63;
 
     /// The same number in every lane.

@@ -31,9 +31,9 @@ pub(super) struct Axis<X> {
     period: [f64; 3],
 }
 
-/// A piece of a polynomial in `u = x − base[0] − base[1]`.
+/// The segment between two knots, on which functions are polynomials in `u = x − base[0] − base[1]`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct Segment {
     /// Index of the last knot that is not above x; 0 below all of them.
     pub(super) index: usize,
     /// The whole periods before x, and the knot with the rest of them. The first is 0 in the range itself.
@@ -98,9 +98,9 @@ impl<X: AsRef<[f64]>> Axis<X> {
         self.outside != Outside::Undefined || from <= x && x <= to
     }
 
-    /// The piece at x.
+    /// The segment at x.
     #[inline]
-    pub(super) fn place(&self, x: f64) -> Place {
+    pub(super) fn segment(&self, x: f64) -> Segment {
         let [from, to] = self.range;
         let knots = self.knots.as_ref();
         if self.is_periodic() {
@@ -108,17 +108,17 @@ impl<X: AsRef<[f64]>> Axis<X> {
             let turns = ((x - from) / (to - from)).floor();
             let (whole, rest) = (turns * high, turns * low);
             let index = self.index(x - whole - (turns * middle + rest));
-            return Place { index, base: [whole, turns * middle + (rest + knots[index])], kept: usize::MAX };
+            return Segment { index, base: [whole, turns * middle + (rest + knots[index])], kept: usize::MAX };
         }
         let index = self.index(x);
-        // NaN belongs to the first piece, which is NaN there.
+        // NaN belongs to the first segment, which is NaN there.
         let kept = match self.outside {
             _ if !(x < from || x > to) => usize::MAX,
             Outside::Hold => 1,
             Outside::Extend => 2,
             Outside::Undefined | Outside::Periodic => 0,
         };
-        Place { index, base: [0.0, knots[index]], kept }
+        Segment { index, base: [0.0, knots[index]], kept }
     }
 
     /// Index of the last knot that is not above x; 0 below all of them and for NaN.
@@ -141,7 +141,7 @@ impl<X: AsRef<[f64]>> Axis<X> {
     }
 }
 
-impl Place {
+impl Segment {
     /// The coefficients that hold at x; NaN for an x outside of the range of a function that is undefined there.
     #[inline]
     pub(super) fn kept<const C: usize>(&self, coefficients: [f64; C]) -> [f64; C] {

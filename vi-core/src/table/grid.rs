@@ -194,7 +194,7 @@ fn constants(
     is_linear: bool,
     [x, y]: [f64; 2],
 ) -> [f64; 20] {
-    let (at_x, at_y) = (axes.0.place(x), axes.1.place(y));
+    let (at_x, at_y) = (axes.0.segment(x), axes.1.segment(y));
     let ([i, i_other], hx) = piece(axes.0.knots.as_ref(), at_x.index);
     let ([j, j_other], hy) = piece(axes.1.knots.as_ref(), at_y.index);
     let n = axes.1.knots.as_ref().len();

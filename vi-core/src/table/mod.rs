@@ -191,9 +191,9 @@ fn piece<T: Number, const C: usize>(axis: &Axis<impl AsRef<[f64]>>, pieces: &[[f
 /// The base of the piece at x, and its coefficients, up to six.
 #[inline]
 fn constants<const C: usize>(axis: &Axis<impl AsRef<[f64]>>, pieces: &[[f64; C]], x: f64) -> [f64; 8] {
-    let place = axis.place(x);
-    let coefficients = place.kept(pieces[place.index]);
-    let mut constants = [place.base[0], place.base[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let segment = axis.segment(x);
+    let coefficients = segment.kept(pieces[segment.index]);
+    let mut constants = [segment.base[0], segment.base[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     for (constant, coefficient) in constants[2..].iter_mut().zip(coefficients) {
         *constant = coefficient;
     }

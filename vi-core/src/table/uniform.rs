@@ -157,8 +157,8 @@ pub(super) const fn periodic_slopes([from, to]: [f64; 2], slopes: &mut [f64], bu
 /// functions at each knot, none of straight lines.
 #[inline]
 fn constants(axis: &Axis<impl AsRef<[f64]>>, slopes: Option<&[f64]>, is_invalid: bool, x: f64, j: usize) -> [f64; 6] {
-    let (place, knots) = (axis.place(x), axis.knots.as_ref());
-    let (i, n) = (place.index, knots.len());
+    let (segment, knots) = (axis.segment(x), axis.knots.as_ref());
+    let (i, n) = (segment.index, knots.len());
     // The last knot is at the end of the range, unless the table is periodic.
     let (other, h) = if i + 1 < n {
         (i + 1, knots[i + 1] - knots[i])
@@ -172,9 +172,9 @@ fn constants(axis: &Axis<impl AsRef<[f64]>>, slopes: Option<&[f64]>, is_invalid:
         Some(slopes) => slopes::hermite(h, [cardinal(i), slopes[i * n + j]], [cardinal(other), slopes[other * n + j]]),
         None => [cardinal(i), (cardinal(other) - cardinal(i)) / h, 0.0, 0.0],
     };
-    let coefficients = if is_invalid { [f64::NAN; 4] } else { place.kept(coefficients) };
+    let coefficients = if is_invalid { [f64::NAN; 4] } else { segment.kept(coefficients) };
     let [c0, c1, c2, c3] = coefficients;
-    [place.base[0], place.base[1], c0, c1, c2, c3]
+    [segment.base[0], segment.base[1], c0, c1, c2, c3]
 }
 
 /// The distance from the base of a piece, and its coefficients: those of the cardinal functions times the values.

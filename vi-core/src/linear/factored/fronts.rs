@@ -51,8 +51,8 @@ pub(super) struct Fronts<T: Real = f64> {
     /// For each position the pivot row in its front, and the reciprocal of the pivot.
     pivots: Vec<usize>,
     pub(super) reciprocals: Vec<T>,
-    /// Places of the entries in the order in which the matrix is written.
-    places: Vec<Place>,
+    /// Locations of the entries in the order in which the matrix is written.
+    locations: Vec<Location>,
     /// Their rows and columns.
     #[cfg(debug_assertions)]
     names: Vec<[usize; 2]>,
@@ -61,9 +61,9 @@ pub(super) struct Fronts<T: Real = f64> {
     pub(super) scales: Vec<f64>,
 }
 
-/// The place of a row and a column, or of their copies.
+/// The location of a row and a column, or of their copies.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct Location {
     start: u32,
     stride: u32,
 }
@@ -71,7 +71,7 @@ pub(super) struct Place {
 /// An entry to which terms are added.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry<T> {
-    place: Place,
+    location: Location,
     scale: T,
 }
 
@@ -130,7 +130,7 @@ impl<T: Real> Fronts<T> {
             rows,
             pivots: vec![0; first],
             reciprocals: vec![T::zero(); first],
-            places: Vec::new(),
+            locations: Vec::new(),
             #[cfg(debug_assertions)]
             names: Vec::new(),
             next: 0,
@@ -145,7 +145,7 @@ impl<T: Real> Fronts<T> {
         self.next = 0;
     }
 
-    /// An entry outside of its front has no place: the blocks are not those of this matrix.
+    /// An entry outside of its front has no location: the blocks are not those of this matrix.
     #[cold]
     fn find(&mut self, row: usize, column: usize) {
         #[cfg(debug_assertions)]
@@ -153,21 +153,21 @@ impl<T: Real> Fronts<T> {
         let front = self.homes[row].0.min(self.homes[column].0);
         let Front { values, size, .. } = self.matrices[front];
         let member = |unknown| self.members[front].iter().position(|member| *member == unknown);
-        let place = match (member(row), member(column)) {
+        let location = match (member(row), member(column)) {
             (Some(row), Some(column)) => {
                 let start = values + (row + column * size) * self.copies;
                 u32::try_from(start).ok().zip(u32::try_from(size).ok())
             }
             _ => None,
         };
-        self.places.push(place.map_or(Place::NONE, |(start, stride)| Place { start, stride }));
+        self.locations.push(location.map_or(Location::NONE, |(start, stride)| Location { start, stride }));
     }
 
     /// Factors the matrix in place. False if a pivot is zero, not finite, or too small against its column, or if an
     /// entry was outside of all fronts.
     pub(super) fn factor(&mut self) -> bool {
-        let Self { matrices, values, rows, pivots, reciprocals, places, .. } = self;
-        if places.iter().any(|place| place.is_none()) {
+        let Self { matrices, values, rows, pivots, reciprocals, locations, .. } = self;
+        if locations.iter().any(|location| location.is_none()) {
             return false;
         }
         for Front { own, size, values: start, first, border, parent } in matrices.iter().copied() {
@@ -235,29 +235,29 @@ impl<T: Real> Entries<T> for Fronts<T> {
         &mut self.scales
     }
 
-    /// The first matrix finds the places of its entries, and allocates.
+    /// The first matrix finds the locations of its entries, and allocates.
     #[inline(always)]
     fn entry(&mut self, row: usize, column: usize) -> Entry<T> {
-        if self.next == self.places.len() {
+        if self.next == self.locations.len() {
             self.find(row, column);
         }
         #[cfg(debug_assertions)]
         assert_eq!(self.names[self.next], [row, column], "entry {} in the order of the first matrix", self.next);
-        let place = self.places[self.next];
+        let location = self.locations[self.next];
         self.next += 1;
-        Entry { place, scale: T::real(self.scales[row] * self.scales[column]) }
+        Entry { location, scale: T::real(self.scales[row] * self.scales[column]) }
     }
 
     #[inline(always)]
-    fn add(&mut self, Entry { place, scale }: Entry<T>, [row, column]: [usize; 2], value: T) {
-        let index = place.start as usize + row + column * place.stride as usize;
+    fn add(&mut self, Entry { location, scale }: Entry<T>, [row, column]: [usize; 2], value: T) {
+        let index = location.start as usize + row + column * location.stride as usize;
         if let Some(entry) = self.values.get_mut(index) {
             *entry += value * scale;
         }
     }
 }
 
-impl Place {
+impl Location {
     const NONE: Self = Self { start: u32::MAX, stride: 0 };
 
     fn is_none(self) -> bool {

@@ -80,15 +80,15 @@ fn simpson([start, middle, end]: [f64; 3]) -> f64 {
     (start + 4.0 * middle + end) / 6.0
 }
 
-/// A place of the motion.
-pub(super) struct Place<S: Motion<N>, const N: usize> {
+/// A point of the motion, with the linear forces there.
+pub(super) struct MotionPoint<S: Motion<N>, const N: usize> {
     t: f64,
     q: SVector<f64, N>,
     v: SVector<f64, N>,
     forces: Option<Forces<S::Mass, N>>,
 }
 
-/// The linear forces at a place.
+/// The linear forces at a point.
 struct Forces<M, const N: usize> {
     compliance: Compliance<M, N>,
     /// K, symmetric, and M⁻¹K.
@@ -122,7 +122,7 @@ impl<M: Matrix<N, f64>, const N: usize> Compliance<M, N> {
 /// A time, coordinates and velocities.
 type At<'a, const N: usize> = (f64, &'a SVector<f64, N>, &'a SVector<f64, N>);
 
-/// The compliance at a place. Adds the reactions of constraints to K.
+/// The compliance at a point. Adds the reactions of constraints to K.
 #[cfg_attr(not(feature = "alloc"), allow(unused_variables, clippy::unnecessary_wraps, reason = "constraints need it"))]
 fn compliance<S: Convertible<N>, const N: usize>(
     system: &S,
@@ -192,8 +192,8 @@ impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
     }
 }
 
-impl<S: Convertible<N>, const N: usize> Place<S, N> {
-    /// The place of a node.
+impl<S: Convertible<N>, const N: usize> MotionPoint<S, N> {
+    /// The point of a node.
     ///
     /// # Errors
     /// As [`State::velocity`].
@@ -204,13 +204,13 @@ impl<S: Convertible<N>, const N: usize> Place<S, N> {
         Ok(Self::at(system, (t, q, v)))
     }
 
-    /// The place at (t, q, v).
+    /// The point at (t, q, v).
     pub(super) fn at(system: &S, (t, q, v): (f64, SVector<f64, N>, SVector<f64, N>)) -> Self {
         let forces = if system.scales_time() { None } else { Forces::of(system, (t, &q, &v)) };
         Self { t, q, v, forces }
     }
 
-    /// The middle of the cubic from here to another place.
+    /// The middle of the cubic from here to another point.
     fn middle(&self, end: &Self) -> (f64, SVector<f64, N>, SVector<f64, N>) {
         let h = end.t - self.t;
         let q = (self.q + end.q) * 0.5 + (self.v - end.v) * (0.125 * h);
@@ -219,14 +219,14 @@ impl<S: Convertible<N>, const N: usize> Place<S, N> {
     }
 }
 
-/// The phase of the step of the length h between two places; `None` if the stiffness has no value. Ω is at least
+/// The phase of the step of the length h between two points; `None` if the stiffness has no value. Ω is at least
 /// `floor`.
 ///
 /// # Errors
 /// [`StepError::TimeScale`] for a time scale that is not positive.
 pub(super) fn phase<S: Convertible<N>, const N: usize>(
     system: &S,
-    [start, end]: [&Place<S, N>; 2],
+    [start, end]: [&MotionPoint<S, N>; 2],
     [h, floor]: [f64; 2],
 ) -> Result<Option<Phase>, StepError> {
     let (t, q, v) = start.middle(end);

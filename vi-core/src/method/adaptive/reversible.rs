@@ -19,7 +19,7 @@
 //! the energy error.
 
 use super::decaying::FEWEST;
-use super::phase::{Phase, Place, phase};
+use super::phase::{MotionPoint, Phase, phase};
 use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, moves_time, taken};
 use crate::error::StepError;
 use crate::gauss::polynomial::{coefficients, integrals, polynomials, sum};
@@ -59,7 +59,7 @@ const SHORT: f64 = 1.5;
 /// Lengths without a quick step, mostly much too long, after which a step is solved in any way.
 const QUICK: usize = 4;
 /// The largest factor between the lengths of two steps of which one proves the other.
-const BESIDE: f64 = 1.5;
+const PROVING: f64 = 1.5;
 
 /// The data of the law between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,7 +124,7 @@ impl Search {
     }
 
     /// The length to try after this one, by the slope, or halfway between those that are too short and too long.
-    fn beside(&mut self, h: f64, off: f64) -> f64 {
+    fn next(&mut self, h: f64, off: f64) -> f64 {
         self.between[usize::from(off > 0.0)] = h;
         let next = h * (-off / self.slope).clamp(-1.0, 1.0).exp();
         let [short, long] = self.between;
@@ -147,7 +147,7 @@ impl Reversible {
         [start, end]: [&Node<N>; 2],
         h: f64,
     ) -> Result<Self, StepError> {
-        let [start, end] = [Place::of(system, start)?, Place::of(system, end)?];
+        let [start, end] = [MotionPoint::of(system, start)?, MotionPoint::of(system, end)?];
         #[allow(clippy::cast_precision_loss)] // 16 stages at most
         let stages = STAGES as f64;
         let is_felt = |found: &Phase| system.scales_time() || found.value().powf(2.0 * stages) > FREE;
@@ -183,28 +183,28 @@ impl Reversible {
         let Problem { system, node, .. } = at;
         let Self { phase: wanted, floor, ahead, ratio: before, slope } = *self;
         let Following { steps, h: last, .. } = memory;
-        let start = Place::of(system, node)?;
+        let start = MotionPoint::of(system, node)?;
         let mut search = Search::new([0.0, wanted / floor], slope);
         let mut h = last * ahead;
         let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
         let mut failure = StepError::LengthsLost { t: node.t, h: *last };
         // The polynomials of fewer stages are too rough.
         let mut is_first = STAGES >= FEWEST;
-        let (mut quick, mut is_beside) = (QUICK, false);
+        let (mut quick, mut is_near) = (QUICK, false);
         for trial in 0..TRIALS {
             if !moves_time(h, node.t)? {
                 break;
             }
             let (solver, at) = (solver::<S, N, STAGES>(), Problem { h, ..at });
-            let step = match (is_beside, quick) {
-                (true, _) => solver.beside(at, &guess, cache).map(Some),
+            let step = match (is_near, quick) {
+                (true, _) => solver.solve_near(at, &guess, cache).map(Some),
                 (false, 0) => solver.solve(at, &guess, cache).map(Some),
                 (false, _) => solver.quickly(at, &guess, cache),
             };
             let tried = step.and_then(|step| {
                 let Some(step) = step else { return Ok(None) };
                 let (end, steps) = taken::<S, N, STAGES>(at, &guess, cache, step);
-                Ok(Some((Place::of(system, &end)?, end, steps)))
+                Ok(Some((MotionPoint::of(system, &end)?, end, steps)))
             });
             let (there, end, steps) = match tried {
                 Ok(Some(found)) => found,
@@ -216,7 +216,7 @@ impl Reversible {
                         quick -= 1;
                         search.halved(h)
                     };
-                    is_beside = false;
+                    is_near = false;
                     guess = Solver::<S, N, STAGES>::resized(system, &memory.steps, node, h)?;
                     continue;
                 }
@@ -229,7 +229,7 @@ impl Reversible {
             if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
                 if self.is_too_long::<S, N, STAGES>(system, (&start, node), (&steps, h)) {
                     search = Search::new([0.0, h], slope);
-                    (h, is_beside) = (search.halved(h), false);
+                    (h, is_near) = (search.halved(h), false);
                     guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
                     continue;
                 }
@@ -243,9 +243,9 @@ impl Reversible {
             h = if core::mem::take(&mut is_first) {
                 self.foreseen::<S, N, STAGES>(system, (&start, node), (&steps, h), (&mut search, off))
             } else {
-                search.beside(h, off)
+                search.next(h, off)
             };
-            is_beside = h / solved < BESIDE && solved / h < BESIDE;
+            is_near = h / solved < PROVING && solved / h < PROVING;
             guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
         }
         Err(failure)
@@ -256,7 +256,7 @@ impl Reversible {
     fn is_too_long<S: Convertible<N>, const N: usize, const STAGES: usize>(
         &self,
         system: &S,
-        start: (&Place<S, N>, &Node<N>),
+        start: (&MotionPoint<S, N>, &Node<N>),
         (steps, h): (&Steps<S, N, STAGES>, f64),
     ) -> bool {
         if self.phase.abs() < SHORT {
@@ -271,13 +271,13 @@ impl Reversible {
     fn on_polynomial<S: Convertible<N>, const N: usize, const STAGES: usize>(
         &self,
         system: &S,
-        (start, node): (&Place<S, N>, &Node<N>),
+        (start, node): (&MotionPoint<S, N>, &Node<N>),
         (velocity, h): (&Stages<N, STAGES>, f64),
         length: f64,
     ) -> Option<Phase> {
         let part = length / h;
         let q = node.q + sum(velocity, &integrals(part)) * h;
-        let there = Place::at(system, (node.t + length, q, sum(velocity, &polynomials(part))));
+        let there = MotionPoint::at(system, (node.t + length, q, sum(velocity, &polynomials(part))));
         phase(system, [start, &there], [length.abs(), self.floor]).ok()?
     }
 
@@ -286,11 +286,11 @@ impl Reversible {
     fn foreseen<S: Convertible<N>, const N: usize, const STAGES: usize>(
         &self,
         system: &S,
-        (start, node): (&Place<S, N>, &Node<N>),
+        (start, node): (&MotionPoint<S, N>, &Node<N>),
         (steps, h): (&Steps<S, N, STAGES>, f64),
         (search, mut off): (&mut Search, f64),
     ) -> f64 {
-        let mut tried = search.beside(h, off);
+        let mut tried = search.next(h, off);
         let mut on = search.clone();
         let velocity = coefficients(&Solver::<S, N, STAGES>::velocities(system, steps));
         for _ in 0..FORESEEN {
@@ -300,7 +300,7 @@ impl Reversible {
             let Some(found) = self.on_polynomial(system, (start, node), (&velocity, h), tried) else { break };
             off = found.off(self.phase);
             on.learn(tried, off);
-            tried = on.beside(tried, off);
+            tried = on.next(tried, off);
             // The slope here is that of the steps, up to the error of the polynomials.
             *search = Search::new(search.between, on.slope);
             if off.abs() < CLOSE {

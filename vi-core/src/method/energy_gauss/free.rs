@@ -89,16 +89,10 @@ where
     type Trial = Tried<N, K>;
     type Taken = Step<N, K>;
 
-    fn tried(
-        &self,
-        node: &Node<N>,
-        h: f64,
-        shift: f64,
-        beside: Option<&Tried<N, K>>,
-    ) -> Result<Tried<N, K>, StepError> {
+    fn tried(&self, node: &Node<N>, h: f64, shift: f64, near: Option<&Tried<N, K>>) -> Result<Tried<N, K>, StepError> {
         let Self { system, instructions, stages: last, cache } = self;
         let (system, instructions, cache) = (*system, *instructions, &mut **cache.borrow_mut());
-        let stages = beside.map_or_else(
+        let stages = near.map_or_else(
             || self.guess(h),
             |other| {
                 let ratio = h / other.h();

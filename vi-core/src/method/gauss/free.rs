@@ -395,7 +395,7 @@ where
         }
     }
 
-    fn beside(
+    fn solve_near(
         &self,
         at: Problem<'_, S, Instructions, N>,
         memory: &LastStages<N, STAGES>,

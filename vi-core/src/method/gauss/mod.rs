@@ -69,7 +69,7 @@ pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memo
     /// # Errors
     /// As [`Method::solve`].
     #[doc(hidden)]
-    fn beside(
+    fn solve_near(
         &self,
         at: Problem<'_, S, Self::Prepared, N>,
         memory: &Self::Memory,

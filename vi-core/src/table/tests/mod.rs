@@ -269,12 +269,12 @@ fn the_error_bound_holds_for_rounded_coefficients() {
     let mut largest = 0.0_f64;
     for k in 0..2000 {
         let x = -0.999 + 0.00424 * f64::from(k);
-        let place = QUINTIC.axis.place(x);
-        let base = QUINTIC.axis.knots[place.index];
+        let segment = QUINTIC.axis.segment(x);
+        let base = QUINTIC.axis.knots[segment.index];
         let u = x - base;
         let u_low = (x - (u + base)) + (base - ((u + base) - u));
         let (mut sum, mut low) = (0.0, 0.0);
-        for c in QUINTIC.pieces[place.index].into_iter().rev() {
+        for c in QUINTIC.pieces[segment.index].into_iter().rev() {
             let (product, of_product) = two_product(sum, u);
             low = low * u + of_product + sum * u_low;
             let next = product + c;

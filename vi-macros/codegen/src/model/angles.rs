@@ -230,10 +230,10 @@ impl Probe<'_> {
         let moved = |angle: f64, index: usize| TAU.mul_add(f64::from(turns(point, index)), angle);
         let end = self.value(point, &|index, angle| moved(angle, index));
         // The moved angle is rounded: its neighbour shows by how much the value may change.
-        let beside = self.value(point, &|index, angle| {
+        let neighbour = self.value(point, &|index, angle| {
             if turns(point, index) == 0 { angle } else { moved(angle, index) * 4.0_f64.mul_add(f64::EPSILON, 1.0) }
         });
-        let rounding = start.error + end.error + (beside.value - end.value).abs();
+        let rounding = start.error + end.error + (neighbour.value - end.value).abs();
         // False for NaN: without a value there is no difference.
         (end.value - start.value).abs() > MARGIN * rounding
     }

@@ -29,7 +29,7 @@ const DEPENDENT: f64 = 1e-5;
 const COORDINATES: usize = 60;
 
 /// The end of an iteration.
-enum Place {
+enum End {
     /// The constraints hold at a place where A has this rank.
     Rank(usize),
     /// They come no nearer to holding.
@@ -57,9 +57,9 @@ pub(super) fn leave_motion(
     let mut is_rigid = true;
     for start in 0..STARTS {
         match linkage.closed(start) {
-            Place::Rank(rank) if rank < dimension => return true,
-            Place::Lost => is_rigid = false,
-            Place::Rank(_) | Place::Stationary => {}
+            End::Rank(rank) if rank < dimension => return true,
+            End::Lost => is_rigid = false,
+            End::Rank(_) | End::Stationary => {}
         }
     }
     !is_rigid
@@ -101,16 +101,16 @@ impl Linkage<'_> {
     }
 
     /// The end of the iteration from a start.
-    fn closed(&self, start: u32) -> Place {
+    fn closed(&self, start: u32) -> End {
         let mut q: Vec<f64> = (0..self.dimension).map(|index| probe::near_one(start, index)).collect();
-        let Some(mut now) = self.at(&q) else { return Place::Lost };
+        let Some(mut now) = self.at(&q) else { return End::Lost };
         let mut damping = DAMPING;
         for _ in 0..TRIALS {
             if now.holds {
-                return Place::Rank(rank(now.rows));
+                return End::Rank(rank(now.rows));
             }
             if damping > LARGEST_DAMPING {
-                return Place::Stationary;
+                return End::Stationary;
             }
             let next: Option<(Vec<f64>, Numbers)> = self.step(&now, damping).and_then(|step| {
                 let next: Vec<f64> = q.iter().zip(step).map(|(entry, change)| entry + change).collect();
@@ -125,7 +125,7 @@ impl Linkage<'_> {
                 None => damping *= 4.0,
             }
         }
-        Place::Lost
+        End::Lost
     }
 
     /// The damped step, by elimination without pivoting: the matrix is positive definite.

@@ -19,7 +19,7 @@ const NARROW: u32 = 8;
 const ITERATIONS: u32 = 60;
 const QUOTIENT: f64 = 1e-6;
 /// Part of the way between two points beside a border.
-const BESIDE: f64 = 1e-9;
+const OUTSIDE: f64 = 1e-9;
 /// Growth of a difference from there to the border that shows a pole.
 const POLE: f64 = 1e3;
 /// Borders at which both expressions are compared.
@@ -267,11 +267,11 @@ fn narrow_change(pool: &Pool<Symbol>, condition: Expr, pair: u32, parameters: &[
             let mut next = point.clone();
             for (index, slope) in along.iter_mut().enumerate() {
                 let step = QUOTIENT * point[index].abs().max(1.0);
-                let mut beside = |side: f64| {
+                let mut shifted = |side: f64| {
                     next[index] = side.mul_add(step, point[index]);
                     value(function, &next)
                 };
-                *slope = (beside(1.0) - beside(-1.0)) / (2.0 * step);
+                *slope = (shifted(1.0) - shifted(-1.0)) / (2.0 * step);
                 next[index] = point[index];
             }
             let size: f64 = along.iter().map(|slope| slope * slope).sum();
@@ -326,12 +326,12 @@ fn border(
     let values = at(high, exprs);
     let [difference, then, otherwise] = values[..] else { return None };
     // A pole has no two sides that could agree.
-    let beside = at(high + BESIDE, &exprs[..1]).first().map_or(0.0, |value| f64::abs(*value));
-    if difference.abs() > POLE * beside {
+    let outside = at(high + OUTSIDE, &exprs[..1]).first().map_or(0.0, |value| f64::abs(*value));
+    if difference.abs() > POLE * outside {
         return None;
     }
     // A root vanishes slowly: it is less at the border, but not small.
-    let difference = if difference.abs() < beside / 2.0 { 0.0 } else { difference };
+    let difference = if difference.abs() < outside / 2.0 { 0.0 } else { difference };
     let mut around = difference.abs();
     for way in [0.0, 1.0] {
         let size = at(way, &exprs[..1]).first().map_or(0.0, |value| f64::abs(*value));

@@ -55,8 +55,8 @@ impl Sweep {
     }
 }
 
-/// Where a term goes.
-pub(super) enum Place {
+/// The derivative to which a term is added: with respect to time, or to an entry of the state.
+pub(super) enum Partial {
     Time,
     State(Read, TokenStream),
 }
@@ -112,18 +112,20 @@ impl Printer<'_> {
     }
 
     /// Adds a term to a sum, and its size to the sum of sizes.
-    pub(super) fn add(&self, sweep: Sweep, place: &Place, term: &TokenStream, size: &TokenStream) -> TokenStream {
-        let (sum, sizes) = match (sweep.of, place) {
-            (Swept::Lagrangian, Place::Time) => (quote!(dt), quote!(dt_size)),
-            (Swept::Lagrangian, Place::State(Read::Coordinate, index)) => (quote!(dq[#index]), quote!(dq_size[#index])),
-            (Swept::Lagrangian, Place::State(Read::Velocity, index)) => (quote!(dv[#index]), quote!(dv_size[#index])),
-            (Swept::Dissipation, Place::State(Read::Velocity, index)) => {
+    pub(super) fn add(&self, sweep: Sweep, partial: &Partial, term: &TokenStream, size: &TokenStream) -> TokenStream {
+        let (sum, sizes) = match (sweep.of, partial) {
+            (Swept::Lagrangian, Partial::Time) => (quote!(dt), quote!(dt_size)),
+            (Swept::Lagrangian, Partial::State(Read::Coordinate, index)) => {
+                (quote!(dq[#index]), quote!(dq_size[#index]))
+            }
+            (Swept::Lagrangian, Partial::State(Read::Velocity, index)) => (quote!(dv[#index]), quote!(dv_size[#index])),
+            (Swept::Dissipation, Partial::State(Read::Velocity, index)) => {
                 let sizes = sweep.of_sizes(quote!(force_size[#index] += #size;));
                 return quote!(force[#index] -= #term; #sizes);
             }
-            (Swept::Scale, Place::Time) => (quote!(g_dt), quote!()),
-            (Swept::Scale, Place::State(Read::Coordinate, index)) => (quote!(g_dq[#index]), quote!()),
-            (_, Place::State(read, index)) if read.is_entry() && sweep.needs(read) => {
+            (Swept::Scale, Partial::Time) => (quote!(g_dt), quote!()),
+            (Swept::Scale, Partial::State(Read::Coordinate, index)) => (quote!(g_dq[#index]), quote!()),
+            (_, Partial::State(read, index)) if read.is_entry() && sweep.needs(read) => {
                 let array = self.array(*read);
                 let (bar, size) = (format_ident!("bar_{array}"), format_ident!("size_{array}"));
                 (quote!(#bar[#index]), quote!(#size[#index]))
@@ -146,9 +148,9 @@ impl Printer<'_> {
         let terms = Self::over_sums(name, sums, 0, &|of| {
             let (name, numbers, value) = (&of.name, self.numbers(of), &of.body.values[0]);
             let add = |place, slope: TokenStream| self.add(sweep, &place, &slope, &quote!(#slope.abs()));
-            let by_time = value.varies.then(|| add(Place::Time, quote!(slopes[1])));
+            let by_time = value.varies.then(|| add(Partial::Time, quote!(slopes[1])));
             let states = of.states(value);
-            let by_state = states.map(|(place, read, at)| add(Place::State(read, at), slope(value, place)));
+            let by_state = states.map(|(place, read, at)| add(Partial::State(read, at), slope(value, place)));
             let whole = (sweep.of == Swept::Lagrangian).then(|| {
                 let size = sweep.of_sizes(quote!(value_size += slopes[0].abs();));
                 quote!(value += slopes[0]; #size)
@@ -179,9 +181,9 @@ impl Printer<'_> {
                     self.add(sweep, &place, &quote!(bar * #slope), &quote!(size * #slope.abs()))
                 };
                 let time = Literal::usize_unsuffixed(value.first_slope + 1);
-                let by_time = value.varies.then(|| add(Place::Time, quote!(slopes[#time])));
+                let by_time = value.varies.then(|| add(Partial::Time, quote!(slopes[#time])));
                 let states = of.states(value);
-                let by_state = states.map(|(place, read, at)| add(Place::State(read, at), slope(value, place)));
+                let by_state = states.map(|(place, read, at)| add(Partial::State(read, at), slope(value, place)));
                 let size = sweep.of_sizes(quote!(let size = #size[#entry];));
                 quote! {
                     let bar = #bar[#entry];

@@ -1,6 +1,6 @@
 //! The time scale of a large system: its parts, the whole, and one reverse sweep.
 
-use super::first::{Place, Sweep};
+use super::first::{Partial, Sweep};
 use super::{Printed, Printer, reads_entries, slope};
 use crate::indexed::{PART, Read, SCALE, Scale};
 use proc_macro2::{Literal, TokenStream};
@@ -62,13 +62,13 @@ impl Printer<'_> {
             None => slope,
         };
         let by_time =
-            value.varies.then(|| self.add(Sweep::SCALE, &Place::Time, &weighted(quote!(slopes[1])), &quote!()));
+            value.varies.then(|| self.add(Sweep::SCALE, &Partial::Time, &weighted(quote!(slopes[1])), &quote!()));
         let by_state = of.states(value).map(|(place, read, at)| {
             let slope = weighted(slope(value, place));
             if read == Read::Part {
                 return quote!(weights[#at] = #slope;);
             }
-            self.add(Sweep::SCALE, &Place::State(read, at), &slope, &quote!())
+            self.add(Sweep::SCALE, &Partial::State(read, at), &slope, &quote!())
         });
         quote!(#by_time #(#by_state)*)
     }
