@@ -7,10 +7,10 @@ use vi_core::run::ErrorEstimate;
 use vi_erased::control::{Control, Linear};
 use vi_erased::plan::Built;
 use vi_erased::section::Section;
-use vi_erased::simulation::{AtConstraints, Met, Rows, Session, ShiftedEnergy, StepOutput, Steps, Wanted};
+use vi_erased::simulation::{Met, Rows, Session, StepOutput, Steps, Wanted};
 use vi_erased::studies::Studies;
 use vi_erased::system::{OnConstraints, Quantity};
-use vi_erased::{PhasePoint, Plan, Row, Simulation, System};
+use vi_erased::{PhasePoint, Plan, Row, Simulation, System, forward};
 
 /// The fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,27 +72,10 @@ impl<Y: ?Sized> Spoiled<Y> {
     }
 }
 
-/// Functions that take those of the right system or run.
-macro_rules! forward {
-    ($(fn $name:ident(&$self:ident $(, $of:ident: $type:ty)*) -> $out:ty;)*) => {
-        $(fn $name(&$self $(, $of: $type)*) -> $out {
-            $self.of.$name($($of),*)
-        })*
-    };
-}
-
 impl System for Spoiled<dyn System> {
+    forward!(System);
     forward! {
-        fn name(&self) -> &'static str;
-        fn about(&self) -> &'static str;
-        fn definition(&self) -> &'static str;
         fn coordinates(&self) -> Vec<&'static str>;
-        fn constraints(&self) -> &'static [&'static str];
-        fn parameters(&self) -> Vec<(&'static str, f64)>;
-        fn parameters_about(&self) -> &'static [&'static str];
-        fn integrators(&self) -> Vec<Built>;
-        fn offers(&self, wanted: Built) -> Result<(), StepError>;
-        fn conserves_energy(&self) -> bool;
         fn evaluate(&self, of: Quantity, points: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError>;
         fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
         fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
@@ -103,10 +86,6 @@ impl System for Spoiled<dyn System> {
 
     fn without(&self, constraints: &[&str]) -> Option<Box<dyn System>> {
         Some(system(self.of.without(constraints)?, self.fault))
-    }
-
-    fn set(&mut self, name: &str, value: f64) -> bool {
-        self.of.set(name, value)
     }
 
     fn copy(&self) -> Box<dyn System> {
@@ -141,15 +120,10 @@ impl Spoiled<dyn Simulation> {
 }
 
 impl Steps for Spoiled<dyn Simulation> {
+    forward!(Steps);
     forward! {
-        fn t(&self) -> f64;
         fn q(&self) -> Cow<'_, [f64]>;
         fn p(&self) -> &[f64];
-        fn h(&self) -> f64;
-        fn energy(&self) -> Result<f64, StepError>;
-        fn discrete_energy(&self) -> Option<f64>;
-        fn shifted_energy(&self) -> Option<ShiftedEnergy>;
-        fn constraints(&self) -> Option<AtConstraints>;
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
@@ -167,14 +141,6 @@ impl Steps for Spoiled<dyn Simulation> {
         }
     }
 
-    fn advance_to(&mut self, end: f64) -> Result<(), StepError> {
-        self.of.advance_to(end)
-    }
-
-    fn monitor(&mut self) {
-        self.of.monitor();
-    }
-
     fn largest_error(&self) -> Option<ErrorEstimate> {
         let found = self.of.largest_error()?;
         Some(ErrorEstimate { estimate: found.estimate * self.factor(Fault::Monitor, 0.01), ..found })
@@ -182,10 +148,7 @@ impl Steps for Spoiled<dyn Simulation> {
 }
 
 impl Simulation for Spoiled<dyn Simulation> {
-    forward! {
-        fn evaluations(&self) -> u64;
-        fn sampled_energy(&self) -> Result<(f64, f64), StepError>;
-    }
+    forward!(Simulation);
 
     fn copy(&self) -> Box<dyn Simulation> {
         self.run(self.of.copy())

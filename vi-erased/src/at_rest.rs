@@ -7,13 +7,16 @@
 
 #[cfg(feature = "derivatives")]
 use crate::control::{Control, Linear, Rest, pairs};
+use crate::forward;
+#[cfg(feature = "checkpoints")]
+use crate::plan::Built;
 #[cfg(feature = "studies")]
 use crate::plan::ENERGY_STAGES;
-use crate::plan::{Built, PhasePoint, Plan};
+use crate::plan::{PhasePoint, Plan};
 use crate::section::{Section, Watch};
 #[cfg(feature = "derivatives")]
 use crate::simulation::Wanted;
-use crate::simulation::{AtConstraints, Met, ShiftedEnergy, Simulation, Steps, wrong_size};
+use crate::simulation::{Met, Simulation, Steps, wrong_size};
 #[cfg(feature = "sessions")]
 use crate::simulation::{Rows, Session, StepOutput};
 #[cfg(feature = "studies")]
@@ -96,17 +99,7 @@ impl Declared<dyn System> {
 }
 
 impl System for Declared<dyn System> {
-    fn name(&self) -> &'static str {
-        self.of.name()
-    }
-
-    fn about(&self) -> &'static str {
-        self.of.about()
-    }
-
-    fn definition(&self) -> &'static str {
-        self.of.definition()
-    }
+    forward!(System);
 
     fn coordinates(&self) -> Vec<&'static str> {
         let mut names = self.of.coordinates();
@@ -114,36 +107,8 @@ impl System for Declared<dyn System> {
         names
     }
 
-    fn constraints(&self) -> &'static [&'static str] {
-        self.of.constraints()
-    }
-
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
-        self.of.parameters()
-    }
-
-    fn parameters_about(&self) -> &'static [&'static str] {
-        self.of.parameters_about()
-    }
-
-    fn set(&mut self, name: &str, value: f64) -> bool {
-        self.of.set(name, value)
-    }
-
     fn copy(&self) -> Box<dyn System> {
         without_rest(self.of.copy(), self.size)
-    }
-
-    fn integrators(&self) -> Vec<Built> {
-        self.of.integrators()
-    }
-
-    fn offers(&self, wanted: Built) -> Result<(), StepError> {
-        self.of.offers(wanted)
-    }
-
-    fn conserves_energy(&self) -> bool {
-        self.of.conserves_energy()
     }
 
     fn evaluate(&self, of: Quantity, [t, q, v]: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError> {
@@ -301,20 +266,14 @@ impl Studies for Declared<dyn System> {
 
 #[cfg(feature = "studies")]
 impl Exponents for Declared<dyn Exponents> {
-    fn advance(&mut self, steps: u64) -> Result<(), StepError> {
-        self.of.advance(steps)
-    }
-
-    fn t(&self) -> f64 {
-        self.of.t()
+    forward! {
+        fn advance(&mut self, steps: u64) -> Result<(), StepError>;
+        fn t(&self) -> f64;
+        fn exponents(&self) -> Vec<f64>;
     }
 
     fn q(&self) -> &[f64] {
         &self.of.q()[..self.size]
-    }
-
-    fn exponents(&self) -> Vec<f64> {
-        self.of.exponents()
     }
 }
 
@@ -355,8 +314,10 @@ fn cut_met(mut met: Met, size: usize) -> Met {
 }
 
 impl Steps for Declared<dyn Simulation> {
-    fn t(&self) -> f64 {
-        self.of.t()
+    forward!(Steps);
+    forward! {
+        fn advance(&mut self) -> Result<(), StepError>;
+        fn largest_error(&self) -> Option<ErrorEstimate>;
     }
 
     fn q(&self) -> Cow<'_, [f64]> {
@@ -372,65 +333,20 @@ impl Steps for Declared<dyn Simulation> {
     fn p(&self) -> &[f64] {
         &self.of.p()[..self.size]
     }
-
-    fn h(&self) -> f64 {
-        self.of.h()
-    }
-
-    fn energy(&self) -> Result<f64, StepError> {
-        self.of.energy()
-    }
-
-    fn discrete_energy(&self) -> Option<f64> {
-        self.of.discrete_energy()
-    }
-
-    fn shifted_energy(&self) -> Option<ShiftedEnergy> {
-        self.of.shifted_energy()
-    }
-
-    fn constraints(&self) -> Option<AtConstraints> {
-        self.of.constraints()
-    }
-
-    fn advance(&mut self) -> Result<(), StepError> {
-        self.of.advance()
-    }
-
-    fn advance_to(&mut self, end: f64) -> Result<(), StepError> {
-        self.of.advance_to(end)
-    }
-
-    fn monitor(&mut self) {
-        self.of.monitor();
-    }
-
-    fn largest_error(&self) -> Option<ErrorEstimate> {
-        self.of.largest_error()
-    }
 }
 
 impl Simulation for Declared<dyn Simulation> {
+    forward!(Simulation);
+    forward! { fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError>; }
+
     #[cfg(feature = "sessions")]
     fn copy(&self) -> Box<dyn Simulation> {
         Box::new(Declared { of: self.of.copy(), size: self.size })
     }
 
-    fn evaluations(&self) -> u64 {
-        self.of.evaluations()
-    }
-
-    fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
-        self.of.advance_until(end, most)
-    }
-
     fn cross(&mut self, sections: &[Section], end: f64, take: &mut dyn FnMut(Met) -> bool) -> Result<(), StepError> {
         let (sections, size) = (self.sections(sections), self.size);
         self.of.cross(&sections, end, &mut |met| take(cut_met(met, size)))
-    }
-
-    fn sampled_energy(&self) -> Result<(f64, f64), StepError> {
-        self.of.sampled_energy()
     }
 }
 
@@ -474,28 +390,24 @@ impl StepOutput for Declared<dyn StepOutput> {
 
 #[cfg(feature = "sessions")]
 impl Session for Declared<dyn Simulation> {
+    forward! {
+        fn parameters(&self) -> Vec<f64>;
+        fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError>;
+        fn advance_of(&mut self, h: f64) -> Result<(), StepError>;
+        #[cfg(feature = "checkpoints")]
+        fn checkpoint(&self) -> Result<String, String>;
+    }
+
     fn velocity(&self) -> Result<Vec<f64>, StepError> {
         let mut velocity = self.of.velocity()?;
         velocity.truncate(self.size);
         Ok(velocity)
     }
 
-    fn parameters(&self) -> Vec<f64> {
-        self.of.parameters()
-    }
-
-    fn set_parameters(&mut self, change: &[(usize, f64)]) -> Result<(), StepError> {
-        self.of.set_parameters(change)
-    }
-
     fn set_state(&mut self, change: &[(usize, f64)], (t, q, p): (f64, &[f64], &[f64])) -> Result<(), StepError> {
         let q = with_rest(q, self.size, self.all(), "number of coordinates")?;
         let p = with_rest(p, self.size, self.all(), "number of momenta")?;
         self.of.set_state(change, (t, &q, &p))
-    }
-
-    fn advance_of(&mut self, h: f64) -> Result<(), StepError> {
-        self.of.advance_of(h)
     }
 
     fn record(
@@ -527,11 +439,6 @@ impl Session for Declared<dyn Simulation> {
 
     fn local_error(&self) -> Result<[Vec<f64>; 2], StepError> {
         Ok(self.of.local_error()?.map(|of| of[..self.size].to_vec()))
-    }
-
-    #[cfg(feature = "checkpoints")]
-    fn checkpoint(&self) -> Result<String, String> {
-        self.of.checkpoint()
     }
 
     #[cfg(feature = "derivatives")]

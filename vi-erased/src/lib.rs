@@ -23,6 +23,7 @@
 //! | `shooting` | steps from many nodes with their Jacobians and second derivatives, for optimal control; feature `derivatives` |
 //! | [`function`] | smooth functions along a motion |
 //! | `transcription` | optimal control as a nonlinear program; feature `derivatives` |
+//! | `forward` | functions of wrappers that call the inner system or run |
 //! | [`at_rest`] | a system without its coordinates at rest |
 //! | [`check`] | whether the options of a plan go together, in words |
 //!
@@ -35,6 +36,7 @@ pub mod control;
 #[cfg(feature = "derivatives")]
 mod derivatives;
 pub mod erasable;
+mod forward;
 pub mod function;
 pub mod integrator;
 pub mod method;
