@@ -1,4 +1,4 @@
-//! Ten point masses on a chain of rods, in Cartesian coordinates with constraints and in angles.
+//! Ten point masses on a chain of rods, in Cartesian coordinates with constraints; `pendulum` has them in angles.
 
 mod cartesian {
     vi_core::lagrangian! {
@@ -19,27 +19,6 @@ mod cartesian {
     }
 }
 
-mod angles {
-    vi_core::lagrangian! {
-        /// The same chain in absolute angles; θ = 0 hangs down.
-        pub struct AngleChain {
-            const N = 10;
-            /// Each mass.
-            param m = 1.0;
-            /// Length of each rod.
-            param l = 1.0;
-            /// Gravity.
-            param g = 9.81;
-            coord θ[N];
-            let alone = sum(i in 0..N, (N - i) * dot(θ[i])^2) / 2;
-            let pairs = sum(i in 1..N, (N - i) * sum(j in 0..i, dot(θ[i]) * dot(θ[j]) * cos(θ[i] - θ[j])));
-            L = m * l^2 * (alone + pairs) + m * g * l * sum(i in 0..N, (N - i) * cos(θ[i]));
-            discretize midpoint;
-        }
-    }
-}
-
-pub use angles::AngleChain;
 pub use cartesian::RodChain;
 
 /// Positions and velocities of a straight chain of rods of length 1 that turns about its upper end: (0.6, −0.8) is its
