@@ -63,6 +63,19 @@ lagrangian! {
     }
 }
 
+lagrangian! {
+    /// With a time scale of time and coordinates.
+    struct ScaledDuffing {
+        param k = 0.7;
+        coord x;
+        L = dot(x)^2 / 2 - x^4 / 4;
+        force x = -dot(x) / 10;
+        time_scale = 1 / (1 + k * x^2 + sin(t) / 5);
+        discretize midpoint;
+        check { x = 1.1, dot(x) = 0.2, t = 0.2; h = 0.05; }
+    }
+}
+
 // Without a rule: the checks of the motion and of Gauss steps.
 lagrangian! {
     struct CentralForce {
@@ -122,6 +135,9 @@ fn wrong_derivatives_are_seen() {
     }
     // The one of the last coordinate of the spherical pendulum is zero: it is cyclic.
     trips(Duffing::default(), &DUFFING, Fault::PointDerivatives, check::derivatives);
+    for fault in [Fault::ScaledForce, Fault::ScaledPower, Fault::TimeScaleDq, Fault::TimeScaleDt] {
+        trips(ScaledDuffing::default(), &DUFFING, fault, check::derivatives);
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! p = ∂L/∂v      E = v·p − L      d/dt ∂L/∂v = L_q + f      dE/dt = f·v − L_t
-//! ∂L_v/∂q        ∂L_v/∂v = M      ∂(L_q + f)/∂q      ∂(L_q + f)/∂v
+//! ∂L_v/∂q        ∂L_v/∂v = M      ∂(L_q + f)/∂q      ∂(L_q + f)/∂v      ∂g/∂q      ∂g/∂t of a time scale g
 //! ```
 //!
 //! Left sides: generated code. Right sides: automatic differentiation of L, and of the evaluation at a point.
@@ -28,8 +28,8 @@ pub(super) type First = Dual<Bounded>;
 pub(super) type Second = Dual<First>;
 
 /// Tests momentum, energy, the equations at a point and their derivatives against dual numbers, without constraints also
-/// the acceleration. If L is linear in the velocities, its acceleration has to keep `L_q + f = d/dt ∂L/∂v`, which holds at the
-/// velocities of the coordinates only.
+/// the acceleration, and with a time scale the evaluation of steps in transformed time. If L is linear in the velocities,
+/// its acceleration has to keep `L_q + f = d/dt ∂L/∂v`, which holds at the velocities of the coordinates only.
 ///
 /// # Errors
 /// The first number that differs; [`CheckFailure::Vacuous`] if momentum, energy or the mass matrix is zero throughout, or
@@ -40,6 +40,7 @@ pub fn derivatives<const N: usize, S: MotionChecked<N>>(system: &S, place: &Plac
     for sample in samples(system, place, &check)? {
         continuous(&sample, &mut check)?;
         point(&sample, &mut check)?;
+        scaled_point(&sample, &mut check)?;
     }
     check.finish(&["momentum", "energy", if system.is_first_order() { "momentum_dq" } else { "mass" }])
 }
@@ -173,6 +174,35 @@ fn point<const N: usize, S: MotionChecked<N>>(
     matrix(check, "mass", (&found.mass, &again.mass), &mass)?;
     matrix(check, "force_dq", (&found.force_dq, &again.force_dq), &force_dq)?;
     matrix(check, "force_dv", (&found.force_dv, &again.force_dv), &force_dv)
+}
+
+/// The evaluation of steps in transformed time against the functions that it joins, and the derivatives of g.
+fn scaled_point<const N: usize, S: MotionChecked<N>>(
+    sample: &Sample<S, N>,
+    check: &mut Comparison,
+) -> Result<(), CheckFailure> {
+    let Sample { system, t, q, v, .. } = sample;
+    if !system.scales_time() {
+        return Ok(());
+    }
+    let (bounded, dual) = (system.convert::<Bounded>(), system.convert::<First>());
+    let (time, place, velocity) = (Bounded::exact(*t), exact(q), exact(v));
+    let (found, bounds) = (system.scaled_point(*t, q, v), bounded.scaled_point(time, &place, &velocity));
+    let point = bounded.point(time, &place, &velocity);
+    let momentum = vector_of(&found.point.momentum, &bounds.point.momentum);
+    check.vector("momentum in transformed time", &momentum, &point.momentum)?;
+    let force = vector_of(&found.point.force, &bounds.point.force);
+    check.vector("force in transformed time", &force, &point.force)?;
+    let mass = (&found.point.mass, &bounds.point.mass);
+    matrix(check, "mass in transformed time", mass, &point.mass.dense())?;
+    let energy = bounded.energy(time, &place, &velocity);
+    check.number("energy in transformed time", bounds.energy.of(found.energy), energy)?;
+    let power = bounded.power(time, &place, &velocity);
+    check.number("power in transformed time", bounds.power.of(found.power), power)?;
+    let slope = |time, place: &SVector<First, N>| dual.scaled_point(time, place, &lift(&velocity)).g.slope;
+    let g_dq = SVector::from_fn(|j, _| slope(Dual::fixed(time), &along(&place, &unit(j))));
+    check.vector("g_dq", &vector_of(&found.g_dq, &bounds.g_dq), &g_dq)?;
+    check.number("g_dt", bounds.g_dt.of(found.g_dt), slope(Dual::variable(time), &lift(&place)))
 }
 
 /// A row is a sum with a rounding error of at least half an ulp of itself.

@@ -3,7 +3,7 @@
 
 use vi_core::lagrangian::{Flow, Parameters};
 use vi_core::linear::Matrix;
-use vi_core::motion::{Motion, Point, PointDerivatives};
+use vi_core::motion::{Motion, Point, PointDerivatives, ScaledPoint};
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::real::Real;
@@ -61,6 +61,14 @@ pub(crate) enum Fault {
     PointForce,
     /// The power is too large.
     Power,
+    /// The force of steps in transformed time is 1e-3 too large.
+    ScaledForce,
+    /// The power of steps in transformed time is too large.
+    ScaledPower,
+    /// The first derivative of the time scale is 1e-6 too large.
+    TimeScaleDq,
+    /// The derivative of the time scale with respect to time is 1e-6 too large.
+    TimeScaleDt,
     /// The last entry of ∂(L_q + f)/∂q is 1e-6 too large.
     PointDerivatives,
     /// The last entry of ∂(p1 − p0)/∂v is 1e-6 too large.
@@ -154,6 +162,7 @@ impl<const N: usize, T: Real, S: Motion<N, T>> Motion<N, T> for Spoiled<S> {
     type PointMatrix = SMatrix<T, N, N>;
     const CONSTANT_MASS: bool = S::CONSTANT_MASS;
     const SEPARABLE: bool = S::SEPARABLE;
+    const SCALES_TIME: bool = S::SCALES_TIME;
 
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, S::Mass> {
         let Point { mut momentum, mut force, mass } = self.system.point(t, q, v);
@@ -174,6 +183,17 @@ impl<const N: usize, T: Real, S: Motion<N, T>> Motion<N, T> for Spoiled<S> {
     }
     fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
         self.unless(Fault::Power, self.system.power(t, q, v), |power| power + T::real(1e-6))
+    }
+    fn scaled_point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> ScaledPoint<N, T, S::Mass> {
+        let mut right = self.system.scaled_point(t, q, v);
+        match self.fault {
+            Fault::ScaledForce => right.point.force *= T::real(1.001),
+            Fault::ScaledPower => right.power += T::real(1e-6),
+            Fault::TimeScaleDq => right.g_dq[0] *= T::real(1.0 + 1e-6),
+            Fault::TimeScaleDt => right.g_dt *= T::real(1.0 + 1e-6),
+            _ => {}
+        }
+        right
     }
 }
 
