@@ -52,7 +52,7 @@ impl Measured {
 }
 
 /// A law of decrease with h to the power `slope`.
-pub(super) struct Law {
+pub(super) struct PowerLaw {
     pub(super) name: &'static str,
     pub(super) quantities: Vec<String>,
     pub(super) slope: f64,
@@ -60,7 +60,7 @@ pub(super) struct Law {
     pub(super) every: bool,
 }
 
-impl Law {
+impl PowerLaw {
     /// Judges the law by sequences of steps from `h` to `longest`. `prepare` computes the data that the steps of a
     /// sequence share; `measure` returns the quantities for one of them, by its number of halvings.
     ///

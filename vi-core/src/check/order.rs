@@ -15,7 +15,7 @@
 //! ```
 
 use super::comparison::Comparison;
-use super::ladder::{Law, Measured};
+use super::ladder::{Measured, PowerLaw};
 use super::report::{CheckFailure, Report};
 use super::sample::SampledMotion;
 use super::subject::{Checked, Place, STEPS};
@@ -70,7 +70,7 @@ pub(super) fn judged<const N: usize, S: Lagrangian<N>, M: Method<Y, N>, Y: Lagra
         Ok(measured(&path.size(), &errors?, &again?))
     };
     let quantities = system.coordinates().map(|name| format!("the error of `{name}`")).to_vec();
-    let law = Law { name: "the order", quantities, slope: f64::from(order), every: false };
+    let law = PowerLaw { name: "the order", quantities, slope: f64::from(order), every: false };
     law.judge(check, [place.h, motion.h], paths, measure)
 }
 

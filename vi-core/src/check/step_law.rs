@@ -13,7 +13,7 @@
 
 use super::bounded::{Bounded, exact, once};
 use super::comparison::Comparison;
-use super::ladder::{Law, Measured};
+use super::ladder::{Measured, PowerLaw};
 use super::length;
 use super::report::{CheckFailure, Report};
 use super::sample::SampledMotion;
@@ -72,7 +72,7 @@ pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N
         }
     };
     let quantities = ["the deviation of h D^(1/3)", "the deviation of D"].map(str::to_owned).to_vec();
-    let law = Law { name: "the step law", quantities, slope: SLOPE, every: true };
+    let law = PowerLaw { name: "the step law", quantities, slope: SLOPE, every: true };
     law.judge(&check, [place.h, LONGEST * motion.h], prepare, measure)
 }
 

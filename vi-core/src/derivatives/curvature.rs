@@ -104,7 +104,7 @@ pub(crate) fn sides<Y: Motion<N, Curved>, const N: usize>(
 }
 
 /// A tangent vector with the velocity along it.
-struct Direction<const N: usize> {
+struct TangentWithVelocity<const N: usize> {
     start: Variation<N>,
     v: SVector<f64, N>,
 }
@@ -127,7 +127,7 @@ pub fn velocity_curvature<S: Convertible<N>, const N: usize>(
     let v = state.velocity(system)?;
     let along = |start: &Variation<N>| {
         let v = velocity_along(system, state, &v, start)?;
-        Ok(Direction { start: start.clone(), v })
+        Ok(TangentWithVelocity { start: start.clone(), v })
     };
     let directions = directions.iter().map(along).collect::<Result<Vec<_>, StepError>>()?;
     let derivatives = system.point_derivatives(*t, q, &v);
@@ -168,7 +168,7 @@ pub(super) fn of_momentum_step<S: Discretized<N>, const N: usize>(
         for (direction, start) in variations.iter().enumerate() {
             let residual = slope_along(direction, &varied.residual);
             let v = -linear::solve(residual_dv, &residual).ok_or_else(|| unsolved(&residual))?;
-            directions.push(Direction { start: start.clone(), v });
+            directions.push(TangentWithVelocity { start: start.clone(), v });
         }
     }
     let curved = system.steps::<Curved>();

@@ -29,7 +29,7 @@ const NOISE: f64 = 16.0;
 
 /// A point of the curve `(v(h), h)`, and φ there.
 #[derive(Clone, Copy, Debug)]
-struct Point<const N: usize, T> {
+struct CurvePoint<const N: usize, T> {
     v: SVector<T, N>,
     h: T,
     residual: f64,
@@ -37,7 +37,7 @@ struct Point<const N: usize, T> {
     rounding: f64,
 }
 
-impl<const N: usize, T: Scalar> Point<N, T> {
+impl<const N: usize, T: Scalar> CurvePoint<N, T> {
     /// The point at `h`, with v by Newton iteration from `guess`.
     ///
     /// # Errors
@@ -61,7 +61,7 @@ impl<const N: usize, T: Scalar> Point<N, T> {
     }
 }
 
-impl<const N: usize, T: Scalar> Trial for Point<N, T> {
+impl<const N: usize, T: Scalar> Trial for CurvePoint<N, T> {
     fn h(&self) -> f64 {
         self.h.to_f64()
     }
@@ -107,7 +107,7 @@ pub(crate) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         return Err(none);
     }
     let search = Search {
-        solve: &|h, near| Point::at(system, node, T::real(h), near.map_or(v, |point: &Point<N, T>| point.v)),
+        solve: &|h, near| CurvePoint::at(system, node, T::real(h), near.map_or(v, |point: &CurvePoint<N, T>| point.v)),
         // The polished root is checked on all equations.
         is_rounding: &|_| Ok(true),
         t,
@@ -132,7 +132,7 @@ fn polished<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,
-    point: &Point<N, T>,
+    point: &CurvePoint<N, T>,
 ) -> Result<EnergyStep<N, T>, StepError> {
     let (t, previous) = (node.t.to_f64(), last.h.to_f64());
     let beyond = |found: f64| found * RATIO < previous || found > previous * RATIO;

@@ -179,7 +179,7 @@ pub(crate) fn energy_residual<const N: usize, T: Scalar>(measured: &ExtendedResi
 }
 
 /// Both equations of a step with h in a range.
-struct Extended<'a, const N: usize, T, S> {
+struct MomentumAndEnergy<'a, const N: usize, T, S> {
     system: &'a S,
     node: &'a Node<N, T>,
     range: (T, T),
@@ -193,7 +193,7 @@ struct RowEvaluation<const N: usize, T, J> {
     scale: Rounding<N, T>,
 }
 
-impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extended<'_, N, T, S> {
+impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for MomentumAndEnergy<'_, N, T, S> {
     type Unknowns = VelocityStep<N, T>;
     type Evaluation = RowEvaluation<N, T, S::Jacobian>;
 
@@ -244,7 +244,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     trial: VelocityStep<N, T>,
     range: (T, T),
 ) -> Result<EnergyStep<N, T>, NoStep<T>> {
-    let extended = Extended { system, node, range };
+    let extended = MomentumAndEnergy { system, node, range };
     let root = newton::solve(&extended, trial).map_err(|failure| match failure {
         newton::Failure::Stalled { residuals, .. } => NoStep::NoRoot(residuals),
         _ => NoStep::NoRoot(Residuals::new()),

@@ -10,7 +10,7 @@ use super::interval::Last;
 use super::predicted::{Predicted, Prediction};
 use crate::error::StepError;
 use crate::method::Memory;
-use crate::method::bounds::{Alternating, Control, Controlled, Phase, RATIO, check_forward};
+use crate::method::bounds::{Alternating, Control, Controlled, FixedPhase, RATIO, check_forward};
 use crate::momentum::continuation::{self, BranchPoint};
 use crate::momentum::newton;
 use crate::node::Node;
@@ -211,7 +211,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Search<'_, S, N, T> {
         let (mut after, [gap, density_next]) = self.fixed(h)?;
         let control = &mut after.lengths.control;
         control.kind = StepKind::FixedStep;
-        control.phase = control.phase.map(|phase| Phase { density_next, gap, ..phase });
+        control.phase = control.phase.map(|phase| FixedPhase { density_next, gap, ..phase });
         after.lengths.resume_after(&self.lengths.last);
         Ok(after)
     }

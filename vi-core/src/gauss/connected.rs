@@ -6,9 +6,9 @@
 use super::branch::{self, EQUAL, FAST, NEAR, Shorter, StepsFromNode, distance, is_resolved};
 use super::fixed_point::{Convergence, Equations as _};
 use super::general::equations;
-use super::linearization::Linearization;
+use super::linearization::LinearizationPoint;
 use super::newton::Buffer;
-use super::points::{AnyDerivatives, ErasedSystem, Form, Points};
+use super::points::{AnyDerivatives, EquationForm, ErasedSystem, Points};
 use super::solve::{StageSolution, Start, Step, constant};
 use super::stages::{Stages, at, stage, time};
 use crate::error::StepError;
@@ -46,7 +46,7 @@ fn weights<const N: usize, const S: usize>(
 ) -> [f64; N] {
     let v = stage(&equations(system, node, step.h, step.stages).velocity(), 0);
     let roots = vector::weights(&Points::<N, f64>::at(system, node.t, &node.q, &v).mass.diagonal());
-    let are_forces = Points::<N, f64>::form(system) == Form::Separable;
+    let are_forces = Points::<N, f64>::form(system) == EquationForm::Separable;
     roots.map(|root| if are_forces { root.recip() } else { root }).into()
 }
 
@@ -71,7 +71,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         &self,
         system: &Y,
         instructions: Instructions,
-        left: (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
+        left: (Option<&StageSolution<N, S>>, Option<LinearizationPoint<N>>),
         continues: bool,
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>

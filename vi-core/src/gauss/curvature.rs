@@ -22,7 +22,7 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, SVector};
 
 /// A tangent vector at the start of a step, with those of its stages.
-struct Direction<const N: usize, const S: usize> {
+struct StageTangent<const N: usize, const S: usize> {
     start: Variation<N>,
     /// δV_j.
     velocities: [SVector<f64, N>; S],
@@ -52,7 +52,7 @@ where
         system,
         &mut variations.to_vec(),
         Some(&mut |_, from, velocities| {
-            directions.extend(from.iter().zip(velocities).map(|(start, velocities)| Direction {
+            directions.extend(from.iter().zip(velocities).map(|(start, velocities)| StageTangent {
                 start: start.clone(),
                 velocities: by_stages(velocities),
                 means: by_stages(&integrals::<N, STAGES, false>(velocities, &weights(1.0))),
@@ -60,7 +60,7 @@ where
         }),
     )?;
     let curved = system.convert::<Curved>();
-    second_derivatives(&directions, before.t, |pairs: Pairs<'_, Direction<N, STAGES>>| {
+    second_derivatives(&directions, before.t, |pairs: Pairs<'_, StageTangent<N, STAGES>>| {
         let system = pairs.vary(system.parameters(), curved, |of| &of.start.parameters);
         let t = pairs.number(before.t, |of| of.start.t);
         let q = pairs.vector(&before.q, |of| &of.start.q);

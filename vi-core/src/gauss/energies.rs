@@ -46,7 +46,7 @@ pub(crate) fn energies<Y, const N: usize, const S: usize>(
 where
     Y: Convertible<N>,
 {
-    let interval = Interval::new(&ErasedSystem::of(system), node, h, stages);
+    let interval = SolvedStep::new(&ErasedSystem::of(system), node, h, stages);
     interval.energies(system, base, |number| number, |i| stage(&interval.velocities, i))
 }
 
@@ -64,20 +64,20 @@ where
     Y: Convertible<N>,
 {
     let erased = ErasedSystem::of(system);
-    let interval = Interval::new(&erased, node, h, stages);
+    let interval = SolvedStep::new(&erased, node, h, stages);
     let velocities = rounding::velocities(&erased, node, h, &interval.positions, &interval.velocities);
     interval.energies(&system.convert::<Rounded>(), base, Rounded::nearest, |i| velocities[i])
 }
 
 /// A step with its stage positions and velocities.
-struct Interval<'a, const N: usize, const S: usize> {
+struct SolvedStep<'a, const N: usize, const S: usize> {
     node: &'a Node<N>,
     h: f64,
     positions: Stages<N, S>,
     velocities: Stages<N, S>,
 }
 
-impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
+impl<'a, const N: usize, const S: usize> SolvedStep<'a, N, S> {
     #[inline(always)]
     fn new(system: &ErasedSystem<'_, N>, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
         let equations = equations(system, node, h, stages);

@@ -1,6 +1,6 @@
 //! Without the feature `alloc` there is no Newton iteration: steps that are too long for fixed-point iteration fail.
 
-use super::linearization::Linearization;
+use super::linearization::LinearizationPoint;
 use super::points::ErasedSystem;
 use super::stages::Stages;
 
@@ -21,7 +21,7 @@ impl<const N: usize, const S: usize> Buffer<N, S> {
 pub enum Newton<const N: usize, const S: usize> {}
 
 impl<const N: usize, const S: usize> Newton<N, S> {
-    pub(crate) fn linearize(&mut self, _system: &ErasedSystem<'_, N>, _at: Linearization<N>) {
+    pub(crate) fn linearize(&mut self, _system: &ErasedSystem<'_, N>, _at: LinearizationPoint<N>) {
         match *self {}
     }
 

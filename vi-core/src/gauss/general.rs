@@ -11,13 +11,13 @@
 //! by the new V. If L is quadratic in v, it solves for V exactly. The change of V is the residual, because Q follows
 //! from V. Many coordinates keep the masses of an earlier iteration ([`MANY`]): a fixed point is the same.
 //!
-//! In curvilinear coordinates ([`Form::Curvilinear`]) F is evaluated at the velocities of the momenta of the last
+//! In curvilinear coordinates ([`EquationForm::Curvilinear`]) F is evaluated at the velocities of the momenta of the last
 //! iteration, which at Q are not quite V. If r scales the momentum of φ, V lags behind Q by an iteration, and the
 //! centrifugal force with it. Steps of a quarter of an orbit then take nine iterations instead of eighteen.
 
 use super::fixed_point::{Convergence, Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
-use super::points::{ErasedSystem, Form, MANY, Points};
+use super::points::{EquationForm, ErasedSystem, MANY, Points};
 use super::stages::{
     AtStages, Roundings, Stages, add_products, change, constant_mass, gathered, growth, maximum, product, roundings,
     scaled, scatter, sum, times, weights,
@@ -107,7 +107,7 @@ where
             of_position: [0.0; N],
             numbers: PhantomData,
         };
-        if equations.system.form() == Form::Separable {
+        if equations.system.form() == EquationForm::Separable {
             let mut velocity = equations.missing(&[[0.0; S]; N]);
             equations.solve(&mut velocity);
             equations.velocity = velocity;
@@ -311,8 +311,8 @@ where
     #[inline(always)]
     fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, before: &Convergence) {
         // For a known form the compiler sees one branch.
-        let varies = || matches!(self.system.form(), Form::VaryingMass | Form::Curvilinear);
-        let is_known = const { Form::VaryingMass.is_known(Y::FORM) || Form::Curvilinear.is_known(Y::FORM) };
+        let varies = || matches!(self.system.form(), EquationForm::VaryingMass | EquationForm::Curvilinear);
+        let is_known = const { EquationForm::VaryingMass.is_known(Y::FORM) || EquationForm::Curvilinear.is_known(Y::FORM) };
         if let Some(newton) = self.newton {
             let missing = self.evaluate(x);
             self.correct(&newton.correction(&missing));
@@ -339,7 +339,7 @@ where
 
     #[inline(always)]
     fn guess(&self) -> Stages<N, S> {
-        if self.system.form() == Form::Separable { self.force } else { self.velocity }
+        if self.system.form() == EquationForm::Separable { self.force } else { self.velocity }
     }
 
     #[inline(always)]

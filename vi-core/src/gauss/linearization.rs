@@ -9,7 +9,7 @@ use num_traits::Float as _;
 /// The linearization point of a step of length h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Linearization<const N: usize> {
+pub struct LinearizationPoint<const N: usize> {
     pub(crate) h: f64,
     pub(crate) t: f64,
     pub(crate) q: SVector<f64, N>,
@@ -21,7 +21,7 @@ pub struct Linearization<const N: usize> {
     pub(crate) by_velocity: bool,
 }
 
-impl<const N: usize> Linearization<N> {
+impl<const N: usize> LinearizationPoint<N> {
     /// The linearization for the next step, after one of this many iterations; `None` if a new one pays off.
     pub(crate) fn after(self, iterations: u32) -> Option<Self> {
         let first = self.iterations.unwrap_or(iterations);

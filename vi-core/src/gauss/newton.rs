@@ -18,7 +18,7 @@
 //! and λ has a positive real part. The first stiff step of a run allocates the buffer.
 
 use super::factors::{Factors, by_width};
-use super::linearization::Linearization;
+use super::linearization::LinearizationPoint;
 use super::modes::{Modal, Spectrum};
 use super::points::{AnyDerivatives, ErasedSystem};
 use super::stages::{Stages, product};
@@ -48,7 +48,7 @@ impl<const N: usize, const S: usize> Buffer<N, S> {
 /// The linearized equations of a step, factored.
 #[derive(Clone, Debug)]
 pub struct Newton<const N: usize, const S: usize> {
-    linearization: Option<Linearization<N>>,
+    linearization: Option<LinearizationPoint<N>>,
     spectrum: Spectrum<S>,
     derivatives: AnyDerivatives<N>,
     /// Diagonals of its matrices that are not zero, on each side of the main diagonal.
@@ -65,11 +65,11 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     }
 
     /// Linearizes the equations of a system, unless they already are at this point.
-    pub(crate) fn linearize(&mut self, system: &ErasedSystem<'_, N>, at: Linearization<N>) {
+    pub(crate) fn linearize(&mut self, system: &ErasedSystem<'_, N>, at: LinearizationPoint<N>) {
         if self.linearization.is_some_and(|last| last.is_at(&at)) {
             return;
         }
-        let Linearization { h, t, q, v, .. } = &at;
+        let LinearizationPoint { h, t, q, v, .. } = &at;
         self.derivatives = system.derivatives(*t, q, v);
         let AnyDerivatives { momentum_dq: c, mass: m, force_dq: k, force_dv: b } = &self.derivatives;
         let step = self.spectrum.eigenvalues * *h;

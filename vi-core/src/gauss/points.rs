@@ -17,7 +17,7 @@ pub(crate) const MANY: usize = 12;
 
 /// Form of the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Form {
+pub(crate) enum EquationForm {
     /// Constant mass matrix, and forces of the position alone: [`Motion::SEPARABLE`].
     Separable,
     /// Constant mass matrix: [`Motion::CONSTANT_MASS`].
@@ -30,7 +30,7 @@ pub(crate) enum Form {
     FirstOrder,
 }
 
-impl Form {
+impl EquationForm {
     /// The form of the equations of a type; `None` for a type of systems that differ.
     const fn known<Y: Motion<N, T>, const N: usize, T: Real>() -> Option<Self> {
         if Y::INTERPRETED {
@@ -81,10 +81,10 @@ pub(crate) trait Points<const N: usize, T: Real> {
     type Mass: Matrix<N, T>;
 
     /// The form, if the type of the system determines it.
-    const FORM: Option<Form>;
+    const FORM: Option<EquationForm>;
 
     /// The form of the equations.
-    fn form(&self) -> Form;
+    fn form(&self) -> EquationForm;
     /// [`Motion::moving`].
     fn moving(&self) -> usize;
     /// [`Motion::point`].
@@ -112,11 +112,11 @@ pub(crate) trait Points<const N: usize, T: Real> {
 impl<Y: Motion<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     type Mass = Y::Mass;
 
-    const FORM: Option<Form> = Form::known::<Y, N, T>();
+    const FORM: Option<EquationForm> = EquationForm::known::<Y, N, T>();
 
     #[inline(always)]
-    fn form(&self) -> Form {
-        Form::of(self)
+    fn form(&self) -> EquationForm {
+        EquationForm::of(self)
     }
 
     #[inline(always)]
@@ -159,7 +159,7 @@ pub(crate) type AnyDerivatives<const N: usize> = PointDerivatives<SMatrix<f64, N
 
 /// A type-erased system.
 trait Erased<const N: usize> {
-    fn form(&self) -> Form;
+    fn form(&self) -> EquationForm;
     fn moving(&self) -> usize;
     fn without_velocity(&self) -> &'static [bool];
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64>;
@@ -169,8 +169,8 @@ trait Erased<const N: usize> {
 }
 
 impl<S: Convertible<N>, const N: usize> Erased<N> for S {
-    fn form(&self) -> Form {
-        Form::of(self)
+    fn form(&self) -> EquationForm {
+        EquationForm::of(self)
     }
 
     fn moving(&self) -> usize {
@@ -243,9 +243,9 @@ macro_rules! erased_points {
         impl<const N: usize> Points<N, $number> for ErasedSystem<'_, N> {
             type Mass = SMatrix<$number, N, N>;
 
-            const FORM: Option<Form> = None;
+            const FORM: Option<EquationForm> = None;
 
-            fn form(&self) -> Form {
+            fn form(&self) -> EquationForm {
                 self.0.form()
             }
 

@@ -13,7 +13,7 @@
 
 use super::fixed_point::Equations;
 use super::general::equations;
-use super::points::{ErasedSystem, Form, Points};
+use super::points::{EquationForm, ErasedSystem, Points};
 use super::stages::{Stages, set, stage, time};
 use super::tableau::{Tableau, real};
 use crate::node::Node;
@@ -55,7 +55,7 @@ impl<const N: usize, const S: usize> CollocationPolynomial<N, S> {
         }
         let mut polynomial =
             Self { start, h, velocity: coefficients(&velocity), force: coefficients(&force), rest: None };
-        if Points::<N, f64>::form(system) == Form::FirstOrder {
+        if Points::<N, f64>::form(system) == EquationForm::FirstOrder {
             polynomial.rest = Some(end - polynomial.state(start.t + h).q);
         }
         polynomial

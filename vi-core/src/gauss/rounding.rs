@@ -11,7 +11,7 @@
 //! and the velocities with the rounding error of their forces. The solver uses it if changes stall above the ulps of
 //! the unknowns: a sum of cancelling terms has a larger rounding error.
 
-use super::points::{ErasedSystem, Form, Points};
+use super::points::{EquationForm, ErasedSystem, Points};
 use super::stages::Stages;
 use super::tableau::Tableau;
 use crate::linear::Matrix;
@@ -118,7 +118,7 @@ pub(crate) fn velocities<const N: usize, const S: usize>(
     positions: &Stages<N, S>,
     velocities: &Stages<N, S>,
 ) -> [SVector<Rounded, N>; S] {
-    let are_unknowns = Points::<N, Rounded>::form(system) != Form::Separable;
+    let are_unknowns = Points::<N, Rounded>::form(system) != EquationForm::Separable;
     let rows = Rows::of(system, node, h, positions, are_unknowns.then_some(velocities));
     core::array::from_fn(|i| {
         rows.velocity[i]

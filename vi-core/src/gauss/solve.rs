@@ -8,9 +8,9 @@ use super::branch::are_smooth;
 use super::first_order::FirstOrder;
 use super::fixed_point::{self, Convergence, Equations, FixedPointResult, NOISE, Pause, StageIncrement};
 use super::general::{General, equations};
-use super::linearization::Linearization;
+use super::linearization::LinearizationPoint;
 use super::newton::{Buffer, Newton};
-use super::points::{ErasedSystem, Form, MANY, Points};
+use super::points::{EquationForm, ErasedSystem, MANY, Points};
 use super::rounding;
 use super::separable::Separable;
 use super::stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
@@ -47,7 +47,7 @@ pub struct Step<const N: usize, const S: usize> {
     pub(crate) convergence: Convergence,
     pub(crate) pause: Pause,
     /// The linearization for the next step, if Newton iteration solved this one.
-    pub(crate) linearization: Option<Linearization<N>>,
+    pub(crate) linearization: Option<LinearizationPoint<N>>,
     /// Whether Newton iteration solved this one.
     pub(crate) by_newton: bool,
 }
@@ -64,7 +64,7 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
     /// Whether fixed-point iteration solved the step of length h from a node to the rounding of its positions, and its
     /// contraction or its stages prove the step.
     #[inline(always)]
-    pub(crate) fn is_step(&self, form: Form, node: &Node<N>, h: f64) -> bool {
+    pub(crate) fn is_step(&self, form: EquationForm, node: &Node<N>, h: f64) -> bool {
         let StageIncrement { velocity, momentum } = &self.increment;
         let convergence = &self.iteration.convergence;
         let is_proven = if form.follows_momenta::<S>() { are_smooth(&self.stages) } else { convergence.is_fast() };
@@ -145,7 +145,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         system: &ErasedSystem<'_, N>,
         newton: Option<&Newton<N, S>>,
     ) -> StageSolution<N, S> {
-        if Points::<N, f64>::form(system) == Form::FirstOrder {
+        if Points::<N, f64>::form(system) == EquationForm::FirstOrder {
             let equations = FirstOrder::new(system, (self.node, self.h), self.guess::<false>(), newton);
             return finished(equations, self);
         }
@@ -176,13 +176,13 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     }
 
     /// The linearization point at the middle of the step.
-    fn middle(&self, system: &ErasedSystem<'_, N>) -> Linearization<N> {
+    fn middle(&self, system: &ErasedSystem<'_, N>) -> LinearizationPoint<N> {
         let equations = equations(system, self.node, self.h, self.guess::<false>());
         let middle = S / 2;
         let q = stage(&equations.start(), middle);
         let v = stage(&equations.velocity(), middle);
         let t = self.node.t + 0.5 * self.h;
-        Linearization { h: self.h, t, q, v, iterations: None, by_velocity: false }
+        LinearizationPoint { h: self.h, t, q, v, iterations: None, by_velocity: false }
     }
 
     /// The step by fixed-point iteration.
@@ -234,7 +234,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         &self,
         system: &Y,
         instructions: Instructions,
-        (left, last): (Option<&StageSolution<N, S>>, Option<Linearization<N>>),
+        (left, last): (Option<&StageSolution<N, S>>, Option<LinearizationPoint<N>>),
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
@@ -255,7 +255,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             {
                 // These iterations began near the solution: their number does not show whether a new linearization pays
                 // off.
-                let linearization = Some(Linearization { iterations: None, ..at });
+                let linearization = Some(LinearizationPoint { iterations: None, ..at });
                 return Ok(Step { pause: self.pause.after_newton(), linearization, ..step });
             }
             after = Pause::USELESS;
@@ -271,7 +271,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             return Ok(step);
         }
         let by_velocity = last.is_some_and(|last| last.by_velocity);
-        let at = Linearization { by_velocity, ..self.middle(erased) };
+        let at = LinearizationPoint { by_velocity, ..self.middle(erased) };
         let extrapolated = self.by_newton(system, instructions, at, cache);
         if extrapolated.is_ok() || !self.are_last {
             return extrapolated;
@@ -292,7 +292,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         &self,
         system: &Y,
         instructions: Instructions,
-        at: Linearization<N>,
+        at: LinearizationPoint<N>,
         cache: &mut Buffer<N, S>,
     ) -> Result<Step<N, S>, StepError>
     where
@@ -318,9 +318,9 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         &self,
         system: &Y,
         instructions: Instructions,
-        at: Linearization<N>,
+        at: LinearizationPoint<N>,
         newton: &mut Newton<N, S>,
-    ) -> (StageSolution<N, S>, Linearization<N>)
+    ) -> (StageSolution<N, S>, LinearizationPoint<N>)
     where
         Y: Convertible<N>,
     {
@@ -337,7 +337,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             by_velocity = solved.iteration.convergence.change > NOISE;
         }
         // The velocities of very stiff steps are more accurate than positions by forces.
-        (self.in_scalars(erased, Some(newton)), Linearization { by_velocity, ..at })
+        (self.in_scalars(erased, Some(newton)), LinearizationPoint { by_velocity, ..at })
     }
 }
 
@@ -415,8 +415,8 @@ where
 {
     let Start { node, h, stages, are_last, .. } = *start;
     // For a known form the compiler sees one branch.
-    let is_separable =
-        const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable;
+    let is_separable = const { EquationForm::Separable.is_known(Y::FORM) }
+        || const { Y::FORM.is_none() } && system.form() == EquationForm::Separable;
     if is_separable && (CORRECTED || newton.is_none()) {
         let mass = mass(plain, node);
         let guess = (*stages, are_last);

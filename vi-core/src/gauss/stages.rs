@@ -3,7 +3,7 @@
 //! A loop over the stages of a row, or over all stages of a point, vectorizes. Functions that take `n` leave out the rows
 //! of coordinates at rest ([`Motion::moving`](crate::motion::Motion::moving)).
 
-use super::points::{Form, Points};
+use super::points::{EquationForm, Points};
 use super::tableau::Tableau;
 use crate::linear::row_by_row;
 use crate::node::Node;
@@ -128,7 +128,7 @@ pub(crate) fn mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &
 /// The mass matrix of a system, if it is constant.
 #[inline(always)]
 pub(crate) fn constant_mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Option<Y::Mass> {
-    matches!(system.form(), Form::Separable | Form::ConstantMass).then(|| mass(system, node))
+    matches!(system.form(), EquationForm::Separable | EquationForm::ConstantMass).then(|| mass(system, node))
 }
 
 /// `base_i + Σ_j matrix_ij x_j` at the stages i. Two sums, because additions form a dependency chain.

@@ -128,7 +128,7 @@ pub struct Control<T = f64> {
     pub(crate) bounds: Option<StepBounds<T>>,
     pub(crate) fallback: Fallback,
     /// The current fixed steps.
-    pub(crate) phase: Option<Phase<T>>,
+    pub(crate) phase: Option<FixedPhase<T>>,
     pub(crate) switches: Switches<T>,
     /// The kind of the last step.
     pub(crate) kind: StepKind<T>,
@@ -177,7 +177,7 @@ impl<T: Scalar> Control<T> {
             return Err(StepError::NonFinite { t, quantity: "energy of the switches", expression: None });
         }
         self.bounds.as_ref().map_or(Ok(()), StepBounds::check)?;
-        self.phase.as_ref().map_or(Ok(()), Phase::check)
+        self.phase.as_ref().map_or(Ok(()), FixedPhase::check)
     }
 }
 
@@ -232,7 +232,7 @@ pub(crate) trait Alternating<T: Scalar> {
             Err(failure) => failure,
         };
         let Control { fallback, bounds, .. } = self.control();
-        let phase = Phase::instead_of(failure, *fallback, bounds.as_ref(), previous, density)?;
+        let phase = FixedPhase::instead_of(failure, *fallback, bounds.as_ref(), previous, density)?;
         let mut found = self.fixed_in(phase)?;
         Self::control_of(&mut found).switches.count += 1;
         Ok(found)
@@ -241,7 +241,7 @@ pub(crate) trait Alternating<T: Scalar> {
     /// The step after a fixed one: energy-preserving by the previous energy, otherwise by that of the last step,
     /// otherwise fixed.
     #[cold]
-    fn next_in(&self, phase: Phase<T>) -> Result<Self::StepSolution, StepError> {
+    fn next_in(&self, phase: FixedPhase<T>) -> Result<Self::StepSolution, StepError> {
         if !phase.is_over(Self::POWER) {
             return self.fixed_in(phase);
         }
@@ -262,11 +262,11 @@ pub(crate) trait Alternating<T: Scalar> {
     }
 
     /// A fixed step of a phase.
-    fn fixed_in(&self, phase: Phase<T>) -> Result<Self::StepSolution, StepError> {
+    fn fixed_in(&self, phase: FixedPhase<T>) -> Result<Self::StepSolution, StepError> {
         let (mut found, [gap, density_next]) = self.fixed(phase.h)?;
         let control = Self::control_of(&mut found);
         control.kind = StepKind::FixedStep;
-        control.phase = Some(Phase { density_next, gap, ..phase });
+        control.phase = Some(FixedPhase { density_next, gap, ..phase });
         control.switches.fixed_steps += 1;
         Ok(found)
     }
@@ -324,7 +324,7 @@ where
 /// A phase of fixed steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Phase<T> {
+pub(crate) struct FixedPhase<T> {
     /// Length of these steps.
     pub(crate) h: T,
     /// Whether the energy-preserving step would be shorter than these, rather than longer or absent.
@@ -339,7 +339,7 @@ pub(crate) struct Phase<T> {
     pub(crate) gap: T,
 }
 
-impl<T: Scalar> Phase<T> {
+impl<T: Scalar> FixedPhase<T> {
     /// The phase of fixed steps that replaces a failed step, if the user allows it. `h` is the length and `density` the
     /// density of the last interval.
     ///

@@ -245,7 +245,7 @@ impl<const N: usize, T: Real> Split<N, T> {
 }
 
 /// Kicks and drifts of one step.
-struct Step<'a, S: Motion<N, T>, const N: usize, T: Real> {
+struct KicksAndDrifts<'a, S: Motion<N, T>, const N: usize, T: Real> {
     scheme: &'a Splitting,
     system: &'a S,
     inverse: &'a <S::Mass as Matrix<N, T>>::Inverse,
@@ -255,7 +255,7 @@ struct Step<'a, S: Motion<N, T>, const N: usize, T: Real> {
     force: &'a SVector<T, N>,
 }
 
-impl<S: Motion<N, T>, const N: usize, T: Real> Loop for Step<'_, S, N, T> {
+impl<S: Motion<N, T>, const N: usize, T: Real> Loop for KicksAndDrifts<'_, S, N, T> {
     type Output = Split<N, T>;
 
     #[inline(always)]
@@ -335,7 +335,7 @@ impl<S: Motion<N, T>, const N: usize, T: Scalar> Loop for Advancing<'_, S, N, T>
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Result<(), ()> {
         let Self { scheme, system, inverse, h, node, force } = self;
-        let step = Step { scheme, system, inverse, node, h, force }.run::<FUSED>();
+        let step = KicksAndDrifts { scheme, system, inverse, node, h, force }.run::<FUSED>();
         if !step.is_finite() {
             return Err(());
         }
@@ -372,7 +372,7 @@ pub(crate) fn step<S: Motion<N, T>, const N: usize, T: Real>(
 ) -> Node<N, T> {
     let inverse = &system.point(node.t, &node.q, &SVector::zeros()).mass.inverse();
     let force = if scheme.begins_with_kick() { force_at(system, node) } else { SVector::zeros() };
-    Step { scheme, system, inverse, node, h, force: &force }.run::<false>().after
+    KicksAndDrifts { scheme, system, inverse, node, h, force: &force }.run::<false>().after
 }
 
 impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splitting {
@@ -442,7 +442,7 @@ impl<S: Separable<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Splittin
         (): &mut (),
     ) -> Result<Split<N, T>, ()> {
         let Problem { system, prepared: Shared { instructions, inverse }, node, h } = at;
-        let step = instructions.run(Step { scheme: self, system, inverse, node, h, force: &memory.force });
+        let step = instructions.run(KicksAndDrifts { scheme: self, system, inverse, node, h, force: &memory.force });
         if step.is_finite() { Ok(step) } else { Err(()) }
     }
 

@@ -34,7 +34,7 @@ enum Direction {
 ///
 /// A function of dual numbers gives the event a derivative: `Event::smooth_rising(|m| m.q[1] - Dual::fixed(0.2))`.
 pub struct Event<const N: usize> {
-    g: Function<N>,
+    g: EventFunction<N>,
     direction: Direction,
 }
 
@@ -42,7 +42,7 @@ pub struct Event<const N: usize> {
 type In<const N: usize, T> = Box<dyn Fn(&Moment<N, T>) -> T>;
 
 /// The function of an event.
-enum Function<const N: usize> {
+enum EventFunction<const N: usize> {
     /// A function of plain numbers.
     Plain(In<N, f64>),
     /// A function of dual numbers.
@@ -52,39 +52,39 @@ enum Function<const N: usize> {
 impl<const N: usize> Event<N> {
     /// An event at which `g` goes from below zero to zero or above.
     pub fn rising(g: impl Fn(&Moment<N>) -> f64 + 'static) -> Self {
-        Self { g: Function::Plain(Box::new(g)), direction: Direction::Rising }
+        Self { g: EventFunction::Plain(Box::new(g)), direction: Direction::Rising }
     }
 
     /// An event at which `g` goes from zero or above to below.
     pub fn falling(g: impl Fn(&Moment<N>) -> f64 + 'static) -> Self {
-        Self { g: Function::Plain(Box::new(g)), direction: Direction::Falling }
+        Self { g: EventFunction::Plain(Box::new(g)), direction: Direction::Falling }
     }
 
     /// An event at which `g` rises or falls.
     pub fn crossing(g: impl Fn(&Moment<N>) -> f64 + 'static) -> Self {
-        Self { g: Function::Plain(Box::new(g)), direction: Direction::Both }
+        Self { g: EventFunction::Plain(Box::new(g)), direction: Direction::Both }
     }
 
     /// [`Event::rising`] with a derivative, for [`Tangent::until_event`](crate::derivatives::Tangent::until_event).
     pub fn smooth_rising(g: impl Fn(&Moment<N, Dual<f64>>) -> Dual<f64> + 'static) -> Self {
-        Self { g: Function::Dual(Box::new(g)), direction: Direction::Rising }
+        Self { g: EventFunction::Dual(Box::new(g)), direction: Direction::Rising }
     }
 
     /// [`Event::falling`] with a derivative.
     pub fn smooth_falling(g: impl Fn(&Moment<N, Dual<f64>>) -> Dual<f64> + 'static) -> Self {
-        Self { g: Function::Dual(Box::new(g)), direction: Direction::Falling }
+        Self { g: EventFunction::Dual(Box::new(g)), direction: Direction::Falling }
     }
 
     /// [`Event::crossing`] with a derivative.
     pub fn smooth_crossing(g: impl Fn(&Moment<N, Dual<f64>>) -> Dual<f64> + 'static) -> Self {
-        Self { g: Function::Dual(Box::new(g)), direction: Direction::Both }
+        Self { g: EventFunction::Dual(Box::new(g)), direction: Direction::Both }
     }
 
     /// Evaluates the function.
     pub(super) fn at(&self, moment: &Moment<N>) -> f64 {
         match &self.g {
-            Function::Plain(g) => g(moment),
-            Function::Dual(g) => {
+            EventFunction::Plain(g) => g(moment),
+            EventFunction::Dual(g) => {
                 let Moment { t, q, v } = moment;
                 g(&Moment { t: Dual::fixed(*t), q: q.map(Dual::fixed), v: v.map(Dual::fixed) }).value
             }
@@ -93,14 +93,14 @@ impl<const N: usize> Event<N> {
 
     /// Whether the function takes dual numbers.
     pub(crate) fn has_derivative(&self) -> bool {
-        matches!(self.g, Function::Dual(_))
+        matches!(self.g, EventFunction::Dual(_))
     }
 
     /// Rate of change of the function along a dual moment; `None` if it does not take dual numbers.
     pub(crate) fn slope(&self, moment: &Moment<N, Dual<f64>>) -> Option<f64> {
         match &self.g {
-            Function::Plain(_) => None,
-            Function::Dual(g) => Some(g(moment).slope),
+            EventFunction::Plain(_) => None,
+            EventFunction::Dual(g) => Some(g(moment).slope),
         }
     }
 

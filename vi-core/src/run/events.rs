@@ -21,7 +21,7 @@
 use super::Run;
 use super::event::{Crossing, Event, Events, Moment};
 use super::search::{Ahead, Searched, Watched};
-use super::side::{Node, Side};
+use super::side::{NodeAndAfter, Side};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
@@ -125,7 +125,7 @@ impl<'a, const N: usize> Crossings<'a, N> {
         if self.run.take(self.until)? {
             return Ok(None);
         }
-        let t = Node::of(self.run.node())?.moment.t;
+        let t = NodeAndAfter::of(self.run.node())?.moment.t;
         let sides = self.start()?;
         let cannot_leave =
             |event: usize, within: f64| Err(StepError::CannotLeave { t, event, value: sides[event].value, within });
@@ -143,7 +143,7 @@ impl<'a, const N: usize> Crossings<'a, N> {
 
     /// The side of each function at the start of the search.
     fn start(&mut self) -> Result<Vec<Side>, StepError> {
-        let mut node = Node::of(self.run.node())?;
+        let mut node = NodeAndAfter::of(self.run.node())?;
         let sides = self.wanted.all().iter().map(|event| node.side(event)).collect::<Result<Vec<_>, _>>()?;
         self.watched = sides.iter().map(Watched::new).collect();
         Ok(sides)

@@ -11,7 +11,7 @@
 
 use super::event::{Crossing, Event, Met, Moment};
 use super::reached::{ErasedRun, StepEnd, moved};
-use super::side::{Node, Side, resolution};
+use super::side::{NodeAndAfter, Side, resolution};
 use super::{DenseOutput, Run};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -32,7 +32,7 @@ pub(super) trait Searched<const N: usize> {
     /// Takes the previewed step. Returns whether the run is at `until`.
     fn take(&mut self, until: f64) -> Result<bool, StepError>;
     /// Previews the next step, or the part of it up to `until`.
-    fn look_ahead(&mut self, until: f64) -> Result<Step<N>, StepError>;
+    fn look_ahead(&mut self, until: f64) -> Result<SearchedStep<N>, StepError>;
     /// Moves to a length within the previewed step.
     fn stop(&mut self, length: f64) -> Result<(), StepError>;
     /// The run at its node.
@@ -71,7 +71,7 @@ where
         Ok(is_at_end)
     }
 
-    fn look_ahead(&mut self, until: f64) -> Result<Step<N>, StepError> {
+    fn look_ahead(&mut self, until: f64) -> Result<SearchedStep<N>, StepError> {
         let start = self.run.state();
         let mut end = self.run.after_a_step()?;
         let path = Box::new(end.dense_output(&start)?.since_start());
@@ -86,7 +86,7 @@ where
         }
         let length = if is_last { self.run.time_to(until) } else { h };
         self.end = Some((end, length));
-        Ok(Step { t: start.t, length, is_last, path })
+        Ok(SearchedStep { t: start.t, length, is_last, path })
     }
 
     fn stop(&mut self, length: f64) -> Result<(), StepError> {
@@ -131,7 +131,7 @@ impl Watched {
 }
 
 /// A searched step.
-pub(super) struct Step<const N: usize> {
+pub(super) struct SearchedStep<const N: usize> {
     /// Start time of the step.
     t: f64,
     /// Length of the searched part.
@@ -142,8 +142,8 @@ pub(super) struct Step<const N: usize> {
 }
 
 /// A searched step and its run. Lengths are positive in both directions of time.
-struct Search<'a, const N: usize> {
-    step: &'a Step<N>,
+struct EventSearch<'a, const N: usize> {
+    step: &'a SearchedStep<N>,
     run: &'a dyn Searched<N>,
     /// Length of the searched part.
     length: f64,
@@ -151,7 +151,7 @@ struct Search<'a, const N: usize> {
     ends: [Moment<N>; 2],
 }
 
-impl<const N: usize> Step<N> {
+impl<const N: usize> SearchedStep<N> {
     /// The crossings of the step, and the error that ends them. With `is_first`, only the first crossing.
     pub(super) fn crossings(
         &self,
@@ -180,7 +180,7 @@ impl<const N: usize> Step<N> {
         take: &mut dyn FnMut(Crossing<N>) -> bool,
     ) -> Result<(), StepError> {
         let ends = [run.node().reached(0.0)?.moment(), run.end().reached(0.0)?.moment()];
-        let search = Search { step: self, run, length: self.length.abs(), ends };
+        let search = EventSearch { step: self, run, length: self.length.abs(), ends };
         let mut changes = Vec::new();
         for (event, watched) in wanted.iter().zip(&mut *watched) {
             search.sample(event, watched)?;
@@ -250,7 +250,7 @@ impl<const N: usize> Step<N> {
     }
 }
 
-impl<const N: usize> Search<'_, N> {
+impl<const N: usize> EventSearch<'_, N> {
     /// The moment after a length, by dense output.
     fn along(&self, length: f64) -> Moment<N> {
         let passed = length.copysign(self.step.length);
@@ -314,12 +314,16 @@ impl<const N: usize> Search<'_, N> {
     }
 
     /// Evaluates `ask` at the node after a length.
-    fn at<R>(&self, length: f64, ask: impl FnOnce(&mut Node<N>) -> Result<R, StepError>) -> Result<R, StepError> {
+    fn at<R>(
+        &self,
+        length: f64,
+        ask: impl FnOnce(&mut NodeAndAfter<N>) -> Result<R, StepError>,
+    ) -> Result<R, StepError> {
         if length.to_bits() == self.length.to_bits() {
-            return ask(&mut Node::of(self.run.end())?);
+            return ask(&mut NodeAndAfter::of(self.run.end())?);
         }
         let run_after = self.run.node().run_after(length.copysign(self.step.length))?;
-        ask(&mut Node::of(&*run_after)?)
+        ask(&mut NodeAndAfter::of(&*run_after)?)
     }
 
     /// Samples a function over the step, up to the first value that is not finite.

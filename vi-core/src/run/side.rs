@@ -44,7 +44,7 @@ pub(super) struct Side {
 }
 
 /// A node, and the moments shortly after it.
-pub(super) struct Node<'a, const N: usize> {
+pub(super) struct NodeAndAfter<'a, const N: usize> {
     motion: &'a dyn ErasedRun<N>,
     pub(super) moment: Moment<N>,
     /// Length of a step of the run.
@@ -55,7 +55,7 @@ pub(super) struct Node<'a, const N: usize> {
     ends: Vec<Option<Moment<N>>>,
 }
 
-impl<'a, const N: usize> Node<'a, N> {
+impl<'a, const N: usize> NodeAndAfter<'a, N> {
     pub(super) fn of(motion: &'a dyn ErasedRun<N>) -> Result<Self, StepError> {
         let moment = motion.reached(0.0)?.moment();
         let h = motion.step_length();

@@ -25,10 +25,10 @@ pub enum Interpolation {
 
 /// A [`Table`](super::Table), a [`Grid`](super::Grid) or a [`Uniform`](super::Uniform) table, with the same bits.
 #[derive(Clone, Debug)]
-pub struct AnyTable(Kind);
+pub struct AnyTable(Contents);
 
 #[derive(Clone, Debug)]
-enum Kind {
+enum Contents {
     /// The coefficients of each piece, and their number.
     Points { axis: Axis<Vec<f64>>, pieces: Vec<[f64; 6]>, count: usize },
     /// The nodes row by row.
@@ -97,7 +97,7 @@ impl AnyTable {
         if !ascend(knots) {
             pieces.fill([f64::NAN; 6]);
         }
-        Self(Kind::Points { axis: axis(knots, knots[n - 1], outside), pieces, count })
+        Self(Contents::Points { axis: axis(knots, knots[n - 1], outside), pieces, count })
     }
 
     /// The function through the points of a grid, whose values are row by row: one row for each knot of x. Cubic or
@@ -113,7 +113,7 @@ impl AnyTable {
             nodes.fill([f64::NAN; 4]);
         }
         let [x, y] = [x, y].map(|knots| axis(knots, knots[knots.len() - 1], outside));
-        Self(Kind::Grid { x, y, nodes, is_linear: of == Interpolation::Linear })
+        Self(Contents::Grid { x, y, nodes, is_linear: of == Interpolation::Linear })
     }
 
     /// The function of `count` values at equal distances of a range, which are given when it is evaluated. Cubic or
@@ -138,7 +138,7 @@ impl AnyTable {
             slopes
         });
         let is_invalid = !ascend(&knots);
-        Self(Kind::Uniform { axis: axis(&knots, ends[1], outside), slopes, is_invalid })
+        Self(Contents::Uniform { axis: axis(&knots, ends[1], outside), slopes, is_invalid })
     }
 
     /// The derivative of these orders, up to three together, with respect to x and y, at (x, y). Only grids use y and
@@ -146,7 +146,7 @@ impl AnyTable {
     #[inline]
     pub fn derivative<T: Number>(&self, [along_x, along_y]: [usize; 2], [x, y]: [T; 2], values: &[T]) -> T {
         match &self.0 {
-            Kind::Points { axis, pieces, count } => {
+            Contents::Points { axis, pieces, count } => {
                 let (u, coefficients) = piece(axis, pieces, x);
                 match count {
                     2 => polynomial::<_, 2>(&coefficients, u, along_x),
@@ -154,10 +154,10 @@ impl AnyTable {
                     _ => polynomial::<_, 6>(&coefficients, u, along_x),
                 }
             }
-            Kind::Grid { x: of_x, y: of_y, nodes, is_linear } => {
+            Contents::Grid { x: of_x, y: of_y, nodes, is_linear } => {
                 Piece::at((of_x, of_y), nodes, *is_linear, [x, y]).derivative(along_x, along_y)
             }
-            Kind::Uniform { axis, slopes, is_invalid } => {
+            Contents::Uniform { axis, slopes, is_invalid } => {
                 let (u, coefficients) = uniform::piece(axis, (slopes.as_deref(), *is_invalid), x, values);
                 polynomial::<_, 4>(&coefficients, u, along_x)
             }
@@ -169,16 +169,18 @@ impl AnyTable {
     #[inline]
     pub fn parameters(&self) -> usize {
         match &self.0 {
-            Kind::Uniform { axis, .. } => axis.knots.len(),
-            Kind::Points { .. } | Kind::Grid { .. } => 0,
+            Contents::Uniform { axis, .. } => axis.knots.len(),
+            Contents::Points { .. } | Contents::Grid { .. } => 0,
         }
     }
 
     /// The reason why the function is NaN at these arguments, as [`Table::undefined`](super::Table::undefined).
     pub fn undefined<T: Real>(&self, function: &'static str, [x, y]: [T; 2]) -> Option<Undefined> {
         match &self.0 {
-            Kind::Points { axis, .. } | Kind::Uniform { axis, .. } => undefined_along(axis, function, x.to_f64()),
-            Kind::Grid { x: of_x, y: of_y, .. } => {
+            Contents::Points { axis, .. } | Contents::Uniform { axis, .. } => {
+                undefined_along(axis, function, x.to_f64())
+            }
+            Contents::Grid { x: of_x, y: of_y, .. } => {
                 undefined_along(of_x, function, x.to_f64()).or_else(|| undefined_along(of_y, function, y.to_f64()))
             }
         }

@@ -37,7 +37,7 @@ use slopes::Arrays;
 
 /// The interpolation of a table.
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum TableKind {
     Spline,
     Monotone,
 }
@@ -52,7 +52,7 @@ pub struct Table<const N: usize, const C: usize> {
     axis: Axis<[f64; N]>,
     /// Coefficients of each piece at its left knot, and of the last one at its right knot.
     pieces: [[f64; C]; N],
-    kind: Kind,
+    kind: TableKind,
 }
 
 impl<const N: usize> Table<N, 2> {
@@ -62,7 +62,7 @@ impl<const N: usize> Table<N, 2> {
         const { assert!(N >= 2, "a table needs two points") };
         let mut pieces = [[0.0; 2]; N];
         lines(&knots, &values, &mut pieces);
-        Self::new(knots, pieces, Kind::Spline, Outside::Undefined)
+        Self::new(knots, pieces, TableKind::Spline, Outside::Undefined)
     }
 
     /// Repeats the function beyond both ends. The last value must be the first one.
@@ -78,13 +78,13 @@ impl<const N: usize> Table<N, 4> {
     /// Three points give their parabola, two their line.
     #[must_use]
     pub const fn cubic(knots: [f64; N], values: [f64; N]) -> Self {
-        Self::joined(knots, values, Kind::Spline, Outside::Undefined)
+        Self::joined(knots, values, TableKind::Spline, Outside::Undefined)
     }
 
     /// Cubic pieces with continuous slopes, monotone between monotone values: without overshoot.
     #[must_use]
     pub const fn monotone(knots: [f64; N], values: [f64; N]) -> Self {
-        Self::joined(knots, values, Kind::Monotone, Outside::Undefined)
+        Self::joined(knots, values, TableKind::Monotone, Outside::Undefined)
     }
 
     /// Repeats the function beyond both ends and joins them as smoothly as its pieces. The last value must be the first
@@ -94,12 +94,12 @@ impl<const N: usize> Table<N, 4> {
         Self::joined(self.axis.knots, self.values(), self.kind, Outside::Periodic)
     }
 
-    const fn joined(knots: [f64; N], values: [f64; N], kind: Kind, outside: Outside) -> Self {
+    const fn joined(knots: [f64; N], values: [f64; N], kind: TableKind, outside: Outside) -> Self {
         const { assert!(N >= 2, "a table needs two points") };
         let mut arrays = Arrays::new(values);
         match kind {
-            Kind::Spline => arrays.buffers().spline(&knots, outside),
-            Kind::Monotone => arrays.buffers().monotone(&knots, outside),
+            TableKind::Spline => arrays.buffers().spline(&knots, outside),
+            TableKind::Monotone => arrays.buffers().monotone(&knots, outside),
         }
         let mut pieces = [[0.0; 4]; N];
         cubics(&knots, &values, &arrays.slopes, &mut pieces);
@@ -113,7 +113,7 @@ impl<const N: usize> Table<N, 6> {
     #[must_use]
     pub const fn quintic(knots: [f64; N], values: [f64; N]) -> Self {
         const { assert!(N >= 2, "a table needs two points") };
-        Self::new(knots, quintic::pieces(&knots, &values, false), Kind::Spline, Outside::Undefined)
+        Self::new(knots, quintic::pieces(&knots, &values, false), TableKind::Spline, Outside::Undefined)
     }
 
     /// Repeats the function beyond both ends and joins them with continuous fourth derivatives. The last value must be
@@ -121,12 +121,12 @@ impl<const N: usize> Table<N, 6> {
     #[must_use]
     pub const fn periodic(self) -> Self {
         let knots = self.axis.knots;
-        Self::new(knots, quintic::pieces(&knots, &self.values(), true), Kind::Spline, Outside::Periodic)
+        Self::new(knots, quintic::pieces(&knots, &self.values(), true), TableKind::Spline, Outside::Periodic)
     }
 }
 
 impl<const N: usize, const C: usize> Table<N, C> {
-    const fn new(knots: [f64; N], mut pieces: [[f64; C]; N], kind: Kind, outside: Outside) -> Self {
+    const fn new(knots: [f64; N], mut pieces: [[f64; C]; N], kind: TableKind, outside: Outside) -> Self {
         if !ascend(&knots) {
             pieces = [[f64::NAN; C]; N];
         }

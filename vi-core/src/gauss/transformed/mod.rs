@@ -17,7 +17,7 @@ mod rounding;
 mod variation;
 
 use super::fixed_point::{self, Equations, FixedPointResult, StageIncrement};
-use super::linearization::Linearization;
+use super::linearization::LinearizationPoint;
 use super::newton::{Buffer, Newton};
 use super::points::ErasedSystem;
 use super::solve::lost_force;
@@ -134,7 +134,7 @@ where
     }
 
     /// The linearization point at the middle of the step.
-    fn middle(&self) -> Linearization<N> {
+    fn middle(&self) -> LinearizationPoint<N> {
         let Self { system, node, dtau, last } = *self;
         let rates = last.guess::<false>(dtau);
         let equations = Scaled::<f64, Y, N, S, false>::new(system, node, dtau, rates, None);
@@ -142,7 +142,7 @@ where
         let h = dtau * rates.g[middle];
         let q = stage(&equations.start(), middle);
         let v = stage(&rates.velocity, middle);
-        Linearization { h, t: node.t + 0.5 * h, q, v, iterations: None, by_velocity: true }
+        LinearizationPoint { h, t: node.t + 0.5 * h, q, v, iterations: None, by_velocity: true }
     }
 
     /// The stages in scalar numbers. Not inlined: speed does not matter after SIMD iteration has failed.

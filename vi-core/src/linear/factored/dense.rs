@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 /// A dense matrix, and its factors. Nothing is allocated before the first matrix.
 #[derive(Clone, Debug)]
-pub(super) struct Dense<T: Real> {
+pub(super) struct DenseFactors<T: Real> {
     /// By columns.
     values: Vec<T>,
     pub(super) pivots: Vec<usize>,
@@ -22,7 +22,7 @@ struct DenseEntries<'a, T> {
     copies: usize,
 }
 
-impl<T: Real> Dense<T> {
+impl<T: Real> DenseFactors<T> {
     pub(super) fn empty() -> Self {
         Self { values: Vec::new(), pivots: Vec::new(), reciprocals: Vec::new(), scales: Vec::new() }
     }

@@ -14,7 +14,7 @@ use super::Block;
 use crate::real::Real;
 use alloc::vec::Vec;
 use block::determinant_sign;
-use dense::Dense;
+use dense::DenseFactors;
 use fronts::Fronts;
 
 /// The entries of a matrix while it is written. All matrices of a system name their entries in the same order.
@@ -41,7 +41,7 @@ pub(crate) trait Assemble<T: Real> {
 pub(crate) struct Factored<T: Real = f64> {
     copies: usize,
     fronts: Option<Fronts<T>>,
-    dense: Dense<T>,
+    dense: DenseFactors<T>,
     state: Factors,
     /// Right-hand side and solution in the order of elimination.
     ordered: Vec<T>,
@@ -63,7 +63,7 @@ impl<T: Real> Factored<T> {
         Self {
             copies,
             fronts,
-            dense: Dense::empty(),
+            dense: DenseFactors::empty(),
             state: Factors::None,
             ordered: vec![T::zero(); unknowns * copies],
         }

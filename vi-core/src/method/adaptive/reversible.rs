@@ -80,7 +80,7 @@ pub struct Reversible {
 
 /// The search for the length of a step.
 #[derive(Clone)]
-struct Search {
+struct PhaseSearch {
     /// A length that is too short, and one that is too long or has no step.
     between: [f64; 2],
     /// The logarithm of the last length tried, and that of its phase over ε.
@@ -91,7 +91,7 @@ struct Search {
     slope: f64,
 }
 
-impl Search {
+impl PhaseSearch {
     /// Between two lengths, before one is tried.
     fn new(between: [f64; 2], slope: f64) -> Self {
         Self { between, last: None, chord: None, slope }
@@ -184,7 +184,7 @@ impl Reversible {
         let Self { phase: wanted, floor, ahead, ratio: before, slope } = *self;
         let Following { steps, h: last, .. } = memory;
         let start = MotionPoint::of(system, node)?;
-        let mut search = Search::new([0.0, wanted / floor], slope);
+        let mut search = PhaseSearch::new([0.0, wanted / floor], slope);
         let mut h = last * ahead;
         let mut guess = Solver::<S, N, STAGES>::resized(system, steps, node, h)?;
         let mut failure = StepError::LengthsLost { t: node.t, h: *last };
@@ -228,7 +228,7 @@ impl Reversible {
             search.learn(h, off);
             if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
                 if self.is_too_long::<S, N, STAGES>(system, (&start, node), (&steps, h)) {
-                    search = Search::new([0.0, h], slope);
+                    search = PhaseSearch::new([0.0, h], slope);
                     (h, is_near) = (search.halved(h), false);
                     guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
                     continue;
@@ -288,7 +288,7 @@ impl Reversible {
         system: &S,
         (start, node): (&MotionPoint<S, N>, &Node<N>),
         (steps, h): (&Steps<S, N, STAGES>, f64),
-        (search, mut off): (&mut Search, f64),
+        (search, mut off): (&mut PhaseSearch, f64),
     ) -> f64 {
         let mut tried = search.next(h, off);
         let mut on = search.clone();
@@ -302,7 +302,7 @@ impl Reversible {
             on.learn(tried, off);
             tried = on.next(tried, off);
             // The slope here is that of the steps, up to the error of the polynomials.
-            *search = Search::new(search.between, on.slope);
+            *search = PhaseSearch::new(search.between, on.slope);
             if off.abs() < CLOSE {
                 break;
             }

@@ -52,7 +52,7 @@ pub(crate) mod free;
 pub use bound::BoundLengths;
 pub use free::FreeLengths;
 
-use super::bounds::{Control, Controlled, FORWARD, Phase, check_forward};
+use super::bounds::{Control, Controlled, FORWARD, FixedPhase, check_forward};
 use super::gauss::Gauss;
 use super::preserving::{PreservingStep, StepsOfAnyLength, check_power, failed, measured, order};
 use super::shift::{Shiftable, StepPower};
@@ -354,7 +354,7 @@ where
         let mut after = Solver::<S, N, STAGES>::end(node, &taken);
         after.add_energy(gain);
         history.set_excess(measured);
-        history.control.phase = history.control.phase.map(|phase| Phase { gap: residual, ..phase });
+        history.control.phase = history.control.phase.map(|phase| FixedPhase { gap: residual, ..phase });
         let steps = Solver::<S, N, STAGES>::fresh(system, &after, history.h())?;
         Ok((after, Lengths { steps, history }))
     }

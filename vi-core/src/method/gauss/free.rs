@@ -22,7 +22,7 @@ use crate::gauss::curvature::curvature;
 use crate::gauss::energies::energies;
 use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
 use crate::gauss::general::equations;
-use crate::gauss::linearization::Linearization;
+use crate::gauss::linearization::LinearizationPoint;
 use crate::gauss::newton::Buffer;
 use crate::gauss::points::{ErasedSystem, Points};
 use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
@@ -62,7 +62,7 @@ pub struct LastStages<const N: usize, const S: usize> {
     pub(crate) convergence: Convergence,
     pub(crate) pause: Pause,
     /// Linearization point of the next stiff step; `None` if it linearizes anew.
-    pub(crate) linearization: Option<Linearization<N>>,
+    pub(crate) linearization: Option<LinearizationPoint<N>>,
 }
 
 impl<const N: usize, const S: usize> Memory for LastStages<N, S> {}
