@@ -24,8 +24,10 @@ PARTS = 256  # of the time, at whose ends the largest numbers are looked for
 class Problem:
     """Equations q'' = a(q, v), a start, the end of the run, and momenta as a function of q and v."""
 
-    def __init__(self, names, acceleration, q, v, step, momenta=None, equations=None, order=None):
+    def __init__(self, names, acceleration, q, v, step, momenta=None, equations=None, order=None, published=None):
         self.q, self.v = q, v
+        # Coordinates and velocities at the end, by the source of the problem.
+        self.published = published
         self.end = STEPS * step
         self.momenta = momenta or (lambda q, v: v)
         # Where coordinates and velocities stand in the state of heyoka.
@@ -42,7 +44,9 @@ class Problem:
     def integrator(self, tolerance, kind=float):
         start = np.empty(len(self.order), dtype=kind)
         start[self.order] = np.array(self.q + self.v, dtype=kind)
-        return hy.taylor_adaptive(self.equations, start, tol=kind(tolerance), fp_type=kind), start
+        # The code of the reference is short, because it is compiled for longer than it runs.
+        compact = kind is not float
+        return hy.taylor_adaptive(self.equations, start, tol=kind(tolerance), fp_type=kind, compact_mode=compact), start
 
     def split(self, state):
         ordered = state[self.order]
@@ -109,12 +113,75 @@ def outer_solar_system():
     return Problem(None, None, q, v, 10.0, lambda q, v: weights * v, equations, order)
 
 
+def pleiades():
+    """Of the Test Set for IVP Solvers (Mazzia and Magherini, Bari 2008), with its reference solution."""
+    n = 7
+    q = [3.0, 3.0, -1.0, -3.0, 2.0, -2.0, 2.0, 3.0, -3.0, 2.0, 0.0, 0.0, -4.0, 4.0]
+    v = [0.0, 0.0, 0.0, 0.0, 0.0, 1.75, -1.5, 0.0, 0.0, 0.0, -1.25, 1.0, 0.0, 0.0]
+
+    def acceleration(q, v):
+        terms = [[] for _ in range(2 * n)]
+        for i in range(n):
+            for j in range(i):
+                x, y = q[i] - q[j], q[n + i] - q[n + j]
+                cube = (x**2 + y**2) ** (-1.5)
+                for axis, difference in ((0, x * cube), (n, y * cube)):
+                    terms[axis + j].append((i + 1.0) * difference)
+                    terms[axis + i].append(-(j + 1.0) * difference)
+        return [hy.sum(each) for each in terms]
+
+    masses = np.tile(np.arange(1.0, n + 1.0), 2)
+    names = [f"{axis}{i}" for axis in "xy" for i in range(n)]
+    end_q = [0.3706139143970502, 3.237284092057233, -3.222559032418324, 0.6597091455775310, 0.3425581707156584]
+    end_q += [1.562172101400631, -0.7003092922212495, -3.943437585517392, -3.271380973972550, 5.225081843456543]
+    end_q += [-2.590612434977470, 1.198213693392275, -0.2429682344935824, 1.091449240428980]
+    end_v = [3.417003806314313, 1.354584501625501, -2.590065597810775, 2.025053734714242, -1.155815100160448]
+    end_v += [-0.8072988170223021, 0.5952396354208710, -3.741244961234010, 0.3773459685750630, 0.9386858869551073]
+    end_v += [0.3667922227200571, -0.3474046353808490, 2.344915448180937, -1.947020434263292]
+    return Problem(names, acceleration, q, v, 7.5e-4, lambda q, v: masses * v, published=(end_q, end_v))
+
+
+def cart_double_pole():
+    """Gymnasium's inverted_double_pendulum.xml: equations for x and the angles a, c = a + b from the vertical."""
+    cart, pole, inertia, l, d, g, gx = 10.471975511965976, 4.198738581522758, 0.15497066975016233, 0.6, 0.05, 9.81, 1e-5
+    m_xx, m_xa, m_xc, m_ac = cart + 2.0 * pole, 1.5 * pole * l, 0.5 * pole * l, 0.5 * pole * l**2
+    m_aa, m_cc = inertia + 1.25 * pole * l**2, inertia + 0.25 * pole * l**2
+
+    def acceleration(q, v):
+        a, c, va, vc = q[1], q[1] + q[2], v[1], v[1] + v[2]
+        sin_a, cos_a, sin_c, cos_c = hy.sin(a), hy.cos(a), hy.sin(c), hy.cos(c)
+        xa, xc = m_xa * cos_a, m_xc * cos_c
+        ac, turn = m_ac * hy.cos(q[2]), m_ac * hy.sin(q[2])
+        x = m_xa * sin_a * va**2 + m_xc * sin_c * vc**2 + gx * m_xx - d * v[0]
+        first = turn * vc**2 + g * m_xa * sin_a + gx * xa - d * va + d * v[2]
+        second = -turn * va**2 + g * m_xc * sin_c + gx * xc - d * v[2]
+        # Elimination of x, then of a.
+        aa, ac, cc = m_aa - xa**2 / m_xx, ac - xa * xc / m_xx, m_cc - xc**2 / m_xx
+        first, second = first - xa * x / m_xx, second - xc * x / m_xx
+        factor = ac / aa
+        c_rate = (second - factor * first) / (cc - factor * ac)
+        a_rate = (first - ac * c_rate) / aa
+        return [(x - xa * a_rate - xc * c_rate) / m_xx, a_rate, c_rate - a_rate]
+
+    def momenta(q, v):
+        a, c, va, vc = q[1], q[1] + q[2], v[1], v[1] + v[2]
+        xa, xc, ac = m_xa * np.cos(a), m_xc * np.cos(c), m_ac * np.cos(q[2])
+        p_c = xc * v[0] + ac * va + m_cc * vc
+        return np.array([m_xx * v[0] + xa * va + xc * vc, xa * v[0] + m_aa * va + ac * vc + p_c, p_c])
+
+    # By cart_in_mujoco.py.
+    end = [-0.11127611304, 8.5783135478, 10.18513141025], [0.78600544535, -1.0007083402, -12.8093211273]
+    return Problem(["x", "a", "b"], acceleration, [0.0, 0.1, 0.1], [0.0] * 3, 0.001, momenta, published=end)
+
+
 PROBLEMS = {
     "double-well": double_well,
     "kepler": kepler,
     "double-pendulum": double_pendulum,
     "fpu-chain": fpu_chain,
     "outer-solar-system": outer_solar_system,
+    "pleiades": pleiades,
+    "cart-double-pole": cart_double_pole,
 }
 
 
@@ -138,6 +205,9 @@ class Reference:
 def run(name):
     problem = PROBLEMS[name]()
     reference = Reference(problem, problem.end)
+    if problem.published:
+        q, v = (np.array(part) for part in problem.published)
+        print(f"{name}: the reference is off the published end by {reference.error((q, problem.momenta(q, v))):.1e}")
     runs = [(tolerance, *problem.integrator(tolerance), []) for tolerance in TOLERANCES]
     for _ in range(REPETITIONS):
         for _, integrator, start, seconds in runs:
