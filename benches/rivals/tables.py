@@ -3,7 +3,7 @@
 In: names of systems, or none for all; the number of process starts of each program. Out: ratios of times at equal errors,
 rival ÷ the best of our methods, as medians over the starts. In a start the programs run one after the other for each system,
 and each counts its least time. `--write` puts the ratios into docs/rivals.json, from which `python3 docs/fill_numbers.py`
-makes the tables of the pages. Systems that are not named keep their numbers there.
+makes the tables of the pages.
 """
 
 import argparse
@@ -67,11 +67,13 @@ def ratio(starts, rival, i):
     found = median(start[rival][i][0] / start["ours"][i][0] for start in starts)
     if not 0.0 < found < math.inf:
         return ""
-    return f"{found:.0f}" if found >= 9.95 else f"{found:.1f}" if found >= 0.995 else f"{found:.2f}"
+    return f"{found:.0f}" if found >= 9.95 else f"{found:.1f}" if found >= 0.995 else f"{found:#.2g}"
 
 
 def duration(seconds):
-    """Seconds with two digits, in a suitable unit."""
+    """Seconds with two digits, in a suitable unit; empty if there are none."""
+    if not math.isfinite(seconds):
+        return ""
     unit, scale = ("µs", 1e6) if seconds < 1e-3 else ("ms", 1e3)
     return f"{float(f'{seconds * scale:.2g}'):g} {unit}"
 
@@ -101,6 +103,8 @@ def main():
     parser.add_argument("--starts", type=int, default=5, help="process starts of each program (default 5)")
     parser.add_argument("--write", action="store_true", help="put the numbers into docs/rivals.json")
     arguments = parser.parse_args()
+    if arguments.write and arguments.systems:
+        parser.error("--write replaces all numbers, which are those of one run: leave out the names of systems")
     build = ["cargo", "build", "--release", "--manifest-path", CRATE / "Cargo.toml"]
     subprocess.run(build, check=True)
     names = arguments.systems or list(SYSTEMS)
@@ -116,10 +120,8 @@ def main():
             if rival in numbers:
                 print(f"    {rival} ÷ ours", *numbers[rival], sep=" | ")
     if arguments.write:
-        old = json.loads(NUMBERS.read_text(encoding="utf-8"))["systems"] if NUMBERS.exists() else {}
-        systems = {name: {**old, **found}[name] for name in SYSTEMS if name in old or name in found}
         measured = f"Medians of {arguments.starts} starts ({machine()})"
-        content = {"measured": measured, "systems": systems}
+        content = {"measured": measured, "systems": found}
         NUMBERS.write_text(json.dumps(content, ensure_ascii=False, indent=2) + "\n", encoding="utf-8")
 
 
