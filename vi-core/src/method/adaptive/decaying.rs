@@ -30,9 +30,9 @@ pub(super) const FEWEST: usize = 3;
 /// Smallest δ of a step with a force, and largest δ of a resolved step, in units of its velocity.
 const FELT: f64 = 1e-12;
 const RESOLVED: f64 = 0.1;
-/// The least target, in units of the terms of the velocity, whose roundings δ contains: up to 64 ulps of the stage
-/// velocities, of which slopes are a hundred times as large. The controller keeps δ at 4 % of its target. The error at
-/// the end of such a step is a rounding.
+/// The least target, in units of the terms of the velocity. δ contains their roundings: up to 64 ulps of the stage
+/// velocities, of which slopes are a hundred times as large. At 4 % of its target δ leaves the length as it is (`AIM` and
+/// the exponents); below that lengths grow. The error at the end of such a step is a rounding.
 const ROUNDED: f64 = 1e-10;
 /// The largest δ of an accepted step, in units of the largest δ of the first steps.
 const LARGEST: f64 = 2.0;
