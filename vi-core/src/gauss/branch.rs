@@ -19,7 +19,7 @@ pub(crate) const FAST: f64 = 0.05;
 /// for e = 0.6, 1.0 in a step that loses a plunging orbit.
 const RESOLVED: f64 = 0.1;
 /// Smallest number of stages whose coefficients show whether they are resolved.
-pub(crate) const FEWEST: usize = 3;
+const FEWEST: usize = 3;
 /// Most solved steps of a continuation.
 const SOLVES: u32 = 192;
 /// Halvings of h until a step needs no continuation.
@@ -116,8 +116,8 @@ pub(crate) fn is_resolved<const N: usize, const S: usize>(stages: &Stages<N, S>,
     S >= FEWEST && stages.iter().zip(weights).all(is_smooth)
 }
 
-/// A test in the loop of the stages that only resolved ones pass: their last two coefficients are small even against the
-/// largest entry of their row over S, which no largest coefficient is below.
+/// A cheap test that only resolved stages pass, for the loop over steps: their last two coefficients are small against the
+/// largest entry of their row over S, which is at most the largest coefficient.
 #[inline(always)]
 pub(crate) fn are_smooth<const N: usize, const S: usize>(stages: &Stages<N, S>) -> bool {
     let tails = const { &tails::<S>() };

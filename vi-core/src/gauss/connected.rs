@@ -1,6 +1,7 @@
 //! Whether a Gauss step continues those of short lengths.
 //!
-//! A step has one solution near its start if its fixed-point iteration contracts fast, or if its stages are resolved.
+//! A step has one solution near its start if its fixed-point iteration contracts fast, or if its stages are resolved. In
+//! curvilinear coordinates the contraction proves nothing.
 //! Other steps are continued from short ones by [`branch::follow`].
 
 use super::branch::{self, EQUAL, FAST, NEAR, Shorter, StepsFromNode, distance, is_resolved};
@@ -8,7 +9,7 @@ use super::fixed_point::{Convergence, Equations as _};
 use super::general::equations;
 use super::linearization::LinearizationPoint;
 use super::newton::Buffer;
-use super::points::{AnyDerivatives, EquationForm, ErasedSystem, Points};
+use super::points::{AnyDerivatives, EquationForm, ErasedSystem, Points, follows_momenta};
 use super::solve::{StageSolution, Start, Step, constant};
 use super::stages::{Stages, at, stage, time};
 use crate::error::StepError;
@@ -53,7 +54,7 @@ fn weights<const N: usize, const S: usize>(
 /// Whether the contraction of its iteration, its stages, or its equations prove that a step continues short ones.
 fn is_proven<const N: usize, const S: usize>(system: &ErasedSystem<'_, N>, node: &Node<N>, step: &Step<N, S>) -> bool {
     let convergence = &step.convergence;
-    let follows_momenta = Points::<N, f64>::form(system).follows_momenta::<S>();
+    let follows_momenta = follows_momenta::<_, f64, N, S>(system);
     let is_fast =
         if step.by_newton { convergence.contraction <= FAST } else { convergence.is_fast() && !follows_momenta };
     is_fast || is_resolved(&step.stages, &weights(system, node, step)) || is_linear(system, node, step)

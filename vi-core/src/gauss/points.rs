@@ -4,7 +4,6 @@
 //! use it: slow convergence and once-per-step measurements. They are compiled once per number of coordinates and
 //! stages, for all systems of a program. They make up three fifths of the code of a step.
 
-use super::branch::FEWEST;
 use crate::linear::Matrix;
 use crate::motion::{Motion, Point, PointDerivatives, Sides};
 use crate::real::{Real, Rounded};
@@ -60,13 +59,6 @@ impl EquationForm {
             [.., true] => Self::Curvilinear,
             _ => Self::VaryingMass,
         }
-    }
-
-    /// Whether an iteration of S stages evaluates forces at the velocities of the momenta. Its contraction proves no step:
-    /// near solutions beyond a pole it is small. Resolved stages do, but few stages do not show whether they are
-    /// resolved.
-    pub(crate) const fn follows_momenta<const S: usize>(self) -> bool {
-        matches!(self, Self::Curvilinear) && S >= FEWEST
     }
 
     /// Whether the type of a system guarantees this form. `if const { … }` then does not compile the other branch.
@@ -149,6 +141,16 @@ impl<Y: Motion<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     fn force_at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
         self.applied_force(t, q, v)
     }
+}
+
+/// Fewest stages whose iteration follows momenta. Its contraction proves no step: near solutions beyond a pole it is small.
+/// Resolved stages prove it, but three are not resolved where a velocity changes its sign.
+const FOLLOWING: usize = 4;
+
+/// Whether an iteration of S stages evaluates forces at the velocities of the momenta.
+#[inline(always)]
+pub(crate) fn follows_momenta<Y: Points<N, T>, T: Real, const N: usize, const S: usize>(system: &Y) -> bool {
+    S >= FOLLOWING && system.moving() < MANY && system.form() == EquationForm::Curvilinear
 }
 
 /// A point with a dense mass matrix, for any system.

@@ -10,7 +10,7 @@ use super::fixed_point::{self, Convergence, Equations, FixedPointResult, NOISE, 
 use super::general::{General, equations};
 use super::linearization::LinearizationPoint;
 use super::newton::{Buffer, Newton};
-use super::points::{EquationForm, ErasedSystem, MANY, Points};
+use super::points::{EquationForm, ErasedSystem, MANY, Points, follows_momenta};
 use super::rounding;
 use super::separable::Separable;
 use super::stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
@@ -64,10 +64,10 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
     /// Whether fixed-point iteration solved the step of length h from a node to the rounding of its positions, and its
     /// contraction or its stages prove the step.
     #[inline(always)]
-    pub(crate) fn is_step(&self, form: EquationForm, node: &Node<N>, h: f64) -> bool {
+    pub(crate) fn is_step(&self, follows_momenta: bool, node: &Node<N>, h: f64) -> bool {
         let StageIncrement { velocity, momentum } = &self.increment;
         let convergence = &self.iteration.convergence;
-        let is_proven = if form.follows_momenta::<S>() { are_smooth(&self.stages) } else { convergence.is_fast() };
+        let is_proven = if follows_momenta { are_smooth(&self.stages) } else { convergence.is_fast() };
         convergence.is_at_floor() && is_proven && node.stays_finite(h, velocity, momentum)
     }
 
@@ -198,7 +198,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Convertible<N>,
     {
         let solved = self.side_by_side(system, instructions, None);
-        if solved.is_step(Points::<N, f64>::form(system), self.node, self.h) {
+        if solved.is_step(follows_momenta::<_, f64, N, S>(system), self.node, self.h) {
             Ok(solved.step(self.h, self.pause.after_fixed_point()))
         } else {
             Err(solved)

@@ -24,7 +24,7 @@ use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
 use crate::gauss::general::equations;
 use crate::gauss::linearization::LinearizationPoint;
 use crate::gauss::newton::Buffer;
-use crate::gauss::points::{ErasedSystem, Points};
+use crate::gauss::points::{ErasedSystem, follows_momenta};
 use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
 use crate::gauss::stages::{LOOPED, Stages, at};
 #[cfg(feature = "alloc")]
@@ -205,7 +205,7 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Advancing<'_, Y
     fn run<const FUSED: bool>(self) -> Self::Output {
         let Self { system, node, memory } = self;
         let solved = iterated::<_, N, S, FUSED, false>(system, &memory.start(node), None);
-        if solved.is_step(Points::<N, f64>::form(system), node, memory.h) {
+        if solved.is_step(follows_momenta::<_, f64, N, S>(system), node, memory.h) {
             memory.take_solved(node, &solved);
             return Ok(());
         }
@@ -268,7 +268,7 @@ where
         }
         if !S::SIDE_BY_SIDE {
             let solved = memory.start(node).in_scalars(&ErasedSystem::of(system), None);
-            if !solved.is_step(Points::<N, f64>::form(system), node, memory.h) {
+            if !solved.is_step(follows_momenta::<_, f64, N, STAGES>(system), node, memory.h) {
                 return Err(Some(solved));
             }
             memory.take_solved(node, &solved);
