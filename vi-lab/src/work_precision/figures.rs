@@ -78,7 +78,7 @@ impl Findings {
         Chart::new(
             "order",
             format!("{system}: error against step, with the fitted order"),
-            [Axis::log10("h (energy-preserving: first step)"), Axis::log10(self.error_label())],
+            [Axis::log10("h (adaptive, energy-preserving: first step)"), Axis::log10(self.error_label())],
             series.collect(),
         )
     }

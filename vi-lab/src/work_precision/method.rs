@@ -1,8 +1,8 @@
 //! The compared methods, and one run of each.
 //!
 //! In: a system, an initial point, the end time, a [`Method`] and its setting: a step, or a tolerance. Out: the final
-//! state, or the reason why it was not reached. The energy-preserving integrator stops at the first node at or after
-//! the end; the others take the nearest number of steps.
+//! state, or the reason why it was not reached. Methods that find their lengths stop at the first node at or after the
+//! end; the others take the nearest number of steps.
 
 use core::cell::Cell;
 use vi_erased::System;
@@ -26,8 +26,8 @@ const fn own(name: &'static str, look: Look, method: plan::Method) -> Method {
     Method { name, look, integrator: Some((method, None)) }
 }
 
-const fn gauss(name: &'static str, look: Look, stages: usize) -> Method {
-    Method { name, look, integrator: Some((plan::Method::Gauss, Some(stages))) }
+const fn gauss(name: &'static str, look: Look, method: plan::Method, stages: usize) -> Method {
+    Method { name, look, integrator: Some((method, Some(stages))) }
 }
 
 impl Method {
@@ -39,14 +39,15 @@ impl Method {
     pub(super) const RIVAL: Self = Self { name: "DOP853", look: Look::RIVAL, integrator: None };
 
     /// All methods, in the order of the legends.
-    pub(super) const ALL: [Self; 9] = [
+    pub(super) const ALL: [Self; 10] = [
         own("fixed step", Look::FIXED, plan::Method::Fixed),
         own("Suzuki 4", Look::OTHERS[0], plan::Method::Suzuki4),
         own("Kahan–Li 6", Look::OTHERS[1], plan::Method::KahanLi6),
         Self::KAHAN_LI_8,
         own("splitting, order 6", Look::OTHERS[3], plan::Method::Splitting6),
-        gauss("Gauss, 4 stages", Look::GAUSS[0], 4),
-        gauss("Gauss, 8 stages", Look::GAUSS[1], 8),
+        gauss("Gauss, 4 stages", Look::GAUSS[0], plan::Method::Gauss, 4),
+        gauss("Gauss, 8 stages", Look::GAUSS[1], plan::Method::Gauss, 8),
+        gauss("Gauss, 8 stages, adaptive", Look::GAUSS[2], plan::Method::Adaptive, 8),
         Self::ENERGY,
         Self::RIVAL,
     ];
@@ -54,6 +55,11 @@ impl Method {
     /// Whether it takes kicks and drifts.
     pub(super) fn is_splitting(self) -> bool {
         self.integrator.is_some_and(|(method, _)| method.splitting().is_some())
+    }
+
+    /// Whether its setting is the length of the first step only.
+    fn finds_length(self) -> bool {
+        self.integrator.is_some_and(|(method, _)| method.finds_length())
     }
 
     /// Whether it integrates this system.
@@ -65,7 +71,7 @@ impl Method {
     /// with two steps the least time for an error would be off by two fifths, of the fast steps of splittings by a
     /// quarter.
     pub(super) fn rungs(self) -> i32 {
-        let is_gauss = matches!(self.integrator, Some((plan::Method::Gauss, _)));
+        let is_gauss = matches!(self.integrator, Some((_, Some(_))));
         if is_gauss || self.is_splitting() { 4 } else { 2 }
     }
 
@@ -86,7 +92,7 @@ impl Method {
     pub(super) fn setting(self, setting: f64) -> String {
         match self.integrator {
             None => format!("tolerance {setting:.0e}"),
-            Some((plan::Method::Energy, _)) => format!("h₀ = {setting:.4}"),
+            Some(_) if self.finds_length() => format!("h₀ = {setting:.4}"),
             Some(_) => format!("h = {setting:.4}"),
         }
     }
@@ -148,7 +154,7 @@ impl Task<'_> {
     /// Steps to the end.
     fn follow(&self, run: &mut dyn Simulation) -> Result<(), Ended> {
         let steps = self.steps();
-        if self.method != Method::ENERGY {
+        if !self.method.finds_length() {
             return Ok(run.advance_by(steps)?);
         }
         run.advance_until(self.end, TOO_MANY * steps)?;
@@ -156,7 +162,7 @@ impl Task<'_> {
     }
 }
 
-/// An energy-preserving run is stopped at this multiple of the steps of its initial length.
+/// A run that finds its lengths is stopped at this multiple of the steps of its initial length.
 const TOO_MANY: u64 = 10;
 
 /// The methods that run here and integrate the system.

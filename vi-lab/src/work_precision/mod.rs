@@ -2,8 +2,8 @@
 //!
 //! In: a predefined system and a folder. Out: in the folder a page `index.html` with three figures (error against time,
 //! against evaluations, against the step), each as SVG and CSV, and tables of all runs. The methods are the fixed step,
-//! its compositions of order 4, 6 and 8, splittings, Gauss methods, the energy-preserving integrator, and DOP853 of
-//! another library.
+//! its compositions of order 4, 6 and 8, splittings, Gauss methods with equal and with adaptive steps, the
+//! energy-preserving integrator, and DOP853 of another library.
 //!
 //! | module | product |
 //! |---|---|
@@ -68,7 +68,7 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     } else {
         format!("Runs that the figures omit. {}", escape(&missing.join(" ")))
     });
-    report.table(&found.run_table(), "All runs, coarse to fine; the setting is a step, or the tolerance of DOP853.");
+    report.table(&found.run_table(), "All runs, coarse to fine; the setting is a step, of methods that choose their nodes the first one, or the tolerance of DOP853.");
     let page = report.finish()?;
     match found.uncompared() {
         None => Ok(format!("{}\n{}", found.prices().text(), page.display())),
@@ -100,8 +100,8 @@ fn introduction(report: &mut Report, entry: &Entry, found: &Findings) {
     report.prose(&format!(
         "The system starts at q = {:?}, v = {:?}{}. The <i>error</i> is taken at t = {}: the largest difference of a \
          coordinate or a momentum from the reference, relative to the largest coordinate or momentum along the solution. The \
-         energy-preserving integrator chooses its nodes. Its error is taken at its first node at or after this time, relative \
-         to the reference at that node.",
+         energy-preserving integrator and adaptive Gauss steps choose their nodes. Their error is taken at the first node at \
+         or after this time, relative to the reference at that node.",
         entry.q,
         entry.v,
         if parameters.is_empty() { String::new() } else { format!(", with {}", parameters.join(", ")) },

@@ -173,18 +173,18 @@ mod tests {
     use crate::ready;
     use vi_core::StepError;
 
-    fn quick(name: &str, q: &[f64]) -> Findings {
+    fn quick(name: &str, q: &[f64], v: &[f64]) -> Findings {
         let entry = ready().find(name).expect("the system");
-        let entry = Entry { q: q.to_vec(), v: vec![0.0; q.len()], ..entry };
+        let entry = Entry { q: q.to_vec(), v: v.to_vec(), ..entry };
         findings(&entry, true).unwrap_or_else(|error| panic!("{error}"))
     }
 
     #[test]
     fn the_fitted_orders_are_those_of_the_methods() {
-        let found = quick("pendulum", &[1.0]);
+        let found = quick("pendulum", &[1.0], &[0.0]);
         let floor = found.agreement.floor();
         // Gauss methods of eight stages are exact at once.
-        let [fixed, four, six, eight, split, gauss, _, energy, _] = Method::ALL;
+        let [fixed, four, six, eight, split, gauss, .., energy, _] = Method::ALL;
         let orders = [(fixed, 2.0), (four, 4.0), (six, 6.0), (eight, 8.0), (split, 6.0), (gauss, 8.0), (energy, 2.0)];
         for (method, order) in orders {
             let fitted = fitted_order(found.points(method), floor).expect("an order");
@@ -193,9 +193,21 @@ mod tests {
     }
 
     #[test]
+    fn adaptive_steps_take_fewer_evaluations_on_an_eccentric_orbit() {
+        // Eccentricity 0.8.
+        let found = quick("kepler", &[0.2, 0.0], &[0.0, 3.0]);
+        let least = |method| {
+            let accurate = found.points(method).filter(|(_, point)| point.error < 1e-6);
+            accurate.map(|(_, point)| point.evaluations).min().expect("an accurate run")
+        };
+        let [.., equal, adaptive, _, _] = Method::ALL;
+        assert!(least(adaptive) < least(equal), "{} and {}", least(adaptive), least(equal));
+    }
+
+    #[test]
     fn a_run_that_ends_says_why() {
         // Across the barrier the energy-preserving step does not always exist; the other methods continue.
-        let found = quick("double-well", &[1.05]);
+        let found = quick("double-well", &[1.05], &[0.0]);
         for run in &found.runs {
             // The longest steps end earlier, for their length.
             let ended = match run.outcome {
@@ -210,7 +222,7 @@ mod tests {
 
     #[test]
     fn only_the_seconds_differ_between_two_studies() {
-        let found = || quick("pendulum", &[0.5]);
+        let found = || quick("pendulum", &[0.5], &[0.0]);
         let one = found();
         let other = found();
         let plain = |found: &Findings| -> Vec<_> {

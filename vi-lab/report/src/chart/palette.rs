@@ -26,10 +26,11 @@ impl Look {
     pub const ENERGY: Self = Self::of("#D55E00", MarkerShape::Circle);
     /// The fixed-step integrator.
     pub const FIXED: Self = Self::of("#0072B2", MarkerShape::Square);
-    /// Gauss methods of few stages, and of many.
-    pub const GAUSS: [Self; 2] = [
+    /// Gauss methods of few stages, of many, and with adaptive steps.
+    pub const GAUSS: [Self; 3] = [
         Self { dashes: DASHED, ..Self::of("#56B4E9", MarkerShape::Plus) },
         Self { width: 2.6, ..Self::of("#56B4E9", MarkerShape::Circle) },
+        Self { dashes: DOTTED, ..Self::of("#56B4E9", MarkerShape::Diamond) },
     ];
     /// A method of another library.
     pub const RIVAL: Self = Self::of("#000000", MarkerShape::Cross);
