@@ -251,6 +251,7 @@ impl<S: Motion<N>, const N: usize, const STAGES: usize> Rows<S, N, STAGES> {
                 scale[r] = row.terms(q) / h.abs() + rates.as_ref()[r].abs() + row.terms(&known);
             }
             if system.holonomic() < constraints {
+                // Evaluated again: to keep them takes every step longer.
                 let v: SVector<f64, N> = stage_velocity(u, i);
                 let (gradients, rates) = system.constraint_gradients(self.stages[i].0, &self.stages[i].1);
                 for r in system.holonomic()..constraints {
