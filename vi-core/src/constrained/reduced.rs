@@ -138,8 +138,6 @@ struct Schur {
     /// Whether S has three diagonals: the values are those of one row after the other, with the entry below the diagonal
     /// after the one above it.
     is_tridiagonal: bool,
-    /// [`Pattern::is_chain`].
-    is_chain: bool,
 }
 
 /// A step of the elimination.
@@ -154,7 +152,7 @@ struct Pivot {
 
 impl Schur {
     /// The pattern of S for the parts of A; `None` if elimination fills it.
-    fn new(Pattern { parts, is_chain }: &Pattern, count: usize) -> Option<Self> {
+    fn new(Pattern { parts, .. }: &Pattern, count: usize) -> Option<Self> {
         let index = |index: usize| u32::try_from(index).ok();
         let mut at_point: BTreeMap<usize, Vec<[usize; 2]>> = BTreeMap::new();
         for (part, Part { row, point }) in parts.iter().enumerate() {
@@ -207,18 +205,17 @@ impl Schur {
         }
         schur.is_tridiagonal =
             pairs.len() + 2 == 3 * count && pairs.keys().all(|[row, column]| row.abs_diff(*column) < 2);
-        schur.is_chain = *is_chain;
         schur.values = vec![0.0; places.len()];
         schur.reciprocals = vec![0.0; count];
         Some(schur)
     }
 
     /// Forms S from A and M⁻¹Aᵀ with D coordinates of a point, and factors it. False if a pivot is not positive.
-    fn factor<const D: usize>(&mut self, left: &[f64], right: &[f64]) -> bool {
+    fn factor<const D: usize>(&mut self, is_chain: bool, left: &[f64], right: &[f64]) -> bool {
         let Self { values, products, .. } = self;
         let ((left, _), (right, _)) = (left.as_chunks::<D>(), right.as_chunks::<D>());
         let product = |sum: f64, a: &[f64; D], b: &[f64; D]| a.iter().zip(b).fold(sum, |sum, (a, b)| sum + a * b);
-        if self.is_chain {
+        if is_chain {
             tridiagonal::write(values, left, right, product);
         } else {
             values.fill(0.0);
@@ -519,7 +516,7 @@ fn step_of_points<S: Motion<N>, const N: usize, const D: usize>(
         let residual = constraints::<S, N, D>(system, &end, (h, before), reduced);
         contraction = contracted(contraction, [before, residual]);
         if !is_factored || residual > FLOOR && residual > FALLEN * before {
-            is_factored = reduced.schur.factor::<D>(&reduced.last, &reduced.weighted);
+            is_factored = reduced.schur.factor::<D>(reduced.pattern.is_chain, &reduced.last, &reduced.weighted);
         }
         if !is_factored || residual.is_nan() || iterations == ITERATIONS {
             return None;
@@ -595,7 +592,7 @@ fn projected<S: Motion<N>, const N: usize, const D: usize>(
     reduced: &mut Reduced,
 ) -> Option<(Node<N>, Multipliers<S, N>, f64)> {
     weigh::<D>(&reduced.pattern, &reduced.inverse, &reduced.last, &mut reduced.weighted);
-    if !reduced.schur.factor::<D>(&reduced.last, &reduced.weighted) {
+    if !reduced.schur.factor::<D>(reduced.pattern.is_chain, &reduced.last, &reduced.weighted) {
         return None;
     }
     let mut mu = system.constraints(node.t, &node.q);
@@ -657,10 +654,11 @@ mod tests {
     fn three_diagonals_have_the_bits_of_any_order() {
         let right = [0.9, -1.1, 1.0, -1.2, 0.8, -0.6, 1.5];
         let solved = |is_tridiagonal: bool, is_chain: bool| {
-            let mut schur = Schur::new(&chain(), 4).expect("no fill");
-            assert!(schur.is_tridiagonal && schur.is_chain);
-            (schur.is_tridiagonal, schur.is_chain) = (is_tridiagonal, is_chain);
-            assert!(schur.factor::<1>(&LEFT, &right));
+            let chain = chain();
+            let mut schur = Schur::new(&chain, 4).expect("no fill");
+            assert!(schur.is_tridiagonal && chain.is_chain);
+            schur.is_tridiagonal = is_tridiagonal;
+            assert!(schur.factor::<1>(is_chain, &LEFT, &right));
             let mut b = [1.0, -2.0, 3.0, 0.5];
             schur.solve(&mut b);
             b.map(f64::to_bits)
