@@ -9,7 +9,7 @@
 //!
 //! and returns the step of the whole length. If the branch ends before, the step is too long.
 
-use super::stages::{Stages, maximum, scaled, sum};
+use super::stages::{Stages, coefficients, maximum, scaled, sum};
 use super::tableau::{Tableau, real};
 
 /// Contraction of Newton iteration up to which its solution counts as connected. It finds solutions farther away than
@@ -102,25 +102,22 @@ pub(crate) fn follow<B: StepsFromNode>(steps: &mut B) -> Result<B::Solution, f64
 /// Whether a step is resolved: the last two Legendre coefficients of each row of stages are small. False for few
 /// stages. `weights` make rows comparable: a row that is rounding of the others counts as zero.
 pub(crate) fn is_resolved<const N: usize, const S: usize>(stages: &Stages<N, S>, weights: &[f64; N]) -> bool {
-    let Tableau { b, legendre, .. } = const { &Tableau::<S>::VALUES };
-    let coefficient = |row: &[f64; S], k: usize| {
-        let sum: f64 = (0..S).map(|i| b[i] * legendre[k][i] * row[i]).sum();
-        (real(2 * k + 1) * sum).abs()
-    };
     let noise = noise([stages], weights);
-    let is_smooth = |(row, weight): (&[f64; S], &f64)| {
-        let largest = (0..S).map(|k| coefficient(row, k)).fold(0.0, f64::max);
-        let last = coefficient(row, S - 1).max(coefficient(row, S.saturating_sub(2)));
+    let is_smooth = |(row, weight): ([f64; S], &f64)| {
+        let sizes = row.map(f64::abs);
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        let last = sizes[S - 1].max(sizes[S.saturating_sub(2)]);
         last <= largest * RESOLVED || last * weight <= noise
     };
-    S >= FEWEST && stages.iter().zip(weights).all(is_smooth)
+    S >= FEWEST && coefficients(stages).into_iter().zip(weights).all(is_smooth)
 }
 
 /// A cheap test that only resolved stages pass, for the loop over steps: their last two coefficients are small against the
 /// largest entry of their row over S, which is at most the largest coefficient.
 #[inline(always)]
 pub(crate) fn are_smooth<const N: usize, const S: usize>(stages: &Stages<N, S>) -> bool {
-    let tails = const { &tails::<S>() };
+    let Tableau { to_legendre, .. } = const { &Tableau::<S>::VALUES };
+    let [last, before] = [&to_legendre[S - 1], &to_legendre[S.saturating_sub(2)]];
     let mut are_smooth = S >= FEWEST;
     for row in stages {
         let mut sizes = [0.0; S];
@@ -129,26 +126,9 @@ pub(crate) fn are_smooth<const N: usize, const S: usize>(stages: &Stages<N, S>) 
         }
         let most = const { RESOLVED / real(S) } * maximum(&sizes);
         // False for NaN.
-        are_smooth &= sum(&scaled(&tails[0], row)).abs() <= most && sum(&scaled(&tails[1], row)).abs() <= most;
+        are_smooth &= sum(&scaled(last, row)).abs() <= most && sum(&scaled(before, row)).abs() <= most;
     }
     are_smooth
-}
-
-/// The weights `(2k + 1) b_i P_k(x_i)` of the last two coefficients.
-const fn tails<const S: usize>() -> [[f64; S]; 2] {
-    let Tableau { b, legendre, .. } = &Tableau::<S>::VALUES;
-    let mut tails = [[0.0; S]; 2];
-    let mut last = 0;
-    while last < 2 && last < S {
-        let k = S - 1 - last;
-        let mut i = 0;
-        while i < S {
-            tails[last][i] = real(2 * k + 1) * b[i] * legendre[k][i];
-            i += 1;
-        }
-        last += 1;
-    }
-    tails
 }
 
 /// The largest distance of stages, relative to the range of their row and of its value at the node, `from`. `weights`

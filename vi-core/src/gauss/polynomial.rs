@@ -14,8 +14,8 @@
 use super::fixed_point::Equations;
 use super::general::equations;
 use super::points::{EquationForm, ErasedSystem, Points};
-use super::stages::{Stages, set, stage, time};
-use super::tableau::{Tableau, real};
+use super::stages::{Stages, coefficients, set, stage, time};
+use super::tableau::real;
 use crate::node::Node;
 use crate::run::DenseOutput;
 use crate::state::State;
@@ -94,22 +94,6 @@ impl<const N: usize, const S: usize> DenseOutput<N> for CollocationPolynomial<N,
         }
         v
     }
-}
-
-/// The coefficients `u_k = (2k + 1) Σ_i b_i P_k(x_i) V_i` of values at the stages.
-pub(crate) fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>) -> Stages<N, S> {
-    let Tableau { b, legendre, .. } = const { &Tableau::<S>::VALUES };
-    let mut coefficients = [[0.0; S]; N];
-    let mut factor = 1.0;
-    for k in 0..S {
-        for (row, values) in coefficients.iter_mut().zip(values) {
-            for i in 0..S {
-                row[k] += factor * b[i] * legendre[k][i] * values[i];
-            }
-        }
-        factor += 2.0;
-    }
-    coefficients
 }
 
 /// `Σ_k u_k basis_k` of each coordinate, in ascending magnitude.

@@ -322,6 +322,20 @@ fn by_pairs<const W: usize>(of: &[f64; W], one: impl Fn(f64, f64) -> f64) -> f64
     left[0]
 }
 
+/// The coefficients `u_k = (2k + 1) Σ_i b_i P_k(x_i) V_i` of values at the stages, in Legendre polynomials.
+pub(crate) fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>) -> Stages<N, S> {
+    let Tableau { to_legendre, .. } = const { &Tableau::<S>::VALUES };
+    let mut coefficients = [[0.0; S]; N];
+    for (row, values) in coefficients.iter_mut().zip(values) {
+        for k in 0..S {
+            for i in 0..S {
+                row[k] += to_legendre[k][i] * values[i];
+            }
+        }
+    }
+    coefficients
+}
+
 /// Extrapolates the polynomials through the stages of a step to `place(c_i)`, in units of its length.
 #[inline(always)]
 pub(crate) fn at<const N: usize, const S: usize>(stages: &Stages<N, S>, place: impl Fn(f64) -> f64) -> Stages<N, S> {

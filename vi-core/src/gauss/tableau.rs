@@ -42,6 +42,8 @@ pub(crate) struct Tableau<const S: usize> {
     pub(crate) ahead: [[f64; S]; S],
     /// `legendre[k][i] = P_k(2 c_i − 1)`.
     pub(crate) legendre: [[f64; S]; S],
+    /// `to_legendre[k][i] = (2k + 1) b_i P_k(2 c_i − 1)`: the weight of stage i in the coefficient of P_k.
+    pub(crate) to_legendre: [[f64; S]; S],
 }
 
 impl<const S: usize> Tableau<S> {
@@ -68,15 +70,39 @@ impl<const S: usize> Tableau<S> {
         let second = product(&scaled(&first, &b), &first, S);
         let ahead = product(&scaled(&second, &b), &next, S);
         let rounded = Self::rounded(&c, &b, &first, &second);
-        Self { next: nearest(&scaled(&next, &b)), ahead: nearest(&ahead), legendre: nearest(&legendre), ..rounded }
+        let legendre = nearest(&legendre);
+        let to_legendre = Self::to_legendre(&rounded.b, &legendre);
+        Self { next: nearest(&scaled(&next, &b)), ahead: nearest(&ahead), legendre, to_legendre, ..rounded }
+    }
+
+    const fn to_legendre(b: &[f64; S], legendre: &[[f64; S]; S]) -> [[f64; S]; S] {
+        let mut weights = *legendre;
+        let mut k = 0;
+        while k < S {
+            let mut i = 0;
+            while i < S {
+                weights[k][i] = real(2 * k + 1) * b[i] * legendre[k][i];
+                i += 1;
+            }
+            k += 1;
+        }
+        weights
     }
 
     /// Rounds so that the conditions of the [module](self) hold exactly: sums and differences of multiples of 2⁻⁵³
     /// below 1 are exact.
     const fn rounded(c: &[Pair; S], b: &[Pair; S], first: &[[Pair; S]; S], second: &[[Pair; S]; S]) -> Self {
         let zeros = [[0.0; S]; S];
-        let mut values =
-            Self { c: [0.0; S], b: [0.0; S], first: zeros, second: zeros, next: zeros, ahead: zeros, legendre: zeros };
+        let mut values = Self {
+            c: [0.0; S],
+            b: [0.0; S],
+            first: zeros,
+            second: zeros,
+            next: zeros,
+            ahead: zeros,
+            legendre: zeros,
+            to_legendre: zeros,
+        };
         let mut i = 0;
         while i < S {
             values.c[i] = on_grid(c[i]);
@@ -300,7 +326,7 @@ mod tests {
 
     /// Tests the residuals of the module's conditions and of the order conditions up to 2s, for one S.
     fn check<const S: usize>() {
-        let Tableau { c, b, first, second, next, ahead, legendre } = &Tableau::<S>::VALUES;
+        let Tableau { c, b, first, second, next, ahead, legendre, .. } = &Tableau::<S>::VALUES;
         for i in 0..S {
             for j in 0..S {
                 assert_eq!((first[j][i] + first[i][j]).to_bits(), 1.0_f64.to_bits(), "{S} stages: {i}, {j}");

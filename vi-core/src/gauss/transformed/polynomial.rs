@@ -10,8 +10,8 @@
 //! and θ follows from t, which increases with θ because g is positive. Coefficients and I_k are those of a Gauss step
 //! in time.
 
-use super::super::polynomial::{coefficients, integrals, polynomials, sum};
-use super::super::stages::{Stages, scaled};
+use super::super::polynomial::{integrals, polynomials, sum};
+use super::super::stages::{Stages, coefficients, scaled};
 use super::LastRates;
 use super::equations::Scaled;
 use crate::motion::Motion;

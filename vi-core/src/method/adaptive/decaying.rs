@@ -15,7 +15,7 @@
 
 use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, moves_time, solved};
 use crate::error::StepError;
-use crate::gauss::polynomial::coefficients;
+use crate::gauss::stages::coefficients;
 use crate::linear::Matrix;
 use crate::method::gauss::StageSolver as _;
 use crate::method::{Method, Problem};
