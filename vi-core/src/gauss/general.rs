@@ -311,13 +311,12 @@ where
     #[inline(always)]
     fn iterate(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>, before: &Convergence) {
         // For a known form the compiler sees one branch.
-        let varies = || matches!(self.system.form(), EquationForm::VaryingMass | EquationForm::Curvilinear);
-        let is_known =
-            const { EquationForm::VaryingMass.is_known(Y::FORM) || EquationForm::Curvilinear.is_known(Y::FORM) };
         if let Some(newton) = self.newton {
             let missing = self.evaluate(x);
             self.correct(&newton.correction(&missing));
-        } else if is_known || const { Y::FORM.is_none() } && varies() {
+        } else if const { matches!(Y::FORM, Some(form) if form.varies_mass()) }
+            || const { Y::FORM.is_none() } && self.system.form().varies_mass()
+        {
             self.iterate_varying(x, before);
         } else {
             self.iterate_constant(x);

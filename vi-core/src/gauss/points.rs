@@ -61,6 +61,11 @@ impl EquationForm {
         }
     }
 
+    /// Whether the mass matrix varies.
+    pub(crate) const fn varies_mass(self) -> bool {
+        matches!(self, Self::VaryingMass | Self::Curvilinear)
+    }
+
     /// Whether the type of a system guarantees this form. `if const { … }` then does not compile the other branch.
     pub(crate) const fn is_known(self, known: Option<Self>) -> bool {
         matches!(known, Some(known) if known as u8 == self as u8)
