@@ -1,7 +1,8 @@
 //! The length of a step: a number, or the search for one from a tolerance.
 //!
 //! In: a start and a method. Out: the constant length whose largest error over the first stretch ([`ErrorMonitor`]) is
-//! the tolerance. Each trial takes the steps of that stretch; the error of a method of order p grows by `h^(p+1)`.
+//! the tolerance. Each trial takes the steps of that stretch; the error of a method of order p grows by `h^(p+1)`. The
+//! first trial has the length `τ ε^(1/(p+1))` for the tolerance ε and a time scale τ of the start.
 
 use super::Start;
 use super::estimate::ErrorMonitor;
@@ -15,10 +16,10 @@ use num_traits::Float as _;
 
 /// A tolerance instead of a step length: `start.integrate(method, Tolerance(1e-9))`.
 ///
-/// The run then has a constant step. Its largest relative error over the first stretch is at most the tolerance, and at
-/// least 0.4 of it if such steps exist. If steps stop existing before the tolerance is reached, the run uses half of
-/// the longest length that exists. The stretch lasts until the coordinates have turned back twice or more, at most 4096
-/// steps. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
+/// The run then has a constant step. Its largest relative error over the first stretch is at most the tolerance, and a
+/// length that is longer by a sixth would exceed it. If steps stop existing before the tolerance is reached, the run
+/// uses half of the longest length that exists. The stretch lasts until the coordinates have turned back twice or more,
+/// at most 4096 steps of order 2, 8192/p of order p. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
 /// [`Run::monitored`] reports it. The global error is larger: about the tolerance times the number of steps, or more.
 ///
 /// [`Run::monitored`]: crate::Run::monitored
@@ -58,13 +59,15 @@ impl<T: Scalar> Length<T> for T {
 const TRIALS: u32 = 60;
 /// Largest factor between two trial lengths.
 const FACTOR: f64 = 8.0;
-/// The error target of a trial, and the least accepted error, relative to the tolerance.
+/// The error target of a trial, relative to the tolerance.
 const AIM: f64 = 0.7;
-const LEAST: f64 = 0.4;
-/// Shortest step that is tried while none exists, in units of the first guess.
-const SHORTEST: f64 = 1e-9;
-/// Longest step, in units of the first guess.
-const LONGEST: f64 = 1e4;
+/// A length is accepted if the longest one is at most this factor longer.
+const NEARLY: f64 = 1.15;
+/// Shortest step that is tried while none exists, and longest step, in units of the time scale of the start.
+const SHORTEST: f64 = 1e-10;
+const LONGEST: f64 = 1e3;
+/// Most steps of a trial, times half the order: steps of high order are long.
+const STRETCH: u64 = 4096;
 /// Consecutive shorter trials without a smaller error, after which rounding dominates.
 const STALLED: u32 = 3;
 
@@ -88,8 +91,9 @@ impl<T: Scalar> Length<T> for Tolerance {
     ) -> Result<T, StepError> {
         let Self(tolerance) = self;
         check_tolerance::<T>(tolerance)?;
-        let guess = guess(start)?;
-        let mut h = guess;
+        let exponent = 1.0 / f64::from(method.facts().order + 1);
+        let scale = time_scale(start)?;
+        let mut h = scale * tolerance.powf(exponent);
         // The longest accepted length, and the shortest rejected one.
         let (mut low, mut high) = (0.0_f64, f64::INFINITY);
         let mut least = f64::INFINITY;
@@ -110,9 +114,10 @@ impl<T: Scalar> Length<T> for Tolerance {
                     f64::INFINITY
                 }
             };
+            let factor = (AIM * tolerance / estimate).powf(exponent).clamp(1.0 / FACTOR, FACTOR);
             if estimate <= tolerance {
                 low = low.max(h);
-                if estimate >= LEAST * tolerance || estimate == 0.0 || h >= LONGEST * guess {
+                if factor <= NEARLY || estimate == 0.0 || h >= LONGEST * scale {
                     return Ok(T::real(h));
                 }
             } else {
@@ -127,14 +132,12 @@ impl<T: Scalar> Length<T> for Tolerance {
                 }
             }
             least = least.min(estimate);
-            if least.is_infinite() && h < SHORTEST * guess {
+            if least.is_infinite() && h < SHORTEST * scale {
                 break;
             }
-            if low > 0.0 && high < 1.05 * low {
+            if low > 0.0 && high < NEARLY * low {
                 break;
             }
-            let exponent = 1.0 / f64::from(method.facts().order + 1);
-            let factor = (AIM * tolerance / estimate).powf(exponent).clamp(1.0 / FACTOR, FACTOR);
             let next = h * factor;
             h = if next > low && next < high { next } else { bisected(low, high) };
         }
@@ -171,7 +174,8 @@ fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
 ) -> Result<Option<f64>, StepError> {
     let mut run = start.integrate(method.clone(), h)?;
     let mut monitor = ErrorMonitor::of_steps(&run);
-    while !monitor.is_over() {
+    let most = STRETCH / u64::from(method.facts().order / 2).max(1);
+    while !monitor.is_over() && monitor.steps < most {
         match run.single_step() {
             Ok(_) => monitor.watch(&run),
             // No step of any length leads past this place: the steps up to it count.
@@ -194,11 +198,11 @@ fn ends_motion(failure: &StepError) -> bool {
     )
 }
 
-/// A tenth of the shortest time scale of a coordinate: the longest of `|q|/|v|`, `|v|/|a|` and `√(|q|/|a|)`.
+/// The shortest time scale of a coordinate: the longest of `|q|/|v|`, `|v|/|a|` and `√(|q|/|a|)`.
 ///
 /// # Errors
 /// The errors of a velocity without a solution.
-fn guess<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Start<S, N, T>) -> Result<f64, StepError> {
+fn time_scale<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Start<S, N, T>) -> Result<f64, StepError> {
     let Start { system, state } = start;
     let v = state.velocity(system)?;
     let a = system.acceleration(state.t, &state.q, &v)?;
@@ -213,5 +217,5 @@ fn guess<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Start<S,
             shortest = shortest.min(scale);
         }
     }
-    Ok(if shortest.is_finite() { 0.1 * shortest } else { 0.1 })
+    Ok(if shortest.is_finite() { shortest } else { 1.0 })
 }
