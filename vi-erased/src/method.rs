@@ -183,6 +183,10 @@ impl<S: Runnable<N>, const N: usize> Method<S, N> for AnyMethod<S, N> {
         self.0.facts()
     }
 
+    fn with_tolerance(&self, tolerance: f64) -> Self {
+        Self(self.0.with_tolerance(tolerance))
+    }
+
     fn check_length(&self, system: &S, h: f64) -> Result<(), StepError> {
         self.0.check_length(system, h)
     }

@@ -288,6 +288,13 @@ pub enum StepLength {
 }
 
 impl Length<f64> for StepLength {
+    fn tolerance(&self) -> Option<f64> {
+        match self {
+            Self::Given(_) => None,
+            Self::Found(tolerance) => Some(*tolerance),
+        }
+    }
+
     fn length<M: vi_core::Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
         self,
         start: &Begun<S, N>,

@@ -52,11 +52,18 @@ fn weights<const N: usize, const S: usize>(
 }
 
 /// Whether the contraction of its iteration, its stages, or its equations prove that a step continues short ones.
-fn is_proven<const N: usize, const S: usize>(system: &ErasedSystem<'_, N>, node: &Node<N>, step: &Step<N, S>) -> bool {
+fn is_proven<const N: usize, const S: usize>(
+    system: &ErasedSystem<'_, N>,
+    Start { node, accuracy, .. }: &Start<'_, N, S>,
+    step: &Step<N, S>,
+) -> bool {
     let convergence = &step.convergence;
     let follows_momenta = follows_momenta::<_, f64, N, S>(system);
-    let is_fast =
-        if step.by_newton { convergence.contraction <= FAST } else { convergence.is_fast() && !follows_momenta };
+    let is_fast = if step.by_newton {
+        convergence.contraction <= FAST
+    } else {
+        convergence.is_fast(*accuracy) && !follows_momenta
+    };
     is_fast || is_resolved(&step.stages, &weights(system, node, step)) || is_linear(system, node, step)
 }
 
@@ -89,7 +96,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         };
         let erased = &ErasedSystem::of(system);
         let is_near = || distance([self.stages, &step.stages], self.stages, &weights(erased, self.node, &step)) <= NEAR;
-        let is_proven = continues && is_near() || is_proven(erased, self.node, &step);
+        let is_proven = continues && is_near() || is_proven(erased, self, &step);
         if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
     }
 
@@ -109,7 +116,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             return None;
         }
         let step = self.recovered(system, instructions, (Some(left), None), cache).ok()?;
-        is_proven(&ErasedSystem::of(system), self.node, &step).then_some(step)
+        is_proven(&ErasedSystem::of(system), self, &step).then_some(step)
     }
 
     /// The step of this length that continues those of short lengths: `taken` itself, bit for bit, if it does.
@@ -157,8 +164,8 @@ where
     Y: Convertible<N>,
 {
     fn solved(&mut self, part: f64, stages: &Stages<N, S>) -> Option<Step<N, S>> {
-        let Start { node, h, pause, .. } = *self.start;
-        let start = Start { node, h: part * h, stages, are_last: false, before: &Convergence::NONE, pause };
+        let start =
+            Start { h: part * self.start.h, stages, are_last: false, before: &Convergence::NONE, ..*self.start };
         start.unproven(self.system, self.instructions, self.cache).ok()
     }
 }
@@ -171,7 +178,7 @@ where
 
     fn short(&mut self, part: f64) -> Option<Step<N, S>> {
         let step = self.solved(part, self.from)?;
-        is_proven(&ErasedSystem::of(self.system), self.start.node, &step).then_some(step)
+        is_proven(&ErasedSystem::of(self.system), self.start, &step).then_some(step)
     }
 
     fn longer(&mut self, part: f64, shorter: [&Shorter<Step<N, S>>; 2]) -> Option<Step<N, S>> {

@@ -14,7 +14,7 @@
 //! every step would let the energy drift. Rounding hides that error in the change, so the iteration predicts it: each
 //! iteration multiplies it by the contraction, which is measured while changes exceed rounding.
 
-use super::stages::Stages;
+use super::stages::{EXACT, Stages};
 use crate::error::StepError;
 use crate::newton::FLOOR;
 use nalgebra::SVector;
@@ -167,10 +167,11 @@ impl Convergence {
         StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness }
     }
 
-    /// Whether the iteration contracted so fast that its solution is the only one near the guess.
+    /// Whether the iteration contracted so fast that its solution is the only one near the guess. A guess is close to
+    /// it after few iterations to rounding, not to a larger `accuracy`.
     #[inline(always)]
-    pub(crate) fn is_fast(&self) -> bool {
-        self.contraction <= FAST || self.iterations <= FEW
+    pub(crate) fn is_fast(&self, accuracy: f64) -> bool {
+        self.contraction <= FAST || accuracy <= EXACT && self.iterations <= FEW
     }
 
     /// Whether the stages are at the rounding floor of their positions.

@@ -19,8 +19,8 @@ use super::fixed_point::{Convergence, Equations, StageIncrement, VELOCITY};
 use super::newton::Newton;
 use super::points::{EquationForm, ErasedSystem, MANY, Points, follows_momenta};
 use super::stages::{
-    AtStages, Roundings, Stages, add_products, change, constant_mass, gathered, growth, maximum, product, roundings,
-    scaled, scatter, sum, times, weights,
+    AtStages, EXACT, Roundings, Stages, add_products, change, constant_mass, gathered, growth, maximum, product,
+    relaxed, relaxed_positions, roundings, scaled, scatter, sum, times, weights,
 };
 use super::tableau::Tableau;
 use crate::linear::Matrix;
@@ -41,6 +41,8 @@ pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     pub(super) system: &'a Y,
     pub(super) node: &'a Node<N>,
     pub(super) h: f64,
+    /// The accuracy of the stages, in ulps.
+    pub(super) accuracy: f64,
     /// M, factored, if it is constant.
     inverse: Option<M::Inverse>,
     /// The kept masses of many coordinates. A reference, because moving the equations would copy them.
@@ -96,6 +98,7 @@ where
             system,
             node,
             h,
+            accuracy: EXACT,
             inverse,
             kept,
             newton,
@@ -350,10 +353,12 @@ where
     #[inline(always)]
     fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
         let n = self.system.moving();
-        let before = core::mem::replace(&mut self.of_velocity, roundings(n, &self.velocity, &self.terms));
+        let of_velocity = relaxed(n, roundings(n, &self.velocity, &self.terms), &self.velocity, self.accuracy);
+        let before = core::mem::replace(&mut self.of_velocity, of_velocity);
         let of_velocities = growth(n, &before, &self.of_velocity);
         if self.newton.is_some() {
-            let before = core::mem::replace(&mut self.of_position, roundings(n, x, &self.node.q));
+            let of_position = relaxed_positions(n, roundings(n, x, &self.node.q), x, (self.node, self.accuracy));
+            let before = core::mem::replace(&mut self.of_position, of_position);
             return growth(n, &before, &self.of_position).max(of_velocities);
         }
         of_velocities

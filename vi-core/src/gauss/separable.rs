@@ -16,7 +16,8 @@ use super::fixed_point::{Convergence, Equations, StageIncrement};
 use super::newton::Newton;
 use super::points::Points;
 use super::stages::{
-    AtStages, Roundings, Stages, change, gathered, growth, product, roundings, scaled, scatter, sum, times, weights,
+    AtStages, EXACT, Roundings, Stages, change, gathered, growth, product, relaxed_positions, roundings, scaled,
+    scatter, sum, times, weights,
 };
 use super::tableau::Tableau;
 use crate::linear::{Matrix, row_by_row};
@@ -42,6 +43,8 @@ pub(crate) struct Separable<
     system: &'a Y,
     node: &'a Node<N>,
     h: f64,
+    /// The accuracy of the stages, in ulps.
+    pub(super) accuracy: f64,
     /// M, factored.
     inverse: M::Inverse,
     /// `h c_i M⁻¹ p0` at the stages.
@@ -87,8 +90,21 @@ where
                 drift[k][i] = Lane::<FUSED>::multiply_add(c[i], moved, node.q_low[k]);
             }
         }
-        let (uncorrected, roundings) = (0.0, [0.0; N]);
-        Self { system, node, h, inverse, drift, force, are_last, newton, uncorrected, roundings, numbers: PhantomData }
+        let (accuracy, uncorrected, roundings) = (EXACT, 0.0, [0.0; N]);
+        Self {
+            system,
+            node,
+            h,
+            accuracy,
+            inverse,
+            drift,
+            force,
+            are_last,
+            newton,
+            uncorrected,
+            roundings,
+            numbers: PhantomData,
+        }
     }
 
     /// Sets x to the positions by the current forces, with the coefficients `second`, or `ahead` for forces of the
@@ -198,7 +214,8 @@ where
     #[inline(always)]
     fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
         let n = self.system.moving();
-        let before = core::mem::replace(&mut self.roundings, roundings(n, x, &self.node.q));
+        let roundings = relaxed_positions(n, roundings(n, x, &self.node.q), x, (self.node, self.accuracy));
+        let before = core::mem::replace(&mut self.roundings, roundings);
         growth(n, &before, &self.roundings)
     }
 

@@ -2,7 +2,7 @@
 //!
 //! A `Start` has a node, a length, and the guess of the stages. The solver returns a [`Step`], with stages from SIMD
 //! fixed-point iteration, dispatched at run time. If that fails, it uses scalar numbers or Newton iteration. It changes
-//! no state. The stages of every [`Step`] satisfy their equations to rounding.
+//! no state. The stages of every [`Step`] satisfy their equations to rounding, or to a part of a tolerance.
 
 use super::branch::are_smooth;
 use super::first_order::FirstOrder;
@@ -33,6 +33,8 @@ pub(crate) struct Start<'a, const N: usize, const S: usize> {
     /// Outcome of the previous step.
     pub(crate) before: &'a Convergence,
     pub(crate) pause: Pause,
+    /// The accuracy of the stages, in ulps: [`EXACT`] but for steps of a tolerance.
+    pub(crate) accuracy: f64,
 }
 
 /// Positions above this have an ulp of 2e-6, which is too large for an angle.
@@ -64,11 +66,11 @@ impl<const N: usize, const S: usize> StageSolution<N, S> {
     /// Whether fixed-point iteration solved the step of length h from a node to the rounding of its positions, and its
     /// contraction or its stages prove the step.
     #[inline(always)]
-    pub(crate) fn is_step(&self, follows_momenta: bool, node: &Node<N>, h: f64) -> bool {
+    pub(crate) fn is_step(&self, follows_momenta: bool, start: &Start<'_, N, S>) -> bool {
         let StageIncrement { velocity, momentum } = &self.increment;
         let convergence = &self.iteration.convergence;
-        let is_proven = if follows_momenta { are_smooth(&self.stages) } else { convergence.is_fast() };
-        convergence.is_at_floor() && is_proven && node.stays_finite(h, velocity, momentum)
+        let is_proven = if follows_momenta { are_smooth(&self.stages) } else { convergence.is_fast(start.accuracy) };
+        convergence.is_at_floor() && is_proven && start.node.stays_finite(start.h, velocity, momentum)
     }
 
     /// Whether the stages are finite and near a solution.
@@ -198,7 +200,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         Y: Convertible<N>,
     {
         let solved = self.side_by_side(system, instructions, None);
-        if solved.is_step(follows_momenta::<_, f64, N, S>(system), self.node, self.h) {
+        if solved.is_step(follows_momenta::<_, f64, N, S>(system), self) {
             Ok(solved.step(self.h, self.pause.after_fixed_point()))
         } else {
             Err(solved)
@@ -246,8 +248,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             && let Some(newton) = cache.newton()
         {
             // Newton iteration is faster than running error analysis, and may converge to rounding.
-            let Self { node, h, before, pause, .. } = *self;
-            let near = Start { node, h, stages: &left.stages, are_last: false, before, pause };
+            let near = Start { stages: &left.stages, are_last: false, ..*self };
             let at = last.unwrap_or_else(|| near.middle(erased));
             let (solved, at) = near.newton_stages(system, instructions, at, newton);
             if solved.iteration.convergence.is_at_floor()
@@ -277,8 +278,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             return extrapolated;
         }
         let Ok(constant) = constant(system, self.node) else { return extrapolated };
-        let Self { node, h, pause, .. } = *self;
-        let start = Start { node, h, stages: &constant, are_last: false, before: &Convergence::NONE, pause };
+        let start = Start { stages: &constant, are_last: false, before: &Convergence::NONE, ..*self };
         // Start as in the first step of a run: fixed-point iteration may converge although the linearization in the
         // middle of a long step is poor.
         let first = start
@@ -413,21 +413,25 @@ where
     Y: Points<N, T>,
     P: Points<N, f64>,
 {
-    let Start { node, h, stages, are_last, .. } = *start;
+    let Start { node, h, stages, are_last, accuracy, .. } = *start;
     // For a known form the compiler sees one branch.
     let is_separable = const { EquationForm::Separable.is_known(Y::FORM) }
         || const { Y::FORM.is_none() } && system.form() == EquationForm::Separable;
     if is_separable && (CORRECTED || newton.is_none()) {
         let mass = mass(plain, node);
         let guess = (*stages, are_last);
-        finished(Separable::<T, Y, P::Mass, N, S, FUSED, CORRECTED>::new(system, &mass, node, h, guess, newton), start)
+        let mut equations =
+            Separable::<T, Y, P::Mass, N, S, FUSED, CORRECTED>::new(system, &mass, node, h, guess, newton);
+        equations.accuracy = accuracy;
+        finished(equations, start)
     } else {
         let mass = constant_mass(plain, node);
         let guess = start.guess::<FUSED>();
         let mut masses = None;
         let kept = (system.moving() >= MANY).then_some(&mut masses);
-        let equations =
+        let mut equations =
             General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), (node, h), guess, newton, kept);
+        equations.accuracy = accuracy;
         finished(equations, start)
     }
 }

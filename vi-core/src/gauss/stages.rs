@@ -233,6 +233,44 @@ pub(crate) fn roundings<const N: usize, const S: usize>(
     roundings
 }
 
+/// The accuracy of stages that are solved to rounding, in ulps.
+pub(crate) const EXACT: f64 = 1.0;
+
+/// Larger units for stages that are solved to an accuracy: so many ulps of the largest entry of each row.
+#[inline(always)]
+pub(crate) fn relaxed<const N: usize, const S: usize>(
+    n: usize,
+    mut roundings: Roundings<N>,
+    of: &Stages<N, S>,
+    accuracy: f64,
+) -> Roundings<N> {
+    if accuracy > EXACT {
+        for k in 0..n {
+            let unit = accuracy * maximum(&of[k].map(f64::abs));
+            roundings[k] = roundings[k].min(1.0 / (unit + f64::MIN_POSITIVE));
+        }
+    }
+    roundings
+}
+
+/// The same for positions: ulps of their distance from the node.
+#[inline(always)]
+pub(crate) fn relaxed_positions<const N: usize, const S: usize>(
+    n: usize,
+    roundings: Roundings<N>,
+    x: &Stages<N, S>,
+    (node, accuracy): (&Node<N>, f64),
+) -> Roundings<N> {
+    if accuracy > EXACT {
+        let mut distances = *x;
+        for k in 0..n {
+            distances[k] = x[k].map(|entry| entry - node.q[k]);
+        }
+        return relaxed(n, roundings, &distances, accuracy);
+    }
+    roundings
+}
+
 /// Largest growth of a change in the units `after` relative to those `before`.
 #[inline(always)]
 pub(crate) fn growth<const N: usize>(n: usize, before: &Roundings<N>, after: &Roundings<N>) -> f64 {

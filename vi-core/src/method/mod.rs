@@ -182,6 +182,13 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug + Send + Syn
     /// Facts about the method that hold for every system.
     fn facts(&self) -> Facts;
 
+    /// The method for steps whose errors may be as large as a tolerance. Only the lengths of the steps depend on it, unless
+    /// the method says more.
+    #[must_use]
+    fn with_tolerance(&self, _tolerance: f64) -> Self {
+        self.clone()
+    }
+
     /// Checks the given step length.
     ///
     /// # Errors

@@ -32,6 +32,11 @@ pub struct Tolerance(pub f64);
     label = "write a step length such as `0.1`, or `Tolerance(1e-9)`"
 )]
 pub trait Length<T: Scalar> {
+    /// The tolerance of the errors of steps; `None` for a given length.
+    fn tolerance(&self) -> Option<f64> {
+        None
+    }
+
     /// The step length of a run from a start by a method.
     ///
     /// # Errors
@@ -84,6 +89,10 @@ pub fn check_tolerance<T: Scalar>(tolerance: f64) -> Result<(), StepError> {
 }
 
 impl<T: Scalar> Length<T> for Tolerance {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.0)
+    }
+
     fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
         self,
         start: &Start<S, N, T>,
@@ -91,6 +100,7 @@ impl<T: Scalar> Length<T> for Tolerance {
     ) -> Result<T, StepError> {
         let Self(tolerance) = self;
         check_tolerance::<T>(tolerance)?;
+        let method = &method.with_tolerance(tolerance);
         let exponent = 1.0 / f64::from(method.facts().order + 1);
         let scale = time_scale(start)?;
         let mut h = scale * tolerance.powf(exponent);

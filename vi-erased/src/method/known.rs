@@ -5,6 +5,7 @@ use crate::erasable::{Erasable, Runnable};
 use crate::simulation::ShiftedEnergy;
 use core::fmt::Debug;
 use core::marker::PhantomData;
+use std::sync::Arc;
 #[cfg(feature = "derivatives")]
 use vi_core::derivatives::{Covector, Differentiable, Variation};
 use vi_core::method::{Change, Facts, Memory as _, Problem, Status};
@@ -66,6 +67,7 @@ pub(crate) type GoesOn<'a, const N: usize> = &'a mut dyn FnMut(&dyn Progress<N>)
 /// The functions of a method that need no memory.
 pub(super) trait ErasedMethod<S, const N: usize>: Debug + Send + Sync {
     fn facts(&self) -> Facts;
+    fn with_tolerance(&self, tolerance: f64) -> Arc<dyn ErasedMethod<S, N>>;
     fn check_length(&self, system: &S, h: f64) -> Result<(), StepError>;
     fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<AnyMemory<S, N>, StepError>;
     fn evaluations(&self, iterations: u32) -> u64;
@@ -206,6 +208,10 @@ impl<M: Debug, W> Debug for Known<M, W> {
 impl<M: Erasable<W, N>, S: Runnable<N>, W: Runnable<N> + Wraps<S>, const N: usize> ErasedMethod<S, N> for Known<M, W> {
     fn facts(&self) -> Facts {
         Method::<W, N>::facts(&self.method)
+    }
+
+    fn with_tolerance(&self, tolerance: f64) -> Arc<dyn ErasedMethod<S, N>> {
+        Arc::new(Self::of(Method::<W, N>::with_tolerance(&self.method, tolerance)))
     }
 
     fn check_length(&self, system: &S, h: f64) -> Result<(), StepError> {

@@ -11,6 +11,9 @@
 //! Wanner, *Solving Ordinary Differential Equations II*, IV.2). A step whose δ is too large is taken again, shorter. A
 //! nearly right length is kept, so that the next step starts from the stages and the linearization of the last one.
 //!
+//! The stages of these steps are solved to a part of a tolerance, if the run has one: nothing is preserved that smaller
+//! errors would break.
+//!
 //! A mode that has died out has no acceleration, and does not count. If nothing else is left, its steps are resolved.
 
 use super::{End, Following, LONGEST, Law, Of, Solver, Steps, TRIALS, moves_time, solved};
@@ -174,6 +177,7 @@ impl Decaying {
     ) -> Result<End<S, N, STAGES>, StepError> {
         let Problem { system, node, .. } = at;
         let Following { steps, h: last, .. } = memory;
+        let solver = &memory.solver::<S, N, STAGES>();
         let mut h = (last.abs() * self.ahead).min(self.longest).copysign(*last);
         let mut guess = None;
         let mut failure = StepError::LengthsLost { t: node.t, h: *last };
@@ -187,11 +191,11 @@ impl Decaying {
                 None if h == *last => steps,
                 None => guess.insert(Solver::<S, N, STAGES>::resized(system, steps, node, h)?),
             };
-            let tried = solved(Problem { h, ..at }, from, cache)
+            let tried = solved(solver, Problem { h, ..at }, from, cache)
                 .and_then(|(end, steps)| Ok((defect::<S, N, STAGES>(system, (&end, &steps), h)?, end, steps)));
             match tried {
                 Ok((found, end, steps)) => match self.after::<STAGES>(found) {
-                    Ok(law) => return Ok((end, Following { steps, h, law: Some(Law::Decaying(law)) })),
+                    Ok(law) => return Ok((end, Following { steps, h, law: Some(Law::Decaying(law)), ..*memory })),
                     Err(off) => {
                         h *= (AIM * off.powf(-power::<STAGES>())).max(RATIOS[0]);
                         guess = Some(Solver::<S, N, STAGES>::again(system, &steps, node, h)?);

@@ -32,15 +32,20 @@ use reversible::Reversible;
 /// A method whose steps follow the motion: `Gauss::<8>.adaptive()`. See the [module](self).
 ///
 /// The step of a run is the first one, or is found from a [`Tolerance`](crate::Tolerance) of all steps of the first
-/// stretch. Its sign is the direction of time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Adaptive<M>(M);
+/// stretch. Its sign is the direction of time. With a tolerance the stages of irreversible motions are solved to a part of
+/// it; all others to rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Adaptive<M> {
+    method: M,
+    /// The tolerance of the steps, relative to their motion; zero without one.
+    tolerance: f64,
+}
 
 impl<const STAGES: usize> Gauss<STAGES> {
     /// Takes steps whose length follows the forces along the motion.
     #[must_use]
     pub fn adaptive(self) -> Adaptive<Self> {
-        Adaptive(self)
+        Adaptive { method: self, tolerance: 0.0 }
     }
 }
 
@@ -59,6 +64,9 @@ pub struct Following<Y> {
     h: f64,
     /// The law of the lengths, with what the first step has set; `None` before it.
     law: Option<Law>,
+    /// The tolerance of the steps; zero without one.
+    #[cfg_attr(feature = "serde", serde(default))]
+    tolerance: f64,
 }
 
 /// A law of the lengths of steps.
@@ -79,6 +87,17 @@ impl Law {
             Self::Reversible(law) => Self::Reversible(law.resumed()),
             Self::Decaying(law) => Self::Decaying(law.resumed()),
         }
+    }
+}
+
+impl<Y> Following<Y> {
+    /// The solver of the next step. Reversible steps are solved to rounding, else they would drift.
+    fn solver<S, const N: usize, const STAGES: usize>(&self) -> Solver<S, N, STAGES>
+    where
+        S: Convertible<N>,
+    {
+        let is_decaying = matches!(self.law, Some(Law::Decaying(_)));
+        Solver::<S, N, STAGES>::within(if is_decaying { self.tolerance } else { 0.0 })
     }
 }
 
@@ -107,16 +126,17 @@ fn moves_time(h: f64, t: f64) -> Result<bool, StepError> {
     Ok(h.abs() >= f64::EPSILON * t.abs())
 }
 
-/// The step of the length `at.h` from a node.
+/// The step of the length `at.h` from a node by a solver.
 ///
 /// # Errors
 /// The errors of the solver.
 fn solved<S: Convertible<N>, const N: usize, const STAGES: usize>(
+    solver: &Solver<S, N, STAGES>,
     at: Of<'_, S, N, STAGES>,
     guess: &Steps<S, N, STAGES>,
     cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
 ) -> Result<(Node<N>, Steps<S, N, STAGES>), StepError> {
-    let step = solver::<S, N, STAGES>().solve(at, guess, cache)?;
+    let step = solver.solve(at, guess, cache)?;
     Ok(taken::<S, N, STAGES>(at, guess, cache, step))
 }
 
@@ -139,16 +159,16 @@ fn first<S: Convertible<N>, const N: usize, const STAGES: usize>(
     memory: &Following<Steps<S, N, STAGES>>,
     cache: &mut <Solver<S, N, STAGES> as Method<S, N>>::Cache,
 ) -> Result<End<S, N, STAGES>, StepError> {
-    let Following { steps, h, .. } = memory;
+    let Following { steps, h, tolerance, .. } = memory;
     let (system, at) = (at.system, Problem { h: *h, ..at });
-    let (end, steps) = solved(at, steps, cache)?;
+    let (end, steps) = solved(&solver::<S, N, STAGES>(), at, steps, cache)?;
     let is_reversible = system.conserves_energy() || system.scales_time() || STAGES < decaying::FEWEST;
     let law = if is_reversible {
         Law::Reversible(Reversible::of_first::<S, N, STAGES>(system, [at.node, &end], *h)?)
     } else {
         Law::Decaying(Decaying::of_first::<S, N, STAGES>(system, (&end, &steps), *h)?)
     };
-    Ok((end, Following { steps, h: *h, law: Some(law) }))
+    Ok((end, Following { steps, h: *h, law: Some(law), tolerance: *tolerance }))
 }
 
 impl<S, const N: usize, const STAGES: usize> Method<S, N> for Adaptive<Gauss<STAGES>>
@@ -163,7 +183,11 @@ where
     type DenseOutput = <Solver<S, N, STAGES> as Method<S, N>>::DenseOutput;
 
     fn facts(&self) -> Facts {
-        Facts { finds_length: true, ..Method::<S, N>::facts(&self.0) }
+        Facts { finds_length: true, ..Method::<S, N>::facts(&self.method) }
+    }
+
+    fn with_tolerance(&self, tolerance: f64) -> Self {
+        Self { tolerance, ..*self }
     }
 
     fn prepare(&self, system: &S, h: f64) -> Self::Prepared {
@@ -175,7 +199,7 @@ where
             return Err(StepError::FirstOrder { system: system.name() });
         }
         let steps = solver::<S, N, STAGES>().begin(system, node, h)?;
-        Ok(Following { steps, h, law: None })
+        Ok(Following { steps, h, law: None, tolerance: self.tolerance })
     }
 
     fn attempt(
@@ -220,7 +244,7 @@ where
     ) -> Result<(Node<N>, Self::Memory), StepError> {
         check_step(h)?;
         let before = Solver::<S, N, STAGES>::resized(system, &memory.steps, node, h)?;
-        let solver = &solver::<S, N, STAGES>();
+        let solver = &memory.solver::<S, N, STAGES>();
         let (node, steps) = step_from(solver, system, (node, before), [h, memory.h])?;
         Ok((node, Following { steps, ..*memory }))
     }
@@ -237,7 +261,7 @@ where
             return Ok(memory.clone());
         }
         let steps = solver::<S, N, STAGES>().restarted(system, change, node, memory.h, &memory.steps)?;
-        Ok(Following { steps, h: memory.h, law: memory.law.map(Law::resumed) })
+        Ok(Following { steps, law: memory.law.map(Law::resumed), ..*memory })
     }
 
     fn dense_output(
@@ -262,14 +286,14 @@ where
     }
 
     fn check(&self, system: &S, (node, memory): (&Node<N>, &Self::Memory), h: f64) -> Result<(), StepError> {
-        let Following { steps, h: last, law } = memory;
+        let Following { steps, h: last, law, tolerance } = memory;
         let is_length = last * h.signum() > 0.0 && last.is_normal();
         let is_law = match law {
             None => true,
             Some(Law::Reversible(law)) => law.is_valid(h),
             Some(Law::Decaying(law)) => law.is_valid(),
         };
-        if !(is_length && is_law) {
+        if !(is_length && is_law && (0.0..1.0).contains(tolerance)) {
             return Err(StepError::NonFinite { t: node.t, quantity: "length of the last step", expression: None });
         }
         solver::<S, N, STAGES>().check(system, (node, steps), *last)
@@ -290,7 +314,7 @@ where
     }
 
     fn vary_step_of(run: &Run<Self, S, N>, length: f64, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let Run { method: Self(method), system, node, memory, .. } = run;
+        let Run { method: Self { method, .. }, system, node, memory, .. } = run;
         let memory = Solver::<S, N, STAGES>::resized(system, &memory.steps, node, length)?;
         let mut aside = Run::resumed(*method, *system, (*node, length, memory));
         aside.step()?;

@@ -237,7 +237,7 @@ impl Reversible {
                 // Ratios change by nearly equal factors, until the forces turn.
                 let ahead = found.ratio().min(ratio * (ratio / before).clamp(0.7, 1.4));
                 let law = Law::Reversible(Self { ahead, ratio, slope: search.slope, ..*self });
-                return Ok((end, Following { steps, h, law: Some(law) }));
+                return Ok((end, Following { steps, h, law: Some(law), ..*memory }));
             }
             let solved = h;
             h = if core::mem::take(&mut is_first) {

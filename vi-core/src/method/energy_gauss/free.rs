@@ -13,7 +13,7 @@ use crate::gauss::fixed_point::Convergence;
 use crate::gauss::history::StepHistory;
 use crate::gauss::newton::Buffer;
 use crate::gauss::solve::{Start, Step};
-use crate::gauss::stages::{Stages, at};
+use crate::gauss::stages::{EXACT, Stages, at};
 #[cfg(feature = "alloc")]
 use crate::gauss::variation::{vary, vary_length};
 use crate::kind::Free;
@@ -100,7 +100,8 @@ where
             },
         );
         let before = &Convergence { iterations: 0, ..last.convergence };
-        let start = Start { node, h, stages: &stages, are_last: false, before, pause: last.pause };
+        let (pause, accuracy) = (last.pause, EXACT);
+        let start = Start { node, h, stages: &stages, are_last: false, before, pause, accuracy };
         let by_fixed_point =
             if last.pause.is_over() { start.by_fixed_point(system, instructions).map_err(Some) } else { Err(None) };
         // Lengths differ from step to step, so each has its own linearization.

@@ -10,7 +10,7 @@
 //! with En_i the energy at a stage. The step preserves momenta of cyclic coordinates bit for bit. [`crate::gauss`] solves
 //! the stage equations.
 //!
-//! The stages of every accepted step satisfy their equations to rounding.
+//! The stages of every accepted step satisfy their equations to rounding. Adaptive steps of a tolerance may ask for less.
 
 use super::{Gauss, StageSolver};
 #[cfg(feature = "alloc")]
@@ -26,7 +26,7 @@ use crate::gauss::linearization::LinearizationPoint;
 use crate::gauss::newton::Buffer;
 use crate::gauss::points::{ErasedSystem, follows_momenta};
 use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
-use crate::gauss::stages::{LOOPED, Stages, at};
+use crate::gauss::stages::{EXACT, LOOPED, Stages, at};
 #[cfg(feature = "alloc")]
 use crate::gauss::variation::vary;
 use crate::gauss::{CollocationPolynomial, Slots};
@@ -43,8 +43,22 @@ use nalgebra::{ArrayStorage, SMatrix, SVector};
 use vi_dispatch::{Instructions, Loop};
 
 /// The solver of [`Gauss`] steps without constraints.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FreeGauss<const STAGES: usize>;
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeGauss<const STAGES: usize> {
+    /// The accuracy of the stages, in ulps.
+    accuracy: f64,
+}
+
+impl<const STAGES: usize> Default for FreeGauss<STAGES> {
+    /// Stages that are solved to rounding.
+    fn default() -> Self {
+        Self { accuracy: EXACT }
+    }
+}
+
+/// The unit of the stages of a step with a tolerance, in units of the tolerance. Their changes are at most four units, and
+/// the error of the step is below a thousandth of one.
+const PART: f64 = 1.0 / 16.0;
 
 /// The stages of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,9 +124,9 @@ impl<const N: usize, const S: usize> LastStages<N, S> {
 
     /// The initial data of the next step of equal length.
     #[inline(always)]
-    fn start<'a>(&'a self, node: &'a Node<N>) -> Start<'a, N, S> {
+    fn start<'a>(&'a self, node: &'a Node<N>, accuracy: f64) -> Start<'a, N, S> {
         let (before, pause) = (&self.convergence, self.pause);
-        Start { node, h: self.h, stages: &self.stages.data.0, are_last: before.has_begun(), before, pause }
+        Start { node, h: self.h, stages: &self.stages.data.0, are_last: before.has_begun(), before, pause, accuracy }
     }
 
     /// Advances to the end of a step.
@@ -204,8 +218,10 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Advancing<'_, Y
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Self::Output {
         let Self { system, node, memory } = self;
-        let solved = iterated::<_, N, S, FUSED, false>(system, &memory.start(node), None);
-        if solved.is_step(follows_momenta::<_, f64, N, S>(system), node, memory.h) {
+        // Steps of another accuracy are attempts: with a constant the compiler omits it.
+        let start = memory.start(node, EXACT);
+        let solved = iterated::<_, N, S, FUSED, false>(system, &start, None);
+        if solved.is_step(follows_momenta::<_, f64, N, S>(system), &start) {
             memory.take_solved(node, &solved);
             return Ok(());
         }
@@ -246,7 +262,7 @@ where
         if !memory.pause.is_over() {
             return Err(None);
         }
-        memory.start(at.node).by_fixed_point(at.system, *at.prepared).map_err(Some)
+        memory.start(at.node, self.accuracy).by_fixed_point(at.system, *at.prepared).map_err(Some)
     }
 
     #[inline(always)]
@@ -267,8 +283,9 @@ where
             return Err(None);
         }
         if !S::SIDE_BY_SIDE {
-            let solved = memory.start(node).in_scalars(&ErasedSystem::of(system), None);
-            if !solved.is_step(follows_momenta::<_, f64, N, STAGES>(system), node, memory.h) {
+            let start = memory.start(node, EXACT);
+            let solved = start.in_scalars(&ErasedSystem::of(system), None);
+            if !solved.is_step(follows_momenta::<_, f64, N, STAGES>(system), &start) {
                 return Err(Some(solved));
             }
             memory.take_solved(node, &solved);
@@ -288,7 +305,7 @@ where
         left: Self::Left,
     ) -> Result<Step<N, STAGES>, StepError> {
         let last = memory.linearization;
-        memory.start(at.node).recover(at.system, *at.prepared, (left.as_ref(), last), false, cache)
+        memory.start(at.node, self.accuracy).recover(at.system, *at.prepared, (left.as_ref(), last), false, cache)
     }
 
     fn take(
@@ -359,6 +376,10 @@ impl<S, const N: usize, const STAGES: usize> StageSolver<S, N, STAGES> for FreeG
 where
     S: Convertible<N>,
 {
+    fn within(tolerance: f64) -> Self {
+        Self { accuracy: (PART * tolerance / f64::EPSILON).max(EXACT) }
+    }
+
     fn resized(
         system: &S,
         memory: &LastStages<N, STAGES>,
@@ -388,7 +409,7 @@ where
         match self.attempt(at, memory, cache) {
             Ok(step) => Ok(Some(step)),
             Err(Some(left)) if !memory.pause.has_been() => {
-                Ok(memory.start(at.node).quickly(at.system, *at.prepared, &left, cache))
+                Ok(memory.start(at.node, self.accuracy).quickly(at.system, *at.prepared, &left, cache))
             }
             // The steps of a stiff system are Newton's.
             Err(left) => self.recover(at, memory, cache, left).map(Some),
@@ -403,7 +424,7 @@ where
     ) -> Result<Step<N, STAGES>, StepError> {
         self.attempt(at, memory, cache).or_else(|left| {
             let last = memory.linearization;
-            memory.start(at.node).recover(at.system, *at.prepared, (left.as_ref(), last), true, cache)
+            memory.start(at.node, self.accuracy).recover(at.system, *at.prepared, (left.as_ref(), last), true, cache)
         })
     }
 

@@ -36,6 +36,13 @@ pub struct Gauss<const STAGES: usize>;
 
 /// A solver of Gauss steps.
 pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memory: Storable> + Default {
+    /// The solver of steps whose errors may be as large as a tolerance, relative to their motion; zero for steps whose
+    /// stages are solved to rounding.
+    #[doc(hidden)]
+    fn within(_tolerance: f64) -> Self {
+        Self::default()
+    }
+
     /// The memory for a step of another length from the node, with a guess from the polynomials of the last step.
     ///
     /// # Errors
