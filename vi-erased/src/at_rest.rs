@@ -339,7 +339,6 @@ impl Simulation for Declared<dyn Simulation> {
     forward!(Simulation);
     forward! { fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError>; }
 
-    #[cfg(feature = "sessions")]
     fn copy(&self) -> Box<dyn Simulation> {
         Box::new(Declared { of: self.of.copy(), size: self.size })
     }

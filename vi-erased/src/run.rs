@@ -209,7 +209,6 @@ impl<S: Runnable<N>, const N: usize> Steps for Simulated<S, N> {
 }
 
 impl<S: Runnable<N>, const N: usize> Simulation for Simulated<S, N> {
-    #[cfg(feature = "sessions")]
     fn copy(&self) -> Box<dyn Simulation> {
         Box::new(self.clone())
     }

@@ -328,7 +328,6 @@ impl<T> Session for T {}
 /// A started run.
 pub trait Simulation: Steps + Session + Send + Sync {
     /// The same run, once more.
-    #[cfg(feature = "sessions")]
     fn copy(&self) -> Box<dyn Simulation>;
     /// Evaluations of the equations by the steps so far, from their iterations.
     fn evaluations(&self) -> u64;

@@ -66,7 +66,7 @@ impl Findings {
 
     /// Error against the step, for the methods with a given step.
     pub(super) fn orders(&self, system: &str) -> Chart {
-        let stepping = self.methods().filter(|method| *method != Method::RIVAL);
+        let stepping = self.methods().filter(|method| !method.has_tolerance());
         let series = stepping.map(|method| {
             let order = fitted_order(self.points(method), self.agreement.floor());
             let label = order.map_or_else(
@@ -78,7 +78,7 @@ impl Findings {
         Chart::new(
             "order",
             format!("{system}: error against step, with the fitted order"),
-            [Axis::log10("h (adaptive, energy-preserving: first step)"), Axis::log10(self.error_label())],
+            [Axis::log10("h (energy-preserving: first step)"), Axis::log10(self.error_label())],
             series.collect(),
         )
     }

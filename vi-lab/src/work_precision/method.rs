@@ -5,6 +5,7 @@
 //! end; the others take the nearest number of steps.
 
 use core::cell::Cell;
+use vi_core::StepError;
 use vi_erased::System;
 use vi_erased::plan::{self, PhasePoint, Plan};
 use vi_erased::simulation::Simulation;
@@ -62,6 +63,11 @@ impl Method {
         self.integrator.is_some_and(|(method, _)| method.finds_length())
     }
 
+    /// Whether its setting is a tolerance.
+    pub(super) fn has_tolerance(self) -> bool {
+        self.integrator.is_none_or(|(method, _)| method == plan::Method::Adaptive)
+    }
+
     /// Whether it integrates this system.
     pub(super) fn suits(self, system: &dyn System) -> bool {
         self.integrator.is_none_or(|(method, _)| method.splitting().is_none() || system.has(method))
@@ -91,9 +97,9 @@ impl Method {
     /// Its setting in words.
     pub(super) fn setting(self, setting: f64) -> String {
         match self.integrator {
-            None => format!("tolerance {setting:.0e}"),
+            _ if self.has_tolerance() => format!("tolerance {setting:.0e}"),
             Some(_) if self.finds_length() => format!("h₀ = {setting:.4}"),
-            Some(_) => format!("h = {setting:.4}"),
+            _ => format!("h = {setting:.4}"),
         }
     }
 }
@@ -123,11 +129,24 @@ pub(super) struct FinalState {
 }
 
 impl Task<'_> {
-    /// Number of steps of length `setting`.
-    fn steps(&self) -> u64 {
+    /// Number of steps of the length h.
+    fn steps(&self, h: f64) -> u64 {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive count far below 2⁵³
-        let count = ((self.end - self.start.t) / self.setting).round() as u64;
+        let count = ((self.end - self.start.t) / h).round() as u64;
         count.max(1)
+    }
+
+    /// A run at its start. With a tolerance it has found its first step. `None` for DOP853.
+    ///
+    /// # Errors
+    /// The reason why no run begins.
+    pub(super) fn begun(&self, system: &dyn System) -> Result<Option<Box<dyn Simulation>>, StepError> {
+        let Some((method, stages)) = self.method.integrator else { return Ok(None) };
+        // The start whose midpoints lie on the energy of the motion.
+        let start = plan::Start::Midpoint;
+        let tolerance = self.method.has_tolerance().then_some(self.setting);
+        let plan = Plan { stages, start, tolerance, ..Plan::new(method, self.setting, self.start.clone()) };
+        system.begin(&plan).map(Some)
     }
 
     /// The final state, and the evaluations of its run.
@@ -135,11 +154,19 @@ impl Task<'_> {
     /// # Errors
     /// The reason why the end was not reached.
     pub(super) fn reached(&self, system: &dyn System) -> Result<(FinalState, u64), Ended> {
-        let reached = if let Some((method, stages)) = self.method.integrator {
-            // The start whose midpoints lie on the energy of the motion.
-            let start = plan::Start::Midpoint;
-            let plan = Plan { stages, start, ..Plan::new(method, self.setting, self.start.clone()) };
-            let mut run = system.begin(&plan)?;
+        self.reached_from(system, self.begun(system)?)
+    }
+
+    /// The same from [`Task::begun`].
+    ///
+    /// # Errors
+    /// The reason why the end was not reached.
+    pub(super) fn reached_from(
+        &self,
+        system: &dyn System,
+        begun: Option<Box<dyn Simulation>>,
+    ) -> Result<(FinalState, u64), Ended> {
+        let reached = if let Some(mut run) = begun {
             self.follow(run.as_mut())?;
             (FinalState { t: run.t(), q: run.q().to_vec(), p: run.p().to_vec() }, run.evaluations())
         } else {
@@ -153,10 +180,10 @@ impl Task<'_> {
 
     /// Steps to the end.
     fn follow(&self, run: &mut dyn Simulation) -> Result<(), Ended> {
-        let steps = self.steps();
         if !self.method.finds_length() {
-            return Ok(run.advance_by(steps)?);
+            return Ok(run.advance_by(self.steps(self.setting))?);
         }
+        let steps = self.steps(run.h());
         run.advance_until(self.end, TOO_MANY * steps)?;
         if run.t() < self.end { Err(Ended::Short(run.t())) } else { Ok(()) }
     }

@@ -68,7 +68,7 @@ pub(crate) fn write(arguments: &Arguments, catalogue: &Catalogue) -> Result<Stri
     } else {
         format!("Runs that the figures omit. {}", escape(&missing.join(" ")))
     });
-    report.table(&found.run_table(), "All runs, coarse to fine; the setting is a step, of methods that choose their nodes the first one, or the tolerance of DOP853.");
+    report.table(&found.run_table(), "All runs, coarse to fine; the setting is a step, of the energy-preserving integrator the first one, or the tolerance of adaptive steps and of DOP853.");
     let page = report.finish()?;
     match found.uncompared() {
         None => Ok(format!("{}\n{}", found.prices().text(), page.display())),
@@ -101,7 +101,8 @@ fn introduction(report: &mut Report, entry: &Entry, found: &Findings) {
         "The system starts at q = {:?}, v = {:?}{}. The <i>error</i> is taken at t = {}: the largest difference of a \
          coordinate or a momentum from the reference, relative to the largest coordinate or momentum along the solution. The \
          energy-preserving integrator and adaptive Gauss steps choose their nodes. Their error is taken at the first node at \
-         or after this time, relative to the reference at that node.",
+         or after this time, relative to the reference at that node. The time of adaptive Gauss steps is that of the steps, \
+         without the search of the first one.",
         entry.q,
         entry.v,
         if parameters.is_empty() { String::new() } else { format!(", with {}", parameters.join(", ")) },

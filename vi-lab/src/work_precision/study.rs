@@ -18,7 +18,7 @@ const STEPS: f64 = 4000.0;
 const COARSEST: i32 = 4;
 /// Number of timed repetitions.
 const ROUNDS: u32 = 7;
-/// Tolerances of DOP853, as powers of √10; each changes the steps by a seventh.
+/// Tolerances of DOP853 and of adaptive steps, as powers of √10; each changes the steps by a seventh.
 const TOLERANCES: core::ops::RangeInclusive<i32> = -28..=-6;
 
 /// Results of the comparison.
@@ -77,7 +77,7 @@ fn finest(coordinates: usize, quick: bool) -> i32 {
 
 /// The settings of a method, coarse to fine. Methods with substeps take longer steps.
 fn settings(method: Method, until: f64, finest: i32) -> Vec<f64> {
-    if method == Method::RIVAL {
+    if method.has_tolerance() {
         return TOLERANCES.rev().map(|power| 10_f64.powf(0.5 * f64::from(power))).collect();
     }
     #[allow(clippy::cast_precision_loss)] // at most 32
@@ -120,7 +120,8 @@ pub(super) fn findings(entry: &Entry, quick: bool) -> Result<Findings, Ended> {
     Ok(Findings { until, agreement, runs })
 }
 
-/// Times every completed run in rounds: a temporary disturbance of the machine then affects all runs alike.
+/// Times every completed run in rounds: a temporary disturbance of the machine then affects all runs alike. The search of
+/// the first step of a tolerance does not count.
 fn time(
     system: &dyn System,
     start: &PhasePoint,
@@ -130,16 +131,22 @@ fn time(
     progress: &mut Progress,
 ) {
     let mut times = vec![Vec::new(); runs.len()];
+    let task = |run: &TimedRun| Task { start, end, method: run.method, setting: run.setting };
+    let begun = |run: &TimedRun| task(run).begun(system).ok().flatten().filter(|_| run.method.has_tolerance());
+    let begun: Vec<_> = runs.iter().map(begun).collect();
     for _ in 0..rounds {
-        for (run, times) in runs.iter().zip(&mut times) {
+        for ((run, begun), times) in runs.iter().zip(&begun).zip(&mut times) {
             progress.message(run.method.name);
             progress.advance_by(1);
             if run.outcome.is_ok() {
-                let task = Task { start, end, method: run.method, setting: run.setting };
+                let reached = || match begun {
+                    Some(begun) => task(run).reached_from(system, Some(begun.copy())),
+                    None => task(run).reached(system),
+                };
                 // A first run without timing restores caches after another method.
-                core::hint::black_box(task.reached(system).is_ok());
+                core::hint::black_box(reached().is_ok());
                 let begin = Instant::now();
-                core::hint::black_box(task.reached(system).is_ok());
+                core::hint::black_box(reached().is_ok());
                 times.push(begin.elapsed().as_secs_f64());
             }
         }
