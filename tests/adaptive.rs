@@ -8,7 +8,7 @@ use vi_core::derivatives::{Differentiable, Tangent, Variation};
 use vi_core::run::{Checkpoint, DenseOutput};
 use vi_core::stepping::Convertible;
 use vi_core::{Adaptive, Gauss, Run, SVector, Starts, State, StepError, Tolerance, lagrangian};
-use vi_systems::{HenonHeiles, Kepler, Pendulum, RodPendulum};
+use vi_systems::{DoublePendulum, HenonHeiles, Kepler, Pendulum, RodPendulum};
 
 lagrangian! {
     /// A planet without a time scale.
@@ -306,6 +306,16 @@ lagrangian! {
 }
 
 lagrangian! {
+    /// The same about another origin.
+    struct Shifted {
+        param m = 1.3, k = 0.9, K = 2000.0, d = 6.0, o = 0.0;
+        coord x, y;
+        L = m * dot(x)^2 / 2 + m * dot(y)^2 / 2 - k * (x - o)^4 / 4 - K * (y - (x - o)^2)^2 / 2;
+        dissipation = d * (dot(y) - 2 * (x - o) * dot(x))^2 / 2;
+    }
+}
+
+lagrangian! {
     /// A driven pendulum with friction.
     struct Driven {
         param b = 0.3, a = 0.8, w = 1.3, m = 0.7;
@@ -378,6 +388,35 @@ fn steps_do_not_shrink_by_rounding_errors() {
         // Measured: 430, 274, 204, 181 and 121 steps, off by 1e-14 to 4e-14. With h = 0.02 and 0.04 the lengths fell to
         // 5e-16.
         assert!(steps < 450 && off < 1e-13, "{h}: {steps} {off:e}");
+    }
+}
+
+/// Steps of a tolerance solve their stages to a part of it, in fewer iterations than those of the same first step. A shift
+/// of the origin changes neither.
+#[test]
+fn a_tolerance_saves_iterations() {
+    let origin = 1e6;
+    let start = Stiff::default().at(0.0, [1.0, 1.5], [0.0, 0.0]);
+    let exact = start.integrate(Gauss::<8>, 0.002).expect("a start").until(5.0).expect("a motion");
+    for (tolerance, most) in [(1e-3, 0.6), (1e-6, 0.75), (1e-9, 0.85)] {
+        let h = start.length(&Gauss::<8>.adaptive(), Tolerance(tolerance)).expect("a length");
+        let iterations = |run: &mut Run<Adaptive<Gauss<8>>, Stiff, 2>| {
+            let mut sum = 0;
+            while run.t() < 5.0 {
+                run.step().expect("a step");
+                sum += run.iterations();
+            }
+            f64::from(sum)
+        };
+        let to_rounding = iterations(&mut start.integrate(Gauss::<8>.adaptive(), h).expect("a start"));
+        let run = start.integrate(Gauss::<8>.adaptive(), Tolerance(tolerance)).expect("a start");
+        let part = iterations(&mut run.clone()) / to_rounding;
+        let off = (run.clone().until(5.0).expect("a motion").q - exact.q).norm();
+        let shifted = Shifted { o: origin, ..Shifted::default() }.at(0.0, [1.0 + origin, 1.5], [0.0, 0.0]);
+        let mut aside = shifted.integrate(Gauss::<8>.adaptive(), Tolerance(tolerance)).expect("a start");
+        let moved = (aside.until(5.0).expect("a motion").q - exact.q - SVector::from([origin, 0.0])).norm();
+        println!("{tolerance:e}: {part:.2} of the iterations, off by {off:.1e}, far from the origin by {moved:.1e}");
+        assert!(part < most && off < tolerance && moved < tolerance, "{tolerance:e}: {part} {off:e} {moved:e}");
     }
 }
 
@@ -519,6 +558,23 @@ fn a_loose_tolerance_has_followers() {
 }
 
 #[test]
+fn a_run_goes_on_where_longer_steps_have_no_solution() {
+    // Each run ended before, since no step of some places has the phase of the first one.
+    for (q, h) in [([2.0, 1.0], 0.46), ([2.5, -1.0], 0.3), ([-1.0, 2.8], 0.3)] {
+        let start = DoublePendulum::default().at(0.0, q, [0.0, 0.0]);
+        let mut run = start.integrate(Gauss::<8>.adaptive(), h).expect("a start");
+        let (energy, mut worst, mut steps) = (run.energy().expect("an energy"), 0.0_f64, 0);
+        while run.t() < 20.0 {
+            run.step().unwrap_or_else(|failure| panic!("{q:?}: {failure}"));
+            worst = worst.max((run.energy().expect("an energy") - energy).abs());
+            steps += 1;
+        }
+        println!("{q:?}: {steps} steps, H off by {worst:.1e}");
+        assert!(steps < 120 && worst < 1.0, "{q:?}: {steps} {worst:e}");
+    }
+}
+
+#[test]
 fn places_that_miss_an_oscillation_set_no_length() {
     // The places of a step of twice the length, which passes a turn of the rod, have its phase too.
     for angle in [2.0_f64, 2.4, 2.9] {
@@ -576,14 +632,16 @@ fn stored_numbers_are_checked() {
 #[test]
 fn stored_numbers_of_a_driven_motion_are_checked() {
     let start = Driven::default().at(0.0, [1.2], [0.4]);
-    let mut run = start.integrate(Gauss::<4>.adaptive(), 0.1).expect("a start");
+    let mut run = start.integrate(Gauss::<4>.adaptive(), Tolerance(1e-6)).expect("a start");
     for _ in 0..30 {
         run.step().expect("a step");
     }
     let stored = serde_json::to_value(run.checkpoint()).expect("numbers");
-    for (name, value) in [("wanted", -1.0), ("off", -1.0), ("ahead", 0.0), ("longest", 0.0)] {
+    for (name, value) in [("wanted", -1.0), ("off", -1.0), ("ahead", 0.0), ("longest", 0.0), ("tolerance", -1.0)] {
         let mut changed = stored.clone();
-        changed["run"]["memory"]["law"]["Decaying"][name] = json!(value);
+        let memory = &mut changed["run"]["memory"];
+        let of = if name == "tolerance" { memory } else { &mut memory["law"]["Decaying"] };
+        of[name] = json!(value);
         let changed: Checkpoint<_, 1> = serde_json::from_value(changed).expect("numbers");
         let refused = Run::restart(*run.system(), Gauss::<4>.adaptive(), changed).expect_err("a wrong number");
         assert!(matches!(refused, StepError::NonFinite { .. }), "{name} = {value}: {refused}");

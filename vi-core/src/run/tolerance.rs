@@ -19,7 +19,7 @@ use num_traits::Float as _;
 /// The run then has a constant step. Its largest relative error over the first stretch is at most the tolerance, and a
 /// length that is longer by a sixth would exceed it. If steps stop existing before the tolerance is reached, the run
 /// uses half of the longest length that exists. The stretch lasts until the coordinates have turned back twice or more,
-/// at most 8192/p steps of order p, 1024/p if the method finds their lengths. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
+/// at most 4096 steps, or 1024/p steps of order p if the method finds their lengths. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
 /// [`Run::monitored`] reports it. The global error is larger: about the tolerance times the number of steps, or more.
 ///
 /// [`Run::monitored`]: crate::Run::monitored
@@ -71,9 +71,7 @@ const NEARLY: f64 = 1.15;
 /// Shortest step that is tried while none exists, and longest step, in units of the time scale of the start.
 const SHORTEST: f64 = 1e-10;
 const LONGEST: f64 = 1e3;
-/// Most steps of a trial, times half the order: steps of high order are long. Of steps whose length follows the motion
-/// fewer tell as much.
-const STRETCH: u64 = 4096;
+/// Most steps of a trial whose lengths follow the motion, times half the order: fewer than of equal steps tell as much.
 const FOLLOWING: u64 = 512;
 /// Consecutive shorter trials without a smaller error, after which rounding dominates.
 const STALLED: u32 = 3;
@@ -187,7 +185,7 @@ fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
     let mut run = start.integrate(method.clone(), h)?;
     let mut monitor = ErrorMonitor::of_steps(&run);
     let Facts { order, finds_length, .. } = method.facts();
-    let most = if finds_length { FOLLOWING } else { STRETCH } / u64::from(order / 2).max(1);
+    let most = if finds_length { FOLLOWING / u64::from(order / 2).max(1) } else { u64::MAX };
     while !monitor.is_over() && monitor.steps < most {
         match run.single_step() {
             Ok(_) => monitor.watch(&run),

@@ -58,6 +58,8 @@ const MOST: f64 = 2.0;
 const SHORT: f64 = 1.5;
 /// Lengths without a quick step, mostly much too long, after which a step is solved in any way.
 const QUICK: usize = 4;
+/// A step is the longest one if its length is more than this part of a length without a step.
+const LONG: f64 = 0.8;
 /// The largest factor between the lengths of two steps of which one proves the other.
 const PROVING: f64 = 1.5;
 
@@ -170,7 +172,7 @@ impl Reversible {
         [phase * h.signum(), floor, ahead, ratio, slope].iter().all(|number| *number > 0.0 && number.is_normal())
     }
 
-    /// The step whose phase is that of the first one.
+    /// The step whose phase is that of the first one, or the longest step if all have less: longer ones have no solution.
     ///
     /// # Errors
     /// The errors of the solver for the shortest length tried; [`StepError::LengthsLost`] if no length has this phase.
@@ -191,8 +193,18 @@ impl Reversible {
         // The polynomials of fewer stages are too rough.
         let mut is_first = STAGES >= FEWEST;
         let (mut quick, mut is_near) = (QUICK, false);
+        // The longest step whose phase is too small, and the shortest length without a step.
+        let mut shorter: Option<(f64, End<S, N, STAGES>)> = None;
+        let mut without = f64::INFINITY;
+        let following = |h: f64, found: &Phase, slope: f64, steps| {
+            let ratio = h / last;
+            // Ratios change by nearly equal factors, until the forces turn.
+            let ahead = found.ratio().min(ratio * (ratio / before).clamp(0.7, 1.4));
+            Following { steps, h, law: Some(Law::Reversible(Self { ahead, ratio, slope, ..*self })), ..*memory }
+        };
         for trial in 0..TRIALS {
-            if !moves_time(h, node.t)? {
+            let is_longest = shorter.as_ref().is_some_and(|(longest, _)| *longest > LONG * without);
+            if is_longest || !moves_time(h, node.t)? {
                 break;
             }
             let (solver, at) = (solver::<S, N, STAGES>(), Problem { h, ..at });
@@ -210,6 +222,7 @@ impl Reversible {
                 Ok(Some(found)) => found,
                 left => {
                     h = if let Err(error) = left {
+                        without = without.min(h.abs());
                         failure = error;
                         search.shorter(h)
                     } else {
@@ -233,11 +246,13 @@ impl Reversible {
                     guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
                     continue;
                 }
-                let ratio = h / last;
-                // Ratios change by nearly equal factors, until the forces turn.
-                let ahead = found.ratio().min(ratio * (ratio / before).clamp(0.7, 1.4));
-                let law = Law::Reversible(Self { ahead, ratio, slope: search.slope, ..*self });
-                return Ok((end, Following { steps, h, law: Some(law), ..*memory }));
+                return Ok((end, following(h, &found, search.slope, steps)));
+            }
+            if off < 0.0
+                && (without.is_finite() || trial >= FEW)
+                && shorter.as_ref().is_none_or(|(longest, _)| h.abs() > *longest)
+            {
+                shorter = Some((h.abs(), (end, following(h, &found, search.slope, steps.clone()))));
             }
             let solved = h;
             h = if core::mem::take(&mut is_first) {
@@ -248,7 +263,7 @@ impl Reversible {
             is_near = h / solved < PROVING && solved / h < PROVING;
             guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
         }
-        Err(failure)
+        shorter.map(|(_, step)| step).ok_or(failure)
     }
 
     /// Whether the first half of a step has nearly its phase or more, so that the places where the phase is measured miss
