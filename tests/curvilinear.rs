@@ -40,6 +40,32 @@ lagrangian! {
     }
 }
 
+lagrangian! {
+    /// A mass on a turning rod, with a torque that grows from zero.
+    struct Ramp {
+        coord r, φ;
+        L = (dot(r)^2 + r^2 * dot(φ)^2) / 2 - 2 * (r - 1)^2;
+        force φ = t;
+    }
+}
+
+lagrangian! {
+    /// A mass on a turning rod, at rest until a pulse of torque.
+    struct Late {
+        coord r, φ;
+        L = (dot(r)^2 + r^2 * dot(φ)^2) / 2 - (r - 1)^2 / 2;
+        force φ = exp(-20 * (t - 10)^2);
+    }
+}
+
+lagrangian! {
+    /// Two masses that attract each other: the second one is at rest until the first one has moved.
+    struct Coupled {
+        coord x, r, φ;
+        L = (dot(x)^2 + dot(r)^2 + r^2 * dot(φ)^2) / 2 - 2 * (r - 1)^2 - 2 * x^2 - x * r * cos(φ);
+    }
+}
+
 /// Mean iterations of a hundred steps, which change the energy by this part at most.
 fn iterations<S, const N: usize, const STAGES: usize>(system: S, [q, v]: [[f64; N]; 2], h: f64, error: f64) -> f64
 where
@@ -122,5 +148,37 @@ fn long_steps_hardly_ever_pass_a_pole() {
     // a proof by the contraction of the iteration at least three times as many passes.
     for [solved, passes, _] in [passes::<4>(), passes::<8>()] {
         assert!(solved > 730 && passes < 4, "{solved}, {passes}");
+    }
+}
+
+/// The stages of a velocity that grows as t², t³ or faster are not resolved, however short the step.
+#[test]
+fn velocities_grow_slowly_from_rest() {
+    for h in [1e-6, 1e-3, 0.1, 0.4] {
+        let mut run = Ramp::default().at(0.0, [1.2, 0.0], [0.0, 0.0]).integrate(Gauss::<4>, h).expect("a start");
+        let momentum = run.step().expect("a step").p.y;
+        // Measured: 1 ε.
+        assert!((momentum / (h * h / 2.0) - 1.0).abs() < 4.0 * f64::EPSILON, "{h}: {momentum:e}");
+    }
+    let start = Coupled::default().at(0.0, [1.0, 1.0, core::f64::consts::FRAC_PI_2], [0.0; 3]);
+    let four = start.integrate(Gauss::<4>, 0.1).expect("a start").step().expect("a step");
+    let eight = start.integrate(Gauss::<8>, 0.1).expect("a start").step().expect("a step");
+    let off = (four.q - eight.q).norm();
+    println!("{off:e}");
+    // Measured: 8e-15.
+    assert!(off < 1e-14, "{off:e}");
+}
+
+/// At first the only velocity is a subnormal number. The impulse is that of the whole pulse.
+#[test]
+fn a_pulse_begins_below_normal_numbers() {
+    let start = Late::default().at(0.0, [1.0, 0.0], [0.0, 0.0]);
+    let impulse = (core::f64::consts::PI / 20.0).sqrt();
+    for h in [0.01, 0.05] {
+        let end = start.integrate(Gauss::<4>, h).expect("a start").until(12.0).expect("steps");
+        let off = (end.p.y - impulse).abs();
+        println!("{h}: {off:e}");
+        // Measured: 0.
+        assert!(off < 1e-15, "{h}: {off:e}");
     }
 }

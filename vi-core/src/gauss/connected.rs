@@ -1,17 +1,17 @@
 //! Whether a Gauss step continues those of short lengths.
 //!
 //! A step has one solution near its start if its fixed-point iteration contracts fast, or if its stages are resolved. In
-//! curvilinear coordinates the contraction proves nothing.
+//! curvilinear coordinates only an iteration that does not follow momenta proves a step by its contraction.
 //! Other steps are continued from short ones by [`branch::follow`].
 
 use super::branch::{self, EQUAL, FAST, NEAR, Shorter, StepsFromNode, distance, is_resolved};
-use super::fixed_point::{Convergence, Equations as _};
+use super::fixed_point::{Convergence, Equations as _, FEW};
 use super::general::equations;
 use super::linearization::LinearizationPoint;
 use super::newton::Buffer;
 use super::points::{AnyDerivatives, EquationForm, ErasedSystem, Points, follows_momenta};
 use super::solve::{StageSolution, Start, Step, constant};
-use super::stages::{Stages, at, stage, time};
+use super::stages::{EXACT, Stages, at, stage, time};
 use crate::error::StepError;
 use crate::node::Node;
 use crate::stepping::Convertible;
@@ -67,6 +67,21 @@ fn is_proven<const N: usize, const S: usize>(
     is_fast || is_resolved(&step.stages, &weights(system, node, step)) || is_linear(system, node, step)
 }
 
+/// The step of a part of the length, from stages equal to the node and with forces at the velocities of the last iteration,
+/// whose contraction may prove it. In curvilinear coordinates only: elsewhere this has been tried. From rest a velocity
+/// may grow as t², t³ or later, so that its stages are not resolved in a step of any length.
+fn lagging<const N: usize, const S: usize>(
+    system: &ErasedSystem<'_, N>,
+    start: &Start<'_, N, S>,
+    (part, stages): (f64, &Stages<N, S>),
+) -> Option<Step<N, S>> {
+    if !follows_momenta::<_, f64, N, S>(system) {
+        return None;
+    }
+    let (h, before, accuracy) = (part * start.h, &Convergence::NONE, EXACT);
+    Start { h, stages, are_last: false, before, accuracy, ..*start }.without_momenta(system)
+}
+
 impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// The step, if fixed-point iteration failed, contracted slowly or was skipped. `last` is the linearization of the
     /// previous step, if that had the same length. If the guess `continues` short steps, since it is the stages of a step
@@ -97,7 +112,14 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let erased = &ErasedSystem::of(system);
         let is_near = || distance([self.stages, &step.stages], self.stages, &weights(erased, self.node, &step)) <= NEAR;
         let is_proven = continues && is_near() || is_proven(erased, self, &step);
-        if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
+        if is_proven {
+            return Ok(step);
+        }
+        let is_certain = |step: &Step<N, S>| step.convergence.iterations <= FEW || step.convergence.contraction <= FAST;
+        if let Some(step) = lagging(erased, self, (1.0, &constant(system, self.node)?)).filter(is_certain) {
+            return Ok(step);
+        }
+        self.continued(system, instructions, Some(step), cache)
     }
 
     /// The step, if its fixed-point iteration came to its end, and no continuation is needed to prove it.
@@ -178,7 +200,11 @@ where
 
     fn short(&mut self, part: f64) -> Option<Step<N, S>> {
         let step = self.solved(part, self.from)?;
-        is_proven(&ErasedSystem::of(self.system), self.start, &step).then_some(step)
+        let erased = ErasedSystem::of(self.system);
+        if is_proven(&erased, self.start, &step) {
+            return Some(step);
+        }
+        lagging(&erased, self.start, (part, self.from)).filter(|step| step.convergence.is_fast(EXACT))
     }
 
     fn longer(&mut self, part: f64, shorter: [&Shorter<Step<N, S>>; 2]) -> Option<Step<N, S>> {

@@ -34,7 +34,7 @@ pub(crate) const NOISE: f64 = 64.0;
 /// plunging orbits with 2, 3, 4 and 8 stages, an independent continuation found the same branch for all steps.
 const FAST: f64 = 0.25;
 /// Number of iterations in which only a guess close to its solution converges, so that no contraction is needed.
-const FEW: u32 = 3;
+pub(crate) const FEW: u32 = 3;
 /// Iterations without a smaller change, after which the iteration has stalled.
 const STALLS: u32 = 4;
 /// Ulps of q that an ulp of the terms of v counts as, because the mass matrix solves for velocities.

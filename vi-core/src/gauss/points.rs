@@ -226,22 +226,31 @@ fn dense<S: Convertible<N>, T: Real, const N: usize>(
 
 /// A type-erased system.
 #[derive(Clone, Copy)]
-pub(crate) struct ErasedSystem<'a, const N: usize>(&'a dyn Erased<N>);
+pub(crate) struct ErasedSystem<'a, const N: usize> {
+    system: &'a dyn Erased<N>,
+    /// Whether its iterations evaluate forces at the velocities of the last iteration in curvilinear coordinates, too.
+    is_lagging: bool,
+}
 
 impl<'a, const N: usize> ErasedSystem<'a, N> {
     /// Erases the type of the system.
     pub(crate) fn of<S: Convertible<N>>(system: &'a S) -> Self {
-        Self(system)
+        Self { system, is_lagging: false }
+    }
+
+    /// The same system, with iterations that do not follow momenta: their contraction proves a step.
+    pub(crate) fn lagging(self) -> Self {
+        Self { is_lagging: true, ..self }
     }
 
     /// [`Motion::without_velocity`].
     pub(crate) fn without_velocity(&self) -> &'static [bool] {
-        self.0.without_velocity()
+        self.system.without_velocity()
     }
 
     /// Derivatives of L_v and L_q + f.
     pub(crate) fn derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyDerivatives<N> {
-        self.0.derivatives(t, q, v)
+        self.system.derivatives(t, q, v)
     }
 }
 
@@ -253,15 +262,18 @@ macro_rules! erased_points {
             const FORM: Option<EquationForm> = None;
 
             fn form(&self) -> EquationForm {
-                self.0.form()
+                match self.system.form() {
+                    EquationForm::Curvilinear if self.is_lagging => EquationForm::VaryingMass,
+                    form => form,
+                }
             }
 
             fn moving(&self) -> usize {
-                self.0.moving()
+                self.system.moving()
             }
 
             fn at(&self, t: $number, q: &SVector<$number, N>, v: &SVector<$number, N>) -> AnyPoint<N, $number> {
-                self.0.$point(t, q, v)
+                self.system.$point(t, q, v)
             }
 
             fn sides_at(&self, t: $number, q: &SVector<$number, N>, v: &SVector<$number, N>) -> Sides<N, $number> {
@@ -272,6 +284,6 @@ macro_rules! erased_points {
 }
 
 erased_points! {
-    f64, plain, |of: &Self, t, q: &_, v: &_| of.0.sides(t, q, v);
-    Rounded, rounded, |of: &Self, t, q: &_, v: &_| of.0.rounded(t, q, v).sides()
+    f64, plain, |of: &Self, t, q: &_, v: &_| of.system.sides(t, q, v);
+    Rounded, rounded, |of: &Self, t, q: &_, v: &_| of.system.rounded(t, q, v).sides()
 }

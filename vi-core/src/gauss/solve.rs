@@ -154,6 +154,14 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         solved::<f64, _, _, N, S, false, false>(system, system, self, newton)
     }
 
+    /// The step by an iteration that does not follow momenta. Its contraction may prove it.
+    pub(super) fn without_momenta(&self, system: &ErasedSystem<'_, N>) -> Option<Step<N, S>> {
+        let solved = self.in_scalars(&system.lagging(), None);
+        let StageIncrement { velocity, momentum } = &solved.increment;
+        let is_step = solved.iteration.convergence.is_at_floor() && self.node.stays_finite(self.h, velocity, momentum);
+        is_step.then(|| solved.step(self.h, self.pause))
+    }
+
     /// The stages with SIMD dispatch, if the system suits it.
     #[inline(never)]
     fn side_by_side<Y>(
