@@ -55,6 +55,64 @@ pub struct Table<const N: usize, const C: usize> {
     kind: TableKind,
 }
 
+/// The functions of a table of one argument that concern its range.
+macro_rules! ends {
+    () => {
+        /// Continues the function by its values at the ends. Has no effect on a periodic table.
+        #[must_use]
+        pub const fn hold(self) -> Self {
+            Self { axis: self.axis.continued(Outside::Hold), ..self }
+        }
+
+        /// Continues the function by straight lines with the slopes at its ends. Has no effect on a periodic table.
+        #[must_use]
+        pub const fn extend(self) -> Self {
+            Self { axis: self.axis.continued(Outside::Extend), ..self }
+        }
+
+        /// The first and the last knot.
+        #[must_use]
+        pub const fn range(&self) -> [f64; 2] {
+            self.axis.range
+        }
+
+        /// The reason why the function is NaN at x: x is outside of the range. `function` is its text, as `drag(v)`.
+        pub fn undefined<T: Real>(&self, function: &'static str, [x]: [T; 1]) -> Option<Undefined> {
+            undefined_along(&self.axis, function, x.to_f64())
+        }
+    };
+}
+use ends;
+
+/// The functions of `Jets` of a table of one argument whose pieces have this number of coefficients.
+macro_rules! jets {
+    ($count:tt) => {
+        #[inline]
+        fn jet_0(&self, [x]: [T; 1]) -> T {
+            self.at(x)
+        }
+
+        #[inline]
+        fn jet_1(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>) {
+            let [value, slope] = derivatives::<_, $count, 2>(self.piece(x));
+            (value, [slope])
+        }
+
+        #[inline]
+        fn jet_2(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>, Hessian<T, 1>) {
+            let [value, slope, second] = derivatives::<_, $count, 3>(self.piece(x));
+            (value, [slope], [[second]])
+        }
+
+        #[inline]
+        fn jet_3(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>, Hessian<T, 1>, ThirdDerivatives<T, 1>) {
+            let [value, slope, second, third] = derivatives::<_, $count, 4>(self.piece(x));
+            (value, [slope], [[second]], [[[third]]])
+        }
+    };
+}
+use jets;
+
 impl<const N: usize> Table<N, 2> {
     /// Straight lines between the points.
     #[must_use]
@@ -144,34 +202,13 @@ impl<const N: usize, const C: usize> Table<N, C> {
         values
     }
 
-    /// Continues the function by its values at the ends. Has no effect on a periodic table.
-    #[must_use]
-    pub const fn hold(self) -> Self {
-        Self { axis: self.axis.continued(Outside::Hold), ..self }
-    }
-
-    /// Continues the function by straight lines with the slopes at its ends. Has no effect on a periodic table.
-    #[must_use]
-    pub const fn extend(self) -> Self {
-        Self { axis: self.axis.continued(Outside::Extend), ..self }
-    }
-
-    /// The first and the last knot.
-    #[must_use]
-    pub const fn range(&self) -> [f64; 2] {
-        self.axis.range
-    }
+    ends!();
 
     /// The value at x, in the numbers of a function `fn cl<T: Number>(a: T) -> T`. NaN for NaN.
     #[inline]
     pub fn at<T: Number>(&self, x: T) -> T {
         let (u, coefficients) = self.piece(x);
         polynomial::<_, C>(&coefficients, u, 0)
-    }
-
-    /// The reason why the function is NaN at x: x is outside of the range. `function` is its text, as `drag(v)`.
-    pub fn undefined<T: Real>(&self, function: &'static str, [x]: [T; 1]) -> Option<Undefined> {
-        undefined_along(&self.axis, function, x.to_f64())
     }
 
     /// The distance from the base of a piece, and its coefficients.
@@ -224,28 +261,7 @@ const fn cubics(knots: &[f64], values: &[f64], slopes: &[f64], pieces: &mut [[f6
 }
 
 impl<T: Real, const N: usize, const C: usize> Jets<T, 1> for Table<N, C> {
-    #[inline]
-    fn jet_0(&self, [x]: [T; 1]) -> T {
-        self.at(x)
-    }
-
-    #[inline]
-    fn jet_1(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>) {
-        let [value, slope] = derivatives::<_, C, 2>(self.piece(x));
-        (value, [slope])
-    }
-
-    #[inline]
-    fn jet_2(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>, Hessian<T, 1>) {
-        let [value, slope, second] = derivatives::<_, C, 3>(self.piece(x));
-        (value, [slope], [[second]])
-    }
-
-    #[inline]
-    fn jet_3(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>, Hessian<T, 1>, ThirdDerivatives<T, 1>) {
-        let [value, slope, second, third] = derivatives::<_, C, 4>(self.piece(x));
-        (value, [slope], [[second]], [[[third]]])
-    }
+    jets!(C);
 }
 
 /// A polynomial with C coefficients and its derivatives, in increasing order, at u.

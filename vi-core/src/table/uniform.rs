@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, Outside, number};
 use super::slopes::{Arrays, Buffers};
-use super::{ascend, derivatives, distance, polynomial, slopes, tridiagonal, undefined_along};
+use super::{ascend, derivatives, distance, ends, jets, polynomial, slopes, tridiagonal, undefined_along};
 use crate::function::{Gradient, Hessian, Jets, ThirdDerivatives};
 use crate::lagrangian::Undefined;
 use crate::real::{Number, Real};
@@ -69,33 +69,12 @@ impl<const N: usize> Uniform<N> {
         Self { axis: Axis::new(knots, to, Outside::Periodic), slopes, is_invalid: self.is_invalid }
     }
 
-    /// Continues the function by its values at the ends. Has no effect on a periodic table.
-    #[must_use]
-    pub const fn hold(self) -> Self {
-        Self { axis: self.axis.continued(Outside::Hold), ..self }
-    }
-
-    /// Continues the function by straight lines with the slopes at its ends. Has no effect on a periodic table.
-    #[must_use]
-    pub const fn extend(self) -> Self {
-        Self { axis: self.axis.continued(Outside::Extend), ..self }
-    }
-
-    /// Both ends of the range.
-    #[must_use]
-    pub const fn range(&self) -> [f64; 2] {
-        self.axis.range
-    }
+    ends!();
 
     /// The function with these values at its knots.
     #[inline]
     pub fn of<'a, T>(&'a self, values: &'a [T; N]) -> WithValues<'a, T, N> {
         WithValues { table: self, values }
-    }
-
-    /// As [`Table::undefined`](super::Table::undefined).
-    pub fn undefined<T: Real>(&self, function: &'static str, [x]: [T; 1]) -> Option<Undefined> {
-        undefined_along(&self.axis, function, x.to_f64())
     }
 }
 
@@ -220,26 +199,5 @@ impl<T: Number, const N: usize> WithValues<'_, T, N> {
 }
 
 impl<T: Real, const N: usize> Jets<T, 1> for WithValues<'_, T, N> {
-    #[inline]
-    fn jet_0(&self, [x]: [T; 1]) -> T {
-        self.at(x)
-    }
-
-    #[inline]
-    fn jet_1(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>) {
-        let [value, slope] = derivatives::<_, 4, 2>(self.piece(x));
-        (value, [slope])
-    }
-
-    #[inline]
-    fn jet_2(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>, Hessian<T, 1>) {
-        let [value, slope, second] = derivatives::<_, 4, 3>(self.piece(x));
-        (value, [slope], [[second]])
-    }
-
-    #[inline]
-    fn jet_3(&self, [x]: [T; 1]) -> (T, Gradient<T, 1>, Hessian<T, 1>, ThirdDerivatives<T, 1>) {
-        let [value, slope, second, third] = derivatives::<_, 4, 4>(self.piece(x));
-        (value, [slope], [[second]], [[[third]]])
-    }
+    jets!(4);
 }
