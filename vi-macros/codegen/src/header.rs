@@ -4,82 +4,24 @@
 //! struct lists the findings.
 
 use crate::indexed::named;
-use crate::program::{Function, FunctionId};
+use crate::program::{Function, FunctionId, Methods};
 use crate::{Derivations, Derived, Loops};
 
 /// Characters of L that are shown.
 const CHARACTERS: usize = 400;
 
-/// The methods of all systems with the functions that they call.
-const OF_MOTION: [(&str, &[FunctionId]); 3] = [
-    (
-        "every method",
-        &[
-            FunctionId::Lagrangian,
-            FunctionId::Energy,
-            FunctionId::Momentum,
-            FunctionId::Force,
-            FunctionId::Acceleration,
-            FunctionId::NonFinite,
-            FunctionId::Undefined,
-        ],
-    ),
-    ("Gauss, EnergyPreservingGauss", &[FunctionId::Point, FunctionId::PointDerivatives, FunctionId::Power]),
-    ("Gauss in transformed time", &[FunctionId::ScaledPoint]),
+/// The methods of all systems.
+const OF_MOTION: [(&str, Methods); 3] = [
+    ("every method", Methods::Every),
+    ("Gauss, EnergyPreservingGauss", Methods::Gauss),
+    ("Gauss in transformed time", Methods::Transformed),
 ];
 
-/// The method of systems whose motion splits into kicks and drifts, and the function that it calls.
-const OF_SPLITTING: (&str, &[FunctionId]) = ("Splitting, for each force", &[FunctionId::Point]);
-
-/// The method of systems with constraints, and the functions that it calls.
-const OF_CONSTRAINTS: (&str, &[FunctionId]) = (
-    "Gauss, EnergyPreservingGauss",
-    &[
-        FunctionId::Point,
-        FunctionId::PointDerivatives,
-        FunctionId::Power,
-        FunctionId::Applied,
-        FunctionId::Constraints,
-        FunctionId::ConstraintGradients,
-        FunctionId::ConstraintRateDerivatives,
-        FunctionId::ReactionDerivatives,
-    ],
-);
-
-/// The methods of a rule with the functions that they call.
-const OF_RULE: [(&str, &[FunctionId]); 3] = [
-    (
-        "FixedStep, Composition, Ensemble",
-        &[
-            FunctionId::MomentumEquation,
-            FunctionId::MomentumResidual,
-            FunctionId::MomentumDerivatives,
-            FunctionId::DiscreteEnergy,
-        ],
-    ),
-    (
-        "EnergyPreserving",
-        &[
-            FunctionId::StepDensity,
-            FunctionId::ExtendedSystem,
-            FunctionId::ExtendedResidual,
-            FunctionId::ExtendedDerivatives,
-        ],
-    ),
-    (
-        "DiscreteLagrangian",
-        &[
-            FunctionId::Ld,
-            FunctionId::D1Ld,
-            FunctionId::D2Ld,
-            FunctionId::D3Ld,
-            FunctionId::D4Ld,
-            FunctionId::FdMinus,
-            FunctionId::FdPlus,
-            FunctionId::GdMinus,
-            FunctionId::GdPlus,
-        ],
-    ),
+/// The methods of a rule.
+const OF_RULE: [(&str, Methods); 3] = [
+    ("FixedStep, Composition, Ensemble", Methods::Fixed),
+    ("EnergyPreserving", Methods::EnergyPreserving),
+    ("DiscreteLagrangian", Methods::Slots),
 ];
 
 /// The header of the expansion of a system.
@@ -89,19 +31,17 @@ pub(crate) fn header(derivations: &Derivations) -> String {
         own.pool.render_within(CHARACTERS, own.system.continuous.lagrangian, &|symbol| own.model.spell(symbol));
     let mut lines =
         vec![format!("`{}`: L = {lagrangian}", own.model.name), String::new(), "Operation counts by method".to_owned()];
+    lines.extend(OF_MOTION.iter().filter_map(|of| called(own, "", *of)));
     if own.system.constraints.is_some() {
-        let [every, ..] = OF_MOTION;
-        lines.extend([every, OF_CONSTRAINTS].into_iter().filter_map(|of| counted(own, "", of)));
         return commented(lines);
     }
-    lines.extend(OF_MOTION.iter().filter_map(|of| counted(own, "", *of)));
     if own.findings.force_of_position {
-        lines.extend(counted(own, "", OF_SPLITTING));
+        lines.extend(counted("Splitting, for each force", own.program.function(FunctionId::Point)));
     }
     for derived in derivations.all() {
         let Some(rule) = &derived.model.rule else { continue };
         let by = format!(" by the rule `{}`", rule.title());
-        lines.extend(OF_RULE.iter().filter_map(|of| counted(derived, &by, *of)));
+        lines.extend(OF_RULE.iter().filter_map(|of| called(derived, &by, *of)));
     }
     if own.system.by_rule.is_none() {
         lines.push(
@@ -118,13 +58,19 @@ fn commented(lines: Vec<String>) -> String {
     lines.into_iter().map(comment).chain(["\n".to_owned()]).collect()
 }
 
-/// Operation counts of these functions, in total and one by one; empty if the system has none of them.
-fn counted(derived: &Derived, by: &str, (methods, ids): (&str, &[FunctionId])) -> Option<String> {
-    let functions: Vec<&Function> = ids.iter().filter_map(|id| derived.program.function(*id)).collect();
-    let all: usize = functions.iter().map(|function| function.operation_count()).sum();
-    let each = functions.iter().map(|function| format!("{} {}", function.id.name(), function.operation_count()));
-    let each = each.collect::<Vec<_>>().join(", ");
-    (!functions.is_empty()).then(|| format!("{all:6}  {methods}{by}: {each}"))
+/// The line of methods, by this rule, with the functions that they call.
+fn called(derived: &Derived, by: &str, (title, methods): (&str, Methods)) -> Option<String> {
+    let functions = derived.program.functions().filter(|function| function.id.methods() == methods);
+    counted(&format!("{title}{by}"), functions)
+}
+
+/// Operation counts of functions, in total and one by one; nothing for no function.
+fn counted<'a>(title: &str, functions: impl IntoIterator<Item = &'a Function>) -> Option<String> {
+    let mut functions: Vec<_> = functions.into_iter().map(|of| (of.id, of.operation_count())).collect();
+    functions.sort_unstable();
+    let all: usize = functions.iter().map(|(_, count)| count).sum();
+    let each: Vec<_> = functions.iter().map(|(id, count)| format!("{} {count}", id.name())).collect();
+    (!functions.is_empty()).then(|| format!("{all:6}  {title}: {}", each.join(", ")))
 }
 
 /// The header of the expansion of a large system.

@@ -22,6 +22,7 @@ pub(crate) use assemble::alone;
 pub use assemble::program;
 pub use families::{Families, Membership};
 pub use operations::{Operation, OperationId, Operations};
+pub(crate) use results::Methods;
 pub use results::{FunctionId, Output, Results};
 
 use vi_expr::Table;

@@ -3,120 +3,122 @@
 //! In: values keyed by [`Output`]. Out: [`Results`]: of expressions during assembly, of operations in a
 //! [`Function`](super::Function), of formulas during printing.
 
-/// A function of a system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum FunctionId {
-    /// L.
-    Lagrangian,
-    /// v·L_v − L.
-    Energy,
-    /// L_v.
-    Momentum,
-    /// f.
-    Force,
-    /// The mass matrix M and M a.
-    Acceleration,
-    /// L_v, L_q + f, and M.
-    Point,
-    /// Derivatives of L_v and L_q + f.
-    PointDerivatives,
-    /// f·v − L_t.
-    Power,
-    /// M a without reactions.
-    Applied,
-    /// g of the constraints.
-    Constraints,
-    /// A and a of the constraints.
-    ConstraintGradients,
-    /// Derivatives of A v + a.
-    ConstraintRateDerivatives,
-    /// Σ λ ∂A/∂q.
-    ReactionDerivatives,
-    /// L_v, L_q + f, M, v·L_v − L, f·v − L_t, and the time scale with its derivatives.
-    ScaledPoint,
-    /// D.
-    StepDensity,
-    /// The parts of L and f.
-    NonFinite,
-    /// The arguments of Rust functions and tables.
-    Undefined,
-    /// L_d.
-    Ld,
-    /// ∂L_d/∂t0.
-    D1Ld,
-    /// ∂L_d/∂q0.
-    D2Ld,
-    /// ∂L_d/∂t1.
-    D3Ld,
-    /// ∂L_d/∂q1.
-    D4Ld,
-    /// f_d⁻.
-    FdMinus,
-    /// f_d⁺.
-    FdPlus,
-    /// g_d⁻.
-    GdMinus,
-    /// g_d⁺.
-    GdPlus,
-    /// The momentum row and A.
-    MomentumEquation,
-    /// The momentum row, its rounding scale, and p1 − p0.
-    MomentumResidual,
-    /// Derivatives of the momentum row and of p1 − p0.
-    MomentumDerivatives,
-    /// E1.
-    DiscreteEnergy,
-    /// The body of a loop of a large system.
-    Body,
-    /// Both rows and their derivatives.
-    ExtendedSystem,
-    /// Both rows, their rounding scales, p1 − p0 and E1 − E0.
-    ExtendedResidual,
-    /// Derivatives of both rows, of p1 − p0 and of E1 − E0.
-    ExtendedDerivatives,
+/// Declares the functions of a system: the identity, the name in the emitted code, the methods that call it.
+macro_rules! functions {
+    ($($(#[$meaning:meta])* $id:ident, $name:literal, $methods:ident;)*) => {
+        /// A function of a system.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum FunctionId {
+            $($(#[$meaning])* $id,)*
+        }
+
+        impl FunctionId {
+            /// Its name in the emitted code.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$id => $name,)*
+                }
+            }
+
+            /// The methods that call it.
+            pub(crate) fn methods(self) -> Methods {
+                match self {
+                    $(Self::$id => Methods::$methods,)*
+                }
+            }
+        }
+    };
 }
 
-impl FunctionId {
-    /// Its name in the emitted code.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Body => "body",
-            Self::Lagrangian => "lagrangian",
-            Self::Energy => "energy",
-            Self::Momentum => "momentum",
-            Self::Force => "force",
-            Self::Acceleration => "acceleration",
-            Self::Point => "point",
-            Self::PointDerivatives => "point_derivatives",
-            Self::Power => "power",
-            Self::Applied => "applied",
-            Self::Constraints => "constraints",
-            Self::ConstraintGradients => "constraint_gradients",
-            Self::ConstraintRateDerivatives => "constraint_rate_derivatives",
-            Self::ReactionDerivatives => "reaction_derivatives",
-            Self::ScaledPoint => "scaled_point",
-            Self::StepDensity => "step_density",
-            Self::NonFinite => "non_finite",
-            Self::Undefined => "undefined",
-            Self::Ld => "ld",
-            Self::D1Ld => "d1_ld",
-            Self::D2Ld => "d2_ld",
-            Self::D3Ld => "d3_ld",
-            Self::D4Ld => "d4_ld",
-            Self::FdMinus => "fd_minus",
-            Self::FdPlus => "fd_plus",
-            Self::GdMinus => "gd_minus",
-            Self::GdPlus => "gd_plus",
-            Self::MomentumEquation => "momentum_equation",
-            Self::MomentumResidual => "momentum_residual",
-            Self::MomentumDerivatives => "momentum_derivatives",
-            Self::DiscreteEnergy => "discrete_energy",
-            Self::ExtendedSystem => "extended_system",
-            Self::ExtendedResidual => "extended_residual",
-            Self::ExtendedDerivatives => "extended_derivatives",
-        }
-    }
+functions! {
+    /// L.
+    Lagrangian, "lagrangian", Every;
+    /// v·L_v − L.
+    Energy, "energy", Every;
+    /// L_v.
+    Momentum, "momentum", Every;
+    /// f.
+    Force, "force", Every;
+    /// The mass matrix M and M a.
+    Acceleration, "acceleration", Every;
+    /// L_v, L_q + f, and M.
+    Point, "point", Gauss;
+    /// Derivatives of L_v and L_q + f.
+    PointDerivatives, "point_derivatives", Gauss;
+    /// f·v − L_t.
+    Power, "power", Gauss;
+    /// M a without reactions.
+    Applied, "applied", Gauss;
+    /// g of the constraints.
+    Constraints, "constraints", Gauss;
+    /// A and a of the constraints.
+    ConstraintGradients, "constraint_gradients", Gauss;
+    /// Derivatives of A v + a.
+    ConstraintRateDerivatives, "constraint_rate_derivatives", Gauss;
+    /// Σ λ ∂A/∂q.
+    ReactionDerivatives, "reaction_derivatives", Gauss;
+    /// L_v, L_q + f, M, v·L_v − L, f·v − L_t, and the time scale with its derivatives.
+    ScaledPoint, "scaled_point", Transformed;
+    /// D.
+    StepDensity, "step_density", EnergyPreserving;
+    /// The parts of L and f.
+    NonFinite, "non_finite", Every;
+    /// The arguments of Rust functions and tables.
+    Undefined, "undefined", Every;
+    /// L_d.
+    Ld, "ld", Slots;
+    /// ∂L_d/∂t0.
+    D1Ld, "d1_ld", Slots;
+    /// ∂L_d/∂q0.
+    D2Ld, "d2_ld", Slots;
+    /// ∂L_d/∂t1.
+    D3Ld, "d3_ld", Slots;
+    /// ∂L_d/∂q1.
+    D4Ld, "d4_ld", Slots;
+    /// f_d⁻.
+    FdMinus, "fd_minus", Slots;
+    /// f_d⁺.
+    FdPlus, "fd_plus", Slots;
+    /// g_d⁻.
+    GdMinus, "gd_minus", Slots;
+    /// g_d⁺.
+    GdPlus, "gd_plus", Slots;
+    /// The momentum row and A.
+    MomentumEquation, "momentum_equation", Fixed;
+    /// The momentum row, its rounding scale, and p1 − p0.
+    MomentumResidual, "momentum_residual", Fixed;
+    /// Derivatives of the momentum row and of p1 − p0.
+    MomentumDerivatives, "momentum_derivatives", Fixed;
+    /// E1.
+    DiscreteEnergy, "discrete_energy", Fixed;
+    /// The body of a loop of a large system.
+    Body, "body", None;
+    /// Both rows and their derivatives.
+    ExtendedSystem, "extended_system", EnergyPreserving;
+    /// Both rows, their rounding scales, p1 − p0 and E1 − E0.
+    ExtendedResidual, "extended_residual", EnergyPreserving;
+    /// Derivatives of both rows, of p1 − p0 and of E1 − E0.
+    ExtendedDerivatives, "extended_derivatives", EnergyPreserving;
+}
+
+/// Methods that call the same functions.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Methods {
+    /// All methods.
+    Every,
+    /// Gauss and energy-preserving Gauss steps.
+    Gauss,
+    /// Gauss steps in transformed time.
+    Transformed,
+    /// Fixed steps.
+    Fixed,
+    /// Energy-preserving steps of a rule.
+    EnergyPreserving,
+    /// None; the trait of the slots has the function.
+    Slots,
+    /// None; the function is a part of others.
+    None,
 }
 
 /// A quantity computed by a function.
