@@ -27,8 +27,6 @@ mod bordered;
 mod dense;
 #[cfg(feature = "alloc")]
 mod factored;
-#[cfg(feature = "alloc")]
-mod pivoted;
 mod rectangular;
 #[cfg(feature = "alloc")]
 mod scales;
@@ -42,8 +40,6 @@ pub use blocks::Blocks;
 pub(crate) use bordered::{Bordered, Unsolvable, scale};
 #[cfg(feature = "alloc")]
 pub(crate) use factored::{Assemble, Entries, Factored};
-#[cfg(feature = "alloc")]
-pub(crate) use pivoted::Pivoted;
 pub use rectangular::{AtMost, Rectangular, Row, Rows, Sparse};
 #[cfg(feature = "alloc")]
 pub(crate) use scales::{reciprocal_power, reciprocal_root};

@@ -26,7 +26,6 @@ use crate::derivatives::{
 };
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
-use crate::linear::Pivoted;
 use crate::method::{Gauss, InTransformedTime};
 use crate::motion::{Motion, ScaledPoint, TimeScale};
 use crate::node::Node;
@@ -106,16 +105,15 @@ where
     // Pivoting compares rows: each is scaled to a largest entry of 1, since coordinates differ in units.
     let scales = DVector::from_fn(size, |row, _| matrix.row(row).amax().recip());
     matrix.row_iter_mut().zip(&scales).for_each(|(mut row, scale)| row *= *scale);
-    let mut factors = Pivoted::new(size);
-    factors.factor(&matrix);
+    let factors = matrix.lu();
     for chunk in variations.chunks_mut(TOGETHER) {
         let explicit = stages.explicit(system, chunk);
         for (variation, explicit) in chunk.iter_mut().zip(&explicit) {
             let (missing, _) = stages.residual(&unmoved, variation, explicit);
             let mut solution = -missing.component_mul(&scales);
             let is_known = solution.iter().all(|entry| entry.is_finite());
-            factors.solve(solution.as_mut_slice());
-            if !solution.iter().all(|entry| entry.is_finite()) {
+            let is_regular = factors.solve_mut(&mut solution);
+            if !is_regular || !solution.iter().all(|entry| entry.is_finite()) {
                 return Err(if is_known { singular(t) } else { not_finite(t) });
             }
             let (_, changes) = stages.residual(&solution, variation, explicit);
