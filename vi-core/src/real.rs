@@ -4,18 +4,20 @@
 //! several lanes can perform at once. [`Real`] adds the functions that read a number, and [`Scalar`] the order that the
 //! control flow of a stepper needs.
 
-/// Implements the assigning operators by the others.
+/// Implements the assigning operators by the others, for a type with parameters if they are given.
 macro_rules! assignments {
-    ($number:ty) => {
-        $crate::real::assignments! { $number: AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign * }
-    };
-    ($number:ty: $($operator:ident $function:ident $operation:tt),*) => {$(
-        impl core::ops::$operator for $number {
+    ([$($parameters:tt)*] $number:ty: $operator:ident $function:ident $operation:tt) => {
+        impl<$($parameters)*> core::ops::$operator for $number {
             fn $function(&mut self, other: Self) {
                 *self = *self $operation other;
             }
         }
-    )*};
+    };
+    ($number:ty $(, $($parameters:tt)*)?) => {
+        $crate::real::assignments! { [$($($parameters)*)?] $number: AddAssign add_assign + }
+        $crate::real::assignments! { [$($($parameters)*)?] $number: SubAssign sub_assign - }
+        $crate::real::assignments! { [$($($parameters)*)?] $number: MulAssign mul_assign * }
+    };
 }
 pub(crate) use assignments;
 
@@ -29,7 +31,8 @@ pub mod sine;
 pub use dual::{Dual, Slope, Slopes};
 pub use lane::Lane;
 pub use lanes::Lanes;
-pub use rounded::Rounded;
+pub(crate) use rounded::Bounded;
+pub use rounded::{Rounded, Running};
 pub use series::Series;
 
 use core::fmt::Debug;

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Left sides: generated code. Right sides: automatic differentiation of L, and of the evaluation at a point.
-//! Tolerance: the sum of the rounding-error bounds of both sides (`bounded`). h is that of the samples, a fraction of
+//! Tolerance: the sum of the rounding-error bounds of both sides (`Bounded`). h is that of the samples, a fraction of
 //! the system's own time scale; the h of the place is not used.
 
 use super::bounded::{Bounded, exact, solution, vector_of};
@@ -208,5 +208,5 @@ fn scaled_point<const N: usize, S: MotionChecked<N>>(
 /// A row is a sum with a rounding error of at least half an ulp of itself.
 pub(super) fn enough(residual: f64, rounding: f64, check: &mut Comparison) -> Result<(), CheckFailure> {
     let least = 0.5 * residual.abs();
-    check.number("rounding", Bounded::exact(rounding.max(least)), Bounded::once(least).of(rounding))
+    check.number("rounding", Bounded::exact(rounding.max(least)), Bounded::nearest(least).of(rounding))
 }

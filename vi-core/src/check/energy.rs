@@ -77,7 +77,7 @@ fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) 
         // Allowed residual of the solved equations, and rounding error of the end, for the tolerance of the start.
         let left = SOLVED * f64::EPSILON * (rounding.energy_residual + v.abs().dot(&rounding.residual));
         let mean = Bounded { value: f64::midpoint(carried, step.energy), error: left };
-        let found = bounded.energy(Bounded::once(t), &once(&q), &exact(&v)).of(system.energy(t, &q, &v));
+        let found = bounded.energy(Bounded::nearest(t), &once(&q), &exact(&v)).of(system.energy(t, &q, &v));
         check.number("energy at the midpoint", found, mean)?;
         let slots = SlotValues::between(system, &before, &State { t: step.t, q: step.q, p: step.p });
         check.number("E1", Bounded { value: step.energy, error: left }, slots.energy_after)?;

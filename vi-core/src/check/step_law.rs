@@ -105,7 +105,7 @@ fn deviations<const N: usize, S: EnergyChecked<N>>(
         run.step().map_err(|error| check.step(error))?;
         let step = run.last_step();
         let here = density(system, &step.midpoint).map_err(|error| check.step(error))?;
-        let solved = length::solved(system, &node.map(Bounded::once), step.h, &step.midpoint.2);
+        let solved = length::solved(system, &node.map(Bounded::nearest), step.h, &step.midpoint.2);
         let solved = solved.ok_or_else(|| check.step(singular(step.t)))?;
         let ratio = solved.density / here;
         let law = Measured {
@@ -134,6 +134,6 @@ fn density<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     (t, q, v): &(f64, SVector<f64, N>, SVector<f64, N>),
 ) -> Result<Bounded, StepError> {
-    let bound = system.steps::<Bounded>().step_density(Bounded::once(*t), &once(q), &exact(v))?;
+    let bound = system.steps::<Bounded>().step_density(Bounded::nearest(*t), &once(q), &exact(v))?;
     Ok(bound.of(system.step_density(*t, q, v)?))
 }

@@ -53,7 +53,7 @@ pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
         let known = |p: &SVector<f64, N>| p.zip_map(&left, |p, left| Bounded { value: p, error: left });
         check.vector("p0", &slots.momentum_before, &known(&before.p))?;
         check.vector("p1", &known(&after.p), &slots.momentum_after)?;
-        let known = node.map(Bounded::once);
+        let known = node.map(Bounded::nearest);
         let energy = system.steps::<Bounded>().discrete_energy(&known, Bounded::exact(place.h), &exact(&v));
         check.number("E1", energy.of(run.discrete_energy().unwrap_or(f64::NAN)), slots.energy_after)?;
     }
@@ -131,7 +131,7 @@ impl<const N: usize> SlotValues<N> {
     pub(super) fn between<S: Checked<N>>(system: &S, before: &State<N>, after: &State<N>) -> Self {
         let bounded = system.steps::<Bounded>();
         let ends = Interval { t0: before.t, q0: before.q, t1: after.t, q1: after.q };
-        let interval = between(&ends, Bounded::once);
+        let interval = between(&ends, Bounded::nearest);
         Self {
             momentum_before: -bounded.d2_ld(&interval) - bounded.fd_minus(&interval),
             momentum_after: bounded.d4_ld(&interval) + bounded.fd_plus(&interval),

@@ -8,7 +8,7 @@
 use crate::real::{Number, Real};
 use core::array;
 use core::fmt::Debug;
-use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 use nalgebra::SVector;
 
 /// A value and its derivative with respect to one variable, or to several.
@@ -244,23 +244,7 @@ impl<T: Real, D: Slope<T>> Neg for Dual<T, D> {
     }
 }
 
-impl<T: Real, D: Slope<T>> AddAssign for Dual<T, D> {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<T: Real, D: Slope<T>> SubAssign for Dual<T, D> {
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
-impl<T: Real, D: Slope<T>> MulAssign for Dual<T, D> {
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
-    }
-}
+assignments!(Dual<T, D>, T: Real, D: Slope<T>);
 
 impl<T: Real, D: Slope<T>> num_traits::Zero for Dual<T, D> {
     fn zero() -> Self {
