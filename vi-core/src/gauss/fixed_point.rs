@@ -12,7 +12,8 @@
 //! The change from x to x' is the residual at x, the same x whose forces the step uses. The iteration does not stop at
 //! the first small change, but when the remaining error is negligible. An error of the stages with the same sign in
 //! every step would let the energy drift. Rounding hides that error in the change, so the iteration predicts it: each
-//! iteration multiplies it by the contraction, which is measured while changes exceed rounding.
+//! iteration multiplies it by the contraction, which is measured while changes exceed rounding. Stages of a tolerance have
+//! larger units, in which no rounding hides the error.
 
 use super::stages::{EXACT, Stages};
 use crate::error::StepError;
@@ -41,6 +42,8 @@ const STALLS: u32 = 4;
 pub(crate) const VELOCITY: f64 = 1.0 / 16.0;
 /// Accepted stage error of a step, in ulps of q.
 const NEGLIGIBLE: f64 = 1.0 / 1024.0;
+/// The part of a measured error that counts, because rounding has a share in it. With larger units than ulps.
+const MEASURED: f64 = 1.0 / 64.0;
 /// Change, in ulps, after which the ulps are recomputed: a sixteenth of the number itself.
 const COARSE: f64 = 0.0625 / f64::EPSILON;
 
@@ -184,11 +187,12 @@ impl Convergence {
 #[repr(align(64))]
 struct AtLine<T>(T);
 
-/// Iterates until the stages converge or stall. `before` is the outcome of the previous step.
+/// Iterates until the stages converge to an accuracy, in ulps, or stall. `before` is the outcome of the previous step.
 #[inline(always)]
 pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     equations: &mut E,
     before: &Convergence,
+    accuracy: f64,
 ) -> FixedPointResult<N, S> {
     let [x, y] = &mut [AtLine(equations.start()), AtLine([[0.0; S]; N])];
     let (AtLine(x), AtLine(y)) = (x, y);
@@ -211,6 +215,11 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
             equations.take_roundings(y);
         }
         let mut change = equations.change(x, y);
+        if accuracy > EXACT {
+            // Rounding hides no large error of a step from x, such as that of a contraction that has changed since the
+            // last step.
+            left = left.max(MEASURED * equations.passed_on(state.contraction.max(change / last)) * change);
+        }
         let is_small = |change, left| change <= FLOOR && (left <= NEGLIGIBLE || change == 0.0);
         if is_small(change, left) || change >= least {
             // Convergence is judged in ulps of the new stages.

@@ -449,7 +449,7 @@ fn finished<const N: usize, const S: usize>(
     mut equations: impl Equations<N, S>,
     start: &Start<'_, N, S>,
 ) -> StageSolution<N, S> {
-    let iteration = fixed_point::solve(&mut equations, start.before);
+    let iteration = fixed_point::solve(&mut equations, start.before, start.accuracy);
     StageSolution {
         increment: equations.increment(),
         stages: equations.guess(),

@@ -143,7 +143,8 @@ pub struct Status<T = f64> {
     pub length: T,
     /// Upper bound of the next step length in time, with the sign of h.
     pub longest: T,
-    /// Largest residual of the step, in units of its rounding-error bound. Zero before the first step.
+    /// Largest residual of the step, in units of its rounding-error bound, or of a part of a tolerance. Zero before the first
+    /// step.
     pub residual: f64,
     /// Newton or fixed-point iterations.
     pub iterations: u32,

@@ -248,7 +248,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
         self.method.status(self.h, &self.memory).length
     }
 
-    /// Largest residual of the last step, in units of its rounding-error bound. Zero before the first step.
+    /// Largest residual of the last step, in units of its rounding-error bound, or of a part of the tolerance if the method
+    /// solves steps to that. Zero before the first step.
     pub fn residual(&self) -> f64 {
         self.method.status(self.h, &self.memory).residual
     }
